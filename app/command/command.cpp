@@ -1,0 +1,77 @@
+#include "app/command/command.h"
+
+#include "volume/error.h"
+
+#include <csignal>
+#include <cstdio>
+#include <mutex>
+#include <unistd.h>
+
+namespace tessera::app {
+
+namespace {
+
+volatile std::sig_atomic_t interrupted = 0;
+
+} // namespace
+
+Progress terminalProgress(const std::string& title) {
+    static std::stop_source source;
+    static std::mutex mutex;
+    source = std::stop_source();
+    interrupted = 0;
+    std::signal(SIGINT, [](int) { interrupted = 1; });
+    const bool terminal = isatty(STDERR_FILENO) != 0;
+    Progress progress;
+    progress.stop = source.get_token();
+    progress.report = [terminal, title, last = -1](double fraction, const std::string& what) mutable {
+        if (interrupted != 0) {
+            source.request_stop();
+            throw Cancelled();
+        }
+        if (!terminal) return;
+        const std::lock_guard lock(mutex);
+        const int percent = static_cast<int>(fraction * 100);
+        if (percent == last) return;
+        last = percent;
+        std::fprintf(stderr, "\r\033[K%s %3d %% %s%s", title.c_str(), percent, what.c_str(),
+                     percent >= 100 ? "\r\033[K" : "");
+        std::fflush(stderr);
+    };
+    return progress;
+}
+
+int runCommandLine(int argc, const char* const* argv) {
+    CLI::App app{"Tessera: a workbench for simulations with many values per point", "tessera"};
+    app.set_version_flag("--version", std::string("tessera ") + TESSERA_VERSION);
+    app.require_subcommand(0, 1);
+    addWorkbench(app);
+    addBenchCommand(app);
+    addGenerateCommand(app);
+    addInfoCommand(app);
+    addPackCommand(app);
+    addRenderCommand(app);
+    addReplayCommand(app);
+    addUnpackCommand(app);
+    addVerifyCommand(app);
+    try {
+        app.parse(argc, argv);
+        return 0;
+    } catch (const CLI::ParseError& error) {
+        return app.exit(error) == 0 ? 0 : 1;
+    } catch (const Cancelled&) {
+        std::fprintf(stderr, "tessera: cancelled\n");
+        return 130;
+    } catch (const MachineError& error) {
+        std::fprintf(stderr, "tessera: %s\n", error.what());
+        return 3;
+    } catch (const Error& error) {
+        std::fprintf(stderr, "tessera: %s\n", error.what());
+        return 2;
+    } catch (const std::bad_alloc&) {
+        std::fprintf(stderr, "tessera: not enough memory\n");
+        return 3;
+    }
+}
+
+} // namespace tessera::app

@@ -1,0 +1,30 @@
+#pragma once
+
+#include "volume/progress.h"
+
+#include <CLI/CLI.hpp>
+#include <string>
+
+/// The command line. Each subcommand is one file of app/command with one add function; its callback does the work and
+/// throws: Error ends with status 2, MachineError with 3, Cancelled with 130, wrong usage with 1.
+namespace tessera::app {
+
+void addBenchCommand(CLI::App& app);
+void addGenerateCommand(CLI::App& app);
+void addInfoCommand(CLI::App& app);
+void addPackCommand(CLI::App& app);
+void addRenderCommand(CLI::App& app);
+void addReplayCommand(CLI::App& app);
+void addUnpackCommand(CLI::App& app);
+void addVerifyCommand(CLI::App& app);
+/// Without a subcommand: the workbench on FILE...
+void addWorkbench(CLI::App& app);
+
+/// Parses the arguments and runs what they ask for; returns the exit status.
+int runCommandLine(int argc, const char* const* argv);
+
+/// Progress on the terminal: a line "title 42 % what" on stderr when it is a terminal, nothing otherwise. Ctrl-C
+/// requests the stop of its token. One at a time.
+Progress terminalProgress(const std::string& title);
+
+} // namespace tessera::app

@@ -1,0 +1,75 @@
+#pragma once
+
+#include "volume/describe.h"
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+/// The arrangement of panes: a binary tree of splits whose leaves are stacks of tabs. Pure data and tree surgery;
+/// drawing and dragging are in app/ui/dock.h.
+namespace tessera::app {
+
+enum class DockKind { Tabs, Row, Column };
+inline constexpr std::string_view kDockKindNames[] = {"tabs", "row", "column"};
+
+struct DockNode {
+    int id = 0; ///< unique in the tree, stable while the node lives
+    DockKind kind = DockKind::Tabs;
+    float ratio = 0.5f;             ///< share of the first child
+    std::vector<DockNode> children; ///< exactly two for Row (left, right) and Column (top, bottom), else none
+    std::vector<std::string> tabs;  ///< pane keys
+    int active = 0;
+
+    bool operator==(const DockNode&) const = default;
+    static void describe(auto& self, auto&& visit) {
+        visit(self.id, FieldInfo{.key = "id", .unit = "", .doc = "Number of the node"});
+        visit(self.kind,
+              FieldInfo{.key = "kind", .unit = "", .doc = "Stack of tabs or split", .names = kDockKindNames});
+        visit(self.ratio,
+              FieldInfo{.key = "ratio", .unit = "", .doc = "Share of the first part", .range = Range{0, 1}});
+        visit(self.children, FieldInfo{.key = "children", .unit = "", .doc = "Parts of a split"});
+        visit(self.tabs, FieldInfo{.key = "tabs", .unit = "", .doc = "Panes in the stack"});
+        visit(self.active, FieldInfo{.key = "active", .unit = "", .doc = "Pane in front"});
+    }
+};
+
+struct FloatingPane {
+    std::string pane;
+    float x = 0.3f, y = 0.3f, width = 0.4f, height = 0.4f; ///< fractions of the window
+    bool operator==(const FloatingPane&) const = default;
+    static void describe(auto& self, auto&& visit) {
+        visit(self.pane, FieldInfo{.key = "pane", .unit = "", .doc = "Pane that floats"});
+        visit(self.x, FieldInfo{.key = "x", .unit = "", .doc = "Left edge"});
+        visit(self.y, FieldInfo{.key = "y", .unit = "", .doc = "Top edge"});
+        visit(self.width, FieldInfo{.key = "width", .unit = "", .doc = "Width"});
+        visit(self.height, FieldInfo{.key = "height", .unit = "", .doc = "Height"});
+    }
+};
+
+struct DockTree {
+    DockNode root;
+    std::vector<FloatingPane> floating;
+    std::string maximised; ///< pane that fills the window, "" = none
+    bool operator==(const DockTree&) const = default;
+    static void describe(auto& self, auto&& visit) {
+        visit(self.root, FieldInfo{.key = "root", .unit = "", .doc = "Root of the tree"});
+        visit(self.floating, FieldInfo{.key = "floating", .unit = "", .doc = "Panes that float"});
+        visit(self.maximised, FieldInfo{.key = "maximised", .unit = "", .doc = "Pane that fills the window"});
+    }
+};
+
+enum class DockSide { Center, Left, Right, Top, Bottom };
+
+/// Node surgery; every function leaves a valid tree (no empty stacks but a lone root, two children per split).
+void removePane(DockTree& tree, const std::string& pane);
+/// Puts a pane (new or from elsewhere in the tree) beside, or as a tab into, the stack with that node id.
+void insertPane(DockTree& tree, const std::string& pane, int node, DockSide side);
+void floatPane(DockTree& tree, const std::string& pane, FloatingPane place);
+/// Every pane of the tree, floating ones included.
+std::vector<std::string> panesOf(const DockTree& tree);
+/// Repairs a tree from a file: drops duplicates and unknown panes, adds missing ones to the first stack, clamps ratios.
+void repair(DockTree& tree, const std::vector<std::string>& panes);
+
+} // namespace tessera::app

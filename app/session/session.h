@@ -1,0 +1,131 @@
+#pragma once
+
+#include "app/session/dock_tree.h"
+#include "app/session/view_state.h"
+#include "vis/model/scene.h"
+
+#include <map>
+#include <string>
+#include <vector>
+
+/// The session: everything that decides what is on screen, as one value, and its JSON file (*.tessera.json).
+namespace tessera::app {
+
+inline constexpr int kSessionSchema = 1;
+
+/// A file a session shows, found again by path (relative to the session file), size and hash.
+struct DataFile {
+    std::string path;         ///< relative to the session file where possible, '/' separators
+    std::string absolutePath; ///< where it was when saved; tried second
+    double bytes = 0;         ///< size when saved, 0 = unknown
+    std::string hash;         ///< xxh64 of the first and last MiB, hex, "" = unknown
+    bool operator==(const DataFile&) const = default;
+    static void describe(auto& self, auto&& visit) {
+        visit(self.path,
+              FieldInfo{.key = "path", .unit = "", .doc = "File, relative to the session", .refersTo = "path"});
+        visit(self.absolutePath, FieldInfo{.key = "absolutePath", .unit = "", .doc = "Where the file was when saved"});
+        visit(self.bytes, FieldInfo{.key = "bytes", .unit = "byte", .doc = "Size when saved"});
+        visit(self.hash, FieldInfo{.key = "hash", .unit = "", .doc = "xxh64 of the first and last MiB when saved"});
+    }
+};
+
+/// What is shown: files, or a model computed by the program.
+struct DataRef {
+    std::vector<DataFile> files;            ///< an archive, or data files opened together
+    std::string model;                      ///< "fuel-cell", "marschner-lobb", ...: used when there are no files
+    std::map<std::string, double> settings; ///< of the model: e.g. nx, ny, nz, times
+    bool bcc = true;                        ///< show unpacked data on the BCC lattice at 70.7 % of the samples
+    bool operator==(const DataRef&) const = default;
+    static void describe(auto& self, auto&& visit) {
+        visit(self.files, FieldInfo{.key = "files", .unit = "", .doc = "Files that are shown together"});
+        visit(self.model, FieldInfo{.key = "model", .unit = "", .doc = "Built-in model shown when there is no file"});
+        visit(self.settings, FieldInfo{.key = "settings", .unit = "", .doc = "Settings of the model"});
+        visit(self.bcc, FieldInfo{.key = "bcc", .unit = "", .doc = "Resample unpacked data to the BCC lattice"});
+    }
+};
+
+enum class Loop { Once, Repeat, PingPong };
+inline constexpr std::string_view kLoopNames[] = {"once", "repeat", "pingPong"};
+
+struct Animation {
+    bool playing = false;
+    float speed = 4; ///< time steps per second
+    Loop loop = Loop::Repeat;
+    bool operator==(const Animation&) const = default;
+    static void describe(auto& self, auto&& visit) {
+        visit(self.playing, FieldInfo{.key = "playing", .unit = "", .doc = "Time is running"});
+        visit(self.speed, FieldInfo{.key = "speed",
+                                    .unit = "steps/s",
+                                    .doc = "Time steps shown per second",
+                                    .range = Range{0.1, 60},
+                                    .logScale = true});
+        visit(self.loop,
+              FieldInfo{.key = "loop", .unit = "", .doc = "What happens at the last time", .names = kLoopNames});
+    }
+};
+
+enum class Theme { Dark, Light };
+inline constexpr std::string_view kThemeNames[] = {"dark", "light"};
+
+struct Appearance {
+    Theme theme = Theme::Dark;
+    float scale = 1; ///< user factor on top of the display's
+    bool operator==(const Appearance&) const = default;
+    static void describe(auto& self, auto&& visit) {
+        visit(self.theme, FieldInfo{.key = "theme", .unit = "", .doc = "Colours of the window", .names = kThemeNames});
+        visit(self.scale,
+              FieldInfo{.key = "scale", .unit = "", .doc = "Size of text and controls", .range = Range{0.5, 3}});
+    }
+};
+
+struct Session {
+    int schema = kSessionSchema;
+    std::string title;
+    DataRef data;
+    // What all views share.
+    double time = 0;
+    glm::dvec3 cursor{0}; ///< physical; the linked cross-hair
+    glm::dvec3 stretch{1};
+    vis::Camera camera;
+    vis::Selection selection;
+    std::map<std::string, vis::TransferFunction> transfer; ///< by channel name
+    std::vector<vis::Layer> layers;
+    vis::RenderParams render;
+    Animation animation;
+    Appearance appearance;
+    // What is open, and where.
+    std::map<std::string, ViewState> views; ///< by pane key, e.g. "volume", "slices", "volume-2"
+    DockTree dock;
+
+    bool operator==(const Session&) const = default;
+    static void describe(auto& self, auto&& visit) {
+        visit(self.schema, FieldInfo{.key = "schema", .unit = "", .doc = "Version of this format", .hidden = true});
+        visit(self.title, FieldInfo{.key = "title", .unit = "", .doc = "What this session shows"});
+        visit(self.data, FieldInfo{.key = "data", .unit = "", .doc = "What is shown"});
+        visit(self.time, FieldInfo{.key = "time", .unit = "s", .doc = "Time shown in every view"});
+        visit(self.cursor, FieldInfo{.key = "cursor", .unit = "m", .doc = "Position of the linked cross-hair"});
+        visit(self.stretch, FieldInfo{.key = "stretch",
+                                      .unit = "",
+                                      .doc = "Factor on each axis; 1 = true proportions",
+                                      .range = Range{0.01, 1000},
+                                      .logScale = true});
+        visit(self.camera, FieldInfo{.key = "camera", .unit = "", .doc = "Camera of the 3D views"});
+        visit(self.selection, FieldInfo{.key = "selection", .unit = "", .doc = "Brushes shared by all views"});
+        visit(self.transfer, FieldInfo{.key = "transfer", .unit = "", .doc = "Transfer functions by parameter"});
+        visit(self.layers, FieldInfo{.key = "layers", .unit = "", .doc = "Techniques shown in the 3D views"});
+        visit(self.render, FieldInfo{.key = "render", .unit = "", .doc = "Settings of the ray caster"});
+        visit(self.animation, FieldInfo{.key = "animation", .unit = "", .doc = "Playing through time"});
+        visit(self.appearance, FieldInfo{.key = "appearance", .unit = "", .doc = "Looks of the window"});
+        visit(self.views, FieldInfo{.key = "views", .unit = "", .doc = "Open views by name"});
+        visit(self.dock, FieldInfo{.key = "dock", .unit = "", .doc = "Arrangement of the panes", .hidden = true});
+    }
+};
+
+/// The scene the session's 3D views show (a volume view's own settings are applied on top by the view).
+vis::Scene sceneOf(const Session& session);
+
+/// A sensible session for data never seen before: layers, transfer functions, stretch of thin domains, cursor in the
+/// middle, the overview arrangement of panes.
+Session defaultSession(const volume::DatasetInfo& info, const DataRef& data);
+
+} // namespace tessera::app

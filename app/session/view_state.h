@@ -1,0 +1,109 @@
+#pragma once
+
+#include "volume/describe.h"
+
+#include <string>
+#include <variant>
+#include <vector>
+
+/// The saved state of each kind of view: plain described structs, one per kind. How a view draws itself is in
+/// app/views.
+namespace tessera::app {
+
+struct VolumeView {
+    static constexpr std::string_view kType = "volume";
+    bool showBox = true, showAxes = true, showLegend = true, showCursor = true;
+    bool operator==(const VolumeView&) const = default;
+    static void describe(auto& self, auto&& visit) {
+        visit(self.showBox, FieldInfo{.key = "box", .unit = "", .doc = "Draw the box around the data"});
+        visit(self.showAxes, FieldInfo{.key = "axes", .unit = "", .doc = "Draw axes with ticks and units"});
+        visit(self.showLegend, FieldInfo{.key = "legend", .unit = "", .doc = "Draw colour legends"});
+        visit(self.showCursor, FieldInfo{.key = "cursor", .unit = "", .doc = "Draw the linked cross-hair"});
+    }
+};
+
+struct SlicesView {
+    static constexpr std::string_view kType = "slices";
+    std::string channel; ///< "" = the channel of the first layer
+    int contours = 0;
+    bool showReadout = true;
+    bool operator==(const SlicesView&) const = default;
+    static void describe(auto& self, auto&& visit) {
+        visit(self.channel, FieldInfo{.key = "channel", .unit = "", .doc = "Parameter shown", .refersTo = "channel"});
+        visit(self.contours,
+              FieldInfo{
+                  .key = "contours", .unit = "", .doc = "Number of contour lines, 0 = none", .range = Range{0, 50}});
+        visit(self.showReadout, FieldInfo{.key = "readout", .unit = "", .doc = "List every parameter at the cursor"});
+    }
+};
+
+struct ScatterMatrixView {
+    static constexpr std::string_view kType = "scatterMatrix";
+    std::vector<std::string> channels; ///< empty = every scalar and vector magnitude
+    int bins = 96;
+    bool logDensity = true;
+    float softness = 0.05f; ///< soft edge of new brushes, as a share of their width
+    bool operator==(const ScatterMatrixView&) const = default;
+    static void describe(auto& self, auto&& visit) {
+        visit(self.channels,
+              FieldInfo{.key = "channels", .unit = "", .doc = "Parameters compared", .refersTo = "channel"});
+        visit(self.bins,
+              FieldInfo{.key = "bins", .unit = "", .doc = "Bins along each axis of a plot", .range = Range{16, 512}});
+        visit(self.logDensity, FieldInfo{.key = "logDensity", .unit = "", .doc = "Show the logarithm of the density"});
+        visit(self.softness, FieldInfo{.key = "softness",
+                                       .unit = "",
+                                       .doc = "Soft edge of new brushes, share of their width",
+                                       .range = Range{0, 1}});
+    }
+};
+
+struct TransferView {
+    static constexpr std::string_view kType = "transfer";
+    std::string channel; ///< "" = the channel of the first layer
+    bool logHistogram = true;
+    bool operator==(const TransferView&) const = default;
+    static void describe(auto& self, auto&& visit) {
+        visit(self.channel, FieldInfo{.key = "channel",
+                                      .unit = "",
+                                      .doc = "Parameter whose transfer function is edited",
+                                      .refersTo = "channel"});
+        visit(self.logHistogram,
+              FieldInfo{.key = "logHistogram", .unit = "", .doc = "Show the logarithm of the counts"});
+    }
+};
+
+struct LayersView {
+    static constexpr std::string_view kType = "layers";
+    bool operator==(const LayersView&) const = default;
+    static void describe(auto&, auto&&) {}
+};
+
+struct TimelineView {
+    static constexpr std::string_view kType = "timeline";
+    bool operator==(const TimelineView&) const = default;
+    static void describe(auto&, auto&&) {}
+};
+
+/// What is in the data set, and the selection with its statistics.
+struct DataView {
+    static constexpr std::string_view kType = "data";
+    bool operator==(const DataView&) const = default;
+    static void describe(auto&, auto&&) {}
+};
+
+struct HistoryView {
+    static constexpr std::string_view kType = "history";
+    bool operator==(const HistoryView&) const = default;
+    static void describe(auto&, auto&&) {}
+};
+
+struct LogView {
+    static constexpr std::string_view kType = "log";
+    bool operator==(const LogView&) const = default;
+    static void describe(auto&, auto&&) {}
+};
+
+using ViewState = std::variant<VolumeView, SlicesView, ScatterMatrixView, TransferView, LayersView, TimelineView,
+                               DataView, HistoryView, LogView>;
+
+} // namespace tessera::app

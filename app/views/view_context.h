@@ -1,0 +1,53 @@
+#pragma once
+
+#include "app/session/session.h"
+#include "app/ui/jobs.h"
+#include "vis/renderer.h"
+#include "volume/brick_source.h"
+
+#include <map>
+#include <memory>
+#include <string>
+
+struct ImFont;
+
+namespace tessera::app {
+
+/// What a view keeps between frames besides its saved state: render targets, plot textures, running jobs. Losing it
+/// never changes what is drawn, only how long it takes. Each view derives its own.
+struct ViewCache {
+    virtual ~ViewCache() = default;
+};
+
+/// What one frame of the window gives to each view. Views read and edit `session`, nothing else; the workbench compares
+/// it with the former frame's and keeps the history.
+struct ViewContext {
+    Session& session;
+    std::shared_ptr<const volume::BrickSource> source; ///< null while nothing is loaded
+    vis::Renderer& renderer;
+    Jobs& jobs;                                                ///< background work
+    std::map<std::string, std::unique_ptr<ViewCache>>& caches; ///< by pane key; cleared when the source changes
+    ImFont* iconFont = nullptr; ///< Font Awesome glyphs; null where the package is missing
+    float scale = 1;            ///< pixels per design pixel
+    bool headless = false;      ///< finish everything before the frame ends: no budget, no progressive states
+    bool busy = false;        ///< set by a view that needs another frame soon (refining, animating, waiting for a job)
+    bool interacting = false; ///< some edit is in progress (mouse held on a control): draw at reduced size
+};
+
+/// The cache of a pane, made on first use.
+template <class Cache> Cache& cacheOf(ViewContext& context, const std::string& pane) {
+    std::unique_ptr<ViewCache>& slot = context.caches[pane];
+    if (!dynamic_cast<Cache*>(slot.get())) slot = std::make_unique<Cache>();
+    return static_cast<Cache&>(*slot);
+}
+
+// One function per kind of view, each in its own file; called inside the pane's ImGui window.
+void drawVolumeView(ViewContext& context, const std::string& pane, VolumeView& view);
+void drawSlicesView(ViewContext& context, const std::string& pane, SlicesView& view);
+void drawScatterMatrixView(ViewContext& context, const std::string& pane, ScatterMatrixView& view);
+void drawTransferView(ViewContext& context, const std::string& pane, TransferView& view);
+void drawLayersView(ViewContext& context, const std::string& pane, LayersView& view);
+void drawTimelineView(ViewContext& context, const std::string& pane, TimelineView& view);
+void drawDataView(ViewContext& context, const std::string& pane, DataView& view);
+
+} // namespace tessera::app

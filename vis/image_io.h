@@ -1,0 +1,27 @@
+#pragma once
+
+#include <cstdint>
+#include <glm/vec2.hpp>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace tessera::vis {
+
+/// 8-bit RGBA, sRGB, rows top down.
+struct Image {
+    glm::ivec2 size{0};
+    std::vector<std::uint8_t> rgba;
+};
+
+/// Key of the text chunk that carries a session in an exported PNG.
+inline constexpr const char* kSessionTextKey = "tessera-session";
+
+/// Writes a PNG with compressed international text chunks (iTXt, UTF-8), atomically: a temporary file, then rename.
+/// Throws Error when the file cannot be written.
+void writePng(const std::string& path, const Image& image, const std::map<std::string, std::string>& texts = {});
+
+/// Reads a PNG of any kind as RGBA, and its text chunks. Throws Error when it is not a PNG or damaged.
+Image readPng(const std::string& path, std::map<std::string, std::string>* texts = nullptr);
+
+} // namespace tessera::vis

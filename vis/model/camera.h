@@ -1,0 +1,84 @@
+#pragma once
+
+#include "volume/describe.h"
+#include "volume/lattice.h"
+
+#include <array>
+#include <glm/gtc/quaternion.hpp>
+#include <glm/mat4x4.hpp>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
+/// World space: the data set's bounds, stretched per axis, centred at the origin and scaled so that the longest
+/// stretched edge is 1. Cameras, step lengths and opacities are in world units, so a session carries over to data of
+/// another size.
+namespace tessera::vis {
+
+enum class Projection { Perspective, Orthographic };
+inline constexpr std::string_view kProjectionNames[] = {"perspective", "orthographic"};
+
+struct Camera {
+    Projection projection = Projection::Perspective;
+    glm::quat orientation{0.8446f, 0.3313f, -0.3919f,
+                          -0.1537f}; ///< rotates world into eye axes (x right, y up, z to viewer)
+    glm::vec3 target{0};             ///< world point in the middle of the picture
+    float distance = 2.2f;           ///< world units from eye to target
+    float fieldOfView = 35;          ///< degrees, vertical; orthographic height = 2 distance tan(fov / 2)
+
+    bool operator==(const Camera&) const = default;
+    static void describe(auto& self, auto&& visit) {
+        visit(self.projection, FieldInfo{.key = "projection",
+                                         .unit = "",
+                                         .doc = "Perspective or parallel projection",
+                                         .names = kProjectionNames});
+        visit(self.orientation, FieldInfo{.key = "orientation",
+                                          .unit = "",
+                                          .doc = "Rotation from world to eye axes (w, x, y, z)",
+                                          .hidden = true});
+        visit(
+            self.target,
+            FieldInfo{.key = "target", .unit = "", .doc = "World point in the middle of the picture", .hidden = true});
+        visit(self.distance, FieldInfo{.key = "distance",
+                                       .unit = "",
+                                       .doc = "Distance from the eye to the target, longest edge = 1",
+                                       .range = Range{0.01, 100},
+                                       .logScale = true});
+        visit(self.fieldOfView,
+              FieldInfo{.key = "fieldOfView", .unit = "deg", .doc = "Vertical field of view", .range = Range{5, 120}});
+    }
+};
+
+/// Maps the physical positions of a data set to world space and back. `stretch` is per axis, 1 = true proportions.
+struct WorldFrame {
+    glm::dvec3 scale{1}, offset{0}; ///< world = physical * scale + offset
+    glm::dvec3 halfSize{0.5};       ///< half the edges of the stretched box, in world units
+
+    glm::dvec3 toWorld(glm::dvec3 physical) const { return physical * scale + offset; }
+    glm::dvec3 toPhysical(glm::dvec3 world) const { return (world - offset) / scale; }
+};
+WorldFrame worldFrame(const volume::Box& bounds, glm::dvec3 stretch);
+
+/// The view matrix (world to eye) and projection (eye to clip, GL convention, near and far fitted around the world
+/// box).
+glm::dmat4 viewMatrix(const Camera& camera);
+glm::dmat4 projectionMatrix(const Camera& camera, double aspect);
+
+/// World position of the eye (perspective) and the ray through a point of the picture. `ndc` in -1..1, y up.
+struct Ray {
+    glm::dvec3 origin, direction; ///< direction has length 1
+};
+Ray cameraRay(const Camera& camera, double aspect, glm::dvec2 ndc);
+
+/// Turns the camera as if the object under the mouse were dragged from one point of the picture to another (ndc, y up).
+void orbit(Camera& camera, glm::vec2 from, glm::vec2 to);
+void pan(Camera& camera, glm::vec2 ndcDelta, float aspect);
+void zoom(Camera& camera, float factor);
+void roll(Camera& camera, float radians);
+
+/// The six axis views and the isometric one.
+enum class StandardView { Front, Back, Left, Right, Top, Bottom, Isometric };
+inline constexpr std::string_view kStandardViewNames[] = {"front", "back",   "left",     "right",
+                                                          "top",   "bottom", "isometric"};
+glm::quat standardOrientation(StandardView view);
+
+} // namespace tessera::vis

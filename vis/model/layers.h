@@ -1,0 +1,107 @@
+#pragma once
+
+#include "volume/describe.h"
+
+#include <glm/vec3.hpp>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace tessera::vis {
+
+enum class VolumeStyle { Composite, Maximum, XRay };
+inline constexpr std::string_view kVolumeStyleNames[] = {"composite", "maximum", "xray"};
+
+/// A scalar drawn through its transfer function by the ray caster.
+struct VolumeLayer {
+    static constexpr std::string_view kType = "volume";
+    std::string channel;
+    VolumeStyle style = VolumeStyle::Composite;
+    bool shaded = true; ///< Phong by the gradient; composite only
+    float density = 1;  ///< factor on optical depth
+    bool operator==(const VolumeLayer&) const = default;
+    static void describe(auto& self, auto&& visit) {
+        visit(self.channel, FieldInfo{.key = "channel", .unit = "", .doc = "Parameter shown", .refersTo = "channel"});
+        visit(self.style, FieldInfo{.key = "style",
+                                    .unit = "",
+                                    .doc = "How samples along a ray become one colour",
+                                    .names = kVolumeStyleNames});
+        visit(self.shaded, FieldInfo{.key = "shaded", .unit = "", .doc = "Phong shading by the gradient"});
+        visit(self.density, FieldInfo{.key = "density",
+                                      .unit = "",
+                                      .doc = "Factor on the optical depth",
+                                      .range = Range{0.01, 100},
+                                      .logScale = true});
+    }
+};
+
+/// A surface of equal value drawn by the ray caster, intersection refined by bisection, Phong shaded.
+struct IsoLayer {
+    static constexpr std::string_view kType = "iso";
+    std::string channel;
+    double value = 0.5;                  ///< physical
+    glm::vec3 color{0.8f, 0.45f, 0.15f}; ///< sRGB
+    float opacity = 1;
+    bool operator==(const IsoLayer&) const = default;
+    static void describe(auto& self, auto&& visit) {
+        visit(
+            self.channel,
+            FieldInfo{.key = "channel", .unit = "", .doc = "Parameter whose surface is shown", .refersTo = "channel"});
+        visit(self.value, FieldInfo{.key = "value", .unit = "", .doc = "Value on the surface"});
+        visit(self.color,
+              FieldInfo{.key = "color", .unit = "", .doc = "Colour of the surface (sRGB)", .range = Range{0, 1}});
+        visit(self.opacity,
+              FieldInfo{.key = "opacity", .unit = "", .doc = "Opacity of the surface", .range = Range{0, 1}});
+    }
+};
+
+enum class SliceOrientation { X, Y, Z, Oblique };
+inline constexpr std::string_view kSliceOrientationNames[] = {"x", "y", "z", "oblique"};
+
+/// A plane coloured by a channel, with contour lines.
+struct SliceLayer {
+    static constexpr std::string_view kType = "slice";
+    std::string channel;
+    SliceOrientation orientation = SliceOrientation::Z;
+    bool atCursor = true;      ///< passes through the linked cursor
+    double position = 0.5;     ///< 0..1 along the normal through the box, if !atCursor
+    glm::vec3 normal{0, 0, 1}; ///< of an oblique slice, world axes
+    int contours = 0;          ///< contour lines over the colour range
+    float opacity = 1;
+    bool operator==(const SliceLayer&) const = default;
+    static void describe(auto& self, auto&& visit) {
+        visit(self.channel, FieldInfo{.key = "channel", .unit = "", .doc = "Parameter shown", .refersTo = "channel"});
+        visit(self.orientation, FieldInfo{.key = "orientation",
+                                          .unit = "",
+                                          .doc = "Axis the slice is perpendicular to",
+                                          .names = kSliceOrientationNames});
+        visit(self.atCursor, FieldInfo{.key = "atCursor", .unit = "", .doc = "Pass through the linked cursor"});
+        visit(self.position, FieldInfo{.key = "position",
+                                       .unit = "",
+                                       .doc = "Place along the normal, 0 to 1 through the box",
+                                       .range = Range{0, 1}});
+        visit(self.normal,
+              FieldInfo{.key = "normal", .unit = "", .doc = "Normal of an oblique slice", .range = Range{-1, 1}});
+        visit(self.contours,
+              FieldInfo{
+                  .key = "contours", .unit = "", .doc = "Number of contour lines, 0 = none", .range = Range{0, 50}});
+        visit(self.opacity,
+              FieldInfo{.key = "opacity", .unit = "", .doc = "Opacity of the slice", .range = Range{0, 1}});
+    }
+};
+
+using Technique = std::variant<VolumeLayer, IsoLayer, SliceLayer>;
+
+struct Layer {
+    std::string name;
+    bool visible = true;
+    Technique technique;
+    bool operator==(const Layer&) const = default;
+    static void describe(auto& self, auto&& visit) {
+        visit(self.name, FieldInfo{.key = "name", .unit = "", .doc = "Name of the layer"});
+        visit(self.visible, FieldInfo{.key = "visible", .unit = "", .doc = "Show the layer"});
+        visit(self.technique, FieldInfo{.key = "technique", .unit = "", .doc = "What the layer draws"});
+    }
+};
+
+} // namespace tessera::vis

@@ -1,0 +1,70 @@
+#pragma once
+
+#include "vis/model/camera.h"
+#include "vis/model/layers.h"
+#include "vis/model/selection.h"
+#include "vis/model/transfer_function.h"
+
+#include <map>
+#include <string>
+#include <vector>
+
+namespace tessera::vis {
+
+enum class Filter { AverageQuasi, Average, Tetrahedral };
+inline constexpr std::string_view kFilterNames[] = {"quasi", "average", "tetrahedral"};
+
+/// Settings of the shared ray caster.
+struct RenderParams {
+    Filter filter =
+        Filter::AverageQuasi; ///< reconstruction; on CC "quasi" is prefiltered trilinear, the others trilinear
+    float stepVoxels = 0.5f;  ///< distance between samples, in cells of the finest direction on screen at rest
+    float ambient = 0.25f, diffuse = 0.65f, specular = 0.25f, shininess = 30;
+    float azimuth = -30, elevation = 40; ///< of the light, degrees from the viewer
+
+    bool operator==(const RenderParams&) const = default;
+    static void describe(auto& self, auto&& visit) {
+        visit(self.filter,
+              FieldInfo{
+                  .key = "filter", .unit = "", .doc = "Reconstruction between lattice points", .names = kFilterNames});
+        visit(self.stepVoxels, FieldInfo{.key = "step",
+                                         .unit = "voxel",
+                                         .doc = "Distance between samples along a ray",
+                                         .range = Range{0.05, 4},
+                                         .logScale = true});
+        visit(self.ambient, FieldInfo{.key = "ambient", .unit = "", .doc = "Ambient light", .range = Range{0, 1}});
+        visit(self.diffuse, FieldInfo{.key = "diffuse", .unit = "", .doc = "Diffuse reflection", .range = Range{0, 1}});
+        visit(self.specular,
+              FieldInfo{.key = "specular", .unit = "", .doc = "Specular reflection", .range = Range{0, 1}});
+        visit(self.shininess,
+              FieldInfo{
+                  .key = "shininess", .unit = "", .doc = "Phong exponent", .range = Range{1, 200}, .logScale = true});
+        visit(self.azimuth, FieldInfo{.key = "azimuth",
+                                      .unit = "deg",
+                                      .doc = "Light to the right of the viewer",
+                                      .range = Range{-180, 180}});
+        visit(self.elevation,
+              FieldInfo{.key = "elevation", .unit = "deg", .doc = "Light above the viewer", .range = Range{-90, 90}});
+    }
+};
+
+/// Everything that decides one rendered picture of the data (texts and axes are drawn over it by the views).
+struct Scene {
+    Camera camera;
+    std::vector<Layer> layers;                        ///< drawn first to last; volume-like ones share one ray loop
+    std::map<std::string, TransferFunction> transfer; ///< by channel name; a channel without one uses the default
+    Selection selection;
+    RenderParams render;
+    glm::dvec3 stretch{1};
+    glm::dvec3 cursor{0}; ///< physical
+    double time = 0;
+    glm::vec3 background{0.11f, 0.12f, 0.14f}; ///< sRGB
+    bool showBox = true;                       ///< wire box around the data
+    glm::vec3 boxColor{0.6f};
+    bool operator==(const Scene&) const = default;
+};
+
+/// The transfer function of a channel in a scene, the default one if it has none.
+const TransferFunction& transferFor(const Scene& scene, const std::string& channel);
+
+} // namespace tessera::vis

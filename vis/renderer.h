@@ -1,0 +1,88 @@
+#pragma once
+
+#include "vis/model/scene.h"
+#include "volume/brick_source.h"
+
+#include <chrono>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+/// The shared renderer: one per GL context. Needs a current GL 4.5 core context in every call, its destructor too.
+namespace tessera::vis {
+
+struct RendererOptions {
+    std::size_t textureBudget = std::size_t(1) << 30; ///< bytes of brick textures
+    std::size_t memoryBudget = std::size_t(2) << 30;  ///< bytes of decoded bricks kept in RAM
+    int decodeThreads = 2;
+    bool exactTextures = false; ///< 32-bit float bricks instead of 16-bit: for comparison with the reference
+};
+
+/// How a picture is wanted now.
+struct FrameRequest {
+    glm::ivec2 size{512, 512};
+    bool moving = false;  ///< something is being dragged: reduced size and step within the budget
+    double budgetMs = 60; ///< GUI time this call may take (roughly); unfinished work goes on in the next call
+    bool wait = false;    ///< headless: decode and refine until complete before returning
+};
+
+/// What came of it. The texture stays the property of the target and is valid until its next frame.
+struct FrameStatus {
+    std::uint32_t texture = 0; ///< GL name, RGBA8, `request.size` large (upscaled while reduced), sRGB encoded, opaque
+    bool complete = false;   ///< full resolution, all bricks at the level wanted: nothing to do until the scene changes
+    int bricksMissing = 0;   ///< bricks still shown at a coarser level
+    double milliseconds = 0; ///< of the last full pass
+};
+
+struct ResidencyInfo {
+    std::size_t textureBytes = 0, textureBudget = 0, memoryBytes = 0, memoryBudget = 0;
+    int bricksResident = 0, bricksQueued = 0;
+};
+
+/// What lies under a pixel: the first sample along the ray with noticeable opacity.
+struct Pick {
+    glm::dvec3 position; ///< physical
+};
+
+/// The picture of one view: framebuffers and how far refinement has come. One per view; may be dropped at any time.
+class ViewTarget;
+struct ViewTargetDeleter {
+    void operator()(ViewTarget* target) const;
+};
+using ViewTargetPtr = std::unique_ptr<ViewTarget, ViewTargetDeleter>;
+
+class Renderer {
+public:
+    explicit Renderer(const RendererOptions& options = {});
+    ~Renderer();
+    Renderer(const Renderer&) = delete;
+    Renderer& operator=(const Renderer&) = delete;
+
+    /// Shows another data set; drops every brick of the former one. Null shows nothing.
+    void setSource(std::shared_ptr<const volume::BrickSource> source);
+    const volume::BrickSource* source() const;
+
+    /// A new, empty target for a view.
+    ViewTargetPtr makeTarget();
+    /// Draws, or refines, the scene into the target. Repeated calls with an equal scene and request go on refining.
+    FrameStatus render(ViewTarget& target, const Scene& scene, const FrameRequest& request);
+    /// What lies under a pixel (x right, y down, of the last request's size) of the target's last picture.
+    std::optional<Pick> pick(ViewTarget& target, glm::ivec2 pixel);
+    /// Linear float RGBA of the target's last complete picture before the background, premultiplied, rows top down:
+    /// what the tests compare with the reference.
+    std::vector<glm::vec4> readLinear(ViewTarget& target);
+    /// RGBA8 of the picture, rows top down.
+    std::vector<std::uint8_t> readPixels(ViewTarget& target, glm::ivec2& size);
+
+    ResidencyInfo residency() const;
+    /// Messages since the last call (shader failures, damaged bricks), for the log pane.
+    std::vector<std::string> takeMessages();
+
+private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+} // namespace tessera::vis

@@ -1,0 +1,47 @@
+#pragma once
+
+#include "volume/dataset.h"
+#include "volume/progress.h"
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+/// Opening foreign files as a Dataset on a CC grid: raw with a JSON sidecar here, everything else through the second
+/// program `tessera-import` (VTK's readers), which streams frames over a pipe.
+namespace tessera::volume {
+
+/// What the user states about files that do not say it themselves. Remembered per parameter name by the caller.
+struct ImportOptions {
+    glm::ivec3 gridSize{0}; ///< meshes are resampled to this grid; 0 = chosen from the number of cells
+    std::string
+        raw; ///< "dims=XxYxZ,type=u8,spacing=..,origin=..,components=N,times=N,big-endian,skip=BYTES" for headless raw
+    /// Rules that make samples absent: "O2=region:0,3" (where the label has these values), "O2=0" (a value), "O2=nan".
+    std::vector<std::string> absent;
+    std::map<std::string, std::string> rename; ///< file's array name -> parameter name
+    std::map<std::string, std::string> units;  ///< parameter name -> unit
+    std::string lengthUnit;                    ///< "" = what the file says, else m
+    std::vector<double> times;                 ///< overrides the times of a series
+    std::vector<std::string> parameters;       ///< only these (by final name); empty = all
+};
+
+/// What a look at the headers tells, before any sample is read.
+struct ImportPreview {
+    std::string format;             ///< "raw", "vti", "OpenFOAM", ...
+    DatasetInfo info;               ///< ranges empty; for a mesh the grid it would be resampled to
+    double bytes = 0;               ///< of all samples when read
+    std::vector<std::string> notes; ///< e.g. "unstructured mesh of 41 000 cells, resampled to 24 x 32 x 88"
+};
+
+/// Looks at files that belong together (several parameters, a series: see volume/import/series.h). Throws Error.
+ImportPreview previewFiles(const std::vector<std::string>& paths, const ImportOptions& options,
+                           const Progress& progress = {});
+
+/// Opens them; frames are read when asked for. Throws Error.
+Dataset openFiles(const std::vector<std::string>& paths, const ImportOptions& options, const Progress& progress = {});
+
+/// Fills in Parameter::ranges (present samples, all times) by reading every frame once. Throws Error, Cancelled.
+void scanRanges(Dataset& dataset, const Progress& progress = {});
+
+} // namespace tessera::volume

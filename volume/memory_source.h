@@ -1,0 +1,24 @@
+#pragma once
+
+#include "volume/brick_source.h"
+
+#include <memory>
+
+namespace tessera::volume {
+
+/// Shows a Dataset without an archive: frames are loaded when asked for (and resampled to BCC if wanted), kept within a
+/// byte budget, cut into bricks; coarse levels are mask-aware means. Ranges missing in `info` are not computed here.
+struct MemorySourceOptions {
+    LatticeKind lattice = LatticeKind::CC;
+    int brickSize = 32;
+    std::size_t budget = std::size_t(1) << 30; ///< bytes of frames kept
+};
+std::shared_ptr<const BrickSource> makeMemorySource(Dataset dataset, const MemorySourceOptions& options);
+
+/// Adds the magnitude channel of every vector to a source that only gives stored components (BrickKey::channel of
+/// DatasetInfo::channels() whose `magnitude` is set): read() computes it, stats() bounds it.
+/// Both makeMemorySource and codec::openArchive return sources that already answer for magnitudes, through this.
+BrickSamples magnitude(const BrickSamples& x, const BrickSamples& y, const BrickSamples& z);
+BrickStats magnitudeStats(const BrickStats& x, const BrickStats& y, const BrickStats& z);
+
+} // namespace tessera::volume
