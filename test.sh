@@ -1,0 +1,32 @@
+#!/usr/bin/env bash
+# Installs what is missing, builds everything and passes every test.
+#   ./test.sh          the release build, all tests
+#   ./test.sh asan     the same with address and undefined sanitizers (tests that need no window)
+set -euo pipefail
+here=$(cd "$(dirname "$0")" && pwd)
+preset=${1:-release}
+cd "$here"
+
+"$here/setup.sh" --tests
+cmake --preset "$preset" -DBUILD_TESTING=ON
+cmake --build --preset "$preset"
+
+# Tests write nothing outside the build folder.
+home="$here/build/$preset/home"
+rm -rf "$home"
+mkdir -p "$home/mesa"
+export XDG_CONFIG_HOME="$home/config" XDG_STATE_HOME="$home/state" XDG_CACHE_HOME="$home/cache"
+export XDG_DATA_HOME="$home/data" MESA_SHADER_CACHE_DIR="$home/mesa" TMPDIR="$home"
+
+# C++ files must be as clang-format leaves them.
+if command -v clang-format >/dev/null; then
+    git ls-files '*.cpp' '*.h' | xargs clang-format --dry-run -Werror
+fi
+
+if [ "$preset" = asan ]; then
+    # Mesa and its LLVM keep memory of their own until the process ends.
+    export ASAN_OPTIONS=detect_leaks=1 LSAN_OPTIONS="suppressions=$here/tests/lsan.supp:print_suppressions=0"
+    ctest --preset asan -j "$(nproc)" -LE e2e
+else
+    ctest --preset "$preset" -j "$(nproc)"
+fi
