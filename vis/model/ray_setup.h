@@ -1,0 +1,90 @@
+#pragma once
+
+#include "vis/model/scene.h"
+#include "volume/lattice.h"
+
+#include <optional>
+
+/// What one ray of the picture does, shared by the shader (float) and the reference ray caster (double).
+///
+/// Colours: transfer functions, layers and backgrounds are sRGB; they become linear light first, samples are composited
+/// and shaded in linear light, and the picture is encoded to sRGB at the very end, over the background.
+///
+/// Along a ray, front to back, for sample k = 0 .. count - 1 at t_k = enter + (k + 1/2) step:
+///   1. every slice whose plane is met at t in (t_{k-1}, t_k] (t_{-1} = enter), nearest first, equal ones in layer
+///      order; at the end those between the last sample and the exit;
+///   2. every iso layer, in order: where the values at t_{k-1} and t_k are both present and lie on different sides
+///      (v >= value against v < value), the place is refined by kBisections halvings of [t_{k-1}, t_k], the middle of
+///      the last interval is shaded and composited with the layer's opacity;
+///   3. every composite layer, in order: colour and opacity from the transfer function at the sample's value
+///      (correctedOpacity), Phong shaded where wanted.
+/// It ends when the accumulated opacity reaches kOpaque. An absent sample contributes nothing. Then maximum and x-ray
+/// layers, which look at all samples of the ray up to there, go behind what was accumulated, in layer order:
+///   maximum: the first sample with the largest x * f (x = place in the transfer function's range, clamped to 0..1; f =
+///            DOI opacity factor), colour of that value, opacity min(1, density * opacity of the curve) * f;
+///   x-ray:   the mean of the values weighted by f, colour of that value, opacity as above with f its plain mean.
+///
+/// The degree of interest d of a place multiplies the opacity by f = mix(contextOpacity, 1, d) and pulls the colour
+/// towards its luminance: mix(luminance, colour, mix(contextSaturation, 1, d)), in linear light before shading.
+namespace tessera::vis {
+
+inline constexpr double kOpaque = 0.995;    ///< accumulated opacity at which a ray ends
+inline constexpr double kPickOpacity = 0.1; ///< accumulated opacity from which a pixel shows something
+inline constexpr int kBisections = 6;       ///< halvings of a step to find an iso-surface
+inline constexpr double kFlatGradient =
+    0.005; ///< gradient, in transfer-function ranges per cell, from which shading is full
+
+/// Part of a ray inside the box |p| <= halfSize, as distances from its origin. A perspective ray starts at the eye at
+/// the earliest; a parallel one may begin behind it.
+struct RaySegment {
+    double enter = 0, exit = 0;
+};
+std::optional<RaySegment> clipToBox(const Ray& ray, glm::dvec3 halfSize, bool perspective);
+
+/// World edges of the cell that steps and gradients are measured in: of the CC grid, or of the CC grid that a BCC
+/// lattice replaces (its spacing / sqrt 2).
+glm::dvec3 worldCell(const volume::Lattice& lattice, const WorldFrame& frame);
+
+/// Sample positions of a ray: the wanted step advances stepVoxels cells, h = stepVoxels / |direction / cell|; the
+/// segment is cut into count = max(1, ceil(length / h - 1e-4)) equal parts and sampled in the middle of each.
+struct RaySamples {
+    int count = 0;
+    double step = 0; ///< world units
+    double enter = 0;
+    double at(int k) const { return enter + (k + 0.5) * step; }
+};
+RaySamples raySamples(const RaySegment& segment, glm::dvec3 direction, glm::dvec3 cell, double stepVoxels);
+
+/// Opacity of a sample that stands for `step` world units: 1 - (1 - opacity)^(density * step / kReferenceLength).
+double correctedOpacity(double opacity, double step, double density);
+
+/// Distance from the centre to either end of a central difference, in cells of the sublattice (toCells): 1 on CC,
+/// 1 / sqrt 2 on BCC. Where one end is absent, the difference to the centre is taken over half the distance; where both
+/// are, that component is 0. Categorical channels have no gradient.
+double gradientDelta(volume::LatticeKind kind);
+
+/// Direction towards the light, in world axes.
+glm::dvec3 lightDirection(const RenderParams& params, const Camera& camera);
+
+/// Phong: albedo (ambient + diffuse n.l) + specular (n.h)^shininess, all in linear light, with the normal turned to the
+/// viewer. `gradient` in world axes (any length, zero gives the albedo), `toViewer` and `toLight` of length 1. `weight`
+/// 0..1 fades from the albedo to the shaded colour: 1 on iso-surfaces; in composite layers min(1, g / kFlatGradient), g
+/// the change over one worldCell edge per axis (length of that vector), in transfer-function ranges.
+glm::dvec3 phong(glm::dvec3 albedo, glm::dvec3 gradient, double weight, glm::dvec3 toViewer, glm::dvec3 toLight,
+                 const RenderParams& params);
+
+/// The plane of a slice layer in world space: dot(normal, p) = offset, normal of length 1. `position` 0..1 runs
+/// between the two supporting planes of the box. Colour: of the transfer function; opacity: the layer's alone.
+struct Plane {
+    glm::dvec3 normal{0, 0, 1};
+    double offset = 0;
+};
+Plane slicePlane(const SliceLayer& layer, const WorldFrame& frame, glm::dvec3 cursor);
+
+double linearFromSrgb(double encoded);
+double srgbFromLinear(double linear);
+glm::dvec3 linearFromSrgb(glm::dvec3 encoded);
+/// Rec. 709 luminance of linear light.
+double luminance(glm::dvec3 linear);
+
+} // namespace tessera::vis
