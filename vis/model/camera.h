@@ -19,11 +19,12 @@ inline constexpr std::string_view kProjectionNames[] = {"perspective", "orthogra
 
 struct Camera {
     Projection projection = Projection::Perspective;
-    glm::quat orientation{0.8446f, 0.3313f, -0.3919f,
-                          -0.1537f}; ///< rotates world into eye axes (x right, y up, z to viewer)
-    glm::vec3 target{0};             ///< world point in the middle of the picture
-    float distance = 2.2f;           ///< world units from eye to target
-    float fieldOfView = 35;          ///< degrees, vertical; orthographic height = 2 distance tan(fov / 2)
+    /// Rotates world into eye axes (x right, y up, z to viewer). The default looks from above, 25 degrees, at a box
+    /// whose z runs from the left, behind, to the right, in front.
+    glm::quat orientation{0.8454971f, 0.1874422f, 0.488148f, 0.108219807f};
+    glm::vec3 target{0};    ///< world point in the middle of the picture
+    float distance = 2.2f;  ///< world units from eye to target
+    float fieldOfView = 35; ///< degrees, vertical; orthographic height = 2 distance tan(fov / 2)
 
     bool operator==(const Camera&) const = default;
     static void describe(auto& self, auto&& visit) {
@@ -58,12 +59,13 @@ struct WorldFrame {
 };
 WorldFrame worldFrame(const volume::Box& bounds, glm::dvec3 stretch);
 
-/// The view matrix (world to eye) and projection (eye to clip, GL convention, near and far fitted around the world
-/// box).
+/// The view matrix (world to eye) and projection (eye to clip, GL convention). Near and far are fitted around the cube
+/// -1/2..1/2 that holds every world box; with the eye inside it, near is a thousandth of far.
 glm::dmat4 viewMatrix(const Camera& camera);
 glm::dmat4 projectionMatrix(const Camera& camera, double aspect);
 
-/// World position of the eye (perspective) and the ray through a point of the picture. `ndc` in -1..1, y up.
+/// The ray through a point of the picture, `ndc` in -1..1, y up. It begins at the eye (perspective), or on a plane
+/// before the world box however close the camera is (orthographic).
 struct Ray {
     glm::dvec3 origin, direction; ///< direction has length 1
 };
@@ -71,11 +73,16 @@ Ray cameraRay(const Camera& camera, double aspect, glm::dvec2 ndc);
 
 /// Turns the camera as if the object under the mouse were dragged from one point of the picture to another (ndc, y up).
 void orbit(Camera& camera, glm::vec2 from, glm::vec2 to);
+/// Moves the picture at the target's depth by a difference in ndc.
 void pan(Camera& camera, glm::vec2 ndcDelta, float aspect);
+/// Magnifies: factor 2 halves the distance. Stays within the distances a session may hold.
 void zoom(Camera& camera, float factor);
+/// Turns the picture counter-clockwise.
 void roll(Camera& camera, float radians);
+/// Centres the box and moves the camera so that all of it is in the picture with a small margin, from where it looks.
+void fit(Camera& camera, const WorldFrame& frame, double aspect);
 
-/// The six axis views and the isometric one.
+/// The six axis views and the isometric one. Front looks against z with y up; left and right see z run across.
 enum class StandardView { Front, Back, Left, Right, Top, Bottom, Isometric };
 inline constexpr std::string_view kStandardViewNames[] = {"front", "back",   "left",     "right",
                                                           "top",   "bottom", "isometric"};

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+/// The tables that `tessera bench` prints. Each is measured when asked for, in one run, so that its ratios mean
+/// something even on a busy machine: every row that is compared runs right after the one it is compared with.
+namespace tessera::app {
+
+struct BenchTable {
+    std::string name; ///< also its key in --json
+    std::vector<std::string> columns;
+    std::vector<std::vector<std::string>> rows; ///< one text per column; numbers as plain decimals without units
+};
+
+/// Reconstruction error of CC and BCC, with each filter, at equal and at 70.7 % of the samples.
+BenchTable benchLattice();
+/// Pack throughput and archive size against raw and against zstd -19 of the same bytes.
+BenchTable benchCodec();
+/// Milliseconds per frame at 512x512 for 256^3 volumes, beside VTK's mappers where they are at hand.
+BenchTable benchRender();
+
+} // namespace tessera::app

@@ -1,0 +1,110 @@
+#include "vis/model/transfer_function.h"
+
+#include "vis/model/colormap_data.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/common.hpp>
+
+namespace tessera::vis {
+
+namespace {
+
+using namespace colormap_data;
+
+struct Colormap {
+    ColormapInfo info;
+    std::span<const std::uint32_t> colors;
+};
+
+constexpr Colormap kMaps[] = {
+    {{"viridis", "sequential"}, kViridis},
+    {{"cividis", "sequential"}, kCividis},
+    {{"inferno", "sequential"}, kInferno},
+    {{"magma", "sequential"}, kMagma},
+    {{"plasma", "sequential"}, kPlasma},
+    {{"gray", "sequential"}, kGray},
+    {{"blue-orange", "diverging"}, kBlueOrange},
+    {{"blue-red", "diverging"}, kBlueRed},
+    {{"twilight", "cyclic"}, kTwilight},
+    {{"labels", "categorical"}, kLabels},
+    {{"jet", "other"}, kJet},
+};
+
+constexpr auto kInfos = [] {
+    std::array<ColormapInfo, std::size(kMaps)> infos;
+    for (std::size_t i = 0; i < infos.size(); ++i) infos[i] = kMaps[i].info;
+    return infos;
+}();
+
+const Colormap& find(std::string_view name) {
+    const auto found =
+        std::find_if(std::begin(kMaps), std::end(kMaps), [&](const Colormap& map) { return map.info.name == name; });
+    return found == std::end(kMaps) ? kMaps[0] : *found;
+}
+
+glm::dvec3 unpack(std::uint32_t color) {
+    return glm::dvec3((color >> 16) & 255, (color >> 8) & 255, color & 255) / 255.0;
+}
+
+/// Colour of a map at x in 0..1.
+glm::dvec3 color(const Colormap& map, double x) {
+    const auto last = static_cast<double>(map.colors.size() - 1);
+    if (map.info.kind == "categorical")
+        return unpack(map.colors[static_cast<std::size_t>(std::min(x * (last + 1), last))]);
+    const double at = x * last;
+    const double below = std::min(std::floor(at), last - 1);
+    const auto i = static_cast<std::size_t>(below);
+    return glm::mix(unpack(map.colors[i]), unpack(map.colors[i + 1]), at - below);
+}
+
+double clamp01(double x) {
+    return x >= 0 ? std::min(x, 1.0) : 0.0; // NaN gives 0
+}
+
+/// Opacity of the curve at x; beyond its ends the end values, at a jump (two points at one x) the later one.
+double opacityAt(const std::vector<glm::vec2>& curve, double x) {
+    if (curve.empty()) return 0;
+    const auto next = std::find_if(curve.begin(), curve.end(), [&](glm::vec2 point) { return point.x > x; });
+    if (next == curve.begin()) return curve.front().y;
+    if (next == curve.end()) return curve.back().y;
+    const glm::dvec2 a(*(next - 1)), b(*next);
+    return glm::mix(a.y, b.y, (x - a.x) / (b.x - a.x));
+}
+
+/// evaluate() at a position 0..1 along the range.
+glm::dvec4 evaluateAt(const TransferFunction& function, const Colormap& map, double x) {
+    return {color(map, function.reversed ? 1 - x : x), clamp01(opacityAt(function.opacity, x))};
+}
+
+} // namespace
+
+std::span<const ColormapInfo> colormaps() {
+    return kInfos;
+}
+
+glm::dvec3 colormapColor(std::string_view name, double x) {
+    return color(find(name), clamp01(x));
+}
+
+Range effectiveRange(const TransferFunction& function, Range channelRange) {
+    return function.autoRange ? channelRange : function.range;
+}
+
+glm::dvec4 evaluate(const TransferFunction& function, Range range, double value) {
+    const double width = range.hi - range.lo;
+    // A range without width still tells below from above.
+    const double x = width != 0 ? (value - range.lo) / width : value > range.lo ? 1.0 : value < range.lo ? 0.0 : 0.5;
+    return evaluateAt(function, find(function.colormap), clamp01(x));
+}
+
+std::vector<glm::vec4> makeTable(const TransferFunction& function, int size) {
+    const Colormap& map = find(function.colormap);
+    std::vector<glm::vec4> table(static_cast<std::size_t>(std::max(size, 0)));
+    for (std::size_t i = 0; i < table.size(); ++i)
+        table[i] = evaluateAt(function, map, (static_cast<double>(i) + 0.5) / size);
+    return table;
+}
+
+} // namespace tessera::vis
