@@ -14,14 +14,14 @@ glm::dvec3 Lattice::position(glm::ivec3 at) const {
 glm::ivec3 Lattice::nearest(glm::dvec3 position) const {
     const glm::dvec3 cells = toCells(position);
     const glm::ivec3 last = size - 1;
-    if (kind == LatticeKind::CC) return glm::clamp(glm::ivec3(glm::round(cells)), glm::ivec3(0), last);
+    if (kind == LatticeKind::CC) return glm::clamp(glm::ivec3(glm::floor(cells + 0.5)), glm::ivec3(0), last);
     glm::ivec3 best(0);
     double bestDistance = 0;
     for (int sublattice = 0; sublattice < (size.z > 1 ? 2 : 1); ++sublattice) {
         const double half = sublattice * 0.5;
         const glm::ivec3 at =
-            glm::clamp(glm::ivec3(glm::round(cells - half)), glm::ivec3(0), sublatticeSize(sublattice) - 1);
-        const glm::dvec3 apart = (glm::dvec3(at) + half - cells) * spacing;
+            glm::clamp(glm::ivec3(glm::floor(cells - half + 0.5)), glm::ivec3(0), sublatticeSize(sublattice) - 1);
+        const glm::dvec3 apart = glm::dvec3(at) + half - cells;
         const double distance = glm::dot(apart, apart);
         if (sublattice == 0 || distance < bestDistance) {
             bestDistance = distance;

@@ -49,7 +49,8 @@ struct Lattice {
     }
     /// Physical position of a storage index.
     glm::dvec3 position(glm::ivec3 at) const;
-    /// Storage index of the sample nearest to a physical position, clamped to the lattice.
+    /// Storage index of the sample nearest to a physical position, clamped to the lattice. Distances are measured in
+    /// cells, not metres: where cells are long and thin the data vary at the scale of the cell. Of a tie the even one.
     glm::ivec3 nearest(glm::dvec3 position) const;
     /// Cells of the (even) sublattice: continuous index of a physical position; sample i lies at i.
     glm::dvec3 toCells(glm::dvec3 position) const { return (position - origin) / spacing; }

@@ -7,7 +7,13 @@
 namespace tessera::volume {
 
 /// Shows a Dataset without an archive: frames are loaded when asked for (and resampled to BCC if wanted), kept within a
-/// byte budget, cut into bricks; coarse levels are mask-aware means. Ranges missing in `info` are not computed here.
+/// byte budget, cut into bricks. `info().lattice` is the lattice shown, `info().bounds` stays the box of the CC grid.
+/// Ranges missing in `info` are not computed here.
+///
+/// A sample of level l is the mean of the present ones among 2^l fine samples a side of its own sublattice (the most
+/// frequent label for categorical parameters) and present when at least half of them are: means alias less than
+/// every 2^l-th sample would, never leave the brick, and lie at BrickGrid::phase 0.5. The coarsest level of a whole
+/// brick is 4 texels a side. A frame loads once however many threads ask for it.
 struct MemorySourceOptions {
     LatticeKind lattice = LatticeKind::CC;
     int brickSize = 32;

@@ -1,0 +1,303 @@
+#include "volume/resample.h"
+
+#include "volume/parallel.h"
+#include "volume/reconstruct.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <type_traits>
+
+// Catmull-Rom: E. Catmull, R. Rom, A class of local interpolating splines, 1974. Target lattices are one or two
+// axis-aligned grids, so a CC source is filtered axis by axis: z and y over whole rows, then x.
+
+namespace tessera::volume {
+
+namespace {
+
+/// Source samples behind one target coordinate of one axis.
+struct Tap {
+    std::array<int, 4> index{};
+    std::array<double, 4> weight{}; ///< 0 where unused
+    int nearest = 0;
+    std::array<int, 2> cell{}; ///< the two samples around, equal at a face
+    double fraction = 0;
+};
+
+/// Target coordinates of one axis in cells of the source, as taps.
+Tap tapAt(double cells, int count, ResampleFilter filter) {
+    Tap tap;
+    const double inside = std::clamp(cells, 0.0, double(count - 1));
+    const int base = std::min(int(inside), std::max(count - 2, 0));
+    const double f = inside - base;
+    tap.nearest = int(std::floor(inside + 0.5));
+    tap.cell = {base, std::min(base + 1, count - 1)};
+    tap.fraction = f;
+    tap.index = {std::max(base - 1, 0), base, tap.cell[1], std::min(base + 2, count - 1)};
+    if (filter == ResampleFilter::Nearest) {
+        tap.index[1] = tap.nearest;
+        tap.weight = {0, 1, 0, 0};
+    } else if (filter == ResampleFilter::Linear || count < 3) {
+        tap.weight = {0, 1 - f, f, 0};
+    } else {
+        tap.weight = {((-0.5 * f + 1) * f - 0.5) * f, (1.5 * f - 2.5) * f * f + 1, ((-1.5 * f + 2) * f + 0.5) * f,
+                      (0.5 * f - 0.5) * f * f};
+        // Beyond a face the data continue linearly: sample -1 is 2 * sample 0 - sample 1.
+        if (base == 0) {
+            tap.weight[1] += 2 * tap.weight[0];
+            tap.weight[2] -= tap.weight[0];
+            tap.weight[0] = 0;
+        }
+        if (base + 2 > count - 1) {
+            tap.weight[2] += 2 * tap.weight[3];
+            tap.weight[1] -= tap.weight[3];
+            tap.weight[3] = 0;
+        }
+    }
+    return tap;
+}
+
+struct AxisTaps {
+    std::vector<Tap> x, y, z;
+};
+
+/// Cells, in the source's even sublattice, of sample `i` of a target sublattice.
+double sourceCells(const Lattice& source, const Lattice& target, int sublattice, int axis, int i) {
+    const double half = sublattice * 0.5;
+    const double cells =
+        (target.origin[axis] - source.origin[axis] + target.spacing[axis] * (i + half)) / source.spacing[axis];
+    const double whole = std::round(cells);
+    return std::abs(cells - whole) < 1e-9 * (1 + std::abs(cells)) ? whole : cells; // same grid, rounded origin
+}
+
+AxisTaps tapsFor(const Lattice& source, const Lattice& target, int sublattice, ResampleFilter filter) {
+    const glm::ivec3 size = target.sublatticeSize(sublattice);
+    AxisTaps taps;
+    std::vector<Tap>* const axes[] = {&taps.x, &taps.y, &taps.z};
+    for (int axis = 0; axis < 3; ++axis)
+        for (int i = 0; i < size[axis]; ++i)
+            axes[axis]->push_back(tapAt(sourceCells(source, target, sublattice, axis, i), source.size[axis], filter));
+    return taps;
+}
+
+template <class T> T store(double value) {
+    if constexpr (std::is_floating_point_v<T>) {
+        return static_cast<T>(value);
+    } else {
+        constexpr double lowest = double(std::numeric_limits<T>::lowest()),
+                         highest = double(std::numeric_limits<T>::max());
+        return static_cast<T>(std::clamp(std::nearbyint(value), lowest, highest));
+    }
+}
+
+/// One target slice of a CC source, filtered axis by axis. `absent` counts absent samples under non-zero weights.
+template <class T> class SliceFilter {
+public:
+    SliceFilter(const Field& source, const AxisTaps& taps) : source_(source), taps_(taps), stored_(source.as<T>()) {}
+
+    /// out, present: taps.x.size() * taps.y.size(), x fastest; present is null for a source without mask.
+    void run(const Tap& z, T* out, std::uint8_t* present) {
+        const auto nx = std::size_t(source_.lattice.size.x), ny = std::size_t(source_.lattice.size.y);
+        plane_.assign(nx * ny, 0.0);
+        if (present != nullptr) absent_.assign(nx * ny, 0);
+        for (std::size_t k = 0; k < 4; ++k) {
+            const double w = z.weight[k];
+            if (w == 0) continue;
+            const std::size_t first = std::size_t(z.index[k]) * nx * ny;
+            const T* from = &stored_[first];
+            if (present == nullptr) {
+                for (std::size_t i = 0; i < nx * ny; ++i) plane_[i] += w * double(from[i]);
+                continue;
+            }
+            const std::uint8_t* mask = &(*source_.mask)[first];
+            for (std::size_t i = 0; i < nx * ny; ++i) {
+                plane_[i] += mask[i] != 0 ? w * double(from[i]) : 0.0;
+                absent_[i] = std::uint8_t(absent_[i] | (mask[i] ^ 1));
+            }
+        }
+        row_.resize(nx);
+        rowAbsent_.resize(nx);
+        for (const Tap& y : taps_.y) {
+            filterRow(y, present != nullptr);
+            for (std::size_t i = 0; i < taps_.x.size(); ++i) {
+                const Tap& x = taps_.x[i];
+                double sum = 0;
+                std::uint8_t absent = 0;
+                for (std::size_t k = 0; k < 4; ++k) {
+                    const auto at = std::size_t(x.index[k]);
+                    sum += x.weight[k] * row_[at];
+                    if (present != nullptr && x.weight[k] != 0) absent |= rowAbsent_[at];
+                }
+                if (present == nullptr || absent == 0) {
+                    *out = store<T>(sum);
+                } else {
+                    *present = source_.present(source_.lattice.index({x.nearest, y.nearest, z.nearest})) ? 1 : 0;
+                    *out = *present != 0 ? store<T>(presentOnly(x, y, z)) : T{};
+                }
+                ++out;
+                if (present != nullptr) ++present;
+            }
+        }
+    }
+
+private:
+    void filterRow(const Tap& y, bool masked) {
+        const std::size_t nx = row_.size();
+        std::fill(row_.begin(), row_.end(), 0.0);
+        if (masked) std::fill(rowAbsent_.begin(), rowAbsent_.end(), std::uint8_t(0));
+        for (std::size_t k = 0; k < 4; ++k) {
+            const double w = y.weight[k];
+            if (w == 0) continue;
+            const double* from = &plane_[std::size_t(y.index[k]) * nx];
+            for (std::size_t i = 0; i < nx; ++i) row_[i] += w * from[i];
+            if (!masked) continue;
+            const std::uint8_t* absent = &absent_[std::size_t(y.index[k]) * nx];
+            for (std::size_t i = 0; i < nx; ++i) rowAbsent_[i] |= absent[i];
+        }
+    }
+
+    /// Trilinear over the present samples; the nearest one is present, so the weights do not vanish.
+    double presentOnly(const Tap& x, const Tap& y, const Tap& z) const {
+        Blend blend;
+        for (std::size_t corner = 0; corner < 8; ++corner) {
+            const std::size_t a = corner & 1, b = corner >> 1 & 1, c = corner >> 2;
+            const double w = (a ? x.fraction : 1 - x.fraction) * (b ? y.fraction : 1 - y.fraction) *
+                             (c ? z.fraction : 1 - z.fraction);
+            const std::size_t at = source_.lattice.index({x.cell[a], y.cell[b], z.cell[c]});
+            blend.add(w, {double(stored_[at]), source_.present(at)});
+        }
+        return blend.sum / blend.coverage;
+    }
+
+    const Field& source_;
+    const AxisTaps& taps_;
+    std::span<const T> stored_;
+    std::vector<double> plane_, row_;
+    std::vector<std::uint8_t> absent_, rowAbsent_;
+};
+
+/// Runs `slice(k)` for every slice of the target in parallel, with progress between groups of them.
+template <class Body> void forSlices(const Lattice& target, const Progress& progress, const Body& slice) {
+    constexpr int kGroup = 32; // slices between two looks at the stop token
+    for (int first = 0; first < target.size.z; first += kGroup) {
+        progress.advance(double(first) / target.size.z, "resample");
+        const int count = std::min(kGroup, target.size.z - first);
+        parallelFor(std::size_t(count), [&](std::size_t i) { slice(first + int(i)); });
+    }
+    progress.advance(1, "resample");
+}
+
+template <class T>
+void fromCc(const Field& source, Field& out, Mask* mask, ResampleFilter filter, const Progress& progress) {
+    const Lattice& target = out.lattice;
+    const int sublattices = target.kind == LatticeKind::BCC ? 2 : 1;
+    std::vector<AxisTaps> taps;
+    for (int s = 0; s < sublattices; ++s) taps.push_back(tapsFor(source.lattice, target, s, filter));
+    const std::size_t sliceSize = std::size_t(target.size.x) * std::size_t(target.size.y);
+    T* const samples = out.as<T>().data();
+    forSlices(target, progress, [&](int k) {
+        const AxisTaps& own = taps[std::size_t(k % sublattices)];
+        const std::size_t first = std::size_t(k) * sliceSize;
+        SliceFilter<T>(source, own)
+            .run(own.z[std::size_t(k / sublattices)], samples + first,
+                 mask != nullptr ? mask->data() + first : nullptr);
+    });
+}
+
+/// Nearest sample of any source, copied.
+template <class T> void fromNearest(const Field& source, Field& out, Mask* mask, const Progress& progress) {
+    const Lattice& target = out.lattice;
+    T* const samples = out.as<T>().data();
+    const auto stored = source.as<T>();
+    forSlices(target, progress, [&](int k) {
+        for (int j = 0; j < target.size.y; ++j)
+            for (int i = 0; i < target.size.x; ++i) {
+                const std::size_t to = target.index({i, j, k});
+                const std::size_t from = source.lattice.index(source.lattice.nearest(target.position({i, j, k})));
+                if (mask != nullptr) (*mask)[to] = source.present(from) ? 1 : 0;
+                samples[to] = source.present(from) ? stored[from] : T{};
+            }
+    });
+}
+
+/// Precision of prefiltered values of a stored type.
+template <class T> using Filtered = std::conditional_t<std::is_same_v<T, std::int32_t>, double, float>;
+
+/// A BCC source's stored values, prefiltered.
+template <class T> std::vector<Filtered<T>> prefilteredValues(const Field& source) {
+    const Lattice& lattice = source.lattice;
+    const auto samples = [&, stored = source.as<T>()](glm::ivec3 at) {
+        const std::size_t index = lattice.index(clampToLattice(lattice.kind, lattice.size, at));
+        return Sample{double(stored[index]), source.present(index)};
+    };
+    const Prefiltered filtered(samples, LevelGeometry{lattice.kind, 1, 0});
+    std::vector<Filtered<T>> values(source.count());
+    parallelFor(std::size_t(lattice.size.z), [&](std::size_t k) {
+        for (int j = 0; j < lattice.size.y; ++j)
+            for (int i = 0; i < lattice.size.x; ++i) {
+                const glm::ivec3 at(i, j, int(k));
+                if (const std::size_t index = lattice.index(at); source.present(index))
+                    values[index] = Filtered<T>(filtered(at).value);
+            }
+    });
+    return values;
+}
+
+template <class T> void fromBcc(const Field& source, Field& out, Mask* mask, const Progress& progress) {
+    const Lattice &from = source.lattice, &target = out.lattice;
+    const auto values = prefilteredValues<T>(source);
+    const auto samples = [&](glm::ivec3 at) {
+        const std::size_t index = from.index(clampToLattice(from.kind, from.size, at));
+        return Sample{double(values[index]), source.present(index)};
+    };
+    const LevelGeometry geometry{from.kind, 1, 0};
+    const glm::dvec3 last = glm::dvec3(from.size.x - 0.5, from.size.y - 0.5, (from.size.z - 1) * 0.5);
+    T* const stored = out.as<T>().data();
+    forSlices(target, progress, [&](int k) {
+        for (int j = 0; j < target.size.y; ++j)
+            for (int i = 0; i < target.size.x; ++i) {
+                const glm::ivec3 at(i, j, k);
+                const std::size_t to = target.index(at);
+                const glm::dvec3 position = target.position(at);
+                const bool exists = source.present(from.index(from.nearest(position)));
+                if (mask != nullptr) (*mask)[to] = exists ? 1 : 0;
+                if (!exists) continue;
+                const Blend blend = linear(geometry, samples, glm::clamp(from.toCells(position), glm::dvec3(0), last));
+                stored[to] = store<T>(blend.sum / blend.coverage);
+            }
+    });
+}
+
+} // namespace
+
+Field resample(const Field& source, const Lattice& target, ResampleFilter filter, const Progress& progress) {
+    if (source.lattice == target) {
+        progress.advance(1, "resample");
+        return source;
+    }
+    Field out = makeField(target, source.type);
+    out.offset = source.offset;
+    out.scale = source.scale;
+    std::shared_ptr<Mask> mask;
+    if (source.mask) mask = std::make_shared<Mask>(target.count(), std::uint8_t(1));
+    dispatch(source.type, [&]<class T>(T) {
+        if (filter == ResampleFilter::Nearest)
+            fromNearest<T>(source, out, mask.get(), progress);
+        else if (source.lattice.kind == LatticeKind::CC)
+            fromCc<T>(source, out, mask.get(), filter, progress);
+        else
+            fromBcc<T>(source, out, mask.get(), progress);
+    });
+    if (mask && !std::all_of(mask->begin(), mask->end(), [](std::uint8_t p) { return p != 0; }))
+        out.mask = std::move(mask);
+    return out;
+}
+
+Field toBcc(const Field& source, bool categorical, const Progress& progress) {
+    if (source.lattice.kind == LatticeKind::BCC) return source;
+    return resample(source, bccFor(source.lattice), categorical ? ResampleFilter::Nearest : ResampleFilter::Cubic,
+                    progress);
+}
+
+} // namespace tessera::volume
