@@ -24,6 +24,9 @@ struct ImportOptions {
     std::string lengthUnit;                    ///< "" = what the file says, else m
     std::vector<double> times;                 ///< overrides the times of a series
     std::vector<std::string> parameters;       ///< only these (by final name); empty = all
+    /// Finds a label such as `region` and fields that are exactly 0 wherever the label has certain values, and takes
+    /// them as absent there. Rules of `absent` for the same parameter take its place ("O2=none": nothing is absent).
+    bool autoAbsent = true;
 };
 
 /// What a look at the headers tells, before any sample is read.

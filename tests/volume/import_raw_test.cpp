@@ -1,0 +1,268 @@
+#include "volume/error.h"
+#include "volume/import/import.h"
+#include "volume/import/raw.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <random>
+#include <unistd.h>
+
+namespace tessera::volume {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string testData() {
+    const char* named = std::getenv("TESSERA_DATA");
+    return named != nullptr ? named : TESSERA_TEST_DATA;
+}
+
+class ImportRaw : public testing::Test {
+protected:
+    void SetUp() override {
+        folder_ = fs::temp_directory_path() / ("tessera_raw_" + std::to_string(getpid()));
+        fs::create_directories(folder_);
+    }
+    void TearDown() override { fs::remove_all(folder_); }
+
+    std::string write(const std::string& name, const std::string& bytes) const {
+        std::ofstream(folder_ / name, std::ios::binary) << bytes;
+        return (folder_ / name).string();
+    }
+    /// The one line an import of this file fails with, "" if it does not fail.
+    static std::string failure(const std::string& path, const ImportOptions& options = {}) {
+        try {
+            openFiles({path}, options);
+            return "";
+        } catch (const Error& error) {
+            return error.what();
+        }
+    }
+    fs::path folder_;
+};
+
+template <class T> std::string bytesOf(const std::vector<T>& values, bool big) {
+    std::string bytes;
+    for (const T value : values) {
+        char one[sizeof(T)];
+        std::memcpy(one, &value, sizeof(T));
+        if (big) std::reverse(one, one + sizeof(T));
+        bytes.append(one, sizeof(T));
+    }
+    return bytes;
+}
+
+template <class T> void roundTrip(const fs::path& folder, const std::string& word, bool big) {
+    std::mt19937 random(7);
+    for (const glm::ivec3 size : {glm::ivec3(1, 1, 1), glm::ivec3(3, 2, 17), glm::ivec3(17, 1, 2)}) {
+        const std::size_t count = std::size_t(size.x * size.y * size.z);
+        constexpr std::size_t kComponents = 2, kTimes = 3;
+        std::vector<T> values(count * kComponents * kTimes);
+        for (T& value : values) value = static_cast<T>(int(random() % 251) - (std::is_signed_v<T> ? 125 : 0));
+        const std::string raw = (folder / "a.raw").string();
+        std::ofstream(raw, std::ios::binary) << bytesOf(values, big);
+        std::ofstream(folder / "a.json") << "{\"dims\":[" << size.x << "," << size.y << "," << size.z
+                                         << "],\"dtype\":\"" << word << "\",\"byte_order\":\""
+                                         << (big ? "big" : "little")
+                                         << "\",\"components\":[{\"name\":\"T\",\"unit\":\"K\"},{\"name\":\"p\","
+                                            "\"unit\":\"Pa\"}],\"times\":[0.5,1,4]}";
+        const Dataset dataset = openFiles({raw}, {});
+        ASSERT_EQ(dataset.info.lattice.size, size);
+        ASSERT_EQ(dataset.info.times, (std::vector<double>{0.5, 1, 4}));
+        for (std::size_t t = 0; t < kTimes; ++t)
+            for (std::size_t c = 0; c < kComponents; ++c) {
+                const Field field = dataset.load(int(c), 0, int(t));
+                EXPECT_EQ(field.mask, nullptr);
+                for (std::size_t i = 0; i < count; ++i)
+                    ASSERT_EQ(field.value(i), double(values[(t * kComponents + c) * count + i])) << word << i;
+            }
+    }
+}
+
+TEST_F(ImportRaw, EveryTypeInBothByteOrders) {
+    for (const bool big : {false, true}) {
+        roundTrip<std::uint8_t>(folder_, "uint8", big);
+        roundTrip<std::int8_t>(folder_, "int8", big);
+        roundTrip<std::uint16_t>(folder_, "u16", big);
+        roundTrip<std::int16_t>(folder_, "int16", big);
+        roundTrip<std::int32_t>(folder_, "int32", big);
+        roundTrip<float>(folder_, "float32", big);
+        roundTrip<double>(folder_, "float64", big);
+    }
+}
+
+TEST_F(ImportRaw, SidecarSaysEverything) {
+    write("cell.raw", bytesOf<float>({1, 2, 3, 4, -9, 6}, false) + std::string("\1\2", 2));
+    const std::string sidecar = write("cell.json", R"({"dims":[2,1,1],"dtype":"float32","spacing":[0.5,2,3],
+        "origin":[1,2,3],"length_unit":"mm","missing_value":-9,"provenance":"made here",
+        "components":[{"name":"U.x","unit":"m/s"},{"name":"U.y","unit":"m/s"},{"name":"U.z","unit":"m/s"},
+        {"name":"region","dtype":"uint8","categorical":true,"labels":{"1":"air","2":"fuel"}}]})");
+    const Dataset dataset = openFiles({sidecar}, {});
+    ASSERT_EQ(dataset.info.parameters.size(), 2u);
+    const Parameter& velocity = dataset.info.parameters[0];
+    EXPECT_EQ(velocity.name, "U");
+    EXPECT_EQ(velocity.components, 3);
+    EXPECT_EQ(velocity.unit, "m/s");
+    EXPECT_TRUE(dataset.info.parameters[1].categorical);
+    EXPECT_EQ(dataset.info.parameters[1].labels, (std::vector<Label>{{1, "air"}, {2, "fuel"}}));
+    EXPECT_EQ(dataset.info.lattice.spacing, glm::dvec3(0.5, 2, 3));
+    EXPECT_EQ(dataset.info.lattice.origin, glm::dvec3(1, 2, 3));
+    EXPECT_EQ(dataset.info.lengthUnit, "mm");
+    EXPECT_EQ(dataset.info.provenance, "made here");
+    const Field z = dataset.load(0, 2, 0);
+    EXPECT_FALSE(z.present(0));
+    EXPECT_TRUE(z.present(1));
+    EXPECT_EQ(dataset.load(1, 0, 0).value(1), 2);
+}
+
+TEST_F(ImportRaw, RawOptionTakesThePlaceOfASidecar) {
+    ImportOptions options;
+    options.raw = "dims=2x1x2,type=i16,spacing=1x1e-3x2.5,origin=-1x0x1,components=1,times=2,big-endian,skip=3";
+    const std::string path = write("a.bin", "abc" + bytesOf<std::int16_t>({1, -2, 3, 4, 5, 6, 7, -800}, true));
+    const Dataset dataset = openFiles({path}, options);
+    EXPECT_EQ(dataset.info.lattice.spacing, glm::dvec3(1, 1e-3, 2.5));
+    EXPECT_EQ(dataset.info.lattice.origin, glm::dvec3(-1, 0, 1));
+    EXPECT_EQ(dataset.load(0, 0, 1).value(3), -800);
+    for (const char* bad : {"", "dims=2x1,type=u8", "dims=2x1x1", "dims=2x1x1,type=u9", "dims=0x1x1,type=u8",
+                            "dims=2x1x1,type=u8,what=1", "dims=1x1x1,type=u8,components=0", "dims=axbxc,type=u8",
+                            "dims=1x1x1,type=u8,spacing=0x1x1", "dims=1x1x1,type=u8,times=99999999999"})
+        EXPECT_THROW(parseRawOption(bad), Error) << bad;
+}
+
+TEST_F(ImportRaw, BadInputGivesOneLine) {
+    write("a.raw", "12345678");
+    const std::string path = (folder_ / "a.raw").string();
+    EXPECT_THAT(failure(path), testing::HasSubstr("has no sidecar"));
+    EXPECT_THAT(failure((folder_ / "missing.raw").string()), testing::HasSubstr("no such file"));
+    const auto with = [&](const std::string& json) {
+        write("a.json", json);
+        const std::string line = failure(path);
+        EXPECT_EQ(line.find('\n'), std::string::npos);
+        return line;
+    };
+    EXPECT_EQ(with(R"({"dims":[2,2,2],"dtype":"uint8"})"), "");
+    EXPECT_THAT(with("{"), testing::HasSubstr("is not JSON"));
+    EXPECT_THAT(with("[1]"), testing::HasSubstr("not a JSON object"));
+    EXPECT_THAT(with(R"({"dtype":"uint8"})"), testing::HasSubstr("dims: is missing"));
+    EXPECT_THAT(with(R"({"dims":[2,2,2],"dtype":"complex"})"), testing::HasSubstr("unknown type \"complex\""));
+    EXPECT_THAT(with(R"({"dims":[2,2,2]})"), testing::HasSubstr("dtype"));
+    EXPECT_THAT(with(R"({"dims":[2,2,3],"dtype":"uint8"})"), testing::HasSubstr("has 8 bytes, its form asks for 12"));
+    EXPECT_THAT(with(R"({"dims":[2,2,1],"dtype":"uint8"})"), testing::HasSubstr("has 8 bytes, its form asks for 4"));
+    EXPECT_THAT(with(R"({"dims":[2,2,-2],"dtype":"uint8"})"), testing::HasSubstr("dims[2]"));
+    EXPECT_THAT(with(R"({"dims":[1000000,1000000,1000000],"dtype":"uint8"})"), testing::HasSubstr("10^15"));
+    EXPECT_THAT(with(R"({"dims":[1e300,2,2],"dtype":"uint8"})"), testing::HasSubstr("dims"));
+    EXPECT_THAT(with(R"({"dims":[2,2,2],"dtype":"uint8","spacing":[0,1,1]})"), testing::HasSubstr("spacing[0]"));
+    EXPECT_THAT(with(R"({"dims":[2,2,1],"dtype":"uint8","times":[1,1]})"), testing::HasSubstr("times[1]"));
+    EXPECT_THAT(with(R"({"dims":[2,2,1],"dtype":"uint8","components":[{"name":"a"},{"name":"a"}]})"),
+                testing::HasSubstr("there twice"));
+    EXPECT_THAT(with(R"({"dims":[2,2,2],"dtype":"uint8","components":[]})"), testing::HasSubstr("no component"));
+    EXPECT_THAT(with(R"({"dims":[2,2,2],"dtype":"uint8","byte_order":"pdp"})"), testing::HasSubstr("byte_order"));
+}
+
+TEST_F(ImportRaw, FileThatShrinksAfterOpeningIsAnError) {
+    const std::string path = write("a.raw", std::string(16, 'x'));
+    write("a.json", R"({"dims":[2,2,2],"dtype":"uint8","times":[0,1]})");
+    const Dataset dataset = openFiles({path}, {});
+    fs::resize_file(path, 12);
+    EXPECT_NO_THROW(dataset.load(0, 0, 0));
+    EXPECT_THROW(dataset.load(0, 0, 1), Error);
+}
+
+TEST_F(ImportRaw, PreviewReadsNoSample) {
+    const std::string path = write("a.raw", std::string(16, 'x'));
+    write("a.json", R"({"dims":[2,2,2],"dtype":"uint8","times":[0,1]})");
+    fs::permissions(path, fs::perms::none);
+    const ImportPreview preview = previewFiles({path}, {});
+    EXPECT_EQ(preview.format, "raw");
+    EXPECT_EQ(preview.bytes, 16);
+    EXPECT_EQ(preview.info.times.size(), 2u);
+    EXPECT_TRUE(preview.info.parameters[0].ranges.empty());
+    fs::permissions(path, fs::perms::owner_all);
+}
+
+TEST_F(ImportRaw, NamesUnitsTimesAndChoice) {
+    const std::string path = write("a.raw", "12345678");
+    write("a.json", R"({"dims":[2,1,1],"dtype":"uint8","times":[0,1],"components":[{"name":"a"},{"name":"b"}]})");
+    ImportOptions options;
+    options.rename = {{"a", "O2"}};
+    options.units = {{"O2", "mol/m3"}};
+    options.times = {5, 6};
+    options.lengthUnit = "um";
+    options.parameters = {"b", "O2"};
+    const Dataset dataset = openFiles({path}, options);
+    ASSERT_EQ(dataset.info.parameters.size(), 2u);
+    EXPECT_EQ(dataset.info.parameters[1].name, "O2");
+    EXPECT_EQ(dataset.info.parameters[1].unit, "mol/m3");
+    EXPECT_EQ(dataset.info.times, (std::vector<double>{5, 6}));
+    EXPECT_EQ(dataset.info.lengthUnit, "um");
+    EXPECT_EQ(dataset.load(1, 0, 1).value(0), '5');
+    options.rename = {{"a", "b"}};
+    EXPECT_THAT(failure(path, options), testing::HasSubstr("two parameters"));
+    options.rename = {{"c", "b"}};
+    EXPECT_THAT(failure(path, options), testing::HasSubstr("no array \"c\""));
+    options.rename.clear();
+    options.times = {5};
+    EXPECT_THAT(failure(path, options), testing::HasSubstr("--times"));
+}
+
+TEST_F(ImportRaw, SeveralFilesAreParametersOrTimes) {
+    for (const char* name : {"O2", "H2", "run_10", "run_2"}) {
+        write(std::string(name) + ".raw", std::string(8, name[0]));
+        write(std::string(name) + ".json", R"({"dims":[2,2,2],"dtype":"uint8"})");
+    }
+    const std::string base = folder_.string() + "/";
+    const Dataset gases = openFiles({base + "O2.raw", base + "H2.json"}, {});
+    ASSERT_EQ(gases.info.parameters.size(), 2u);
+    EXPECT_EQ(gases.info.parameters[0].name, "O2");
+    EXPECT_EQ(gases.load(1, 0, 0).value(0), 'H');
+    const Dataset runs = openFiles({base + "run_*.raw"}, {});
+    EXPECT_EQ(runs.info.times, (std::vector<double>{2, 10}));
+    EXPECT_EQ(runs.info.timeUnit, "step");
+    write("small.raw", "1");
+    write("small.json", R"({"dims":[1,1,1],"dtype":"uint8"})");
+    EXPECT_THROW(openFiles({base + "O2.raw", base + "small.raw"}, {}), Error);
+}
+
+TEST_F(ImportRaw, ScanIgnoresAbsentSamples) {
+    const float nan = std::nanf("");
+    const std::string path = write("a.raw", bytesOf<float>({nan, 2, 3, -1, 0, 4, 0, 0, 0, 3, 0, 0}, false));
+    write("a.json", R"({"dims":[3,1,1],"dtype":"float32","components":[{"name":"T"},{"name":"U.x"},{"name":"U.y"},
+        {"name":"U.z"}]})");
+    ImportOptions options;
+    options.absent = {"U=0"};
+    Dataset dataset = openFiles({path}, options);
+    scanRanges(dataset);
+    EXPECT_EQ(dataset.info.parameters[0].ranges, (std::vector<Range>{{2, 3}}));
+    const auto& ranges = dataset.info.parameters[1].ranges;
+    ASSERT_EQ(ranges.size(), 4u);
+    EXPECT_EQ(ranges[0], (Range{-1, 4})); // the sample in the middle is (0, 0, 0): absent
+    EXPECT_EQ(ranges[3], (Range{std::sqrt(10.0), 4}));
+    std::stop_source stop;
+    stop.request_stop();
+    EXPECT_THROW(scanRanges(dataset, Progress{{}, stop.get_token()}), Cancelled);
+}
+
+TEST(ImportRawData, RealVolumesHaveTheRangesTheirSidecarsState) {
+    const std::string folder = testData() + "/volumes/";
+    if (!fs::exists(folder)) GTEST_SKIP() << "no test data at " << folder;
+    Dataset lobster = openFiles({folder + "lobster_301x324x56_uint8.raw"}, {});
+    EXPECT_EQ(lobster.info.lattice.size, glm::ivec3(301, 324, 56));
+    EXPECT_EQ(lobster.info.lattice.spacing, glm::dvec3(1, 1, 1.4));
+    Dataset colpex = openFiles({folder + "colpex_theta_p_61x61x10_c2_t6_float32.json"}, {});
+    scanRanges(colpex);
+    ASSERT_EQ(colpex.info.parameters.size(), 2u);
+    EXPECT_EQ(colpex.info.times.size(), 6u);
+    EXPECT_EQ(colpex.info.parameters[0].ranges[0], (Range{279.7489013671875, 288.8997497558594}));
+    EXPECT_EQ(colpex.info.parameters[1].ranges[0], (Range{92734.640625, 102464.609375}));
+    EXPECT_EQ(colpex.info.parameters[0].unit, "K");
+}
+
+} // namespace
+} // namespace tessera::volume

@@ -1,0 +1,423 @@
+#include "volume/import/assemble.h"
+
+#include "volume/error.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <glm/common.hpp>
+#include <limits>
+#include <map>
+#include <memory>
+#include <set>
+
+namespace tessera::volume {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// Files of one group in time: what each holds is the same but for the samples.
+struct Group {
+    std::vector<const OpenedFile*> files;
+    struct Frame {
+        std::size_t file;
+        int localTime;
+    };
+    std::vector<double> times; ///< strictly increasing; empty: one frame that is there at all times
+    std::vector<Frame> frames; ///< one per time, or the only one
+    bool timesAreNumbers = false;
+};
+
+/// One array of one block that feeds a parameter.
+struct Contribution {
+    std::size_t group, piece;
+    int array;
+};
+
+std::string words(glm::ivec3 size) {
+    return std::to_string(size.x) + " x " + std::to_string(size.y) + " x " + std::to_string(size.z);
+}
+
+bool sameForm(const OpenedFile& a, const OpenedFile& b) {
+    return std::equal(a.pieces.begin(), a.pieces.end(), b.pieces.begin(), b.pieces.end(),
+                      [](const Piece& p, const Piece& q) {
+                          return p.name == q.name && p.mesh == q.mesh &&
+                                 std::equal(p.arrays.begin(), p.arrays.end(), q.arrays.begin(), q.arrays.end(),
+                                            [](const Array& x, const Array& y) {
+                                                return x.name == y.name && x.components == y.components;
+                                            });
+                      });
+}
+
+bool sameLattice(const Lattice& a, const Lattice& b) {
+    if (a.size != b.size) return false;
+    for (int axis = 0; axis < 3; ++axis) {
+        const double tolerance = 1e-4 * a.spacing[axis];
+        if (std::abs(a.spacing[axis] - b.spacing[axis]) * std::max(a.size[axis] - 1, 1) > tolerance ||
+            std::abs(a.origin[axis] - b.origin[axis]) > tolerance)
+            return false;
+    }
+    return true;
+}
+
+std::vector<Group> makeGroups(const std::vector<OpenedFile>& files) {
+    std::vector<Group> groups;
+    for (const OpenedFile& file : files) {
+        const bool follows = !groups.empty() && groups.back().files.front()->entry.group == file.entry.group &&
+                             sameForm(*groups.back().files.front(), file);
+        if (!follows) groups.emplace_back();
+        groups.back().files.push_back(&file);
+    }
+    for (Group& group : groups) {
+        std::map<double, Group::Frame> byTime;
+        const auto add = [&](double time, std::size_t file, int local) {
+            if (!byTime.emplace(time, Group::Frame{file, local}).second)
+                throw Error("has the same time " + std::to_string(time) + " as " +
+                                group.files[byTime.at(time).file]->entry.path,
+                            group.files[file]->entry.path);
+        };
+        // Numbers of names count only where no file of the group says a time.
+        bool anyTime = false, allDistinct = true;
+        std::set<double> seen;
+        for (const OpenedFile* file : group.files) {
+            const auto& own = file->pieces.front().times;
+            if (file->entry.time || !own.empty()) anyTime = true;
+            const double first = file->entry.time ? *file->entry.time : own.empty() ? 0 : own.front();
+            if ((file->entry.time || !own.empty()) && !seen.insert(first).second) allDistinct = false;
+        }
+        const bool several = group.files.size() > 1;
+        for (std::size_t f = 0; f < group.files.size(); ++f) {
+            const SeriesFile& entry = group.files[f]->entry;
+            const auto& own = group.files[f]->pieces.front().times;
+            if (own.size() > 1 && (!several || allDistinct)) {
+                for (std::size_t t = 0; t < own.size(); ++t) add(own[t], f, static_cast<int>(t));
+            } else if (entry.time) {
+                add(*entry.time, f, 0);
+            } else if (own.size() == 1 && (!several || allDistinct)) {
+                add(own[0], f, 0);
+            } else if (several) {
+                group.timesAreNumbers = !anyTime || !allDistinct;
+                add(group.timesAreNumbers && entry.number ? *entry.number : double(f), f, 0);
+            } else {
+                group.frames.push_back({f, 0});
+            }
+        }
+        for (const auto& [time, frame] : byTime) {
+            group.times.push_back(time);
+            group.frames.push_back(frame);
+        }
+    }
+    return groups;
+}
+
+Lattice chooseLattice(const std::vector<OpenedFile>& files, glm::ivec3 gridSize, std::vector<std::string>& notes) {
+    const Piece& first = files.front().pieces.front();
+    bool equalGrids = true, anyMesh = false;
+    for (const OpenedFile& file : files)
+        for (const Piece& piece : file.pieces) {
+            anyMesh = anyMesh || piece.mesh;
+            equalGrids = equalGrids && !piece.mesh && !first.mesh && sameLattice(first.lattice, piece.lattice);
+        }
+    if (equalGrids) {
+        if (gridSize != glm::ivec3(0) && gridSize != first.lattice.size)
+            notes.push_back("already on a grid of " + words(first.lattice.size) + ": the grid asked for is not used");
+        return first.lattice;
+    }
+    Box box{glm::dvec3(std::numeric_limits<double>::max()), glm::dvec3(std::numeric_limits<double>::lowest())};
+    glm::dvec3 perLength(0);
+    double cells = 0;
+    bool cellData = true;
+    double all = 0, blocks = 0;
+    std::set<std::string> groups;
+    for (const OpenedFile& file : files) {
+        const bool firstOfGroup = groups.insert(file.entry.group).second;
+        for (const Piece& piece : file.pieces) {
+            if (piece.format == "raw")
+                throw Error("does not lie on the grid of " + first.file + " (" + words(piece.lattice.size) +
+                                " against " + words(first.lattice.size) + ")",
+                            piece.file);
+            const Lattice& own = piece.lattice;
+            const Box extent = piece.mesh ? piece.box : Box{own.origin, own.position(own.size - 1)};
+            box.lo = glm::min(box.lo, extent.lo);
+            box.hi = glm::max(box.hi, extent.hi);
+            const double count = piece.mesh ? piece.cells : double(own.count());
+            all += count;
+            perLength += count / (piece.mesh ? piece.cellSize : own.spacing);
+            if (firstOfGroup && piece.mesh) {
+                cells += piece.cells;
+                ++blocks;
+            }
+            cellData = cellData && piece.cellData;
+        }
+    }
+    const Lattice grid = gridForMesh(box, all / perLength, cellData, gridSize);
+    std::string note =
+        anyMesh ? "mesh of " + std::to_string(static_cast<long long>(cells)) + " cells" : "grids that differ";
+    if (blocks > 1) note += " in " + std::to_string(int(blocks)) + " blocks";
+    notes.push_back(note + ", sampled on " + words(grid.size));
+    return grid;
+}
+
+Field allAbsent(const Lattice& lattice, ScalarType type) {
+    Field field = makeField(lattice, type);
+    field.mask = std::make_shared<const Mask>(field.count(), std::uint8_t(0));
+    return field;
+}
+
+Field converted(Field field, ScalarType type) {
+    if (field.type == type && field.scale == 1 && field.offset == 0) return field;
+    if (field.type == type) return field;
+    Field out = makeField(field.lattice, ScalarType::F32);
+    const auto values = out.as<float>();
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] = static_cast<float>(field.value(i));
+    out.mask = field.mask;
+    return out;
+}
+
+/// Fills samples that `into` lacks with those of `from`.
+void fillFrom(Field& into, const Field& from) {
+    if (!into.mask) return;
+    const std::size_t bytes = byteSize(into.type);
+    Mask mask = *into.mask;
+    for (std::size_t i = 0; i < mask.size(); ++i)
+        if (mask[i] == 0 && from.present(i)) {
+            mask[i] = 1;
+            std::copy_n(from.samples.begin() + std::ptrdiff_t(i * bytes), bytes,
+                        into.samples.begin() + std::ptrdiff_t(i * bytes));
+        }
+    into.mask = std::make_shared<const Mask>(std::move(mask));
+}
+
+/// Everything load() needs, shared by its copies.
+struct Assembly {
+    std::vector<OpenedFile> files;
+    std::vector<Group> groups;
+    Lattice lattice;
+    std::vector<double> times;
+    std::vector<Parameter> parameters;
+    std::vector<std::vector<Contribution>> feeds; ///< per parameter; empty = the made label
+    std::vector<std::uint8_t> label;              ///< samples of the made label
+    std::shared_ptr<const Mask> labelMask;
+
+    const Piece* pieceAt(const Contribution& from, double time, int& local) const {
+        const Group& group = groups[from.group];
+        std::size_t at = 0;
+        if (!group.times.empty()) {
+            const auto found = std::find(group.times.begin(), group.times.end(), time);
+            if (found == group.times.end()) {
+                if (group.times.size() > 1) return nullptr;
+            } else {
+                at = static_cast<std::size_t>(found - group.times.begin());
+            }
+        }
+        const Group::Frame frame = group.frames[at];
+        local = frame.localTime;
+        return &group.files[frame.file]->pieces[from.piece];
+    }
+
+    Field load(int parameter, int component, int timeIndex) const {
+        const auto p = static_cast<std::size_t>(parameter);
+        if (feeds[p].empty()) {
+            Field field = makeField(lattice, ScalarType::U8);
+            std::copy(label.begin(), label.end(), field.as<std::uint8_t>().begin());
+            field.mask = labelMask;
+            return field;
+        }
+        Field merged;
+        for (const Contribution& from : feeds[p]) {
+            if (!merged.samples.empty() && !merged.mask) break;
+            int local = 0;
+            const Piece* piece = pieceAt(from, times[static_cast<std::size_t>(timeIndex)], local);
+            if (piece == nullptr) continue;
+            Field field = converted(piece->load(from.array, component, local, lattice), parameters[p].type);
+            field.lattice = lattice;
+            if (merged.samples.empty())
+                merged = std::move(field);
+            else
+                fillFrom(merged, field);
+        }
+        return merged.samples.empty() ? allAbsent(lattice, parameters[p].type) : merged;
+    }
+
+    /// Labels each sample with the set of blocks that cover it. A block that covers every sample tells nothing and is
+    /// left out.
+    void makeLabel(Parameter& parameter, const Progress& progress) {
+        struct Block {
+            std::string name;
+            Field cover;
+        };
+        std::vector<Block> blocks;
+        std::size_t total = 0;
+        for (const Group& group : groups) total += group.files.front()->pieces.size();
+        std::vector<std::uint8_t> anywhere(lattice.count(), 0);
+        for (const Group& group : groups)
+            for (const Piece& piece : group.files.front()->pieces) {
+                progress.advance(double(blocks.size()) / double(total), "blocks");
+                Field cover = piece.load(-1, 0, 0, lattice);
+                for (std::size_t i = 0; i < anywhere.size(); ++i) anywhere[i] = anywhere[i] != 0 || cover.present(i);
+                blocks.push_back({piece.name, std::move(cover)});
+            }
+        std::erase_if(blocks, [&](const Block& block) {
+            for (std::size_t i = 0; i < anywhere.size(); ++i)
+                if (anywhere[i] != 0 && !block.cover.present(i)) return false;
+            return blocks.size() > 1;
+        });
+        std::map<std::vector<bool>, std::uint8_t> values;
+        label.assign(lattice.count(), 0);
+        std::vector<bool> covers(blocks.size());
+        Mask mask = anywhere;
+        for (std::size_t i = 0; i < label.size(); ++i) {
+            if (anywhere[i] == 0) continue;
+            for (std::size_t b = 0; b < blocks.size(); ++b) covers[b] = blocks[b].cover.present(i);
+            const auto at = values.find(covers);
+            if (at != values.end()) {
+                label[i] = at->second;
+                continue;
+            }
+            if (values.size() == 255)
+                throw Error("more than 255 ways in which blocks overlap", files.front().entry.path);
+            const auto value = static_cast<std::uint8_t>(values.size() + 1);
+            values.emplace(covers, value);
+            label[i] = value;
+            std::string name;
+            for (std::size_t b = 0; b < blocks.size(); ++b)
+                if (covers[b]) name += (name.empty() ? "" : " + ") + blocks[b].name;
+            parameter.labels.push_back({value, name.empty() ? "other" : name});
+        }
+        labelMask = std::make_shared<const Mask>(std::move(mask));
+    }
+};
+
+std::string dataName(const std::vector<OpenedFile>& files) {
+    const NumberedName numbered = numberedName(files.front().entry.path);
+    std::string name = fs::path(numbered.pattern).filename().string();
+    if (files.size() == 1) name = fs::path(files.front().entry.path).filename().string();
+    name.resize(std::min(name.find('.'), name.size()));
+    std::erase(name, '#');
+    while (!name.empty() && (name.back() == '_' || name.back() == '-')) name.pop_back();
+    return name.empty() ? "data" : name;
+}
+
+} // namespace
+
+Lattice gridForMesh(const Box& box, glm::dvec3 cellSize, bool cellData, glm::ivec3 wanted) {
+    constexpr double kMostPerAxis = 1024, kMost = 16e6;
+    const glm::dvec3 extent = box.size();
+    const double largest = std::max({extent.x, extent.y, extent.z});
+    glm::dvec3 n(1);
+    for (int axis = 0; axis < 3; ++axis)
+        if (extent[axis] > 1e-9 * largest && cellSize[axis] > 0)
+            n[axis] = std::clamp(std::round(extent[axis] / cellSize[axis]), 1.0, kMostPerAxis);
+    const double total = n.x * n.y * n.z;
+    if (total > kMost)
+        for (int axis = 0; axis < 3; ++axis) n[axis] = std::max(1.0, std::floor(n[axis] * std::cbrt(kMost / total)));
+    Lattice grid;
+    for (int axis = 0; axis < 3; ++axis) {
+        const bool flat = !(extent[axis] > 1e-9 * largest);
+        int samples = static_cast<int>(n[axis]) + (cellData || flat ? 0 : 1);
+        if (wanted[axis] > 0) samples = wanted[axis];
+        grid.size[axis] = samples;
+        if (flat) {
+            grid.spacing[axis] = largest > 0 ? largest / std::max(n.x, std::max(n.y, n.z)) : 1;
+            grid.origin[axis] = box.lo[axis];
+        } else if (cellData || samples == 1) {
+            grid.spacing[axis] = extent[axis] / samples;
+            grid.origin[axis] = box.lo[axis] + grid.spacing[axis] * 0.5;
+        } else {
+            grid.spacing[axis] = extent[axis] / (samples - 1);
+            grid.origin[axis] = box.lo[axis];
+        }
+    }
+    return grid;
+}
+
+Dataset assemble(std::vector<OpenedFile> files, glm::ivec3 gridSize, bool readSamples, std::vector<std::string>& notes,
+                 const Progress& progress) {
+    auto all = std::make_shared<Assembly>();
+    all->files = std::move(files);
+    for (const OpenedFile& file : all->files)
+        if (file.pieces.empty()) throw Error("holds no data", file.entry.path);
+    all->groups = makeGroups(all->files);
+    all->lattice = chooseLattice(all->files, gridSize, notes);
+
+    DatasetInfo info;
+    info.name = dataName(all->files);
+    info.lattice = all->lattice;
+    info.bounds = {all->lattice.origin, all->lattice.position(all->lattice.size - 1)};
+    std::set<double> times;
+    bool numbers = false;
+    for (const Group& group : all->groups) {
+        if (group.times.size() > 1 || times.empty()) times.insert(group.times.begin(), group.times.end());
+        numbers = numbers || (group.timesAreNumbers && group.times.size() > 1);
+    }
+    if (all->groups.size() > 1) { // a single time beside a series holds at all times
+        std::set<double> series;
+        for (const Group& group : all->groups)
+            if (group.times.size() > 1) series.insert(group.times.begin(), group.times.end());
+        if (!series.empty()) times = series;
+    }
+    info.times.assign(times.begin(), times.end());
+    if (info.times.empty()) info.times = {0};
+    if (numbers) info.timeUnit = "step";
+
+    std::map<std::string, std::size_t> byName;
+    // Files on one grid do not hide each other: arrays of equal name are told apart by the file's name.
+    std::map<std::string, int> onGrids;
+    for (const Group& group : all->groups)
+        for (const Piece& piece : group.files.front()->pieces)
+            if (!piece.mesh)
+                for (const Array& array : piece.arrays) ++onGrids[array.name];
+    bool anyLabel = false;
+    std::size_t meshes = 0;
+    for (std::size_t g = 0; g < all->groups.size(); ++g) {
+        const OpenedFile& file = *all->groups[g].files.front();
+        for (std::size_t b = 0; b < file.pieces.size(); ++b) {
+            const Piece& piece = file.pieces[b];
+            meshes += piece.mesh ? 1 : 0;
+            if (!piece.lengthUnit.empty()) info.lengthUnit = piece.lengthUnit;
+            if (!piece.timeUnit.empty()) info.timeUnit = piece.timeUnit;
+            if (info.provenance.empty()) info.provenance = piece.provenance;
+            for (std::size_t a = 0; a < piece.arrays.size(); ++a) {
+                const Array& array = piece.arrays[a];
+                anyLabel = anyLabel || array.categorical;
+                std::string name = array.name;
+                if (!piece.mesh && onGrids[name] > 1) {
+                    const std::string stem = fs::path(file.entry.path).stem().string();
+                    name = array.name == "value" ? stem : stem + "." + array.name;
+                }
+                const auto known = byName.find(name);
+                if (known != byName.end() && !piece.mesh)
+                    throw Error("array \"" + array.name + "\" is there twice", piece.file);
+                if (known != byName.end()) {
+                    Parameter& parameter = info.parameters[known->second];
+                    if (parameter.components != array.components)
+                        throw Error("array has " + std::to_string(array.components) + " components here and " +
+                                        std::to_string(parameter.components) + " in another block",
+                                    piece.file, array.name);
+                    if (parameter.type != array.type) parameter.type = ScalarType::F32;
+                    all->feeds[known->second].push_back({g, b, static_cast<int>(a)});
+                    continue;
+                }
+                byName.emplace(name, info.parameters.size());
+                info.parameters.push_back(
+                    {name, array.unit, array.components, array.type, array.categorical, array.labels, {}});
+                all->feeds.push_back({{g, b, static_cast<int>(a)}});
+            }
+        }
+    }
+    if (info.parameters.empty()) throw Error("holds no array of numbers", all->files.front().entry.path);
+    all->times = info.times;
+    if (!anyLabel && meshes > 1 && !byName.contains("region")) {
+        Parameter region{"region", "", 1, ScalarType::U8, true, {}, {}};
+        if (readSamples) all->makeLabel(region, progress);
+        info.parameters.push_back(std::move(region));
+        all->feeds.emplace_back();
+        notes.push_back("label region made from the names of the blocks");
+    }
+    all->parameters = info.parameters;
+    return {std::move(info),
+            [all](int parameter, int component, int time) { return all->load(parameter, component, time); }};
+}
+
+} // namespace tessera::volume

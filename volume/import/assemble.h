@@ -1,0 +1,29 @@
+#pragma once
+
+#include "volume/import/import.h"
+#include "volume/import/piece.h"
+#include "volume/import/series.h"
+
+#include <vector>
+
+namespace tessera::volume {
+
+/// A file of a series and the blocks a reader found in it.
+struct OpenedFile {
+    SeriesFile entry;
+    std::vector<Piece> pieces;
+};
+
+/// Puts files together into one data set with the file's own array names: files of a group follow each other in time,
+/// arrays of equal name from several meshes are merged onto one grid (the first that has a sample wins), several files
+/// on one grid add parameters. A `region` label is made from the names of mesh blocks where there is no label.
+/// `gridSize` (0 = chosen) is for meshes. `notes` tells what was done. Throws Error when things do not fit.
+/// Without `readSamples` no sample is read (the names of a made label are then not yet known).
+Dataset assemble(std::vector<OpenedFile> files, glm::ivec3 gridSize, bool readSamples, std::vector<std::string>& notes,
+                 const Progress& progress);
+
+/// The grid a mesh is sampled on: per axis about one sample per cell of harmonic-mean extent, at most 1024 an axis and
+/// 16 M in all; in the middle of cells for cell data, else from border to border.
+Lattice gridForMesh(const Box& box, glm::dvec3 cellSize, bool cellData, glm::ivec3 wanted);
+
+} // namespace tessera::volume

@@ -1,0 +1,240 @@
+#include "volume/import/import.h"
+
+#include "volume/error.h"
+#include "volume/import/absent.h"
+#include "volume/import/assemble.h"
+#include "volume/import/foreign.h"
+#include "volume/import/raw.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+
+namespace tessera::volume {
+
+namespace {
+
+struct Opened {
+    Dataset dataset;
+    std::string format;
+    std::vector<std::string> notes;
+};
+
+/// Final names, units and choice of parameters.
+Dataset withNames(Dataset dataset, const ImportOptions& options) {
+    DatasetInfo& info = dataset.info;
+    std::set<std::string> names;
+    for (const auto& [from, to] : options.rename)
+        if (std::none_of(info.parameters.begin(), info.parameters.end(),
+                         [&](const Parameter& parameter) { return parameter.name == from; }))
+            throw Error("there is no array \"" + from + "\"", {}, "--rename");
+    for (Parameter& parameter : info.parameters) {
+        if (const auto to = options.rename.find(parameter.name); to != options.rename.end())
+            parameter.name = to->second;
+        if (parameter.name.empty() || !names.insert(parameter.name).second)
+            throw Error("two parameters would be named \"" + parameter.name + "\"", {}, "--rename");
+        if (const auto unit = options.units.find(parameter.name); unit != options.units.end())
+            parameter.unit = unit->second;
+    }
+    if (!options.lengthUnit.empty()) info.lengthUnit = options.lengthUnit;
+    if (!options.times.empty()) {
+        if (options.times.size() != info.times.size())
+            throw Error("states " + std::to_string(options.times.size()) + " times, the data have " +
+                            std::to_string(info.times.size()),
+                        {}, "--times");
+        if (std::adjacent_find(options.times.begin(), options.times.end(), std::greater_equal<>()) !=
+            options.times.end())
+            throw Error("must increase", {}, "--times");
+        info.times = options.times;
+    }
+    return dataset;
+}
+
+/// Only the parameters asked for; the rest stays loadable for rules until here.
+Dataset withParameters(Dataset dataset, const std::vector<std::string>& wanted) {
+    if (wanted.empty()) return dataset;
+    std::vector<int> kept;
+    for (const std::string& name : wanted) {
+        const auto at = std::find_if(dataset.info.parameters.begin(), dataset.info.parameters.end(),
+                                     [&](const Parameter& parameter) { return parameter.name == name; });
+        if (at == dataset.info.parameters.end())
+            throw Error("there is no parameter \"" + name + "\"", {}, "--parameters");
+        kept.push_back(static_cast<int>(at - dataset.info.parameters.begin()));
+    }
+    std::vector<Parameter> parameters;
+    for (const int index : kept) parameters.push_back(dataset.info.parameters[std::size_t(index)]);
+    dataset.info.parameters = std::move(parameters);
+    dataset.load = [inner = std::move(dataset.load), kept](int parameter, int component, int time) {
+        return inner(kept[std::size_t(parameter)], component, time);
+    };
+    return dataset;
+}
+
+/// Labels stored as floating point become whole numbers, so that a mask or a name finds them.
+Dataset withLabels(Dataset dataset) {
+    std::vector<bool> rounded;
+    for (Parameter& parameter : dataset.info.parameters) {
+        rounded.push_back(parameter.categorical && parameter.type == ScalarType::F32);
+        if (rounded.back()) parameter.type = ScalarType::I32;
+    }
+    if (std::find(rounded.begin(), rounded.end(), true) == rounded.end()) return dataset;
+    dataset.load = [inner = std::move(dataset.load), rounded](int parameter, int component, int time) {
+        Field field = inner(parameter, component, time);
+        if (!rounded[std::size_t(parameter)]) return field;
+        Field whole = makeField(field.lattice, ScalarType::I32);
+        const auto values = whole.as<std::int32_t>();
+        Mask mask = field.mask ? *field.mask : Mask(field.count(), 1);
+        for (std::size_t i = 0; i < values.size(); ++i) {
+            const double value = field.value(i);
+            if (std::abs(value) < 2e9)
+                values[i] = static_cast<std::int32_t>(std::lround(value));
+            else
+                mask[i] = 0;
+        }
+        whole.mask = std::make_shared<const Mask>(std::move(mask));
+        return whole;
+    };
+    return dataset;
+}
+
+/// Arrays named like labels are taken as such if they are whole numbers with few distinct values. Integer arrays at
+/// once; floating point ones only where samples may be read.
+void markLabels(Dataset& dataset, bool readSamples) {
+    for (std::size_t p = 0; p < dataset.info.parameters.size(); ++p) {
+        Parameter& parameter = dataset.info.parameters[p];
+        if (parameter.categorical || parameter.components != 1 || !isLabelName(parameter.name)) continue;
+        if (!readSamples) {
+            parameter.categorical = parameter.type != ScalarType::F32;
+            continue;
+        }
+        const Field field = dataset.load(static_cast<int>(p), 0, 0);
+        std::set<double> values;
+        bool whole = true;
+        for (std::size_t i = 0; i < field.count() && whole && values.size() <= 64; ++i) {
+            if (!field.present(i)) continue;
+            const double value = field.value(i);
+            if (std::isnan(value)) continue;
+            whole = value == std::floor(value) && std::abs(value) < 1e9;
+            values.insert(value);
+        }
+        parameter.categorical = whole && values.size() <= 64;
+    }
+}
+
+Opened open(const std::vector<std::string>& paths, const ImportOptions& options, bool readSamples,
+            const Progress& progress) {
+    if (paths.empty()) throw Error("no file given");
+    std::vector<AbsentRule> stated;
+    for (const std::string& rule : options.absent) stated.push_back(parseAbsentRule(rule));
+
+    const std::vector<SeriesFile> entries = expandPaths(paths);
+    std::vector<OpenedFile> files(entries.size());
+    std::vector<std::string> foreign;
+    for (std::size_t i = 0; i < entries.size(); ++i) {
+        files[i].entry = entries[i];
+        if (isRaw(entries[i].path, options.raw))
+            files[i].pieces.push_back(openRaw(entries[i].path, options.raw));
+        else
+            foreign.push_back(entries[i].path);
+    }
+    if (!foreign.empty()) {
+        std::vector<std::vector<Piece>> pieces = openForeign(foreign, progress.part(0, 0.3));
+        std::size_t next = 0;
+        for (OpenedFile& file : files)
+            if (file.pieces.empty()) {
+                file.pieces = std::move(pieces[next++]);
+                for (Piece& piece : file.pieces)
+                    if (!file.entry.part.empty()) piece.name = file.entry.part;
+            }
+    }
+    Opened opened;
+    opened.format = files.front().pieces.empty() ? "" : files.front().pieces.front().format;
+    opened.dataset = assemble(std::move(files), options.gridSize, readSamples, opened.notes, progress.part(0.3, 0.7));
+    markLabels(opened.dataset, readSamples);
+    opened.dataset = withNames(withLabels(std::move(opened.dataset)), options);
+    if (readSamples) findLabels(opened.dataset);
+    std::vector<AbsentRule> rules = stated;
+    if (options.autoAbsent && readSamples) {
+        for (AbsentRule& rule : suggestAbsentRules(opened.dataset, progress.part(0.7, 1))) {
+            const bool ruled = std::any_of(stated.begin(), stated.end(), [&](const AbsentRule& own) {
+                return own.parameter == rule.parameter || (own.parameter == "*" && own.nothing);
+            });
+            if (ruled) continue;
+            opened.notes.push_back("absent: " + toText(rule) + " (it is 0 there; " + rule.parameter +
+                                   "=none keeps it)");
+            rules.push_back(std::move(rule));
+        }
+    }
+    opened.dataset = withParameters(withAbsent(std::move(opened.dataset), rules), options.parameters);
+    return opened;
+}
+
+double bytesOf(const DatasetInfo& info) {
+    double perSample = 0;
+    for (const Parameter& parameter : info.parameters)
+        perSample += parameter.components * double(byteSize(parameter.type));
+    return perSample * double(info.lattice.count()) * double(info.times.size());
+}
+
+} // namespace
+
+ImportPreview previewFiles(const std::vector<std::string>& paths, const ImportOptions& options,
+                           const Progress& progress) {
+    Opened opened = open(paths, options, false, progress);
+    ImportPreview preview{opened.format, {}, 0, std::move(opened.notes)};
+    preview.bytes = bytesOf(opened.dataset.info);
+    preview.info = std::move(opened.dataset.info);
+    return preview;
+}
+
+Dataset openFiles(const std::vector<std::string>& paths, const ImportOptions& options, const Progress& progress) {
+    return open(paths, options, true, progress).dataset;
+}
+
+void scanRanges(Dataset& dataset, const Progress& progress) {
+    DatasetInfo& info = dataset.info;
+    double total = 0, done = 0;
+    for (const Parameter& parameter : info.parameters)
+        total += double(parameter.components) * double(info.times.size());
+    for (std::size_t p = 0; p < info.parameters.size(); ++p) {
+        Parameter& parameter = info.parameters[p];
+        const auto components = static_cast<std::size_t>(parameter.components);
+        constexpr double kInfinity = std::numeric_limits<double>::infinity();
+        std::vector<Range> ranges(components > 1 ? components + 1 : 1, Range{kInfinity, -kInfinity});
+        const auto widen = [](Range& range, double value) {
+            range.lo = std::min(range.lo, value);
+            range.hi = std::max(range.hi, value);
+        };
+        for (std::size_t t = 0; t < info.times.size(); ++t) {
+            std::vector<double> squares;
+            std::vector<std::uint8_t> present;
+            for (std::size_t c = 0; c < components; ++c) {
+                progress.advance(done++ / total, parameter.name);
+                const Field field = dataset.load(static_cast<int>(p), static_cast<int>(c), static_cast<int>(t));
+                if (components > 1 && squares.empty()) {
+                    squares.resize(field.count());
+                    present.assign(field.count(), 1);
+                }
+                dispatch(field.type, [&]<class T>(T) {
+                    const auto stored = field.as<T>();
+                    for (std::size_t i = 0; i < stored.size(); ++i) {
+                        const double value = field.offset + field.scale * double(stored[i]);
+                        const bool there = field.present(i) && std::isfinite(value);
+                        if (there) widen(ranges[c], value);
+                        if (squares.empty()) continue;
+                        squares[i] += value * value;
+                        present[i] &= there ? 1 : 0;
+                    }
+                });
+            }
+            for (std::size_t i = 0; i < squares.size(); ++i)
+                if (present[i] != 0) widen(ranges[components], std::sqrt(squares[i]));
+        }
+        for (Range& range : ranges)
+            if (range.lo > range.hi) range = {0, 0};
+        parameter.ranges = std::move(ranges);
+    }
+}
+
+} // namespace tessera::volume

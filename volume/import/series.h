@@ -1,0 +1,41 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+/// Which files belong together: directories, patterns, .pvd, .series and numbered files become a flat list.
+namespace tessera::volume {
+
+/// One file to open and what its surroundings say of it.
+struct SeriesFile {
+    std::string path;
+    std::optional<double> time;   ///< stated by a .pvd or .series
+    std::optional<double> number; ///< last run of digits in the name
+    /// Files of equal group follow each other in time; different groups hold different parts or parameters of the same
+    /// thing. The name with its last number replaced by '#', or the .pvd's part.
+    std::string group;
+    std::string part; ///< name of the part in a .pvd, "" = none
+    bool operator==(const SeriesFile&) const = default;
+};
+
+/// Expands what the user named: a directory (an OpenFOAM case, its one .pvd or .series, or its files of the commonest
+/// known ending), a pattern with * or ?, a ParaView .pvd or .series file, or files. Groups keep the order of their
+/// first file; files of a group are sorted by time, then number. Throws Error for what does not exist or cannot be
+/// read.
+std::vector<SeriesFile> expandPaths(const std::vector<std::string>& paths);
+
+/// Contents of a .pvd (XML Collection). `file` names it in errors; paths are relative to its folder.
+std::vector<SeriesFile> parsePvd(const std::string& xml, const std::string& file);
+
+/// Contents of a .series (ParaView's JSON: {"files": [{"name": .., "time": ..}]}).
+std::vector<SeriesFile> parseSeries(const std::string& json, const std::string& file);
+
+/// Last run of digits of a file name without ending: "small_0010.vti" -> {"small_#.vti", 10}.
+struct NumberedName {
+    std::string pattern;
+    std::optional<double> number;
+};
+NumberedName numberedName(const std::string& path);
+
+} // namespace tessera::volume
