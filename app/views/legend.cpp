@@ -1,0 +1,107 @@
+#include "app/views/legend.h"
+
+#include "app/views/ticks.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tessera::app {
+
+namespace {
+
+constexpr int kStripParts = 64;
+
+float barHeight() {
+    return std::round(em() * 0.65f);
+}
+
+/// An arrow head in the end colour: data goes on beyond the bar.
+void drawArrow(ImDrawList& draw, ImVec2 at, float size, float direction, ImU32 color) {
+    draw.AddTriangleFilled({at.x, at.y}, {at.x, at.y + size}, {at.x + direction * size * 0.6f, at.y + size / 2}, color);
+}
+
+float drawSwatch(ImDrawList& draw, ImVec2 min, const LegendEntry& entry) {
+    const PlotColors colors = plotColors();
+    const float size = barHeight();
+    draw.AddRectFilled({min.x, min.y + em() * 0.25f}, {min.x + size, min.y + em() * 0.25f + size},
+                       toColor(entry.color));
+    draw.AddRect({min.x, min.y + em() * 0.25f}, {min.x + size, min.y + em() * 0.25f + size}, colors.frame);
+    const double resolution = (entry.data.hi - entry.data.lo) / 1000;
+    const std::string text = entry.title + " = " + formatQuantity(entry.value, entry.unit, resolution);
+    draw.AddText({min.x + size + em() * 0.5f, min.y}, colors.text, text.c_str());
+    return em() * 1.25f;
+}
+
+} // namespace
+
+void drawColorStrip(ImDrawList& draw, ImVec2 min, ImVec2 max, const vis::TransferFunction& function, bool withOpacity) {
+    const PlotColors colors = plotColors();
+    if (withOpacity) {
+        const float cell = std::max(3.0f, (max.y - min.y) / 3);
+        for (float y = min.y; y < max.y; y += cell)
+            for (float x = min.x; x < max.x; x += cell) {
+                const bool odd = (static_cast<int>((x - min.x) / cell) + static_cast<int>((y - min.y) / cell)) & 1;
+                draw.AddRectFilled({x, y}, {std::min(x + cell, max.x), std::min(y + cell, max.y)},
+                                   odd ? IM_COL32(150, 150, 150, 255) : IM_COL32(200, 200, 200, 255));
+            }
+    }
+    const auto color = [&](int i) {
+        const glm::dvec4 c = vis::evaluate(function, {0, 1}, static_cast<double>(i) / kStripParts);
+        return toColor({c.r, c.g, c.b}, withOpacity ? c.a : 1);
+    };
+    for (int i = 0; i < kStripParts; ++i) {
+        const auto x = [&](int k) { return min.x + (max.x - min.x) * static_cast<float>(k) / kStripParts; };
+        draw.AddRectFilledMultiColor({x(i), min.y}, {x(i + 1), max.y}, color(i), color(i + 1), color(i + 1), color(i));
+    }
+    draw.AddRect(min, max, colors.frame);
+}
+
+float legendBarHeight() {
+    return barHeight() + em() * 2.75f;
+}
+
+float drawLegendBar(ImDrawList& draw, ImVec2 min, float width, const LegendEntry& entry) {
+    const PlotColors colors = plotColors();
+    const float height = barHeight(), arrow = height * 0.6f;
+    const ImVec2 lo{min.x + arrow + 1, min.y + em() * 0.2f}, hi{min.x + width - arrow - 1, lo.y + height};
+    drawColorStrip(draw, lo, hi, entry.function);
+    const auto end = [&](double x) {
+        const glm::dvec4 c = vis::evaluate(entry.function, {0, 1}, x);
+        return toColor({c.r, c.g, c.b});
+    };
+    const double slack = (entry.range.hi - entry.range.lo) * 1e-6;
+    if (entry.data.lo < entry.range.lo - slack) drawArrow(draw, {lo.x - 1, lo.y}, height, -1, end(0));
+    if (entry.data.hi > entry.range.hi + slack) drawArrow(draw, {hi.x + 1, lo.y}, height, 1, end(1));
+    const PlotFrame frame{lo, hi, paddedRange(entry.range), {0, 1}};
+    drawAxis(draw, frame, AxisSide::Bottom, entry.title, entry.unit, min.x, min.x + width);
+    if (entry.marker && *entry.marker >= frame.x.lo && *entry.marker <= frame.x.hi) {
+        const float x = std::round(frame.pixel(*entry.marker, 0).x) + 0.5f;
+        draw.AddLine({x, lo.y - em() * 0.15f}, {x, hi.y + em() * 0.15f}, colors.backdrop, 3);
+        draw.AddLine({x, lo.y - em() * 0.15f}, {x, hi.y + em() * 0.15f}, colors.cursor);
+    }
+    return legendBarHeight();
+}
+
+LegendArea drawLegends(ImDrawList& draw, const std::vector<LegendEntry>& entries, ImVec2 min, ImVec2 max) {
+    const float pad = em() * 0.5f;
+    const float width = std::min(em() * 15, (max.x - min.x) * 0.45f);
+    float bottom = max.y;
+    if (width < em() * 7) return {max, max};
+    std::vector<const LegendEntry*> shown;
+    float height = 0;
+    for (const LegendEntry& entry : entries) {
+        const float own = entry.swatch ? em() * 1.25f : legendBarHeight();
+        if (height + own > (max.y - min.y) * 0.6f) break;
+        height += own;
+        shown.push_back(&entry);
+    }
+    if (shown.empty()) return {max, max};
+    const ImVec2 from{max.x - width - pad, bottom - height - pad};
+    draw.AddRectFilled({from.x - pad, from.y - pad * 0.5f}, {max.x, bottom}, plotColors().backdrop, em() * 0.25f);
+    float y = from.y;
+    for (const LegendEntry* entry : shown)
+        y += entry->swatch ? drawSwatch(draw, {from.x, y}, *entry) : drawLegendBar(draw, {from.x, y}, width, *entry);
+    return {{from.x - pad, from.y - pad * 0.5f}, {max.x, bottom}};
+}
+
+} // namespace tessera::app

@@ -1,0 +1,42 @@
+#pragma once
+
+#include "app/views/plot.h"
+#include "vis/model/transfer_function.h"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+/// Colour legends, painted from the same function that fills the renderer's lookup tables.
+namespace tessera::app {
+
+/// One colour bar, or one swatch with a value (an iso-surface).
+struct LegendEntry {
+    std::string title, unit;
+    vis::TransferFunction function;
+    Range range;                   ///< values at the ends of the bar
+    Range data;                    ///< of the channel; beyond `range` there are arrow heads at the ends
+    std::optional<double> marker;  ///< value at the linked cursor
+    bool swatch = false;           ///< only `color` and `value`
+    std::array<double, 3> color{}; ///< sRGB of a swatch
+    double value = 0;
+    bool operator==(const LegendEntry&) const = default;
+};
+
+/// A horizontal strip of a colour map between two pixels, left = lowest value; opacity over a chequered ground if
+/// wanted.
+void drawColorStrip(ImDrawList& draw, ImVec2 min, ImVec2 max, const vis::TransferFunction& function,
+                    bool withOpacity = false);
+
+/// Legends stacked upwards from the bottom right corner of a rectangle, at most as many as fit; returns the pixels
+/// they cover.
+struct LegendArea {
+    ImVec2 min, max;
+};
+LegendArea drawLegends(ImDrawList& draw, const std::vector<LegendEntry>& entries, ImVec2 min, ImVec2 max);
+
+/// One horizontal bar with ticks and title below in the given width; returns its height.
+float drawLegendBar(ImDrawList& draw, ImVec2 min, float width, const LegendEntry& entry);
+float legendBarHeight();
+
+} // namespace tessera::app
