@@ -3,6 +3,7 @@
 #include "app/session/dock_tree.h"
 #include "app/session/view_state.h"
 #include "vis/model/scene.h"
+#include "volume/dataset.h"
 
 #include <map>
 #include <string>

@@ -87,7 +87,8 @@ std::string prettyUnit(std::string_view unit) {
     if (unit == "deg") return "\u00b0";
     std::string out;
     for (std::size_t i = 0; i < unit.size(); ++i) {
-        const bool exponent = i > 0 && std::isalpha(static_cast<unsigned char>(unit[i - 1])) &&
+        const bool caret = i + 1 < unit.size() && unit[i] == '^';
+        const bool exponent = i > 0 && (std::isalpha(static_cast<unsigned char>(unit[i - 1])) || unit[i - 1] == '^') &&
                               (i + 1 == unit.size() || !std::isalnum(static_cast<unsigned char>(unit[i + 1])));
         if (exponent && unit[i] == '2')
             out += "\u00b2";
@@ -95,7 +96,7 @@ std::string prettyUnit(std::string_view unit) {
             out += "\u00b3";
         else if (unit[i] == '*')
             out += "\u00b7";
-        else if (unit[i] != '^')
+        else if (!caret || (unit[i + 1] != '2' && unit[i + 1] != '3'))
             out += unit[i];
     }
     return out;

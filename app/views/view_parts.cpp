@@ -1,0 +1,160 @@
+#include "app/views/view_parts.h"
+
+#include "app/views/ticks.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tessera::app {
+
+bool iconButton(const ViewContext& context, const char* id, Icon icon, const char* help, bool enabled, bool lit) {
+    const float height = ImGui::GetFrameHeight();
+    const ImVec2 glyph = iconSize(context, icon);
+    const ImVec2 size{std::max(height, glyph.x + em() * 0.5f), height};
+    ImGui::BeginDisabled(!enabled);
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    if (lit) ImGui::PushStyleColor(ImGuiCol_Button, ImGui::GetStyleColorVec4(ImGuiCol_ButtonActive));
+    const bool pressed = ImGui::Button((std::string("##") + id).c_str(), size);
+    if (lit) ImGui::PopStyleColor();
+    ImGui::EndDisabled();
+    if (help && *help && ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) tooltip(help);
+    const ImU32 color = ImGui::GetColorU32(enabled ? ImGuiCol_Text : ImGuiCol_TextDisabled);
+    ImFont* font = context.iconFont ? context.iconFont : ImGui::GetFont();
+    ImGui::GetWindowDrawList()->AddText(
+        font, context.iconFont ? em() * 0.95f : em(),
+        {std::round(at.x + (size.x - glyph.x) / 2), std::round(at.y + (size.y - glyph.y) / 2)}, color,
+        context.iconFont ? icon.glyph : icon.word);
+    return pressed;
+}
+
+ImVec2 iconSize(const ViewContext& context, Icon icon) {
+    if (!context.iconFont) return ImGui::CalcTextSize(icon.word);
+    return context.iconFont->CalcTextSizeA(em() * 0.95f, 1e6f, 0, icon.glyph);
+}
+
+void iconText(const ViewContext& context, Icon icon, ImU32 color) {
+    const ImVec2 at = ImGui::GetCursorScreenPos(), size = iconSize(context, icon);
+    const float width = std::max(em() * 1.4f, size.x);
+    ImFont* font = context.iconFont ? context.iconFont : ImGui::GetFont();
+    ImGui::GetWindowDrawList()->AddText(
+        font, context.iconFont ? em() * 0.95f : em(),
+        {std::round(at.x + (width - size.x) / 2), std::round(at.y + (ImGui::GetFrameHeight() - size.y) / 2)}, color,
+        context.iconFont ? icon.glyph : icon.word);
+    ImGui::Dummy({width, ImGui::GetFrameHeight()});
+}
+
+void drawHint(const char* title, const char* hint) {
+    const ImVec2 room = ImGui::GetContentRegionAvail();
+    const ImVec2 start = ImGui::GetCursorPos();
+    const float wrap = std::max(1.0f, std::min(room.x - em(), em() * 26));
+    const ImVec2 a = ImGui::CalcTextSize(title, nullptr, false, wrap),
+                 b = ImGui::CalcTextSize(hint, nullptr, false, wrap);
+    float y = start.y + std::max(0.0f, (room.y - a.y - b.y - em() * 0.5f) / 2);
+    const auto line = [&](const char* text, ImVec2 size, ImGuiCol color) {
+        ImGui::SetCursorPos({start.x + std::max(0.0f, (room.x - size.x) / 2), y});
+        ImGui::PushTextWrapPos(ImGui::GetCursorPosX() + size.x + 1);
+        ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetStyleColorVec4(color));
+        ImGui::TextUnformatted(text);
+        ImGui::PopStyleColor();
+        ImGui::PopTextWrapPos();
+        y += size.y + em() * 0.5f;
+    };
+    line(title, a, ImGuiCol_Text);
+    if (*hint) line(hint, b, ImGuiCol_TextDisabled);
+}
+
+void tooltip(const char* text) {
+    ImGui::BeginTooltip();
+    ImGui::PushTextWrapPos(em() * 28);
+    ImGui::TextUnformatted(text);
+    ImGui::PopTextWrapPos();
+    ImGui::EndTooltip();
+}
+
+std::vector<int> comparedChannels(const volume::DatasetInfo& info) {
+    std::vector<int> out;
+    const std::vector<volume::Channel> channels = info.channels();
+    for (std::size_t i = 0; i < channels.size(); ++i) {
+        const volume::Parameter& parameter = info.parameters[static_cast<std::size_t>(channels[i].parameter)];
+        if (parameter.categorical) continue;
+        if (parameter.components == 1 || channels[i].magnitude) out.push_back(static_cast<int>(i));
+    }
+    return out;
+}
+
+std::optional<int> resolveChannel(const volume::DatasetInfo& info, const Session& session, const std::string& wanted) {
+    if (const auto found = info.findChannel(wanted); found && !wanted.empty()) return found;
+    for (const vis::Layer& layer : session.layers) {
+        const std::string& name =
+            std::visit([](const auto& technique) -> const std::string& { return technique.channel; }, layer.technique);
+        if (const auto found = info.findChannel(name)) return found;
+    }
+    const std::vector<int> compared = comparedChannels(info);
+    if (!compared.empty()) return compared.front();
+    return info.channels().empty() ? std::nullopt : std::optional<int>(0);
+}
+
+bool channelCombo(const char* id, const volume::DatasetInfo& info, std::string& channel, bool categorical) {
+    bool changed = false;
+    const auto current = info.findChannel(channel);
+    const std::vector<volume::Channel> channels = info.channels();
+    const auto label = [](const volume::Channel& c) { return titleWithUnit(c.name, c.unit); };
+    const std::string preview = current           ? label(channels[static_cast<std::size_t>(*current)])
+                                : channel.empty() ? "-"
+                                                  : channel + " (missing)";
+    if (!ImGui::BeginCombo(id, preview.c_str(), ImGuiComboFlags_HeightLarge)) return false;
+    for (std::size_t i = 0; i < channels.size(); ++i) {
+        if (!categorical && info.parameters[static_cast<std::size_t>(channels[i].parameter)].categorical) continue;
+        const bool chosen = current && *current == static_cast<int>(i);
+        if (ImGui::Selectable(label(channels[i]).c_str(), chosen) && !chosen) {
+            channel = channels[i].name;
+            changed = true;
+        }
+        if (chosen) ImGui::SetItemDefaultFocus();
+    }
+    ImGui::EndCombo();
+    return changed;
+}
+
+const vis::TransferFunction& transferOf(const Session& session, const std::string& channel) {
+    static const vis::TransferFunction fallback;
+    const auto found = session.transfer.find(channel);
+    return found == session.transfer.end() ? fallback : found->second;
+}
+
+vis::TransferFunction& transferOf(Session& session, const std::string& channel) {
+    return session.transfer[channel];
+}
+
+LegendEntry legendOf(const Session& session, const volume::DatasetInfo& info, int channel) {
+    const volume::Channel c = info.channels()[static_cast<std::size_t>(channel)];
+    LegendEntry entry;
+    entry.title = c.name;
+    entry.unit = c.unit;
+    entry.function = transferOf(session, c.name);
+    entry.data = info.channelRange(c);
+    entry.range = vis::effectiveRange(entry.function, entry.data);
+    return entry;
+}
+
+vis::Scene themedScene(const Session& session) {
+    vis::Scene scene = sceneOf(session);
+    const bool dark = session.appearance.theme == Theme::Dark;
+    scene.background = dark ? glm::vec3(0.085f, 0.092f, 0.107f) : glm::vec3(0.965f, 0.968f, 0.975f);
+    scene.boxColor = dark ? glm::vec3(0.42f) : glm::vec3(0.55f);
+    return scene;
+}
+
+int timeIndex(const Session& session, const volume::DatasetInfo& info) {
+    return info.nearestTime(session.time);
+}
+
+char typedKey() {
+    const ImGuiIO& io = ImGui::GetIO();
+    if (io.WantTextInput || io.KeyCtrl || io.KeyAlt) return 0;
+    for (ImWchar c : io.InputQueueCharacters)
+        if (c < 128) return static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
+    return 0;
+}
+
+} // namespace tessera::app

@@ -1,0 +1,67 @@
+#pragma once
+
+#include "app/views/legend.h"
+#include "app/views/view_context.h"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+/// Small pieces that several views use.
+namespace tessera::app {
+
+/// Glyphs of Font Awesome 4 and the words that stand for them where the font is missing.
+struct Icon {
+    const char* glyph;
+    const char* word;
+};
+namespace icons {
+inline constexpr Icon kEye{"\uf06e", "on"}, kEyeOff{"\uf070", "off"}, kPlus{"\uf067", "+"}, kTrash{"\uf1f8", "x"},
+    kCopy{"\uf0c5", "copy"}, kCube{"\uf1b2", "vol"}, kIso{"\uf219", "iso"}, kSlice{"\uf248", "slice"},
+    kPlay{"\uf04b", ">"}, kPause{"\uf04c", "||"}, kStepBack{"\uf048", "<|"}, kStepForward{"\uf051", "|>"},
+    kFirst{"\uf049", "|<"}, kLast{"\uf050", ">|"}, kRepeat{"\uf01e", "loop"}, kPingPong{"\uf0ec", "<>"},
+    kOnce{"\uf178", "once"}, kInvert{"\uf042", "inv"}, kHandle{"\uf0c9", "="}, kReset{"\uf015", "home"},
+    kReverse{"\uf0ec", "rev"};
+} // namespace icons
+
+/// A square button with a glyph, its tooltip on hover; `enabled` false greys it out.
+bool iconButton(const ViewContext& context, const char* id, Icon icon, const char* tooltip, bool enabled = true,
+                bool lit = false);
+/// A glyph without a button.
+void iconText(const ViewContext& context, Icon icon, ImU32 color);
+ImVec2 iconSize(const ViewContext& context, Icon icon);
+
+/// Two or three lines in the middle of the pane where there is nothing to draw.
+void drawHint(const char* title, const char* hint = "");
+
+/// Wrapped help on hover of the last item.
+void tooltip(const char* text);
+
+/// Indices into info.channels() of what statistics compare: scalars and vector magnitudes, no labels.
+std::vector<int> comparedChannels(const volume::DatasetInfo& info);
+
+/// The channel a view shows: the wanted one if the data has it, else that of the first layer, else the first. Nothing
+/// for data without parameters.
+std::optional<int> resolveChannel(const volume::DatasetInfo& info, const Session& session, const std::string& wanted);
+
+/// Drop-down of the data's channels; vector components after the magnitude. True when another was chosen.
+bool channelCombo(const char* id, const volume::DatasetInfo& info, std::string& channel, bool categorical = true);
+
+/// The transfer function that the channel is drawn with.
+const vis::TransferFunction& transferOf(const Session& session, const std::string& channel);
+/// The same to edit: made on first use.
+vis::TransferFunction& transferOf(Session& session, const std::string& channel);
+
+/// Legend of a channel as it is drawn now.
+LegendEntry legendOf(const Session& session, const volume::DatasetInfo& info, int channel);
+
+/// The scene of the session with the theme's colours.
+vis::Scene themedScene(const Session& session);
+
+/// Index into info.times of the session's time.
+int timeIndex(const Session& session, const volume::DatasetInfo& info);
+
+/// Key of a character typed this frame while no text field has the focus: '1', 'r', ...; 0 for none.
+char typedKey();
+
+} // namespace tessera::app

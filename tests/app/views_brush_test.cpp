@@ -1,0 +1,194 @@
+#include "app/views/brush_edit.h"
+
+#include <gtest/gtest.h>
+
+namespace tessera::app {
+namespace {
+
+/// One plot of 200 x 100 pixels with values 0..10 and 0..1, driven by a fed mouse. ImGui needs no GPU for it.
+class BrushEdit : public testing::Test {
+protected:
+    void SetUp() override {
+        ImGui::CreateContext();
+        ImGuiIO& io = ImGui::GetIO();
+        io.DisplaySize = {400, 300};
+        io.IniFilename = nullptr;
+        io.KeyMap[ImGuiKey_Escape] = 256;
+        unsigned char* pixels;
+        int width, height;
+        io.Fonts->GetTexDataAsRGBA32(&pixels, &width, &height);
+        frame();
+        frame();
+    }
+    void TearDown() override { ImGui::DestroyContext(); }
+
+    void frame() {
+        ImGuiIO& io = ImGui::GetIO();
+        io.DeltaTime = 1.0f / 60;
+        io.MousePos = mouse;
+        ImGui::NewFrame();
+        ImGui::SetNextWindowPos({0, 0});
+        ImGui::SetNextWindowSize({400, 300});
+        ImGui::Begin("test", nullptr, ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove);
+        ImGui::SetCursorScreenPos(plot.min);
+        ImGui::InvisibleButton("plot", {plot.width(), plot.height()},
+                               ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight);
+        changed = editBrushes(drag, selection, plot, channels, 0.1f);
+        drawBrushes(*ImGui::GetWindowDrawList(), selection, plot, channels);
+        ImGui::End();
+        ImGui::Render();
+    }
+    void moveTo(double x, double y) {
+        mouse = plot.pixel(x, y);
+        frame();
+    }
+    void button(int which, bool down) {
+        ImGui::GetIO().MouseDown[which] = down;
+        frame();
+    }
+    void dragFromTo(double x0, double y0, double x1, double y1) {
+        moveTo(x0, y0);
+        button(0, true);
+        moveTo((x0 + x1) / 2, (y0 + y1) / 2);
+        moveTo(x1, y1);
+        button(0, false);
+    }
+    const vis::BrushInterval& interval(std::size_t brush, std::size_t i) {
+        return selection.brushes[brush].intervals[i];
+    }
+
+    PlotFrame plot{{50, 50}, {250, 150}, {0, 10}, {0, 1}};
+    PlotChannels channels{"T", "O2"};
+    BrushDrag drag;
+    vis::Selection selection;
+    ImVec2 mouse{0, 0};
+    bool changed = false;
+};
+
+TEST_F(BrushEdit, DraggingMakesABrushWithSoftEdges) {
+    dragFromTo(2, 0.8, 6, 0.2);
+    ASSERT_EQ(selection.brushes.size(), 1u);
+    ASSERT_EQ(selection.brushes[0].intervals.size(), 2u);
+    EXPECT_EQ(interval(0, 0).channel, "T");
+    EXPECT_EQ(interval(0, 1).channel, "O2");
+    EXPECT_NEAR(interval(0, 0).lo, 2, 0.1);
+    EXPECT_NEAR(interval(0, 0).hi, 6, 0.1);
+    EXPECT_NEAR(interval(0, 1).lo, 0.2, 0.02);
+    EXPECT_NEAR(interval(0, 1).hi, 0.8, 0.02);
+    EXPECT_NEAR(interval(0, 0).soft, 0.4, 0.02);
+    EXPECT_FALSE(drag.active);
+}
+
+TEST_F(BrushEdit, AClickMakesNothing) {
+    moveTo(5, 0.5);
+    button(0, true);
+    button(0, false);
+    EXPECT_TRUE(selection.brushes.empty());
+}
+
+TEST_F(BrushEdit, DraggingInsideMovesAndKeepsTheSize) {
+    dragFromTo(2, 0.2, 6, 0.8);
+    const double width = interval(0, 0).hi - interval(0, 0).lo;
+    dragFromTo(4, 0.5, 5, 0.6);
+    ASSERT_EQ(selection.brushes.size(), 1u);
+    EXPECT_NEAR(interval(0, 0).lo, 3, 0.1);
+    EXPECT_NEAR(interval(0, 1).lo, 0.3, 0.02);
+    EXPECT_NEAR(interval(0, 0).hi - interval(0, 0).lo, width, 1e-9);
+    dragFromTo(5, 0.6, 30, 0.6); // stops at the edge of the plot
+    EXPECT_NEAR(interval(0, 0).hi, 10, 1e-9);
+    EXPECT_NEAR(interval(0, 0).hi - interval(0, 0).lo, width, 1e-9);
+}
+
+TEST_F(BrushEdit, EdgesAndCornersResize) {
+    dragFromTo(2, 0.2, 6, 0.8);
+    dragFromTo(6, 0.5, 8, 0.9); // right edge: height stays
+    EXPECT_NEAR(interval(0, 0).hi, 8, 0.1);
+    EXPECT_NEAR(interval(0, 1).hi, 0.8, 0.02);
+    dragFromTo(2, 0.2, 1, 0.1); // lower left corner
+    EXPECT_NEAR(interval(0, 0).lo, 1, 0.1);
+    EXPECT_NEAR(interval(0, 1).lo, 0.1, 0.02);
+    EXPECT_NEAR(interval(0, 0).soft, 0.7, 0.02) << "stays in proportion";
+    dragFromTo(1, 0.5, 9.5, 0.5); // left edge over the right one
+    EXPECT_LT(interval(0, 0).lo, interval(0, 0).hi);
+}
+
+TEST_F(BrushEdit, ANewBrushReplacesTheOldOneOfThePlotOnly) {
+    vis::Brush other;
+    other.intervals = {{.channel = "p", .lo = 0, .hi = 1}};
+    selection.brushes.push_back(other);
+    dragFromTo(1, 0.1, 3, 0.3);
+    dragFromTo(6, 0.6, 9, 0.9);
+    ASSERT_EQ(selection.brushes.size(), 2u);
+    EXPECT_EQ(interval(0, 0).channel, "p");
+    EXPECT_NEAR(interval(1, 0).lo, 6, 0.1);
+}
+
+TEST_F(BrushEdit, ShiftAddsAndCtrlSubtracts) {
+    dragFromTo(1, 0.1, 3, 0.3);
+    ImGui::GetIO().KeyShift = true;
+    ImGui::GetIO().KeyMods = ImGuiKeyModFlags_Shift;
+    dragFromTo(6, 0.6, 9, 0.9);
+    ImGui::GetIO().KeyShift = false;
+    ASSERT_EQ(selection.brushes.size(), 2u);
+    EXPECT_EQ(selection.combine, vis::Combine::Any);
+    EXPECT_NE(selection.brushes[0].name, selection.brushes[1].name);
+    ImGui::GetIO().KeyCtrl = true;
+    ImGui::GetIO().KeyMods = ImGuiKeyModFlags_Ctrl;
+    dragFromTo(7, 0.7, 8, 0.8);
+    ImGui::GetIO().KeyCtrl = false;
+    ImGui::GetIO().KeyMods = 0;
+    ASSERT_EQ(selection.brushes.size(), 3u);
+    EXPECT_TRUE(selection.brushes[2].inverted);
+}
+
+TEST_F(BrushEdit, EscapeTakesTheDragBack) {
+    dragFromTo(2, 0.2, 6, 0.8);
+    const vis::Selection before = selection;
+    moveTo(4, 0.5);
+    button(0, true);
+    moveTo(8, 0.9);
+    EXPECT_FALSE(selection == before);
+    ImGui::GetIO().KeysDown[256] = true;
+    frame();
+    EXPECT_EQ(selection, before);
+    ImGui::GetIO().KeysDown[256] = false;
+    button(0, false);
+    EXPECT_EQ(selection, before);
+}
+
+TEST_F(BrushEdit, RightClickRemovesTheBrushOrClearsAll) {
+    dragFromTo(1, 0.1, 3, 0.3);
+    vis::Brush other;
+    other.intervals = {{.channel = "p", .lo = 0, .hi = 1}};
+    selection.brushes.push_back(other);
+    moveTo(2, 0.2);
+    button(1, true);
+    button(1, false);
+    ASSERT_EQ(selection.brushes.size(), 1u);
+    EXPECT_EQ(interval(0, 0).channel, "p");
+    moveTo(8, 0.8);
+    button(1, true);
+    button(1, false);
+    EXPECT_TRUE(selection.brushes.empty());
+}
+
+TEST_F(BrushEdit, HistogramsBrushOneChannel) {
+    channels = {"T", ""};
+    dragFromTo(2, 0.5, 6, 0.9);
+    ASSERT_EQ(selection.brushes.size(), 1u);
+    ASSERT_EQ(selection.brushes[0].intervals.size(), 1u);
+    EXPECT_NEAR(interval(0, 0).hi, 6, 0.1);
+    // The band is drawn, and can be held, in every plot with that channel on an axis.
+    EXPECT_TRUE(brushFits(selection.brushes[0], {"T", "O2"}));
+    EXPECT_TRUE(brushFits(selection.brushes[0], {"O2", "T"}));
+    EXPECT_FALSE(brushFits(selection.brushes[0], {"O2", "p"}));
+    channels = {"O2", "T"};
+    plot.x = {0, 1};
+    plot.y = {0, 10};
+    dragFromTo(0.5, 4, 0.5, 6);
+    EXPECT_NEAR(interval(0, 0).lo, 4, 0.1);
+    EXPECT_NEAR(interval(0, 0).hi, 8, 0.1);
+}
+
+} // namespace
+} // namespace tessera::app
