@@ -1,0 +1,106 @@
+#include "vis/reference/samples.h"
+
+#include "volume/parallel.h"
+
+#include <cassert>
+
+namespace tessera::vis::reference {
+
+namespace {
+
+constexpr int kMargin = 4; ///< samples of each sublattice beyond the lattice: filter, gradient and BCC excess
+
+std::size_t linearIndex(glm::ivec3 size, glm::ivec3 at) {
+    return (std::size_t(at.z) * std::size_t(size.y) + std::size_t(at.y)) * std::size_t(size.x) + std::size_t(at.x);
+}
+
+/// The samples of the whole lattice, brick by brick; beyond it the nearest one of the same sublattice.
+struct Whole {
+    volume::Lattice lattice;
+    std::vector<volume::Sample> data;
+
+    Whole(const volume::BrickSource& source, int channel, int time, bool ignoredMask)
+        : lattice(source.grid().lattice), data(lattice.count()) {
+        const volume::BrickGrid& grid = source.grid();
+        const glm::ivec3 count = grid.count();
+        for (int z = 0; z < count.z; ++z)
+            for (int y = 0; y < count.y; ++y)
+                for (int x = 0; x < count.x; ++x)
+                    insert(grid.begin({x, y, z}), source.read({channel, time, 0, {x, y, z}}), ignoredMask);
+    }
+    void insert(glm::ivec3 begin, const volume::BrickSamples& brick, bool ignoredMask) {
+        for (int z = 0; z < brick.size.z; ++z)
+            for (int y = 0; y < brick.size.y; ++y)
+                for (int x = 0; x < brick.size.x; ++x) {
+                    const std::size_t from = linearIndex(brick.size, {x, y, z});
+                    const bool present = brick.present.empty() || brick.present[from] != 0;
+                    data[lattice.index(begin + glm::ivec3(x, y, z))] = {present ? double(brick.values[from]) : 0,
+                                                                        present || ignoredMask};
+                }
+    }
+    volume::Sample operator()(glm::ivec3 at) const {
+        return data[lattice.index(volume::clampToLattice(lattice.kind, lattice.size, at))];
+    }
+};
+
+} // namespace
+
+/// What a reading sees: all samples held, or only those of one brick when its borders are missing.
+struct Samples::View {
+    const Samples& all;
+    glm::ivec3 lo, hi; // storage indices that may be read, both included
+    int slices;
+
+    volume::Sample operator()(glm::ivec3 at) const {
+        const int parity = at.z & (slices - 1);
+        at = glm::clamp(at, lo, hi);
+        if (slices == 2 && (at.z & 1) != parity) at.z += at.z == hi.z ? -1 : 1;
+        return all.data_[linearIndex(all.size_, at - all.first_)];
+    }
+};
+
+Samples::Samples(const volume::BrickSource& source, int channel, int time, Filter filter, const Flaws& flaws)
+    : geometry_(volume::levelGeometry(source.grid(), 0)), filter_(filter), flaws_(flaws),
+      brickSize_(source.grid().brickSize) {
+    const volume::DatasetInfo& info = source.info();
+    categorical_ = info.parameters[std::size_t(info.channels()[std::size_t(channel)].parameter)].categorical;
+    const Whole whole(source, channel, time, flaws.ignoredMask);
+    const int slices = geometry_.kind == volume::LatticeKind::BCC ? 2 : 1;
+    const glm::ivec3 margin(kMargin, kMargin, kMargin * slices);
+    first_ = -margin;
+    size_ = whole.lattice.texels() * glm::ivec3(1, 1, slices) + 2 * margin;
+    data_.resize(std::size_t(size_.x) * std::size_t(size_.y) * std::size_t(size_.z));
+    const bool prefiltered = filter == Filter::AverageQuasi && !categorical_ && !flaws.unfiltered;
+    const volume::Prefiltered<Whole> filtered(whole, geometry_);
+    parallelFor(std::size_t(size_.z), [&](std::size_t z) {
+        for (int y = 0; y < size_.y; ++y)
+            for (int x = 0; x < size_.x; ++x) {
+                const glm::ivec3 to(x, y, int(z));
+                data_[linearIndex(size_, to)] = prefiltered ? filtered(first_ + to) : whole(first_ + to);
+            }
+    });
+}
+
+std::optional<double> Samples::value(glm::dvec3 cells) const {
+    const int slices = geometry_.kind == volume::LatticeKind::BCC ? 2 : 1;
+    View view{*this, first_, first_ + size_ - 1, slices};
+    if (flaws_.clampedBricks) {
+        const glm::ivec3 brick = glm::ivec3(glm::floor(cells / double(brickSize_))), steps(1, 1, slices);
+        view.lo = glm::clamp(brick * brickSize_ * steps, view.lo, view.hi);
+        view.hi = glm::clamp((brick + 1) * brickSize_ * steps - 1, view.lo, view.hi);
+    }
+    if (categorical_) {
+        const volume::Sample sample = volume::nearest(geometry_, view, cells);
+        return sample.present ? std::optional(sample.value) : std::nullopt;
+    }
+    if (flaws_.unmovedSublattice && slices == 2) {
+        volume::Blend blend;
+        for (int s = 0; s < 2; ++s) volume::addTrilinear(blend, view, geometry_.toSublattice(cells, 0), s, 2, 0.5);
+        return blend.value();
+    }
+    return (filter_ == Filter::Tetrahedral ? volume::tetrahedral(geometry_, view, cells)
+                                           : volume::linear(geometry_, view, cells))
+        .value();
+}
+
+} // namespace tessera::vis::reference

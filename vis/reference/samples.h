@@ -1,0 +1,43 @@
+#pragma once
+
+#include "vis/model/scene.h"
+#include "volume/brick_source.h"
+#include "volume/reconstruct.h"
+
+#include <optional>
+#include <vector>
+
+namespace tessera::vis::reference {
+
+/// Deliberate errors, each one that a shader could make. Tests use them to show that the comparison would notice.
+struct Flaws {
+    bool additiveBlend = false;     ///< samples are added without regard to what lies before them
+    bool unmovedSublattice = false; ///< the odd BCC sublattice is not moved by half a cell
+    bool clampedBricks = false;     ///< no borders: beyond its brick a sample repeats the last one in it
+    bool ignoredMask = false;       ///< absent samples count as present with value 0
+    bool unfiltered = false;        ///< the prefilter is left out
+};
+
+/// All samples of one channel at one time, full resolution, ready for one filter, with a margin of samples beyond the
+/// lattice so that no reading needs a special case.
+class Samples {
+public:
+    /// Throws Error when the source does.
+    Samples(const volume::BrickSource& source, int channel, int time, Filter filter, const Flaws& flaws);
+
+    /// The value at a continuous cell position (Lattice::toCells); nullopt where absent.
+    std::optional<double> value(glm::dvec3 cells) const;
+    bool categorical() const { return categorical_; }
+
+private:
+    struct View;
+    volume::LevelGeometry geometry_;
+    Filter filter_;
+    Flaws flaws_;
+    bool categorical_ = false;
+    int brickSize_ = 0;
+    glm::ivec3 first_{0}, size_{0}; ///< storage indices held
+    std::vector<volume::Sample> data_;
+};
+
+} // namespace tessera::vis::reference
