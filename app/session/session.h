@@ -125,6 +125,17 @@ struct Session {
 /// The scene the session's 3D views show (a volume view's own settings are applied on top by the view).
 vis::Scene sceneOf(const Session& session);
 
+/// The pane keys of a session, and the name a reader sees for one: "Volume", "Volume 2", ...
+std::vector<std::string> paneKeys(const Session& session);
+std::string paneTitle(const Session& session, const std::string& pane);
+
+/// Adds a view of a kind ("volume", "slices", ...) as a tab beside the first pane; returns its key.
+std::string addView(Session& session, const ViewState& view);
+
+/// Makes a session fit a data set: the dock tree holds exactly the open views, parameters that do not exist are
+/// replaced by ones that do (one message each), brushes on absent parameters are dropped, cursor and time lie inside.
+void fitSession(Session& session, const volume::DatasetInfo& info, std::vector<std::string>& messages);
+
 /// A sensible session for data never seen before: layers, transfer functions, stretch of thin domains, cursor in the
 /// middle, the overview arrangement of panes.
 Session defaultSession(const volume::DatasetInfo& info, const DataRef& data);

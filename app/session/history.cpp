@@ -1,0 +1,211 @@
+#include "app/session/history.h"
+
+#include "volume/error.h"
+
+#include <algorithm>
+#include <cctype>
+
+namespace tessera::app {
+
+namespace {
+
+constexpr std::size_t kMaximumSteps = 500;
+
+std::vector<std::string> pathsOf(const Json& patch) {
+    std::vector<std::string> paths;
+    for (const Json& operation : patch) paths.push_back(operation.value("path", std::string()));
+    std::sort(paths.begin(), paths.end());
+    return paths;
+}
+
+/// "contextOpacity" -> "context opacity".
+std::string words(const std::string& key) {
+    std::string out;
+    for (const char c : key) {
+        if (std::isupper(static_cast<unsigned char>(c)) != 0 && !out.empty()) out += ' ';
+        out += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    }
+    return out;
+}
+
+std::vector<std::string> splitPointer(const std::string& path) {
+    std::vector<std::string> parts;
+    std::size_t begin = 1;
+    while (begin <= path.size() && !path.empty()) {
+        const std::size_t end = std::min(path.find('/', begin), path.size());
+        std::string part = path.substr(begin, end - begin);
+        for (const auto& [from, to] : {std::pair<std::string, std::string>{"~1", "/"}, {"~0", "~"}})
+            for (std::size_t at = 0; (at = part.find(from, at)) != std::string::npos; at += to.size())
+                part.replace(at, from.size(), to);
+        parts.push_back(part);
+        begin = end + 1;
+    }
+    return parts;
+}
+
+bool isNumber(const std::string& text) {
+    return !text.empty() && std::all_of(text.begin(), text.end(), [](unsigned char c) { return std::isdigit(c) != 0; });
+}
+
+/// What an animation changes by itself.
+void followPlayback(Session& base, const Session& now) {
+    if (now.animation.playing || base.animation.playing) base.time = now.time;
+    base.animation.playing = now.animation.playing;
+}
+
+} // namespace
+
+std::string describePatch(const Json& patch) {
+    if (patch.empty()) return "nothing";
+    std::vector<std::string> common = splitPointer(patch[0].value("path", std::string()));
+    const std::string operation = patch[0].value("op", std::string());
+    for (const Json& each : patch) {
+        const auto parts = splitPointer(each.value("path", std::string()));
+        std::size_t same = 0;
+        while (same < std::min(common.size(), parts.size()) && common[same] == parts[same]) ++same;
+        common.resize(same);
+    }
+    if (common.empty()) return "several changes";
+    if (common[0] == "dock") return "arrangement of panes";
+    if (common[0] == "camera") return "camera";
+    std::string name = words(common[0]);
+    for (std::size_t i = 1; i < common.size(); ++i) {
+        if (isNumber(common[i])) {
+            name += " " + std::to_string(std::stoi(common[i].substr(0, 8)) + 1);
+        } else if (common[i] != "technique") {
+            // Keys of maps are names of parameters and panes: kept as they are.
+            const bool mapKey = i == 1 && (common[0] == "transfer" || common[0] == "views");
+            name += (i == 1 && mapKey ? " " : ": ") + (mapKey ? common[i] : words(common[i]));
+        }
+    }
+    if (patch.size() == 1 && operation == "add") name += " added";
+    if (patch.size() == 1 && operation == "remove") name += " removed";
+    return name;
+}
+
+void History::reset(const Session& session) {
+    base_ = session;
+    document_ = app::toJson(session);
+    steps_.clear();
+    position_ = 0;
+    lastCommit_ = -1e9;
+    pending_ = false;
+}
+
+bool History::observe(const Session& session, bool editing, double seconds, double mergeSeconds) {
+    followPlayback(base_, session);
+    pending_ = !(session == base_);
+    if (!pending_ || editing) return false;
+    pending_ = false;
+    // The document follows the base's playback state only here, where it is needed.
+    document_["time"] = app::toJson(base_.time);
+    document_["animation"] = app::toJson(base_.animation);
+    document_["data"] = app::toJson(base_.data);
+    Json now = app::toJson(session);
+    Json forward = Json::diff(document_, now);
+    if (forward.empty()) { // differs only in what JSON does not tell apart
+        base_ = session;
+        return false;
+    }
+    Json before = document_;
+    const bool merges = position_ > 0 && position_ == steps_.size() && seconds - lastCommit_ < mergeSeconds &&
+                        pathsOf(steps_.back().forward) == pathsOf(forward);
+    if (merges) {
+        before = document_.patch(steps_.back().inverse);
+        steps_.pop_back();
+        --position_;
+        forward = Json::diff(before, now);
+    }
+    steps_.resize(position_);
+    if (!forward.empty()) {
+        steps_.push_back({describePatch(forward), forward, Json::diff(now, before)});
+        ++position_;
+    }
+    document_ = std::move(now);
+    base_ = session;
+    lastCommit_ = seconds;
+    trim();
+    return true;
+}
+
+void History::trim() {
+    if (steps_.size() <= kMaximumSteps) return;
+    const std::size_t surplus = std::min(steps_.size() - kMaximumSteps, position_);
+    steps_.erase(steps_.begin(), steps_.begin() + static_cast<std::ptrdiff_t>(surplus));
+    position_ -= surplus;
+}
+
+Session History::undo() {
+    return seek(position_ > 0 ? position_ - 1 : 0);
+}
+
+Session History::redo() {
+    return seek(std::min(position_ + 1, steps_.size()));
+}
+
+Session History::seek(std::size_t position) {
+    position = std::min(position, steps_.size());
+    document_ = app::toJson(base_);
+    while (position_ > position) document_ = document_.patch(steps_[--position_].inverse);
+    while (position_ < position) document_ = document_.patch(steps_[position_++].forward);
+    base_ = sessionFromJson(document_, {});
+    pending_ = false;
+    lastCommit_ = -1e9;
+    return base_;
+}
+
+Json History::toJson() const {
+    Json steps = Json::array();
+    for (const HistoryStep& step : steps_)
+        steps.push_back({{"name", step.name}, {"forward", step.forward}, {"inverse", step.inverse}});
+    return {{"position", position_}, {"steps", std::move(steps)}};
+}
+
+History History::fromJson(const Json& json, const Session& session) {
+    History history;
+    history.reset(session);
+    try {
+        for (const Json& step : json.at("steps"))
+            history.steps_.push_back({step.at("name").get<std::string>(), step.at("forward"), step.at("inverse")});
+        const auto position = json.at("position").get<std::int64_t>();
+        if (position < 0 || static_cast<std::size_t>(position) > history.steps_.size())
+            throw Error("history position is not in the list");
+        history.position_ = static_cast<std::size_t>(position);
+        // Walk the whole list once, so that undo and redo cannot fail later.
+        History trial = history;
+        for (std::size_t i = trial.position_; i-- > 0;) trial.seek(i);
+        for (std::size_t i = 1; i <= trial.steps_.size(); ++i) trial.seek(i);
+        if (!(trial.seek(history.position_) == session)) throw Error("history does not lead to the session");
+    } catch (const Json::exception& error) {
+        throw Error(std::string("history cannot be used: ") + error.what());
+    }
+    return history;
+}
+
+bool History::operator==(const History& other) const {
+    return toJson() == other.toJson();
+}
+
+Session sessionFromJson(const Json& document, const std::string& file, std::vector<JsonIssue>* unknown) {
+    Session session;
+    std::vector<JsonIssue> issues;
+    app::fromJson(session, document, issues);
+    std::string more;
+    const JsonIssue* first = nullptr;
+    int bad = 0;
+    for (const JsonIssue& issue : issues) {
+        if (issue.unknownKey) {
+            if (unknown) unknown->push_back(issue);
+            continue;
+        }
+        if (!first) first = &issue;
+        ++bad;
+    }
+    if (first) {
+        if (bad > 1) more = " (and " + std::to_string(bad - 1) + " more)";
+        throw Error(first->reason + more, file, first->path.empty() ? "/" : first->path);
+    }
+    return session;
+}
+
+} // namespace tessera::app

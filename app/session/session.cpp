@@ -1,0 +1,217 @@
+#include "app/session/session.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tessera::app {
+
+namespace {
+
+DockNode stack(int id, std::vector<std::string> tabs) {
+    DockNode node;
+    node.id = id;
+    node.tabs = std::move(tabs);
+    return node;
+}
+
+DockNode split(int id, DockKind kind, float ratio, DockNode a, DockNode b) {
+    DockNode node;
+    node.id = id;
+    node.kind = kind;
+    node.ratio = ratio;
+    node.children.push_back(std::move(a));
+    node.children.push_back(std::move(b));
+    return node;
+}
+
+/// The channel to look at first: a scalar with a range, else anything that is not a label.
+std::string firstChannel(const volume::DatasetInfo& info) {
+    const auto channels = info.channels();
+    for (const volume::Channel& channel : channels) {
+        const volume::Parameter& parameter = info.parameters[static_cast<std::size_t>(channel.parameter)];
+        const Range range = info.channelRange(channel);
+        if (!parameter.categorical && parameter.components == 1 && range.hi > range.lo) return channel.name;
+    }
+    for (const volume::Channel& channel : channels)
+        if (!info.parameters[static_cast<std::size_t>(channel.parameter)].categorical) return channel.name;
+    return channels.empty() ? std::string() : channels.front().name;
+}
+
+/// 1, 2 or 5 times a power of ten, at or below `value`.
+double niceBelow(double value) {
+    const double power = std::pow(10.0, std::floor(std::log10(value)));
+    const double digit = value / power;
+    return power * (digit >= 5 ? 5 : digit >= 2 ? 2 : 1);
+}
+
+/// A domain up to four times as long as wide keeps its proportions; thinner axes are stretched to a quarter of the
+/// longest.
+glm::dvec3 defaultStretch(const volume::Box& bounds) {
+    const glm::dvec3 size = bounds.size();
+    const double longest = std::max({size.x, size.y, size.z});
+    glm::dvec3 stretch{1};
+    for (int axis = 0; axis < 3; ++axis)
+        if (size[axis] > 0 && longest / size[axis] > 4) stretch[axis] = niceBelow(longest / (3 * size[axis]));
+    return stretch;
+}
+
+} // namespace
+
+vis::Scene sceneOf(const Session& session) {
+    vis::Scene scene;
+    scene.camera = session.camera;
+    scene.layers = session.layers;
+    scene.transfer = session.transfer;
+    scene.selection = session.selection;
+    scene.render = session.render;
+    scene.stretch = session.stretch;
+    scene.cursor = session.cursor;
+    scene.time = session.time;
+    if (session.appearance.theme == Theme::Light) {
+        scene.background = glm::vec3(0.975f, 0.975f, 0.98f);
+        scene.boxColor = glm::vec3(0.45f);
+    } else {
+        scene.background = glm::vec3(0.085f, 0.09f, 0.102f);
+        scene.boxColor = glm::vec3(0.5f);
+    }
+    return scene;
+}
+
+std::vector<std::string> paneKeys(const Session& session) {
+    std::vector<std::string> keys;
+    for (const auto& [key, view] : session.views) keys.push_back(key);
+    return keys;
+}
+
+std::string paneTitle(const Session& session, const std::string& pane) {
+    const auto found = session.views.find(pane);
+    if (found == session.views.end()) return pane;
+    static constexpr std::string_view titles[] = {"Volume",   "Slices", "Scatterplots", "Transfer function", "Layers",
+                                                  "Timeline", "Data",   "History",      "Messages"};
+    static_assert(std::variant_size_v<ViewState> == std::size(titles));
+    std::string title(titles[found->second.index()]);
+    if (const auto dash = pane.rfind('-'); dash != std::string::npos) title += " " + pane.substr(dash + 1);
+    return title;
+}
+
+std::string addView(Session& session, const ViewState& view) {
+    const std::string base(std::visit([](const auto& v) { return std::decay_t<decltype(v)>::kType; }, view));
+    std::string key = base;
+    for (int number = 2; session.views.contains(key); ++number) key = base + "-" + std::to_string(number);
+    session.views[key] = view;
+    repair(session.dock, paneKeys(session));
+    return key;
+}
+
+void fitSession(Session& session, const volume::DatasetInfo& info, std::vector<std::string>& messages) {
+    repair(session.dock, paneKeys(session));
+    const auto channels = info.channels();
+    if (channels.empty()) return;
+    const auto known = [&](const std::string& name) { return info.findChannel(name).has_value(); };
+
+    // A name that is missing is replaced by the same stand-in everywhere, different ones by different channels.
+    std::map<std::string, std::string> standIn;
+    std::vector<std::string> free;
+    for (const volume::Channel& channel : channels)
+        if (!info.parameters[static_cast<std::size_t>(channel.parameter)].categorical &&
+            (info.parameters[static_cast<std::size_t>(channel.parameter)].components == 1 || channel.magnitude))
+            free.push_back(channel.name);
+    const std::string fallback = firstChannel(info);
+    const auto replace = [&](std::string& name) {
+        if (name.empty() || known(name)) return false;
+        auto found = standIn.find(name);
+        if (found == standIn.end()) {
+            const std::string with = standIn.size() < free.size() ? free[standIn.size()] : fallback;
+            found = standIn.emplace(name, with).first;
+            messages.push_back("parameter " + name + " is not in the data; showing " + with + " instead");
+        }
+        name = found->second;
+        return true;
+    };
+    for (vis::Layer& layer : session.layers) {
+        std::visit(
+            [&](auto& technique) {
+                const bool replaced = replace(technique.channel);
+                if (technique.channel.empty()) technique.channel = fallback;
+                if constexpr (requires { technique.value; }) {
+                    const auto index = info.findChannel(technique.channel);
+                    if (replaced && index) {
+                        const Range range = info.channelRange(channels[static_cast<std::size_t>(*index)]);
+                        technique.value = 0.5 * (range.lo + range.hi);
+                    }
+                }
+            },
+            layer.technique);
+    }
+    for (auto& [key, view] : session.views) {
+        if (auto* slices = std::get_if<SlicesView>(&view)) replace(slices->channel);
+        if (auto* transfer = std::get_if<TransferView>(&view)) replace(transfer->channel);
+        if (auto* scatter = std::get_if<ScatterMatrixView>(&view)) {
+            if (std::none_of(scatter->channels.begin(), scatter->channels.end(), known)) scatter->channels.clear();
+            std::erase_if(scatter->channels, [&](const std::string& name) { return !known(name); });
+        }
+    }
+    std::erase_if(session.selection.brushes, [&](const vis::Brush& brush) {
+        const bool lost = std::any_of(brush.intervals.begin(), brush.intervals.end(),
+                                      [&](const vis::BrushInterval& side) { return !known(side.channel); });
+        if (lost) messages.push_back("brush " + brush.name + " is dropped: its parameters are not in the data");
+        return lost;
+    });
+    for (int axis = 0; axis < 3; ++axis) {
+        const double lo = info.bounds.lo[axis], hi = info.bounds.hi[axis];
+        if (!(session.cursor[axis] >= lo && session.cursor[axis] <= hi)) session.cursor[axis] = 0.5 * (lo + hi);
+    }
+    if (!info.times.empty() && !(session.time >= info.times.front() && session.time <= info.times.back()))
+        session.time = info.times[static_cast<std::size_t>(info.nearestTime(session.time))];
+}
+
+Session defaultSession(const volume::DatasetInfo& info, const DataRef& data) {
+    Session session;
+    session.title = info.name;
+    session.data = data;
+    session.cursor = info.bounds.center();
+    session.time = info.times.empty() ? 0 : info.times.front();
+    session.stretch = defaultStretch(info.bounds);
+    const std::string channel = firstChannel(info);
+    if (!channel.empty()) {
+        session.layers.push_back({channel, true, vis::VolumeLayer{.channel = channel}});
+        session.layers.push_back({channel + " slice", false, vis::SliceLayer{.channel = channel}});
+    }
+    const auto channels = info.channels();
+    static constexpr std::string_view maps[] = {"viridis", "inferno", "cividis", "plasma"};
+    std::size_t next = 0;
+    for (const volume::Channel& each : channels) {
+        const volume::Parameter& parameter = info.parameters[static_cast<std::size_t>(each.parameter)];
+        vis::TransferFunction function;
+        const Range range = info.channelRange(each);
+        if (!parameter.categorical && each.component < parameter.components && range.lo < 0 && range.hi > 0 &&
+            parameter.components > 1) {
+            // A signed component of a vector: white in the middle belongs to zero.
+            const double most = std::max(-range.lo, range.hi);
+            function.colormap = "coolwarm";
+            function.autoRange = false;
+            function.range = {-most, most};
+        } else {
+            function.colormap = std::string(maps[next++ % std::size(maps)]);
+        }
+        session.transfer[each.name] = function;
+    }
+    session.views["volume"] = VolumeView{};
+    session.views["slices"] = SlicesView{};
+    session.views["scatterMatrix"] = ScatterMatrixView{};
+    session.views["transfer"] = TransferView{};
+    session.views["layers"] = LayersView{};
+    session.views["timeline"] = TimelineView{};
+    session.views["data"] = DataView{};
+    session.views["history"] = HistoryView{};
+    session.views["log"] = LogView{};
+    DockNode upper = split(2, DockKind::Row, 0.6f, stack(3, {"volume"}),
+                           split(4, DockKind::Column, 0.5f, stack(5, {"slices"}), stack(6, {"scatterMatrix"})));
+    DockNode left = split(7, DockKind::Column, 0.86f, std::move(upper), stack(8, {"timeline"}));
+    DockNode right =
+        split(9, DockKind::Column, 0.5f, stack(10, {"layers", "data", "history"}), stack(11, {"transfer", "log"}));
+    session.dock.root = split(1, DockKind::Row, 0.79f, std::move(left), std::move(right));
+    return session;
+}
+
+} // namespace tessera::app

@@ -1,0 +1,205 @@
+#include "app/session/session_file.h"
+
+#include "volume/error.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <fcntl.h>
+#include <filesystem>
+#include <fstream>
+#include <unistd.h>
+#include <xxhash.h>
+
+namespace tessera::app {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+std::string hex(std::uint64_t value) {
+    char text[17];
+    std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(value));
+    return text;
+}
+
+fs::path absolutePath(const std::string& path) {
+    return fs::absolute(path).lexically_normal();
+}
+
+/// Puts unknown keys back where they were, as far as their parents still exist.
+void restoreUnknown(Json& document, const std::vector<JsonIssue>& unknown) {
+    for (const JsonIssue& issue : unknown) {
+        const Json::json_pointer at(issue.path);
+        const Json::json_pointer parent = at.parent_pointer();
+        if (!document.contains(parent) || !document.at(parent).is_object()) continue;
+        Json& object = document.at(parent);
+        if (!object.contains(at.back())) object[at.back()] = issue.value;
+    }
+}
+
+} // namespace
+
+std::string readText(const std::string& path) {
+    std::error_code problem;
+    if (fs::is_directory(path, problem)) throw Error("is a folder", path);
+    std::ifstream in(path, std::ios::binary);
+    if (!in) throw Error(std::strerror(errno), path);
+    std::string text{std::istreambuf_iterator<char>(in), {}};
+    if (in.bad()) throw Error("cannot be read", path);
+    return text;
+}
+
+void writeTextAtomically(const std::string& path, std::string_view text) {
+    const std::string temporary = path + ".part-" + std::to_string(getpid());
+    const auto fail = [&](const std::string& what) {
+        const std::string reason = what + ": " + std::strerror(errno);
+        std::remove(temporary.c_str());
+        throw MachineError(reason, path);
+    };
+    const int file = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+    if (file < 0) fail("cannot be written");
+    std::size_t written = 0;
+    while (written < text.size()) {
+        const ssize_t count = ::write(file, text.data() + written, text.size() - written);
+        if (count < 0 && errno == EINTR) continue;
+        if (count <= 0) {
+            const int reason = errno;
+            ::close(file);
+            errno = reason;
+            fail("cannot be written");
+        }
+        written += static_cast<std::size_t>(count);
+    }
+    ::fsync(file);
+    if (::close(file) != 0) fail("cannot be written");
+    if (std::rename(temporary.c_str(), path.c_str()) != 0) fail("cannot be replaced");
+}
+
+bool looksLikeSession(std::string_view text) {
+    try {
+        const Json document = parseJson(text, {});
+        return document.is_object() && document.contains("schema") &&
+               (document.contains("views") || document.contains("layers") || document.contains("dock"));
+    } catch (const Error&) {
+        return false;
+    }
+}
+
+void migrate(Json& document, const std::string& file) {
+    if (!document.is_object()) throw Error("not a session: needs an object", file, "/");
+    const auto found = document.find("schema");
+    if (found == document.end()) throw Error("not a session: no \"schema\"", file, "/schema");
+    if (!found->is_number_integer()) throw Error("needs a whole number", file, "/schema");
+    const auto schema = found->get<std::int64_t>();
+    if (schema > kSessionSchema)
+        throw Error("made by a newer version of Tessera (schema " + std::to_string(schema) + ", this one reads up to " +
+                        std::to_string(kSessionSchema) + ")",
+                    file, "/schema");
+    if (schema < 0) throw Error("no such schema", file, "/schema");
+    // Schema 0 was used before the first release: the stretch was one number along z.
+    if (schema == 0) {
+        if (const auto stretch = document.find("stretch"); stretch != document.end() && stretch->is_number())
+            *stretch = Json::array({1, 1, stretch->get<double>()});
+    }
+    document["schema"] = kSessionSchema;
+}
+
+SessionDocument parseSession(std::string_view text, const std::string& file) {
+    SessionDocument document;
+    document.raw = parseJson(text, file);
+    migrate(document.raw, file);
+    Json known = document.raw;
+    known.erase("app");
+    known.erase("history");
+    document.session = sessionFromJson(known, file, &document.unknown);
+    for (const JsonIssue& issue : document.unknown)
+        document.messages.push_back((file.empty() ? "" : file + ": ") + issue.path + ": unknown key, kept");
+    document.history.reset(document.session);
+    if (const auto history = document.raw.find("history"); history != document.raw.end()) {
+        try {
+            document.history = History::fromJson(*history, document.session);
+        } catch (const Error& error) {
+            document.messages.push_back((file.empty() ? "" : file + ": ") + "/history: dropped: " + error.what());
+        }
+    }
+    document.raw.erase("history");
+    return document;
+}
+
+SessionDocument loadSession(const std::string& path) {
+    return parseSession(readText(path), path);
+}
+
+std::string printSession(const SessionDocument& document, const std::string& path) {
+    Session session = document.session;
+    const fs::path folder = absolutePath(path).parent_path();
+    for (DataFile& file : session.data.files) {
+        const fs::path where = absolutePath(file.absolutePath.empty() ? file.path : file.absolutePath);
+        file.absolutePath = where.generic_string();
+        const fs::path relative = where.lexically_relative(folder);
+        file.path = relative.empty() ? where.generic_string() : relative.generic_string();
+    }
+    session.animation.playing = false;
+    Json json = toJson(session);
+    restoreUnknown(json, document.unknown);
+    json["app"] = "tessera";
+    if (!document.history.steps().empty()) json["history"] = document.history.toJson();
+    return printJson(json);
+}
+
+void saveSession(const SessionDocument& document, const std::string& path) {
+    writeTextAtomically(path, printSession(document, path));
+}
+
+DataFile describeFile(const std::string& path) {
+    DataFile file;
+    file.path = file.absolutePath = absolutePath(path).generic_string();
+    std::error_code problem;
+    const auto bytes = fs::file_size(file.path, problem);
+    std::ifstream in(file.path, std::ios::binary);
+    if (problem || !in) return file;
+    file.bytes = static_cast<double>(bytes);
+    constexpr std::uintmax_t part = 1 << 20;
+    XXH64_state_t* state = XXH64_createState();
+    XXH64_reset(state, 0);
+    std::vector<char> buffer(static_cast<std::size_t>(std::min(bytes, part)));
+    in.read(buffer.data(), static_cast<std::streamsize>(buffer.size()));
+    XXH64_update(state, buffer.data(), static_cast<std::size_t>(in.gcount()));
+    if (bytes > part) {
+        in.seekg(static_cast<std::streamoff>(bytes - std::min(part, bytes - part)));
+        in.read(buffer.data(), static_cast<std::streamsize>(std::min(part, bytes - part)));
+        XXH64_update(state, buffer.data(), static_cast<std::size_t>(in.gcount()));
+    }
+    file.hash = hex(XXH64_digest(state));
+    XXH64_freeState(state);
+    return file;
+}
+
+ResolvedData resolveData(const DataRef& data, const std::string& folder) {
+    ResolvedData resolved;
+    resolved.data = data;
+    const fs::path base = absolutePath(folder.empty() ? "." : folder);
+    for (std::size_t i = 0; i < data.files.size(); ++i) {
+        const DataFile& wanted = data.files[i];
+        const fs::path candidates[] = {base / wanted.path, fs::path(wanted.absolutePath),
+                                       base / fs::path(wanted.path).filename()};
+        bool found = false;
+        for (const fs::path& candidate : candidates) {
+            std::error_code problem;
+            if (candidate.empty() || !fs::is_regular_file(candidate, problem)) continue;
+            const DataFile here = describeFile(candidate.string());
+            if (!wanted.hash.empty() && here.hash != wanted.hash)
+                resolved.warnings.push_back(here.path + " has changed since the session was saved (xxh64 " + here.hash +
+                                            ", was " + wanted.hash + ")");
+            resolved.data.files[i] = here;
+            found = true;
+            break;
+        }
+        if (!found) resolved.missing.push_back({i, wanted});
+    }
+    return resolved;
+}
+
+} // namespace tessera::app

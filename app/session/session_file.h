@@ -1,0 +1,60 @@
+#pragma once
+
+#include "app/session/history.h"
+#include "app/session/session.h"
+
+#include <string>
+#include <vector>
+
+/// Session files (*.tessera.json): reading, checking, migrating, writing, and finding the data they name.
+namespace tessera::app {
+
+/// What a session file holds.
+struct SessionDocument {
+    Session session;
+    History history;
+    std::vector<JsonIssue> unknown;    ///< keys this version does not know; written again when saved
+    std::vector<std::string> messages; ///< for the log: unknown keys, a history that was dropped
+    Json raw;                          ///< as read, migrated: tells which keys a layout leaves out
+};
+
+/// Reads session text. Throws Error with `file` and the JSON path or line; nothing is half taken over.
+SessionDocument parseSession(std::string_view text, const std::string& file);
+
+/// Reads a session file. Throws Error.
+SessionDocument loadSession(const std::string& path);
+
+/// True when a JSON text is a session, not e.g. the sidecar of a raw file. Never throws.
+bool looksLikeSession(std::string_view text);
+
+/// Session text as it is saved at `path` (data files relative to its folder): sorted keys, one item per line.
+std::string printSession(const SessionDocument& document, const std::string& path);
+
+/// Writes a session atomically (temporary file, then rename). Throws MachineError when it cannot.
+void saveSession(const SessionDocument& document, const std::string& path);
+
+/// Brings a document of an older schema up to date. Throws Error for a newer one.
+void migrate(Json& document, const std::string& file);
+
+/// Path, size and hash of a data file, for a session. Absolute paths; empty hash when it cannot be read.
+DataFile describeFile(const std::string& path);
+
+/// A data file that is not where the session says.
+struct MissingData {
+    std::size_t index = 0; ///< into DataRef::files
+    DataFile wanted;
+};
+struct ResolvedData {
+    DataRef data; ///< `path` and `absolutePath` both absolute where found
+    std::vector<MissingData> missing;
+    std::vector<std::string> warnings; ///< e.g. a file that has changed since
+};
+/// Finds data files: relative to the session's folder, then at the absolute path, then by name in the folder.
+ResolvedData resolveData(const DataRef& data, const std::string& folder);
+
+/// A whole file as text. Throws Error.
+std::string readText(const std::string& path);
+/// Writes a file through a temporary one beside it. Throws MachineError.
+void writeTextAtomically(const std::string& path, std::string_view text);
+
+} // namespace tessera::app

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+/// What the program remembers between runs, in $XDG_STATE_HOME/tessera: recent files, and the autosaved session of a
+/// run that did not end by itself.
+namespace tessera::app {
+
+/// The folder, made if need be; "" when there is none (nothing is remembered then).
+std::string stateFolder();
+
+/// Files opened lately, newest first. A missing or broken list is an empty one.
+std::vector<std::string> recentFiles(const std::string& folder);
+void addRecentFile(const std::string& folder, const std::string& path);
+
+/// A session left behind by a run that crashed.
+struct Recovery {
+    std::string path;
+    std::string when; ///< local date and time of the last autosave
+};
+
+/// Keeps the autosave of this run. The lock file beside it is held open: when the process dies in whatever way the lock
+/// goes with it, and the next run finds a session nobody holds.
+class Autosave {
+public:
+    explicit Autosave(std::string folder);
+    ~Autosave(); ///< removes the autosave: a clean end
+    Autosave(const Autosave&) = delete;
+    Autosave& operator=(const Autosave&) = delete;
+
+    /// Sessions of dead runs, newest first.
+    std::vector<Recovery> abandoned() const;
+    static void discard(const Recovery& recovery);
+    /// Writes the session text; failures (a full disk) are returned as a message, never thrown.
+    std::string save(const std::string& text);
+    void remove();
+
+private:
+    std::string folder_, path_;
+    int lock_ = -1;
+};
+
+} // namespace tessera::app

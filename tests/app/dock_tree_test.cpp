@@ -1,0 +1,108 @@
+#include "app/session/dock_tree.h"
+#include "randomise.h"
+
+#include <algorithm>
+#include <gtest/gtest.h>
+#include <set>
+
+namespace tessera::app {
+namespace {
+
+void check(const DockNode& node, std::set<int>& ids, bool root) {
+    ASSERT_TRUE(ids.insert(node.id).second) << "id twice: " << node.id;
+    ASSERT_GT(node.ratio, 0);
+    ASSERT_LT(node.ratio, 1);
+    if (node.kind == DockKind::Tabs) {
+        ASSERT_TRUE(node.children.empty());
+        ASSERT_TRUE(root || !node.tabs.empty());
+        ASSERT_GE(node.active, 0);
+        ASSERT_TRUE(node.tabs.empty() || node.active < int(node.tabs.size()));
+    } else {
+        ASSERT_EQ(node.children.size(), 2u);
+        ASSERT_TRUE(node.tabs.empty());
+        for (const DockNode& child : node.children) check(child, ids, false);
+    }
+}
+
+void check(const DockTree& tree, const std::vector<std::string>& wanted) {
+    std::set<int> ids;
+    check(tree.root, ids, true);
+    std::vector<std::string> panes = panesOf(tree);
+    std::sort(panes.begin(), panes.end());
+    std::vector<std::string> sorted = wanted;
+    std::sort(sorted.begin(), sorted.end());
+    ASSERT_EQ(panes, sorted);
+}
+
+int largest(const DockNode& node) {
+    int id = node.id;
+    for (const DockNode& child : node.children) id = std::max(id, largest(child));
+    return id;
+}
+
+TEST(DockTreeTest, RandomOperationsKeepItValid) {
+    std::mt19937 random(1);
+    std::vector<std::string> panes{"a", "b", "c", "d", "e"};
+    DockTree tree;
+    repair(tree, panes);
+    check(tree, panes);
+    for (int i = 0; i < 4000; ++i) {
+        const std::string pane = panes[random() % panes.size()];
+        switch (random() % 8) {
+        case 0:
+            floatPane(tree, pane, {});
+            break;
+        case 1:
+            removePane(tree, pane);
+            std::erase(panes, pane);
+            if (panes.empty()) {
+                panes = {"a"};
+                repair(tree, panes);
+            }
+            break;
+        case 2:
+            panes.push_back("p" + std::to_string(i));
+            insertPane(tree, panes.back(), int(random() % 8), static_cast<DockSide>(random() % 5));
+            break;
+        default:
+            insertPane(tree, pane, 1 + int(random()) % (largest(tree.root) + 2), static_cast<DockSide>(random() % 5));
+        }
+        if (panes.size() > 12) {
+            removePane(tree, panes.front());
+            panes.erase(panes.begin());
+        }
+        ASSERT_NO_FATAL_FAILURE(check(tree, panes)) << i;
+        DockTree copy = tree;
+        repair(copy, panes);
+        ASSERT_TRUE(copy == tree) << "repair changed a valid tree, step " << i;
+    }
+}
+
+TEST(DockTreeTest, RepairsAnything) {
+    std::mt19937 random(2);
+    const std::vector<std::string> panes{"O2", "U.x", "a/b~c", "volume"};
+    for (int i = 0; i < 2000; ++i) {
+        DockTree tree = randomValue<DockTree>(random);
+        repair(tree, panes);
+        ASSERT_NO_FATAL_FAILURE(check(tree, panes)) << i;
+    }
+}
+
+TEST(DockTreeTest, DropsWhereItIsTold) {
+    DockTree tree;
+    repair(tree, {"a", "b"});
+    const int stack = tree.root.id;
+    insertPane(tree, "b", stack, DockSide::Right);
+    ASSERT_EQ(tree.root.kind, DockKind::Row);
+    EXPECT_EQ(tree.root.children[0].tabs, std::vector<std::string>{"a"});
+    EXPECT_EQ(tree.root.children[1].tabs, std::vector<std::string>{"b"});
+    EXPECT_EQ(tree.root.children[0].id, stack) << "ids are stable";
+    insertPane(tree, "b", stack, DockSide::Bottom);
+    ASSERT_EQ(tree.root.kind, DockKind::Column);
+    insertPane(tree, "b", stack, DockSide::Center);
+    ASSERT_EQ(tree.root.kind, DockKind::Tabs);
+    EXPECT_EQ(tree.root.active, 1);
+}
+
+} // namespace
+} // namespace tessera::app

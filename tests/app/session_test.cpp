@@ -1,0 +1,259 @@
+#include "app/session/history.h"
+#include "app/session/session_file.h"
+#include "randomise.h"
+#include "volume/error.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+namespace tessera::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+class SessionFileTest : public ::testing::Test {
+protected:
+    void SetUp() override {
+        folder = fs::temp_directory_path() / ("tessera-session-" + std::to_string(getpid()) + "-" +
+                                              ::testing::UnitTest::GetInstance()->current_test_info()->name());
+        fs::create_directories(folder);
+    }
+    void TearDown() override { fs::remove_all(folder); }
+    std::string in(const std::string& name) const { return (folder / name).string(); }
+    void write(const std::string& name, const std::string& text) const {
+        fs::create_directories((folder / name).parent_path());
+        std::ofstream(folder / name, std::ios::binary) << text;
+    }
+    fs::path folder;
+};
+
+volume::DatasetInfo cellInfo() {
+    volume::DatasetInfo info;
+    info.name = "cell";
+    info.bounds = {{0, 0, 0}, {1, 2, 100}};
+    for (const char* name : {"O2", "H2", "T"}) {
+        volume::Parameter parameter;
+        parameter.name = name;
+        parameter.ranges = {{1, 5}};
+        info.parameters.push_back(parameter);
+    }
+    info.times = {0, 1, 2};
+    return info;
+}
+
+SessionDocument edited() {
+    SessionDocument document;
+    document.session = defaultSession(cellInfo(), {.files = {}, .model = "fuel-cell", .settings = {}});
+    document.history.reset(document.session);
+    document.session.camera.distance = 3;
+    document.history.observe(document.session, false, 0);
+    document.session.selection.brushes.push_back({});
+    document.history.observe(document.session, false, 10);
+    return document;
+}
+
+TEST_F(SessionFileTest, SavesAndLoads) {
+    const SessionDocument document = edited();
+    saveSession(document, in("a.tessera.json"));
+    const SessionDocument back = loadSession(in("a.tessera.json"));
+    EXPECT_TRUE(back.session == document.session);
+    EXPECT_TRUE(back.history == document.history);
+    EXPECT_TRUE(back.messages.empty());
+    EXPECT_EQ(std::distance(fs::directory_iterator(folder), {}), 1) << "a temporary file was left";
+}
+
+TEST_F(SessionFileTest, KeepsUnknownKeysAndReportsThem) {
+    const SessionDocument document = edited();
+    Json json = Json::parse(printSession(document, in("a.tessera.json")));
+    json["camera"]["wobble"] = {{"x", 1}};
+    json["future"] = Json::array({1, 2});
+    write("a.tessera.json", json.dump());
+    SessionDocument back = loadSession(in("a.tessera.json"));
+    EXPECT_EQ(back.messages.size(), 2u);
+    back.session.camera.distance = 5;
+    const Json again = Json::parse(printSession(back, in("b.tessera.json")));
+    EXPECT_EQ(again["camera"]["wobble"]["x"], 1);
+    EXPECT_EQ(again["camera"]["distance"], 5);
+    EXPECT_EQ(again["future"], Json::array({1, 2}));
+}
+
+TEST_F(SessionFileTest, EveryTruncationIsAnError) {
+    const std::string text = printSession(edited(), in("a.tessera.json"));
+    const std::size_t end = text.rfind('}');
+    for (std::size_t cut = 0; cut <= end; ++cut) {
+        try {
+            parseSession(std::string_view(text).substr(0, cut), "cut.tessera.json");
+            FAIL() << "accepted " << cut << " of " << text.size() << " bytes";
+        } catch (const Error& error) {
+            ASSERT_EQ(error.file(), "cut.tessera.json");
+        }
+    }
+}
+
+TEST_F(SessionFileTest, FlippedBytesNeverCrash) {
+    std::string text = printSession(edited(), in("a.tessera.json"));
+    std::mt19937 random(3);
+    for (int i = 0; i < 2000; ++i) {
+        std::string broken = text;
+        for (int flips = 1 + int(random() % 3); flips-- > 0;) broken[random() % broken.size()] = char(random());
+        try {
+            SessionDocument document = parseSession(broken, "x");
+            std::vector<std::string> messages;
+            fitSession(document.session, cellInfo(), messages);
+            while (document.history.canUndo()) document.history.undo();
+        } catch (const Error&) {
+        }
+    }
+}
+
+TEST_F(SessionFileTest, RefusesNewerAndForeignDocuments) {
+    EXPECT_THROW(parseSession("{\"schema\": 99}", "x"), Error);
+    EXPECT_THROW(parseSession("{}", "x"), Error);
+    EXPECT_THROW(parseSession("[1]", "x"), Error);
+    EXPECT_THROW(parseSession("{\"schema\": \"1\"}", "x"), Error);
+    EXPECT_FALSE(looksLikeSession("{\"dims\": [1, 2, 3]}"));
+    EXPECT_TRUE(looksLikeSession(printSession(edited(), "x")));
+}
+
+TEST_F(SessionFileTest, MigratesSchemaZero) {
+    const SessionDocument document = parseSession("{\"schema\": 0, \"stretch\": 4}", "x");
+    EXPECT_EQ(document.session.stretch, glm::dvec3(1, 1, 4));
+    EXPECT_EQ(document.session.schema, kSessionSchema);
+}
+
+TEST_F(SessionFileTest, FindsDataAfterTheFolderMoved) {
+    write("one/data/cell.tsr", "12345");
+    SessionDocument document = edited();
+    document.session.data = {};
+    document.session.data.files = {describeFile(in("one/data/cell.tsr"))};
+    document.history.setData(document.session.data);
+    saveSession(document, in("one/a.tessera.json"));
+    EXPECT_EQ(Json::parse(readText(in("one/a.tessera.json")))["data"]["files"][0]["path"], "data/cell.tsr");
+    fs::rename(folder / "one", folder / "two");
+    SessionDocument moved = loadSession(in("two/a.tessera.json"));
+    ResolvedData found = resolveData(moved.session.data, in("two"));
+    EXPECT_TRUE(found.missing.empty());
+    EXPECT_TRUE(found.warnings.empty());
+    EXPECT_EQ(found.data.files[0].absolutePath, in("two/data/cell.tsr"));
+    // Beside the session under its name alone.
+    fs::rename(folder / "two/data/cell.tsr", folder / "two/cell.tsr");
+    found = resolveData(moved.session.data, in("two"));
+    EXPECT_TRUE(found.missing.empty());
+    // Changed: found, with a warning that names the hash.
+    write("two/cell.tsr", "1234x");
+    found = resolveData(moved.session.data, in("two"));
+    ASSERT_EQ(found.warnings.size(), 1u);
+    EXPECT_NE(found.warnings[0].find("has changed"), std::string::npos);
+    // Gone: reported with what is known of it.
+    fs::remove(folder / "two/cell.tsr");
+    found = resolveData(moved.session.data, in("two"));
+    ASSERT_EQ(found.missing.size(), 1u);
+    EXPECT_EQ(found.missing[0].wanted.bytes, 5);
+}
+
+TEST(HistoryTest, UndoAllAndRedoAllOfRandomEdits) {
+    std::mt19937 random(5);
+    Session session = defaultSession(cellInfo(), {});
+    session.animation.playing = false; // what plays is no edit
+    History history;
+    history.reset(session);
+    std::vector<Session> states{session};
+    for (int i = 0; i < 60; ++i) {
+        Session next = i % 7 == 0 ? randomValue<Session>(random) : session;
+        next.schema = kSessionSchema;
+        next.animation.playing = false;
+        if (i % 7 != 0) {
+            next.camera.distance = 1 + float(i) / 10;
+            if (i % 3 == 0) next.layers.push_back(randomValue<vis::Layer>(random));
+            if (i % 5 == 0 && !next.layers.empty()) next.layers.erase(next.layers.begin());
+        }
+        if (next == session) continue;
+        ASSERT_TRUE(history.observe(next, false, i * 10.0)) << i;
+        session = next;
+        states.push_back(session);
+    }
+    ASSERT_EQ(history.steps().size() + 1, states.size());
+    for (std::size_t i = states.size(); i-- > 1;) ASSERT_TRUE(history.undo() == states[i - 1]) << i;
+    EXPECT_FALSE(history.canUndo());
+    for (std::size_t i = 1; i < states.size(); ++i) ASSERT_TRUE(history.redo() == states[i]) << i;
+    EXPECT_FALSE(history.canRedo());
+    EXPECT_TRUE(history.seek(3) == states[3]);
+    const History again = History::fromJson(history.toJson(), states[3]);
+    EXPECT_TRUE(again == history);
+    EXPECT_THROW(History::fromJson(history.toJson(), states[4]), Error);
+}
+
+TEST(HistoryTest, ADragIsOneStepAndAWheelTurnIsOneStep) {
+    Session session;
+    History history;
+    history.reset(session);
+    for (int i = 0; i < 20; ++i) {
+        session.camera.distance += 0.1f;
+        EXPECT_FALSE(history.observe(session, true, i * 0.02));
+    }
+    EXPECT_TRUE(history.observe(session, false, 0.4));
+    EXPECT_EQ(history.steps().size(), 1u);
+    for (int i = 0; i < 5; ++i) {
+        session.time += 1;
+        history.observe(session, false, 10 + i * 0.1);
+    }
+    EXPECT_EQ(history.steps().size(), 2u);
+    EXPECT_EQ(history.steps()[1].name, "time");
+    EXPECT_EQ(history.undo().time, 0);
+}
+
+TEST(HistoryTest, PlayingIsNoEdit) {
+    Session session;
+    History history;
+    history.reset(session);
+    session.animation.playing = true;
+    for (int i = 0; i < 5; ++i) {
+        session.time += 1;
+        EXPECT_FALSE(history.observe(session, false, i));
+    }
+    session.animation.playing = false;
+    EXPECT_FALSE(history.observe(session, false, 9));
+    session.camera.distance = 7;
+    EXPECT_TRUE(history.observe(session, false, 20));
+    EXPECT_EQ(history.steps().size(), 1u);
+    EXPECT_EQ(history.undo().time, 5);
+}
+
+TEST(SessionTest, FitReplacesWhatIsNotThere) {
+    Session session = defaultSession(cellInfo(), {});
+    session.layers = {{"a", true, vis::VolumeLayer{.channel = "salt"}},
+                      {"b", true, vis::IsoLayer{.channel = "sugar", .value = 1e9}},
+                      {"c", true, vis::IsoLayer{.channel = "T", .value = 2}}};
+    session.selection.brushes = {{.name = "x", .intervals = {{.channel = "salt"}}},
+                                 {.name = "y", .intervals = {{.channel = "T"}}}};
+    session.cursor = {50, 1, 1};
+    session.time = 77;
+    std::vector<std::string> messages;
+    fitSession(session, cellInfo(), messages);
+    EXPECT_EQ(std::get<vis::VolumeLayer>(session.layers[0].technique).channel, "O2");
+    EXPECT_EQ(std::get<vis::IsoLayer>(session.layers[1].technique).channel, "H2");
+    EXPECT_EQ(std::get<vis::IsoLayer>(session.layers[1].technique).value, 3);
+    EXPECT_EQ(std::get<vis::IsoLayer>(session.layers[2].technique).value, 2);
+    ASSERT_EQ(session.selection.brushes.size(), 1u);
+    EXPECT_EQ(session.selection.brushes[0].name, "y");
+    EXPECT_EQ(session.cursor, glm::dvec3(0.5, 1, 1));
+    EXPECT_EQ(session.time, 2);
+    EXPECT_EQ(messages.size(), 3u);
+}
+
+TEST(SessionTest, DefaultStretchesThinCells) {
+    const Session session = defaultSession(cellInfo(), {});
+    EXPECT_GT(session.stretch.x, 5);
+    EXPECT_EQ(session.stretch.z, 1);
+    Session copy = session;
+    std::vector<std::string> messages;
+    fitSession(copy, cellInfo(), messages);
+    EXPECT_TRUE(messages.empty());
+    EXPECT_TRUE(copy == session);
+}
+
+} // namespace
+} // namespace tessera::app
