@@ -14,6 +14,8 @@ namespace tessera::vis::reference {
 
 namespace {
 
+constexpr double kFaceTolerance = 1e-5; ///< world units by which a slice on a face of the box may miss it
+
 template <class Number> using Vec3 = glm::vec<3, Number>;
 template <class Number> using Vec4 = glm::vec<4, Number>;
 
@@ -144,7 +146,7 @@ template <class Number> struct Caster {
         }
         std::stable_sort(met.begin(), met.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
         for (const auto& [t, layer] : met) {
-            const glm::dvec3 place(at(t));
+            const glm::dvec3 place = glm::clamp(glm::dvec3(at(t)), -scene.frame.halfSize, scene.frame.halfSize);
             const std::optional<double> value = layer->samples->value(scene.cells(place));
             if (!value) continue;
             const double doi = scene.interest(place);
@@ -198,7 +200,7 @@ template <class Number> struct Caster {
     /// What a maximum or x-ray layer has seen.
     struct Seen {
         double best = -1, bestValue = 0, bestInterest = 0;
-        double factors = 0, interests = 0, weighted = 0;
+        double factors = 0, weighted = 0;
         int count = 0;
     };
 
@@ -207,7 +209,6 @@ template <class Number> struct Caster {
         const double score = layer.place(value) * factor;
         if (score > seen.best) seen.best = score, seen.bestValue = value, seen.bestInterest = doi;
         seen.factors += factor;
-        seen.interests += doi;
         seen.weighted += factor * value;
         ++seen.count;
     }
@@ -217,17 +218,19 @@ template <class Number> struct Caster {
         if (seen.count == 0 || !(seen.factors > 0)) return;
         const bool maximum = volume.style == VolumeStyle::Maximum;
         const double value = maximum ? seen.bestValue : seen.weighted / seen.factors;
-        const double doi = maximum ? seen.bestInterest : seen.interests / seen.count;
+        // The mean belongs to no place: brushes act on it through its weights alone.
+        const double doi = maximum ? seen.bestInterest : 1;
+        const double factor = maximum ? scene.opacityFactor(doi) : seen.factors / seen.count;
         const glm::dvec4 classified = layer.classify(value);
-        const double opacity = std::min(1.0, double(volume.density) * classified.a) * scene.opacityFactor(doi);
-        blend(scene.saturated(glm::dvec3(classified), doi), opacity);
+        blend(scene.saturated(glm::dvec3(classified), doi),
+              std::min(1.0, double(volume.density) * classified.a) * factor);
     }
 
     void cast() {
         step = Number(samples.step);
         std::vector<std::optional<double>> before(scene.layers.size()), now(scene.layers.size());
         std::vector<Seen> seen(scene.layers.size());
-        Number last = Number(samples.enter);
+        Number last = Number(samples.enter - kFaceTolerance);
         for (int k = 0; k < samples.count && !opaque(); ++k) {
             const Number t = Number(samples.at(k));
             const glm::dvec3 place(at(t)), cells = scene.cells(place);
@@ -247,7 +250,7 @@ template <class Number> struct Caster {
             std::swap(before, now);
             last = t;
         }
-        if (!opaque()) drawSlices(last, Number(segment.exit));
+        if (!opaque()) drawSlices(last, Number(segment.exit + kFaceTolerance));
         for (std::size_t i = 0; i < seen.size(); ++i)
             if (seen[i].count > 0) drawSeen(scene.layers[i], seen[i]);
     }
@@ -286,22 +289,28 @@ Image renderSingle(const Scene& scene, const volume::BrickSource& source, glm::i
 Difference compare(const Image& a, const Image& b, double threshold) {
     assert(a.size == b.size && a.pixels.size() == b.pixels.size());
     Difference difference;
-    double squares = 0;
+    double squares = 0, within = 0;
     for (std::size_t i = 0; i < a.pixels.size(); ++i) {
-        double most = 0;
+        double most = 0, own = 0;
         for (int c = 0; c < 4; ++c) {
             const double apart = std::abs(a.pixels[i][c] - b.pixels[i][c]);
-            squares += apart * apart;
+            own += apart * apart;
             // NaN is as far apart as can be.
             most = std::isnan(apart) ? std::numeric_limits<double>::infinity() : std::max(most, apart);
         }
-        if (most > threshold) ++difference.beyond;
+        squares += own;
+        if (most > threshold)
+            ++difference.beyond;
+        else
+            within += own;
         if (most > difference.maximum) {
             difference.maximum = most;
             difference.worst = {int(i) % a.size.x, int(i) / a.size.x};
         }
     }
     difference.rmse = std::sqrt(squares / double(std::max<std::size_t>(a.pixels.size() * 4, 1)));
+    difference.rmseWithin =
+        std::sqrt(within / double(std::max<std::size_t>((a.pixels.size() - difference.beyond) * 4, 1)));
     difference.psnr = -20 * std::log10(difference.rmse);
     return difference;
 }

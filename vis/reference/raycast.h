@@ -37,6 +37,7 @@ struct Difference {
     double rmse = 0, maximum = 0;
     double psnr = 0;        ///< dB for a peak of 1; infinite when equal
     std::size_t beyond = 0; ///< pixels with a component further apart than the threshold
+    double rmseWithin = 0;  ///< of the other pixels
     glm::ivec2 worst{0};    ///< pixel of the maximum
 };
 Difference compare(const Image& a, const Image& b, double threshold);
