@@ -1,89 +1,38 @@
 #include "volume/memory_source.h"
 
 #include "volume/error.h"
+#include "volume/load_once.h"
 #include "volume/parallel.h"
 #include "volume/resample.h"
 
 #include <algorithm>
 #include <cmath>
-#include <future>
-#include <list>
+#include <compare>
+#include <limits>
 #include <map>
 #include <mutex>
-#include <optional>
 #include <span>
-#include <tbb/task_arena.h>
-#include <tuple>
 
 namespace tessera::volume {
 
 namespace {
 
 using FramePtr = std::shared_ptr<const Field>;
-using FrameKey = std::tuple<int, int, int>; // parameter, component, time
 
-/// Frames by key, each loaded once however many threads ask; the least recently used leave when the budget is full.
-class FrameCache {
-public:
-    FrameCache(std::size_t budget, std::function<FramePtr(const FrameKey&)> load)
-        : budget_(budget), load_(std::move(load)) {}
-
-    FramePtr get(const FrameKey& key) {
-        std::promise<FramePtr> promise;
-        {
-            std::unique_lock lock(mutex_);
-            if (const auto found = entries_.find(key); found != entries_.end()) {
-                recent_.splice(recent_.begin(), recent_, found->second.place);
-                const auto future = found->second.frame;
-                lock.unlock();
-                return future.get();
-            }
-            recent_.push_front(key);
-            entries_[key] = {promise.get_future().share(), recent_.begin(), 0};
-        }
-        // Isolated: while this thread waits for its own parallel work it must not pick up an outer task that waits
-        // for this very frame.
-        try {
-            FramePtr frame = tbb::this_task_arena::isolate([&] { return load_(key); });
-            promise.set_value(frame);
-            settle(key, frame->samples.size() + (frame->mask ? frame->mask->size() : 0));
-            return frame;
-        } catch (...) {
-            promise.set_exception(std::current_exception());
-            const std::lock_guard lock(mutex_);
-            recent_.erase(entries_.at(key).place);
-            entries_.erase(key);
-            throw;
-        }
-    }
-
-private:
-    struct Entry {
-        std::shared_future<FramePtr> frame;
-        std::list<FrameKey>::iterator place;
-        std::size_t bytes = 0; ///< 0 while loading
-    };
-
-    void settle(const FrameKey& key, std::size_t bytes) {
-        const std::lock_guard lock(mutex_);
-        entries_.at(key).bytes = bytes;
-        used_ += bytes;
-        for (auto last = recent_.end(); used_ > budget_ && last != recent_.begin();) {
-            --last;
-            const auto entry = entries_.find(*last);
-            if (entry->second.bytes == 0 || *last == key) continue;
-            used_ -= entry->second.bytes;
-            entries_.erase(entry);
-            last = recent_.erase(last);
-        }
-    }
-
-    std::size_t budget_, used_ = 0;
-    std::function<FramePtr(const FrameKey&)> load_;
-    std::mutex mutex_;
-    std::list<FrameKey> recent_;
-    std::map<FrameKey, Entry> entries_;
+struct FrameKey {
+    int parameter, component, time;
+    auto operator<=>(const FrameKey&) const = default;
 };
+
+struct FrameKeyHash {
+    std::size_t operator()(const FrameKey& key) const {
+        return BrickKeyHash{}({key.parameter, key.time, key.component, glm::ivec3(0)});
+    }
+};
+
+std::size_t fieldBytes(const Field& field) {
+    return field.samples.size() + (field.mask ? field.mask->size() : 0);
+}
 
 /// The block of fine samples behind one level sample: mean of the present ones, or for labels the most frequent (the
 /// smallest of equals). Present when at least half of the block is.
@@ -241,7 +190,8 @@ class MemorySource final : public BrickSource {
 public:
     MemorySource(Dataset dataset, const MemorySourceOptions& options)
         : dataset_(std::move(dataset)), info_(dataset_.info),
-          frames_(options.budget, [this](const FrameKey& key) { return loadFrame(key); }) {
+          frames_(
+              options.budget, [this](const FrameKey& key) { return loadFrame(key); }, fieldBytes) {
         if (options.brickSize < 1 || (options.brickSize & (options.brickSize - 1)) != 0)
             throw Error("brick size " + std::to_string(options.brickSize) + " is not a power of two");
         if (options.lattice == LatticeKind::BCC && info_.lattice.kind == LatticeKind::CC)
@@ -292,16 +242,16 @@ private:
     }
 
     FramePtr loadFrame(const FrameKey& key) const {
-        const auto [p, component, time] = key;
         Field field;
         {
             const std::lock_guard lock(loading_);
-            field = dataset_.load(p, component, time);
+            field = dataset_.load(key.parameter, key.component, key.time);
         }
         if (field.lattice.size != dataset_.info.lattice.size || field.lattice.kind != dataset_.info.lattice.kind ||
             field.samples.size() != field.count() * byteSize(field.type))
-            throw Error("a frame has another number of samples than the data set", info_.name, parameter(p).name);
-        if (field.lattice.kind != grid_.lattice.kind) field = toBcc(field, parameter(p).categorical);
+            throw Error("a frame has another number of samples than the data set", info_.name,
+                        parameter(key.parameter).name);
+        if (field.lattice.kind != grid_.lattice.kind) field = toBcc(field, parameter(key.parameter).categorical);
         return std::make_shared<const Field>(std::move(field));
     }
 
@@ -334,7 +284,7 @@ private:
     BrickGrid grid_;
     std::vector<Channel> channels_;
     mutable std::mutex loading_;
-    mutable FrameCache frames_;
+    mutable LoadOnce<FrameKey, Field, FrameKeyHash> frames_;
     mutable std::mutex statsMutex_;
     mutable std::map<FrameKey, std::vector<BrickStats>> stats_;
 };

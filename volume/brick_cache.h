@@ -1,0 +1,32 @@
+#pragma once
+
+#include "volume/brick_source.h"
+
+#include <memory>
+
+namespace tessera::volume {
+
+/// Keeps decoded bricks of another source, the least recently used ones leaving when the byte budget is full. A brick
+/// is decoded once however many threads ask for it at the same time; a failure is not remembered.
+class BrickCache final : public BrickSource {
+public:
+    BrickCache(std::shared_ptr<const BrickSource> source, std::size_t budget);
+    ~BrickCache() override;
+
+    const DatasetInfo& info() const override;
+    const BrickGrid& grid() const override;
+    BrickStats stats(const BrickKey& key) const override;
+    BrickSamples read(const BrickKey& key) const override;
+
+    /// The brick itself, shared with the cache.
+    std::shared_ptr<const BrickSamples> get(const BrickKey& key) const;
+    /// True when the brick is here already, so that get() is quick.
+    bool has(const BrickKey& key) const;
+    std::size_t bytes() const;
+
+private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+} // namespace tessera::volume

@@ -1,0 +1,77 @@
+#include "volume/probe.h"
+
+#include "volume/reconstruct.h"
+
+#include <glm/vector_relational.hpp>
+#include <vector>
+
+namespace tessera::volume {
+
+namespace {
+
+/// Samples of one channel at full resolution; keeps the few bricks that one position touches.
+class SourceSamples {
+public:
+    SourceSamples(const BrickSource& source, int channel, int time)
+        : source_(source), grid_(source.grid()), channel_(channel), time_(time) {}
+
+    Sample operator()(glm::ivec3 at) const {
+        const glm::ivec3 inside = clampToLattice(grid_.lattice.kind, grid_.lattice.size, at);
+        const int slices = grid_.lattice.kind == LatticeKind::BCC ? 2 : 1;
+        const glm::ivec3 edge = grid_.brickSize * glm::ivec3(1, 1, slices);
+        const glm::ivec3 index = inside / edge, in = inside - index * edge;
+        const BrickSamples& samples = brick(index);
+        const std::size_t n =
+            (std::size_t(in.z) * std::size_t(samples.size.y) + std::size_t(in.y)) * std::size_t(samples.size.x) +
+            std::size_t(in.x);
+        const bool present = samples.present.empty() || samples.present[n] != 0;
+        return {present ? double(samples.values[n]) : 0.0, present};
+    }
+
+private:
+    const BrickSamples& brick(glm::ivec3 index) const {
+        for (const Held& held : held_)
+            if (held.index == index) return *held.samples;
+        held_.push_back({index, std::make_unique<BrickSamples>(source_.read({channel_, time_, 0, index}))});
+        return *held_.back().samples;
+    }
+
+    struct Held {
+        glm::ivec3 index;
+        std::unique_ptr<const BrickSamples> samples;
+    };
+    const BrickSource& source_;
+    const BrickGrid& grid_;
+    int channel_, time_;
+    mutable std::vector<Held> held_;
+};
+
+ProbeValue probeOne(const BrickSource& source, const Channel& channel, int index, glm::dvec3 position, int time) {
+    const Box& bounds = source.info().bounds;
+    if (glm::any(glm::lessThan(position, bounds.lo)) || glm::any(glm::greaterThan(position, bounds.hi))) return {};
+    const SourceSamples samples(source, index, time);
+    const LevelGeometry geometry = levelGeometry(source.grid(), 0);
+    const Lattice& lattice = source.grid().lattice;
+    const Sample near = samples(lattice.nearest(position));
+    ProbeValue value;
+    if (near.present) value.nearest = near.value;
+    value.interpolated = source.info().parameters[std::size_t(channel.parameter)].categorical
+                             ? value.nearest
+                             : tetrahedral(geometry, samples, lattice.toCells(position)).value();
+    return value;
+}
+
+} // namespace
+
+std::vector<ProbeValue> probe(const BrickSource& source, glm::dvec3 position, int time) {
+    std::vector<ProbeValue> values;
+    for (const Channel& channel : source.info().channels())
+        values.push_back(probeOne(source, channel, int(values.size()), position, time));
+    return values;
+}
+
+ProbeValue probeChannel(const BrickSource& source, int channel, glm::dvec3 position, int time) {
+    return probeOne(source, source.info().channels()[std::size_t(channel)], channel, position, time);
+}
+
+} // namespace tessera::volume

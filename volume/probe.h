@@ -1,0 +1,26 @@
+#pragma once
+
+#include "volume/brick_source.h"
+
+#include <optional>
+#include <vector>
+
+namespace tessera::volume {
+
+/// What a data set says about one point, in physical units.
+struct ProbeValue {
+    /// Between the samples: trilinear (CC) or linear box spline (BCC), which leave the range of the samples nowhere;
+    /// for labels the nearest sample. Empty where less than half of the weight is present.
+    std::optional<double> interpolated;
+    std::optional<double> nearest; ///< the nearest sample; empty where that is absent
+};
+
+/// Values of every channel (DatasetInfo::channels(), in order) at a physical position, at full resolution; all empty
+/// outside DatasetInfo::bounds. Reads one to eight bricks per channel: put a BrickCache before an archive. Throws
+/// Error.
+std::vector<ProbeValue> probe(const BrickSource& source, glm::dvec3 position, int time);
+
+/// The same for one channel.
+ProbeValue probeChannel(const BrickSource& source, int channel, glm::dvec3 position, int time);
+
+} // namespace tessera::volume

@@ -1,0 +1,71 @@
+#pragma once
+
+#include "volume/brick_source.h"
+#include "volume/progress.h"
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+namespace tessera::volume {
+
+/// What to count. All channels share one layout of bricks, so any number of them and of pairs is one pass.
+struct StatisticsQuery {
+    std::vector<int> channels;             ///< indices of DatasetInfo::channels()
+    std::vector<std::array<int, 2>> pairs; ///< joint histograms wanted: positions in `channels`, {x, y}
+    int time = 0;
+    int level = 0;             ///< of detail: ask for grid().levels - 1 first, then refine
+    int bins = 128;            ///< per axis, of histograms and joint histograms
+    std::vector<Range> ranges; ///< of the bins, by position in `channels`; empty: DatasetInfo::channelRange
+    /// Degree of interest 0..1 of a sample, given the physical values of `channels` (NaN where absent). Called from
+    /// several threads at once. Empty: everything has 1.
+    std::function<double(std::span<const float> values)> doi;
+};
+
+/// All pairs {i, j} with i < j < count: the lower half of a scatterplot matrix, row j, column i.
+std::vector<std::array<int, 2>> allPairs(int count);
+
+/// Bin b covers [lo, hi] * [b, b + 1] / bins; a value at `hi` counts in the last bin, values outside in none.
+struct Histogram {
+    Range range;
+    std::vector<std::uint64_t> count; ///< H: present samples per bin
+    std::vector<double> focus;        ///< F: sum of their degrees of interest; F / H is the share in focus
+};
+
+/// Bin (bx, by) is element by * bins + bx. Samples absent in either channel take no part.
+struct JointHistogram {
+    int x = 0, y = 0; ///< positions in StatisticsQuery::channels
+    Range xRange, yRange;
+    int bins = 0;
+    std::vector<std::uint64_t> count;
+    std::vector<double> focus;
+    std::uint64_t samples = 0;   ///< present in both channels, outside the ranges too
+    double correlation = 0;      ///< Pearson's r over them; NaN where a channel is constant or nothing is there
+    double focusCorrelation = 0; ///< the same over samples with a degree of interest of at least 1/2
+};
+
+/// Of present samples. `mean`, `deviation`, `min` and `max` are NaN when there is no sample.
+struct Summary {
+    std::uint64_t samples = 0;
+    double volume = 0; ///< they stand for, in cubic length units: every sample's cell within DatasetInfo::bounds
+    double mean = 0, deviation = 0, min = 0, max = 0; ///< over samples, not volume; deviation: population
+};
+
+struct ChannelStatistics {
+    Histogram histogram;
+    Summary all, inside, outside; ///< of the selection: inside has a degree of interest of at least 1/2
+};
+
+struct Statistics {
+    std::vector<ChannelStatistics> channels; ///< by position in StatisticsQuery::channels
+    std::vector<JointHistogram> joint;       ///< by position in StatisticsQuery::pairs
+    int level = 0;
+};
+
+/// Counts, on all cores; the result does not depend on the number of threads (degrees of interest are summed in units
+/// of 2^-16). Throws Error when a brick is damaged, Cancelled.
+Statistics computeStatistics(const BrickSource& source, const StatisticsQuery& query, const Progress& progress = {});
+
+} // namespace tessera::volume

@@ -1,0 +1,22 @@
+#include "volume/synthetic/models.h"
+
+#include "volume/error.h"
+#include "volume/synthetic/marschner_lobb.h"
+
+namespace tessera::volume {
+
+std::vector<std::string> modelNames() {
+    return {"marschner-lobb"};
+}
+
+Dataset makeModel(const std::string& name, const std::map<std::string, double>& settings, const Progress& progress) {
+    if (name == "marschner-lobb") {
+        progress.advance(1, name);
+        return makeMarschnerLobb(settings);
+    }
+    std::string known;
+    for (const std::string& model : modelNames()) known += (known.empty() ? "" : ", ") + model;
+    throw Error("no model of that name; there are: " + known, name);
+}
+
+} // namespace tessera::volume
