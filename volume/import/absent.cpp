@@ -18,6 +18,8 @@ namespace tessera::volume {
 namespace {
 
 constexpr std::size_t kMostLabels = 256;
+// A rule is only suggested for a label of few values, and for values that are no accident of single samples.
+constexpr std::size_t kMostSuggested = 32, kFewestSamples = 4;
 
 std::optional<double> parseNumber(std::string_view text) {
     double value = 0;
@@ -159,14 +161,14 @@ std::vector<AbsentRule> suggestAbsentRules(const Dataset& dataset, const Progres
 
     // For each parameter: values of the label where a sample that is not 0 was seen, and all values.
     std::vector<std::set<double>> alive(info.parameters.size());
-    std::set<double> values;
+    std::map<double, std::size_t> values; // and how many samples have them
     double done = 0;
     const double total = double(times.size()) * double(info.parameters.size());
     for (const int time : times) {
         const Field region = dataset.load(label, 0, time);
         const std::vector<double> labels = physicalValues(region);
         for (std::size_t i = 0; i < labels.size(); ++i)
-            if (region.present(i) && values.insert(labels[i]).second && values.size() > kMostLabels) return {};
+            if (region.present(i) && ++values[labels[i]] == 1 && values.size() > kMostSuggested) return {};
         for (std::size_t p = 0; p < info.parameters.size(); ++p) {
             progress.advance(done++ / total, info.parameters[p].name);
             if (info.parameters[p].categorical) continue;
@@ -188,9 +190,10 @@ std::vector<AbsentRule> suggestAbsentRules(const Dataset& dataset, const Progres
     for (std::size_t p = 0; p < info.parameters.size(); ++p) {
         if (info.parameters[p].categorical || alive[p].empty() || alive[p].size() == values.size()) continue;
         AbsentRule rule{info.parameters[p].name, labelAt->name, {}, false};
-        for (const double value : values)
-            if (!alive[p].contains(value)) rule.values.push_back(std::to_string(static_cast<long long>(value)));
-        rules.push_back(std::move(rule));
+        for (const auto& [value, samples] : values)
+            if (!alive[p].contains(value) && samples >= kFewestSamples)
+                rule.values.push_back(std::to_string(static_cast<long long>(value)));
+        if (!rule.values.empty()) rules.push_back(std::move(rule));
     }
     return rules;
 }

@@ -1,0 +1,157 @@
+#include "app/command/import_options.h"
+
+#include "volume/error.h"
+
+#include <charconv>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+namespace tessera::app {
+
+namespace {
+
+/// "a=b" -> {a, b}; throws what CLI11 turns into a usage error.
+std::pair<std::string, std::string> splitPair(const std::string& option, const std::string& text) {
+    const std::size_t equals = text.find('=');
+    if (equals == std::string::npos || equals == 0)
+        throw CLI::ValidationError(option, "wants NAME=VALUE, not \"" + text + "\"");
+    return {text.substr(0, equals), text.substr(equals + 1)};
+}
+
+glm::ivec3 parseGrid(const std::string& text) {
+    int values[3] = {};
+    int used = 0;
+    const int found = std::sscanf(text.c_str(), "%dx%dx%d%n", &values[0], &values[1], &values[2], &used);
+    if (found != 3 || static_cast<std::size_t>(used) != text.size())
+        throw CLI::ValidationError("--grid", "wants XxYxZ, not \"" + text + "\"");
+    for (const int value : values)
+        if (value < 1 || value > 4096) throw CLI::ValidationError("--grid", "each size must be 1..4096");
+    return {values[0], values[1], values[2]};
+}
+
+std::string number(double value) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.6g", value);
+    return text;
+}
+
+std::string size(double bytes) {
+    const char* units[] = {"byte", "kB", "MB", "GB", "TB"};
+    int unit = 0;
+    for (; bytes >= 1000 && unit < 4; ++unit) bytes /= 1000;
+    char text[48];
+    std::snprintf(text, sizeof text, unit == 0 ? "%.0f %s" : "%.1f %s", bytes, units[unit]);
+    return text;
+}
+
+} // namespace
+
+void addImportOptions(CLI::App& command, volume::ImportOptions& options) {
+    command
+        .add_option("--raw", options.raw,
+                    "Form of a raw file without sidecar: dims=XxYxZ,type=u8|i16|u16|i32|f32|f64,spacing=AxBxC,"
+                    "origin=AxBxC,components=N,times=N,big-endian,skip=BYTES")
+        ->group("Import");
+    command
+        .add_option_function<std::string>(
+            "--grid", [&options](const std::string& text) { options.gridSize = parseGrid(text); },
+            "Samples XxYxZ that meshes are resampled to (default: from their cells)")
+        ->group("Import");
+    command
+        .add_option("--absent", options.absent,
+                    "Samples that do not exist: O2=region:0,3 (where a label has these values), O2=0, O2=nan, O2=none; "
+                    "may be repeated")
+        ->expected(1)
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+        ->group("Import");
+    command
+        .add_flag_function(
+            "--no-auto-absent", [&options](std::int64_t) { options.autoAbsent = false; },
+            "Keep samples that are 0 on whole values of a label")
+        ->group("Import");
+    command
+        .add_option_function<std::vector<std::string>>(
+            "--rename",
+            [&options](const std::vector<std::string>& pairs) {
+                for (const std::string& pair : pairs) options.rename.insert(splitPair("--rename", pair));
+            },
+            "Array of the file to parameter: O2.air=O2; may be repeated")
+        ->expected(1)
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+        ->group("Import");
+    command
+        .add_option_function<std::vector<std::string>>(
+            "--unit",
+            [&options](const std::vector<std::string>& pairs) {
+                for (const std::string& pair : pairs) options.units.insert(splitPair("--unit", pair));
+            },
+            "Unit of a parameter: O2=mol/m3; may be repeated")
+        ->expected(1)
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+        ->group("Import");
+    command.add_option("--length-unit", options.lengthUnit, "Unit of positions (default: the file's, else m)")
+        ->group("Import");
+    command.add_option("--times", options.times, "Times of the series, separated by commas")
+        ->delimiter(',')
+        ->group("Import");
+    command.add_option("--parameters", options.parameters, "Only these parameters, separated by commas")
+        ->delimiter(',')
+        ->group("Import");
+}
+
+std::string describePreview(const volume::ImportPreview& preview) {
+    const volume::DatasetInfo& info = preview.info;
+    const volume::Lattice& lattice = info.lattice;
+    const glm::dvec3 extent = info.bounds.size();
+    std::string out = info.name + " (" + preview.format + ")\n";
+    out += "  samples    " + std::to_string(lattice.size.x) + " x " + std::to_string(lattice.size.y) + " x " +
+           std::to_string(lattice.size.z) + "\n";
+    out += "  spacing    " + number(lattice.spacing.x) + " x " + number(lattice.spacing.y) + " x " +
+           number(lattice.spacing.z) + " " + info.lengthUnit + "\n";
+    out += "  extent     " + number(extent.x) + " x " + number(extent.y) + " x " + number(extent.z) + " " +
+           info.lengthUnit + "\n";
+    out += "  times      " + std::to_string(info.times.size());
+    if (info.times.size() > 1)
+        out += ": " + number(info.times.front()) + " .. " + number(info.times.back()) + " " + info.timeUnit;
+    out += "\n  size       " + size(preview.bytes) + "\n  parameters " + std::to_string(info.parameters.size()) + "\n";
+    for (const volume::Parameter& parameter : info.parameters) {
+        out += "    " + parameter.name + (parameter.unit.empty() ? "" : " [" + parameter.unit + "]") + " " +
+               std::string(volume::name(parameter.type));
+        if (parameter.components > 1) out += ", vector of " + std::to_string(parameter.components);
+        if (parameter.categorical) out += ", label";
+        out += "\n";
+    }
+    for (const std::string& note : preview.notes) out += "  " + note + "\n";
+    return out;
+}
+
+std::string describePreviewJson(const volume::ImportPreview& preview) {
+    using json = nlohmann::ordered_json;
+    const volume::DatasetInfo& info = preview.info;
+    const auto triple = [](const auto& v) { return json::array({v.x, v.y, v.z}); };
+    json out;
+    out["kind"] = "data";
+    out["name"] = info.name;
+    out["format"] = preview.format;
+    out["dims"] = triple(info.lattice.size);
+    out["spacing"] = triple(info.lattice.spacing);
+    out["origin"] = triple(info.lattice.origin);
+    out["lengthUnit"] = info.lengthUnit;
+    out["times"] = info.times;
+    out["timeUnit"] = info.timeUnit;
+    out["bytes"] = preview.bytes;
+    out["parameters"] = json::array();
+    for (const volume::Parameter& parameter : info.parameters) {
+        json entry;
+        entry["name"] = parameter.name;
+        entry["unit"] = parameter.unit;
+        entry["type"] = volume::name(parameter.type);
+        entry["components"] = parameter.components;
+        entry["label"] = parameter.categorical;
+        out["parameters"].push_back(std::move(entry));
+    }
+    out["notes"] = preview.notes;
+    return out.dump(1) + "\n";
+}
+
+} // namespace tessera::app

@@ -1,0 +1,20 @@
+#pragma once
+
+#include "volume/import/import.h"
+
+#include <CLI/CLI.hpp>
+#include <string>
+
+namespace tessera::app {
+
+/// Adds the options of every command that opens foreign files: --grid, --raw, --absent, --no-auto-absent, --rename,
+/// --unit, --length-unit, --times, --parameters. `options` must outlive the parsing.
+void addImportOptions(CLI::App& command, volume::ImportOptions& options);
+
+/// What `tessera info DATAFILE` prints: dims, spacing, parameters with type and unit, times, bytes, notes.
+std::string describePreview(const volume::ImportPreview& preview);
+
+/// The same with stable keys, as JSON text.
+std::string describePreviewJson(const volume::ImportPreview& preview);
+
+} // namespace tessera::app

@@ -1,0 +1,147 @@
+#include "volume/export.h"
+
+#include "volume/error.h"
+#include "volume/import/import.h"
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <iterator>
+#include <random>
+#include <unistd.h>
+
+namespace tessera::volume {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Export : public testing::Test {
+protected:
+    void SetUp() override {
+        folder_ = fs::temp_directory_path() / ("tessera_export_" + std::to_string(getpid()));
+        fs::create_directories(folder_);
+    }
+    void TearDown() override { fs::remove_all(folder_); }
+    fs::path folder_;
+};
+
+/// Two times of a float with absent samples, a vector, a u8 label with absent samples and an i16.
+Dataset sample(glm::ivec3 size) {
+    Dataset dataset;
+    dataset.info.name = "sample";
+    dataset.info.lattice.size = size;
+    dataset.info.lattice.spacing = {0.1, 2e-5, 1};
+    dataset.info.lattice.origin = {-1, 0.25, 3};
+    dataset.info.bounds = {dataset.info.lattice.origin, dataset.info.lattice.position(size - 1)};
+    dataset.info.times = {0.1, 0.3};
+    dataset.info.parameters = {{"O2", "mol/m3", 1, ScalarType::F32, false, {}, {}},
+                               {"U", "m/s", 3, ScalarType::F32, false, {}, {}},
+                               {"region", "", 1, ScalarType::U8, true, {{0, "solid"}, {2, "air side"}}, {}},
+                               {"counts", "", 1, ScalarType::I16, false, {}, {}}};
+    dataset.load = [lattice = dataset.info.lattice, parameters = dataset.info.parameters](int p, int c, int t) {
+        std::mt19937 random(unsigned(p * 100 + c * 10 + t));
+        Field field = makeField(lattice, parameters[std::size_t(p)].type);
+        Mask mask(field.count());
+        std::mt19937 holes(99u);
+        for (std::size_t i = 0; i < field.count(); ++i) {
+            mask[i] = holes() % 4 != 0;
+            dispatch(field.type, [&]<class T>(T) { field.as<T>()[i] = static_cast<T>(int(random() % 200) - 100); });
+            if (field.type == ScalarType::F32) field.as<float>()[i] /= 3;
+        }
+        if (p == 0 || p == 2) field.mask = std::make_shared<const Mask>(mask);
+        return field;
+    };
+    return dataset;
+}
+
+void expectEqual(const Dataset& a, const Dataset& b) {
+    ASSERT_EQ(a.info.parameters.size(), b.info.parameters.size());
+    for (std::size_t p = 0; p < a.info.parameters.size(); ++p) {
+        const Parameter &x = a.info.parameters[p], &y = b.info.parameters[p];
+        EXPECT_EQ(x.name, y.name);
+        EXPECT_EQ(x.unit, y.unit);
+        EXPECT_EQ(x.type, y.type) << x.name;
+        EXPECT_EQ(x.categorical, y.categorical) << x.name;
+        EXPECT_EQ(x.labels, y.labels);
+        for (int c = 0; c < x.components; ++c)
+            for (std::size_t t = 0; t < a.info.times.size(); ++t) {
+                const Field f = a.load(int(p), c, int(t)), g = b.load(int(p), c, int(t));
+                ASSERT_EQ(f.count(), g.count());
+                for (std::size_t i = 0; i < f.count(); ++i) {
+                    ASSERT_EQ(f.present(i), g.present(i)) << x.name << i;
+                    if (f.present(i)) {
+                        ASSERT_EQ(f.value(i), g.value(i)) << x.name << i;
+                    }
+                }
+            }
+    }
+}
+
+TEST_F(Export, RawComesBackBitForBit) {
+    for (const glm::ivec3 size : {glm::ivec3(1, 1, 1), glm::ivec3(17, 3, 2), glm::ivec3(5, 4, 3)}) {
+        const Dataset dataset = sample(size);
+        const std::string path = (folder_ / "out.raw").string();
+        EXPECT_EQ(exportDataset(dataset, {}, path).size(), 2u);
+        ImportOptions asIs;
+        asIs.autoAbsent = false;
+        const Dataset back = openFiles({path}, asIs);
+        EXPECT_EQ(back.info.times, dataset.info.times);
+        EXPECT_EQ(back.info.lattice, dataset.info.lattice);
+        expectEqual(dataset, back);
+    }
+}
+
+TEST_F(Export, SelectionsAreKept) {
+    const Dataset dataset = sample({3, 2, 2});
+    const std::string path = (folder_ / "out.raw").string();
+    ExportSelection selection;
+    selection.parameters = {3, 1};
+    selection.times = {1};
+    exportDataset(dataset, selection, path);
+    const Dataset back = openFiles({path}, {});
+    ASSERT_EQ(back.info.parameters.size(), 2u);
+    EXPECT_EQ(back.info.parameters[0].name, "counts");
+    EXPECT_EQ(back.info.times, std::vector<double>{0.3});
+    EXPECT_EQ(back.load(1, 2, 0).value(4), dataset.load(1, 2, 1).value(4));
+}
+
+TEST_F(Export, NrrdHoldsOneChannel) {
+    const Dataset dataset = sample({3, 2, 2});
+    const std::string path = (folder_ / "out.nrrd").string();
+    EXPECT_THROW(exportDataset(dataset, {}, path), Error);
+    ExportSelection selection;
+    selection.parameters = {3};
+    selection.times = {1};
+    exportDataset(dataset, selection, path);
+    std::ifstream in(path, std::ios::binary);
+    const std::string bytes{std::istreambuf_iterator<char>(in), {}};
+    EXPECT_THAT(bytes, testing::StartsWith("NRRD0004\n"));
+    EXPECT_THAT(bytes, testing::HasSubstr("\ntype: int16\n"));
+    const Field field = dataset.load(3, 0, 1);
+    EXPECT_EQ(bytes.substr(bytes.find("\n\n") + 2),
+              std::string(reinterpret_cast<const char*>(field.samples.data()), field.samples.size()));
+}
+
+TEST_F(Export, LeavesNothingHalfWritten) {
+    Dataset dataset = sample({3, 2, 2});
+    dataset.load = [inner = dataset.load](int p, int c, int t) {
+        if (p == 1 && t == 1) throw Error("damaged");
+        return inner(p, c, t);
+    };
+    for (const char* name : {"a.raw", "b.pvd"})
+        EXPECT_THROW(exportDataset(dataset, {}, (folder_ / name).string()), Error);
+    for (const auto& entry : fs::directory_iterator(folder_))
+        EXPECT_EQ(entry.path().filename(), "b_0000.vti"); // the one frame that was complete
+    EXPECT_THROW(exportDataset(sample({2, 2, 2}), {}, (folder_ / "a.xyz").string()), Error);
+    EXPECT_THROW(exportDataset(sample({2, 2, 2}), {}, (folder_ / "no/such/a.raw").string()), MachineError);
+    std::stop_source stop;
+    stop.request_stop();
+    EXPECT_THROW(exportDataset(sample({2, 2, 2}), {}, (folder_ / "c.raw").string(), Progress{{}, stop.get_token()}),
+                 Cancelled);
+    EXPECT_FALSE(fs::exists(folder_ / "c.raw"));
+}
+
+} // namespace
+} // namespace tessera::volume
