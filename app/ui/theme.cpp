@@ -1,0 +1,183 @@
+#include "app/ui/theme.h"
+
+#include <cmath>
+#include <filesystem>
+
+namespace tessera::app {
+
+namespace {
+
+constexpr const char* kTextFonts[] = {"/usr/share/fonts/truetype/roboto/unhinted/RobotoTTF/Roboto-Regular.ttf",
+                                      "/usr/share/fonts/truetype/roboto/hinted/Roboto-Regular.ttf"};
+constexpr const char* kBoldFonts[] = {"/usr/share/fonts/truetype/roboto/unhinted/RobotoTTF/Roboto-Medium.ttf",
+                                      "/usr/share/fonts/truetype/roboto/hinted/Roboto-Medium.ttf"};
+constexpr const char* kIconFonts[] = {"/usr/share/fonts/truetype/font-awesome/fontawesome-webfont.ttf"};
+constexpr float kTextSize = 15;
+
+const char* installed(std::span<const char* const> paths) {
+    for (const char* path : paths) {
+        std::error_code problem;
+        if (std::filesystem::is_regular_file(path, problem)) return path;
+    }
+    return nullptr;
+}
+
+Palette current;
+
+ImVec4 rgb(unsigned hex, float alpha = 1) {
+    return {float(hex >> 16 & 255) / 255, float(hex >> 8 & 255) / 255, float(hex & 255) / 255, alpha};
+}
+
+ImU32 pack(const ImVec4& color) {
+    return ImGui::ColorConvertFloat4ToU32(color);
+}
+
+} // namespace
+
+Fonts loadFonts(float scale) {
+    ImFontAtlas& atlas = *ImGui::GetIO().Fonts;
+    atlas.Clear();
+    // Latin, Greek, sub- and superscripts, minus, arrows and the signs units are made of.
+    static const ImWchar letters[] = {0x20,   0xFF,   0x100,  0x17F,  0x370,  0x3FF,  0x2010, 0x2027, 0x2030,
+                                      0x205E, 0x2070, 0x209F, 0x2126, 0x2126, 0x2190, 0x2193, 0x2202, 0x2207,
+                                      0x2212, 0x221E, 0x2248, 0x2265, 0x25A0, 0x25FF, 0};
+    static const ImWchar icons[] = {0xF000, 0xF2E0, 0};
+    const float size = std::round(kTextSize * scale);
+    Fonts fonts;
+    const char* text = installed(kTextFonts);
+    const char* bold = installed(kBoldFonts);
+    const char* symbol = installed(kIconFonts);
+    const auto add = [&](const char* path) {
+        ImFontConfig config;
+        config.OversampleH = scale < 1.5f ? 3 : 2;
+        config.OversampleV = 1;
+        config.PixelSnapH = false;
+        config.RasterizerMultiply = 1.08f;
+        ImFont* font = nullptr;
+        if (path) {
+            font = atlas.AddFontFromFileTTF(path, size, &config, letters);
+        } else {
+            config.SizePixels = std::round(13 * scale);
+            font = atlas.AddFontDefault(&config);
+        }
+        if (symbol) {
+            ImFontConfig merge;
+            merge.MergeMode = true;
+            merge.GlyphMinAdvanceX = std::round(size * 1.1f);
+            merge.GlyphOffset = {0, std::round(scale)};
+            merge.OversampleH = 2;
+            atlas.AddFontFromFileTTF(symbol, std::round(size * 0.92f), &merge, icons);
+        }
+        return font;
+    };
+    fonts.text = add(text);
+    fonts.bold = bold ? add(bold) : fonts.text;
+    if (symbol) fonts.icons = fonts.text;
+    atlas.Build();
+    return fonts;
+}
+
+void applyTheme(Theme theme, float scale) {
+    const bool dark = theme == Theme::Dark;
+    ImGuiStyle style;
+    style.WindowPadding = {10, 8};
+    style.FramePadding = {8, 4};
+    style.ItemSpacing = {8, 6};
+    style.ItemInnerSpacing = {6, 4};
+    style.CellPadding = {6, 3};
+    style.IndentSpacing = 16;
+    style.ScrollbarSize = 11;
+    style.GrabMinSize = 10;
+    style.WindowRounding = 6;
+    style.ChildRounding = 4;
+    style.FrameRounding = 4;
+    style.PopupRounding = 6;
+    style.ScrollbarRounding = 6;
+    style.GrabRounding = 4;
+    style.TabRounding = 4;
+    style.WindowBorderSize = 1;
+    style.FrameBorderSize = dark ? 0.0f : 1.0f;
+    style.PopupBorderSize = 1;
+    style.WindowTitleAlign = {0.02f, 0.5f};
+    style.WindowMenuButtonPosition = ImGuiDir_None;
+    style.ScaleAllSizes(scale);
+    style.WindowBorderSize = style.PopupBorderSize = std::max(1.0f, std::floor(scale));
+
+    ImVec4* c = style.Colors;
+    const ImVec4 text = dark ? rgb(0xDADDE2) : rgb(0x23272E);
+    const ImVec4 muted = dark ? rgb(0x8A919C) : rgb(0x6A717C);
+    const ImVec4 window = dark ? rgb(0x1D2025) : rgb(0xFAFAFB);
+    const ImVec4 host = dark ? rgb(0x131519) : rgb(0xDFE2E6);
+    const ImVec4 frame = dark ? rgb(0x2A2E35) : rgb(0xFFFFFF);
+    const ImVec4 frameHover = dark ? rgb(0x343942) : rgb(0xF0F4FA);
+    const ImVec4 border = dark ? rgb(0x34383F) : rgb(0xC9CED5);
+    const ImVec4 accent = dark ? rgb(0x5AA2F0) : rgb(0x1F6FCB);
+    const auto tint = [&](float alpha) { return ImVec4(accent.x, accent.y, accent.z, alpha); };
+    c[ImGuiCol_Text] = text;
+    c[ImGuiCol_TextDisabled] = muted;
+    c[ImGuiCol_WindowBg] = window;
+    c[ImGuiCol_ChildBg] = {0, 0, 0, 0};
+    c[ImGuiCol_PopupBg] = dark ? rgb(0x24272D, 0.98f) : rgb(0xFFFFFF, 0.99f);
+    c[ImGuiCol_Border] = border;
+    c[ImGuiCol_BorderShadow] = {0, 0, 0, 0};
+    c[ImGuiCol_FrameBg] = frame;
+    c[ImGuiCol_FrameBgHovered] = frameHover;
+    c[ImGuiCol_FrameBgActive] = dark ? rgb(0x3B414B) : rgb(0xE4EDF8);
+    c[ImGuiCol_TitleBg] = c[ImGuiCol_TitleBgCollapsed] = host;
+    c[ImGuiCol_TitleBgActive] = dark ? rgb(0x1A1D22) : rgb(0xD3D8DE);
+    c[ImGuiCol_MenuBarBg] = host;
+    c[ImGuiCol_ScrollbarBg] = {0, 0, 0, 0};
+    c[ImGuiCol_ScrollbarGrab] = dark ? rgb(0x444A54) : rgb(0xC2C8D0);
+    c[ImGuiCol_ScrollbarGrabHovered] = dark ? rgb(0x59606C) : rgb(0xA9B1BB);
+    c[ImGuiCol_ScrollbarGrabActive] = accent;
+    c[ImGuiCol_CheckMark] = accent;
+    c[ImGuiCol_SliderGrab] = tint(0.85f);
+    c[ImGuiCol_SliderGrabActive] = accent;
+    c[ImGuiCol_Button] = dark ? rgb(0x2F343C) : rgb(0xEBEEF2);
+    c[ImGuiCol_ButtonHovered] = dark ? rgb(0x3B424C) : rgb(0xDDE6F2);
+    c[ImGuiCol_ButtonActive] = tint(0.55f);
+    c[ImGuiCol_Header] = tint(dark ? 0.22f : 0.16f);
+    c[ImGuiCol_HeaderHovered] = tint(dark ? 0.30f : 0.22f);
+    c[ImGuiCol_HeaderActive] = tint(0.42f);
+    c[ImGuiCol_Separator] = border;
+    c[ImGuiCol_SeparatorHovered] = tint(0.6f);
+    c[ImGuiCol_SeparatorActive] = accent;
+    c[ImGuiCol_ResizeGrip] = {0, 0, 0, 0};
+    c[ImGuiCol_ResizeGripHovered] = tint(0.5f);
+    c[ImGuiCol_ResizeGripActive] = accent;
+    c[ImGuiCol_Tab] = c[ImGuiCol_TabUnfocused] = host;
+    c[ImGuiCol_TabHovered] = frameHover;
+    c[ImGuiCol_TabActive] = c[ImGuiCol_TabUnfocusedActive] = window;
+    c[ImGuiCol_PlotLines] = c[ImGuiCol_PlotHistogram] = accent;
+    c[ImGuiCol_PlotLinesHovered] = c[ImGuiCol_PlotHistogramHovered] = tint(0.8f);
+    c[ImGuiCol_TableHeaderBg] = dark ? rgb(0x24282E) : rgb(0xECEFF3);
+    c[ImGuiCol_TableBorderStrong] = border;
+    c[ImGuiCol_TableBorderLight] = dark ? rgb(0x2A2E34) : rgb(0xE0E4E9);
+    c[ImGuiCol_TableRowBg] = {0, 0, 0, 0};
+    c[ImGuiCol_TableRowBgAlt] = dark ? rgb(0xFFFFFF, 0.025f) : rgb(0x000000, 0.025f);
+    c[ImGuiCol_TextSelectedBg] = tint(0.35f);
+    c[ImGuiCol_DragDropTarget] = accent;
+    c[ImGuiCol_NavHighlight] = accent;
+    c[ImGuiCol_NavWindowingHighlight] = accent;
+    c[ImGuiCol_NavWindowingDimBg] = {0, 0, 0, 0.35f};
+    c[ImGuiCol_ModalWindowDimBg] = {0, 0, 0, dark ? 0.5f : 0.28f};
+    ImGui::GetStyle() = style;
+
+    current.text = pack(text);
+    current.muted = pack(muted);
+    current.accent = pack(accent);
+    current.accentSoft = pack(tint(0.25f));
+    current.panel = pack(host);
+    current.plot = pack(dark ? rgb(0x15171B) : rgb(0xFFFFFF));
+    current.grid = pack(dark ? rgb(0x2B2F36) : rgb(0xE4E7EB));
+    current.line = pack(border);
+    current.warning = pack(dark ? rgb(0xE5B25D) : rgb(0xA86A00));
+    current.failure = pack(dark ? rgb(0xEF7B72) : rgb(0xBF2F26));
+    current.good = pack(dark ? rgb(0x7CC38A) : rgb(0x2C7D3D));
+}
+
+const Palette& palette() {
+    return current;
+}
+
+} // namespace tessera::app

@@ -1,0 +1,256 @@
+#include "app/ui/widgets.h"
+
+#include "app/ui/theme.h"
+#include "vis/model/transfer_function.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <imgui.h>
+#include <imgui_stdlib.h>
+
+namespace tessera::app {
+
+namespace {
+
+/// A printf format with as many digits as a slider over this range can tell apart, and the unit.
+std::string numberFormat(std::optional<Range> range, bool logScale, bool integer, std::string_view unit) {
+    std::string format = "%.4g";
+    if (integer) {
+        format = "%.0f";
+    } else if (range && !logScale && range->hi > range->lo) {
+        const int decimals = static_cast<int>(std::ceil(-std::log10((range->hi - range->lo) / 1500)));
+        const double largest = std::max(std::abs(range->lo), std::abs(range->hi));
+        if (decimals >= 0 && decimals <= 4 && largest < 1e6)
+            format = "%." + std::to_string(decimals) + "f";
+        else
+            format = "%.5g";
+    }
+    if (unit.empty()) return format;
+    format += ' ';
+    for (const char c : unit) format += c == '%' ? "%%" : std::string(1, c);
+    return format;
+}
+
+std::string idOf(const FieldInfo& info) {
+    return "##" + std::string(info.key);
+}
+
+void drawPreview(ImVec2 lo, ImVec2 hi, std::string_view map, bool reversed) {
+    ImDrawList& list = *ImGui::GetWindowDrawList();
+    const int parts = 24;
+    const auto at = [&](int i) {
+        const double x = double(i) / parts;
+        const glm::dvec3 color = vis::colormapColor(map, reversed ? 1 - x : x);
+        return ImGui::ColorConvertFloat4ToU32({float(color.r), float(color.g), float(color.b), 1});
+    };
+    for (int i = 0; i < parts; ++i) {
+        const float x0 = lo.x + (hi.x - lo.x) * float(i) / parts, x1 = lo.x + (hi.x - lo.x) * float(i + 1) / parts;
+        const ImU32 left = at(i), right = at(i + 1);
+        list.AddRectFilledMultiColor({x0, lo.y}, {x1, hi.y}, left, right, right, left);
+    }
+}
+
+} // namespace
+
+std::string labelOf(std::string_view key) {
+    std::string label;
+    for (const char c : key) {
+        if (std::isupper(static_cast<unsigned char>(c)) != 0) label += ' ';
+        label += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    }
+    if (!label.empty()) label[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(label[0])));
+    return label;
+}
+
+void drawLabel(const WidgetContext& context, std::string_view label, std::string_view help) {
+    const float width = ImGui::GetContentRegionAvail().x;
+    const float start = ImGui::GetCursorPosX();
+    const float column = std::floor(width * context.labelShare);
+    ImGui::AlignTextToFramePadding();
+    const ImVec2 corner = ImGui::GetCursorScreenPos();
+    ImGui::PushClipRect(corner, {corner.x + column - ImGui::GetStyle().ItemInnerSpacing.x, corner.y + 100}, true);
+    ImGui::PushStyleColor(ImGuiCol_Text, palette().muted);
+    ImGui::TextUnformatted(label.data(), label.data() + label.size());
+    ImGui::PopStyleColor();
+    ImGui::PopClipRect();
+    if (!help.empty() && ImGui::IsItemHovered()) ImGui::SetTooltip("%.*s", int(help.size()), help.data());
+    ImGui::SameLine(start + column, 0);
+    ImGui::SetNextItemWidth(-FLT_MIN);
+}
+
+bool drawBool(const WidgetContext& context, const FieldInfo& info, bool& value) {
+    drawLabel(context, labelOf(info.key), info.doc);
+    return ImGui::Checkbox(idOf(info).c_str(), &value);
+}
+
+bool drawNumber(const WidgetContext& context, const FieldInfo& info, std::optional<Range> scale, double* values,
+                int count, bool integer) {
+    drawLabel(context, labelOf(info.key), info.doc);
+    std::optional<Range> range = info.range;
+    if (!range && scale && scale->hi > scale->lo) range = scale;
+    const std::string format = numberFormat(range, info.logScale, integer, info.unit);
+    ImGuiSliderFlags flags = ImGuiSliderFlags_AlwaysClamp;
+    if (info.logScale) flags |= ImGuiSliderFlags_Logarithmic;
+    const double lo = range ? range->lo : 0, hi = range ? range->hi : 0;
+    bool changed = false;
+    if (info.range || (range && count == 1)) {
+        changed = ImGui::SliderScalarN(idOf(info).c_str(), ImGuiDataType_Double, values, count, &lo, &hi,
+                                       format.c_str(), flags);
+    } else {
+        double largest = 0;
+        for (int i = 0; i < count; ++i) largest = std::max(largest, std::abs(values[i]));
+        const double span = range ? hi - lo : std::max(largest, 1e-3);
+        changed = ImGui::DragScalarN(idOf(info).c_str(), ImGuiDataType_Double, values, count,
+                                     static_cast<float>(span * 0.004), nullptr, nullptr, format.c_str(),
+                                     ImGuiSliderFlags_NoRoundToFormat);
+    }
+    if (changed && integer)
+        for (int i = 0; i < count; ++i) values[i] = std::round(std::clamp(values[i], -2147483647.0, 2147483647.0));
+    if (ImGui::IsItemHovered(ImGuiHoveredFlags_None) && !ImGui::IsItemActive() && ImGui::GetIO().KeyCtrl)
+        ImGui::SetTooltip("Ctrl+click to type a number");
+    return changed;
+}
+
+bool drawChoice(const WidgetContext& context, const FieldInfo& info, int& index) {
+    drawLabel(context, labelOf(info.key), info.doc);
+    bool changed = false;
+    const auto shown = [&](int i) { return labelOf(info.names[static_cast<std::size_t>(i)]); };
+    if (ImGui::BeginCombo(idOf(info).c_str(), shown(index).c_str())) {
+        for (int i = 0; i < static_cast<int>(info.names.size()); ++i) {
+            if (ImGui::Selectable(shown(i).c_str(), i == index)) {
+                changed = i != index;
+                index = i;
+            }
+            if (i == index) ImGui::SetItemDefaultFocus();
+        }
+        ImGui::EndCombo();
+    }
+    return changed;
+}
+
+bool chooseChannel(const char* id, const volume::DatasetInfo* info, std::string& value, const char* emptyName) {
+    bool changed = false;
+    const char* shown = value.empty() ? (emptyName ? emptyName : "-") : value.c_str();
+    if (!ImGui::BeginCombo(id, shown)) return false;
+    if (emptyName && ImGui::Selectable(emptyName, value.empty())) {
+        changed = !value.empty();
+        value.clear();
+    }
+    if (info) {
+        for (const volume::Channel& channel : info->channels()) {
+            const bool chosen = channel.name == value;
+            if (ImGui::Selectable(channel.name.c_str(), chosen)) {
+                changed = !chosen;
+                value = channel.name;
+            }
+            if (chosen) ImGui::SetItemDefaultFocus();
+            if (!channel.unit.empty()) {
+                const float width = ImGui::CalcTextSize(channel.unit.c_str()).x;
+                ImGui::SameLine(ImGui::GetContentRegionMax().x - width);
+                ImGui::TextDisabled("%s", channel.unit.c_str());
+            }
+        }
+    }
+    ImGui::EndCombo();
+    return changed;
+}
+
+bool chooseColormap(const char* id, std::string& value, bool reversed) {
+    bool changed = false;
+    const float height = ImGui::GetFrameHeight();
+    const ImVec2 corner = ImGui::GetCursorScreenPos();
+    const float width = ImGui::CalcItemWidth();
+    const bool open = ImGui::BeginCombo(id, "", ImGuiComboFlags_HeightLarge);
+    const float inset = std::round(height * 0.2f);
+    if (open) {
+        std::string_view kind;
+        for (const vis::ColormapInfo& map : vis::colormaps()) {
+            if (map.kind != kind) {
+                kind = map.kind;
+                ImGui::TextDisabled("%s", labelOf(kind).c_str());
+            }
+            ImGui::PushID(map.name.data(), map.name.data() + map.name.size());
+            const ImVec2 at = ImGui::GetCursorScreenPos();
+            if (ImGui::Selectable("##map", map.name == value, 0, {0, height})) {
+                changed = map.name != value;
+                value = std::string(map.name);
+            }
+            const float preview = height * 4;
+            drawPreview({at.x + inset, at.y + inset}, {at.x + preview, at.y + height - inset}, map.name, reversed);
+            ImGui::GetWindowDrawList()->AddText(
+                {at.x + preview + inset * 2, at.y + (height - ImGui::GetFontSize()) / 2}, palette().text,
+                map.name.data(), map.name.data() + map.name.size());
+            ImGui::PopID();
+        }
+        ImGui::EndCombo();
+    }
+    const float right = corner.x + width - height;
+    const float text = ImGui::CalcTextSize(value.c_str()).x + inset * 3;
+    const float split = std::max(corner.x + inset * 2, right - text);
+    ImDrawList& list = *ImGui::GetWindowDrawList();
+    if (split > corner.x + 3 * inset)
+        drawPreview({corner.x + inset, corner.y + inset}, {split - inset, corner.y + height - inset}, value, reversed);
+    ImGui::PushClipRect(corner, {right, corner.y + height}, true);
+    list.AddText({split + inset, corner.y + (height - ImGui::GetFontSize()) / 2}, palette().text, value.c_str());
+    ImGui::PopClipRect();
+    return changed;
+}
+
+bool drawText(const WidgetContext& context, const FieldInfo& info, std::string& value) {
+    drawLabel(context, labelOf(info.key), info.doc);
+    if (info.refersTo == "channel") return chooseChannel(idOf(info).c_str(), context.info, value, "as first layer");
+    if (info.refersTo == "colormap") return chooseColormap(idOf(info).c_str(), value);
+    return ImGui::InputText(idOf(info).c_str(), &value);
+}
+
+bool drawTexts(const WidgetContext& context, const FieldInfo& info, std::vector<std::string>& values) {
+    drawLabel(context, labelOf(info.key), info.doc);
+    if (info.refersTo != "channel" || !context.info) {
+        ImGui::TextDisabled("%d", static_cast<int>(values.size()));
+        return false;
+    }
+    std::string shown = values.empty() ? "all" : "";
+    for (const std::string& value : values) shown += (shown.empty() ? "" : ", ") + value;
+    bool changed = false;
+    if (!ImGui::BeginCombo(idOf(info).c_str(), shown.c_str(), ImGuiComboFlags_HeightLarge)) return false;
+    if (ImGui::Selectable("all", values.empty(), ImGuiSelectableFlags_DontClosePopups)) {
+        changed = !values.empty();
+        values.clear();
+    }
+    for (const volume::Channel& channel : context.info->channels()) {
+        const auto found = std::find(values.begin(), values.end(), channel.name);
+        bool chosen = found != values.end();
+        if (ImGui::Checkbox(channel.name.c_str(), &chosen)) {
+            if (chosen)
+                values.push_back(channel.name);
+            else
+                values.erase(found);
+            changed = true;
+        }
+    }
+    ImGui::EndCombo();
+    return changed;
+}
+
+bool drawColor(const WidgetContext& context, const FieldInfo& info, float* rgb) {
+    drawLabel(context, labelOf(info.key), info.doc);
+    const bool changed = ImGui::ColorEdit3(idOf(info).c_str(), rgb, ImGuiColorEditFlags_PickerHueWheel);
+    if (changed)
+        for (int i = 0; i < 3; ++i) rgb[i] = std::clamp(rgb[i], 0.0f, 1.0f);
+    return changed;
+}
+
+bool beginSection(const char* id, std::string_view label, std::string_view help) {
+    const std::string text = std::string(label) + "###" + id;
+    const bool open =
+        ImGui::TreeNodeEx(text.c_str(), ImGuiTreeNodeFlags_SpanAvailWidth | ImGuiTreeNodeFlags_FramePadding);
+    if (!help.empty() && ImGui::IsItemHovered()) ImGui::SetTooltip("%.*s", int(help.size()), help.data());
+    return open;
+}
+
+void endSection() {
+    ImGui::TreePop();
+}
+
+} // namespace tessera::app

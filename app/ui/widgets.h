@@ -1,0 +1,147 @@
+#pragma once
+
+#include "app/session/describe_json.h"
+#include "volume/dataset.h"
+
+#include <optional>
+#include <span>
+#include <string>
+
+/// Widgets for everything that is described: label to the left, control to the right, help as a tooltip, unit behind
+/// the number. A widget function edits its value and says whether it changed; nothing else.
+namespace tessera::app {
+
+/// What widgets may offer as choices and scales.
+struct WidgetContext {
+    const volume::DatasetInfo* info = nullptr; ///< parameters to choose from; may be null
+    float labelShare = 0.4f;                   ///< of the width
+};
+
+/// A label in the left column with the help as a tooltip; the next item fills the rest of the line.
+void drawLabel(const WidgetContext& context, std::string_view label, std::string_view help);
+
+/// "contextOpacity" -> "Context opacity".
+std::string labelOf(std::string_view key);
+
+bool drawBool(const WidgetContext& context, const FieldInfo& info, bool& value);
+/// A slider where a range is known, else a field to drag or type in. `scale`: range of the parameter it refers to.
+bool drawNumber(const WidgetContext& context, const FieldInfo& info, std::optional<Range> scale, double* values,
+                int count, bool integer);
+bool drawChoice(const WidgetContext& context, const FieldInfo& info, int& index);
+/// Free text, or a choice of parameter or colour map.
+bool drawText(const WidgetContext& context, const FieldInfo& info, std::string& value);
+bool drawTexts(const WidgetContext& context, const FieldInfo& info, std::vector<std::string>& values);
+bool drawColor(const WidgetContext& context, const FieldInfo& info, float* rgb);
+/// A choice of parameter without label. `emptyName` is offered for "" where given.
+bool chooseChannel(const char* id, const volume::DatasetInfo* info, std::string& value,
+                   const char* emptyName = nullptr);
+/// A choice of colour map with a preview of each, without label.
+bool chooseColormap(const char* id, std::string& value, bool reversed = false);
+bool beginSection(const char* id, std::string_view label, std::string_view help);
+void endSection();
+
+template <class T> bool drawDescribed(T& value, const WidgetContext& context);
+
+namespace detail {
+
+struct MemberToWidget {
+    const WidgetContext& context;
+    bool& changed;
+    /// Range and unit of the parameter that the struct names, for members without a range of their own.
+    std::optional<Range>& scale;
+    std::string& unit;
+
+    template <class T> void operator()(T& value, const FieldInfo& field) const {
+        if (field.hidden) return;
+        FieldInfo info = field;
+        if (!info.range && info.unit.empty() && scale) info.unit = unit;
+        if constexpr (std::is_same_v<T, bool>) {
+            changed |= drawBool(context, info, value);
+        } else if constexpr (std::is_enum_v<T>) {
+            int index = static_cast<int>(value);
+            if (drawChoice(context, info, index)) {
+                value = static_cast<T>(index);
+                changed = true;
+            }
+        } else if constexpr (std::is_same_v<T, std::string>) {
+            changed |= drawText(context, info, value);
+            if (info.refersTo == "channel" && context.info) {
+                if (const auto index = context.info->findChannel(value)) {
+                    const volume::Channel channel = context.info->channels()[static_cast<std::size_t>(*index)];
+                    scale = context.info->channelRange(channel);
+                    unit = channel.unit;
+                }
+            }
+        } else if constexpr (std::is_same_v<T, std::vector<std::string>>) {
+            changed |= drawTexts(context, info, value);
+        } else if constexpr (std::is_arithmetic_v<T>) {
+            double number = static_cast<double>(value);
+            if (drawNumber(context, info, scale, &number, 1, std::is_integral_v<T>)) {
+                value = static_cast<T>(number);
+                changed = true;
+            }
+        } else if constexpr (std::is_same_v<T, Range>) {
+            double ends[2] = {value.lo, value.hi};
+            if (drawNumber(context, info, scale, ends, 2, false)) {
+                value = {ends[0], ends[1]};
+                changed = true;
+            }
+        } else if constexpr (GlmLength<T>::value > 0) {
+            using V = typename T::value_type;
+            if constexpr (GlmLength<T>::value == 3 && std::is_same_v<V, float>) {
+                if (info.key.ends_with("olor")) {
+                    changed |= drawColor(context, info, &value.x);
+                    return;
+                }
+            }
+            double parts[4] = {};
+            for (int i = 0; i < GlmLength<T>::value; ++i) parts[i] = static_cast<double>(value[i]);
+            if (drawNumber(context, info, {}, parts, GlmLength<T>::value, std::is_integral_v<V>)) {
+                for (int i = 0; i < GlmLength<T>::value; ++i) value[i] = static_cast<V>(parts[i]);
+                changed = true;
+            }
+        } else if constexpr (Described<T>) {
+            const std::string id(info.key);
+            if (beginSection(id.c_str(), labelOf(info.key), info.doc)) {
+                changed |= drawDescribed(value, context);
+                endSection();
+            }
+        } else if constexpr (IsVariant<T>::value) {
+            changed |= std::visit([&](auto& alternative) { return drawDescribed(alternative, context); }, value);
+        } else if constexpr (IsOptional<T>::value) {
+            bool present = value.has_value();
+            if (drawBool(context, info, present)) {
+                if (present)
+                    value.emplace();
+                else
+                    value.reset();
+                changed = true;
+            }
+            if (value) (*this)(*value, info);
+        } else if constexpr (IsVector<T>::value) {
+            if constexpr (Described<typename T::value_type>) {
+                for (std::size_t i = 0; i < value.size(); ++i) {
+                    const std::string id = std::string(info.key) + std::to_string(i);
+                    if (beginSection(id.c_str(), labelOf(info.key) + " " + std::to_string(i + 1), info.doc)) {
+                        changed |= drawDescribed(value[i], context);
+                        endSection();
+                    }
+                }
+            }
+        }
+        // Maps and quaternions are edited in the views that know what they mean.
+    }
+};
+
+} // namespace detail
+
+/// Draws a widget for each member that is not hidden; returns true when one changed.
+template <class T> bool drawDescribed(T& value, const WidgetContext& context) {
+    bool changed = false;
+    std::optional<Range> scale;
+    std::string unit;
+    T::describe(value, detail::MemberToWidget{context, changed, scale, unit});
+    return changed;
+}
+
+} // namespace tessera::app
