@@ -1,0 +1,58 @@
+#include "app/session/describe_markdown.h"
+
+#include "app/session/session.h"
+
+namespace tessera::app {
+
+namespace detail {
+
+namespace {
+
+std::string cell(std::string text) {
+    for (std::size_t at = 0; (at = text.find('|', at)) != std::string::npos; at += 2) text.insert(at, "\\");
+    return text;
+}
+
+std::string rangeText(const FieldInfo& info) {
+    std::string text;
+    for (const std::string_view name : info.names) text += (text.empty() ? "" : ", ") + std::string(name);
+    if (!info.names.empty()) return text;
+    if (info.range) text = numberToJson(info.range->lo).dump() + " to " + numberToJson(info.range->hi).dump();
+    return text + (info.logScale ? " (log)" : "");
+}
+
+} // namespace
+
+void appendRow(std::string& out, const std::string& key, const FieldInfo& info, const Json& value) {
+    std::string shown = value.dump();
+    if (value.is_structured() && shown.size() > 40) shown = "...";
+    out += "| `" + key + "` | `" + cell(shown) + "` | " + cell(rangeText(info)) + " | " + std::string(info.unit) +
+           " | " + cell(std::string(info.doc)) + " |\n";
+}
+
+} // namespace detail
+
+std::string parameterReference() {
+    std::string out =
+        "# Parameters\n\n"
+        "Every setting of a session, written from the descriptions in the source. The key is the member's name in the\n"
+        "session file and after `--set`; nested members are joined by a dot here and by a slash there\n"
+        "(`tessera render overview --set /render/step=0.25 -o out.png`).\n\n";
+    out += markdownSection<Session>("Session", "What is shown, and what all views share.");
+    out += markdownSection<DataFile>("data.files", "A file of the data set.");
+    out += markdownSection<vis::Layer>(
+        "layers", "An entry of the list of techniques; `technique` is one of the three that follow.");
+    out += markdownSection<vis::VolumeLayer>("Layer of type `volume`", "A scalar through its transfer function.");
+    out += markdownSection<vis::IsoLayer>("Layer of type `iso`", "A surface of equal value.");
+    out += markdownSection<vis::SliceLayer>("Layer of type `slice`", "A coloured plane with contour lines.");
+    out += markdownSection<vis::TransferFunction>("transfer", "Colour and opacity of one parameter, by its name.");
+    out += markdownSection<vis::Brush>("selection.brushes", "A brush: intervals of parameters that must all hold.");
+    out += markdownSection<vis::BrushInterval>("selection.brushes.intervals", "One interval of a brush.");
+    out += markdownSection<VolumeView>("View of type `volume`", "The 3D view.");
+    out += markdownSection<SlicesView>("View of type `slices`", "Three orthogonal slices.");
+    out += markdownSection<ScatterMatrixView>("View of type `scatterMatrix`", "Every pair of parameters.");
+    out += markdownSection<TransferView>("View of type `transfer`", "The transfer-function editor.");
+    return out;
+}
+
+} // namespace tessera::app
