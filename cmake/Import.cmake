@@ -1,1 +1,1 @@
-# tessera-import, the only program that links VTK, and the VTK peer of the benchmarks. Without VTK the build goes on.
+# tessera-import, the only program that reads with VTK. Without VTK the build goes on.

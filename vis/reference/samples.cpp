@@ -17,10 +17,11 @@ std::size_t linearIndex(glm::ivec3 size, glm::ivec3 at) {
 /// The samples of the whole lattice, brick by brick; beyond it the nearest one of the same sublattice.
 struct Whole {
     volume::Lattice lattice;
-    std::vector<volume::Sample> data;
+    std::vector<float> values;
+    std::vector<std::uint8_t> present; // empty: all
 
     Whole(const volume::BrickSource& source, int channel, int time, bool ignoredMask)
-        : lattice(source.grid().lattice), data(lattice.count()) {
+        : lattice(source.grid().lattice), values(lattice.count()) {
         const volume::BrickGrid& grid = source.grid();
         const glm::ivec3 count = grid.count();
         for (int z = 0; z < count.z; ++z)
@@ -29,17 +30,21 @@ struct Whole {
                     insert(grid.begin({x, y, z}), source.read({channel, time, 0, {x, y, z}}), ignoredMask);
     }
     void insert(glm::ivec3 begin, const volume::BrickSamples& brick, bool ignoredMask) {
+        const bool masked = !brick.present.empty();
+        if (masked && !ignoredMask && present.empty()) present.assign(values.size(), 1);
         for (int z = 0; z < brick.size.z; ++z)
             for (int y = 0; y < brick.size.y; ++y)
                 for (int x = 0; x < brick.size.x; ++x) {
                     const std::size_t from = linearIndex(brick.size, {x, y, z});
-                    const bool present = brick.present.empty() || brick.present[from] != 0;
-                    data[lattice.index(begin + glm::ivec3(x, y, z))] = {present ? double(brick.values[from]) : 0,
-                                                                        present || ignoredMask};
+                    const std::size_t to = lattice.index(begin + glm::ivec3(x, y, z));
+                    const bool there = !masked || brick.present[from] != 0;
+                    values[to] = there ? brick.values[from] : 0;
+                    if (!there && !ignoredMask) present[to] = 0;
                 }
     }
     volume::Sample operator()(glm::ivec3 at) const {
-        return data[lattice.index(volume::clampToLattice(lattice.kind, lattice.size, at))];
+        const std::size_t i = lattice.index(volume::clampToLattice(lattice.kind, lattice.size, at));
+        return {double(values[i]), present.empty() || present[i] != 0};
     }
 };
 
@@ -55,7 +60,8 @@ struct Samples::View {
         const int parity = at.z & (slices - 1);
         at = glm::clamp(at, lo, hi);
         if (slices == 2 && (at.z & 1) != parity) at.z += at.z == hi.z ? -1 : 1;
-        return all.data_[linearIndex(all.size_, at - all.first_)];
+        const std::size_t i = linearIndex(all.size_, at - all.first_);
+        return {all.values_[i], all.present_.empty() || all.present_[i] != 0};
     }
 };
 
@@ -69,14 +75,18 @@ Samples::Samples(const volume::BrickSource& source, int channel, int time, Filte
     const glm::ivec3 margin(kMargin, kMargin, kMargin * slices);
     first_ = -margin;
     size_ = whole.lattice.texels() * glm::ivec3(1, 1, slices) + 2 * margin;
-    data_.resize(std::size_t(size_.x) * std::size_t(size_.y) * std::size_t(size_.z));
+    values_.resize(std::size_t(size_.x) * std::size_t(size_.y) * std::size_t(size_.z));
+    if (!whole.present.empty()) present_.resize(values_.size());
     const bool prefiltered = filter == Filter::AverageQuasi && !categorical_ && !flaws.unfiltered;
     const volume::Prefiltered<Whole> filtered(whole, geometry_);
     parallelFor(std::size_t(size_.z), [&](std::size_t z) {
         for (int y = 0; y < size_.y; ++y)
             for (int x = 0; x < size_.x; ++x) {
-                const glm::ivec3 to(x, y, int(z));
-                data_[linearIndex(size_, to)] = prefiltered ? filtered(first_ + to) : whole(first_ + to);
+                const glm::ivec3 at(x, y, int(z));
+                const volume::Sample sample = prefiltered ? filtered(first_ + at) : whole(first_ + at);
+                const std::size_t to = linearIndex(size_, at);
+                values_[to] = sample.value;
+                if (!present_.empty()) present_[to] = sample.present;
             }
     });
 }

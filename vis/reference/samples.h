@@ -37,7 +37,8 @@ private:
     bool categorical_ = false;
     int brickSize_ = 0;
     glm::ivec3 first_{0}, size_{0}; ///< storage indices held
-    std::vector<volume::Sample> data_;
+    std::vector<double> values_;
+    std::vector<std::uint8_t> present_; ///< empty: all
 };
 
 } // namespace tessera::vis::reference
