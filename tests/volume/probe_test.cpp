@@ -1,0 +1,113 @@
+#include "volume/probe.h"
+
+#include "tests/volume/fields.h"
+#include "volume/brick_cache.h"
+#include "volume/error.h"
+#include "volume/memory_source.h"
+#include "volume/parallel.h"
+
+#include <atomic>
+#include <cmath>
+#include <gtest/gtest.h>
+#include <random>
+#include <thread>
+
+namespace tessera::volume {
+namespace {
+
+using test::ccLattice;
+using test::sampled;
+
+TEST(Probe, ReadsLinearFunctionsAcrossBricks) {
+    std::mt19937 random(1);
+    std::uniform_real_distribution<double> uniform(0, 1);
+    const Lattice cc = ccLattice({21, 18, 30}, {1e-3, 0.5, 2}, {4, 5, 6});
+    const auto f = [](glm::dvec3 p) { return 1000 * p.x + 2 * p.y - p.z; };
+    for (const LatticeKind kind : {LatticeKind::CC, LatticeKind::BCC}) {
+        Lattice lattice = cc;
+        if (kind == LatticeKind::BCC) lattice = bccFor(cc);
+        Dataset dataset = test::datasetOf({sampled<float>(lattice, f)});
+        dataset.info.bounds = test::boxOf(cc);
+        const auto source = makeMemorySource(dataset, {kind, 8, 1 << 30});
+        for (int n = 0; n < 300; ++n) {
+            const glm::dvec3 share(uniform(random), uniform(random), uniform(random));
+            const glm::dvec3 p = test::boxOf(cc).lo + test::boxOf(cc).size() * (0.1 + 0.8 * share);
+            const std::vector<ProbeValue> values = probe(*source, p, 0);
+            ASSERT_EQ(values.size(), 1u);
+            EXPECT_NEAR(values[0].interpolated.value(), f(p), 2e-3);
+            EXPECT_NEAR(values[0].nearest.value(), f(lattice.position(lattice.nearest(p))), 2e-3);
+        }
+    }
+}
+
+TEST(Probe, AbsentIsEmptyAndSoIsOutside) {
+    Field gas = sampled<float>(ccLattice({8, 8, 8}), [](glm::dvec3) { return 5.0; });
+    test::removeWhere(gas, [](glm::dvec3 p) { return p.x > 3; });
+    const Field label = sampled<float>(ccLattice({8, 8, 8}), [](glm::dvec3 p) { return p.x > 3 ? 0 : 2; });
+    Dataset dataset = test::datasetOf({gas, label});
+    dataset.info.parameters[1].categorical = true;
+    const auto source = makeMemorySource(dataset, {LatticeKind::CC, 8, 1 << 30});
+    const auto inside = probe(*source, {2.4, 2, 2}, 0), border = probe(*source, {3.4, 2, 2}, 0);
+    EXPECT_EQ(inside[0].interpolated, 5.0);
+    EXPECT_EQ(border[0].interpolated, 5.0); // nothing of the absent side mixed in
+    EXPECT_EQ(border[1].interpolated, 2.0); // labels do not mix
+    const auto beyond = probe(*source, {3.6, 2, 2}, 0);
+    EXPECT_FALSE(beyond[0].interpolated.has_value());
+    EXPECT_FALSE(beyond[0].nearest.has_value());
+    EXPECT_EQ(beyond[1].nearest, 0.0);
+    for (const ProbeValue& value : probe(*source, {7.01, 2, 2}, 0)) EXPECT_FALSE(value.nearest.has_value());
+}
+
+/// Counts what is read of it.
+class CountingSource final : public BrickSource {
+public:
+    explicit CountingSource(std::shared_ptr<const BrickSource> source) : source_(std::move(source)) {}
+    const DatasetInfo& info() const override { return source_->info(); }
+    const BrickGrid& grid() const override { return source_->grid(); }
+    BrickStats stats(const BrickKey& key) const override { return source_->stats(key); }
+    BrickSamples read(const BrickKey& key) const override {
+        ++reads;
+        if (failing) throw Error("damaged", "a.tsr");
+        std::this_thread::sleep_for(std::chrono::milliseconds(2));
+        return source_->read(key);
+    }
+    mutable std::atomic<int> reads = 0;
+    std::atomic<bool> failing = false;
+
+private:
+    std::shared_ptr<const BrickSource> source_;
+};
+
+TEST(BrickCache, ReadsOnceAndKeepsTheBudget) {
+    const auto counting = std::make_shared<CountingSource>(
+        makeMemorySource(test::datasetOf({sampled<float>(ccLattice({32, 16, 16}), [](glm::dvec3 p) { return p.x; })}),
+                         {LatticeKind::CC, 8, 1 << 30}));
+    const std::size_t brick = sizeof(BrickSamples) + 8 * 8 * 8 * sizeof(float);
+    const BrickCache all(counting, 100 * brick), two(counting, 2 * brick);
+    std::vector<std::thread> threads;
+    for (int t = 0; t < 4; ++t)
+        threads.emplace_back([&] {
+            parallelFor(64, [&](std::size_t i) {
+                const BrickKey key{0, 0, 0, {int(i % 4), int(i / 4 % 2), int(i / 8 % 2)}};
+                EXPECT_EQ(all.read(key).values[0], float(8 * (i % 4)));
+            });
+        });
+    for (std::thread& thread : threads) thread.join();
+    EXPECT_EQ(counting->reads, 16);
+    EXPECT_EQ(all.bytes(), 16 * brick);
+    counting->reads = 0;
+    for (const int x : {0, 1, 0, 2, 0, 1}) two.get({0, 0, 0, {x, 0, 0}});
+    EXPECT_EQ(counting->reads, 4); // 0, 1, 2 (drops 1), 1 (drops 2)
+    EXPECT_EQ(two.bytes(), 2 * brick);
+    EXPECT_TRUE(two.has({0, 0, 0, {0, 0, 0}}));
+    EXPECT_FALSE(two.has({0, 0, 0, {2, 0, 0}}));
+
+    counting->failing = true;
+    EXPECT_THROW(all.get({0, 0, 1, {0, 0, 0}}), Error);
+    EXPECT_FALSE(all.has({0, 0, 1, {0, 0, 0}}));
+    counting->failing = false;
+    EXPECT_NO_THROW(all.get({0, 0, 1, {0, 0, 0}}));
+}
+
+} // namespace
+} // namespace tessera::volume

@@ -1,0 +1,26 @@
+#pragma once
+
+#include "volume/lattice.h"
+
+#include <cstddef>
+#include <functional>
+#include <string_view>
+
+namespace tessera::volume {
+
+/// Filters of volume/reconstruct.h: `linear` on samples as they are, on prefiltered ones, and `tetrahedral` (BCC).
+enum class LatticeFilter { Linear, Quasi, Tetrahedral };
+inline constexpr std::string_view kLatticeFilterNames[] = {"linear", "quasi", "tetrahedral"};
+
+struct LatticeError {
+    double rms = 0, max = 0;
+    double samples = 0; ///< of the lattice per box: its volume over the volume per sample
+};
+
+/// How well a lattice and a filter carry a signal: the signal is sampled without rounding, reconstructed at `points`
+/// random positions of the box (uniform, from `seed`) and compared with itself. The lattice starts at `box.lo` and
+/// goes on beyond the box, so borders play no part. `spacing` is the cell edge (of one sublattice on BCC).
+LatticeError latticeError(const std::function<double(glm::dvec3)>& signal, LatticeKind kind, double spacing,
+                          LatticeFilter filter, const Box& box, std::size_t points = 60000, unsigned seed = 1);
+
+} // namespace tessera::volume
