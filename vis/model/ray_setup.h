@@ -24,8 +24,9 @@
 ///            DOI opacity factor), colour of that value, opacity min(1, density * opacity of the curve) * f;
 ///   x-ray:   the mean of the values weighted by f, colour of that value, opacity as above with f its plain mean.
 ///
-/// The degree of interest d of a place multiplies the opacity by f = mix(contextOpacity, 1, d) and pulls the colour
-/// towards its luminance: mix(luminance, colour, mix(contextSaturation, 1, d)), in linear light before shading.
+/// The degree of interest d of a place multiplies the opacity (of the curve before correctedOpacity, of an iso-surface
+/// or a slice) by f = mix(contextOpacity, 1, d) and pulls the colour towards its luminance: mix(luminance, colour,
+/// mix(contextSaturation, 1, d)), in linear light before shading. An x-ray layer's colour keeps its saturation.
 namespace tessera::vis {
 
 inline constexpr double kOpaque = 0.995;    ///< accumulated opacity at which a ray ends

@@ -1,0 +1,83 @@
+#include "vis/gl/handles.h"
+
+#include "volume/error.h"
+
+#include <vector>
+
+namespace tessera::vis {
+
+void deleteObject(ObjectKind kind, GLuint name) {
+    switch (kind) {
+    case ObjectKind::Buffer:
+        return glDeleteBuffers(1, &name);
+    case ObjectKind::Texture:
+        return glDeleteTextures(1, &name);
+    case ObjectKind::Framebuffer:
+        return glDeleteFramebuffers(1, &name);
+    case ObjectKind::VertexArray:
+        return glDeleteVertexArrays(1, &name);
+    case ObjectKind::Program:
+        return glDeleteProgram(name);
+    }
+}
+
+namespace {
+
+void setUp(GLuint name, GLenum filter, const std::string& label) {
+    glTextureParameteri(name, GL_TEXTURE_MIN_FILTER, static_cast<GLint>(filter));
+    glTextureParameteri(name, GL_TEXTURE_MAG_FILTER, static_cast<GLint>(filter));
+    for (GLenum wrap : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T, GL_TEXTURE_WRAP_R})
+        glTextureParameteri(name, wrap, GL_CLAMP_TO_EDGE);
+    glObjectLabel(GL_TEXTURE, name, -1, label.c_str());
+}
+
+} // namespace
+
+Texture makeTexture2D(glm::ivec2 size, GLenum format, GLenum filter, const std::string& label) {
+    GLuint name = 0;
+    glCreateTextures(GL_TEXTURE_2D, 1, &name);
+    Texture texture(name);
+    glTextureStorage2D(name, 1, format, size.x, size.y);
+    setUp(name, filter, label);
+    return texture;
+}
+
+Texture makeTexture3D(glm::ivec3 size, GLenum format, GLenum filter, const std::string& label) {
+    GLuint name = 0;
+    glCreateTextures(GL_TEXTURE_3D, 1, &name);
+    Texture texture(name);
+    while (glGetError() != GL_NO_ERROR) {
+    }
+    glTextureStorage3D(name, 1, format, size.x, size.y, size.z);
+    if (glGetError() != GL_NO_ERROR)
+        throw MachineError("the graphics driver refuses a texture of " + std::to_string(size.x) + " x " +
+                               std::to_string(size.y) + " x " + std::to_string(size.z) + " texels",
+                           {}, label);
+    setUp(name, filter, label);
+    return texture;
+}
+
+Framebuffer makeFramebuffer(std::initializer_list<GLuint> colorTextures, const std::string& label) {
+    GLuint name = 0;
+    glCreateFramebuffers(1, &name);
+    Framebuffer framebuffer(name);
+    std::vector<GLenum> buffers;
+    for (GLuint texture : colorTextures) {
+        buffers.push_back(GL_COLOR_ATTACHMENT0 + static_cast<GLenum>(buffers.size()));
+        glNamedFramebufferTexture(name, buffers.back(), texture, 0);
+    }
+    glNamedFramebufferDrawBuffers(name, static_cast<GLsizei>(buffers.size()), buffers.data());
+    glObjectLabel(GL_FRAMEBUFFER, name, -1, label.c_str());
+    if (glCheckNamedFramebufferStatus(name, GL_DRAW_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
+        throw MachineError("the graphics driver refuses the framebuffer", {}, label);
+    return framebuffer;
+}
+
+VertexArray makeVertexArray(const std::string& label) {
+    GLuint name = 0;
+    glCreateVertexArrays(1, &name);
+    glObjectLabel(GL_VERTEX_ARRAY, name, -1, label.c_str());
+    return VertexArray(name);
+}
+
+} // namespace tessera::vis

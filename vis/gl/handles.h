@@ -1,0 +1,49 @@
+#pragma once
+
+#include <epoxy/gl.h>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <string>
+#include <utility>
+
+/// Owners of GL objects: move-only, made by a function, deleted by the destructor (the context must be current).
+namespace tessera::vis {
+
+enum class ObjectKind { Buffer, Texture, Framebuffer, VertexArray, Program };
+
+void deleteObject(ObjectKind kind, GLuint name);
+
+template <ObjectKind Kind> class Handle {
+public:
+    Handle() = default;
+    explicit Handle(GLuint name) : name_(name) {}
+    Handle(Handle&& other) noexcept : name_(std::exchange(other.name_, 0)) {}
+    Handle& operator=(Handle&& other) noexcept {
+        std::swap(name_, other.name_);
+        return *this;
+    }
+    ~Handle() {
+        if (name_) deleteObject(Kind, name_);
+    }
+    GLuint name() const { return name_; }
+    explicit operator bool() const { return name_ != 0; }
+
+private:
+    GLuint name_ = 0;
+};
+
+using Buffer = Handle<ObjectKind::Buffer>;
+using Texture = Handle<ObjectKind::Texture>;
+using Framebuffer = Handle<ObjectKind::Framebuffer>;
+using VertexArray = Handle<ObjectKind::VertexArray>;
+using ProgramObject = Handle<ObjectKind::Program>;
+
+/// A 2D texture of one level with immutable storage, clamped to its edges; `filter` is GL_NEAREST or GL_LINEAR.
+Texture makeTexture2D(glm::ivec2 size, GLenum format, GLenum filter, const std::string& label);
+/// A 3D texture of one level, likewise. Throws MachineError when the driver refuses the size.
+Texture makeTexture3D(glm::ivec3 size, GLenum format, GLenum filter, const std::string& label);
+/// A framebuffer with the given colour attachments, all written to. Throws MachineError when it is incomplete.
+Framebuffer makeFramebuffer(std::initializer_list<GLuint> colorTextures, const std::string& label);
+VertexArray makeVertexArray(const std::string& label);
+
+} // namespace tessera::vis

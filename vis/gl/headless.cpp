@@ -1,0 +1,109 @@
+#include "vis/gl/headless.h"
+
+#include "volume/error.h"
+
+#include <epoxy/egl.h>
+#include <epoxy/gl.h>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace tessera::vis {
+
+struct HeadlessContext::Impl {
+    EGLDisplay display = EGL_NO_DISPLAY;
+    EGLContext context = EGL_NO_CONTEXT;
+    ~Impl() {
+        if (context == EGL_NO_CONTEXT) return;
+        eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+        eglDestroyContext(display, context);
+        // The display is shared by every context of the process, so it stays initialised.
+    }
+};
+
+namespace {
+
+bool has(const char* list, std::string_view name) {
+    return list && (" " + std::string(list) + " ").find(" " + std::string(name) + " ") != std::string::npos;
+}
+
+struct Candidate {
+    std::string name;
+    EGLDisplay display;
+};
+
+/// Hardware devices first, then Mesa's surfaceless platform, then software devices, then the default display.
+/// eglGetPlatformDisplay itself is never called: libepoxy 1.5 aborts on it where only EGL 1.4 is advertised.
+std::vector<Candidate> candidates() {
+    std::vector<Candidate> hardware, software;
+    const char* client = eglQueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS);
+    if (has(client, "EGL_EXT_platform_device") &&
+        (has(client, "EGL_EXT_device_enumeration") || has(client, "EGL_EXT_device_base"))) {
+        EGLDeviceEXT devices[16];
+        EGLint count = 0;
+        if (eglQueryDevicesEXT(16, devices, &count))
+            for (EGLint i = 0; i < count; ++i) {
+                const char* extensions = eglQueryDeviceStringEXT(devices[i], EGL_EXTENSIONS);
+                auto& list = has(extensions, "EGL_MESA_device_software") ? software : hardware;
+                list.push_back({"device " + std::to_string(i),
+                                eglGetPlatformDisplayEXT(EGL_PLATFORM_DEVICE_EXT, devices[i], nullptr)});
+            }
+    }
+    std::vector<Candidate> all = hardware;
+    if (has(client, "EGL_MESA_platform_surfaceless"))
+        all.push_back(
+            {"surfaceless", eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr)});
+    all.insert(all.end(), software.begin(), software.end());
+    all.push_back({"default display", eglGetDisplay(EGL_DEFAULT_DISPLAY)});
+    return all;
+}
+
+/// Makes a context current; returns the reason when it cannot.
+std::string tryContext(EGLDisplay display, bool debug, EGLContext& context) {
+    if (display == EGL_NO_DISPLAY) return "no display";
+    if (!eglInitialize(display, nullptr, nullptr)) return "cannot be initialised";
+    const char* extensions = eglQueryString(display, EGL_EXTENSIONS);
+    if (!has(extensions, "EGL_KHR_surfaceless_context")) return "no contexts without a surface";
+    if (!eglBindAPI(EGL_OPENGL_API)) return "no OpenGL";
+    EGLConfig config = EGL_NO_CONFIG_KHR;
+    if (!has(extensions, "EGL_KHR_no_config_context")) {
+        const EGLint wanted[] = {EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT, EGL_NONE};
+        EGLint count = 0;
+        if (!eglChooseConfig(display, wanted, &config, 1, &count) || count == 0) return "no configuration";
+    }
+    const EGLint attributes[] = {EGL_CONTEXT_MAJOR_VERSION,
+                                 4,
+                                 EGL_CONTEXT_MINOR_VERSION,
+                                 5,
+                                 EGL_CONTEXT_OPENGL_PROFILE_MASK,
+                                 EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
+                                 EGL_CONTEXT_OPENGL_DEBUG,
+                                 debug ? EGL_TRUE : EGL_FALSE,
+                                 EGL_NONE};
+    context = eglCreateContext(display, config, EGL_NO_CONTEXT, attributes);
+    if (context == EGL_NO_CONTEXT) return "no OpenGL 4.5 core";
+    if (eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context)) return {};
+    eglDestroyContext(display, context);
+    context = EGL_NO_CONTEXT;
+    return "the context cannot be made current";
+}
+
+} // namespace
+
+HeadlessContext::HeadlessContext(bool debug) : impl_(std::make_unique<Impl>()) {
+    std::string tried;
+    for (const Candidate& candidate : candidates()) {
+        const std::string reason = tryContext(candidate.display, debug, impl_->context);
+        if (reason.empty()) {
+            impl_->display = candidate.display;
+            if (debug) glEnable(GL_DEBUG_OUTPUT_SYNCHRONOUS);
+            return;
+        }
+        tried += (tried.empty() ? "" : "; ") + candidate.name + ": " + reason;
+    }
+    throw MachineError("no OpenGL 4.5 context through EGL (tried " + tried + ")");
+}
+
+HeadlessContext::~HeadlessContext() = default;
+
+} // namespace tessera::vis

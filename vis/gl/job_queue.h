@@ -1,0 +1,45 @@
+#pragma once
+
+#include <condition_variable>
+#include <functional>
+#include <mutex>
+#include <stop_token>
+#include <thread>
+#include <vector>
+
+namespace tessera::vis {
+
+/// Threads that run jobs, the most urgent first. Jobs must not throw; they should look at the token now and then.
+class JobQueue {
+public:
+    using Work = std::function<void(std::stop_token)>;
+
+    explicit JobQueue(int threads);
+    ~JobQueue(); ///< asks running jobs to stop, drops the others and waits
+
+    /// Smaller priorities run first; equal ones in the order they came.
+    void add(double priority, Work work);
+    /// Drops what has not begun and asks what runs to stop, without waiting for it.
+    void cancel();
+    /// Waits until a job ends or nothing is queued or running.
+    void waitForOne();
+    int unfinished() const;
+
+private:
+    struct Job {
+        double priority;
+        std::size_t number;
+        Work work;
+    };
+    void run(std::stop_token ending);
+
+    mutable std::mutex mutex_;
+    std::condition_variable_any wake_, ended_;
+    std::vector<Job> jobs_; ///< a heap, the most urgent on top
+    std::size_t added_ = 0, finished_ = 0;
+    int running_ = 0;
+    std::stop_source stop_;
+    std::vector<std::jthread> threads_;
+};
+
+} // namespace tessera::vis

@@ -1,0 +1,77 @@
+#pragma once
+
+#include "vis/gl/handles.h"
+
+#include <glm/mat4x4.hpp>
+#include <glm/vec4.hpp>
+#include <map>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+/// Programs composed of the files in vis/shaders.
+///
+///     Program program = makeProgram({.vertex = "screen.vert.glsl", .fragment = "raycast.frag.glsl",
+///                                    .slots = {{"reconstruct", "slots/recon_cc_linear.glsl"}},
+///                                    .defines = {{"LAYERS", "2"}}});
+///     program.set("halfSize", glm::vec3(0.5f));
+namespace tessera::vis {
+
+/// Which files make a program. `#include "path"` names a file relative to vis/shaders; `#include <slot:name>` names
+/// the file that `slots` gives for it. Each file is taken once.
+struct ProgramRecipe {
+    std::string vertex, fragment;
+    std::map<std::string, std::string> slots;
+    std::vector<std::pair<std::string, std::string>> defines; ///< `#define first second`, before everything else
+
+    /// Equal for equal recipes: the key of a program cache.
+    std::string key() const;
+};
+
+/// One stage, ready for the compiler. `#line` numbers are file * 10000 + line, with `files[file]` the path.
+struct ComposedShader {
+    std::string text;
+    std::vector<std::string> files;
+};
+
+/// Resolves includes and slots. Throws Error naming the file and line of a missing include or slot.
+ComposedShader composeShader(const std::string& root, const ProgramRecipe& recipe);
+
+/// A compiler's message with "file * 10000 + line" turned into "path:line".
+std::string mapLines(std::string_view log, const std::vector<std::string>& files);
+
+/// Text of a shader file: from the folder in the environment variable TESSERA_SHADER_DIR if it is set and has the
+/// file (for work on shaders), else as built in. Null when there is none.
+const std::string* shaderText(const std::string& path);
+
+class Program {
+public:
+    Program() = default;
+    explicit Program(ProgramObject object) : object_(std::move(object)) {}
+    GLuint name() const { return object_.name(); }
+    explicit operator bool() const { return bool(object_); }
+
+    /// Sets a uniform; names that the compiler dropped are ignored.
+    void set(const char* uniform, int value) const;
+    void set(const char* uniform, float value) const;
+    void set(const char* uniform, glm::ivec3 value) const;
+    void set(const char* uniform, glm::vec2 value) const;
+    void set(const char* uniform, glm::vec3 value) const;
+    void set(const char* uniform, glm::vec4 value) const;
+    void set(const char* uniform, std::span<const int> values) const;
+    void set(const char* uniform, std::span<const float> values) const;
+    void set(const char* uniform, std::span<const glm::ivec2> values) const;
+    void set(const char* uniform, std::span<const glm::vec3> values) const;
+    void set(const char* uniform, std::span<const glm::vec4> values) const;
+
+private:
+    GLint location(const char* uniform) const;
+    ProgramObject object_;
+    mutable std::map<std::string, GLint, std::less<>> locations_;
+};
+
+/// Composes, compiles and links. Throws Error with "path:line: text" lines when the compiler refuses.
+Program makeProgram(const ProgramRecipe& recipe);
+
+} // namespace tessera::vis

@@ -1,0 +1,28 @@
+#include "vis/gl/view_target.h"
+
+namespace tessera::vis {
+
+void RayBuffer::resize(glm::ivec2 wanted, bool exact, const char* label) {
+    if (size == wanted) return;
+    color = makeTexture2D(wanted, exact ? GL_RGBA32F : GL_RGBA16F, GL_LINEAR, label);
+    pick = makeTexture2D(wanted, GL_R32F, GL_NEAREST, label);
+    framebuffer = makeFramebuffer({color.name(), pick.name()}, label);
+    size = wanted;
+}
+
+void ViewTarget::resize(glm::ivec2 wanted, bool exact) {
+    if (size == wanted) return;
+    size = wanted;
+    full.resize(wanted, exact, "picture");
+    reduced.resize(wanted, exact, "reduced picture");
+    output = makeTexture2D(wanted, GL_RGBA8, GL_LINEAR, "presented picture");
+    outputFramebuffer = makeFramebuffer({output.name()}, "presented picture");
+    started = reducedValid = fullValid = false;
+    tilesDone = 0;
+}
+
+void ViewTargetDeleter::operator()(ViewTarget* target) const {
+    delete target;
+}
+
+} // namespace tessera::vis

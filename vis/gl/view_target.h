@@ -1,0 +1,47 @@
+#pragma once
+
+#include "vis/gl/handles.h"
+#include "vis/renderer.h"
+
+#include <vector>
+
+namespace tessera::vis {
+
+/// One buffer the ray caster draws into: linear premultiplied colour and the distance of what a pixel shows.
+struct RayBuffer {
+    Texture color, pick;
+    Framebuffer framebuffer;
+    glm::ivec2 size{0};
+    void resize(glm::ivec2 wanted, bool exact, const char* label);
+};
+
+class ViewTarget {
+public:
+    glm::ivec2 size{0};
+    RayBuffer full;    ///< at the size of the picture, filled tile by tile
+    RayBuffer reduced; ///< a quick picture; its lower left `reducedSize` is used
+    glm::ivec2 reducedSize{0};
+    Texture output;
+    Framebuffer outputFramebuffer;
+
+    // What the buffers show.
+    Scene scene;
+    std::vector<GLuint> textures; ///< of the fields, in order
+    bool started = false;         ///< the buffers hold something of `scene`
+    bool reducedValid = false;
+    int tilesDone = 0, tileEdge = 256;
+    const volume::BrickSource* source = nullptr;
+    bool fullValid = false; ///< every tile of `full` is done
+    double passMilliseconds = 0;
+    int lastTime = -1;
+    double msPerPixel = 0; ///< of a full pass; 0 = not measured
+
+    // The table textures of this scene.
+    Texture table, blocks;
+    std::vector<glm::vec4> tableValues;
+    glm::ivec3 blockCount{0};
+
+    void resize(glm::ivec2 wanted, bool exact);
+};
+
+} // namespace tessera::vis

@@ -1,0 +1,63 @@
+// What the ray caster knows of the scene. Compiled-in (generated #defines):
+//   FIELDS                number of channels bound; FIELD_COVERAGE, FIELD_NEAREST: 0 or 1 for each
+//   LAYERS                ray layers; LAYER_STYLES (0 composite, 1 maximum, 2 x-ray, 3 iso), LAYER_FIELDS, LAYER_SHADED
+//   SLICES, SLICE_FIELDS  slice planes
+//   BRUSH_FIELDS, BRUSH_FIELD_LIST   channels that brushes look at; 0 = no brush is active
+//   BCC                   lattice
+// Positions `p` are cells of the even sublattice at level 0 (Lattice::toCells); values are texel units.
+
+const int kFieldCoverage[FIELDS] = int[](FIELD_COVERAGE);
+const int kFieldNearest[FIELDS] = int[](FIELD_NEAREST);
+
+// Dense texture of a channel: texture coordinate = p * fieldScale + fieldOffset (even sublattice), fieldOdd added for
+// the moved one.
+uniform sampler3D fieldTexture[FIELDS];
+uniform vec3 fieldScale[FIELDS];
+uniform vec3 fieldOffset[FIELDS];
+uniform vec3 fieldOdd[FIELDS];
+uniform int fieldLevel[FIELDS];
+
+// Rays: linear in normalised device coordinates x, y.
+uniform vec3 rayOrigin, rayOriginX, rayOriginY;
+uniform vec3 rayDirection, rayDirectionX, rayDirectionY;
+uniform vec2 ndcScale, ndcOffset; // ndc = gl_FragCoord * scale + offset
+uniform float rayBegin;           // 0 in perspective, very negative in parallel projection
+uniform vec3 halfSize;            // of the box, world
+uniform vec3 worldCell;           // world edges of the cell that steps are measured in
+uniform float stepVoxels;
+uniform vec3 cellsPerWorld, cellsOffset; // p = world * cellsPerWorld + cellsOffset
+uniform float gradientDelta;
+uniform vec3 toLight;
+uniform vec4 light; // ambient, diffuse, specular, shininess
+
+// Layers. layerMap: transfer coordinate = value * x + y; z = density, or the iso value; w = opacity of an iso-surface.
+// Rows of the transfer table: layers, then slices.
+uniform sampler2D transferTable;
+#if LAYERS > 0
+uniform vec4 layerMap[LAYERS];
+uniform vec3 layerColor[LAYERS];
+const int kLayerStyle[LAYERS] = int[](LAYER_STYLES);
+const int kLayerField[LAYERS] = int[](LAYER_FIELDS);
+const int kLayerShaded[LAYERS] = int[](LAYER_SHADED);
+#endif
+
+#if SLICES > 0
+uniform vec4 slicePlane[SLICES]; // normal, offset
+uniform vec4 sliceMap[SLICES];   // transfer coordinate = value * x + y; z = contours, w = opacity
+const int kSliceField[SLICES] = int[](SLICE_FIELDS);
+#endif
+
+#define MAX_INTERVALS 32
+uniform int intervalCount;
+uniform ivec2 intervalMeaning[MAX_INTERVALS]; // brush field; 1: first of its brush, 2: last, 4: brush inverted
+uniform vec3 interval[MAX_INTERVALS];         // lo, hi, 1 / soft, in texel units
+uniform int combineAny;
+uniform vec2 context; // opacity, saturation of what is not brushed
+
+const int kTableSize = TABLE_SIZE;
+
+// Colour (linear) and opacity of row `row` at x, clamped to 0..1.
+vec4 transfer(int row, float x) {
+    float u = (clamp(x, 0.0, 1.0) * float(kTableSize - 1) + 0.5) / float(kTableSize);
+    return textureLod(transferTable, vec2(u, (float(row) + 0.5) / float(LAYERS + SLICES)), 0.0);
+}

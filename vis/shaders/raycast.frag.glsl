@@ -1,0 +1,237 @@
+// The one ray loop: volume-like layers and slices of a scene, composited front to back in linear light. What happens
+// along a ray is written down in vis/model/ray_setup.h; the reference ray caster does the same in double precision.
+//
+// March until hit, then shade: the inner loop only advances until something contributes, so that software GL, which
+// has no branches, shades all lanes of a group at once. What leaves the inner loop is the sample's number alone; its
+// values are taken anew (Mesa 22.3 miscompiles values that leave divergent nested loops).
+#include "lib/bindings.glsl"
+#include "lib/color.glsl"
+#include "lib/phong.glsl"
+#include "lib/ray.glsl"
+#include <slot:fetch>
+#include <slot:reconstruct>
+#include "lib/doi.glsl"
+#include <slot:skip>
+
+layout(location = 0) out vec4 outColor; // linear, premultiplied
+layout(location = 1) out float outPick; // distance along the ray of what a pixel shows, < 0: nothing
+
+const float kOpaque = 0.995, kPickOpacity = 0.1, kFlatGradient = 0.005;
+const int kBisections = 6;
+const float kNoPick = -2.0;
+
+vec3 toCells(vec3 world) {
+    return world * cellsPerWorld + cellsOffset;
+}
+
+bool present(vec2 s) {
+    return s.y >= 0.5;
+}
+
+// Change over one worldCell edge per axis, in texel units: central differences, one-sided at absent samples.
+vec3 cellGradient(int field, vec3 p, float centre) {
+    vec3 result = vec3(0.0);
+    for (int axis = 0; axis < 3; ++axis) {
+        vec3 offset = vec3(axis == 0, axis == 1, axis == 2) * gradientDelta;
+        vec2 lower = reconstruct(field, p - offset), upper = reconstruct(field, p + offset);
+        bool hasLower = present(lower), hasUpper = present(upper);
+        float difference = (hasUpper ? upper.x : centre) - (hasLower ? lower.x : centre);
+        result[axis] = hasLower && hasUpper ? 0.5 * difference : difference;
+    }
+    return result; // gradientDelta cells are one worldCell edge on either lattice
+}
+
+void main() {
+    vec2 ndc = gl_FragCoord.xy * ndcScale + ndcOffset;
+    vec3 origin = rayOrigin + ndc.x * rayOriginX + ndc.y * rayOriginY;
+    vec3 direction = normalize(rayDirection + ndc.x * rayDirectionX + ndc.y * rayDirectionY);
+    vec2 inside = clipToBox(origin, direction, halfSize);
+    inside.x = max(inside.x, rayBegin);
+    bool meets = inside.x < inside.y;
+    float along = meets ? inside.y - inside.x : 0.0;
+    int count = meets ? max(1, int(ceil(along * length(direction / worldCell) / stepVoxels - 1e-4))) : 0;
+    float stepLength = along / float(max(count, 1));
+    vec3 cellsPerSample = direction * stepLength * cellsPerWorld;
+    vec3 first = toCells(origin + direction * inside.x) + 0.5 * cellsPerSample; // of sample 0
+    float lengths = stepLength * REFERENCE_LENGTHS;
+
+    vec4 color = vec4(0.0);
+    float pick = kNoPick;
+
+#if SLICES > 0
+    // Where the planes are met (in samples: sample k at k), and what is seen there; nearest first.
+    float sliceAt[SLICES];
+    vec4 sliceColor[SLICES];
+    for (int i = 0; i < SLICES; ++i) {
+        float slope = dot(slicePlane[i].xyz, direction);
+        float t = (slicePlane[i].w - dot(slicePlane[i].xyz, origin)) / (abs(slope) < 1e-9 ? 1e-9 : slope);
+        vec3 world = origin + direction * t;
+        vec3 p = toCells(clamp(world, -halfSize, halfSize));
+        vec2 s = reconstruct(kSliceField[i], p);
+        float x = s.x * sliceMap[i].x + sliceMap[i].y;
+        float doi = degreeOfInterest(p);
+        vec3 c = transfer(LAYERS + i, x).rgb;
+        float level = x * (sliceMap[i].z + 1.0), width = fwidth(level);
+        if (sliceMap[i].z > 0.5 && width > 0.0) {
+            // Contours at level = 1, 2, ..., n; a line 1.4 pixels wide, dark on light colours and light on dark ones.
+            float away = abs(level - clamp(floor(level + 0.5), 1.0, sliceMap[i].z)) / width;
+            c = mix(c, vec3(luminance(c) > 0.18 ? 0.0 : 1.0), 0.75 * clamp(1.2 - away, 0.0, 1.0) / max(1.0, width * 2.0));
+        }
+        float tolerance = 1e-5;
+        bool seen = meets && abs(slope) > 1e-6 && t > inside.x - tolerance && t < inside.y + tolerance && present(s);
+        sliceAt[i] = seen ? (t - inside.x) / stepLength - 0.5 : 1e9;
+        float alpha = sliceMap[i].w * focusOpacity(doi);
+        sliceColor[i] = vec4(focusColor(c, doi) * alpha, alpha);
+    }
+    for (int i = 0; i < SLICES; ++i)
+        for (int j = SLICES - 1; j > i; --j)
+            if (sliceAt[j] < sliceAt[j - 1]) {
+                float at = sliceAt[j]; sliceAt[j] = sliceAt[j - 1]; sliceAt[j - 1] = at;
+                vec4 c = sliceColor[j]; sliceColor[j] = sliceColor[j - 1]; sliceColor[j - 1] = c;
+            }
+    float passed = -1e8; // slices up to here are in `color`
+    float nextSlice = sliceAt[0];
+#endif
+
+#if LAYERS > 0
+    float best[LAYERS], bestAt[LAYERS], sum[LAYERS], weight[LAYERS], factor[LAYERS];
+    for (int i = 0; i < LAYERS; ++i) {
+        best[i] = -1.0; bestAt[i] = 0.0; sum[i] = 0.0; weight[i] = 0.0; factor[i] = 0.0;
+    }
+    int k = 0;
+    while (k < count && color.a < kOpaque) {
+        bool hit = false;
+        float previous[LAYERS]; // values of iso layers at the former sample, NaN-free: 2 = unknown
+        for (int i = 0; i < LAYERS; ++i) previous[i] = -1e9;
+#if HAS_ISO
+        if (k > 0)
+            for (int i = 0; i < LAYERS; ++i)
+                if (kLayerStyle[i] == 3) {
+                    vec2 s = reconstruct(kLayerField[i], first + float(k - 1) * cellsPerSample);
+                    previous[i] = present(s) ? s.x : -1e9;
+                }
+#endif
+        while (k < count) {
+            vec3 p = first + float(k) * cellsPerSample;
+#if SKIPPING
+            int leap = emptySamples(p, cellsPerSample);
+            if (leap > 0) {
+                k += leap;
+                for (int i = 0; i < LAYERS; ++i) previous[i] = -1e9;
+                continue;
+            }
+#endif
+#if SLICES > 0
+            hit = float(k) >= nextSlice;
+#endif
+            for (int i = 0; i < LAYERS; ++i) {
+                vec2 s = reconstruct(kLayerField[i], p);
+                bool is = present(s);
+                if (kLayerStyle[i] == 0) {
+                    hit = hit || (is && transfer(i, s.x * layerMap[i].x + layerMap[i].y).a > 0.0);
+                } else if (kLayerStyle[i] == 3) {
+                    hit = hit || (is && previous[i] > -1e8 && (s.x >= layerMap[i].z) != (previous[i] >= layerMap[i].z));
+                    previous[i] = is ? s.x : -1e9;
+                } else {
+                    float f = is ? focusOpacity(degreeOfInterest(p)) : 0.0;
+                    float x = clamp(s.x * layerMap[i].x + layerMap[i].y, 0.0, 1.0);
+                    if (kLayerStyle[i] == 1) {
+                        bool better = is && x * f > best[i];
+                        bestAt[i] = better ? float(k) : bestAt[i];
+                        best[i] = better ? x * f : best[i];
+                    } else {
+                        sum[i] += is ? f * s.x : 0.0;
+                        weight[i] += f;
+                        factor[i] += is ? 1.0 : 0.0;
+                    }
+                }
+            }
+            if (hit) break;
+            ++k;
+        }
+        if (hit) {
+            vec3 p = first + float(k) * cellsPerSample;
+#if SLICES > 0
+            for (int i = 0; i < SLICES; ++i)
+                if (sliceAt[i] > passed && sliceAt[i] <= float(k)) {
+                    color = under(color, sliceColor[i]);
+                    if (pick <= kNoPick && color.a > kPickOpacity) pick = sliceAt[i];
+                }
+            passed = float(k);
+            nextSlice = 1e9;
+            for (int i = SLICES - 1; i >= 0; --i)
+                if (sliceAt[i] > passed) nextSlice = sliceAt[i];
+#endif
+#if HAS_ISO
+            for (int i = 0; i < LAYERS; ++i) {
+                if (kLayerStyle[i] != 3) continue;
+                int field = kLayerField[i];
+                float value = layerMap[i].z;
+                vec2 a = reconstruct(field, p - cellsPerSample), b = reconstruct(field, p);
+                bool crossed = k > 0 && present(a) && present(b) && (a.x >= value) != (b.x >= value);
+                bool above = a.x >= value;
+                float lo = -1.0, hi = 0.0;
+                for (int n = 0; n < kBisections; ++n) {
+                    float middle = 0.5 * (lo + hi);
+                    bool same = (reconstruct(field, p + middle * cellsPerSample).x >= value) == above;
+                    lo = same ? middle : lo;
+                    hi = same ? hi : middle;
+                }
+                float at = 0.5 * (lo + hi);
+                vec3 q = p + at * cellsPerSample;
+                float doi = degreeOfInterest(q);
+                float alpha = crossed ? layerMap[i].w * focusOpacity(doi) : 0.0;
+                vec3 g = cellGradient(field, q, reconstruct(field, q).x) / worldCell;
+                vec3 c = phong(focusColor(layerColor[i], doi), g, 1.0, -direction, toLight, light);
+                color = under(color, vec4(c * alpha, alpha));
+                if (pick <= kNoPick && color.a > kPickOpacity) pick = float(k) + at;
+            }
+#endif
+#if HAS_COMPOSITE
+            for (int i = 0; i < LAYERS; ++i) {
+                if (kLayerStyle[i] != 0) continue;
+                vec2 s = reconstruct(kLayerField[i], p);
+                vec4 c = transfer(i, s.x * layerMap[i].x + layerMap[i].y);
+                float doi = degreeOfInterest(p);
+                c.rgb = focusColor(c.rgb, doi);
+                float alpha = present(s) ? correctedOpacity(c.a * focusOpacity(doi), lengths * layerMap[i].z) : 0.0;
+                if (kLayerShaded[i] == 1) {
+                    vec3 g = cellGradient(kLayerField[i], p, s.x);
+                    float fade = min(1.0, length(g) * abs(layerMap[i].x) / kFlatGradient);
+                    c.rgb = phong(c.rgb, g / worldCell, fade, -direction, toLight, light);
+                }
+                color = under(color, vec4(c.rgb * alpha, alpha));
+            }
+            if (pick <= kNoPick && color.a > kPickOpacity) pick = float(k);
+#endif
+            ++k;
+        }
+    }
+#endif
+
+#if SLICES > 0
+    if (color.a < kOpaque)
+        for (int i = 0; i < SLICES; ++i)
+            if (sliceAt[i] > passed && sliceAt[i] < 1e8) {
+                color = under(color, sliceColor[i]);
+                if (pick <= kNoPick && color.a > kPickOpacity) pick = sliceAt[i];
+            }
+#endif
+#if HAS_PROJECTION
+    for (int i = 0; i < LAYERS; ++i) {
+        if (kLayerStyle[i] != 1 && kLayerStyle[i] != 2) continue;
+        vec3 p = first + bestAt[i] * cellsPerSample;
+        bool maximum = kLayerStyle[i] == 1;
+        float value = maximum ? reconstruct(kLayerField[i], p).x : sum[i] / max(weight[i], 1e-6);
+        float doi = maximum ? degreeOfInterest(p) : 1.0;
+        vec4 c = transfer(i, value * layerMap[i].x + layerMap[i].y);
+        bool any = maximum ? best[i] >= 0.0 : weight[i] > 0.0;
+        float f = maximum ? focusOpacity(doi) : weight[i] / max(factor[i], 1.0);
+        float alpha = any ? min(1.0, layerMap[i].z * c.a) * f : 0.0;
+        color = under(color, vec4(focusColor(c.rgb, doi) * alpha, alpha));
+        if (pick <= kNoPick && color.a > kPickOpacity) pick = maximum ? bestAt[i] : 0.5 * float(count);
+    }
+#endif
+    outColor = meets ? color : vec4(0.0);
+    outPick = pick <= kNoPick ? -1e9 : inside.x + (pick + 0.5) * stepLength;
+}

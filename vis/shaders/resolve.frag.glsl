@@ -1,0 +1,36 @@
+// The picture as shown: background, wire box behind, the ray caster's colour, wire box in front; linear light encoded
+// to sRGB at the end.
+#include "lib/color.glsl"
+
+uniform sampler2D source;      // linear, premultiplied
+uniform vec2 sourceScale;      // texture coordinate = gl_FragCoord * sourceScale, at most sourceLimit
+uniform vec2 sourceLimit;
+uniform vec3 background;       // linear
+uniform vec3 boxColor;         // linear
+uniform int edgeCount;
+uniform vec4 edges[12];        // ends in pixels; the last `frontCount` of them lie in front of the volume
+uniform int frontCount;
+uniform float lineWidth;       // pixels
+
+out vec4 outColor;
+
+// Share of the pixel that lines first .. last - 1 cover.
+float lines(int first, int last) {
+    float covered = 0.0;
+    for (int i = first; i < last; ++i) {
+        vec2 a = edges[i].xy, along = edges[i].zw - a, to = gl_FragCoord.xy - a;
+        float t = clamp(dot(to, along) / max(dot(along, along), 1e-6), 0.0, 1.0);
+        covered = max(covered, clamp(0.5 * lineWidth + 0.5 - length(to - t * along), 0.0, 1.0));
+    }
+    return covered;
+}
+
+void main() {
+    vec4 volume = textureLod(source, min(gl_FragCoord.xy * sourceScale, sourceLimit), 0.0);
+    float behind = edgeCount > 0 ? lines(0, edgeCount - frontCount) : 0.0;
+    float before = edgeCount > 0 ? lines(edgeCount - frontCount, edgeCount) : 0.0;
+    vec3 color = mix(background, boxColor, behind);
+    color = volume.rgb + (1.0 - volume.a) * color;
+    color = mix(color, boxColor, before);
+    outColor = vec4(srgbFromLinear(color), 1.0);
+}

@@ -1,0 +1,21 @@
+// Slot fetch: each channel is one texture.
+
+// Filtered texel of the even (x) or moved sublattice at p. CC: value, coverage; BCC: see vis/gl/texels.h.
+vec4 fetchEven(int field, vec3 p) {
+    return textureLod(fieldTexture[field], p * fieldScale[field] + fieldOffset[field], 0.0);
+}
+vec4 fetchOdd(int field, vec3 p) {
+    return textureLod(fieldTexture[field], p * fieldScale[field] + fieldOffset[field] + fieldOdd[field], 0.0);
+}
+
+// The texel with (even) index `at` at the level of the texture.
+vec4 fetchTexel(int field, ivec3 at) {
+    return texelFetch(fieldTexture[field], at + HALO, 0);
+}
+
+// Continuous index within a sublattice, at the level of the texture.
+vec3 sublatticeIndex(int field, vec3 p, int sublattice) {
+    vec3 u = p * fieldScale[field] + fieldOffset[field];
+    if (sublattice == 1) u += fieldOdd[field];
+    return u * vec3(textureSize(fieldTexture[field], 0)) - (float(HALO) + 0.5);
+}

@@ -1,0 +1,12 @@
+// Slot reconstruct: the average of the trilinear interpolations of both sublattices (over prefiltered samples: quasi-
+// interpolation), or the nearest sample. Twin: linear() in volume/reconstruct.h.
+#include "lib/bcc_nearest.glsl"
+
+// (value, coverage) at p; the sample is absent where coverage < 1/2.
+vec2 reconstruct(int field, vec3 p) {
+    if (kFieldNearest[field] == 1) return bccNearest(field, p);
+    vec4 even = fetchEven(field, p), odd = fetchOdd(field, p);
+    if (kFieldCoverage[field] == 0) return vec2(0.5 * (even.r + odd.g), 1.0);
+    float coverage = even.b + odd.a;
+    return vec2((even.r + odd.g) / max(coverage, 1e-6), 0.5 * coverage);
+}

@@ -1,0 +1,362 @@
+#include "vis/technique/ray_plan.h"
+
+#include "vis/gl/texels.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tessera::vis {
+
+namespace {
+
+int fieldOf(RayPlan& plan, const volume::DatasetInfo& info, int channel) {
+    for (std::size_t i = 0; i < plan.fields.size(); ++i)
+        if (plan.fields[i].channel == channel) return int(i);
+    BoundField field;
+    field.channel = channel;
+    const volume::Channel known = info.channels()[std::size_t(channel)];
+    field.categorical = info.parameters[std::size_t(known.parameter)].categorical;
+    plan.fields.push_back(field);
+    return int(plan.fields.size()) - 1;
+}
+
+template <class Use, class Member> std::string join(const std::vector<Use>& uses, Member member) {
+    std::string list;
+    for (const Use& use : uses) list += (list.empty() ? "" : ",") + std::to_string(int(member(use)));
+    return list;
+}
+
+/// The channel a layer shows.
+const std::string& channelOf(const Layer& layer) {
+    return std::visit([](const auto& technique) -> const std::string& { return technique.channel; }, layer.technique);
+}
+
+/// x = texel * first + second is the place of a texel value in a channel's transfer function.
+glm::dvec2 transferMap(const BoundField& field, const Scene& scene, const std::string& channel,
+                       const volume::DatasetInfo& info) {
+    const volume::Channel known = info.channels()[std::size_t(field.channel)];
+    const Range range = effectiveRange(transferFor(scene, channel), info.channelRange(known));
+    const double width = range.hi != range.lo ? range.hi - range.lo : 1e-30;
+    return {field.encoding.scale / width, (field.encoding.offset - range.lo) / width};
+}
+
+double toTexel(const BoundField& field, double value) {
+    return (value - field.encoding.offset) / field.encoding.scale;
+}
+
+/// Transfer function of a layer as drawn, without its range.
+const TransferFunction& functionOf(const Scene& scene, int layer) {
+    return transferFor(scene, channelOf(scene.layers[std::size_t(layer)]));
+}
+
+} // namespace
+
+RayPlan planRays(const Scene& scene, const volume::DatasetInfo& info) {
+    RayPlan plan;
+    for (std::size_t i = 0; i < scene.layers.size(); ++i) {
+        const Layer& layer = scene.layers[i];
+        const std::optional<int> channel = info.findChannel(channelOf(layer));
+        if (!layer.visible || !channel) continue;
+        const int field = fieldOf(plan, info, *channel);
+        if (const auto* volume = std::get_if<VolumeLayer>(&layer.technique))
+            plan.layers.push_back({int(i), RayStyle(int(volume->style)), field,
+                                   volume->shaded && volume->style == VolumeStyle::Composite});
+        else if (std::holds_alternative<IsoLayer>(layer.technique))
+            plan.layers.push_back({int(i), RayStyle::Iso, field, true});
+        else
+            plan.slices.push_back({int(i), field});
+    }
+    if (plan.empty() || !scene.selection.active()) return plan;
+    for (const Brush& brush : scene.selection.brushes)
+        for (const BrushInterval& interval : brush.intervals) {
+            const std::optional<int> channel = info.findChannel(interval.channel);
+            if (!brush.enabled || !channel) continue;
+            const int field = fieldOf(plan, info, *channel);
+            if (std::find(plan.brushFields.begin(), plan.brushFields.end(), field) == plan.brushFields.end())
+                plan.brushFields.push_back(field);
+        }
+    // An enabled brush without a known channel still decides: sample something.
+    if (plan.brushFields.empty()) plan.brushFields.push_back(0);
+    return plan;
+}
+
+ProgramRecipe rayRecipe(const RayPlan& plan, const Scene& scene, const volume::BrickGrid& grid, bool skip) {
+    const bool bcc = grid.lattice.kind == volume::LatticeKind::BCC;
+    const auto uses = [&](RayStyle style) {
+        return std::any_of(plan.layers.begin(), plan.layers.end(),
+                           [&](const RayLayer& layer) { return layer.style == style; });
+    };
+    ProgramRecipe recipe;
+    recipe.vertex = "screen.vert.glsl";
+    recipe.fragment = "raycast.frag.glsl";
+    recipe.slots["fetch"] = "slots/fetch_dense.glsl";
+    recipe.slots["skip"] = skip ? "slots/skip_distance.glsl" : "slots/skip_none.glsl";
+    recipe.slots["reconstruct"] = !bcc                                         ? "slots/recon_cc_linear.glsl"
+                                  : scene.render.filter == Filter::Tetrahedral ? "slots/recon_bcc_tetrahedral.glsl"
+                                                                               : "slots/recon_bcc_average.glsl";
+    const auto define = [&](const char* name, const std::string& value) { recipe.defines.emplace_back(name, value); };
+    define("FIELDS", std::to_string(plan.fields.size()));
+    define("FIELD_COVERAGE", join(plan.fields, [](const BoundField& field) { return field.encoding.coverage; }));
+    define("FIELD_NEAREST", join(plan.fields, [](const BoundField& field) { return field.categorical; }));
+    define("LAYERS", std::to_string(plan.layers.size()));
+    define("LAYER_STYLES", join(plan.layers, [](const RayLayer& layer) { return int(layer.style); }));
+    define("LAYER_FIELDS", join(plan.layers, [](const RayLayer& layer) { return layer.field; }));
+    define("LAYER_SHADED", join(plan.layers, [](const RayLayer& layer) { return layer.shaded; }));
+    define("SLICES", std::to_string(plan.slices.size()));
+    define("SLICE_FIELDS", join(plan.slices, [](const SliceUse& slice) { return slice.field; }));
+    define("BRUSH_FIELDS", std::to_string(plan.brushFields.size()));
+    define("BRUSH_FIELD_LIST", join(plan.brushFields, [](int field) { return field; }));
+    define("HAS_ISO", uses(RayStyle::Iso) ? "1" : "0");
+    define("HAS_COMPOSITE", uses(RayStyle::Composite) ? "1" : "0");
+    define("HAS_PROJECTION", uses(RayStyle::Maximum) || uses(RayStyle::XRay) ? "1" : "0");
+    define("TABLE_SIZE", std::to_string(kTableSize));
+    define("HALO", std::to_string(kHalo));
+    define("REFERENCE_LENGTHS", std::to_string(1 / kReferenceLength));
+    return recipe;
+}
+
+std::vector<glm::vec4> transferTables(const RayPlan& plan, const Scene& scene) {
+    std::vector<glm::vec4> table;
+    const auto add = [&](int layer) {
+        const TransferFunction& function = functionOf(scene, layer);
+        for (int i = 0; i < kTableSize; ++i) {
+            const glm::dvec4 at = evaluate(function, {0, 1}, double(i) / (kTableSize - 1));
+            table.emplace_back(glm::vec3(linearFromSrgb(glm::dvec3(at))), float(at.a));
+        }
+    };
+    for (const RayLayer& layer : plan.layers) add(layer.layer);
+    for (const SliceUse& slice : plan.slices) add(slice.layer);
+    return table;
+}
+
+namespace {
+
+void setCamera(const Program& program, const Scene& scene, double aspect) {
+    const Ray middle = cameraRay(scene.camera, aspect, {0, 0});
+    const Ray right = cameraRay(scene.camera, aspect, {1, 0}), up = cameraRay(scene.camera, aspect, {0, 1});
+    // Directions scaled to reach the same plane are linear in the picture.
+    const auto onPlane = [&](glm::dvec3 d) { return d / glm::dot(d, middle.direction) - middle.direction; };
+    program.set("rayOrigin", glm::vec3(middle.origin));
+    program.set("rayOriginX", glm::vec3(right.origin - middle.origin));
+    program.set("rayOriginY", glm::vec3(up.origin - middle.origin));
+    program.set("rayDirection", glm::vec3(middle.direction));
+    program.set("rayDirectionX", glm::vec3(onPlane(right.direction)));
+    program.set("rayDirectionY", glm::vec3(onPlane(up.direction)));
+    program.set("rayBegin", scene.camera.projection == Projection::Perspective ? 0.0f : -1e6f);
+}
+
+void setLayers(const Program& program, const RayPlan& plan, const Scene& scene, const volume::DatasetInfo& info,
+               const WorldFrame& frame) {
+    std::vector<glm::vec4> maps, slices, planes;
+    std::vector<glm::vec3> colors;
+    for (const RayLayer& use : plan.layers) {
+        const Layer& layer = scene.layers[std::size_t(use.layer)];
+        const BoundField& field = plan.fields[std::size_t(use.field)];
+        if (const auto* iso = std::get_if<IsoLayer>(&layer.technique)) {
+            maps.emplace_back(1, 0, toTexel(field, iso->value), iso->opacity);
+            colors.emplace_back(linearFromSrgb(glm::dvec3(iso->color)));
+        } else {
+            const auto& volume = std::get<VolumeLayer>(layer.technique);
+            maps.emplace_back(transferMap(field, scene, volume.channel, info), volume.density, 1);
+            colors.emplace_back(1);
+        }
+    }
+    for (const SliceUse& use : plan.slices) {
+        const auto& slice = std::get<SliceLayer>(scene.layers[std::size_t(use.layer)].technique);
+        const Plane plane = slicePlane(slice, frame, scene.cursor);
+        planes.emplace_back(plane.normal, plane.offset);
+        slices.emplace_back(transferMap(plan.fields[std::size_t(use.field)], scene, slice.channel, info),
+                            slice.contours, slice.opacity);
+    }
+    program.set("layerMap", maps);
+    program.set("layerColor", colors);
+    program.set("slicePlane", planes);
+    program.set("sliceMap", slices);
+}
+
+void setBrushes(const Program& program, const RayPlan& plan, const Scene& scene, const volume::DatasetInfo& info) {
+    std::vector<glm::ivec2> meanings;
+    std::vector<glm::vec3> intervals;
+    for (const Brush& brush : scene.selection.brushes) {
+        if (!brush.enabled || plan.brushFields.empty()) continue;
+        const std::size_t first = meanings.size();
+        for (const BrushInterval& interval : brush.intervals) {
+            const std::optional<int> channel = info.findChannel(interval.channel);
+            int use = -1;
+            for (std::size_t i = 0; channel && i < plan.brushFields.size(); ++i)
+                if (plan.fields[std::size_t(plan.brushFields[i])].channel == *channel) use = int(i);
+            if (use < 0) { // an unknown channel has no value anywhere: never holds
+                meanings.emplace_back(0, 0);
+                intervals.emplace_back(1e30f, -1e30f, 1e30f);
+                continue;
+            }
+            const BoundField& field = plan.fields[std::size_t(plan.brushFields[std::size_t(use)])];
+            // Labels are integers: a little room, so that [1, 1] means the label 1 in float too.
+            const double room = field.categorical ? 0.25 : 0;
+            const double soft = interval.soft / field.encoding.scale;
+            meanings.emplace_back(use, 0);
+            intervals.emplace_back(toTexel(field, interval.lo - room), toTexel(field, interval.hi + room),
+                                   soft > 1e-30 ? 1 / soft : 1e30);
+        }
+        if (meanings.size() == first) { // no interval: holds everywhere
+            meanings.emplace_back(-1, 0);
+            intervals.emplace_back(0);
+        }
+        meanings[first].y |= 1;
+        meanings.back().y |= 2 | (brush.inverted ? 4 : 0);
+    }
+    constexpr std::size_t kMaxIntervals = 32; // MAX_INTERVALS in lib/bindings.glsl
+    if (meanings.size() > kMaxIntervals) {
+        meanings.resize(kMaxIntervals);
+        intervals.resize(kMaxIntervals);
+    }
+    program.set("intervalCount", int(meanings.size()));
+    program.set("intervalMeaning", std::span<const glm::ivec2>(meanings));
+    program.set("interval", intervals);
+    program.set("combineAny", scene.selection.combine == Combine::Any ? 1 : 0);
+    program.set("context", glm::vec2(scene.selection.contextOpacity, scene.selection.contextSaturation));
+}
+
+void setFields(const Program& program, const RayPlan& plan, const volume::BrickGrid& grid) {
+    std::vector<glm::vec3> scales, offsets, odds;
+    std::vector<int> levels, units;
+    for (const BoundField& field : plan.fields) {
+        // Texel i of level l covers the sample at cell i * 2^l + phase; its centre is at i + halo + 1/2 in the texture.
+        const double step = double(1 << field.level);
+        const glm::dvec3 size(field.textureSize);
+        scales.emplace_back(1.0 / step / size);
+        offsets.emplace_back((kHalo + 0.5 - grid.levelPhase(field.level) / step) / size);
+        odds.emplace_back(-0.5 / step / size);
+        levels.push_back(field.level);
+        units.push_back(int(units.size()));
+    }
+    program.set("fieldTexture", units);
+    program.set("fieldScale", scales);
+    program.set("fieldOffset", offsets);
+    program.set("fieldOdd", odds);
+    program.set("fieldLevel", levels);
+    program.set("transferTable", int(plan.fields.size()));
+    program.set("blockDistance", int(plan.fields.size()) + 1);
+}
+
+} // namespace
+
+void setRayUniforms(const Program& program, const RayPlan& plan, const Scene& scene, const volume::DatasetInfo& info,
+                    const volume::BrickGrid& grid, double aspect, double stepFactor) {
+    const WorldFrame frame = worldFrame(info.bounds, scene.stretch);
+    const glm::dvec3 cellsPerWorld = 1.0 / (frame.scale * grid.lattice.spacing);
+    const RenderParams& render = scene.render;
+    setCamera(program, scene, aspect);
+    setFields(program, plan, grid);
+    setLayers(program, plan, scene, info, frame);
+    setBrushes(program, plan, scene, info);
+    program.set("halfSize", glm::vec3(frame.halfSize));
+    program.set("worldCell", glm::vec3(worldCell(grid.lattice, frame)));
+    program.set("stepVoxels", float(render.stepVoxels * stepFactor));
+    program.set("cellsPerWorld", glm::vec3(cellsPerWorld));
+    program.set("cellsOffset", glm::vec3((-frame.offset / frame.scale - grid.lattice.origin) / grid.lattice.spacing));
+    program.set("gradientDelta", float(gradientDelta(grid.lattice.kind)));
+    program.set("toLight", glm::vec3(lightDirection(render, scene.camera)));
+    program.set("light", glm::vec4(render.ambient, render.diffuse, render.specular, render.shininess));
+    if (!plan.fields.empty()) { // block grid of the first field; see blockDistances
+        const double step = double(1 << plan.fields[0].level);
+        program.set("blockScale", glm::vec3(float(1 / step / kBlockTexels)));
+        program.set("blockOffset", glm::vec3(float(-grid.levelPhase(plan.fields[0].level) / step / kBlockTexels)));
+    }
+}
+
+namespace {
+
+/// Whether some texel value between lo and hi gets opacity from a transfer function; asks a running maximum free table.
+bool anyOpacity(const std::vector<float>& opacity, glm::dvec2 map, float lo, float hi) {
+    const auto place = [&](double texel) { return std::clamp(texel * map.x + map.y, 0.0, 1.0) * (kTableSize - 1); };
+    double a = place(lo), b = place(hi);
+    if (a > b) std::swap(a, b);
+    for (auto i = std::size_t(std::floor(a)); i <= std::size_t(std::ceil(b)); ++i)
+        if (opacity[i] > 0) return true;
+    return false;
+}
+
+/// Distances by one pass per axis: min over the line of max(|dx|, distance) is separable for the Chebyshev metric.
+void spread(std::vector<std::uint8_t>& distance, glm::ivec3 count) {
+    const std::size_t strides[] = {1, std::size_t(count.x), std::size_t(count.x) * std::size_t(count.y)};
+    // Two chamfer sweeps over all 26 neighbours give the exact Chebyshev distance.
+    const auto relax = [&](int x, int y, int z, bool forward) {
+        const std::size_t at = std::size_t(x) + strides[1] * std::size_t(y) + strides[2] * std::size_t(z);
+        int best = distance[at];
+        for (int dz = -1; dz <= 1 && best > 0; ++dz)
+            for (int dy = -1; dy <= 1; ++dy)
+                for (int dx = -1; dx <= 1; ++dx) {
+                    const int order = dz * 9 + dy * 3 + dx;
+                    if (forward ? order >= 0 : order <= 0) continue;
+                    const int nx = x + dx, ny = y + dy, nz = z + dz;
+                    if (nx < 0 || ny < 0 || nz < 0 || nx >= count.x || ny >= count.y || nz >= count.z) continue;
+                    best = std::min(
+                        best,
+                        1 + distance[std::size_t(nx) + strides[1] * std::size_t(ny) + strides[2] * std::size_t(nz)]);
+                }
+        distance[at] = std::uint8_t(std::min(best, 255));
+    };
+    for (int z = 0; z < count.z; ++z)
+        for (int y = 0; y < count.y; ++y)
+            for (int x = 0; x < count.x; ++x) relax(x, y, z, true);
+    for (int z = count.z - 1; z >= 0; --z)
+        for (int y = count.y - 1; y >= 0; --y)
+            for (int x = count.x - 1; x >= 0; --x) relax(x, y, z, false);
+}
+
+} // namespace
+
+std::optional<BlockDistances> blockDistances(const RayPlan& plan, const Scene& scene, const volume::DatasetInfo& info) {
+    if (plan.layers.empty()) return std::nullopt;
+    const BoundField& reference = plan.fields[0];
+    for (const RayLayer& use : plan.layers) {
+        const BoundField& field = plan.fields[std::size_t(use.field)];
+        if (!field.blocks || field.level != reference.level || !reference.blocks) return std::nullopt;
+    }
+    BlockDistances out;
+    out.count = reference.blocks->count;
+    const std::size_t total = reference.blocks->min.size();
+    out.distance.assign(total, 255);
+    for (const RayLayer& use : plan.layers) {
+        const BoundField& field = plan.fields[std::size_t(use.field)];
+        const Layer& layer = scene.layers[std::size_t(use.layer)];
+        const BlockRanges& blocks = *field.blocks;
+        std::vector<float> opacity;
+        glm::dvec2 map{0};
+        double value = 0;
+        if (use.style == RayStyle::Iso) {
+            value = toTexel(field, std::get<IsoLayer>(layer.technique).value);
+        } else {
+            map = transferMap(field, scene, channelOf(layer), info);
+            for (int i = 0; i < kTableSize; ++i)
+                opacity.push_back(
+                    float(evaluate(functionOf(scene, use.layer), {0, 1}, double(i) / (kTableSize - 1)).a));
+        }
+        for (std::size_t i = 0; i < total; ++i) {
+            if (!(blocks.min[i] <= blocks.max[i])) continue;
+            // Rounding of the texture and of its interpolation.
+            const float slack = 1e-4f, lo = blocks.min[i] - slack, hi = blocks.max[i] + slack;
+            bool shows = true;
+            if (use.style == RayStyle::Iso) shows = lo <= value && value <= hi;
+            if (use.style == RayStyle::Composite) shows = anyOpacity(opacity, map, lo, hi);
+            if (shows) out.distance[i] = 0;
+        }
+    }
+    std::size_t occupied = 0;
+    out.begin = out.count;
+    for (std::size_t i = 0; i < total; ++i)
+        if (out.distance[i] == 0) {
+            ++occupied;
+            const glm::ivec3 at(int(i % std::size_t(out.count.x)),
+                                int(i / std::size_t(out.count.x) % std::size_t(out.count.y)),
+                                int(i / std::size_t(out.count.x) / std::size_t(out.count.y)));
+            out.begin = glm::min(out.begin, at);
+            out.end = glm::max(out.end, at + 1);
+        }
+    out.occupied = total ? double(occupied) / double(total) : 1;
+    spread(out.distance, out.count);
+    return out;
+}
+
+} // namespace tessera::vis
