@@ -1,15 +1,17 @@
 #include "volume/synthetic/models.h"
 
 #include "volume/error.h"
+#include "volume/synthetic/fuel_cell.h"
 #include "volume/synthetic/marschner_lobb.h"
 
 namespace tessera::volume {
 
 std::vector<std::string> modelNames() {
-    return {"marschner-lobb"};
+    return {"fuel-cell", "marschner-lobb"};
 }
 
 Dataset makeModel(const std::string& name, const std::map<std::string, double>& settings, const Progress& progress) {
+    if (name == "fuel-cell") return makeFuelCell(settings, progress);
     if (name == "marschner-lobb") {
         progress.advance(1, name);
         return makeMarschnerLobb(settings);

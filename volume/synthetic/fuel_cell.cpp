@@ -1,0 +1,272 @@
+#include "volume/synthetic/fuel_cell.h"
+
+#include "volume/parallel.h"
+#include "volume/synthetic/fuel_cell_solver.h"
+#include "volume/synthetic/settings.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <sstream>
+
+namespace tessera::volume {
+
+namespace {
+
+using cell::CellGrid;
+using cell::FuelCellSolver;
+using cell::GasSpace;
+
+enum { kO2, kH2, kH2O, kPressure, kTemperature, kVelocity, kRegion, kParameters };
+
+/// Solved values of one time in single precision: temperature of all cells, and of each gas space reactant, water,
+/// pressure and the three components of the velocity (cells of the space, land included).
+struct Frame {
+    std::vector<float> temperature;
+    std::array<std::array<std::vector<float>, 6>, 2> gas;
+};
+
+/// A data set's worth of frames and what is needed to put them on the grid asked for.
+struct Solution {
+    CellGrid grid;  ///< what was solved
+    CellGrid shown; ///< what was asked for
+    Lattice lattice;
+    std::array<int, 2> yBegin{}, rows{}; ///< of the gas spaces, solved grid
+    std::vector<Frame> frames;
+    std::shared_ptr<const Mask> fuel, air, gases; ///< on the shown grid
+};
+
+bool inSpace(CellRegion region, int space) {
+    return space == 0 ? region == CellRegion::AnodeChannel || region == CellRegion::AnodeGdl
+                      : region == CellRegion::CathodeChannel || region == CellRegion::CathodeGdl;
+}
+
+Frame keep(const FuelCellSolver& solver) {
+    const CellGrid& g = solver.grid();
+    Frame frame;
+    frame.temperature.assign(solver.temperature().begin(), solver.temperature().end());
+    for (int which : {0, 1}) {
+        const GasSpace& space = which == 0 ? solver.fuel() : solver.air();
+        auto& out = frame.gas[std::size_t(which)];
+        out[0].assign(space.reactant.begin(), space.reactant.end());
+        out[1].assign(space.water.begin(), space.water.end());
+        for (std::size_t part = 2; part < 6; ++part) out[part].resize(space.pressure.size());
+        std::size_t p = 0;
+        for (int z = 0; z < g.nz; ++z)
+            for (int row = 0; row < space.rows; ++row)
+                for (int x = 0; x < g.nx; ++x, ++p) {
+                    out[2][p] = float(solver.settings().outletPressure + space.pressure[p]);
+                    const std::array<double, 3> u = space.velocity(g, x, row, z);
+                    for (std::size_t axis = 0; axis < 3; ++axis) out[3 + axis][p] = float(u[axis]);
+                }
+    }
+    return frame;
+}
+
+std::shared_ptr<const Mask> makeMask(const CellGrid& g, bool fuel, bool air) {
+    auto mask = std::make_shared<Mask>();
+    mask->reserve(std::size_t(g.nx) * std::size_t(g.ny) * std::size_t(g.nz));
+    for (int z = 0; z < g.nz; ++z)
+        for (int y = 0; y < g.ny; ++y)
+            for (int x = 0; x < g.nx; ++x)
+                mask->push_back((fuel && inSpace(g.region(x, y), 0)) || (air && inSpace(g.region(x, y), 1)));
+    return mask;
+}
+
+/// Where a shown sample lies between two solved ones, along one axis.
+struct Between {
+    int lo = 0, hi = 0;
+    double weight = 0; ///< of `hi`
+};
+
+std::vector<Between> between(int shown, int solved) {
+    std::vector<Between> result;
+    for (int i = 0; i < shown; ++i) {
+        const double at = std::clamp((i + 0.5) * solved / shown - 0.5, 0.0, double(solved - 1));
+        const int lo = std::min(int(at), std::max(solved - 2, 0));
+        result.push_back({lo, std::min(lo + 1, solved - 1), at - lo});
+    }
+    return result;
+}
+
+/// Puts the values of some rows of the solved grid on the shown one, linearly among the cells that are `inside`; where
+/// none of the eight around is, the nearest row's of the space is taken.
+template <class Inside>
+void spread(const Solution& s, std::span<const float> values, int yBegin, int rows, Inside&& inside,
+            std::span<float> out) {
+    const auto xs = between(s.shown.nx, s.grid.nx), ys = between(s.shown.ny, s.grid.ny),
+               zs = between(s.shown.nz, s.grid.nz);
+    const std::size_t row = std::size_t(s.grid.nx), plane = row * std::size_t(rows);
+    parallelFor(std::size_t(s.shown.nz), [&](std::size_t z) {
+        for (std::size_t y = 0; y < ys.size(); ++y)
+            for (std::size_t x = 0; x < xs.size(); ++x) {
+                const std::size_t to = (z * ys.size() + y) * xs.size() + x;
+                if (!inside(s.shown.region(int(x), int(y)))) continue;
+                double sum = 0, weights = 0;
+                for (int corner = 0; corner < 8; ++corner) {
+                    const auto pick = [&](const Between& b, int bit) { return corner & bit ? b.hi : b.lo; };
+                    const auto share = [&](const Between& b, int bit) {
+                        return corner & bit ? b.weight : 1 - b.weight;
+                    };
+                    const int cx = pick(xs[x], 1), cy = pick(ys[y], 2), cz = pick(zs[z], 4);
+                    // A weight that is never quite 0 lets a sample on the border still find its own space.
+                    const double weight = (share(xs[x], 1) + 1e-6) * (share(ys[y], 2) + 1e-6) * share(zs[z], 4);
+                    if (!inside(s.grid.region(cx, cy))) continue;
+                    sum += weight *
+                           double(values[std::size_t(cx) + row * std::size_t(cy - yBegin) + plane * std::size_t(cz)]);
+                    weights += weight;
+                }
+                if (weights > 0) {
+                    out[to] = float(sum / weights);
+                    continue;
+                }
+                const int cx = std::clamp(xs[x].lo, s.grid.channelBegin, s.grid.channelEnd - 1);
+                const int cy = std::clamp(ys[y].lo, yBegin, yBegin + rows - 1);
+                out[to] = values[std::size_t(cx) + row * std::size_t(cy - yBegin) + plane * std::size_t(zs[z].lo)];
+            }
+    });
+}
+
+Field regionField(const Solution& s) {
+    Field field = makeField(s.lattice, ScalarType::U8);
+    auto out = field.as<std::uint8_t>();
+    std::size_t p = 0;
+    for (int z = 0; z < s.shown.nz; ++z)
+        for (int y = 0; y < s.shown.ny; ++y)
+            for (int x = 0; x < s.shown.nx; ++x) out[p++] = std::uint8_t(s.shown.region(x, y));
+    return field;
+}
+
+Field loadField(const Solution& s, int parameter, int component, int time) {
+    if (parameter == kRegion) return regionField(s);
+    Field field = makeField(s.lattice, ScalarType::F32);
+    const Frame& frame = s.frames.at(std::size_t(time));
+    if (parameter == kTemperature) {
+        spread(
+            s, frame.temperature, 0, s.grid.ny, [](CellRegion) { return true; }, field.as<float>());
+        return field;
+    }
+    const std::size_t part = parameter == kPressure   ? 2
+                             : parameter == kVelocity ? 3 + std::size_t(component)
+                             : parameter == kH2O      ? 1
+                                                      : 0;
+    for (int space : {0, 1}) {
+        if ((parameter == kO2 && space == 0) || (parameter == kH2 && space == 1)) continue;
+        spread(
+            s, frame.gas[std::size_t(space)][part], s.yBegin[std::size_t(space)], s.rows[std::size_t(space)],
+            [space](CellRegion region) { return inSpace(region, space); }, field.as<float>());
+    }
+    field.mask = parameter == kO2 ? s.air : parameter == kH2 ? s.fuel : s.gases;
+    return field;
+}
+
+std::vector<Parameter> describeParameters() {
+    std::vector<Parameter> parameters(kParameters);
+    const auto set = [&](int index, const char* name, const char* unit) {
+        parameters[std::size_t(index)].name = name;
+        parameters[std::size_t(index)].unit = unit;
+    };
+    set(kO2, "O2", "mol/m3"), set(kH2, "H2", "mol/m3"), set(kH2O, "H2O", "mol/m3");
+    set(kPressure, "p", "Pa"), set(kTemperature, "T", "K"), set(kVelocity, "U", "m/s"), set(kRegion, "region", "");
+    parameters[kVelocity].components = 3;
+    Parameter& region = parameters[kRegion];
+    region.type = ScalarType::U8;
+    region.categorical = true;
+    region.labels = {{0, "land"},     {1, "anode channel"}, {2, "anode GDL"},
+                     {3, "membrane"}, {4, "cathode GDL"},   {5, "cathode channel"}};
+    region.ranges = {{0, 5}};
+    return parameters;
+}
+
+struct Widen {
+    Range range{1e300, -1e300};
+    void operator()(double value) { range = {std::min(range.lo, value), std::max(range.hi, value)}; }
+};
+
+/// Ranges over all frames of the solved grid, present cells only.
+void fillRanges(const Solution& s, std::vector<Parameter>& parameters) {
+    std::array<Widen, kParameters> scalar;
+    std::array<Widen, 4> velocity;
+    for (const Frame& frame : s.frames) {
+        for (float value : frame.temperature) scalar[kTemperature](double(value));
+        for (std::size_t space : {0u, 1u}) {
+            const auto& gas = frame.gas[space];
+            std::size_t p = 0;
+            for (int z = 0; z < s.grid.nz; ++z)
+                for (int row = 0; row < s.rows[space]; ++row)
+                    for (int x = 0; x < s.grid.nx; ++x, ++p) {
+                        if (!inSpace(s.grid.region(x, s.yBegin[space] + row), int(space))) continue;
+                        scalar[space == 0 ? kH2 : kO2](double(gas[0][p]));
+                        scalar[kH2O](double(gas[1][p]));
+                        scalar[kPressure](double(gas[2][p]));
+                        double square = 0;
+                        for (std::size_t axis = 0; axis < 3; ++axis) {
+                            velocity[axis](double(gas[3 + axis][p]));
+                            square += double(gas[3 + axis][p]) * double(gas[3 + axis][p]);
+                        }
+                        velocity[3](std::sqrt(square));
+                    }
+        }
+    }
+    for (std::size_t index : {kO2, kH2, kH2O, kPressure, kTemperature})
+        parameters[index].ranges = {scalar[index].range};
+    for (const Widen& component : velocity) parameters[kVelocity].ranges.push_back(component.range);
+}
+
+} // namespace
+
+FuelCellSettings fuelCellSettings(const std::map<std::string, double>& given) {
+    return settingsFrom<FuelCellSettings>(given, "fuel-cell");
+}
+
+Dataset makeFuelCell(const std::map<std::string, double>& given, const Progress& progress) {
+    const FuelCellSettings shown = fuelCellSettings(given);
+    // Larger axes are refined from this: memory and time of the planes' factors grow with the fourth power of a side.
+    FuelCellSettings solved = shown;
+    solved.nx = std::min(shown.nx, 44), solved.ny = std::min(shown.ny, 65), solved.nz = std::min(shown.nz, 256);
+
+    auto solution = std::make_shared<Solution>();
+    solution->grid = CellGrid(solved.nx, solved.ny, solved.nz);
+    solution->shown = CellGrid(shown.nx, shown.ny, shown.nz);
+    const CellGrid& g = solution->shown;
+    solution->lattice.size = {g.nx, g.ny, g.nz};
+    solution->lattice.spacing = {g.dx, g.dy, g.dz};
+    solution->lattice.origin = solution->lattice.spacing * 0.5;
+    solution->fuel = makeMask(g, true, false);
+    solution->air = makeMask(g, false, true);
+    solution->gases = makeMask(g, true, true);
+
+    FuelCellSolver solver(solved);
+    solution->yBegin = {solver.fuel().yBegin, solver.air().yBegin};
+    solution->rows = {solver.fuel().rows, solver.air().rows};
+    solver.settle(shown.voltageBefore, progress.part(0, 0.3));
+    std::vector<double> times;
+    for (int time = 0; time < shown.times; ++time) {
+        progress.advance(0.3 + 0.7 * time / shown.times, "time " + std::to_string(time));
+        const double now = time * shown.interval;
+        if (time > 0)
+            solver.step(shown.interval, now > shown.stepTime * (1 + 1e-12) ? shown.voltageAfter : shown.voltageBefore);
+        times.push_back(now);
+        solution->frames.push_back(keep(solver));
+    }
+
+    Dataset dataset;
+    DatasetInfo& info = dataset.info;
+    info.name = "fuel-cell";
+    info.lattice = solution->lattice;
+    info.bounds = {solution->lattice.position({0, 0, 0}), solution->lattice.position({g.nx - 1, g.ny - 1, g.nz - 1})};
+    info.parameters = describeParameters();
+    fillRanges(*solution, info.parameters);
+    info.times = times;
+    std::ostringstream text;
+    text << "built-in PEM fuel cell, " << solved.nx << " x " << solved.ny << " x " << solved.nz << " volumes solved; "
+         << shown.voltageBefore << " V, after " << shown.stepTime << " s " << shown.voltageAfter << " V";
+    info.provenance = text.str();
+    dataset.load = [solution](int parameter, int component, int time) {
+        return loadField(*solution, parameter, component, time);
+    };
+    progress.advance(1);
+    return dataset;
+}
+
+} // namespace tessera::volume

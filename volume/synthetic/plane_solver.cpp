@@ -1,0 +1,216 @@
+#include "volume/synthetic/plane_solver.h"
+
+#include "volume/parallel.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tessera::volume {
+
+StencilSystem::StencilSystem(int cellsX, int cellsY, int cellsZ) : nx(cellsX), ny(cellsY), nz(cellsZ) {
+    for (auto* part : {&diag, &rhs, &west, &east, &south, &north, &down, &up}) part->assign(count(), 0.0);
+}
+
+void StencilSystem::clear() {
+    for (auto* part : {&diag, &rhs, &west, &east, &south, &north, &down, &up})
+        std::fill(part->begin(), part->end(), 0.0);
+}
+
+namespace {
+
+bool samePlane(const StencilSystem& s, std::size_t a, std::size_t b) {
+    const std::size_t n = s.plane();
+    for (const auto* part : {&s.diag, &s.west, &s.east, &s.south, &s.north})
+        if (!std::equal(part->begin() + long(a * n), part->begin() + long((a + 1) * n), part->begin() + long(b * n)))
+            return false;
+    return true;
+}
+
+// Eliminates a banded matrix in place, columns of 2 band + 1 entries, the diagonal in the middle.
+void factorBand(std::vector<float>& columns, int n, int band) {
+    const std::size_t stride = std::size_t(2 * band + 1);
+    for (int k = 0; k < n; ++k) {
+        float* pivot = columns.data() + std::size_t(k) * stride + band;
+        const int below = std::min(band, n - 1 - k);
+        const float inverse = 1.0f / pivot[0];
+        pivot[0] = inverse;
+        for (int i = 1; i <= below; ++i) pivot[i] *= inverse;
+        for (int j = 1; j <= below; ++j) {
+            float* column = columns.data() + std::size_t(k + j) * stride + band - j;
+            const float factor = column[0];
+            if (factor == 0.0f) continue;
+            for (int i = 1; i <= below; ++i) column[i] -= factor * pivot[i];
+        }
+    }
+}
+
+double dot(std::span<const double> a, std::span<const double> b) {
+    // Four running sums in fixed places: quicker than one, and the same on any machine.
+    double sum[4] = {0, 0, 0, 0};
+    const std::size_t n = a.size();
+    std::size_t i = 0;
+    for (; i + 4 <= n; i += 4)
+        for (std::size_t k = 0; k < 4; ++k) sum[k] += a[i + k] * b[i + k];
+    for (; i < n; ++i) sum[0] += a[i] * b[i];
+    return (sum[0] + sum[1]) + (sum[2] + sum[3]);
+}
+
+void multiply(const StencilSystem& s, std::span<const double> x, std::span<double> out) {
+    const std::size_t row = std::size_t(s.nx), plane = s.plane(), count = s.count();
+    parallelRanges(
+        std::size_t(s.nz),
+        [&](std::size_t zBegin, std::size_t zEnd) {
+            for (std::size_t p = zBegin * plane; p < zEnd * plane; ++p) {
+                double value = s.diag[p] * x[p];
+                if (p >= 1) value -= s.west[p] * x[p - 1];
+                if (p + 1 < count) value -= s.east[p] * x[p + 1];
+                if (p >= row) value -= s.south[p] * x[p - row];
+                if (p + row < count) value -= s.north[p] * x[p + row];
+                if (p >= plane) value -= s.down[p] * x[p - plane];
+                if (p + plane < count) value -= s.up[p] * x[p + plane];
+                out[p] = value;
+            }
+        },
+        32);
+}
+
+} // namespace
+
+PlanePreconditioner::PlanePreconditioner(const StencilSystem& s) {
+    band_ = std::min(s.nx, s.ny);
+    transposed_ = s.ny < s.nx;
+    const std::size_t nz = std::size_t(s.nz), plane = s.plane(), stride = std::size_t(2 * band_ + 1);
+
+    std::vector<std::size_t> planes; // the planes that get a factor of their own
+    factorOf_.resize(nz);
+    for (std::size_t z = 0; z < nz; ++z) {
+        if (planes.empty() || !samePlane(s, planes.back(), z)) planes.push_back(z);
+        factorOf_[z] = planes.size() - 1;
+    }
+    factors_.resize(planes.size());
+    parallelFor(planes.size(), [&](std::size_t f) {
+        std::vector<float>& columns = factors_[f];
+        columns.assign(plane * stride, 0.0f);
+        const std::size_t base = planes[f] * plane;
+        const auto at = [&](std::size_t row, std::size_t column) -> float& {
+            return columns[column * stride + std::size_t(band_) + row - column];
+        };
+        for (int y = 0; y < s.ny; ++y)
+            for (int x = 0; x < s.nx; ++x) {
+                const std::size_t p = base + std::size_t(x + s.nx * y);
+                const std::size_t row = std::size_t(transposed_ ? y + s.ny * x : x + s.nx * y);
+                const std::size_t stepX = std::size_t(transposed_ ? s.ny : 1),
+                                  stepY = std::size_t(transposed_ ? 1 : s.nx);
+                // Rows are scaled by their diagonal, so that single precision is enough for any unit.
+                const double scale = 1 / s.diag[p];
+                at(row, row) = 1.0f;
+                if (x > 0) at(row, row - stepX) = float(-s.west[p] * scale);
+                if (x + 1 < s.nx) at(row, row + stepX) = float(-s.east[p] * scale);
+                if (y > 0) at(row, row - stepY) = float(-s.south[p] * scale);
+                if (y + 1 < s.ny) at(row, row + stepY) = float(-s.north[p] * scale);
+            }
+        factorBand(columns, int(plane), band_);
+    });
+
+    // Plane sums: one unknown per plane.
+    lower_.assign(nz, 0.0), center_.assign(nz, 0.0), upper_.assign(nz, 0.0);
+    for (std::size_t z = 0; z < nz; ++z) {
+        for (std::size_t p = z * plane; p < (z + 1) * plane; ++p) {
+            if (s.west[p] + s.east[p] + s.south[p] + s.north[p] + s.down[p] + s.up[p] == 0) continue;
+            center_[z] += s.diag[p] - s.west[p] - s.east[p] - s.south[p] - s.north[p];
+            lower_[z] += s.down[p];
+            upper_[z] += s.up[p];
+        }
+        if (z > 0) center_[z] -= lower_[z] * upper_[z - 1] / center_[z - 1];
+    }
+}
+
+void PlanePreconditioner::solvePlane(int z, std::span<float> v) const {
+    const std::vector<float>& columns = factors_[factorOf_[std::size_t(z)]];
+    const int n = int(v.size()), band = band_;
+    const std::size_t stride = std::size_t(2 * band + 1);
+    for (int k = 0; k < n; ++k) {
+        const float* column = columns.data() + std::size_t(k) * stride + band;
+        const float value = v[std::size_t(k)];
+        const int below = std::min(band, n - 1 - k);
+        float* target = v.data() + k;
+        for (int i = 1; i <= below; ++i) target[i] -= value * column[i];
+    }
+    for (int k = n - 1; k >= 0; --k) {
+        const float* column = columns.data() + std::size_t(k) * stride + band;
+        const float value = v[std::size_t(k)] *= column[0];
+        const int above = std::min(band, k);
+        float* target = v.data() + k;
+        for (int i = 1; i <= above; ++i) target[-i] -= value * column[-i];
+    }
+}
+
+void PlanePreconditioner::apply(const StencilSystem& s, std::span<const double> residual,
+                                std::span<double> result) const {
+    const std::size_t nz = std::size_t(s.nz), plane = s.plane();
+    std::vector<double> coarse(nz, 0.0);
+    for (std::size_t z = 0; z < nz; ++z) {
+        for (std::size_t p = z * plane; p < (z + 1) * plane; ++p) coarse[z] += residual[p];
+        if (z > 0) coarse[z] += lower_[z] / center_[z - 1] * coarse[z - 1];
+    }
+    for (std::size_t z = nz; z-- > 0;)
+        coarse[z] = (coarse[z] + (z + 1 < nz ? upper_[z] * coarse[z + 1] : 0.0)) / center_[z];
+    for (std::size_t z = 0; z < nz; ++z) std::fill_n(result.begin() + long(z * plane), plane, coarse[z]);
+
+    std::vector<float> values(plane);
+    const auto relax = [&](std::size_t z) {
+        for (std::size_t q = 0; q < plane; ++q) {
+            const std::size_t p = z * plane + q;
+            double value = residual[p];
+            if (z > 0) value += s.down[p] * result[p - plane];
+            if (z + 1 < nz) value += s.up[p] * result[p + plane];
+            const std::size_t to =
+                transposed_ ? (q % std::size_t(s.nx)) * std::size_t(s.ny) + q / std::size_t(s.nx) : q;
+            values[to] = float(value / s.diag[p]);
+        }
+        solvePlane(int(z), values);
+        for (std::size_t q = 0; q < plane; ++q)
+            result[z * plane + q] =
+                double(values[transposed_ ? (q % std::size_t(s.nx)) * std::size_t(s.ny) + q / std::size_t(s.nx) : q]);
+    };
+    for (std::size_t z = 0; z < nz; ++z) relax(z);
+    for (std::size_t z = nz; z-- > 0;) relax(z);
+}
+
+int solve(const StencilSystem& s, const PlanePreconditioner& m, std::span<double> x, double tolerance,
+          int maxIterations) {
+    const std::size_t n = s.count();
+    std::vector<double> r(n), first(n), p(n, 0.0), v(n, 0.0), t(n), hat(n);
+    multiply(s, x, r);
+    for (std::size_t i = 0; i < n; ++i) r[i] = s.rhs[i] - r[i];
+    const double goal = tolerance * std::sqrt(dot(s.rhs, s.rhs));
+    if (std::sqrt(dot(r, r)) <= goal) return 0;
+    first = r;
+    double rho = 1, alpha = 1, omega = 1;
+    for (int iteration = 1; iteration <= maxIterations; ++iteration) {
+        const double next = dot(first, r);
+        if (next == 0 || omega == 0) break;
+        const double beta = next / rho * (alpha / omega);
+        rho = next;
+        for (std::size_t i = 0; i < n; ++i) p[i] = r[i] + beta * (p[i] - omega * v[i]);
+        m.apply(s, p, hat);
+        multiply(s, hat, v);
+        alpha = rho / dot(first, v);
+        for (std::size_t i = 0; i < n; ++i) {
+            x[i] += alpha * hat[i];
+            r[i] -= alpha * v[i];
+        }
+        if (std::sqrt(dot(r, r)) <= goal) return iteration;
+        m.apply(s, r, hat);
+        multiply(s, hat, t);
+        omega = dot(t, r) / dot(t, t);
+        for (std::size_t i = 0; i < n; ++i) {
+            x[i] += omega * hat[i];
+            r[i] -= omega * t[i];
+        }
+        if (std::sqrt(dot(r, r)) <= goal) return iteration;
+    }
+    return -1;
+}
+
+} // namespace tessera::volume
