@@ -1,9 +1,366 @@
 #include "codec/archive.h"
 
+#include "codec/brick_access.h"
+#include "codec/mapped_file.h"
+#include "volume/memory_source.h"
+#include "volume/parallel.h"
+
+#include <algorithm>
+#include <atomic>
+#include <bit>
+#include <cassert>
+#include <cmath>
+#include <cstring>
+#include <mutex>
+
 namespace tessera::codec {
 
+struct Archive::Impl {
+    std::string path;
+    MappedFile file;
+    Metadata metadata;
+    Index index;
+    std::vector<volume::Channel> channels;
+    std::size_t components = 0, bricks = 0;
+
+    explicit Impl(const std::string& name) : path(name), file(name) {}
+
+    const FrameRecord& frame(int parameter, int component, int time) const {
+        return index
+            .frames[std::size_t(time) * components + firstComponent(metadata.info, parameter) + std::size_t(component)];
+    }
+    /// The channel of a key; throws Error for a key outside the archive.
+    const volume::Channel& channelOf(const volume::BrickKey& key) const {
+        const glm::ivec3 count = metadata.grid.count();
+        bool inside = key.channel >= 0 && std::size_t(key.channel) < channels.size() && key.time >= 0 &&
+                      std::size_t(key.time) < metadata.info.times.size() && key.level >= 0 &&
+                      key.level < metadata.grid.levels;
+        for (int axis = 0; axis < 3; ++axis) inside = inside && key.index[axis] >= 0 && key.index[axis] < count[axis];
+        if (!inside) throw Error("no such brick", path);
+        return channels[std::size_t(key.channel)];
+    }
+    const volume::Parameter& parameter(int number) const { return metadata.info.parameters[std::size_t(number)]; }
+    std::span<const std::byte> segment(const Segment& segment) const;
+    std::vector<std::uint8_t> flags(const FrameRecord& frame, std::size_t brick) const;
+    DecodedBrick decode(const FrameRecord& frame, const BrickFormat& format, std::size_t brick, int level,
+                        std::span<const std::uint8_t> present) const;
+    volume::BrickSamples readComponent(int parameter, int component, const volume::BrickKey& key) const;
+    volume::BrickStats statsOf(int parameter, int component, const volume::BrickKey& key) const;
+};
+
+namespace {
+
+[[noreturn]] void damaged(const std::string& path, std::uint64_t offset, const std::string& what) {
+    throw Error(what, path, "byte " + std::to_string(offset));
+}
+
+std::span<const std::byte> checkedPart(std::span<const std::byte> bytes, std::uint64_t offset, std::uint64_t length,
+                                       std::uint64_t sum, const std::string& path, const char* what) {
+    const auto part = bytes.subspan(offset, length);
+    if (checksum(part) != sum) damaged(path, offset, std::string(what) + " is damaged (checksum)");
+    return part;
+}
+
+/// Bricks of a grid whose sizes come from a file.
+std::uint64_t checkedBrickCount(const volume::BrickGrid& grid, const std::string& path) {
+    const glm::ivec3 count = grid.count();
+    std::uint64_t bricks = 1;
+    for (int axis = 0; axis < 3; ++axis) {
+        bricks *= static_cast<std::uint64_t>(count[axis]);
+        if (bricks > std::uint64_t(1) << 40) throw Error("impossibly many bricks", path, "metadata /data/lattice/size");
+    }
+    return bricks;
+}
+
+} // namespace
+
+/// Bytes of a segment, once their checksum is found right.
+std::span<const std::byte> Archive::Impl::segment(const Segment& segment) const {
+    return checkedPart(file.bytes(), segment.offset, segment.length, segment.checksum, path, "a brick");
+}
+
+/// Flags of a brick at full resolution; empty where all samples are present.
+std::vector<std::uint8_t> Archive::Impl::flags(const FrameRecord& frame, std::size_t brick) const {
+    if (frame.mask < 0) return {};
+    const MaskBrick& record = index.masks[std::size_t(frame.mask)].bricks[brick];
+    const glm::ivec3 size = metadata.grid.brickSamples(brickIndex(metadata.grid, brick), 0);
+    const std::size_t count = std::size_t(size.x) * std::size_t(size.y) * std::size_t(size.z);
+    const std::uint64_t offset = record.segment.offset;
+    if (record.present > count) damaged(path, offset, "a mask counts more samples than its brick has");
+    const auto bytes = segment(record.segment);
+    if (record.present == 0 || record.present == count) {
+        if (!bytes.empty()) damaged(path, offset, "a uniform mask has bytes");
+        return record.present == 0 ? std::vector<std::uint8_t>(count, 0) : std::vector<std::uint8_t>();
+    }
+    if (bytes.empty()) damaged(path, offset, "a mask is missing");
+    const auto mode = static_cast<std::uint8_t>(bytes[0]);
+    const auto body = bytes.subspan(1);
+    Bytes bits((count + 7) / 8);
+    if (mode == 0 && body.size() == bits.size())
+        std::copy(body.begin(), body.end(), bits.begin());
+    else if (mode != 1 || decompress(body, bits) != DecodeStatus::Ok)
+        damaged(path, offset, "a mask cannot be decoded");
+    std::vector<std::uint8_t> flags(count);
+    std::size_t present = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+        flags[i] = static_cast<std::uint8_t>(static_cast<unsigned>(bits[i / 8]) >> (i % 8) & 1u);
+        present += flags[i];
+    }
+    if (present != record.present) damaged(path, offset, "a mask does not have the samples it counts");
+    return flags;
+}
+
+DecodedBrick Archive::Impl::decode(const FrameRecord& frame, const BrickFormat& format, std::size_t brick, int level,
+                                   std::span<const std::uint8_t> present) const {
+    std::vector<std::span<const std::byte>> segments;
+    for (int s = 0; s < format.levels - level; ++s)
+        segments.push_back(segment(frame.segments[std::size_t(s) * bricks + brick]));
+    DecodedBrick decoded;
+    const DecodeStatus status = decodeBrick(format, segments, level, present, decoded);
+    if (status != DecodeStatus::Ok)
+        damaged(path, frame.segments[(segments.size() - 1) * bricks + brick].offset, reason(status));
+    return decoded;
+}
+
+volume::BrickSamples Archive::Impl::readComponent(int number, int component, const volume::BrickKey& key) const {
+    const FrameRecord& record = frame(number, component, key.time);
+    const std::size_t brick = brickNumber(metadata.grid, key.index);
+    const BrickFormat format = brickFormat(metadata.grid, key.index, parameter(number).type, record);
+    const std::vector<std::uint8_t> fine = flags(record, brick);
+    DecodedBrick decoded = decode(record, format, brick, key.level, fine);
+
+    volume::BrickSamples out;
+    out.size = samplesAt(format, key.level);
+    out.values.resize(decoded.codes.size());
+    out.present = std::move(decoded.present);
+    for (std::size_t i = 0; i < out.values.size(); ++i)
+        out.values[i] =
+            static_cast<float>(record.valueOffset + record.valueScale * valueOf(record.numbers, decoded.codes[i]));
+    for (const ExactSample& exact : decoded.exact)
+        out.values[exact.index] =
+            static_cast<float>(record.valueOffset + record.valueScale * double(std::bit_cast<float>(exact.bits)));
+    const FrameBrick& range = record.bricks[brick];
+    for (std::size_t i = 0; i < out.values.size(); ++i) {
+        if (!std::isfinite(out.values[i])) {
+            if (out.present.empty()) out.present.assign(out.values.size(), 1);
+            out.present[i] = 0;
+        } else if (key.level > 0 && range.min <= range.max) {
+            out.values[i] = std::clamp(out.values[i], range.min, range.max);
+        }
+    }
+    return out;
+}
+
+volume::BrickStats Archive::Impl::statsOf(int number, int component, const volume::BrickKey& key) const {
+    const FrameRecord& record = frame(number, component, key.time);
+    const std::size_t brick = brickNumber(metadata.grid, key.index);
+    volume::BrickStats stats{record.bricks[brick].min, record.bricks[brick].max, 1};
+    if (record.mask >= 0) {
+        const glm::vec3 size(metadata.grid.brickSamples(key.index, 0));
+        stats.presentFraction = static_cast<float>(index.masks[std::size_t(record.mask)].bricks[brick].present) /
+                                (size.x * size.y * size.z);
+    }
+    return stats;
+}
+
+Archive::Archive(const std::string& path) : impl_(std::make_unique<Impl>(path)) {
+    Impl& impl = *impl_;
+    const auto bytes = impl.file.bytes();
+    const Header header = parseHeader(bytes, bytes.size(), path);
+    const auto json =
+        checkedPart(bytes, header.metadataOffset, header.metadataLength, header.metadataChecksum, path, "the metadata");
+    impl.metadata = metadataFromJson({reinterpret_cast<const char*>(json.data()), json.size()}, path);
+    impl.channels = impl.metadata.info.channels();
+    impl.components = componentCount(impl.metadata.info);
+    const auto index =
+        checkedPart(bytes, header.indexOffset, header.indexLength, header.indexChecksum, path, "the index");
+    const std::uint64_t bricks = checkedBrickCount(impl.metadata.grid, path);
+    impl.index = parseIndex(index, impl.metadata.info.times.size() * impl.components, bricks, impl.metadata.grid.levels,
+                            header.metadataOffset, path);
+    impl.bricks = bricks;
+    for (std::size_t f = 0; f < impl.index.frames.size(); ++f) {
+        const FrameRecord& frame = impl.index.frames[f];
+        std::size_t component = f % impl.components, number = 0;
+        while (component >= std::size_t(impl.metadata.info.parameters[number].components))
+            component -= std::size_t(impl.metadata.info.parameters[number++].components);
+        const bool isFloat = impl.metadata.info.parameters[number].type == volume::ScalarType::F32;
+        if (isFloat == (frame.numbers.kind == NumberKind::Integer) || (frame.mask < 0 && frame.keepsAbsent))
+            throw Error("a frame is coded in a way its type does not allow", path, "index");
+    }
+}
+
+Archive::~Archive() = default;
+
+const volume::DatasetInfo& Archive::info() const {
+    return impl_->metadata.info;
+}
+const volume::BrickGrid& Archive::grid() const {
+    return impl_->metadata.grid;
+}
+const Metadata& Archive::metadata() const {
+    return impl_->metadata;
+}
+const std::string& Archive::path() const {
+    return impl_->path;
+}
+std::uint64_t Archive::fileBytes() const {
+    return impl_->file.bytes().size();
+}
+int Archive::maskCount() const {
+    return static_cast<int>(impl_->index.masks.size());
+}
+std::uint64_t Archive::maskBytes() const {
+    std::uint64_t sum = 0;
+    for (const MaskRecord& mask : impl_->index.masks) sum += mask.length;
+    return sum;
+}
+std::uint64_t Archive::levelBytes(int level) const {
+    std::uint64_t sum = 0;
+    const std::size_t first = std::size_t(impl_->metadata.grid.levels - 1 - level) * impl_->bricks;
+    for (const FrameRecord& frame : impl_->index.frames)
+        for (std::size_t b = 0; b < impl_->bricks; ++b) sum += frame.segments[first + b].length;
+    return sum;
+}
+
+volume::BrickStats Archive::stats(const volume::BrickKey& key) const {
+    const volume::Channel& channel = impl_->channelOf(key);
+    if (!channel.magnitude) return impl_->statsOf(channel.parameter, channel.component, key);
+    // Two at a time: |(|(x, y)|, z)| = |(x, y, z)| for any number of components.
+    volume::BrickStats sum = impl_->statsOf(channel.parameter, 0, key);
+    const volume::BrickStats nothing{0, 0, 1};
+    for (int c = 1; c < channel.component; ++c)
+        sum = volume::magnitudeStats(sum, impl_->statsOf(channel.parameter, c, key), nothing);
+    return sum;
+}
+
+volume::BrickSamples Archive::read(const volume::BrickKey& key) const {
+    const volume::Channel& channel = impl_->channelOf(key);
+    if (!channel.magnitude) return impl_->readComponent(channel.parameter, channel.component, key);
+    const auto part = [&](int c) { return impl_->readComponent(channel.parameter, c, key); };
+    if (channel.component == 3) return volume::magnitude(part(0), part(1), part(2));
+    volume::BrickSamples sum = part(0), nothing;
+    nothing.size = sum.size;
+    nothing.values.resize(sum.values.size());
+    for (int c = 1; c < channel.component; ++c) sum = volume::magnitude(sum, part(c), nothing);
+    return sum;
+}
+
 std::shared_ptr<const volume::BrickSource> openArchive(const std::string& path) {
-    throw Error("archives cannot be read yet", path);
+    return std::make_shared<const Archive>(path);
+}
+
+volume::Field readField(const Archive& archive, int parameter, int component, int time) {
+    const Archive::Impl& impl = *archive.impl_;
+    const FrameRecord& frame = impl.frame(parameter, component, time);
+    volume::Field field = volume::makeField(impl.metadata.info.lattice, impl.parameter(parameter).type);
+    field.offset = frame.valueOffset;
+    field.scale = frame.valueScale;
+    volume::Mask mask(frame.mask < 0 ? 0 : field.count(), 1);
+    parallelFor(impl.bricks, [&](std::size_t brick) {
+        const glm::ivec3 at = brickIndex(impl.metadata.grid, brick);
+        const BrickFormat format = brickFormat(impl.metadata.grid, at, field.type, frame);
+        const std::vector<std::uint8_t> fine = impl.flags(frame, brick);
+        const DecodedBrick decoded = impl.decode(frame, format, brick, 0, fine);
+        volume::dispatch(field.type, [&]<class T>(T) {
+            std::vector<T> samples(decoded.codes.size());
+            for (std::size_t i = 0; i < samples.size(); ++i) samples[i] = sampleOf<T>(frame.numbers, decoded.codes[i]);
+            const auto put = [&](std::size_t i, std::uint32_t bits) {
+                if constexpr (std::same_as<T, float>)
+                    samples[i] = std::bit_cast<float>(bits);
+                else
+                    samples[i] = static_cast<T>(bits);
+            };
+            for (const ExactSample& exact : decoded.exact) put(exact.index, exact.bits);
+            // Absent samples: as stored, else a value that cannot be mistaken for data.
+            std::size_t next = 0;
+            for (std::size_t i = 0; i < fine.size(); ++i)
+                if (fine[i] == 0)
+                    put(i, frame.keepsAbsent ? decoded.absent[next++] : sizeof(T) == 4 ? 0x7fc00000u : 0u);
+            const auto out = field.as<T>();
+            forBrickRows(impl.metadata.grid, at, [&](std::size_t to, std::size_t from, std::size_t count) {
+                std::copy_n(samples.begin() + std::ptrdiff_t(from), count, out.begin() + std::ptrdiff_t(to));
+                if (!fine.empty())
+                    std::copy_n(fine.begin() + std::ptrdiff_t(from), count, mask.begin() + std::ptrdiff_t(to));
+            });
+        });
+    });
+    if (!mask.empty()) field.mask = std::make_shared<const volume::Mask>(std::move(mask));
+    return field;
+}
+
+/// The work of verifyArchive, with access to the parts of an archive.
+struct Verifier {
+    const Archive::Impl& impl;
+    VerifyReport report;
+    std::mutex mutex;
+
+    void note(const std::string& what) {
+        const std::lock_guard lock(mutex);
+        ++report.damaged;
+        if (report.damage.size() < 100) report.damage.push_back(what);
+    }
+
+    template <class Body> void guarded(const std::string& what, Body&& body) {
+        try {
+            body();
+        } catch (const Error& error) {
+            note(what + ": " + error.place() + ": " + error.reason());
+        }
+    }
+
+    void frame(std::size_t number) {
+        const FrameRecord& record = impl.index.frames[number];
+        const std::size_t time = number / impl.components;
+        std::size_t component = number % impl.components, parameter = 0;
+        const auto& parameters = impl.metadata.info.parameters;
+        while (component >= std::size_t(parameters[parameter].components))
+            component -= std::size_t(parameters[parameter++].components);
+        std::atomic<std::uint64_t> bytes = 0, samples = 0;
+        parallelFor(impl.bricks, [&](std::size_t brick) {
+            const glm::ivec3 at = brickIndex(impl.metadata.grid, brick);
+            const std::string where = parameters[parameter].name + " component " + std::to_string(component) +
+                                      " time " + std::to_string(time) + " brick " + std::to_string(at.x) + "," +
+                                      std::to_string(at.y) + "," + std::to_string(at.z);
+            guarded(where, [&] {
+                const BrickFormat format = brickFormat(impl.metadata.grid, at, parameters[parameter].type, record);
+                const std::vector<std::uint8_t> fine = impl.flags(record, brick);
+                for (int level = impl.metadata.grid.levels - 1; level >= 0; --level) {
+                    const DecodedBrick decoded = impl.decode(record, format, brick, level, fine);
+                    if (level == 0) samples += decoded.codes.size();
+                    const std::size_t s = std::size_t(format.levels - 1 - level);
+                    bytes += record.segments[s * impl.bricks + brick].length;
+                }
+            });
+        });
+        report.bricks += impl.bricks;
+        report.samples += samples;
+        report.bytes += bytes;
+    }
+
+    /// Masks no brick above has read; their bytes are counted here.
+    void masks() {
+        for (std::size_t m = 0; m < impl.index.masks.size(); ++m) {
+            FrameRecord user;
+            user.mask = static_cast<std::int32_t>(m);
+            for (std::size_t brick = 0; brick < impl.bricks; ++brick)
+                guarded("mask " + std::to_string(m), [&] { (void)impl.flags(user, brick); });
+            report.bytes += impl.index.masks[m].length;
+        }
+    }
+};
+
+VerifyReport verifyArchive(const Archive& archive, const Progress& progress) {
+    // Header, metadata and index were checked when the archive was opened.
+    const Archive::Impl& impl = *archive.impl_;
+    Verifier verifier{impl, {}, {}};
+    verifier.masks();
+    const std::size_t frames = impl.index.frames.size();
+    for (std::size_t f = 0; f < frames; ++f) {
+        progress.advance(double(f) / double(frames));
+        verifier.frame(f);
+    }
+    progress.advance(1);
+    return std::move(verifier.report);
 }
 
 } // namespace tessera::codec

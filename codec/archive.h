@@ -1,15 +1,63 @@
 #pragma once
 
+#include "codec/metadata.h"
 #include "volume/brick_source.h"
 #include "volume/error.h"
+#include "volume/progress.h"
 
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace tessera::codec {
 
-/// Opens a .tsr archive (memory mapped) as a source of bricks. Reads header and index only. Throws Error with file,
-/// byte offset and reason when it is not an archive, of a newer version, truncated or damaged.
+/// What verify found.
+struct VerifyReport {
+    std::uint64_t bricks = 0;        ///< decoded, every level of each counted once
+    std::uint64_t samples = 0;       ///< at full resolution
+    std::uint64_t bytes = 0;         ///< whose checksum was computed
+    std::vector<std::string> damage; ///< one line each, the first hundred
+    std::uint64_t damaged = 0;
+};
+
+/// An open .tsr archive: a source of bricks that reads a memory map, from any thread. Nothing in the file is trusted:
+/// header, metadata and index are checked when it is opened, each piece of a brick before it is decoded.
+class Archive final : public volume::BrickSource {
+public:
+    /// Throws Error with file, place and reason when it is not an archive, of a newer version, truncated or damaged.
+    explicit Archive(const std::string& path);
+    ~Archive() override;
+
+    const volume::DatasetInfo& info() const override;
+    const volume::BrickGrid& grid() const override;
+    volume::BrickStats stats(const volume::BrickKey& key) const override;
+    /// Coarse levels are held within the brick's range; floats that are not finite count as absent.
+    volume::BrickSamples read(const volume::BrickKey& key) const override;
+
+    const Metadata& metadata() const;
+    const std::string& path() const;
+    std::uint64_t fileBytes() const;
+    /// Bytes a level adds, of all bricks, parameters and times.
+    std::uint64_t levelBytes(int level) const;
+    std::uint64_t maskBytes() const;
+    int maskCount() const;
+
+private:
+    friend volume::Field readField(const Archive&, int, int, int);
+    friend VerifyReport verifyArchive(const Archive&, const Progress&);
+    friend struct Verifier;
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+/// Opens an archive as a source of bricks. Throws Error.
 std::shared_ptr<const volume::BrickSource> openArchive(const std::string& path);
+
+/// The stored samples of one component of a parameter at a time index, in their type: bit for bit what was packed when
+/// the archive is lossless. Throws Error when the data is damaged.
+volume::Field readField(const Archive& archive, int parameter, int component, int time);
+
+/// Computes every checksum and decodes every brick at every level, on all cores. Throws Cancelled.
+VerifyReport verifyArchive(const Archive& archive, const Progress& progress = {});
 
 } // namespace tessera::codec

@@ -83,11 +83,9 @@ std::uint32_t tapSum(const Step& step, bool update, const Rows& target, const Ro
         const int l = update ? row - 1 - j : row - j;
         const int r = update && !step.antisymmetric ? row + j : row + 1 + j;
         bool hasLeft = source.has(l, lane), hasRight = source.has(r, lane);
-        if (update && (j > 0 || step.antisymmetric)) {
-            // A detail that was predicted from nothing on this side of a gap is no detail.
-            const int apart = step.antisymmetric ? j + 1 : j;
-            hasLeft = hasLeft && target.has(row - apart, lane);
-            hasRight = hasRight && target.has(row + apart, lane);
+        if (update) { // only details that were predicted from all their even neighbours
+            hasLeft = hasLeft && target.has(l, lane) && (step.antisymmetric || target.has(l + 1, lane));
+            hasRight = hasRight && target.has(r, lane) && (step.antisymmetric || target.has(r + 1, lane));
         }
         if (hasLeft && hasRight) {
             left = source.at(l, lane), right = source.at(r, lane);
@@ -134,7 +132,7 @@ void apply(const Step& step, bool update, const Rows& target, const Rows& source
             end = std::min(target.rows, source.rows);
         } else if (step.centre == 0 && step.pairs == 1) {
             begin = update ? 1 : 0;
-            end = update ? std::min(target.rows, source.rows) : std::min(target.rows, source.rows - 1);
+            end = update ? std::min(target.rows - 1, source.rows) : std::min(target.rows, source.rows - 1);
         }
         end = std::max(begin, end);
         const std::size_t count = std::size_t(end - begin) * std::size_t(lanes);

@@ -14,8 +14,10 @@
 ///
 /// One rule covers borders and masks: a tap outside the line is a tap on an absent sample, and
 ///  - of the innermost pair the counterpart stands in for the absent one (symmetric extension); none: the sum is 0;
-///  - an incomplete pair further out takes the values of the pair inside it (symmetric filters) or counts nothing; in
-///    an update a pair also needs the even samples between it and the target;
+///  - an incomplete pair further out takes the values of the pair inside it (symmetric filters) or counts nothing;
+///  - an update only uses details that were predicted from all their even neighbours: what a one-sided prediction
+///  leaves
+///    is slope, not detail, and would bend the coarse level at every border of a brick;
 ///  - absent samples themselves are moved along, never changed and never read.
 /// So nothing bleeds over the border of a region, at any level, and the decoder, which knows the mask first, undoes
 /// all.

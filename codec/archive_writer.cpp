@@ -1,0 +1,235 @@
+#include "codec/archive_writer.h"
+
+#include "codec/brick_access.h"
+#include "volume/parallel.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cassert>
+#include <cerrno>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <map>
+#include <unistd.h>
+#include <xxhash.h>
+
+namespace tessera::codec {
+
+namespace {
+
+std::span<const std::byte> bytesOf(const volume::Mask& mask) {
+    return std::as_bytes(std::span(mask));
+}
+
+struct CodedMaskBrick {
+    Bytes bytes;
+    std::uint32_t present = 0;
+};
+
+/// Flags of a brick as bits, lowest first, raw or through zstd; nothing when they are all equal.
+CodedMaskBrick encodeMask(std::span<const std::uint8_t> flags, Compressor& compressor) {
+    CodedMaskBrick coded;
+    Bytes bits((flags.size() + 7) / 8);
+    for (std::size_t i = 0; i < flags.size(); ++i)
+        if (flags[i] != 0) {
+            bits[i / 8] |= static_cast<std::byte>(1u << (i % 8));
+            ++coded.present;
+        }
+    if (coded.present == 0 || coded.present == flags.size()) return coded;
+    const Bytes packed = compressor.compress(bits);
+    coded.bytes.push_back(packed.empty() ? std::byte{0} : std::byte{1});
+    const Bytes& body = packed.empty() ? bits : packed;
+    coded.bytes.insert(coded.bytes.end(), body.begin(), body.end());
+    return coded;
+}
+
+/// Range of what a reader will decode, as physical values.
+FrameBrick rangeOf(const BrickFormat& format, const volume::Field& field, std::span<const std::byte> samples,
+                   std::span<const std::uint8_t> present, double maxError) {
+    double lo = 0, hi = -1;
+    volume::dispatch(format.type, [&]<class T>(T) {
+        const std::size_t count = samples.size() / sizeof(T);
+        for (std::size_t i = 0; i < count; ++i) {
+            if (!present.empty() && present[i] == 0) continue;
+            T sample;
+            std::memcpy(&sample, samples.data() + i * sizeof(T), sizeof(T));
+            if constexpr (std::same_as<T, float>) {
+                const float decoded = sampleOf<float>(format.numbers, codeOf(format.numbers, sample));
+                if (close(format.numbers, maxError, sample, decoded)) sample = decoded;
+                if (!std::isfinite(sample)) continue;
+            }
+            const double value = field.offset + field.scale * static_cast<double>(sample);
+            if (lo > hi) lo = hi = value;
+            lo = std::min(lo, value), hi = std::max(hi, value);
+        }
+    });
+    return {static_cast<float>(lo), static_cast<float>(hi)};
+}
+
+} // namespace
+
+struct ArchiveWriter::Impl {
+    std::string path, temporary;
+    std::FILE* file = nullptr;
+    Metadata metadata;
+    Index index;
+    std::vector<bool> written;
+    std::uint64_t at = 0;
+    std::map<std::array<std::uint64_t, 2>, int> maskByHash;
+
+    ~Impl() {
+        if (file) std::fclose(file);
+        if (!temporary.empty()) std::remove(temporary.c_str());
+    }
+    void write(std::span<const std::byte> bytes) {
+        if (!bytes.empty() && std::fwrite(bytes.data(), 1, bytes.size(), file) != bytes.size())
+            throw MachineError(std::string("cannot write: ") + std::strerror(errno), path);
+        at += bytes.size();
+    }
+    int maskFor(const volume::Field& field, int zstdLevel);
+};
+
+/// Index of the record of a field's mask, written when it is new; -1 where everything is present.
+int ArchiveWriter::Impl::maskFor(const volume::Field& field, int zstdLevel) {
+    if (!field.mask || std::find(field.mask->begin(), field.mask->end(), std::uint8_t(0)) == field.mask->end())
+        return -1;
+    const auto bytes = bytesOf(*field.mask);
+    const XXH128_hash_t hash = XXH3_128bits(bytes.data(), bytes.size());
+    const auto [found, isNew] = maskByHash.try_emplace({hash.low64, hash.high64}, int(index.masks.size()));
+    if (!isNew) return found->second;
+
+    const std::size_t bricks = brickCount(metadata.grid);
+    std::vector<CodedMaskBrick> coded(bricks);
+    parallelRanges(bricks, [&](std::size_t begin, std::size_t end) {
+        Compressor compressor(zstdLevel);
+        std::vector<std::uint8_t> flags;
+        for (std::size_t b = begin; b < end; ++b) {
+            flags.clear();
+            forBrickRows(metadata.grid, brickIndex(metadata.grid, b),
+                         [&](std::size_t from, std::size_t, std::size_t n) {
+                             for (std::size_t i = from; i < from + n; ++i)
+                                 flags.push_back((*field.mask)[i] != 0 ? 1 : 0);
+                         });
+            coded[b] = encodeMask(flags, compressor);
+        }
+    });
+    MaskRecord& record = index.masks.emplace_back();
+    record.offset = at;
+    for (const CodedMaskBrick& brick : coded) {
+        record.bricks.push_back(
+            {{at, static_cast<std::uint32_t>(brick.bytes.size()), checksum(brick.bytes)}, brick.present});
+        write(brick.bytes);
+    }
+    record.length = at - record.offset;
+    return found->second;
+}
+
+ArchiveWriter::ArchiveWriter(const std::string& path, const Metadata& metadata) : impl_(std::make_unique<Impl>()) {
+    impl_->path = path;
+    impl_->metadata = metadata;
+    const std::size_t frames = metadata.info.times.size() * componentCount(metadata.info);
+    impl_->index.frames.resize(frames);
+    impl_->written.resize(frames);
+    const std::string temporary = path + ".part-" + std::to_string(::getpid());
+    impl_->file = std::fopen(temporary.c_str(), "wb");
+    if (!impl_->file) throw MachineError(std::string("cannot write: ") + std::strerror(errno), path);
+    impl_->temporary = temporary;
+    impl_->write(Bytes(kHeaderBytes)); // filled in by finish()
+}
+
+ArchiveWriter::~ArchiveWriter() = default;
+
+void ArchiveWriter::addFrame(int parameter, int component, int time, const volume::Field& field,
+                             const FrameOptions& options, const Progress& progress) {
+    const volume::BrickGrid& grid = impl_->metadata.grid;
+    const volume::DatasetInfo& info = impl_->metadata.info;
+    const std::size_t number =
+        std::size_t(time) * componentCount(info) + firstComponent(info, parameter) + std::size_t(component);
+    assert(field.lattice.size == grid.lattice.size && field.lattice.kind == grid.lattice.kind);
+    assert(field.type == info.parameters[std::size_t(parameter)].type && !impl_->written[number]);
+    impl_->written[number] = true;
+    progress.advance(0);
+
+    FrameRecord& frame = impl_->index.frames[number];
+    frame.mask = impl_->maskFor(field, options.zstdLevel);
+    frame.numbers = chooseCoding(field, options.maxError);
+    frame.wavelet = options.wavelet;
+    frame.keepsAbsent = options.keepsAbsent && frame.mask >= 0;
+    frame.valueOffset = field.offset;
+    frame.valueScale = field.scale;
+    frame.offset = impl_->at;
+    const double maxError = frame.numbers.kind == NumberKind::Quantised ? options.maxError : 0;
+
+    const std::size_t bricks = brickCount(grid), levels = std::size_t(grid.levels);
+    const std::size_t sampleBytes = volume::byteSize(field.type);
+    frame.bricks.resize(bricks);
+    frame.segments.resize(bricks * levels);
+    std::vector<std::vector<Bytes>> coded(bricks);
+    // In batches, so that a cancel is noticed and the output does not depend on the number of cores.
+    constexpr std::size_t kBatch = 64;
+    for (std::size_t first = 0; first < bricks; first += kBatch) {
+        const std::size_t count = std::min(kBatch, bricks - first);
+        parallelRanges(count, [&](std::size_t begin, std::size_t end) {
+            Compressor compressor(options.zstdLevel);
+            Bytes samples;
+            std::vector<std::uint8_t> present;
+            for (std::size_t b = first + begin; b < first + end; ++b) {
+                const glm::ivec3 brick = brickIndex(grid, b);
+                const BrickFormat format = brickFormat(grid, brick, field.type, frame);
+                samples.clear();
+                present.clear();
+                bool mixed = false;
+                forBrickRows(grid, brick, [&](std::size_t from, std::size_t, std::size_t n) {
+                    const auto row = field.samples.begin() + std::ptrdiff_t(from * sampleBytes);
+                    samples.insert(samples.end(), row, row + std::ptrdiff_t(n * sampleBytes));
+                    for (std::size_t i = from; frame.mask >= 0 && i < from + n; ++i) {
+                        present.push_back(field.present(i) ? 1 : 0);
+                        mixed = mixed || present.back() == 0;
+                    }
+                });
+                if (!mixed) present.clear();
+                frame.bricks[b] = rangeOf(format, field, samples, present, maxError);
+                coded[b] = encodeBrick(format, samples, present, maxError, compressor);
+            }
+        });
+        progress.advance(double(first + count) / double(bricks));
+    }
+    for (std::size_t s = 0; s < levels; ++s)
+        for (std::size_t b = 0; b < bricks; ++b) {
+            const Bytes& bytes = coded[b][s];
+            frame.segments[s * bricks + b] = {impl_->at, static_cast<std::uint32_t>(bytes.size()), checksum(bytes)};
+            impl_->write(bytes);
+        }
+    frame.length = impl_->at - frame.offset;
+}
+
+std::uint64_t ArchiveWriter::finish(const Metadata& metadata) {
+    Impl& impl = *impl_;
+    assert(std::find(impl.written.begin(), impl.written.end(), false) == impl.written.end());
+    const std::string json = toJson(metadata);
+    const Bytes index = serialise(impl.index);
+    Header header;
+    header.metadataOffset = impl.at;
+    header.metadataLength = json.size();
+    header.metadataChecksum = checksum(std::as_bytes(std::span(json)));
+    header.indexOffset = header.metadataOffset + header.metadataLength;
+    header.indexLength = index.size();
+    header.indexChecksum = checksum(index);
+    header.fileSize = header.indexOffset + header.indexLength;
+    impl.write(std::as_bytes(std::span(json)));
+    impl.write(index);
+    if (std::fseek(impl.file, 0, SEEK_SET) != 0) throw MachineError("cannot seek", impl.path);
+    impl.write(serialise(header));
+    const bool flushed = std::fflush(impl.file) == 0 && ::fsync(::fileno(impl.file)) == 0;
+    const bool closed = std::fclose(impl.file) == 0;
+    impl.file = nullptr;
+    if (!flushed || !closed || std::rename(impl.temporary.c_str(), impl.path.c_str()) != 0)
+        throw MachineError(std::string("cannot write: ") + std::strerror(errno), impl.path);
+    impl.temporary.clear();
+    return header.fileSize;
+}
+
+} // namespace tessera::codec

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cstdint>
+
+namespace tessera::codec {
+
+/// What a decoder of foreign bytes says; it never throws for what they contain and never reads beyond them.
+enum class [[nodiscard]] DecodeStatus : std::uint8_t{
+    Ok,
+    Truncated, ///< fewer bytes than announced
+    Trailing,  ///< bytes left over
+    BadMode,   ///< an unknown coding
+    BadLength, ///< a length that cannot be
+    BadData,   ///< the entropy coder refuses
+};
+
+constexpr const char* reason(DecodeStatus status) {
+    switch (status) {
+    case DecodeStatus::Ok:
+        return "ok";
+    case DecodeStatus::Truncated:
+        return "coded brick is truncated";
+    case DecodeStatus::Trailing:
+        return "coded brick has trailing bytes";
+    case DecodeStatus::BadMode:
+        return "coded brick uses an unknown coding";
+    case DecodeStatus::BadLength:
+        return "coded brick states an impossible length";
+    case DecodeStatus::BadData:
+        break;
+    }
+    return "coded brick is damaged";
+}
+
+} // namespace tessera::codec

@@ -1,0 +1,54 @@
+#pragma once
+
+#include "codec/decode_status.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+/// Numbers to bytes: the shipped entropy coder is zstd over byte planes.
+namespace tessera::codec {
+
+using Bytes = std::vector<std::byte>;
+
+/// Working memory of the encoder; one per thread. Holds no state that changes the output.
+class Compressor {
+public:
+    explicit Compressor(int zstdLevel);
+    ~Compressor();
+    Compressor(Compressor&&) noexcept;
+    Compressor& operator=(Compressor&&) noexcept;
+
+    /// zstd frame of `in`; empty when it would not be smaller than `in`.
+    Bytes compress(std::span<const std::byte> in);
+
+private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+/// Decompresses a zstd frame that must give exactly out.size() bytes.
+DecodeStatus decompress(std::span<const std::byte> in, std::span<std::byte> out) noexcept;
+
+/// Small for numbers near zero of either sign, as signed 32-bit: 0, -1, 1, -2, ... become 0, 1, 2, 3, ...
+constexpr std::uint32_t zigzag(std::uint32_t value) {
+    return (value << 1) ^ (0u - (value >> 31));
+}
+constexpr std::uint32_t unzigzag(std::uint32_t symbol) {
+    return (symbol >> 1) ^ (0u - (symbol & 1u));
+}
+
+/// Appends a stream of symbols to `out` by the smallest of: all zero, constant, byte planes, byte planes through zstd.
+/// No symbols: no bytes. (FORMAT.md "Streams".)
+void encodeStream(std::span<const std::uint32_t> symbols, Compressor& compressor, Bytes& out);
+
+/// Reads a stream of symbols.size() symbols from the front of `in`, which then starts behind it.
+DecodeStatus decodeStream(std::span<const std::byte>& in, std::span<std::uint32_t> symbols) noexcept;
+
+/// Little-endian numbers.
+void appendU32(Bytes& out, std::uint32_t value);
+std::uint32_t readU32(const std::byte* at);
+
+} // namespace tessera::codec

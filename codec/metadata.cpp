@@ -1,0 +1,191 @@
+#include "codec/metadata.h"
+
+#include "volume/error.h"
+
+#include <bit>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+namespace tessera::codec {
+
+namespace {
+
+using nlohmann::json;
+using volume::LatticeKind;
+
+template <class Vector> json vectorJson(const Vector& v) {
+    return {v.x, v.y, v.z};
+}
+
+json latticeJson(const volume::Lattice& lattice) {
+    return {{"kind", volume::kLatticeNames[std::size_t(lattice.kind)]},
+            {"size", vectorJson(lattice.size)},
+            {"spacing", vectorJson(lattice.spacing)},
+            {"origin", vectorJson(lattice.origin)}};
+}
+
+json parameterJson(const volume::Parameter& parameter) {
+    json labels = json::array(), ranges = json::array();
+    for (const volume::Label& label : parameter.labels)
+        labels.push_back({{"value", label.value}, {"name", label.name}});
+    for (const Range& range : parameter.ranges) ranges.push_back({range.lo, range.hi});
+    return {{"name", parameter.name},
+            {"unit", parameter.unit},
+            {"components", parameter.components},
+            {"type", volume::name(parameter.type)},
+            {"categorical", parameter.categorical},
+            {"labels", std::move(labels)},
+            {"ranges", std::move(ranges)}};
+}
+
+/// A place in the document, for messages, and typed access below it.
+class Node {
+public:
+    Node(const json& value, std::string path, const std::string& file)
+        : value_(value), path_(std::move(path)), file_(file) {}
+
+    [[noreturn]] void fail(const std::string& reason) const { throw Error(reason, file_, "metadata " + path_); }
+    Node operator[](const char* key) const {
+        if (!value_.is_object() || !value_.contains(key)) fail(std::string("the key '") + key + "' is missing");
+        return {value_.at(key), path_ + "/" + key, file_};
+    }
+    std::vector<Node> items(std::size_t most) const {
+        if (!value_.is_array() || value_.size() > most) fail("not a list of at most " + std::to_string(most));
+        std::vector<Node> all;
+        for (std::size_t i = 0; i < value_.size(); ++i)
+            all.emplace_back(value_[i], path_ + "/" + std::to_string(i), file_);
+        return all;
+    }
+    std::string text() const {
+        if (!value_.is_string()) fail("not a text");
+        return value_.get<std::string>();
+    }
+    double number() const {
+        if (!value_.is_number()) fail("not a number");
+        return value_.get<double>();
+    }
+    int integer(int lo, int hi) const {
+        if (!value_.is_number_integer()) fail("not an integer");
+        const auto value = value_.get<std::int64_t>();
+        if (value < lo || value > hi) fail("not between " + std::to_string(lo) + " and " + std::to_string(hi));
+        return static_cast<int>(value);
+    }
+    bool flag() const {
+        if (!value_.is_boolean()) fail("not true or false");
+        return value_.get<bool>();
+    }
+    glm::dvec3 vector() const {
+        const auto parts = items(3);
+        if (parts.size() != 3) fail("not three numbers");
+        return {parts[0].number(), parts[1].number(), parts[2].number()};
+    }
+
+private:
+    const json& value_;
+    std::string path_;
+    const std::string& file_;
+};
+
+volume::Lattice readLattice(const Node& node) {
+    volume::Lattice lattice;
+    const std::string kind = node["kind"].text();
+    if (kind == volume::kLatticeNames[0])
+        lattice.kind = LatticeKind::CC;
+    else if (kind == volume::kLatticeNames[1])
+        lattice.kind = LatticeKind::BCC;
+    else
+        node["kind"].fail("unknown lattice '" + kind + "'");
+    const auto size = node["size"].items(3);
+    if (size.size() != 3) node["size"].fail("not three numbers");
+    constexpr int kLargest = 1 << 24;
+    lattice.size = {size[0].integer(1, kLargest), size[1].integer(1, kLargest), size[2].integer(1, kLargest)};
+    lattice.spacing = node["spacing"].vector();
+    lattice.origin = node["origin"].vector();
+    for (int axis = 0; axis < 3; ++axis)
+        if (!(lattice.spacing[axis] > 0)) node["spacing"].fail("not above 0");
+    return lattice;
+}
+
+volume::Parameter readParameter(const Node& node) {
+    volume::Parameter parameter;
+    parameter.name = node["name"].text();
+    parameter.unit = node["unit"].text();
+    parameter.components = node["components"].integer(1, 64);
+    const auto type = volume::parseScalarType(node["type"].text());
+    if (!type) node["type"].fail("unknown number type");
+    parameter.type = *type;
+    parameter.categorical = node["categorical"].flag();
+    constexpr int kMost = 1 << 30;
+    for (const Node& label : node["labels"].items(65536))
+        parameter.labels.push_back({label["value"].integer(-kMost, kMost), label["name"].text()});
+    for (const Node& range : node["ranges"].items(65)) {
+        const auto ends = range.items(2);
+        if (ends.size() != 2) range.fail("not two numbers");
+        parameter.ranges.push_back({ends[0].number(), ends[1].number()});
+    }
+    return parameter;
+}
+
+} // namespace
+
+std::string toJson(const Metadata& metadata) {
+    const volume::DatasetInfo& info = metadata.info;
+    json parameters = json::array();
+    for (const volume::Parameter& parameter : info.parameters) parameters.push_back(parameterJson(parameter));
+    const json document = {
+        {"program", metadata.program},
+        {"data",
+         {{"name", info.name},
+          {"lattice", latticeJson(info.lattice)},
+          {"bounds", {{"lo", vectorJson(info.bounds.lo)}, {"hi", vectorJson(info.bounds.hi)}}},
+          {"lengthUnit", info.lengthUnit},
+          {"parameters", std::move(parameters)},
+          {"times", info.times},
+          {"timeUnit", info.timeUnit},
+          {"provenance", info.provenance}}},
+        {"grid",
+         {{"brickSize", metadata.grid.brickSize}, {"levels", metadata.grid.levels}, {"phase", metadata.grid.phase}}},
+        {"source", latticeJson(metadata.source)},
+        {"lossless", metadata.lossless},
+        {"maxError", metadata.maxError}};
+    return document.dump(1, '\t', false, json::error_handler_t::replace);
+}
+
+Metadata metadataFromJson(std::string_view text, const std::string& file) {
+    const json document = json::parse(text, nullptr, false);
+    if (document.is_discarded()) throw Error("not JSON", file, "metadata");
+    const Node root(document, "", file);
+    Metadata metadata;
+    metadata.program = root["program"].text();
+    metadata.lossless = root["lossless"].flag();
+    metadata.maxError = root["maxError"].number();
+    metadata.source = readLattice(root["source"]);
+
+    const Node data = root["data"];
+    volume::DatasetInfo& info = metadata.info;
+    info.name = data["name"].text();
+    info.lattice = readLattice(data["lattice"]);
+    info.bounds = {data["bounds"]["lo"].vector(), data["bounds"]["hi"].vector()};
+    info.lengthUnit = data["lengthUnit"].text();
+    for (const Node& parameter : data["parameters"].items(4096)) info.parameters.push_back(readParameter(parameter));
+    if (info.parameters.empty()) data["parameters"].fail("no parameters");
+    info.times.clear();
+    for (const Node& time : data["times"].items(1 << 20)) {
+        if (!info.times.empty() && !(time.number() > info.times.back())) time.fail("times do not increase");
+        info.times.push_back(time.number());
+    }
+    if (info.times.empty()) data["times"].fail("no times");
+    info.timeUnit = data["timeUnit"].text();
+    info.provenance = data["provenance"].text();
+
+    const Node grid = root["grid"];
+    metadata.grid.lattice = info.lattice;
+    metadata.grid.brickSize = grid["brickSize"].integer(4, 128);
+    if (!std::has_single_bit(static_cast<unsigned>(metadata.grid.brickSize)))
+        grid["brickSize"].fail("not a power of two");
+    metadata.grid.levels = grid["levels"].integer(1, std::bit_width(static_cast<unsigned>(metadata.grid.brickSize)));
+    metadata.grid.phase = grid["phase"].number();
+    return metadata;
+}
+
+} // namespace tessera::codec

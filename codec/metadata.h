@@ -1,0 +1,24 @@
+#pragma once
+
+#include "volume/brick_source.h"
+
+#include <string>
+
+/// The JSON part of an archive: all that is known of the data set, and how it was packed.
+namespace tessera::codec {
+
+struct Metadata {
+    volume::DatasetInfo info;
+    volume::BrickGrid grid; ///< grid.lattice == info.lattice
+    volume::Lattice source; ///< the grid the samples came from
+    bool lossless = true;   ///< every stored sample is exact
+    double maxError = 0;    ///< otherwise: bound on |error|, relative to a parameter's range
+    std::string program;    ///< that wrote it, with its version
+    bool operator==(const Metadata&) const = default;
+};
+
+std::string toJson(const Metadata& metadata);
+/// Throws Error naming `file` and the JSON path when a key is missing, has the wrong type or an impossible value.
+Metadata metadataFromJson(std::string_view text, const std::string& file);
+
+} // namespace tessera::codec

@@ -1,0 +1,141 @@
+#include "codec/numbers.h"
+
+#include "codec/lifting.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+namespace tessera::codec {
+
+namespace {
+
+constexpr double kLargestCode = 1 << 29; // leaves two bits for the growth of sums in the wavelets
+
+std::uint32_t clampedCode(double k) {
+    if (!(std::abs(k) <= kLargestCode)) return 0; // also NaN: stored exactly beside the codes
+    return static_cast<std::uint32_t>(static_cast<std::int32_t>(std::rint(k)));
+}
+
+/// Calls `visit` for every present sample, or every n-th of them, until it returns false.
+template <class Visit> bool all(const volume::Field& field, std::size_t stride, Visit&& visit) {
+    const auto samples = field.as<float>();
+    for (std::size_t i = 0; i < samples.size(); i += stride)
+        if (field.present(i) && !visit(samples[i])) return false;
+    return true;
+}
+
+bool reproduces(const volume::Field& field, const NumberCoding& coding, std::size_t stride) {
+    std::size_t seen = 0, failed = 0;
+    const bool within = all(field, stride, [&](float sample) {
+        ++seen;
+        if (!close(coding, 0, sample, sampleOf<float>(coding, codeOf(coding, sample)))) ++failed;
+        return failed * 64 <= seen + 4096;
+    });
+    return within && seen > 0 && failed * 256 <= seen;
+}
+
+/// k / 2^m: m from the lowest bit set in any finite sample, if the largest then stays below 2^29.
+std::optional<NumberCoding> binaryFractions(const volume::Field& field) {
+    int lowest = std::numeric_limits<int>::max(), highest = std::numeric_limits<int>::min();
+    const bool fits = all(field, 1, [&](float sample) {
+        if (sample == 0 || !std::isfinite(sample)) return true;
+        int exponent = 0;
+        const auto mantissa = static_cast<std::uint32_t>(std::ldexp(std::frexp(std::abs(sample), &exponent), 24));
+        highest = std::max(highest, exponent);
+        lowest = std::min(lowest, exponent - 24 + std::countr_zero(mantissa));
+        return highest - lowest <= 29;
+    });
+    if (!fits || highest < lowest) return std::nullopt;
+    return NumberCoding{NumberKind::Scaled, 0, std::ldexp(1.0, -lowest)};
+}
+
+NumberCoding chooseLossless(const volume::Field& field) {
+    const std::size_t stride = std::max<std::size_t>(1, field.count() / 4096);
+    double power = 1;
+    for (int digits = 0; digits <= 7; ++digits, power *= 10) {
+        const NumberCoding decimal{NumberKind::Scaled, 0, power};
+        if (reproduces(field, decimal, stride) && reproduces(field, decimal, 1)) return decimal;
+    }
+    if (const auto binary = binaryFractions(field); binary && reproduces(field, *binary, 1)) return *binary;
+    return {NumberKind::Float, 0, 1};
+}
+
+std::optional<NumberCoding> chooseQuantised(const volume::Field& field, double maxError) {
+    double lo = std::numeric_limits<double>::infinity(), hi = -lo;
+    all(field, 1, [&](float sample) {
+        if (std::isfinite(sample)) lo = std::min(lo, double(sample)), hi = std::max(hi, double(sample));
+        return true;
+    });
+    if (!(lo <= hi)) return std::nullopt;
+    const double largest = std::max(std::abs(lo), std::abs(hi));
+    const auto rounded = static_cast<float>(largest);
+    const double ulp = double(std::nextafter(rounded, std::numeric_limits<float>::infinity())) - double(rounded);
+    NumberCoding coding{NumberKind::Quantised, lo <= 0 && hi >= 0 ? 0.0 : (lo + hi) / 2, 2 * (maxError - ulp)};
+    if (!(coding.step > 0) || !std::isfinite(coding.step)) return std::nullopt;
+    if (std::max(hi - coding.origin, coding.origin - lo) / coding.step > kLargestCode) return std::nullopt;
+    return coding;
+}
+
+} // namespace
+
+NumberCoding chooseCoding(const volume::Field& field, double maxError) {
+    if (field.type != volume::ScalarType::F32) return {};
+    if (maxError > 0)
+        if (const auto quantised = chooseQuantised(field, maxError)) return *quantised;
+    return chooseLossless(field);
+}
+
+std::uint32_t codeOf(const NumberCoding&, std::uint8_t sample) {
+    return sample;
+}
+std::uint32_t codeOf(const NumberCoding&, std::int16_t sample) {
+    return static_cast<std::uint32_t>(static_cast<std::int32_t>(sample));
+}
+std::uint32_t codeOf(const NumberCoding&, std::uint16_t sample) {
+    return sample;
+}
+std::uint32_t codeOf(const NumberCoding&, std::int32_t sample) {
+    return static_cast<std::uint32_t>(sample);
+}
+std::uint32_t codeOf(const NumberCoding& coding, float sample) {
+    switch (coding.kind) {
+    case NumberKind::Integer:
+    case NumberKind::Float:
+        break;
+    case NumberKind::Scaled:
+        return clampedCode(double(sample) * coding.step);
+    case NumberKind::Quantised:
+        return clampedCode((double(sample) - coding.origin) / coding.step);
+    }
+    return codeOfFloat(sample);
+}
+
+double valueOf(const NumberCoding& coding, std::uint32_t code) {
+    const double k = static_cast<std::int32_t>(code);
+    switch (coding.kind) {
+    case NumberKind::Integer:
+        break;
+    case NumberKind::Scaled:
+        return k / coding.step;
+    case NumberKind::Float:
+        return double(floatOfCode(code));
+    case NumberKind::Quantised:
+        return coding.origin + coding.step * k;
+    }
+    return k;
+}
+
+template <> float sampleOf<float>(const NumberCoding& coding, std::uint32_t code) {
+    if (coding.kind == NumberKind::Float) return floatOfCode(code); // bit for bit, NaN payloads too
+    return static_cast<float>(valueOf(coding, code));
+}
+
+bool close(const NumberCoding& coding, double maxError, float sample, float decoded) {
+    if (std::bit_cast<std::uint32_t>(sample) == std::bit_cast<std::uint32_t>(decoded)) return true;
+    return coding.kind == NumberKind::Quantised && std::abs(double(sample) - double(decoded)) <= maxError;
+}
+
+} // namespace tessera::codec

@@ -1,0 +1,193 @@
+#include "codec/pack.h"
+
+#include "codec/archive_writer.h"
+#include "codec/brick_access.h"
+#include "volume/resample.h"
+
+#include <algorithm>
+#include <bit>
+#include <chrono>
+#include <cmath>
+#include <limits>
+
+namespace tessera::codec {
+
+namespace {
+
+using volume::Field;
+using volume::LatticeKind;
+using volume::ScalarType;
+
+/// Adds the seconds of its life to a sum.
+class Stopwatch {
+public:
+    explicit Stopwatch(double& sum) : sum_(sum) {}
+    ~Stopwatch() { sum_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
+    Stopwatch(const Stopwatch&) = delete;
+    Stopwatch& operator=(const Stopwatch&) = delete;
+
+private:
+    double& sum_;
+    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+constexpr Range kNothing{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+
+void include(Range& range, double value) {
+    if (!std::isfinite(value)) return;
+    range.lo = std::min(range.lo, value);
+    range.hi = std::max(range.hi, value);
+}
+
+/// Widens the ranges of a parameter (components, then magnitude) by one time of it.
+void gatherRanges(const std::vector<Field>& components, std::vector<Range>& ranges) {
+    const std::size_t n = components.size();
+    ranges.resize(n == 1 ? 1 : n + 1, kNothing);
+    const std::size_t count = components.front().count();
+    for (std::size_t i = 0; i < count; ++i) {
+        double square = 0;
+        bool present = true;
+        for (std::size_t c = 0; c < n; ++c) {
+            if (!components[c].present(i)) {
+                present = false;
+                continue;
+            }
+            const double value = components[c].value(i);
+            include(ranges[c], value);
+            square += value * value;
+        }
+        if (n > 1 && present) include(ranges[n], std::sqrt(square));
+    }
+}
+
+void settleRanges(volume::DatasetInfo& info, const std::vector<std::vector<Range>>& gathered) {
+    for (std::size_t p = 0; p < info.parameters.size(); ++p) {
+        std::vector<Range>& ranges = info.parameters[p].ranges;
+        if (!ranges.empty()) continue;
+        ranges = gathered[p];
+        for (Range& range : ranges)
+            if (range.lo > range.hi) range = {0, 0}; // no sample is present anywhere
+    }
+}
+
+int defaultLevels(const volume::Lattice& lattice, int brickSize) {
+    const glm::ivec3 texels = lattice.texels();
+    const int longest = std::min(brickSize, std::max({texels.x, texels.y, texels.z}));
+    int levels = 1;
+    while (longest >> levels >= 4) ++levels;
+    return levels;
+}
+
+volume::BrickGrid gridFor(const volume::Lattice& lattice, const PackOptions& options) {
+    volume::BrickGrid grid{lattice, options.brickSize, options.levels, levelPhase(options.wavelet)};
+    if (options.brickSize < 4 || options.brickSize > 128 || !std::has_single_bit(unsigned(options.brickSize)))
+        throw Error("the brick size must be a power of two from 4 to 128, not " + std::to_string(options.brickSize));
+    if (grid.levels == 0) grid.levels = defaultLevels(lattice, grid.brickSize);
+    if (grid.levels < 1 || grid.levels > int(std::bit_width(unsigned(grid.brickSize))))
+        throw Error(std::to_string(grid.levels) + " levels do not fit bricks of " + std::to_string(grid.brickSize));
+    return grid;
+}
+
+/// Extent of all components of a parameter: what an error bound refers to.
+double extentOf(const volume::Parameter& parameter) {
+    double extent = 0;
+    for (std::size_t c = 0; c < std::min(parameter.ranges.size(), std::size_t(parameter.components)); ++c)
+        extent = std::max(extent, parameter.ranges[c].hi - parameter.ranges[c].lo);
+    return extent;
+}
+
+Field loadChecked(volume::Dataset& dataset, int parameter, int component, int time) {
+    Field field = dataset.load(parameter, component, time);
+    const volume::Parameter& about = dataset.info.parameters[std::size_t(parameter)];
+    if (field.lattice.size != dataset.info.lattice.size || field.type != about.type)
+        throw Error("frame " + std::to_string(time) + " of " + about.name + " has another size or type");
+    return field;
+}
+
+/// One time of every component of a parameter.
+std::vector<Field> loadParameter(volume::Dataset& dataset, int parameter, int time) {
+    std::vector<Field> fields;
+    for (int c = 0; c < dataset.info.parameters[std::size_t(parameter)].components; ++c)
+        fields.push_back(loadChecked(dataset, parameter, c, time));
+    return fields;
+}
+
+} // namespace
+
+PackSummary pack(volume::Dataset& dataset, const PackOptions& options, const std::string& path,
+                 const Progress& progress) {
+    PackSummary summary;
+    volume::DatasetInfo& info = dataset.info;
+    if (info.parameters.empty() || info.times.empty()) throw Error("there is nothing to pack");
+    if (!(options.maxError >= 0 && options.maxError < 1)) throw Error("the error bound must be from 0 to below 1");
+    if (!options.lossless && options.maxError == 0) throw Error("without lossless an error bound is needed");
+    const bool exact = options.maxError == 0;
+    const bool resamples = options.lattice == LatticeKind::BCC && info.lattice.kind == LatticeKind::CC;
+
+    Metadata metadata;
+    metadata.info = info;
+    metadata.source = info.lattice;
+    metadata.info.lattice = resamples ? volume::bccFor(info.lattice) : info.lattice;
+    metadata.grid = gridFor(metadata.info.lattice, options);
+    metadata.lossless = exact;
+    metadata.maxError = options.maxError;
+    metadata.program = "tessera";
+
+    const std::size_t parameters = info.parameters.size(), times = info.times.size();
+    std::vector<std::vector<Range>> ranges(parameters);
+    Progress work = progress;
+    {
+        Stopwatch all(summary.seconds);
+        if (!exact) {
+            const Progress first = progress.part(0, 0.3);
+            work = progress.part(0.3, 1);
+            for (std::size_t p = 0; p < parameters; ++p)
+                for (std::size_t t = 0; t < times && info.parameters[p].ranges.empty(); ++t) {
+                    first.advance(double(p * times + t) / double(parameters * times), "ranges");
+                    Stopwatch load(summary.loadSeconds);
+                    gatherRanges(loadParameter(dataset, int(p), int(t)), ranges[p]);
+                }
+            settleRanges(info, ranges);
+        }
+
+        ArchiveWriter writer(path, metadata);
+        const double frames = double(times) * double(componentCount(info));
+        double done = 0;
+        for (std::size_t t = 0; t < times; ++t)
+            for (std::size_t p = 0; p < parameters; ++p) {
+                const volume::Parameter& parameter = info.parameters[p];
+                std::vector<Field> fields;
+                work.advance(done / frames, parameter.name);
+                {
+                    Stopwatch load(summary.loadSeconds);
+                    fields = loadParameter(dataset, int(p), int(t));
+                    if (parameter.ranges.empty()) gatherRanges(fields, ranges[p]);
+                }
+                FrameOptions frame;
+                frame.wavelet = parameter.categorical ? Wavelet::N1 : options.wavelet;
+                frame.zstdLevel = options.zstdLevel;
+                frame.keepsAbsent = exact && !resamples;
+                for (std::size_t c = 0; c < fields.size(); ++c, ++done) {
+                    Field field = std::move(fields[c]);
+                    summary.sourceSamples += field.count();
+                    summary.sourceBytes += field.samples.size();
+                    if (resamples) {
+                        Stopwatch resample(summary.resampleSeconds);
+                        field = volume::toBcc(field, parameter.categorical, Progress{{}, progress.stop});
+                    }
+                    summary.storedSamples += field.count();
+                    if (!parameter.categorical) frame.maxError = options.maxError * extentOf(parameter) / field.scale;
+                    Stopwatch code(summary.codeSeconds);
+                    writer.addFrame(int(p), int(c), int(t), field, frame,
+                                    work.part(done / frames, (done + 1) / frames));
+                }
+            }
+        settleRanges(info, ranges);
+        metadata.info.parameters = info.parameters;
+        summary.archiveBytes = writer.finish(metadata);
+    }
+    progress.advance(1);
+    return summary;
+}
+
+} // namespace tessera::codec

@@ -1,0 +1,311 @@
+#include "codec/archive.h"
+
+#include "codec/pack.h"
+#include "tests/codec/make_dataset.h"
+#include "volume/resample.h"
+
+#include <cstring>
+#include <gtest/gtest.h>
+
+namespace tessera::codec {
+namespace {
+
+using namespace testing;
+using volume::BrickKey;
+using volume::Field;
+using volume::LatticeKind;
+using volume::ScalarType;
+
+/// Same type, samples and mask, bit for bit, absent samples too.
+void expectSame(const Field& a, const Field& b, bool absentToo) {
+    ASSERT_EQ(a.type, b.type);
+    ASSERT_EQ(a.lattice.size, b.lattice.size);
+    EXPECT_EQ(a.offset, b.offset);
+    EXPECT_EQ(a.scale, b.scale);
+    const std::size_t bytes = volume::byteSize(a.type);
+    for (std::size_t i = 0; i < a.count(); ++i) {
+        ASSERT_EQ(a.present(i), b.present(i)) << "sample " << i;
+        if (!absentToo && !a.present(i)) continue;
+        ASSERT_EQ(std::memcmp(&a.samples[i * bytes], &b.samples[i * bytes], bytes), 0) << "sample " << i;
+    }
+}
+
+std::vector<MadeParameter> everyKind() {
+    return {{"a", ScalarType::U8, 1, Texture::Smooth, false, false},
+            {"b", ScalarType::U8, 1, Texture::Nasty, true, false},
+            {"c", ScalarType::I16, 1, Texture::Nasty, false, false},
+            {"d", ScalarType::U16, 1, Texture::Smooth, true, false},
+            {"e", ScalarType::I32, 1, Texture::Nasty, true, false},
+            {"f", ScalarType::F32, 3, Texture::Smooth, true, false},
+            {"g", ScalarType::F32, 1, Texture::Nasty, false, false},
+            {"h", ScalarType::F32, 1, Texture::Decimals, false, false},
+            {"i", ScalarType::F32, 1, Texture::Constant, false, false},
+            {"j", ScalarType::F32, 2, Texture::Noise, false, false},
+            {"region", ScalarType::U8, 1, Texture::Noise, false, true}};
+}
+
+TEST(Archive, GivesBackEverySampleBitForBit) {
+    const TemporaryFolder folder;
+    for (const glm::ivec3 size : {glm::ivec3(1, 1, 1), glm::ivec3(2, 3, 17), glm::ivec3(41, 18, 35)})
+        for (const Wavelet wavelet : {Wavelet::W11, Wavelet::W22, Wavelet::W24}) {
+            volume::Dataset made = makeDataset(size, everyKind(), 2);
+            PackOptions options;
+            options.lattice = LatticeKind::CC;
+            options.brickSize = 16;
+            options.wavelet = wavelet;
+            const std::string path = folder / "a.tsr";
+            const PackSummary summary = pack(made, options, path);
+            EXPECT_EQ(folder.files(), 1u);
+            const Archive archive(path);
+            EXPECT_EQ(archive.fileBytes(), summary.archiveBytes);
+            for (int p = 0; p < int(made.info.parameters.size()); ++p)
+                for (int c = 0; c < made.info.parameters[std::size_t(p)].components; ++c)
+                    for (int t = 0; t < 2; ++t) {
+                        SCOPED_TRACE(made.info.parameters[std::size_t(p)].name);
+                        expectSame(made.load(p, c, t), readField(archive, p, c, t), true);
+                    }
+            const VerifyReport report = verifyArchive(archive);
+            EXPECT_EQ(report.damaged, 0u) << (report.damage.empty() ? "" : report.damage[0]);
+            EXPECT_EQ(report.samples, summary.storedSamples);
+        }
+}
+
+TEST(Archive, KeepsWhatIsKnownOfTheData) {
+    const TemporaryFolder folder;
+    volume::Dataset made = makeDataset({20, 20, 20}, everyKind(), 3);
+    pack(made, {}, folder / "a.tsr");
+    const Archive archive(folder / "a.tsr");
+    volume::DatasetInfo expected = made.info;
+    expected.lattice = volume::bccFor(made.info.lattice);
+    EXPECT_EQ(archive.info(), expected);
+    EXPECT_EQ(archive.metadata().source, made.info.lattice);
+    const Field field = made.load(0, 0, 0);
+    double lo = 1e9, hi = -1e9;
+    for (int t = 0; t < 3; ++t)
+        for (const double value : physicalValues(made.load(0, 0, t)))
+            lo = std::min(lo, value), hi = std::max(hi, value);
+    EXPECT_EQ(archive.info().parameters[0].ranges, (std::vector<Range>{{lo, hi}}));
+    EXPECT_EQ(archive.info().parameters[5].ranges.size(), 4u);
+}
+
+TEST(Archive, BccBricksAreTheResampledFieldAtEveryPlace) {
+    const TemporaryFolder folder;
+    const std::vector<MadeParameter> parameters{{"T", ScalarType::F32, 1, Texture::Smooth, true, false},
+                                                {"n", ScalarType::I16, 1, Texture::Smooth, false, false}};
+    volume::Dataset made = makeDataset({30, 25, 47}, parameters, 1);
+    PackOptions options;
+    options.brickSize = 8;
+    pack(made, options, folder / "a.tsr");
+    const Archive archive(folder / "a.tsr");
+    for (int p = 0; p < 2; ++p) {
+        const Field expected = volume::toBcc(made.load(p, 0, 0), false);
+        expectSame(expected, readField(archive, p, 0, 0), false);
+        const volume::BrickGrid& grid = archive.grid();
+        std::size_t seen = 0;
+        for (int z = 0; z < grid.count().z; ++z)
+            for (int y = 0; y < grid.count().y; ++y)
+                for (int x = 0; x < grid.count().x; ++x) {
+                    const BrickKey key{p, 0, 0, {x, y, z}};
+                    const volume::BrickSamples brick = archive.read(key);
+                    const volume::BrickStats stats = archive.stats(key);
+                    const glm::ivec3 begin = grid.begin({x, y, z});
+                    ASSERT_EQ(brick.size, grid.brickSamples({x, y, z}, 0));
+                    std::size_t i = 0, present = 0;
+                    for (int k = 0; k < brick.size.z; ++k)
+                        for (int j = 0; j < brick.size.y; ++j)
+                            for (int h = 0; h < brick.size.x; ++h, ++i) {
+                                const std::size_t at = expected.lattice.index(begin + glm::ivec3(h, j, k));
+                                ++seen;
+                                const bool isPresent = brick.present.empty() || brick.present[i] != 0;
+                                ASSERT_EQ(isPresent, expected.present(at));
+                                if (!isPresent) continue;
+                                ++present;
+                                ASSERT_EQ(brick.values[i], float(expected.value(at)));
+                                ASSERT_GE(brick.values[i], stats.min);
+                                ASSERT_LE(brick.values[i], stats.max);
+                            }
+                    EXPECT_FLOAT_EQ(stats.presentFraction, float(double(present) / double(i)));
+                }
+        EXPECT_EQ(seen, expected.count());
+    }
+}
+
+TEST(Archive, CoarseLevelsHaveTheSizesOfTheGridAndApproximateTheField) {
+    const TemporaryFolder folder;
+    const std::vector<MadeParameter> parameters{{"T", ScalarType::F32, 1, Texture::Smooth, false, false}};
+    volume::Dataset made = makeDataset({64, 50, 70}, parameters, 1);
+    for (const Wavelet wavelet : {Wavelet::W11, Wavelet::W22})
+        for (const double maxError : {0.0, 1e-4}) {
+            PackOptions options;
+            options.brickSize = 16;
+            options.wavelet = wavelet;
+            options.maxError = maxError;
+            pack(made, options, folder / "a.tsr");
+            const Archive archive(folder / "a.tsr");
+            const volume::BrickGrid& grid = archive.grid();
+            EXPECT_EQ(grid.levels, 3);
+            for (int level = 0; level < grid.levels; ++level) {
+                const volume::BrickSamples brick = archive.read({0, 0, level, {1, 1, 1}});
+                ASSERT_EQ(brick.size, grid.brickSamples({1, 1, 1}, level));
+                const glm::dvec3 first = glm::dvec3(grid.begin({1, 1, 1}));
+                double squares = 0;
+                std::size_t i = 0;
+                for (int z = 0; z < brick.size.z; ++z)
+                    for (int y = 0; y < brick.size.y; ++y)
+                        for (int x = 0; x < brick.size.x; ++x, ++i) {
+                            const double half = z % 2 * 0.5, scale = 1 << level;
+                            const glm::dvec3 cells = glm::dvec3(first.x, first.y, first.z / 2) +
+                                                     scale * glm::dvec3(x, y, z / 2) + grid.levelPhase(level) + half;
+                            const glm::dvec3 at = grid.lattice.fromCells(cells) / made.info.lattice.spacing;
+                            const double truth =
+                                400 + 30 * (std::sin(at.x * 0.21) + std::cos(at.y * 0.17) + at.z * 0.02);
+                            squares += std::pow(truth - double(brick.values[i]), 2);
+                        }
+                // A shift by half a cell of level 1 would be an error of 3, by one of level 2 of 6; the low-pass of
+                // (2,2) itself changes this wave by 2 % and 9 %.
+                const double rms = std::sqrt(squares / double(i));
+                EXPECT_LT(rms, level == 0 ? 0.02 : level == 1 ? 0.8 : 3.3) << "level " << level;
+            }
+        }
+}
+
+TEST(Archive, ErrorBoundHoldsInFloatForEveryPresentSample) {
+    const TemporaryFolder folder;
+    const std::vector<MadeParameter> parameters{{"T", ScalarType::F32, 1, Texture::Smooth, true, false},
+                                                {"U", ScalarType::F32, 3, Texture::Noise, false, false},
+                                                {"c", ScalarType::F32, 1, Texture::Constant, false, false},
+                                                {"x", ScalarType::F32, 1, Texture::Nasty, false, false},
+                                                {"n", ScalarType::U16, 1, Texture::Nasty, false, false}};
+    volume::Dataset made = makeDataset({33, 20, 21}, parameters, 2);
+    for (const double bound : {1e-1, 1e-3, 1e-5, 1e-7, 1e-9}) {
+        PackOptions options;
+        options.lattice = LatticeKind::CC;
+        options.maxError = bound;
+        pack(made, options, folder / "a.tsr");
+        const Archive archive(folder / "a.tsr");
+        for (int p = 0; p < int(parameters.size()); ++p)
+            for (int c = 0; c < parameters[std::size_t(p)].components; ++c)
+                for (int t = 0; t < 2; ++t) {
+                    const Field original = made.load(p, c, t), decoded = readField(archive, p, c, t);
+                    double range = 0;
+                    for (int k = 0; k < parameters[std::size_t(p)].components; ++k)
+                        range =
+                            std::max(range, archive.info().parameters[std::size_t(p)].ranges[std::size_t(k)].hi -
+                                                archive.info().parameters[std::size_t(p)].ranges[std::size_t(k)].lo);
+                    for (std::size_t i = 0; i < original.count(); ++i) {
+                        ASSERT_EQ(original.present(i), decoded.present(i));
+                        if (!original.present(i)) continue;
+                        const double a = original.value(i), b = decoded.value(i);
+                        if (original.type != ScalarType::F32 || !std::isfinite(a)) {
+                            const std::size_t bytes = volume::byteSize(original.type);
+                            ASSERT_EQ(std::memcmp(&original.samples[i * bytes], &decoded.samples[i * bytes], bytes), 0);
+                        } else {
+                            ASSERT_LE(std::abs(a - b), bound * range) << parameters[std::size_t(p)].name << " " << i;
+                        }
+                    }
+                }
+        EXPECT_EQ(verifyArchive(archive).damaged, 0u);
+    }
+}
+
+TEST(Archive, CategoricalLevelsHoldOnlyLabels) {
+    const TemporaryFolder folder;
+    const std::vector<MadeParameter> parameters{{"region", ScalarType::U8, 1, Texture::Nasty, true, true}};
+    volume::Dataset made = makeDataset({40, 40, 40}, parameters, 1);
+    made.load = [load = made.load](int p, int c, int t) {
+        Field field = load(p, c, t);
+        for (std::uint8_t& label : field.as<std::uint8_t>()) label = label % 2 == 0 ? 3 : 200;
+        return field;
+    };
+    pack(made, {}, folder / "a.tsr");
+    const Archive archive(folder / "a.tsr");
+    for (int level = 0; level < archive.grid().levels; ++level) {
+        const volume::BrickSamples brick = archive.read({0, 0, level, {0, 0, 0}});
+        for (std::size_t i = 0; i < brick.values.size(); ++i)
+            if (brick.present.empty() || brick.present[i] != 0) {
+                ASSERT_TRUE(brick.values[i] == 3.0f || brick.values[i] == 200.0f) << brick.values[i];
+            }
+    }
+}
+
+TEST(Archive, EqualMasksAreStoredOnce) {
+    const TemporaryFolder folder;
+    const std::vector<MadeParameter> parameters{{"a", ScalarType::U8, 1, Texture::Smooth, true, false},
+                                                {"b", ScalarType::F32, 3, Texture::Smooth, true, false},
+                                                {"c", ScalarType::F32, 1, Texture::Smooth, false, false}};
+    volume::Dataset made = makeDataset({40, 30, 20}, parameters, 3);
+    pack(made, {}, folder / "a.tsr");
+    EXPECT_EQ(Archive(folder / "a.tsr").maskCount(), 1);
+}
+
+TEST(Archive, MagnitudesAreAnswered) {
+    const TemporaryFolder folder;
+    const std::vector<MadeParameter> parameters{{"U", ScalarType::F32, 3, Texture::Noise, false, false},
+                                                {"V", ScalarType::F32, 2, Texture::Noise, false, false}};
+    volume::Dataset made = makeDataset({12, 12, 12}, parameters, 1);
+    pack(made, {}, folder / "a.tsr");
+    const Archive archive(folder / "a.tsr");
+    for (const auto& [first, count, channel] : {std::tuple{0, 3, 3}, std::tuple{4, 2, 6}}) {
+        std::vector<double> square(archive.read({first, 0, 0, {0, 0, 0}}).values.size());
+        for (int c = 0; c < count; ++c) {
+            const volume::BrickSamples part = archive.read({first + c, 0, 0, {0, 0, 0}});
+            for (std::size_t i = 0; i < square.size(); ++i)
+                square[i] += double(part.values[i]) * double(part.values[i]);
+        }
+        const volume::BrickSamples whole = archive.read({channel, 0, 0, {0, 0, 0}});
+        const volume::BrickStats stats = archive.stats({channel, 0, 0, {0, 0, 0}});
+        for (std::size_t i = 0; i < square.size(); ++i) {
+            ASSERT_NEAR(double(whole.values[i]), std::sqrt(square[i]), 1e-3);
+            ASSERT_LE(whole.values[i], stats.max * 1.0001f);
+        }
+    }
+}
+
+TEST(Archive, SameInputSameBytes) {
+    const TemporaryFolder folder;
+    volume::Dataset made = makeDataset({50, 40, 30}, everyKind(), 1);
+    PackOptions options;
+    options.brickSize = 8;
+    pack(made, options, folder / "a.tsr");
+    volume::Dataset again = makeDataset({50, 40, 30}, everyKind(), 1);
+    pack(again, options, folder / "b.tsr");
+    EXPECT_EQ(readFile(folder / "a.tsr"), readFile(folder / "b.tsr"));
+}
+
+TEST(Archive, NothingIsLeftBehindWhenPackingFails) {
+    const TemporaryFolder folder;
+    const std::vector<MadeParameter> parameters{{"a", ScalarType::U8, 1, Texture::Smooth, false, false}};
+    volume::Dataset made = makeDataset({20, 20, 20}, parameters, 4);
+    std::stop_source source;
+    int frames = 0;
+    const Progress progress{[&](double, const std::string&) {
+                                if (++frames == 5) source.request_stop();
+                            },
+                            source.get_token()};
+    EXPECT_THROW(pack(made, {}, folder / "a.tsr", progress), Cancelled);
+    EXPECT_EQ(folder.files(), 0u);
+    made.load = [load = made.load](int p, int c, int t) {
+        if (t == 2) throw Error("truncated", "x.raw");
+        return load(p, c, t);
+    };
+    EXPECT_THROW(pack(made, {}, folder / "a.tsr"), Error);
+    EXPECT_EQ(folder.files(), 0u);
+    EXPECT_THROW(pack(made, {}, folder / "no/such/folder.tsr"), MachineError);
+    PackOptions bad;
+    bad.brickSize = 12;
+    EXPECT_THROW(pack(made, bad, folder / "a.tsr"), Error);
+}
+
+TEST(Archive, AKeyOutsideIsAnError) {
+    const TemporaryFolder folder;
+    volume::Dataset made = makeDataset({20, 20, 20}, {{"a", ScalarType::U8, 1, Texture::Smooth, false, false}}, 1);
+    pack(made, {}, folder / "a.tsr");
+    const Archive archive(folder / "a.tsr");
+    EXPECT_THROW((void)archive.read({1, 0, 0, {0, 0, 0}}), Error);
+    EXPECT_THROW((void)archive.read({0, 1, 0, {0, 0, 0}}), Error);
+    EXPECT_THROW((void)archive.read({0, 0, 9, {0, 0, 0}}), Error);
+    EXPECT_THROW((void)archive.read({0, 0, 0, {0, 0, 1}}), Error);
+}
+
+} // namespace
+} // namespace tessera::codec
