@@ -16,8 +16,10 @@ namespace tessera::volume {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr double kFocusUnit = 1.0 / 65536; // of summed degrees of interest: integers add up the same in any order
-constexpr double kFocusHalf = 0.5;         // at least this much interest is "inside"
+constexpr double kFocusHalf = 0.5; // at least this much interest is "inside"
+constexpr int kFocusBits = 10;     // interest is summed in units of 2^-10: integers add up the same in any order
+constexpr int kCountShift = 36;    // a packed bin: count above, focus below
+constexpr std::size_t kFlush = std::size_t(1) << (kCountShift - kFocusBits); // samples that fit a packed bin
 
 /// Sums of one channel over a set of samples, relative to a shift so that close values keep their digits.
 struct Sums {
@@ -50,18 +52,42 @@ struct Sums {
     }
 };
 
+/// Values of one channel in one brick, ready to be summed.
+struct Column {
+    std::vector<float> value;       ///< physical; NaN where absent
+    std::vector<float> centred;     ///< less the channel's shift; 0 where absent
+    std::vector<float> present;     ///< 1 or 0
+    std::vector<std::uint16_t> bin; ///< the number of bins where absent or out of range
+};
+
 /// Sums of a pair of channels over samples present in both.
 struct PairSums {
-    std::uint64_t n = 0;
-    double x = 0, y = 0, xx = 0, yy = 0, xy = 0;
+    double n = 0, x = 0, y = 0, xx = 0, yy = 0, xy = 0;
 
-    void add(double a, double b) {
-        ++n;
-        x += a;
-        y += b;
-        xx += a * a;
-        yy += b * b;
-        xy += a * b;
+    /// Adds all samples of a brick, those with weight 0 left out (weight null: none). Eight sums side by side, so that
+    /// the compiler can use vector instructions without changing the result.
+    void add(const Column& a, const Column& b, const float* weight) {
+        constexpr std::size_t kLanes = 8;
+        double lanes[6][kLanes] = {};
+        const std::size_t count = a.value.size();
+        const auto addOne = [&](std::size_t i, std::size_t lane) {
+            const double w = weight != nullptr ? double(weight[i]) : 1.0;
+            const double u = double(a.centred[i]), v = double(b.centred[i]);
+            const double p = double(a.present[i]) * w, q = double(b.present[i]) * w;
+            lanes[0][lane] += p * q;
+            lanes[1][lane] += u * q;
+            lanes[2][lane] += v * p;
+            lanes[3][lane] += u * u * q;
+            lanes[4][lane] += v * v * p;
+            lanes[5][lane] += u * v * w;
+        };
+        std::size_t i = 0;
+        for (; i + kLanes <= count; i += kLanes)
+            for (std::size_t lane = 0; lane < kLanes; ++lane) addOne(i + lane, lane);
+        for (; i < count; ++i) addOne(i, 0);
+        double* const sums[] = {&n, &x, &y, &xx, &yy, &xy};
+        for (std::size_t sum = 0; sum < 6; ++sum)
+            for (const double lane : lanes[sum]) *sums[sum] += lane;
     }
     void add(const PairSums& other) {
         n += other.n;
@@ -72,12 +98,11 @@ struct PairSums {
         xy += other.xy;
     }
     double correlation() const {
-        const double count = double(n);
-        const double a = count * xx - x * x, b = count * yy - y * y;
+        const double a = n * xx - x * x, b = n * yy - y * y;
         // What rounding leaves of a constant channel is no variance.
         constexpr double kEpsilon = 1e-12;
-        if (n < 2 || a <= kEpsilon * count * xx || b <= kEpsilon * count * yy) return kNan;
-        return std::clamp((count * xy - x * y) / std::sqrt(a * b), -1.0, 1.0);
+        if (n < 2 || a <= kEpsilon * n * xx || b <= kEpsilon * n * yy) return kNan;
+        return std::clamp((n * xy - x * y) / std::sqrt(a * b), -1.0, 1.0);
     }
 };
 
@@ -87,20 +112,42 @@ struct BrickSums {
     std::vector<PairSums> pairs, focusPairs;
 };
 
-/// Histogram counts and focus sums; integers, so that the order of adding does not matter.
+/// Histograms on their way: `packed` takes samples fast, the others are exact for any number of them.
 struct Bins {
-    std::vector<std::uint32_t> count;
-    std::vector<std::uint64_t> focus;
-    explicit Bins(std::size_t size = 0) : count(size), focus(size) {}
-    void add(std::size_t bin, std::uint32_t doi) {
-        ++count[bin];
-        focus[bin] += doi;
+    std::vector<std::uint64_t> packed, count, focus;
+    explicit Bins(std::size_t size = 0) : packed(size), count(size), focus(size) {}
+
+    void flush() {
+        for (std::size_t i = 0; i < packed.size(); ++i) {
+            count[i] += packed[i] >> kCountShift;
+            focus[i] += packed[i] & ((std::uint64_t(1) << kCountShift) - 1);
+            packed[i] = 0;
+        }
+    }
+    void add(const Bins& flushed) {
+        for (std::size_t i = 0; i < count.size(); ++i) {
+            count[i] += flushed.count[i];
+            focus[i] += flushed.focus[i];
+        }
     }
 };
 
+/// The histograms of one thread. Each axis has one bin more than asked for, which takes what belongs in none.
 struct BinSet {
     std::vector<Bins> channels, pairs;
+    std::size_t samples = 0; ///< since the last flush
+
+    void flush() {
+        for (Bins& bins : channels) bins.flush();
+        for (Bins& bins : pairs) bins.flush();
+        samples = 0;
+    }
 };
+
+/// Focus 1 and count 1 of a sample in a packed bin.
+std::uint64_t packedSample(double doi) {
+    return (std::uint64_t(1) << kCountShift) + std::uint64_t(std::lround(doi * (1 << kFocusBits)));
+}
 
 /// Length of every sample's cell along one axis of a sublattice at a level, within the box: the cells tile the box.
 std::vector<double> cellLengths(const BrickGrid& grid, const Box& box, int level, int sublattice, int axis) {
@@ -136,7 +183,7 @@ public:
         }
         for (int s = 0; s < sublattices_; ++s)
             for (int axis = 0; axis < 3; ++axis)
-                lengths_[s][axis] = cellLengths(grid_, info.bounds, query.level, s, axis);
+                lengths_[std::size_t(s)][std::size_t(axis)] = cellLengths(grid_, info.bounds, query.level, s, axis);
     }
 
     Statistics run(const Progress& progress) {
@@ -156,37 +203,66 @@ public:
                 progress.advance(double(finished) / double(bricks), "statistics");
         });
         BinSet all = emptyBins();
-        for (const BinSet& set : bins) {
-            for (std::size_t c = 0; c < all.channels.size(); ++c) addBins(all.channels[c], set.channels[c]);
-            for (std::size_t p = 0; p < all.pairs.size(); ++p) addBins(all.pairs[p], set.pairs[p]);
+        for (BinSet& set : bins) {
+            set.flush();
+            for (std::size_t c = 0; c < all.channels.size(); ++c) all.channels[c].add(set.channels[c]);
+            for (std::size_t p = 0; p < all.pairs.size(); ++p) all.pairs[p].add(set.pairs[p]);
         }
         return result(sums, all);
     }
 
 private:
-    std::size_t bins() const { return std::size_t(query_.bins); }
+    std::size_t stride() const { return std::size_t(query_.bins) + 1; }
 
     BinSet emptyBins() const {
         BinSet set;
-        set.channels.assign(query_.channels.size(), Bins(bins()));
-        set.pairs.assign(query_.pairs.size(), Bins(bins() * bins()));
+        set.channels.assign(query_.channels.size(), Bins(stride()));
+        set.pairs.assign(query_.pairs.size(), Bins(stride() * stride()));
         return set;
     }
 
-    static void addBins(Bins& to, const Bins& from) {
-        for (std::size_t i = 0; i < to.count.size(); ++i) {
-            to.count[i] += from.count[i];
-            to.focus[i] += from.focus[i];
-        }
-    }
-
-    /// Bin of a value, -1 outside the range.
     int binOf(std::size_t channel, float value) const {
         const Range& range = ranges_[channel];
-        if (!(double(value) >= range.lo && double(value) <= range.hi)) return -1;
+        if (!(double(value) >= range.lo && double(value) <= range.hi)) return query_.bins;
         if (range.hi <= range.lo) return 0;
         const double bin = (double(value) - range.lo) / (range.hi - range.lo) * query_.bins;
         return std::min(int(bin), query_.bins - 1);
+    }
+
+    Column column(std::size_t channel, glm::ivec3 index) const {
+        BrickSamples samples = source_.read({query_.channels[channel], query_.time, query_.level, index});
+        Column out;
+        out.value = std::move(samples.values);
+        const std::size_t count = out.value.size();
+        out.centred.resize(count);
+        out.present.resize(count);
+        out.bin.resize(count);
+        for (std::size_t i = 0; i < count; ++i) {
+            if (!samples.present.empty() && samples.present[i] == 0)
+                out.value[i] = std::numeric_limits<float>::quiet_NaN();
+            const float value = out.value[i];
+            const bool present = !std::isnan(value);
+            out.centred[i] = present ? float(double(value) - shifts_[channel]) : 0;
+            out.present[i] = present ? 1 : 0;
+            out.bin[i] = std::uint16_t(binOf(channel, value));
+        }
+        return out;
+    }
+
+    /// Volume of every sample's cell in a brick.
+    std::vector<double> cells(glm::ivec3 index) const {
+        const glm::ivec3 size = grid_.brickSamples(index, query_.level);
+        const glm::ivec3 first = grid_.levelBegin(index, query_.level);
+        std::vector<double> out;
+        out.reserve(std::size_t(size.x) * std::size_t(size.y) * std::size_t(size.z));
+        for (int z = first.z; z < first.z + size.z; ++z) {
+            const auto& lengths = lengths_[std::size_t(z % sublattices_)];
+            const double depth = lengths[2][std::size_t(z / sublattices_)] / sublattices_;
+            for (int y = first.y; y < first.y + size.y; ++y)
+                for (int x = first.x; x < first.x + size.x; ++x)
+                    out.push_back(depth * lengths[1][std::size_t(y)] * lengths[0][std::size_t(x)]);
+        }
+        return out;
     }
 
     BrickSums brick(glm::ivec3 index, BinSet& bins) const {
@@ -196,60 +272,50 @@ private:
         sums.outside.resize(channels);
         sums.pairs.resize(query_.pairs.size());
         sums.focusPairs.resize(query_.pairs.size());
-        std::vector<BrickSamples> samples;
-        for (const int channel : query_.channels)
-            samples.push_back(source_.read({channel, query_.time, query_.level, index}));
-        const glm::ivec3 size = grid_.brickSamples(index, query_.level);
-        const glm::ivec3 first = grid_.levelBegin(index, query_.level);
-        std::vector<float> values(channels);
-        std::vector<int> bin(channels);
-        std::size_t n = 0;
-        for (int z = 0; z < size.z; ++z) {
-            const auto s = std::size_t((first.z + z) % sublattices_);
-            const double depth = lengths_[s][2][std::size_t((first.z + z) / sublattices_)] / sublattices_;
-            for (int y = 0; y < size.y; ++y) {
-                const double area = depth * lengths_[s][1][std::size_t(first.y + y)];
-                for (int x = 0; x < size.x; ++x, ++n) {
-                    bool any = false;
-                    for (std::size_t c = 0; c < channels; ++c) {
-                        const bool present = samples[c].present.empty() || samples[c].present[n] != 0;
-                        values[c] = present ? samples[c].values[n] : std::numeric_limits<float>::quiet_NaN();
-                        any = any || present;
-                    }
-                    if (!any) continue;
-                    addSample(values, bin, area * lengths_[s][0][std::size_t(first.x + x)], sums, bins);
-                }
+        std::vector<Column> columns;
+        for (std::size_t c = 0; c < channels; ++c) columns.push_back(column(c, index));
+        const std::vector<double> cell = cells(index);
+        const std::size_t count = cell.size();
+
+        if (bins.samples + count > kFlush) bins.flush();
+        bins.samples += count;
+        std::vector<std::uint64_t> packed(count, packedSample(1));
+        std::vector<float> inside(count, 1.0f), values(channels);
+        for (std::size_t i = 0; query_.doi && i < count; ++i) {
+            for (std::size_t c = 0; c < channels; ++c) values[c] = columns[c].value[i];
+            const double doi = std::clamp(query_.doi(values), 0.0, 1.0);
+            packed[i] = packedSample(doi);
+            inside[i] = doi >= kFocusHalf ? 1 : 0;
+        }
+        for (std::size_t c = 0; c < channels; ++c) {
+            std::vector<std::uint64_t>& histogram = bins.channels[c].packed;
+            for (std::size_t i = 0; i < count; ++i) {
+                if (columns[c].present[i] == 0) continue;
+                histogram[columns[c].bin[i]] += packed[i];
+                (inside[i] != 0 ? sums.inside : sums.outside)[c].add(columns[c].value[i], shifts_[c], cell[i]);
             }
+        }
+        for (std::size_t p = 0; p < query_.pairs.size(); ++p) {
+            const Column &x = columns[std::size_t(query_.pairs[p][0])], &y = columns[std::size_t(query_.pairs[p][1])];
+            std::vector<std::uint64_t>& histogram = bins.pairs[p].packed;
+            for (std::size_t i = 0; i < count; ++i) histogram[y.bin[i] * stride() + x.bin[i]] += packed[i];
+            sums.pairs[p].add(x, y, nullptr);
+            if (query_.doi)
+                sums.focusPairs[p].add(x, y, inside.data());
+            else
+                sums.focusPairs[p] = sums.pairs[p];
         }
         return sums;
     }
 
-    void addSample(const std::vector<float>& values, std::vector<int>& bin, double cell, BrickSums& sums,
-                   BinSet& bins) const {
-        const double doi = query_.doi ? std::clamp(query_.doi(values), 0.0, 1.0) : 1.0;
-        const auto focus = std::uint32_t(std::lround(doi / kFocusUnit));
-        const bool inside = doi >= kFocusHalf;
-        for (std::size_t c = 0; c < values.size(); ++c) {
-            if (std::isnan(values[c])) continue;
-            bin[c] = binOf(c, values[c]);
-            if (bin[c] >= 0) bins.channels[c].add(std::size_t(bin[c]), focus);
-            (inside ? sums.inside : sums.outside)[c].add(values[c], shifts_[c], cell);
-        }
-        for (std::size_t p = 0; p < query_.pairs.size(); ++p) {
-            const auto x = std::size_t(query_.pairs[p][0]), y = std::size_t(query_.pairs[p][1]);
-            if (std::isnan(values[x]) || std::isnan(values[y])) continue;
-            const double a = double(values[x]) - shifts_[x], b = double(values[y]) - shifts_[y];
-            sums.pairs[p].add(a, b);
-            if (inside) sums.focusPairs[p].add(a, b);
-            if (bin[x] < 0 || bin[y] < 0) continue;
-            bins.pairs[p].add(std::size_t(bin[y]) * this->bins() + std::size_t(bin[x]), focus);
-        }
-    }
-
-    static void unpack(const Bins& bins, std::vector<std::uint64_t>& count, std::vector<double>& focus) {
-        count.assign(bins.count.begin(), bins.count.end());
-        focus.reserve(bins.focus.size());
-        for (const std::uint64_t units : bins.focus) focus.push_back(double(units) * kFocusUnit);
+    /// Leaves out the bins that take what belongs in none; `rows` is 1 or the number of bins.
+    void unpack(const Bins& bins, int rows, std::vector<std::uint64_t>& count, std::vector<double>& focus) const {
+        for (int row = 0; row < rows; ++row)
+            for (int bin = 0; bin < query_.bins; ++bin) {
+                const std::size_t at = std::size_t(row) * stride() + std::size_t(bin);
+                count.push_back(bins.count[at]);
+                focus.push_back(double(bins.focus[at]) / (1 << kFocusBits));
+            }
     }
 
     Statistics result(const std::vector<BrickSums>& sums, const BinSet& bins) const {
@@ -265,7 +331,7 @@ private:
             all.add(outside);
             ChannelStatistics channel;
             channel.histogram.range = ranges_[c];
-            unpack(bins.channels[c], channel.histogram.count, channel.histogram.focus);
+            unpack(bins.channels[c], 1, channel.histogram.count, channel.histogram.focus);
             channel.all = all.summary(shifts_[c]);
             channel.inside = inside.summary(shifts_[c]);
             channel.outside = outside.summary(shifts_[c]);
@@ -283,8 +349,8 @@ private:
             joint.xRange = ranges_[std::size_t(joint.x)];
             joint.yRange = ranges_[std::size_t(joint.y)];
             joint.bins = query_.bins;
-            unpack(bins.pairs[p], joint.count, joint.focus);
-            joint.samples = all.n;
+            unpack(bins.pairs[p], query_.bins, joint.count, joint.focus);
+            joint.samples = std::uint64_t(all.n);
             joint.correlation = all.correlation();
             joint.focusCorrelation = focus.correlation();
             out.joint.push_back(std::move(joint));
@@ -298,7 +364,7 @@ private:
     int sublattices_;
     std::vector<Range> ranges_;
     std::vector<double> shifts_;
-    std::vector<double> lengths_[2][3]; ///< [sublattice][axis][sample]: of the sample's cell
+    std::array<std::array<std::vector<double>, 3>, 2> lengths_; ///< [sublattice][axis][sample]: of the sample's cell
 };
 
 } // namespace
@@ -311,7 +377,7 @@ std::vector<std::array<int, 2>> allPairs(int count) {
 }
 
 Statistics computeStatistics(const BrickSource& source, const StatisticsQuery& query, const Progress& progress) {
-    assert(query.bins > 0 && query.level >= 0 && query.level < source.grid().levels);
+    assert(query.bins > 0 && query.bins < 65535 && query.level >= 0 && query.level < source.grid().levels);
     return Accumulator(source, query).run(progress);
 }
 

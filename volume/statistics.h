@@ -17,7 +17,7 @@ struct StatisticsQuery {
     std::vector<std::array<int, 2>> pairs; ///< joint histograms wanted: positions in `channels`, {x, y}
     int time = 0;
     int level = 0;             ///< of detail: ask for grid().levels - 1 first, then refine
-    int bins = 128;            ///< per axis, of histograms and joint histograms
+    int bins = 128;            ///< per axis, of histograms and joint histograms; below 65535
     std::vector<Range> ranges; ///< of the bins, by position in `channels`; empty: DatasetInfo::channelRange
     /// Degree of interest 0..1 of a sample, given the physical values of `channels` (NaN where absent). Called from
     /// several threads at once. Empty: everything has 1.
@@ -65,7 +65,7 @@ struct Statistics {
 };
 
 /// Counts, on all cores; the result does not depend on the number of threads (degrees of interest are summed in units
-/// of 2^-16). Throws Error when a brick is damaged, Cancelled.
+/// of 2^-10). Throws Error when a brick is damaged, Cancelled.
 Statistics computeStatistics(const BrickSource& source, const StatisticsQuery& query, const Progress& progress = {});
 
 } // namespace tessera::volume
