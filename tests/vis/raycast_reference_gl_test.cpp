@@ -15,10 +15,11 @@
 /// The shader's pictures against the double-precision reference: every style on CC and BCC, with and without absent
 /// samples, parallel and perspective. Linear light before the background, all four components.
 ///
-/// Tolerance with 32-bit textures: RMSE <= kRmse over the pixels that are within kOutlier of the reference, and at most
-/// kOutliers pixels of the picture that are not. Outliers are pixels where a yes or no (present or absent, above or
-/// below an iso-value, one sample more or less, the nearest label) falls the other way in single precision.
-/// Tolerance with 16-bit textures: PSNR >= kPsnr16 for a peak of 1.
+/// Tolerance with 32-bit textures (Mesa's software GL reaches RMSE 1e-6 and two outliers): RMSE <= kRmse over the
+/// pixels that are within kOutlier of the reference, and at most kOutliers pixels of the picture that are not. Outliers
+/// are pixels where a yes or no (present or absent, above or below an iso-value, one sample more or less, the nearest
+/// label) falls the other way in single precision. Tolerance with 16-bit textures and a 16-bit float target: PSNR >=
+/// kPsnr16 for a peak of 1 (reached: 75 dB).
 namespace tessera::vis {
 namespace {
 
@@ -29,7 +30,7 @@ using volume::LatticeKind;
 constexpr glm::ivec2 kSize{72, 56};
 constexpr double kRmse = 2e-6, kOutlier = 1e-4;
 constexpr std::size_t kOutliers = 8; // of 4032 pixels
-constexpr double kPsnr16 = 50;
+constexpr double kPsnr16 = 65;
 
 /// Two scalars, a label and (where masked) absent samples outside a ball and in a slab; sizes that fill no brick.
 std::shared_ptr<FunctionSource> source(LatticeKind kind, bool masked) {
@@ -215,7 +216,6 @@ TEST_P(RaycastReference, ExactTexturesAgree) {
             for (const glm::dvec4& pixel : wanted.pixels) most = std::max(most, pixel.a);
             EXPECT_GT(most, 0.2) << name << " shows next to nothing";
             EXPECT_TRUE(agrees(difference)) << name << ": " << words(difference) << "; " << evidence(name, got, wanted);
-            std::printf("%-40s %s\n", name.c_str(), words(difference).c_str());
         }
 }
 
@@ -229,7 +229,6 @@ TEST_P(RaycastReference, EveryFilterAgrees) {
         const reference::Difference difference = reference::compare(got, wanted, kOutlier);
         const std::string name = GetParam().name() + " filter " + std::string(kFilterNames[filter]);
         EXPECT_TRUE(agrees(difference)) << name << ": " << words(difference) << "; " << evidence(name, got, wanted);
-        std::printf("%-40s %s\n", name.c_str(), words(difference).c_str());
     }
 }
 
@@ -242,7 +241,6 @@ TEST_P(RaycastReference, SixteenBitTexturesAreClose) {
         const reference::Difference difference = reference::compare(got, wanted, kOutlier);
         const std::string name = GetParam().name() + " 16 bit " + mode.name;
         EXPECT_GE(difference.psnr, kPsnr16) << name << ": " << words(difference) << "; " << evidence(name, got, wanted);
-        std::printf("%-40s %s\n", name.c_str(), words(difference).c_str());
     }
 }
 
@@ -256,7 +254,6 @@ TEST_P(RaycastReference, StepStretchAndEyeInsideAgree) {
         const reference::Difference difference = reference::compare(got, wanted, kOutlier);
         const std::string name = GetParam().name() + " " + what;
         EXPECT_TRUE(agrees(difference)) << name << ": " << words(difference) << "; " << evidence(name, got, wanted);
-        std::printf("%-40s %s\n", name.c_str(), words(difference).c_str());
     };
     scene.render.stepVoxels = 1.7f;
     check("long steps");
@@ -290,7 +287,6 @@ TEST_P(RaycastReference, NoticesFlaws) {
         const reference::Difference difference = reference::compare(got, drawing.truth(scene, flawed.flaws), kOutlier);
         EXPECT_FALSE(agrees(difference)) << flawed.name << ": " << words(difference);
         EXPECT_GT(difference.beyond, 4 * kOutliers) << flawed.name << " is noticed by a wide margin";
-        std::printf("%-40s %s\n", (GetParam().name() + " " + flawed.name).c_str(), words(difference).c_str());
     }
 }
 
