@@ -74,8 +74,15 @@ struct TransferView {
 
 struct LayersView {
     static constexpr std::string_view kType = "layers";
+    int selected = 0; ///< layer whose parameters are shown
     bool operator==(const LayersView&) const = default;
-    static void describe(auto&, auto&&) {}
+    static void describe(auto& self, auto&& visit) {
+        visit(self.selected, FieldInfo{.key = "selected",
+                                       .unit = "",
+                                       .doc = "Layer whose parameters are shown, counted from 0",
+                                       .range = Range{0, 1000},
+                                       .hidden = true});
+    }
 };
 
 struct TimelineView {

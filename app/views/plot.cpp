@@ -136,11 +136,14 @@ void drawAxis(ImDrawList& draw, const PlotFrame& frame, AxisSide side, std::stri
         }
     }
     if (title.empty() && unit.empty()) return;
-    const std::string text = titleWithUnit(title, unit);
-    const float length = hi - lo;
-    std::string label = text;
-    if (!ticks.note.empty()) label += "  " + ticks.note;
-    label = fitText(label, length);
+    // What fits: the note must not be lost, or the numbers would be wrong; then the title, then the unit.
+    const std::string note = ticks.note.empty() ? "" : "  " + ticks.note;
+    std::string label;
+    for (const std::string& text : {titleWithUnit(title, unit) + note, std::string(title) + note,
+                                    ticks.note.empty() ? fitText(title, hi - lo) : ticks.note}) {
+        label = text;
+        if (ImGui::CalcTextSize(label.c_str()).x <= hi - lo) break;
+    }
     const ImVec2 size = ImGui::CalcTextSize(label.c_str());
     const auto centred = [&](float middle) { return std::max(lo + size.x / 2, std::min(middle, hi - size.x / 2)); };
     if (bottom) {
@@ -210,12 +213,12 @@ void drawCrosshair(ImDrawList& draw, const PlotFrame& frame, double x, double y)
     if (hasX && hasY) draw.AddCircleFilled({px, py}, em() * 0.2f, color);
 }
 
-void densityImage(std::span<const double> counts, std::span<const double> focus, int size, bool logDensity, bool dark,
-                  std::vector<std::uint8_t>& rgba) {
+void densityImage(std::span<const std::uint64_t> counts, std::span<const double> focus, int size, bool logDensity,
+                  bool dark, std::vector<std::uint8_t>& rgba) {
     const std::size_t n = static_cast<std::size_t>(size);
     rgba.assign(n * n * 4, 0);
     double most = 0;
-    for (double count : counts) most = std::max(most, count);
+    for (std::uint64_t count : counts) most = std::max(most, static_cast<double>(count));
     if (most <= 0) return;
     // Context grey-blue, focus orange: told apart by lightness as well as by hue.
     const std::array<double, 3> context = dark ? std::array{138.0, 156.0, 180.0} : std::array{92.0, 106.0, 128.0};
@@ -223,7 +226,7 @@ void densityImage(std::span<const double> counts, std::span<const double> focus,
     const std::array<double, 3> plain = dark ? std::array{150.0, 196.0, 236.0} : std::array{28.0, 92.0, 158.0};
     for (std::size_t row = 0; row < n; ++row)
         for (std::size_t column = 0; column < n; ++column) {
-            const double count = counts[row * n + column];
+            const auto count = static_cast<double>(counts[row * n + column]);
             if (count <= 0) continue;
             const double share = logDensity ? std::log1p(count) / std::log1p(most) : count / most;
             double alpha = 0.18 + 0.82 * share;

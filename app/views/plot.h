@@ -76,7 +76,7 @@ void drawCrosshair(ImDrawList& draw, const PlotFrame& frame, double x, double y)
 /// Colours of a density plot, row 0 at the top (the largest y): transparent where no sample is, else the density from
 /// faint to full, hue by the share of focus. `counts` and `focus` have size x size bins, x fastest, row 0 = lowest y;
 /// `focus` may be empty (nothing brushed).
-void densityImage(std::span<const double> counts, std::span<const double> focus, int size, bool logDensity, bool dark,
-                  std::vector<std::uint8_t>& rgba);
+void densityImage(std::span<const std::uint64_t> counts, std::span<const double> focus, int size, bool logDensity,
+                  bool dark, std::vector<std::uint8_t>& rgba);
 
 } // namespace tessera::app

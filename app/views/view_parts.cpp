@@ -94,28 +94,6 @@ std::optional<int> resolveChannel(const volume::DatasetInfo& info, const Session
     return info.channels().empty() ? std::nullopt : std::optional<int>(0);
 }
 
-bool channelCombo(const char* id, const volume::DatasetInfo& info, std::string& channel, bool categorical) {
-    bool changed = false;
-    const auto current = info.findChannel(channel);
-    const std::vector<volume::Channel> channels = info.channels();
-    const auto label = [](const volume::Channel& c) { return titleWithUnit(c.name, c.unit); };
-    const std::string preview = current           ? label(channels[static_cast<std::size_t>(*current)])
-                                : channel.empty() ? "-"
-                                                  : channel + " (missing)";
-    if (!ImGui::BeginCombo(id, preview.c_str(), ImGuiComboFlags_HeightLarge)) return false;
-    for (std::size_t i = 0; i < channels.size(); ++i) {
-        if (!categorical && info.parameters[static_cast<std::size_t>(channels[i].parameter)].categorical) continue;
-        const bool chosen = current && *current == static_cast<int>(i);
-        if (ImGui::Selectable(label(channels[i]).c_str(), chosen) && !chosen) {
-            channel = channels[i].name;
-            changed = true;
-        }
-        if (chosen) ImGui::SetItemDefaultFocus();
-    }
-    ImGui::EndCombo();
-    return changed;
-}
-
 const vis::TransferFunction& transferOf(const Session& session, const std::string& channel) {
     static const vis::TransferFunction fallback;
     const auto found = session.transfer.find(channel);

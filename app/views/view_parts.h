@@ -1,5 +1,6 @@
 #pragma once
 
+#include "app/ui/theme.h"
 #include "app/views/legend.h"
 #include "app/views/view_context.h"
 
@@ -16,12 +17,12 @@ struct Icon {
     const char* word;
 };
 namespace icons {
-inline constexpr Icon kEye{"\uf06e", "on"}, kEyeOff{"\uf070", "off"}, kPlus{"\uf067", "+"}, kTrash{"\uf1f8", "x"},
-    kCopy{"\uf0c5", "copy"}, kCube{"\uf1b2", "vol"}, kIso{"\uf219", "iso"}, kSlice{"\uf248", "slice"},
-    kPlay{"\uf04b", ">"}, kPause{"\uf04c", "||"}, kStepBack{"\uf048", "<|"}, kStepForward{"\uf051", "|>"},
-    kFirst{"\uf049", "|<"}, kLast{"\uf050", ">|"}, kRepeat{"\uf01e", "loop"}, kPingPong{"\uf0ec", "<>"},
-    kOnce{"\uf178", "once"}, kInvert{"\uf042", "inv"}, kHandle{"\uf0c9", "="}, kReset{"\uf015", "home"},
-    kReverse{"\uf0ec", "rev"};
+inline constexpr Icon kEye{icon::kEye, "on"}, kEyeOff{icon::kEyeOff, "off"}, kPlus{icon::kPlus, "+"},
+    kTrash{icon::kTrash, "x"}, kCopy{icon::kCopy, "copy"}, kCube{icon::kCube, "vol"}, kIso{"\uf219", "iso"},
+    kSlice{"\uf248", "slice"}, kPlay{icon::kPlay, ">"}, kPause{icon::kPause, "||"}, kStepBack{icon::kStepBack, "<|"},
+    kStepForward{icon::kStepForward, "|>"}, kFirst{icon::kFirst, "|<"}, kLast{icon::kLast, ">|"},
+    kRepeat{icon::kRepeat, "loop"}, kPingPong{icon::kPingPong, "<>"}, kOnce{icon::kOnce, "once"},
+    kInvert{icon::kInvert, "inv"}, kReverse{"\uf0ec", "rev"};
 } // namespace icons
 
 /// A square button with a glyph, its tooltip on hover; `enabled` false greys it out.
@@ -43,9 +44,6 @@ std::vector<int> comparedChannels(const volume::DatasetInfo& info);
 /// The channel a view shows: the wanted one if the data has it, else that of the first layer, else the first. Nothing
 /// for data without parameters.
 std::optional<int> resolveChannel(const volume::DatasetInfo& info, const Session& session, const std::string& wanted);
-
-/// Drop-down of the data's channels; vector components after the magnitude. True when another was chosen.
-bool channelCombo(const char* id, const volume::DatasetInfo& info, std::string& channel, bool categorical = true);
 
 /// The transfer function that the channel is drawn with.
 const vis::TransferFunction& transferOf(const Session& session, const std::string& channel);

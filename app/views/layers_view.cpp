@@ -1,0 +1,230 @@
+#include "app/ui/widgets.h"
+#include "app/views/ticks.h"
+#include "app/views/view_parts.h"
+
+#include <algorithm>
+#include <imgui.h>
+#include <imgui_stdlib.h>
+
+namespace tessera::app {
+
+namespace {
+
+constexpr const char* kLayerPayload = "tessera-layer";
+
+Icon iconOf(const vis::Technique& technique) {
+    static constexpr Icon kIcons[] = {icons::kCube, icons::kIso, icons::kSlice};
+    return kIcons[technique.index()];
+}
+
+const char* kindName(const vis::Technique& technique) {
+    static constexpr const char* kNames[] = {"Volume", "Iso-surface", "Slice"};
+    return kNames[technique.index()];
+}
+
+std::string channelOf(const vis::Technique& technique) {
+    return std::visit([](const auto& own) { return own.channel; }, technique);
+}
+
+/// A layer of a kind that shows something at once: an iso-surface lies in the middle of its parameter's range.
+vis::Layer newLayer(const Session& session, const volume::DatasetInfo& info, std::size_t kind) {
+    vis::Layer layer;
+    const auto channel = resolveChannel(info, session, "");
+    const std::string name = channel ? info.channels()[static_cast<std::size_t>(*channel)].name : "";
+    if (kind == 0) layer.technique = vis::VolumeLayer{.channel = name};
+    if (kind == 1) {
+        vis::IsoLayer iso{.channel = name};
+        if (channel) {
+            const Range range = info.channelRange(info.channels()[static_cast<std::size_t>(*channel)]);
+            iso.value = (range.lo + range.hi) / 2;
+        }
+        layer.technique = iso;
+    }
+    if (kind == 2) layer.technique = vis::SliceLayer{.channel = name};
+    layer.name = std::string(kindName(layer.technique)) + " of " + name;
+    return layer;
+}
+
+void drawList(ViewContext& context, int& selected) {
+    std::vector<vis::Layer>& layers = context.session.layers;
+    int moveFrom = -1, moveTo = -1;
+    for (std::size_t i = 0; i < layers.size(); ++i) {
+        vis::Layer& layer = layers[i];
+        ImGui::PushID(static_cast<int>(i));
+        if (iconButton(context, "eye", layer.visible ? icons::kEye : icons::kEyeOff,
+                       layer.visible ? "Hide this layer" : "Show this layer"))
+            layer.visible = !layer.visible;
+        ImGui::SameLine(0, em() * 0.3f);
+        const bool chosen = selected == static_cast<int>(i);
+        const float height = ImGui::GetFrameHeight();
+        const ImVec2 at = ImGui::GetCursorPos();
+        if (ImGui::Selectable("##row", chosen, ImGuiSelectableFlags_AllowItemOverlap, {0, height}))
+            selected = static_cast<int>(i);
+        if (ImGui::BeginDragDropSource()) {
+            const int index = static_cast<int>(i);
+            ImGui::SetDragDropPayload(kLayerPayload, &index, sizeof index);
+            ImGui::TextUnformatted(layer.name.c_str());
+            ImGui::EndDragDropSource();
+        }
+        if (ImGui::BeginDragDropTarget()) {
+            if (const ImGuiPayload* payload = ImGui::AcceptDragDropPayload(kLayerPayload)) {
+                moveFrom = *static_cast<const int*>(payload->Data);
+                moveTo = static_cast<int>(i);
+            }
+            ImGui::EndDragDropTarget();
+        }
+        if (ImGui::IsItemHovered()) tooltip(kindName(layer.technique));
+        ImGui::SetCursorPos(at);
+        iconText(context, iconOf(layer.technique),
+                 ImGui::GetColorU32(layer.visible ? ImGuiCol_Text : ImGuiCol_TextDisabled));
+        ImGui::SameLine(0, em() * 0.3f);
+        ImGui::AlignTextToFramePadding();
+        const std::string channel = channelOf(layer.technique);
+        const float room = ImGui::GetContentRegionAvail().x - ImGui::CalcTextSize(channel.c_str()).x - em() * 1.5f;
+        const std::string name = fitText(layer.name.empty() ? kindName(layer.technique) : layer.name, room);
+        if (layer.visible)
+            ImGui::TextUnformatted(name.c_str());
+        else
+            ImGui::TextDisabled("%s", name.c_str());
+        ImGui::SameLine(ImGui::GetContentRegionMax().x - ImGui::CalcTextSize(channel.c_str()).x - em() * 0.4f);
+        ImGui::TextDisabled("%s", channel.c_str());
+        ImGui::PopID();
+    }
+    if (moveFrom >= 0 && moveTo >= 0 && moveFrom != moveTo) {
+        const vis::Layer moved = layers[static_cast<std::size_t>(moveFrom)];
+        layers.erase(layers.begin() + moveFrom);
+        layers.insert(layers.begin() + moveTo, moved);
+        selected = moveTo;
+    }
+    if (layers.empty()) ImGui::TextDisabled("No layers: the volume view is empty.");
+}
+
+void drawListButtons(ViewContext& context, const volume::DatasetInfo& info, int& selected) {
+    std::vector<vis::Layer>& layers = context.session.layers;
+    const bool any = selected >= 0 && selected < static_cast<int>(layers.size());
+    if (iconButton(context, "add", icons::kPlus, "Add a layer")) ImGui::OpenPopup("add layer");
+    if (ImGui::BeginPopup("add layer")) {
+        static constexpr const char* kNames[] = {"Volume", "Iso-surface", "Slice"};
+        for (std::size_t kind = 0; kind < std::size(kNames); ++kind)
+            if (ImGui::MenuItem(kNames[kind])) {
+                layers.push_back(newLayer(context.session, info, kind));
+                selected = static_cast<int>(layers.size()) - 1;
+            }
+        ImGui::EndPopup();
+    }
+    ImGui::SameLine(0, em() * 0.2f);
+    if (iconButton(context, "copy", icons::kCopy, "Duplicate the layer", any)) {
+        vis::Layer copy = layers[static_cast<std::size_t>(selected)];
+        copy.name += " copy";
+        layers.insert(layers.begin() + selected + 1, copy);
+        ++selected;
+    }
+    ImGui::SameLine(0, em() * 0.2f);
+    if (iconButton(context, "remove", icons::kTrash, "Remove the layer", any)) {
+        layers.erase(layers.begin() + selected);
+        selected = std::min(selected, static_cast<int>(layers.size()) - 1);
+    }
+    ImGui::SameLine(0, em() * 0.8f);
+    ImGui::TextDisabled("drag to reorder");
+}
+
+std::string intervalText(const volume::DatasetInfo& info, const vis::BrushInterval& interval) {
+    const auto channel = info.findChannel(interval.channel);
+    if (!channel) return interval.channel + " (missing)";
+    const volume::Channel own = info.channels()[static_cast<std::size_t>(*channel)];
+    const Range range = info.channelRange(own);
+    const double digits = (range.hi - range.lo) / 1000;
+    return interval.channel + "  " + formatNumber(interval.lo, digits) + " .. " +
+           formatQuantity(interval.hi, own.unit, digits);
+}
+
+void drawBrushList(ViewContext& context, const volume::DatasetInfo& info) {
+    vis::Selection& selection = context.session.selection;
+    const WidgetContext widgets{.info = &info};
+    int removed = -1;
+    for (std::size_t i = 0; i < selection.brushes.size(); ++i) {
+        vis::Brush& brush = selection.brushes[i];
+        ImGui::PushID(static_cast<int>(i));
+        ImGui::Checkbox("##enabled", &brush.enabled);
+        if (ImGui::IsItemHovered()) tooltip("Takes part in the selection");
+        ImGui::SameLine(0, em() * 0.3f);
+        ImGui::AlignTextToFramePadding();
+        ImGui::Text("%zu", i + 1);
+        ImGui::SameLine(0, em() * 0.4f);
+        const float buttons = ImGui::GetFrameHeight() * 2 + em() * 0.9f;
+        ImGui::SetNextItemWidth(std::max(em() * 3, ImGui::GetContentRegionAvail().x - buttons));
+        ImGui::InputText("##name", &brush.name);
+        ImGui::SameLine(0, em() * 0.3f);
+        if (iconButton(context, "invert", icons::kInvert, "Select what lies outside", true, brush.inverted))
+            brush.inverted = !brush.inverted;
+        ImGui::SameLine(0, em() * 0.2f);
+        if (iconButton(context, "delete", icons::kTrash, "Remove this brush")) removed = static_cast<int>(i);
+        ImGui::Indent(em() * 1.6f);
+        for (std::size_t k = 0; k < brush.intervals.size(); ++k) {
+            vis::BrushInterval& interval = brush.intervals[k];
+            ImGui::PushID(static_cast<int>(k));
+            const std::string text = (brush.inverted ? "not " : "") + intervalText(info, interval) + "###interval";
+            if (ImGui::TreeNodeEx(text.c_str(), ImGuiTreeNodeFlags_SpanAvailWidth)) {
+                drawDescribed(interval, widgets);
+                if (interval.hi < interval.lo) std::swap(interval.lo, interval.hi);
+                interval.soft = std::max(0.0, interval.soft);
+                ImGui::TreePop();
+            }
+            ImGui::PopID();
+        }
+        ImGui::Unindent(em() * 1.6f);
+        ImGui::PopID();
+    }
+    if (removed >= 0) selection.brushes.erase(selection.brushes.begin() + removed);
+    if (selection.brushes.empty())
+        ImGui::TextDisabled("No brushes: drag in a plot to select.");
+    else if (ImGui::SmallButton("Clear all"))
+        selection.brushes.clear();
+}
+
+} // namespace
+
+void drawLayersView(ViewContext& context, const std::string&, LayersView& view) {
+    if (!context.source) {
+        drawHint("No data", "What the 3D views draw is put together here.");
+        return;
+    }
+    const volume::DatasetInfo& info = context.source->info();
+    Session& session = context.session;
+    const WidgetContext widgets{.info = &info};
+    ImGui::BeginChild("layers");
+    if (ImGui::CollapsingHeader("Layers", ImGuiTreeNodeFlags_DefaultOpen)) {
+        drawList(context, view.selected);
+        drawListButtons(context, info, view.selected);
+    }
+    view.selected = std::clamp(view.selected, 0, std::max(0, static_cast<int>(session.layers.size()) - 1));
+    if (!session.layers.empty()) {
+        vis::Layer& layer = session.layers[static_cast<std::size_t>(view.selected)];
+        const std::string title = std::string(kindName(layer.technique)) + "###technique";
+        if (ImGui::CollapsingHeader(title.c_str(), ImGuiTreeNodeFlags_DefaultOpen)) {
+            ImGui::PushID(view.selected);
+            drawLabel(widgets, "Name", "Name of the layer");
+            ImGui::InputText("##name", &layer.name);
+            std::visit([&](auto& technique) { drawDescribed(technique, widgets); }, layer.technique);
+            ImGui::PopID();
+        }
+    }
+    if (ImGui::CollapsingHeader("Focus and context", ImGuiTreeNodeFlags_DefaultOpen)) {
+        drawBrushList(context, info);
+        drawDescribed(session.selection, widgets);
+    }
+    if (ImGui::CollapsingHeader("Light and quality")) drawDescribed(session.render, widgets);
+    if (ImGui::CollapsingHeader("Proportions")) {
+        double stretch[] = {session.stretch.x, session.stretch.y, session.stretch.z};
+        const FieldInfo field{.key = "stretch",
+                              .unit = "",
+                              .doc = "Factor on each axis; 1 = true proportions",
+                              .range = Range{0.01, 1000},
+                              .logScale = true};
+        if (drawNumber(widgets, field, {}, stretch, 3, false)) session.stretch = {stretch[0], stretch[1], stretch[2]};
+        if (ImGui::SmallButton("True proportions")) session.stretch = glm::dvec3(1);
+    }
+    ImGui::EndChild();
+}
+
+} // namespace tessera::app

@@ -1,0 +1,20 @@
+#pragma once
+
+#include "app/session/session.h"
+
+#include <vector>
+
+/// Playing through time, apart from its buttons.
+namespace tessera::app {
+
+/// Where playing stands between two stored times.
+struct Playback {
+    double steps = 0;  ///< share of the next step that has passed
+    int direction = 1; ///< -1 on the way back of a ping-pong
+};
+
+/// Moves `time` on by `seconds` of playing: whole steps along `times` at animation.speed steps per second. At the end
+/// it stops (playing becomes false), starts again or turns round, as animation.loop says.
+void advance(Playback& playback, Animation& animation, double& time, const std::vector<double>& times, double seconds);
+
+} // namespace tessera::app

@@ -1,0 +1,158 @@
+#include "app/views/readout.h"
+
+#include "app/views/ticks.h"
+#include "app/views/view_parts.h"
+#include "volume/error.h"
+
+#include <algorithm>
+#include <cmath>
+#include <imgui.h>
+
+namespace tessera::app {
+
+namespace {
+
+constexpr std::size_t kCacheBytes = std::size_t(64) << 20;
+
+std::string labelName(const volume::Parameter& parameter, double value) {
+    for (const volume::Label& label : parameter.labels)
+        if (label.value == static_cast<int>(std::lround(value))) return label.name;
+    return formatNumber(value);
+}
+
+std::string valueText(const volume::DatasetInfo& info, const volume::Channel& channel,
+                      const std::optional<double>& value) {
+    if (!value) return "absent";
+    const volume::Parameter& parameter = info.parameters[static_cast<std::size_t>(channel.parameter)];
+    if (parameter.categorical) return labelName(parameter, *value);
+    const Range range = info.channelRange(channel);
+    return formatNumber(*value, (range.hi - range.lo) / 1000);
+}
+
+} // namespace
+
+std::optional<double> Readout::value(const std::string& channel) const {
+    for (std::size_t i = 0; i < channels.size() && i < state->values.size(); ++i)
+        if (channels[i].name == channel) return state->values[i].interpolated;
+    return std::nullopt;
+}
+
+void updateReadout(ViewContext& context, Readout& readout) {
+    Readout::State& state = *readout.state;
+    if (state.source != context.source) {
+        readout.state = std::make_shared<Readout::State>();
+        readout.state->source = context.source;
+        readout.state->cache = std::make_shared<volume::BrickCache>(context.source, kCacheBytes);
+        readout.channels = context.source->info().channels();
+        updateReadout(context, readout);
+        return;
+    }
+    const glm::dvec3 position = context.session.cursor;
+    const int time = timeIndex(context.session, context.source->info());
+    if (state.time == time && state.position == position) return;
+    if (context.headless) {
+        state.values = volume::probe(*state.cache, position, time);
+        state.position = position;
+        state.time = time;
+        return;
+    }
+    context.busy = true;
+    if (state.running) return;
+    state.running = true;
+    context.jobs.start(
+        "", "Values at the cursor",
+        [weak = std::weak_ptr(readout.state), cache = state.cache, position, time](const Progress&) -> Jobs::Finish {
+            std::vector<volume::ProbeValue> values;
+            std::string failure;
+            try {
+                values = volume::probe(*cache, position, time);
+            } catch (const Error& error) {
+                failure = error.what();
+            }
+            return [weak, values = std::move(values), failure, position, time] {
+                const auto owner = weak.lock();
+                if (!owner) return;
+                owner->running = false;
+                owner->values = values;
+                owner->position = position;
+                owner->time = time;
+                if (!failure.empty()) throw Error(failure);
+            };
+        },
+        true);
+}
+
+void drawReadout(ViewContext& context, const Readout& readout) {
+    const volume::DatasetInfo& info = context.source->info();
+    const glm::dvec3 cursor = context.session.cursor, size = info.bounds.size();
+    static constexpr const char* kAxes[] = {"x", "y", "z"};
+    const glm::ivec3 index = info.lattice.nearest(cursor);
+    std::string at;
+    for (int axis = 0; axis < 3; ++axis) {
+        const LengthUnit unit = suitableLength(info.lengthUnit, size[axis]);
+        at += (axis ? "   " : "") + std::string(kAxes[axis]) + " " +
+              formatQuantity(cursor[axis] * unit.perUnit, unit.name, size[axis] * unit.perUnit / 1000);
+    }
+    ImGui::PushTextWrapPos(0);
+    ImGui::TextUnformatted(at.c_str());
+    const int time = timeIndex(context.session, info);
+    std::string sample =
+        "sample (" + std::to_string(index.x) + ", " + std::to_string(index.y) + ", " + std::to_string(index.z) + ")";
+    if (info.times.size() > 1)
+        sample += "   t " + formatQuantity(info.times[static_cast<std::size_t>(time)], info.timeUnit);
+    ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetStyleColorVec4(ImGuiCol_TextDisabled));
+    ImGui::TextUnformatted(sample.c_str());
+    ImGui::PopStyleColor();
+    ImGui::PopTextWrapPos();
+
+    if (!ImGui::BeginTable("values", 3,
+                           ImGuiTableFlags_SizingStretchProp | ImGuiTableFlags_RowBg | ImGuiTableFlags_PadOuterX))
+        return;
+    ImGui::TableSetupColumn("Parameter", ImGuiTableColumnFlags_WidthStretch, 1.4f);
+    ImGui::TableSetupColumn("Interpolated", ImGuiTableColumnFlags_WidthStretch, 1);
+    ImGui::TableSetupColumn("Nearest", ImGuiTableColumnFlags_WidthStretch, 1);
+    ImGui::TableHeadersRow();
+    const auto cell = [&](const volume::Channel& channel, const std::optional<double>& value) {
+        ImGui::TableNextColumn();
+        const std::string text = valueText(info, channel, value);
+        // Numbers are compared by their right ends.
+        const float room = ImGui::GetContentRegionAvail().x - ImGui::CalcTextSize(text.c_str()).x - em() * 0.6f;
+        if (value && room > 0) ImGui::SetCursorPosX(ImGui::GetCursorPosX() + room);
+        if (value)
+            ImGui::TextUnformatted(text.c_str());
+        else
+            ImGui::TextDisabled("%s", text.c_str());
+    };
+    for (std::size_t i = 0; i < readout.channels.size() && i < readout.state->values.size(); ++i) {
+        const volume::Channel& channel = readout.channels[i];
+        const volume::ProbeValue& value = readout.state->values[i];
+        ImGui::TableNextRow();
+        ImGui::TableNextColumn();
+        ImGui::TextUnformatted(titleWithUnit(channel.name, channel.unit).c_str());
+        cell(channel, value.interpolated);
+        cell(channel, value.nearest);
+    }
+    ImGui::EndTable();
+    if (ImGui::SmallButton("Copy as CSV")) ImGui::SetClipboardText(readoutCsv(context.session, info, readout).c_str());
+}
+
+std::string readoutCsv(const Session& session, const volume::DatasetInfo& info, const Readout& readout) {
+    const auto number = [](const std::optional<double>& value) {
+        char text[32] = "";
+        if (value) std::snprintf(text, sizeof text, "%.9g", *value);
+        return std::string(text);
+    };
+    std::string csv = "parameter,unit,interpolated,nearest\n";
+    const char* const axes[] = {"x", "y", "z"};
+    for (int axis = 0; axis < 3; ++axis)
+        csv += std::string(axes[axis]) + "," + info.lengthUnit + "," + number(session.cursor[axis]) + ",\n";
+    csv += "time," + info.timeUnit + "," + number(session.time) + ",\n";
+    for (std::size_t i = 0; i < readout.channels.size() && i < readout.state->values.size(); ++i) {
+        const volume::ProbeValue& value = readout.state->values[i];
+        csv += readout.channels[i].name + "," + readout.channels[i].unit + "," + number(value.interpolated) + "," +
+               number(value.nearest) + "\n";
+    }
+    return csv;
+}
+
+} // namespace tessera::app

@@ -1,0 +1,375 @@
+#include "app/views/brush_edit.h"
+#include "app/views/readout.h"
+#include "app/views/statistics_feed.h"
+#include "app/views/ticks.h"
+#include "app/views/view_parts.h"
+#include "vis/gl/plot_texture.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tessera::app {
+
+namespace {
+
+constexpr std::size_t kMostPlots = 9; ///< a side, where the user has not chosen: more are too small to read
+
+struct ScatterCache : ViewCache {
+    StatisticsFeed feed;
+    BrushDrag drag;
+    Readout readout;
+    std::vector<vis::PlotTexture> textures; ///< by pair
+    std::vector<std::uint8_t> pixels;
+    // What the textures show.
+    std::shared_ptr<const StatisticsResult> shown;
+    bool shownLog = false, shownDark = false;
+};
+
+struct Matrix {
+    std::vector<int> channels;
+    std::vector<volume::Channel> infos;
+    std::vector<Range> ranges;
+    ImVec2 min; ///< top left of the first cell
+    float cellX, cellY, gap;
+
+    std::size_t size() const { return channels.size(); }
+    PlotFrame cell(std::size_t column, std::size_t row) const {
+        const float x = min.x + cellX * static_cast<float>(column), y = min.y + cellY * static_cast<float>(row);
+        return {{std::round(x), std::round(y)},
+                {std::round(x + cellX - gap), std::round(y + cellY - gap)},
+                ranges[column],
+                ranges[row]};
+    }
+};
+
+std::vector<int> shownChannels(const volume::DatasetInfo& info, const ScatterMatrixView& view) {
+    std::vector<int> out;
+    for (const std::string& name : view.channels)
+        if (const auto channel = info.findChannel(name))
+            if (std::find(out.begin(), out.end(), *channel) == out.end()) out.push_back(*channel);
+    if (!out.empty()) return out;
+    out = comparedChannels(info);
+    if (out.size() > kMostPlots) out.resize(kMostPlots);
+    return out;
+}
+
+void chooseChannels(const volume::DatasetInfo& info, ScatterMatrixView& view, const std::vector<int>& shown) {
+    const std::string label = std::to_string(shown.size()) + " parameters";
+    ImGui::SetNextItemWidth(em() * 8.5f);
+    if (ImGui::BeginCombo("##channels", label.c_str(), ImGuiComboFlags_HeightLarge)) {
+        const std::vector<volume::Channel> channels = info.channels();
+        for (std::size_t i = 0; i < channels.size(); ++i) {
+            if (info.parameters[static_cast<std::size_t>(channels[i].parameter)].categorical) continue;
+            bool on = std::find(shown.begin(), shown.end(), static_cast<int>(i)) != shown.end();
+            if (!ImGui::Checkbox(titleWithUnit(channels[i].name, channels[i].unit).c_str(), &on)) continue;
+            std::vector<std::string> names;
+            for (std::size_t k = 0; k < channels.size(); ++k) {
+                const bool was = std::find(shown.begin(), shown.end(), static_cast<int>(k)) != shown.end();
+                if (k == i ? on : was) names.push_back(channels[k].name);
+            }
+            if (!names.empty()) view.channels = names;
+        }
+        ImGui::Separator();
+        if (ImGui::Selectable("All scalars and magnitudes")) view.channels.clear();
+        ImGui::EndCombo();
+    }
+    if (ImGui::IsItemHovered()) tooltip("Parameters that are compared");
+}
+
+/// Focus samples and all samples: of the parameter that exists at most points.
+struct Share {
+    double focus = 0, all = 0;
+};
+Share focusShare(const volume::Statistics& statistics) {
+    Share share;
+    for (const volume::ChannelStatistics& channel : statistics.channels) {
+        share.focus = std::max(share.focus, static_cast<double>(channel.inside.samples));
+        share.all = std::max(share.all, static_cast<double>(channel.all.samples));
+    }
+    return share;
+}
+
+void drawToolbar(ViewContext& context, ScatterMatrixView& view, const std::vector<int>& shown,
+                 const StatisticsResult* result) {
+    Session& session = context.session;
+    const volume::DatasetInfo& info = context.source->info();
+    chooseChannels(info, view, shown);
+    ImGui::SameLine();
+    ImGui::Checkbox("log", &view.logDensity);
+    if (ImGui::IsItemHovered()) tooltip("Show the logarithm of the number of samples");
+    ImGui::SameLine();
+    ImGui::SetNextItemWidth(em() * 6);
+    float percent = view.softness * 100;
+    if (ImGui::SliderFloat("##soft", &percent, 0, 50, "soft %.0f %%")) view.softness = percent / 100;
+    if (ImGui::IsItemHovered()) tooltip("Soft edge of new brushes, as a share of their width");
+    const bool brushed = session.selection.active();
+    std::string text;
+    if (brushed && result && result->brushed) {
+        const Share share = focusShare(result->statistics);
+        text = "focus " + formatShare(share.all > 0 ? share.focus / share.all : 0);
+        if (result->statistics.level == 0) text += " (" + formatCount(share.focus) + ")";
+    } else if (session.selection.brushes.empty()) {
+        text = "drag in a plot to select (brush)";
+    }
+    if (!session.selection.brushes.empty()) {
+        ImGui::SameLine();
+        if (ImGui::Button("Clear")) session.selection.brushes.clear();
+        if (ImGui::IsItemHovered()) tooltip("Remove all brushes (Esc)");
+    }
+    const float width = ImGui::CalcTextSize(text.c_str()).x;
+    ImGui::SameLine();
+    if (ImGui::GetContentRegionAvail().x >= width) {
+        ImGui::SetCursorPosX(std::max(ImGui::GetCursorPosX(), ImGui::GetContentRegionMax().x - width));
+        ImGui::AlignTextToFramePadding();
+        if (brushed)
+            ImGui::TextUnformatted(text.c_str());
+        else
+            ImGui::TextDisabled("%s", text.c_str());
+    } else {
+        ImGui::NewLine();
+    }
+}
+
+void updateTextures(ScatterCache& cache, const std::shared_ptr<const StatisticsResult>& result, bool logDensity) {
+    const bool dark = darkTheme();
+    if (cache.shown == result && cache.shownLog == logDensity && cache.shownDark == dark) return;
+    cache.shown = result;
+    cache.shownLog = logDensity;
+    cache.shownDark = dark;
+    cache.textures.resize(result->statistics.joint.size());
+    for (std::size_t i = 0; i < cache.textures.size(); ++i) {
+        const volume::JointHistogram& joint = result->statistics.joint[i];
+        densityImage(joint.count, result->brushed ? std::span<const double>(joint.focus) : std::span<const double>(),
+                     joint.bins, logDensity, dark, cache.pixels);
+        cache.textures[i].upload({joint.bins, joint.bins}, cache.pixels);
+    }
+}
+
+void drawHistogram(ImDrawList& draw, const PlotFrame& frame, const volume::Histogram& histogram, bool brushed,
+                   bool logCounts) {
+    const PlotColors colors = plotColors();
+    std::uint64_t most = 1;
+    for (std::uint64_t count : histogram.count) most = std::max(most, count);
+    const auto height = [&](double count) {
+        const double top = static_cast<double>(most);
+        return static_cast<float>((logCounts ? std::log1p(count) / std::log1p(top) : count / top) * 0.94);
+    };
+    std::vector<float> all, focus;
+    for (std::size_t i = 0; i < histogram.count.size(); ++i) {
+        all.push_back(height(static_cast<double>(histogram.count[i])));
+        if (brushed) focus.push_back(histogram.focus[i] > 0 ? height(histogram.focus[i]) : 0.0f);
+    }
+    drawBars(draw, frame, all, colors.bars);
+    if (brushed) drawBars(draw, frame, focus, colors.focus);
+}
+
+/// Correlation as a number on a tint: orange for rising together, blue for against each other.
+void drawCorrelation(ImDrawList& draw, const PlotFrame& frame, const volume::JointHistogram& joint, bool brushed) {
+    const PlotColors colors = plotColors();
+    const auto line = [&](double r, float centerY, float scale, ImU32 color, const char* prefix) {
+        char text[48];
+        if (std::isnan(r))
+            std::snprintf(text, sizeof text, "%s-", prefix);
+        else
+            std::snprintf(text, sizeof text, "%s%+.2f", prefix, r);
+        float size = em() * scale;
+        ImFont* font = ImGui::GetFont();
+        const float width = font->CalcTextSizeA(size, 1e6f, 0, text).x;
+        if (width > frame.width() * 0.92f) size *= frame.width() * 0.92f / width;
+        if (size < em() * 0.55f) return;
+        const ImVec2 extent = font->CalcTextSizeA(size, 1e6f, 0, text);
+        draw.AddText(font, size,
+                     {std::round((frame.min.x + frame.max.x - extent.x) / 2), std::round(centerY - extent.y / 2)},
+                     color, text);
+    };
+    if (!std::isnan(joint.correlation)) {
+        const int alpha = static_cast<int>(std::abs(joint.correlation) * 70);
+        draw.AddRectFilled(frame.min, frame.max,
+                           joint.correlation > 0 ? IM_COL32(230, 140, 40, alpha) : IM_COL32(50, 120, 220, alpha));
+    }
+    const float middle = (frame.min.y + frame.max.y) / 2;
+    const bool two = brushed && frame.height() > em() * 2.4f;
+    line(joint.correlation, two ? middle - em() * 0.55f : middle, 1, colors.text, "");
+    if (two) line(joint.focusCorrelation, middle + em() * 0.6f, 0.9f, colors.focus, "");
+}
+
+std::string binText(const volume::Channel& channel, Range range, std::size_t bin, std::size_t bins) {
+    const double width = (range.hi - range.lo) / static_cast<double>(bins);
+    const double middle = range.lo + (static_cast<double>(bin) + 0.5) * width;
+    return channel.name + " " + formatQuantity(middle, channel.unit, width);
+}
+
+std::string countText(double count, double total, double focus, bool brushed) {
+    std::string text = formatCount(count) + (count == 1 ? " sample" : " samples");
+    if (total > 0) text += ", " + formatShare(count / total);
+    if (brushed && count > 0) text += "\n" + formatShare(std::min(1.0, focus / count)) + " of them in focus";
+    return text;
+}
+
+void hoverText(const Matrix& matrix, std::size_t column, std::size_t row, const PlotFrame& frame,
+               const StatisticsResult& result) {
+    const glm::dvec2 at = frame.data(ImGui::GetIO().MousePos);
+    const volume::Statistics& statistics = result.statistics;
+    const auto bin = [](double value, Range range, std::size_t bins) {
+        const double u = (value - range.lo) / (range.hi - range.lo) * static_cast<double>(bins);
+        return static_cast<std::size_t>(std::clamp(u, 0.0, static_cast<double>(bins - 1)));
+    };
+    std::string text;
+    if (column == row) {
+        const volume::ChannelStatistics& channel = statistics.channels[column];
+        const std::size_t bins = channel.histogram.count.size(), i = bin(at.x, channel.histogram.range, bins);
+        text = binText(matrix.infos[column], channel.histogram.range, i, bins) + "\n" +
+               countText(static_cast<double>(channel.histogram.count[i]), static_cast<double>(channel.all.samples),
+                         channel.histogram.focus[i], result.brushed);
+    } else {
+        for (const volume::JointHistogram& joint : statistics.joint) {
+            if (joint.x != static_cast<int>(std::min(column, row)) ||
+                joint.y != static_cast<int>(std::max(column, row)))
+                continue;
+            const auto bins = static_cast<std::size_t>(joint.bins);
+            if (column > row) {
+                text = matrix.infos[row].name + " and " + matrix.infos[column].name + "\ncorrelation ";
+                text += std::isnan(joint.correlation) ? "not defined" : formatNumber(joint.correlation, 0.001);
+                if (result.brushed)
+                    text += "\nin focus " + (std::isnan(joint.focusCorrelation)
+                                                 ? std::string("not defined")
+                                                 : formatNumber(joint.focusCorrelation, 0.001));
+                text += "\n" + formatCount(static_cast<double>(joint.samples)) + " samples have both";
+            } else {
+                const std::size_t bx = bin(at.x, joint.xRange, bins), by = bin(at.y, joint.yRange, bins);
+                const std::size_t i = by * bins + bx;
+                text = binText(matrix.infos[column], joint.xRange, bx, bins) + "\n" +
+                       binText(matrix.infos[row], joint.yRange, by, bins) + "\n" +
+                       countText(static_cast<double>(joint.count[i]), static_cast<double>(joint.samples),
+                                 joint.focus[i], result.brushed);
+            }
+        }
+    }
+    if (result.statistics.level > 0) text += "\n(from a coarser level so far)";
+    if (!text.empty()) ImGui::SetTooltip("%s", text.c_str());
+}
+
+/// One cell; true while its brush is being dragged.
+void drawCell(ViewContext& context, ScatterCache& cache, const ScatterMatrixView& view, const Matrix& matrix,
+              std::size_t column, std::size_t row, const StatisticsResult* result) {
+    Session& session = context.session;
+    const PlotColors colors = plotColors();
+    ImDrawList& draw = *ImGui::GetWindowDrawList();
+    PlotFrame frame = matrix.cell(column, row);
+    const bool histogram = column == row;
+    if (histogram) frame.y = {0, 1};
+    const PlotChannels channels{matrix.infos[column].name, histogram ? std::string() : matrix.infos[row].name};
+
+    ImGui::PushID(static_cast<int>(row * matrix.size() + column));
+    ImGui::SetCursorScreenPos(frame.min);
+    ImGui::InvisibleButton("cell", {frame.width(), frame.height()},
+                           ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight);
+    const bool hovered = ImGui::IsItemHovered();
+    if (column <= row) editBrushes(cache.drag, session.selection, frame, channels, view.softness);
+    ImGui::PopID();
+
+    if (column > row) {
+        if (result)
+            for (const volume::JointHistogram& joint : result->statistics.joint)
+                if (joint.x == static_cast<int>(row) && joint.y == static_cast<int>(column))
+                    drawCorrelation(draw, frame, joint, result->brushed);
+    } else if (result) {
+        draw.PushClipRect(frame.min, frame.max, true);
+        if (histogram) {
+            drawHistogram(draw, frame, result->statistics.channels[column].histogram, result->brushed, view.logDensity);
+        } else {
+            for (std::size_t i = 0; i < result->statistics.joint.size(); ++i) {
+                const volume::JointHistogram& joint = result->statistics.joint[i];
+                if (joint.x != static_cast<int>(column) || joint.y != static_cast<int>(row)) continue;
+                draw.AddImage(reinterpret_cast<ImTextureID>(static_cast<std::intptr_t>(cache.textures[i].name())),
+                              frame.min, frame.max);
+            }
+        }
+        draw.PopClipRect();
+    }
+    draw.AddRect(frame.min, frame.max, colors.frame);
+    if (column <= row) {
+        drawBrushes(draw, session.selection, frame, channels);
+        const auto x = cache.readout.value(channels.x), y = histogram ? std::nullopt : cache.readout.value(channels.y);
+        draw.PushClipRect(frame.min, frame.max, true);
+        if (x && histogram) drawCrosshair(draw, frame, *x, std::nan(""));
+        if (x && y) {
+            const ImVec2 at = frame.pixel(*x, *y);
+            draw.AddCircle(at, em() * 0.28f, colors.backdrop, 16, 3);
+            draw.AddCircle(at, em() * 0.28f, colors.cursor, 16, 1.5f);
+        }
+        draw.PopClipRect();
+    }
+    if (histogram && frame.height() > em() * 1.6f) {
+        const std::string name = fitText(channels.x, frame.width() - em() * 0.5f);
+        addTextWithBackdrop(draw, {frame.max.x - em() * 0.3f, frame.min.y + em() * 0.15f}, {1, 0}, colors.text,
+                            name.c_str());
+    }
+    if (hovered && !cache.drag.active && result) hoverText(matrix, column, row, frame, *result);
+}
+
+} // namespace
+
+void drawScatterMatrixView(ViewContext& context, const std::string& pane, ScatterMatrixView& view) {
+    if (!context.source) {
+        drawHint("No data", "Plots of every pair of parameters appear here; drag in one to select.");
+        return;
+    }
+    const volume::DatasetInfo& info = context.source->info();
+    Matrix matrix;
+    matrix.channels = shownChannels(info, view);
+    if (matrix.channels.empty()) {
+        drawHint("No parameters to compare", "This data set holds only labels.");
+        return;
+    }
+    ScatterCache& cache = cacheOf<ScatterCache>(context, pane);
+    const std::vector<volume::Channel> all = info.channels();
+    for (int channel : matrix.channels) {
+        matrix.infos.push_back(all[static_cast<std::size_t>(channel)]);
+        matrix.ranges.push_back(paddedRange(info.channelRange(matrix.infos.back()), 0.02));
+    }
+    // Esc clears, wherever in the view the mouse is; during a drag it belongs to the drag.
+    if (!cache.drag.active && ImGui::IsWindowHovered(ImGuiHoveredFlags_ChildWindows) &&
+        ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape), false))
+        context.session.selection.brushes.clear();
+    updateReadout(context, cache.readout);
+    const StatisticsWish wish =
+        makeWish(context.session, info, matrix.channels, matrix.ranges, view.bins, matrix.channels.size() > 1);
+    const std::shared_ptr<const StatisticsResult> result = cache.feed.get(context, "statistics " + pane, wish);
+    if (result) updateTextures(cache, result, view.logDensity);
+
+    drawToolbar(context, view, matrix.channels, result.get());
+    const ImVec2 origin = ImGui::GetCursorScreenPos(), room = ImGui::GetContentRegionAvail();
+    const auto n = static_cast<float>(matrix.size());
+    float left = 0;
+    for (std::size_t i = 0; i < matrix.size(); ++i)
+        if (i > 0 || matrix.size() == 1) left = std::max(left, axisRoom(AxisSide::Left, matrix.ranges[i], true));
+    if (matrix.size() == 1) left = em();
+    const float bottom = axisRoom(AxisSide::Bottom, matrix.ranges[0], true);
+    matrix.gap = std::round(em() * 0.35f);
+    matrix.min = {origin.x + left, origin.y + em() * 0.2f};
+    matrix.cellX = (room.x - left - em() * 0.2f) / n;
+    matrix.cellY = (room.y - bottom - em() * 0.2f) / n;
+    if (matrix.cellX < em() * 1.6f || matrix.cellY < em() * 1.3f) {
+        drawHint("Not enough room", "Enlarge the pane or compare fewer parameters.");
+        return;
+    }
+    for (std::size_t row = 0; row < matrix.size(); ++row)
+        for (std::size_t column = 0; column < matrix.size(); ++column)
+            drawCell(context, cache, view, matrix, column, row, result.get());
+    if (cache.drag.active) context.interacting = true;
+
+    ImDrawList& draw = *ImGui::GetWindowDrawList();
+    for (std::size_t i = 0; i < matrix.size(); ++i) {
+        const PlotFrame across = matrix.cell(i, matrix.size() - 1), up = matrix.cell(0, i);
+        drawAxis(draw, across, AxisSide::Bottom, matrix.infos[i].name, matrix.infos[i].unit,
+                 across.min.x - matrix.gap / 2, across.max.x + matrix.gap / 2);
+        if (i > 0)
+            drawAxis(draw, up, AxisSide::Left, matrix.infos[i].name, matrix.infos[i].unit, up.min.y - matrix.gap / 2,
+                     up.max.y + matrix.gap / 2);
+    }
+    if (!cache.feed.failure().empty() && !result)
+        draw.AddText({matrix.min.x, matrix.min.y}, plotColors().text, cache.feed.failure().c_str());
+}
+
+} // namespace tessera::app

@@ -1,0 +1,201 @@
+#include "app/ui/widgets.h"
+#include "app/views/axes3d.h"
+#include "app/views/readout.h"
+#include "app/views/ticks.h"
+#include "app/views/view_parts.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/gtc/quaternion.hpp>
+
+namespace tessera::app {
+
+namespace {
+
+/// A slice: the axes that run to the right and up, and the one it is perpendicular to.
+struct Plane {
+    int right, up, normal;
+    vis::SliceOrientation orientation;
+};
+/// Top left, top right (shares the upright axis), bottom left (shares the level one).
+constexpr std::array<Plane, 3> kPlanes{
+    {{0, 1, 2, vis::SliceOrientation::Z}, {2, 1, 0, vis::SliceOrientation::X}, {0, 2, 1, vis::SliceOrientation::Y}}};
+constexpr const char* kAxisNames[] = {"x", "y", "z"};
+
+struct SlicesCache : ViewCache {
+    std::array<vis::ViewTargetPtr, 3> targets;
+    int dragging = -1;
+    Readout readout;
+};
+
+vis::Camera sliceCamera(const Plane& plane, const vis::WorldFrame& world) {
+    vis::Camera camera;
+    camera.projection = vis::Projection::Orthographic;
+    glm::vec3 right(0), up(0);
+    right[plane.right] = 1;
+    up[plane.up] = 1;
+    // Rows of the rotation are the eye's axes in world space; glm matrices are made of columns.
+    camera.orientation = glm::normalize(glm::quat_cast(glm::transpose(glm::mat3(right, up, glm::cross(right, up)))));
+    camera.fieldOfView = 35;
+    camera.distance = static_cast<float>(world.halfSize[plane.up]) / std::tan(glm::radians(camera.fieldOfView) / 2);
+    return camera;
+}
+
+/// Sizes of the two columns and rows: in proportion to the box, but none too narrow to read.
+float split(double first, double second, float room) {
+    const double share = first + second > 0 ? first / (first + second) : 0.5;
+    return std::round(room * static_cast<float>(std::clamp(share, 0.32, 0.68)));
+}
+
+/// Moves the cursor along an axis by one sample and keeps it inside.
+void stepCursor(Session& session, const volume::DatasetInfo& info, int axis, float steps) {
+    const double cell = info.lattice.spacing[axis] * (info.lattice.kind == volume::LatticeKind::BCC ? 0.5 : 1);
+    session.cursor[axis] = std::clamp(session.cursor[axis] + cell * static_cast<double>(steps), info.bounds.lo[axis],
+                                      info.bounds.hi[axis]);
+}
+
+void drawPlane(ViewContext& context, SlicesCache& cache, const SlicesView& view, const std::string& channel, int index,
+               ImVec2 min, ImVec2 max) {
+    const Plane& plane = kPlanes[static_cast<std::size_t>(index)];
+    const volume::DatasetInfo& info = context.source->info();
+    Session& session = context.session;
+    const vis::WorldFrame world = vis::worldFrame(info.bounds, session.stretch);
+    const PlotColors colors = plotColors();
+    ImDrawList& draw = *ImGui::GetWindowDrawList();
+
+    const glm::dvec3 size = info.bounds.size();
+    const LengthUnit unitX = suitableLength(info.lengthUnit, size[plane.right]),
+                     unitY = suitableLength(info.lengthUnit, size[plane.up]),
+                     unitN = suitableLength(info.lengthUnit, size[plane.normal] > 0 ? size[plane.normal] : 1.0);
+    const Range rangeX{info.bounds.lo[plane.right] * unitX.perUnit, info.bounds.hi[plane.right] * unitX.perUnit};
+    const Range rangeY{info.bounds.lo[plane.up] * unitY.perUnit, info.bounds.hi[plane.up] * unitY.perUnit};
+
+    // The head line names the slice and its place, in the colour of the axis it is perpendicular to.
+    const std::string place = std::string(kAxisNames[plane.normal]) + " = " +
+                              formatQuantity(session.cursor[plane.normal] * unitN.perUnit, unitN.name,
+                                             size[plane.normal] * unitN.perUnit / 1000);
+    draw.AddText({min.x + em() * 0.3f, min.y}, axisColor(plane.normal), place.c_str());
+
+    const float left = axisRoom(AxisSide::Left, rangeY, true), bottom = axisRoom(AxisSide::Bottom, rangeX, true);
+    const ImVec2 lo{min.x + left, min.y + em() * 1.3f}, hi{max.x - em() * 0.8f, max.y - bottom};
+    if (hi.x - lo.x < em() * 2 || hi.y - lo.y < em() * 2) return;
+    const double worldX = world.halfSize[plane.right], worldY = world.halfSize[plane.up];
+    if (!(worldX > 0) || !(worldY > 0)) {
+        const std::string text = std::string("no extent along ") + kAxisNames[worldX > 0 ? plane.up : plane.right];
+        draw.AddText({lo.x, lo.y}, colors.faint, text.c_str());
+        return;
+    }
+    const double scale = std::min((hi.x - lo.x) / worldX, (hi.y - lo.y) / worldY);
+    const glm::ivec2 pixels(std::max(1.0, std::floor(worldX * scale)), std::max(1.0, std::floor(worldY * scale)));
+    const ImVec2 corner{std::floor(lo.x + (hi.x - lo.x - static_cast<float>(pixels.x)) / 2),
+                        std::floor(lo.y + (hi.y - lo.y - static_cast<float>(pixels.y)) / 2)};
+    const PlotFrame frame{corner,
+                          {corner.x + static_cast<float>(pixels.x), corner.y + static_cast<float>(pixels.y)},
+                          paddedRange(rangeX),
+                          paddedRange(rangeY)};
+
+    ImGui::SetCursorScreenPos(frame.min);
+    ImGui::PushID(index);
+    ImGui::InvisibleButton("plane", {frame.width(), frame.height()});
+    ImGui::PopID();
+    const ImGuiIO& io = ImGui::GetIO();
+    if (ImGui::IsItemActivated()) cache.dragging = index;
+    if (!ImGui::IsMouseDown(ImGuiMouseButton_Left)) cache.dragging = -1;
+    if (cache.dragging == index) {
+        const glm::dvec2 at = frame.data(io.MousePos);
+        session.cursor[plane.right] =
+            std::clamp(at.x / unitX.perUnit, info.bounds.lo[plane.right], info.bounds.hi[plane.right]);
+        session.cursor[plane.up] = std::clamp(at.y / unitY.perUnit, info.bounds.lo[plane.up], info.bounds.hi[plane.up]);
+        context.interacting = true;
+    }
+    if (ImGui::IsItemHovered()) {
+        ImGui::SetMouseCursor(ImGuiMouseCursor_Hand);
+        if (io.MouseWheel != 0) stepCursor(session, info, plane.normal, io.MouseWheel * (io.KeyShift ? 10.0f : 1.0f));
+    }
+
+    vis::Scene scene = themedScene(session);
+    scene.camera = sliceCamera(plane, world);
+    scene.showBox = false;
+    vis::SliceLayer layer;
+    layer.channel = channel;
+    layer.orientation = plane.orientation;
+    layer.contours = view.contours;
+    scene.layers = {vis::Layer{"slice", true, layer}};
+    // Only the place along the normal matters: dragging within a slice leaves its picture as it is.
+    for (int axis : {plane.right, plane.up}) scene.cursor[axis] = info.bounds.center()[axis];
+    vis::ViewTargetPtr& target = cache.targets[static_cast<std::size_t>(index)];
+    if (!target) target = context.renderer.makeTarget();
+    vis::FrameRequest request;
+    request.size = pixels;
+    request.budgetMs = 20; // three pictures share a frame
+    request.moving = !context.headless && (context.interacting || session.animation.playing);
+    request.wait = context.headless;
+    const vis::FrameStatus status = context.renderer.render(*target, scene, request);
+    if (!status.complete) context.busy = true;
+    draw.AddImage(reinterpret_cast<ImTextureID>(static_cast<std::intptr_t>(status.texture)), frame.min, frame.max);
+    draw.AddRect(frame.min, frame.max, colors.frame);
+    drawAxis(draw, frame, AxisSide::Bottom, kAxisNames[plane.right], unitX.name, min.x, max.x);
+    drawAxis(draw, frame, AxisSide::Left, kAxisNames[plane.up], unitY.name, lo.y - em() * 0.5f, max.y);
+    draw.PushClipRect(frame.min, frame.max, true);
+    drawCrosshair(draw, frame, session.cursor[plane.right] * unitX.perUnit, session.cursor[plane.up] * unitY.perUnit);
+    draw.PopClipRect();
+}
+
+} // namespace
+
+void drawSlicesView(ViewContext& context, const std::string& pane, SlicesView& view) {
+    if (!context.source) {
+        drawHint("No data", "Three slices through the linked cursor appear here.");
+        return;
+    }
+    const volume::DatasetInfo& info = context.source->info();
+    const auto channel = resolveChannel(info, context.session, view.channel);
+    if (!channel) {
+        drawHint("No parameters", "This data set has nothing to colour a slice by.");
+        return;
+    }
+    SlicesCache& cache = cacheOf<SlicesCache>(context, pane);
+    std::string name = info.channels()[static_cast<std::size_t>(*channel)].name;
+    ImGui::SetNextItemWidth(std::min(em() * 11, ImGui::GetContentRegionAvail().x * 0.4f));
+    if (chooseChannel("##channel", &info, name)) view.channel = name;
+    if (ImGui::IsItemHovered()) tooltip("Parameter that colours the slices");
+    ImGui::SameLine();
+    ImGui::SetNextItemWidth(em() * 8);
+    ImGui::SliderInt("##contours", &view.contours, 0, 50, view.contours == 0 ? "no contours" : "%d contours");
+    if (ImGui::IsItemHovered()) tooltip("Contour lines over the colour range");
+    if (const std::string text = stretchText(context.session.stretch); !text.empty()) {
+        const float width = ImGui::CalcTextSize(text.c_str()).x;
+        ImGui::SameLine();
+        if (ImGui::GetContentRegionAvail().x > width + em()) {
+            ImGui::SameLine(ImGui::GetContentRegionMax().x - width);
+            ImGui::AlignTextToFramePadding();
+            ImGui::TextDisabled("%s", text.c_str());
+        } else {
+            ImGui::NewLine();
+        }
+    }
+
+    const ImVec2 min = ImGui::GetCursorScreenPos(), room = ImGui::GetContentRegionAvail();
+    if (room.x < em() * 10 || room.y < em() * 8) return;
+    const ImVec2 max{min.x + room.x, min.y + room.y};
+    const glm::dvec3 half = vis::worldFrame(info.bounds, context.session.stretch).halfSize;
+    const float x = min.x + split(half.x, half.z, room.x), y = min.y + split(half.y, half.z, room.y);
+    const float gap = em() * 0.3f;
+    drawPlane(context, cache, view, name, 0, min, {x - gap, y - gap});
+    drawPlane(context, cache, view, name, 1, {x + gap, min.y}, {max.x, y - gap});
+    drawPlane(context, cache, view, name, 2, {min.x, y + gap}, {x - gap, max.y});
+
+    ImGui::SetCursorScreenPos({x + gap * 2, y + gap});
+    ImGui::BeginChild("readout", {max.x - x - gap * 2, max.y - y - gap}, false);
+    LegendEntry legend = legendOf(context.session, info, *channel);
+    updateReadout(context, cache.readout);
+    if (const auto value = cache.readout.value(name)) legend.marker = *value;
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    const float width = std::min(ImGui::GetContentRegionAvail().x, em() * 20);
+    ImGui::Dummy({width, drawLegendBar(*ImGui::GetWindowDrawList(), at, width, legend) + em() * 0.3f});
+    if (view.showReadout) drawReadout(context, cache.readout);
+    ImGui::EndChild();
+}
+
+} // namespace tessera::app

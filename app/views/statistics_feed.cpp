@@ -1,0 +1,208 @@
+#include "app/views/statistics_feed.h"
+
+#include "app/views/view_parts.h"
+#include "volume/error.h"
+
+#include <algorithm>
+#include <list>
+
+namespace tessera::app {
+
+namespace {
+
+constexpr std::size_t kKept = 32; ///< results; one of six parameters and 96 bins is 2 MB
+
+/// A brush whose channels are positions in the values given to it.
+struct PlacedInterval {
+    int position = -1;
+    vis::BrushInterval interval;
+};
+struct PlacedBrush {
+    bool inverted = false;
+    std::vector<PlacedInterval> intervals;
+};
+
+std::shared_ptr<const StatisticsResult> compute(const volume::BrickSource& source, const StatisticsWish& wish,
+                                                int level, const Progress& progress) {
+    auto result = std::make_shared<StatisticsResult>();
+    result->wish = wish;
+    result->brushed = wish.selection.active();
+    result->statistics = volume::computeStatistics(source, makeQuery(wish, source.info(), level), progress);
+    return result;
+}
+
+/// The level to begin with: coarse enough to answer within a few milliseconds.
+int firstLevel(const volume::BrickGrid& grid, std::size_t channels) {
+    const double most = 1e6;
+    int level = 0;
+    for (; level + 1 < grid.levels; ++level) {
+        const glm::ivec3 size = grid.levelSamples(level);
+        if (static_cast<double>(size.x) * size.y * size.z * static_cast<double>(std::max<std::size_t>(1, channels)) <=
+            most)
+            break;
+    }
+    return level;
+}
+
+} // namespace
+
+struct StatisticsFeed::State {
+    std::list<std::shared_ptr<const StatisticsResult>> kept; ///< most recent first
+    std::optional<StatisticsWish> failed;
+    std::string failure;
+    std::optional<StatisticsWish> running;
+    int runningLevel = 0;
+    const volume::BrickSource* source = nullptr;
+};
+
+StatisticsFeed::StatisticsFeed() : state_(std::make_shared<State>()) {}
+
+std::string StatisticsFeed::failure() const {
+    return state_->failure;
+}
+
+StatisticsWish makeWish(const Session& session, const volume::DatasetInfo& info, const std::vector<int>& channels,
+                        const std::vector<Range>& ranges, int bins, bool pairs) {
+    StatisticsWish wish;
+    wish.channels = channels;
+    wish.ranges = ranges;
+    wish.bins = bins;
+    wish.time = timeIndex(session, info);
+    wish.selection.combine = session.selection.combine;
+    if (pairs) wish.pairs = volume::allPairs(static_cast<int>(channels.size()));
+    for (vis::Brush brush : session.selection.brushes) {
+        if (!brush.enabled) continue;
+        brush.name.clear();
+        for (const vis::BrushInterval& interval : brush.intervals) {
+            const auto channel = info.findChannel(interval.channel);
+            if (!channel || std::find(wish.channels.begin(), wish.channels.end(), *channel) != wish.channels.end())
+                continue;
+            wish.channels.push_back(*channel);
+            wish.ranges.push_back(info.channelRange(info.channels()[static_cast<std::size_t>(*channel)]));
+        }
+        wish.selection.brushes.push_back(std::move(brush));
+    }
+    return wish;
+}
+
+volume::StatisticsQuery makeQuery(const StatisticsWish& wish, const volume::DatasetInfo& info, int level) {
+    volume::StatisticsQuery query;
+    query.channels = wish.channels;
+    query.pairs = wish.pairs;
+    query.ranges = wish.ranges;
+    query.time = wish.time;
+    query.bins = wish.bins;
+    query.level = level;
+    if (!wish.selection.active()) return query;
+    std::vector<PlacedBrush> brushes;
+    for (const vis::Brush& brush : wish.selection.brushes) {
+        PlacedBrush placed{brush.inverted, {}};
+        for (const vis::BrushInterval& interval : brush.intervals) {
+            PlacedInterval own{-1, interval};
+            if (const auto channel = info.findChannel(interval.channel)) {
+                const auto found = std::find(wish.channels.begin(), wish.channels.end(), *channel);
+                if (found != wish.channels.end()) own.position = static_cast<int>(found - wish.channels.begin());
+            }
+            placed.intervals.push_back(own);
+        }
+        brushes.push_back(std::move(placed));
+    }
+    const bool all = wish.selection.combine == vis::Combine::All;
+    query.doi = [brushes = std::move(brushes), all](std::span<const float> values) {
+        double doi = all ? 1 : 0;
+        for (const PlacedBrush& brush : brushes) {
+            double own = 1;
+            for (const PlacedInterval& placed : brush.intervals)
+                own = placed.position < 0
+                          ? 0
+                          : std::min(own, vis::intervalDoi(
+                                              placed.interval,
+                                              static_cast<double>(values[static_cast<std::size_t>(placed.position)])));
+            if (brush.inverted) own = 1 - own;
+            doi = all ? std::min(doi, own) : std::max(doi, own);
+        }
+        return doi;
+    };
+    return query;
+}
+
+std::shared_ptr<const StatisticsResult> StatisticsFeed::get(ViewContext& context, const std::string& jobKey,
+                                                            const StatisticsWish& wish) {
+    State& state = *state_;
+    if (state.source != context.source.get()) {
+        if (state.running) context.jobs.cancel(jobKey);
+        state = {};
+        state.source = context.source.get();
+    }
+    const auto keep = [](State& into, std::shared_ptr<const StatisticsResult> result) {
+        std::erase_if(into.kept, [&](const auto& old) { return old->wish == result->wish; });
+        into.kept.push_front(std::move(result));
+        if (into.kept.size() > kKept) into.kept.pop_back();
+    };
+    std::shared_ptr<const StatisticsResult> exact, similar;
+    for (const auto& result : state.kept) {
+        if (!exact && result->wish == wish) exact = result;
+        // Any result of the same plots will do until the right one is there, the newest first.
+        if (!similar && result->wish.pairs == wish.pairs && result->wish.bins == wish.bins &&
+            result->wish.channels.size() >= 1 && result->wish.ranges.size() <= wish.ranges.size() + 8 &&
+            std::equal(result->wish.channels.begin(),
+                       result->wish.channels.begin() +
+                           static_cast<std::ptrdiff_t>(std::min(result->wish.channels.size(), wish.channels.size())),
+                       wish.channels.begin()))
+            similar = result;
+    }
+    if (exact && exact->statistics.level == 0) return exact;
+    if (state.failed == wish) return exact ? exact : similar;
+    if (context.headless) {
+        try {
+            keep(state, compute(*context.source, wish, 0, {}));
+            return state.kept.front();
+        } catch (const Error& error) {
+            state.failed = wish;
+            state.failure = error.what();
+            return exact ? exact : similar;
+        }
+    }
+    context.busy = true;
+    // While a brush is dragged its first, coarse answer is waited for: cancelling it each frame would show none.
+    const bool running = state.running && context.jobs.running(jobKey);
+    const bool coarse = running && state.runningLevel == firstLevel(context.source->grid(), wish.channels.size());
+    if (running && (*state.running == wish || coarse)) return exact ? exact : similar;
+
+    const int first = firstLevel(context.source->grid(), wish.channels.size());
+    const int level =
+        exact ? (context.interacting ? exact->statistics.level : std::max(0, exact->statistics.level - 2)) : first;
+    if (exact && level == exact->statistics.level) return exact;
+    state.running = wish;
+    state.runningLevel = level;
+    context.jobs.start(
+        jobKey, "Statistics",
+        [weak = std::weak_ptr(state_), source = context.source, wish, level,
+         keep](const Progress& progress) -> Jobs::Finish {
+            std::shared_ptr<const StatisticsResult> result;
+            std::string failure;
+            try {
+                result = compute(*source, wish, level, progress);
+            } catch (const Error& error) {
+                failure = error.what();
+            }
+            return [weak, result, failure, wish, keep] {
+                const auto owner = weak.lock();
+                if (!owner) return;
+                owner->running.reset();
+                if (result) {
+                    owner->failure.clear();
+                    keep(*owner, result);
+                } else {
+                    // Remembered, so that it is not tried again every frame; thrown on, so that the log has it.
+                    owner->failed = wish;
+                    owner->failure = failure;
+                    throw Error(failure);
+                }
+            };
+        },
+        level == first);
+    return exact ? exact : similar;
+}
+
+} // namespace tessera::app

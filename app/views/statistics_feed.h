@@ -1,0 +1,55 @@
+#pragma once
+
+#include "app/views/view_context.h"
+#include "volume/statistics.h"
+
+#include <memory>
+#include <string>
+#include <vector>
+
+/// Statistics for views, computed in the background: the coarsest level of detail at once, then finer ones, kept per
+/// time and selection so that going back costs nothing.
+namespace tessera::app {
+
+/// What a view wants to know; equal wishes have equal answers.
+struct StatisticsWish {
+    std::vector<int> channels;             ///< indices of DatasetInfo::channels(), the shown ones first
+    std::vector<std::array<int, 2>> pairs; ///< positions in `channels`
+    std::vector<Range> ranges;             ///< of the bins, by position in `channels`
+    int time = 0, bins = 96;
+    vis::Selection selection; ///< brushes and how they combine; the rest plays no part
+    bool operator==(const StatisticsWish&) const = default;
+};
+
+/// A wish for these channels and their pairs under the session's time and brushes. Channels that only the brushes name
+/// are added after the shown ones.
+StatisticsWish makeWish(const Session& session, const volume::DatasetInfo& info, const std::vector<int>& channels,
+                        const std::vector<Range>& ranges, int bins, bool pairs);
+
+/// The wish as a query: its brushes become one function of the values. Channels a brush names but the data lacks count
+/// as absent.
+volume::StatisticsQuery makeQuery(const StatisticsWish& wish, const volume::DatasetInfo& info, int level);
+
+struct StatisticsResult {
+    StatisticsWish wish;
+    volume::Statistics statistics;
+    bool brushed = false; ///< a brush was enabled: focus differs from count
+};
+
+/// Keeps results and asks for missing ones. One per view, in its cache.
+class StatisticsFeed {
+public:
+    StatisticsFeed();
+    /// The best answer so far: of this very wish, else the last one with the same channels and bins while it is being
+    /// computed, else null. Sets context.busy while better ones are on their way; headless, computes to the end.
+    std::shared_ptr<const StatisticsResult> get(ViewContext& context, const std::string& jobKey,
+                                                const StatisticsWish& wish);
+    /// Why the last wish failed (damaged data), "" if it did not.
+    std::string failure() const;
+
+private:
+    struct State;
+    std::shared_ptr<State> state_;
+};
+
+} // namespace tessera::app

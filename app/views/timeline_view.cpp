@@ -1,0 +1,147 @@
+#include "app/views/playback.h"
+#include "app/views/plot.h"
+#include "app/views/ticks.h"
+#include "app/views/view_parts.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tessera::app {
+
+namespace {
+
+struct TimelineCache : ViewCache {
+    Playback playback;
+    bool dragging = false;
+};
+
+/// Digits that tell neighbouring times apart.
+double timeResolution(const std::vector<double>& times) {
+    double least = std::abs(times.back() - times.front());
+    for (std::size_t i = 1; i < times.size(); ++i) least = std::min(least, times[i] - times[i - 1]);
+    return least / 2;
+}
+
+void drawButtons(ViewContext& context, const std::vector<double>& times, int index) {
+    Session& session = context.session;
+    const int last = static_cast<int>(times.size()) - 1;
+    const bool many = last > 0;
+    const auto go = [&](int to) { session.time = times[static_cast<std::size_t>(std::clamp(to, 0, last))]; };
+    const auto next = [] { ImGui::SameLine(0, em() * 0.15f); };
+    if (iconButton(context, "first", icons::kFirst, "First time (Home)", many)) go(0);
+    next();
+    if (iconButton(context, "back", icons::kStepBack, "One step back (Left)", many)) go(index - 1);
+    next();
+    const bool playing = session.animation.playing && many;
+    if (iconButton(context, "play", playing ? icons::kPause : icons::kPlay, playing ? "Pause (Space)" : "Play (Space)",
+                   many, playing)) {
+        session.animation.playing = !playing;
+        // Play at the end of a single run starts it again.
+        if (!playing && session.animation.loop == Loop::Once && index == last) go(0);
+    }
+    next();
+    if (iconButton(context, "forward", icons::kStepForward, "One step forward (Right)", many)) go(index + 1);
+    next();
+    if (iconButton(context, "last", icons::kLast, "Last time (End)", many)) go(last);
+    ImGui::SameLine(0, em() * 0.8f);
+
+    static constexpr Icon kLoopIcons[] = {icons::kOnce, icons::kRepeat, icons::kPingPong};
+    static constexpr const char* kLoopHelp[] = {"Stops at the last time. Click: repeat.",
+                                                "Repeats from the first time. Click: back and forth.",
+                                                "Runs back and forth. Click: stop at the end."};
+    const auto loop = static_cast<std::size_t>(session.animation.loop);
+    if (iconButton(context, "loop", kLoopIcons[loop], kLoopHelp[loop], many))
+        session.animation.loop = static_cast<Loop>((loop + 1) % 3);
+    next();
+    ImGui::BeginDisabled(!many);
+    ImGui::SetNextItemWidth(em() * 7);
+    ImGui::SliderFloat("##speed", &session.animation.speed, 0.1f, 60, "%.3g steps/s", ImGuiSliderFlags_Logarithmic);
+    ImGui::EndDisabled();
+    if (ImGui::IsItemHovered()) tooltip("Time steps shown per second while playing");
+}
+
+/// The track: one mark per stored time, the knob at the time shown, physical time below.
+void drawTrack(ViewContext& context, TimelineCache& cache, const volume::DatasetInfo& info, float height) {
+    Session& session = context.session;
+    const std::vector<double>& times = info.times;
+    const ImVec2 origin = ImGui::GetCursorScreenPos();
+    const float width = ImGui::GetContentRegionAvail().x;
+    if (width < em() * 4) return;
+    ImGui::InvisibleButton("track", {width, height});
+    const bool hovered = ImGui::IsItemHovered(), held = ImGui::IsItemActive();
+    const float pad = em() * 0.8f, y = std::round(origin.y + em() * 0.8f);
+    const PlotFrame frame{{origin.x + pad, y - em() * 0.5f},
+                          {origin.x + width - pad, y + em() * 0.45f},
+                          paddedRange({times.front(), times.back()}),
+                          {0, 1}};
+    if (held && times.size() > 1) {
+        const double wanted = frame.data(ImGui::GetIO().MousePos).x;
+        session.time = times[static_cast<std::size_t>(info.nearestTime(wanted))];
+        session.animation.playing = false;
+        context.interacting = true;
+    }
+    if (hovered && ImGui::GetIO().MouseWheel != 0) {
+        const int to = info.nearestTime(session.time) + (ImGui::GetIO().MouseWheel < 0 ? 1 : -1);
+        session.time = times[static_cast<std::size_t>(std::clamp(to, 0, static_cast<int>(times.size()) - 1))];
+    }
+    cache.dragging = held;
+
+    ImDrawList& draw = *ImGui::GetWindowDrawList();
+    const PlotColors colors = plotColors();
+    const int index = info.nearestTime(session.time);
+    const float knob = frame.pixel(times[static_cast<std::size_t>(index)], 0).x;
+    const float thick = em() * 0.2f;
+    draw.AddRectFilled({frame.min.x, y - thick / 2}, {frame.max.x, y + thick / 2}, colors.grid, thick / 2);
+    draw.AddRectFilled({frame.min.x, y - thick / 2}, {frame.max.x, y + thick / 2}, colors.frame, thick / 2);
+    draw.AddRectFilled({frame.min.x, y - thick / 2}, {knob, y + thick / 2}, colors.cursor, thick / 2);
+    // Marks closer than three pixels would be a grey bar.
+    float previous = -1e9f;
+    for (double time : times) {
+        const float x = std::round(frame.pixel(time, 0).x) + 0.5f;
+        if (x < previous + 3) continue;
+        draw.AddLine({x, y - em() * 0.28f}, {x, y + em() * 0.28f}, colors.faint);
+        previous = x;
+    }
+    draw.AddCircleFilled({knob, y}, em() * (hovered || held ? 0.48f : 0.4f), colors.cursor, 24);
+    drawAxis(draw, frame, AxisSide::Bottom, "", "", origin.x, origin.x + width);
+    if (hovered && !held) {
+        const int under = info.nearestTime(frame.data(ImGui::GetIO().MousePos).x);
+        ImGui::SetTooltip(
+            "%s  (%d of %zu)",
+            formatQuantity(times[static_cast<std::size_t>(under)], info.timeUnit, timeResolution(times)).c_str(),
+            under + 1, times.size());
+    }
+}
+
+} // namespace
+
+void drawTimelineView(ViewContext& context, const std::string& pane, TimelineView&) {
+    if (!context.source) {
+        drawHint("No data", "Data with several times can be played here.");
+        return;
+    }
+    TimelineCache& cache = cacheOf<TimelineCache>(context, pane);
+    const volume::DatasetInfo& info = context.source->info();
+    Session& session = context.session;
+    const bool many = info.times.size() > 1;
+    if (many && session.animation.playing && !context.headless) {
+        advance(cache.playback, session.animation, session.time, info.times, ImGui::GetIO().DeltaTime);
+        context.busy = true;
+    }
+    const int index = info.nearestTime(session.time);
+    drawButtons(context, info.times, index);
+    ImGui::SameLine(0, em());
+    ImGui::AlignTextToFramePadding();
+    if (many) {
+        ImGui::Text("t = %s", formatQuantity(info.times[static_cast<std::size_t>(index)], info.timeUnit,
+                                             timeResolution(info.times))
+                                  .c_str());
+        ImGui::SameLine(0, em());
+        ImGui::TextDisabled("%d of %zu", index + 1, info.times.size());
+        drawTrack(context, cache, info, em() * 2.9f);
+    } else {
+        ImGui::TextDisabled("This data has one time; there is nothing to play.");
+    }
+}
+
+} // namespace tessera::app

@@ -1,0 +1,209 @@
+#include "app/ui/widgets.h"
+#include "app/views/opacity_edit.h"
+#include "app/views/readout.h"
+#include "app/views/statistics_feed.h"
+#include "app/views/ticks.h"
+#include "app/views/view_parts.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tessera::app {
+
+namespace {
+
+struct TransferCache : ViewCache {
+    StatisticsFeed feed;
+    Readout readout;
+    OpacityDrag drag;
+    int rangeEnd = 0; ///< end of the range that is dragged: -1 low, 1 high
+    double grab = 0;  ///< from the mouse to that end, in values
+};
+
+void drawControls(ViewContext& context, TransferView& view, const volume::DatasetInfo& info, std::string channel) {
+    const float room = ImGui::GetContentRegionAvail().x;
+    ImGui::SetNextItemWidth(std::min(em() * 10, room * 0.34f));
+    if (chooseChannel("##channel", &info, channel)) view.channel = channel;
+    if (ImGui::IsItemHovered()) tooltip("Parameter whose colours and opacity are edited");
+    vis::TransferFunction& function = transferOf(context.session, channel);
+    ImGui::SameLine();
+    ImGui::SetNextItemWidth(std::min(em() * 11, room * 0.36f));
+    chooseColormap("##colormap", function.colormap, function.reversed);
+    if (ImGui::IsItemHovered()) tooltip("Colour map; perceptually uniform ones come first");
+    ImGui::SameLine();
+    if (iconButton(context, "reverse", icons::kReverse, "Run the colour map backwards", true, function.reversed))
+        function.reversed = !function.reversed;
+    ImGui::SameLine();
+    ImGui::Checkbox("log", &view.logHistogram);
+    if (ImGui::IsItemHovered()) tooltip("Show the logarithm of the number of samples");
+
+    const Range data = info.channelRange(info.channels()[static_cast<std::size_t>(*info.findChannel(channel))]);
+    Range range = vis::effectiveRange(function, data);
+    bool fixed = !function.autoRange;
+    if (ImGui::Checkbox("range", &fixed)) {
+        function.autoRange = !fixed;
+        function.range = range;
+    }
+    if (ImGui::IsItemHovered()) tooltip("Set the values at the ends of the colour map; off: the data's own range");
+    ImGui::SameLine();
+    ImGui::BeginDisabled(function.autoRange);
+    double ends[2] = {range.lo, range.hi};
+    ImGui::SetNextItemWidth(std::min(em() * 11, room * 0.42f));
+    const double step = (data.hi - data.lo) / 1000;
+    const int decimals = step > 0 ? std::clamp(static_cast<int>(std::ceil(-std::log10(step))), 0, 9) : 3;
+    const std::string format = std::abs(data.hi) < 1e7 && decimals < 9 ? "%." + std::to_string(decimals) + "f" : "%.5g";
+    if (ImGui::DragScalarN("##ends", ImGuiDataType_Double, ends, 2, static_cast<float>(step), nullptr, nullptr,
+                           format.c_str()) &&
+        ends[0] < ends[1])
+        function.range = {ends[0], ends[1]};
+    ImGui::EndDisabled();
+    for (std::size_t i = 0; i < std::size(kOpacityPresetNames); ++i) {
+        ImGui::SameLine(0, i == 0 ? em() * 0.8f : em() * 0.2f);
+        const std::string name(kOpacityPresetNames[i]);
+        const float width = ImGui::CalcTextSize(name.c_str()).x + ImGui::GetStyle().FramePadding.x * 2;
+        if (ImGui::GetContentRegionAvail().x < width) {
+            ImGui::NewLine();
+            break;
+        }
+        if (ImGui::Button(name.c_str())) function.opacity = opacityPreset(static_cast<OpacityPreset>(i));
+        if (ImGui::IsItemHovered()) tooltip(("Opacity curve: " + name).c_str());
+    }
+}
+
+/// The strip of colours below the curve, with handles at the ends of the range.
+void drawStrip(ViewContext& context, TransferCache& cache, vis::TransferFunction& function, Range range,
+               const PlotFrame& plot, ImVec2 min, ImVec2 max) {
+    ImDrawList& draw = *ImGui::GetWindowDrawList();
+    const PlotColors colors = plotColors();
+    ImGui::SetCursorScreenPos(min);
+    ImGui::InvisibleButton("strip", {max.x - min.x, max.y - min.y});
+    const float lo = plot.pixel(range.lo, 0).x, hi = plot.pixel(range.hi, 0).x;
+    const ImVec2 mouse = ImGui::GetIO().MousePos;
+    const float reach = em() * 0.7f;
+    const bool nearLo = std::abs(mouse.x - lo) < reach && std::abs(mouse.x - lo) <= std::abs(mouse.x - hi);
+    const bool nearHi = !nearLo && std::abs(mouse.x - hi) < reach;
+    if (ImGui::IsItemHovered() && (nearLo || nearHi)) {
+        ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
+        tooltip("Drag the ends to set the range of the colours");
+    }
+    if (ImGui::IsItemActivated() && (nearLo || nearHi)) {
+        cache.rangeEnd = nearLo ? -1 : 1;
+        cache.grab = (nearLo ? range.lo : range.hi) - plot.data(mouse).x;
+    }
+    if (!ImGui::IsItemActive()) cache.rangeEnd = 0;
+    if (cache.rangeEnd != 0 && ImGui::IsMouseDragging(ImGuiMouseButton_Left, 1)) {
+        const double least = (plot.x.hi - plot.x.lo) * 1e-3;
+        const double to = std::clamp(plot.data(mouse).x + cache.grab, plot.x.lo, plot.x.hi);
+        function.autoRange = false;
+        function.range = cache.rangeEnd < 0 ? Range{std::min(to, range.hi - least), range.hi}
+                                            : Range{range.lo, std::max(to, range.lo + least)};
+        context.interacting = true;
+    }
+    const auto end = [&](double x) {
+        const glm::dvec4 c = vis::evaluate(function, {0, 1}, x);
+        return toColor({c.r, c.g, c.b});
+    };
+    // Values beyond the range get the colour of its end: shown, but fainter in height.
+    const float inset = (max.y - min.y) * 0.3f;
+    if (lo > min.x) draw.AddRectFilled({min.x, min.y + inset}, {lo, max.y - inset}, end(0));
+    if (hi < max.x) draw.AddRectFilled({hi, min.y + inset}, {max.x, max.y - inset}, end(1));
+    drawColorStrip(draw, {std::max(lo, min.x), min.y}, {std::min(hi, max.x), max.y}, function);
+    for (float x : {lo, hi}) {
+        draw.AddRectFilled({x - em() * 0.16f, min.y - 1}, {x + em() * 0.16f, max.y + 1}, colors.text, em() * 0.1f);
+        draw.AddRect({x - em() * 0.16f, min.y - 1}, {x + em() * 0.16f, max.y + 1}, colors.backdrop, em() * 0.1f);
+    }
+}
+
+void drawPlot(ViewContext& context, TransferCache& cache, const TransferView& view, const volume::DatasetInfo& info,
+              int index, const std::string& pane) {
+    const volume::Channel channel = info.channels()[static_cast<std::size_t>(index)];
+    vis::TransferFunction& function = transferOf(context.session, channel.name);
+    const Range data = info.channelRange(channel), range = vis::effectiveRange(function, data);
+    const Range span = paddedRange({std::min(data.lo, range.lo), std::max(data.hi, range.hi)}, 0.03);
+    const StatisticsWish wish = makeWish(context.session, info, {index}, {span}, 192, false);
+    const auto result = cache.feed.get(context, "histogram " + pane, wish);
+
+    const ImVec2 origin = ImGui::GetCursorScreenPos(), room = ImGui::GetContentRegionAvail();
+    const float left = axisRoom(AxisSide::Left, {0, 1}, room.y > em() * 10),
+                bottom = axisRoom(AxisSide::Bottom, span, true), strip = std::round(em() * 0.9f);
+    const PlotFrame frame{{origin.x + left, origin.y + em() * 0.4f},
+                          {origin.x + room.x - em() * 0.6f, origin.y + room.y - bottom - strip - em() * 0.35f},
+                          span,
+                          {0, 1}};
+    if (frame.width() < em() * 4 || frame.height() < em() * 1.5f) {
+        drawHint("Not enough room", "Enlarge the pane to edit the curve.");
+        return;
+    }
+    ImDrawList& draw = *ImGui::GetWindowDrawList();
+    const PlotColors colors = plotColors();
+    drawAxis(draw, frame, AxisSide::Left, room.y > em() * 10 ? "opacity" : "", "", frame.min.y - em() * 0.5f,
+             frame.max.y + em() * 0.5f, true);
+    draw.PushClipRect(frame.min, frame.max, true);
+    if (result && !result->statistics.channels.empty()) {
+        const volume::Histogram& histogram = result->statistics.channels.front().histogram;
+        std::uint64_t most = 1;
+        for (std::uint64_t count : histogram.count) most = std::max(most, count);
+        const auto height = [&](double count) {
+            const double top = static_cast<double>(most);
+            return static_cast<float>(view.logHistogram ? std::log1p(count) / std::log1p(top) : count / top);
+        };
+        std::vector<float> all, focus;
+        for (std::size_t i = 0; i < histogram.count.size(); ++i) {
+            all.push_back(height(static_cast<double>(histogram.count[i])));
+            if (result->brushed) focus.push_back(histogram.focus[i] > 0 ? height(histogram.focus[i]) : 0.0f);
+        }
+        drawBars(draw, frame, all, (colors.bars & ~IM_COL32_A_MASK) | IM_COL32(0, 0, 0, 130));
+        if (result->brushed) drawBars(draw, frame, focus, (colors.focus & ~IM_COL32_A_MASK) | IM_COL32(0, 0, 0, 170));
+    }
+    draw.PopClipRect();
+
+    ImGui::SetCursorScreenPos(frame.min);
+    ImGui::InvisibleButton("curve", {frame.width(), frame.height()},
+                           ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight);
+    const bool hovered = ImGui::IsItemHovered();
+    editOpacity(cache.drag, function.opacity, frame, range);
+    if (cache.drag.point >= 0) context.interacting = true;
+    const ImVec2 mouse = ImGui::GetIO().MousePos;
+    const int lit = cache.drag.point >= 0 ? cache.drag.point
+                    : hovered             ? hitPoint(function.opacity, frame, range, mouse)
+                                          : -1;
+    draw.PushClipRect({frame.min.x - em() * 0.5f, frame.min.y - em() * 0.5f},
+                      {frame.max.x + em() * 0.5f, frame.max.y + em() * 0.5f}, true);
+    drawOpacity(draw, function.opacity, frame, range, lit);
+    draw.PopClipRect();
+    draw.AddRect(frame.min, frame.max, colors.frame);
+    if (const auto value = cache.readout.value(channel.name)) drawCrosshair(draw, frame, *value, std::nan(""));
+    if (lit >= 0) {
+        const glm::vec2 point = function.opacity[static_cast<std::size_t>(lit)];
+        const double value = range.lo + static_cast<double>(point.x) * (range.hi - range.lo);
+        ImGui::SetTooltip("%s\nopacity %.2f", formatQuantity(value, channel.unit, frame.perPixelX()).c_str(),
+                          static_cast<double>(point.y));
+    }
+    const ImVec2 low{frame.min.x, frame.max.y + em() * 0.35f}, high{frame.max.x, frame.max.y + em() * 0.35f + strip};
+    drawStrip(context, cache, function, range, frame, low, high);
+    PlotFrame axis = frame;
+    axis.max.y = high.y;
+    drawAxis(draw, axis, AxisSide::Bottom, channel.name, channel.unit, origin.x, origin.x + room.x);
+}
+
+} // namespace
+
+void drawTransferView(ViewContext& context, const std::string& pane, TransferView& view) {
+    if (!context.source) {
+        drawHint("No data", "Colour and opacity of each parameter are set here.");
+        return;
+    }
+    const volume::DatasetInfo& info = context.source->info();
+    const auto channel = resolveChannel(info, context.session, view.channel);
+    if (!channel) {
+        drawHint("No parameters", "This data set has nothing to colour.");
+        return;
+    }
+    TransferCache& cache = cacheOf<TransferCache>(context, pane);
+    updateReadout(context, cache.readout);
+    drawControls(context, view, info, info.channels()[static_cast<std::size_t>(*channel)].name);
+    const auto now = resolveChannel(info, context.session, view.channel);
+    drawPlot(context, cache, view, info, now.value_or(*channel), pane);
+}
+
+} // namespace tessera::app
