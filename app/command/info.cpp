@@ -1,7 +1,163 @@
 #include "app/command/command.h"
+#include "app/command/format.h"
+#include "app/command/import_options.h"
+#include "app/session/session_file.h"
+#include "codec/archive.h"
+
+#include <cstdio>
+#include <memory>
+#include <nlohmann/json.hpp>
 
 namespace tessera::app {
 
-void addInfoCommand(CLI::App&) {}
+namespace {
+
+using nlohmann::json;
+
+json vectorJson(const auto& v) {
+    return {v.x, v.y, v.z};
+}
+
+json archiveJson(const codec::Archive& archive) {
+    const volume::DatasetInfo& info = archive.info();
+    const volume::BrickGrid& grid = archive.grid();
+    json parameters = json::array(), levels = json::array();
+    double stored = 0;
+    for (const volume::Parameter& parameter : info.parameters) {
+        json entry = {{"name", parameter.name},
+                      {"unit", parameter.unit},
+                      {"components", parameter.components},
+                      {"type", volume::name(parameter.type)},
+                      {"categorical", parameter.categorical},
+                      {"labels", json::object()},
+                      {"ranges", json::array()}};
+        for (const volume::Label& label : parameter.labels) entry["labels"][std::to_string(label.value)] = label.name;
+        for (const Range& range : parameter.ranges) entry["ranges"].push_back({range.lo, range.hi});
+        parameters.push_back(std::move(entry));
+        stored += double(info.lattice.count()) * double(info.times.size()) * parameter.components *
+                  double(volume::byteSize(parameter.type));
+    }
+    for (int level = 0; level < grid.levels; ++level)
+        levels.push_back({{"samples", vectorJson(grid.levelSamples(level))}, {"bytes", archive.levelBytes(level)}});
+    return {{"kind", "archive"},
+            {"file", archive.path()},
+            {"bytes", archive.fileBytes()},
+            {"storedBytes", stored},
+            {"name", info.name},
+            {"lattice", volume::kLatticeNames[std::size_t(info.lattice.kind)]},
+            {"size", vectorJson(info.lattice.size)},
+            {"spacing", vectorJson(info.lattice.spacing)},
+            {"origin", vectorJson(info.lattice.origin)},
+            {"sourceSize", vectorJson(archive.metadata().source.size)},
+            {"bounds", {vectorJson(info.bounds.lo), vectorJson(info.bounds.hi)}},
+            {"lengthUnit", info.lengthUnit},
+            {"parameters", std::move(parameters)},
+            {"times", info.times},
+            {"timeUnit", info.timeUnit},
+            {"brickSize", grid.brickSize},
+            {"levels", std::move(levels)},
+            {"masks", archive.maskCount()},
+            {"maskBytes", archive.maskBytes()},
+            {"lossless", archive.metadata().lossless},
+            {"maxError", archive.metadata().maxError},
+            {"provenance", info.provenance}};
+}
+
+std::string triple(glm::ivec3 v) {
+    return std::to_string(v.x) + " x " + std::to_string(v.y) + " x " + std::to_string(v.z);
+}
+
+void printArchive(const codec::Archive& archive) {
+    const volume::DatasetInfo& info = archive.info();
+    const volume::BrickGrid& grid = archive.grid();
+    const glm::dvec3 extent = info.bounds.size();
+    std::printf("%s (archive, %s, %s)\n", info.name.c_str(), bytesText(double(archive.fileBytes())).c_str(),
+                archive.metadata().lossless
+                    ? "lossless"
+                    : ("error within " + numberText(archive.metadata().maxError) + " of range").c_str());
+    std::printf("  samples    %s on %s, from a grid of %s\n", triple(info.lattice.size).c_str(),
+                info.lattice.kind == volume::LatticeKind::BCC ? "BCC" : "CC",
+                triple(archive.metadata().source.size).c_str());
+    std::printf("  extent     %s x %s x %s %s\n", numberText(extent.x).c_str(), numberText(extent.y).c_str(),
+                numberText(extent.z).c_str(), info.lengthUnit.c_str());
+    std::printf("  times      %zu, %s .. %s %s\n", info.times.size(), numberText(info.times.front()).c_str(),
+                numberText(info.times.back()).c_str(), info.timeUnit.c_str());
+    std::printf("  bricks     %s of %d, %d levels:", triple(grid.count()).c_str(), grid.brickSize, grid.levels);
+    for (int level = 0; level < grid.levels; ++level)
+        std::printf(" %s", bytesText(double(archive.levelBytes(level))).c_str());
+    std::printf("\n");
+    if (archive.maskCount() > 0)
+        std::printf("  masks      %d, %s\n", archive.maskCount(), bytesText(double(archive.maskBytes())).c_str());
+    std::printf("  parameters\n");
+    for (const volume::Parameter& parameter : info.parameters) {
+        std::printf("    %-16s %-8s %-8s", parameter.name.c_str(), std::string(volume::name(parameter.type)).c_str(),
+                    parameter.unit.c_str());
+        if (parameter.components > 1) std::printf(" vector of %d, length", parameter.components);
+        if (!parameter.ranges.empty() && !parameter.categorical)
+            std::printf(" %s .. %s", numberText(parameter.ranges.back().lo).c_str(),
+                        numberText(parameter.ranges.back().hi).c_str());
+        for (const volume::Label& label : parameter.labels) std::printf(" %d %s,", label.value, label.name.c_str());
+        std::printf("\n");
+    }
+    if (!info.provenance.empty()) std::printf("  %s\n", info.provenance.c_str());
+}
+
+void printSession(const std::string& path, bool asJson) {
+    const SessionDocument document = loadSession(path);
+    const Session& session = document.session;
+    json files = json::array(), layers = json::array(), views = json::array();
+    for (const DataFile& file : session.data.files) files.push_back(file.path);
+    for (const auto& [key, view] : session.views) views.push_back(key);
+    if (asJson) {
+        std::printf("%s\n", json{{"kind", "session"},
+                                 {"file", path},
+                                 {"schema", session.schema},
+                                 {"title", session.title},
+                                 {"files", files},
+                                 {"model", session.data.model},
+                                 {"views", views},
+                                 {"layers", session.layers.size()},
+                                 {"messages", document.messages}}
+                                .dump(1)
+                                .c_str());
+        return;
+    }
+    std::printf("%s (session)\n", session.title.empty() ? path.c_str() : session.title.c_str());
+    for (const DataFile& file : session.data.files) std::printf("  data       %s\n", file.path.c_str());
+    if (!session.data.model.empty()) std::printf("  model      %s\n", session.data.model.c_str());
+    std::printf("  views     ");
+    for (const auto& [key, view] : session.views) std::printf(" %s", key.c_str());
+    std::printf("\n  layers     %zu\n", session.layers.size());
+    for (const std::string& message : document.messages) std::printf("  %s\n", message.c_str());
+}
+
+void run(const std::vector<std::string>& paths, const volume::ImportOptions& import, bool asJson) {
+    if (paths.size() == 1 && hasEnding(paths[0], ".tsr")) {
+        const codec::Archive archive(paths[0]);
+        if (asJson)
+            std::printf("%s\n", archiveJson(archive).dump(1).c_str());
+        else
+            printArchive(archive);
+    } else if (paths.size() == 1 && hasEnding(paths[0], ".json") && looksLikeSession(readText(paths[0]))) {
+        printSession(paths[0], asJson);
+    } else {
+        const volume::ImportPreview preview = volume::previewFiles(paths, import, terminalProgress("info"));
+        std::printf("%s%s", (asJson ? describePreviewJson(preview) : describePreview(preview)).c_str(),
+                    asJson ? "\n" : "");
+    }
+}
+
+} // namespace
+
+void addInfoCommand(CLI::App& app) {
+    CLI::App* command = app.add_subcommand("info", "What is in a data file, an archive or a session");
+    const auto paths = std::make_shared<std::vector<std::string>>();
+    const auto import = std::make_shared<volume::ImportOptions>();
+    const auto asJson = std::make_shared<bool>(false);
+    command->add_option("FILE", *paths, "Archive, session, or data files that belong together")->required();
+    command->add_flag("--json", *asJson, "Print as JSON with stable keys");
+    addImportOptions(*command, *import);
+    command->callback([=] { run(*paths, *import, *asJson); });
+}
 
 } // namespace tessera::app

@@ -1,7 +1,94 @@
+#include "codec/pack.h"
 #include "app/command/command.h"
+#include "app/command/format.h"
+#include "app/command/import_options.h"
+#include "app/session/describe_cli.h"
+#include "codec/unpack.h"
+
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
 
 namespace tessera::app {
 
-void addPackCommand(CLI::App&) {}
+namespace {
+
+struct Request {
+    std::vector<std::string> inputs;
+    std::string output;
+    volume::ImportOptions import;
+    codec::PackOptions options;
+    bool json = false, progressJson = false;
+};
+
+/// One JSON object per line on stdout, for a window that runs this command.
+Progress jsonProgress(const Progress& terminal) {
+    Progress progress = terminal;
+    progress.report = [inner = terminal.report, last = -1.0](double fraction, const std::string& what) mutable {
+        if (inner) inner(fraction, what); // notices Ctrl-C
+        if (fraction - last < 0.005 && fraction < 1) return;
+        last = fraction;
+        std::printf("%s\n", nlohmann::json{{"fraction", fraction}, {"what", what}}.dump().c_str());
+        std::fflush(stdout);
+    };
+    return progress;
+}
+
+volume::Dataset open(const Request& request, const Progress& progress) {
+    if (request.inputs.size() == 1 && hasEnding(request.inputs[0], ".tsr"))
+        return codec::storedDataset(std::make_shared<const codec::Archive>(request.inputs[0]));
+    return volume::openFiles(request.inputs, request.import, progress);
+}
+
+void checkOutput(const Request& request) {
+    std::error_code ignored;
+    for (const std::string& input : request.inputs)
+        if (std::filesystem::equivalent(input, request.output, ignored))
+            throw Error("the output would replace an input", request.output);
+}
+
+nlohmann::json toJson(const codec::PackSummary& summary, const std::string& path) {
+    return {{"file", path},
+            {"sourceBytes", summary.sourceBytes},
+            {"sourceSamples", summary.sourceSamples},
+            {"storedSamples", summary.storedSamples},
+            {"archiveBytes", summary.archiveBytes},
+            {"seconds", summary.seconds},
+            {"loadSeconds", summary.loadSeconds},
+            {"resampleSeconds", summary.resampleSeconds},
+            {"codeSeconds", summary.codeSeconds}};
+}
+
+void run(const Request& request) {
+    checkOutput(request);
+    const Progress terminal = terminalProgress("pack");
+    const Progress progress = request.progressJson ? jsonProgress(terminal) : terminal;
+    volume::Dataset dataset = open(request, progress.part(0, 0.02));
+    const codec::PackSummary summary = codec::pack(dataset, request.options, request.output, progress.part(0.02, 1));
+    if (request.json || request.progressJson) {
+        std::printf("%s\n", toJson(summary, request.output).dump(request.progressJson ? -1 : 1).c_str());
+        return;
+    }
+    const double source = double(summary.sourceBytes), stored = double(summary.archiveBytes);
+    std::printf("%s: %s from %s (%.2f : 1), %.1f %% of the samples, %.2f s (%s/s)\n", request.output.c_str(),
+                bytesText(stored).c_str(), bytesText(source).c_str(), source / stored,
+                100.0 * double(summary.storedSamples) / double(summary.sourceSamples), summary.seconds,
+                bytesText(source / summary.seconds).c_str());
+}
+
+} // namespace
+
+void addPackCommand(CLI::App& app) {
+    CLI::App* command = app.add_subcommand("pack", "Import, resample, brick and compress data into one archive");
+    const auto request = std::make_shared<Request>();
+    command->add_option("IN", request->inputs, "Data files that belong together: parameters, times")->required();
+    command->add_option("-o,--output", request->output, "Archive to write (.tsr)")->required();
+    command->add_flag("--json", request->json, "Print the summary as JSON");
+    command->add_flag("--progress-json", request->progressJson, "Print progress and summary as JSON lines");
+    addDescribed(*command, request->options);
+    addImportOptions(*command, request->import);
+    command->callback([request] { run(*request); });
+}
 
 } // namespace tessera::app

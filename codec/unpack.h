@@ -1,0 +1,18 @@
+#pragma once
+
+#include "codec/archive.h"
+#include "volume/dataset.h"
+
+#include <memory>
+
+namespace tessera::codec {
+
+/// An archive as a data set of frames: on the lattice it is stored on, samples in their type.
+volume::Dataset storedDataset(std::shared_ptr<const Archive> archive);
+
+/// An archive as a data set on a CC grid, for other programs. Level 0 of a CC archive: the stored samples. Of a BCC
+/// archive: resampled to the grid it came from (labels nearest). Coarser levels: that grid with every 2^level-th
+/// sample, as floats; values of coarse levels are those a reader draws. `absent` masks are kept.
+volume::Dataset gridDataset(std::shared_ptr<const Archive> archive, int level);
+
+} // namespace tessera::codec
