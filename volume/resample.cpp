@@ -224,46 +224,87 @@ template <class T> void fromNearest(const Field& source, Field& out, Mask* mask,
 /// Precision of prefiltered values of a stored type.
 template <class T> using Filtered = std::conditional_t<std::is_same_v<T, std::int32_t>, double, float>;
 
-/// A BCC source's stored values, prefiltered.
+/// A BCC source's stored values, prefiltered; 0 where absent.
 template <class T> std::vector<Filtered<T>> prefilteredValues(const Field& source) {
     const Lattice& lattice = source.lattice;
-    const auto samples = [&, stored = source.as<T>()](glm::ivec3 at) {
+    const auto stored = source.as<T>();
+    const auto samples = [&](glm::ivec3 at) {
         const std::size_t index = lattice.index(clampToLattice(lattice.kind, lattice.size, at));
         return Sample{double(stored[index]), source.present(index)};
     };
     const Prefiltered filtered(samples, LevelGeometry{lattice.kind, 1, 0});
     std::vector<Filtered<T>> values(source.count());
     parallelFor(std::size_t(lattice.size.z), [&](std::size_t k) {
+        std::size_t index = lattice.index({0, 0, int(k)});
         for (int j = 0; j < lattice.size.y; ++j)
-            for (int i = 0; i < lattice.size.x; ++i) {
-                const glm::ivec3 at(i, j, int(k));
-                if (const std::size_t index = lattice.index(at); source.present(index))
-                    values[index] = Filtered<T>(filtered(at).value);
-            }
+            for (int i = 0; i < lattice.size.x; ++i, ++index)
+                if (source.present(index)) values[index] = Filtered<T>(filtered({i, j, int(k)}).value);
     });
     return values;
 }
 
+/// The two samples around a position along one axis of a BCC sublattice, as distances in memory.
+struct PairTap {
+    std::size_t lower, upper;
+    double fraction;
+};
+
+/// Target positions of one axis in a BCC source: index pairs in both sublattices.
+std::array<std::vector<PairTap>, 2> pairTaps(const Lattice& source, const Lattice& target, int targetSublattice,
+                                             int axis) {
+    const std::size_t steps[] = {1, std::size_t(source.size.x),
+                                 std::size_t(source.size.x) * std::size_t(source.size.y)};
+    const double last = (axis == 2 ? (source.size.z - 1) * 0.5 : source.size[axis] - 0.5);
+    std::array<std::vector<PairTap>, 2> taps;
+    for (int s = 0; s < 2; ++s) {
+        const int own = source.size.z > 1 ? s : 0; // a single slice stands for both
+        const int count = source.sublatticeSize(own)[axis];
+        for (int i = 0; i < target.sublatticeSize(targetSublattice)[axis]; ++i) {
+            const double cells =
+                std::clamp(sourceCells(source, target, targetSublattice, axis, i), 0.0, last) - 0.5 * own;
+            const double base = std::floor(cells);
+            const auto offset = [&](double at) {
+                const int inside = std::clamp(int(at), 0, count - 1);
+                return steps[axis] * std::size_t(axis == 2 ? 2 * inside + own : inside);
+            };
+            taps[std::size_t(s)].push_back({offset(base), offset(base + 1), cells - base});
+        }
+    }
+    return taps;
+}
+
+/// The average of the trilinear interpolations of both sublattices of prefiltered samples.
 template <class T> void fromBcc(const Field& source, Field& out, Mask* mask, const Progress& progress) {
     const Lattice &from = source.lattice, &target = out.lattice;
-    const auto values = prefilteredValues<T>(source);
-    const auto samples = [&](glm::ivec3 at) {
-        const std::size_t index = from.index(clampToLattice(from.kind, from.size, at));
-        return Sample{double(values[index]), source.present(index)};
-    };
-    const LevelGeometry geometry{from.kind, 1, 0};
-    const glm::dvec3 last = glm::dvec3(from.size.x - 0.5, from.size.y - 0.5, (from.size.z - 1) * 0.5);
+    const std::vector<Filtered<T>> values = prefilteredValues<T>(source);
+    const int sublattices = target.kind == LatticeKind::BCC ? 2 : 1;
+    std::array<std::vector<PairTap>, 2> taps[2][3]; // [target sublattice][axis][source sublattice]
+    for (int s = 0; s < sublattices; ++s)
+        for (int axis = 0; axis < 3; ++axis) taps[s][axis] = pairTaps(from, target, s, axis);
     T* const stored = out.as<T>().data();
     forSlices(target, progress, [&](int k) {
+        const auto& [tx, ty, tz] = taps[k % sublattices];
+        std::size_t to = target.index({0, 0, k});
         for (int j = 0; j < target.size.y; ++j)
-            for (int i = 0; i < target.size.x; ++i) {
-                const glm::ivec3 at(i, j, k);
-                const std::size_t to = target.index(at);
-                const glm::dvec3 position = target.position(at);
-                const bool exists = source.present(from.index(from.nearest(position)));
-                if (mask != nullptr) (*mask)[to] = exists ? 1 : 0;
-                if (!exists) continue;
-                const Blend blend = linear(geometry, samples, glm::clamp(from.toCells(position), glm::dvec3(0), last));
+            for (int i = 0; i < target.size.x; ++i, ++to) {
+                if (mask != nullptr) {
+                    const glm::dvec3 position = target.position({i, j, k});
+                    (*mask)[to] = source.present(from.index(from.nearest(position))) ? 1 : 0;
+                    if ((*mask)[to] == 0) continue;
+                }
+                Blend blend;
+                for (std::size_t s = 0; s < 2; ++s) {
+                    const PairTap &x = tx[s][std::size_t(i)], &y = ty[s][std::size_t(j)],
+                                  &z = tz[s][std::size_t(k / sublattices)];
+                    for (std::size_t corner = 0; corner < 8; ++corner) {
+                        const double w = (corner & 1 ? x.fraction : 1 - x.fraction) *
+                                         (corner & 2 ? y.fraction : 1 - y.fraction) *
+                                         (corner & 4 ? z.fraction : 1 - z.fraction);
+                        const std::size_t at = (corner & 1 ? x.upper : x.lower) + (corner & 2 ? y.upper : y.lower) +
+                                               (corner & 4 ? z.upper : z.lower);
+                        blend.add(w, {double(values[at]), mask == nullptr || source.present(at)});
+                    }
+                }
                 stored[to] = store<T>(blend.sum / blend.coverage);
             }
     });

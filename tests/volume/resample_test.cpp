@@ -167,6 +167,10 @@ TEST(Resample, TinySizes) {
         for (std::size_t i = 0; i < bcc.count(); ++i) EXPECT_FLOAT_EQ(float(bcc.value(i)), 4);
         for (std::size_t i = 0; i < back.count(); ++i) EXPECT_FLOAT_EQ(float(back.value(i)), 4);
     }
+    const Lattice slice{LatticeKind::BCC, {3, 2, 1}, glm::dvec3(1), glm::dvec3(0)};
+    const Field flat =
+        resample(sampled<float>(slice, [](glm::dvec3) { return 4.0; }), ccLattice({2, 2, 2}), ResampleFilter::Cubic);
+    for (std::size_t i = 0; i < flat.count(); ++i) EXPECT_FLOAT_EQ(float(flat.value(i)), 4);
 }
 
 TEST(Resample, StopsWhenAsked) {
