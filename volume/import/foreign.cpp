@@ -1,13 +1,123 @@
 #include "volume/import/foreign.h"
 
 #include "volume/error.h"
+#include "volume/import/process.h"
+#include "volume/import/series.h"
+#include "volume/import/stream.h"
 
+#include <algorithm>
+#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
+#include <memory>
+#include <mutex>
+#include <optional>
 
 namespace tessera::volume {
 
 namespace fs = std::filesystem;
+
+namespace {
+
+/// The running tessera-import; one question at a time.
+class Importer {
+public:
+    Importer(const std::string& program, const std::vector<std::string>& paths)
+        : paths_(paths), child_(arguments(program, paths)) {}
+
+    std::string header(std::size_t file, const Progress& progress) {
+        // While no frame is asked for, a frame can have no length that fits.
+        const std::vector<std::byte> text = answer(file, MessageKind::Header, Lattice{}, ScalarType::U8, [&] {
+            progress.advance(double(file) / double(paths_.size()), fs::path(paths_[file]).filename().string());
+        });
+        return {reinterpret_cast<const char*>(text.data()), text.size()};
+    }
+
+    Field frame(std::size_t file, std::size_t piece, int array, int component, int time, const Lattice& target,
+                ScalarType type) {
+        char line[512];
+        std::snprintf(line, sizeof line, "frame %zu %zu %d %d %d %d %d %d %.17g %.17g %.17g %.17g %.17g %.17g\n", file,
+                      piece, array, component, time, target.size.x, target.size.y, target.size.z, target.origin.x,
+                      target.origin.y, target.origin.z, target.spacing.x, target.spacing.y, target.spacing.z);
+        const std::lock_guard lock(mutex_);
+        child_.write(line);
+        return parseFrame(answer(file, MessageKind::Frame, target, type, {}), target, type);
+    }
+
+private:
+    static std::vector<std::string> arguments(const std::string& program, const std::vector<std::string>& paths) {
+        std::vector<std::string> words{program};
+        std::string last;
+        for (const std::string& path : paths) {
+            const NumberedName name = numberedName(path);
+            const std::string pattern = name.number ? name.pattern : std::string();
+            if (!pattern.empty() && pattern == last) words.emplace_back("--like");
+            last = pattern;
+            words.push_back(fs::path(path).is_absolute() ? path : "./" + path);
+        }
+        return words;
+    }
+
+    std::vector<std::byte> answer(std::size_t file, MessageKind wanted, const Lattice& lattice, ScalarType type,
+                                  const std::function<void()>& waiting) {
+        std::byte headBytes[kMessageHeadBytes];
+        if (!child_.read(headBytes, waiting)) failed(file);
+        MessageHead head;
+        try {
+            head = parseMessageHead(headBytes, lattice, type);
+        } catch (const Error& error) {
+            throw Error(error.reason(), paths_[file]);
+        }
+        std::vector<std::byte> bytes(head.length);
+        if (!child_.read(bytes, waiting)) failed(file);
+        if (head.kind == MessageKind::Failure)
+            throw Error(
+                std::string(reinterpret_cast<const char*>(bytes.data()), std::min<std::size_t>(bytes.size(), 500)),
+                paths_[file]);
+        if (head.kind != wanted) throw Error("tessera-import sent an answer to another question", paths_[file]);
+        return bytes;
+    }
+
+    [[noreturn]] void failed(std::size_t file) {
+        const std::string how = child_.ending();
+        if (child_.interrupted()) throw Cancelled();
+        throw Error("tessera-import " + (how.empty() ? "ended early" : how), paths_[file]);
+    }
+
+    std::vector<std::string> paths_;
+    std::mutex mutex_;
+    ChildProcess child_;
+};
+
+/// Integer arrays NAME.present say where NAME is present (as exportDataset writes them): no parameters of their own.
+/// Gives the index of the flags of each remaining array, -1 for none, and of the array itself among all.
+struct Kept {
+    int index, flags;
+};
+std::vector<Kept> withoutPresence(std::vector<Array>& arrays) {
+    const auto find = [&](const std::string& name) {
+        for (std::size_t i = 0; i < arrays.size(); ++i)
+            if (arrays[i].name == name) return static_cast<int>(i);
+        return -1;
+    };
+    std::vector<Kept> kept;
+    std::vector<Array> remaining;
+    constexpr std::string_view kEnding = ".present";
+    for (std::size_t i = 0; i < arrays.size(); ++i) {
+        const std::string& name = arrays[i].name;
+        if (name.ends_with(kEnding) && arrays[i].type == ScalarType::U8 &&
+            find(name.substr(0, name.size() - kEnding.size())) >= 0)
+            continue;
+        const int flags = find(name + std::string(kEnding));
+        kept.push_back(
+            {static_cast<int>(i), flags >= 0 && arrays[std::size_t(flags)].type == ScalarType::U8 ? flags : -1});
+        remaining.push_back(arrays[i]);
+    }
+    arrays = std::move(remaining);
+    return kept;
+}
+
+} // namespace
 
 std::string findImporter() {
     if (const char* named = std::getenv("TESSERA_IMPORT"); named != nullptr && *named != '\0') return named;
@@ -17,10 +127,35 @@ std::string findImporter() {
     return !failed && fs::exists(beside, failed) ? beside.string() : std::string();
 }
 
-std::vector<std::vector<Piece>> openForeign(const std::vector<std::string>& paths, const Progress&) {
-    if (findImporter().empty())
-        throw Error("this format needs the program tessera-import, which is not here (built with VTK)", paths.front());
-    throw Error("this format is not read yet", paths.front());
+std::vector<std::vector<Piece>> openForeign(const std::vector<std::string>& paths, const Progress& progress) {
+    const std::string program = findImporter();
+    if (program.empty())
+        throw Error("reading this format needs the program tessera-import, which was not built (it wants VTK)",
+                    paths.front());
+    const auto importer = std::make_shared<Importer>(program, paths);
+    std::vector<std::vector<Piece>> files;
+    for (std::size_t f = 0; f < paths.size(); ++f) {
+        progress.advance(double(f) / double(paths.size()), fs::path(paths[f]).filename().string());
+        files.push_back(parseStreamHeader(importer->header(f, progress), paths[f]));
+        for (std::size_t p = 0; p < files[f].size(); ++p) {
+            Piece& piece = files[f][p];
+            const std::vector<Kept> kept = withoutPresence(piece.arrays);
+            std::vector<ScalarType> types;
+            for (const Array& array : piece.arrays) types.push_back(array.type);
+            piece.load = [importer, f, p, kept, types](int array, int component, int time, const Lattice& target) {
+                if (array < 0) return importer->frame(f, p, -1, 0, time, target, ScalarType::U8);
+                const Kept from = kept[std::size_t(array)];
+                Field field = importer->frame(f, p, from.index, component, time, target, types[std::size_t(array)]);
+                if (from.flags < 0) return field;
+                const Field flags = importer->frame(f, p, from.flags, 0, time, target, ScalarType::U8);
+                Mask mask(field.count());
+                for (std::size_t i = 0; i < mask.size(); ++i) mask[i] = field.present(i) && flags.value(i) != 0 ? 1 : 0;
+                field.mask = std::make_shared<const Mask>(std::move(mask));
+                return field;
+            };
+        }
+    }
+    return files;
 }
 
 } // namespace tessera::volume
