@@ -101,6 +101,7 @@ vtkSmartPointer<vtkAlgorithm> openFoam(const std::string& path) {
     }
     reader->EnableAllCellArrays();
     reader->DisableAllLagrangianArrays();
+    reader->CreateCellToPointOff(); // done here, for each block on its own
     return reader.Get();
 }
 

@@ -41,8 +41,8 @@ std::string words(glm::ivec3 size) {
 
 bool sameForm(const OpenedFile& a, const OpenedFile& b) {
     return std::equal(a.pieces.begin(), a.pieces.end(), b.pieces.begin(), b.pieces.end(),
-                      [](const Piece& p, const Piece& q) {
-                          return p.name == q.name && p.mesh == q.mesh &&
+                      [single = a.pieces.size() == 1](const Piece& p, const Piece& q) {
+                          return (p.name == q.name || single) && p.mesh == q.mesh &&
                                  std::equal(p.arrays.begin(), p.arrays.end(), q.arrays.begin(), q.arrays.end(),
                                             [](const Array& x, const Array& y) {
                                                 return x.name == y.name && x.components == y.components;
@@ -332,8 +332,9 @@ Lattice gridForMesh(const Box& box, glm::dvec3 cellSize, bool cellData, glm::ive
     return grid;
 }
 
-Dataset assemble(std::vector<OpenedFile> files, glm::ivec3 gridSize, bool readSamples, std::vector<std::string>& notes,
-                 const Progress& progress) {
+Assembled assemble(std::vector<OpenedFile> files, glm::ivec3 gridSize, bool readSamples, const Progress& progress) {
+    Assembled result;
+    std::vector<std::string>& notes = result.notes;
     auto all = std::make_shared<Assembly>();
     all->files = std::move(files);
     for (const OpenedFile& file : all->files)
@@ -407,6 +408,7 @@ Dataset assemble(std::vector<OpenedFile> files, glm::ivec3 gridSize, bool readSa
         }
     }
     if (info.parameters.empty()) throw Error("holds no array of numbers", all->files.front().entry.path);
+    result.mesh = meshes > 0;
     all->times = info.times;
     if (!anyLabel && meshes > 1 && !byName.contains("region")) {
         Parameter region{"region", "", 1, ScalarType::U8, true, {}, {}};
@@ -414,10 +416,12 @@ Dataset assemble(std::vector<OpenedFile> files, glm::ivec3 gridSize, bool readSa
         info.parameters.push_back(std::move(region));
         all->feeds.emplace_back();
         notes.push_back("label region made from the names of the blocks");
+        result.madeLabel = true;
     }
     all->parameters = info.parameters;
-    return {std::move(info),
-            [all](int parameter, int component, int time) { return all->load(parameter, component, time); }};
+    result.dataset = {std::move(info),
+                      [all](int parameter, int component, int time) { return all->load(parameter, component, time); }};
+    return result;
 }
 
 } // namespace tessera::volume

@@ -14,13 +14,20 @@ struct OpenedFile {
     std::vector<Piece> pieces;
 };
 
-/// Puts files together into one data set with the file's own array names: files of a group follow each other in time,
-/// arrays of equal name from several meshes are merged onto one grid (the first that has a sample wins), several files
-/// on one grid add parameters. A `region` label is made from the names of mesh blocks where there is no label.
-/// `gridSize` (0 = chosen) is for meshes. `notes` tells what was done. Throws Error when things do not fit.
-/// Without `readSamples` no sample is read (the names of a made label are then not yet known).
-Dataset assemble(std::vector<OpenedFile> files, glm::ivec3 gridSize, bool readSamples, std::vector<std::string>& notes,
-                 const Progress& progress);
+/// Files put together.
+struct Assembled {
+    Dataset dataset; ///< with the file's own array names
+    std::vector<std::string> notes;
+    bool mesh = false;      ///< samples are found in cells, which costs time
+    bool madeLabel = false; ///< the last parameter is a label made from blocks
+};
+
+/// Puts files together into one data set: files of a group follow each other in time, arrays of equal name from several
+/// meshes are merged onto one grid (the first that has a sample wins), several files on one grid add parameters. A
+/// `region` label is made from the names of mesh blocks where there is no label. `gridSize` (0 = chosen) is for meshes.
+/// Throws Error when things do not fit. Without `readSamples` no sample is read (the values of a made label are then
+/// not yet known).
+Assembled assemble(std::vector<OpenedFile> files, glm::ivec3 gridSize, bool readSamples, const Progress& progress);
 
 /// The grid a mesh is sampled on: per axis about one sample per cell of harmonic-mean extent, at most 1024 an axis and
 /// 16 M in all; in the middle of cells for cell data, else from border to border.

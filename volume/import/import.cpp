@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <limits>
 #include <set>
 
@@ -122,6 +123,25 @@ void markLabels(Dataset& dataset, bool readSamples) {
     }
 }
 
+double bytesOf(const DatasetInfo& info) {
+    double perSample = 0;
+    for (const Parameter& parameter : info.parameters)
+        perSample += parameter.components * double(byteSize(parameter.type));
+    return perSample * double(info.lattice.count()) * double(info.times.size());
+}
+
+/// Name of the only block of a file: the part a .pvd states, else the file's name without number.
+std::string blockName(const SeriesFile& entry) {
+    if (!entry.part.empty()) return entry.part;
+    const std::string stem = std::filesystem::path(entry.path).stem().string();
+    // "air_260" is air, but "H2" is H2.
+    const std::string pattern = std::filesystem::path(numberedName(entry.path).pattern).stem().string();
+    const std::size_t number = pattern.find_last_of('#');
+    if (number == std::string::npos || number == 0 || number + 1 != pattern.size()) return stem;
+    const std::string name = pattern.substr(0, number - 1);
+    return std::string_view("_-.").find(pattern[number - 1]) == std::string_view::npos || name.empty() ? stem : name;
+}
+
 Opened open(const std::vector<std::string>& paths, const ImportOptions& options, bool readSamples,
             const Progress& progress) {
     if (paths.empty()) throw Error("no file given");
@@ -145,17 +165,25 @@ Opened open(const std::vector<std::string>& paths, const ImportOptions& options,
             if (file.pieces.empty()) {
                 file.pieces = std::move(pieces[next++]);
                 for (Piece& piece : file.pieces)
-                    if (!file.entry.part.empty()) piece.name = file.entry.part;
+                    if (!file.entry.part.empty() || piece.name.empty()) piece.name = blockName(file.entry);
             }
     }
     Opened opened;
     opened.format = files.front().pieces.empty() ? "" : files.front().pieces.front().format;
-    opened.dataset = assemble(std::move(files), options.gridSize, readSamples, opened.notes, progress.part(0.3, 0.7));
+    Assembled assembled = assemble(std::move(files), options.gridSize, readSamples, progress.part(0.3, 0.7));
+    opened.dataset = std::move(assembled.dataset);
+    opened.notes = std::move(assembled.notes);
+    // A look at the header may read a little, if that is quick.
+    constexpr double kQuickBytes = 64e6;
+    const DatasetInfo& info = opened.dataset.info;
+    const double times = double(info.times.size());
+    if (!assembled.mesh && bytesOf(info) / times * std::min(3.0, times) <= kQuickBytes) readSamples = true;
     markLabels(opened.dataset, readSamples);
     opened.dataset = withNames(withLabels(std::move(opened.dataset)), options);
     if (readSamples) findLabels(opened.dataset);
     std::vector<AbsentRule> rules = stated;
-    if (options.autoAbsent && readSamples) {
+    // A label made from blocks says nothing new: outside its block a field is absent anyway.
+    if (options.autoAbsent && readSamples && !assembled.madeLabel) {
         for (AbsentRule& rule : suggestAbsentRules(opened.dataset, progress.part(0.7, 1))) {
             const bool ruled = std::any_of(stated.begin(), stated.end(), [&](const AbsentRule& own) {
                 return own.parameter == rule.parameter || (own.parameter == "*" && own.nothing);
@@ -168,13 +196,6 @@ Opened open(const std::vector<std::string>& paths, const ImportOptions& options,
     }
     opened.dataset = withParameters(withAbsent(std::move(opened.dataset), rules), options.parameters);
     return opened;
-}
-
-double bytesOf(const DatasetInfo& info) {
-    double perSample = 0;
-    for (const Parameter& parameter : info.parameters)
-        perSample += parameter.components * double(byteSize(parameter.type));
-    return perSample * double(info.lattice.count()) * double(info.times.size());
 }
 
 } // namespace
