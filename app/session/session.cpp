@@ -188,7 +188,7 @@ Session defaultSession(const volume::DatasetInfo& info, const DataRef& data) {
             parameter.components > 1) {
             // A signed component of a vector: white in the middle belongs to zero.
             const double most = std::max(-range.lo, range.hi);
-            function.colormap = "coolwarm";
+            function.colormap = "blue-orange";
             function.autoRange = false;
             function.range = {-most, most};
         } else {

@@ -22,7 +22,7 @@ ImU32 withAlpha(ImVec4 color, float alpha) {
 
 /// As many ticks as fit without the labels touching.
 TickLabels fittingTicks(AxisSide side, Range range, float length) {
-    const float gap = em() * (side == AxisSide::Bottom ? 0.9f : 0.35f);
+    const float gap = em() * (side == AxisSide::Bottom ? 0.9f : 0.1f);
     TickLabels ticks;
     for (int most : {10, 8, 6, 5, 4, 3, 2, 1}) {
         ticks = tickLabels(range, most);
@@ -108,27 +108,37 @@ float axisRoom(AxisSide side, Range range, bool title) {
 }
 
 void drawAxis(ImDrawList& draw, const PlotFrame& frame, AxisSide side, std::string_view title, std::string_view unit,
-              float lo, float hi, bool grid) {
+              float lo, float hi, const AxisOptions& options) {
     const bool bottom = side == AxisSide::Bottom;
     const Range range = bottom ? frame.x : frame.y;
     const TickLabels ticks = fittingTicks(side, range, bottom ? frame.width() : frame.height());
     const PlotColors colors = plotColors();
+    // What fits: the note must not be lost, or the numbers would be wrong; then the title, then the unit.
+    const std::string note = ticks.note.empty() ? "" : "  " + ticks.note;
+    const float length = bottom || !options.inlineTitle ? hi - lo : 1e6f;
+    std::string label;
+    for (const std::string& text : {titleWithUnit(title, unit) + note, std::string(title) + note,
+                                    ticks.note.empty() ? fitText(title, length) : ticks.note}) {
+        label = text;
+        if (ImGui::CalcTextSize(label.c_str()).x <= length) break;
+    }
+    const float taken = options.inlineTitle && bottom ? ImGui::CalcTextSize(label.c_str()).x + em() * 0.5f : 0;
     float previousEnd = -1e9f, widest = 0;
     for (std::size_t i = 0; i < ticks.values.size(); ++i) {
         const ImVec2 size = ImGui::CalcTextSize(ticks.texts[i].c_str());
         widest = std::max(widest, size.x);
         if (bottom) {
             const float at = std::round(frame.pixel(ticks.values[i], frame.y.lo).x) + 0.5f;
-            if (grid) draw.AddLine({at, frame.min.y}, {at, frame.max.y}, colors.grid);
+            if (options.grid) draw.AddLine({at, frame.min.y}, {at, frame.max.y}, colors.grid);
             draw.AddLine({at, frame.max.y}, {at, frame.max.y + tickLength()}, colors.frame);
             const float left = std::max(lo, std::min(at - size.x / 2, hi - size.x));
-            if (left < previousEnd) continue;
+            if (left < previousEnd || left + size.x > hi - taken + 0.5f) continue;
             draw.AddText({std::round(left), frame.max.y + tickLength() + em() * 0.1f}, colors.text,
                          ticks.texts[i].c_str());
             previousEnd = left + size.x + em() * 0.4f;
         } else {
             const float at = std::round(frame.pixel(frame.x.lo, ticks.values[i]).y) + 0.5f;
-            if (grid) draw.AddLine({frame.min.x, at}, {frame.max.x, at}, colors.grid);
+            if (options.grid) draw.AddLine({frame.min.x, at}, {frame.max.x, at}, colors.grid);
             draw.AddLine({frame.min.x - tickLength(), at}, {frame.min.x, at}, colors.frame);
             const float top = std::max(lo, std::min(at - size.y / 2, hi - size.y));
             draw.AddText({std::round(frame.min.x - tickLength() - em() * 0.15f - size.x), std::round(top)}, colors.text,
@@ -136,21 +146,20 @@ void drawAxis(ImDrawList& draw, const PlotFrame& frame, AxisSide side, std::stri
         }
     }
     if (title.empty() && unit.empty()) return;
-    // What fits: the note must not be lost, or the numbers would be wrong; then the title, then the unit.
-    const std::string note = ticks.note.empty() ? "" : "  " + ticks.note;
-    std::string label;
-    for (const std::string& text : {titleWithUnit(title, unit) + note, std::string(title) + note,
-                                    ticks.note.empty() ? fitText(title, hi - lo) : ticks.note}) {
-        label = text;
-        if (ImGui::CalcTextSize(label.c_str()).x <= hi - lo) break;
-    }
     const ImVec2 size = ImGui::CalcTextSize(label.c_str());
+    if (options.inlineTitle) {
+        const ImVec2 at = bottom ? ImVec2{hi - size.x, frame.max.y + tickLength() + em() * 0.1f}
+                                 : ImVec2{std::max(lo, frame.min.x - size.x), frame.min.y - em() * 1.25f};
+        draw.AddText({std::round(at.x), std::round(at.y)}, colors.faint, label.c_str());
+        return;
+    }
     const auto centred = [&](float middle) { return std::max(lo + size.x / 2, std::min(middle, hi - size.x / 2)); };
     if (bottom) {
         const float x = centred((frame.min.x + frame.max.x) / 2) - size.x / 2;
         draw.AddText({std::round(x), frame.max.y + tickLength() + em() * 1.15f}, colors.faint, label.c_str());
     } else {
-        const float x = frame.min.x - tickLength() - em() * 0.3f - widest - em() * 0.6f;
+        const float x = options.room > 0 ? frame.min.x - options.room + em() * 0.6f
+                                         : frame.min.x - tickLength() - em() * 0.9f - widest;
         addTextUpwards(draw, {x, centred((frame.min.y + frame.max.y) / 2)}, colors.faint, label.c_str());
     }
 }
@@ -213,26 +222,33 @@ void drawCrosshair(ImDrawList& draw, const PlotFrame& frame, double x, double y)
     if (hasX && hasY) draw.AddCircleFilled({px, py}, em() * 0.2f, color);
 }
 
-void densityImage(std::span<const std::uint64_t> counts, std::span<const double> focus, int size, bool logDensity,
-                  bool dark, std::vector<std::uint8_t>& rgba) {
-    const std::size_t n = static_cast<std::size_t>(size);
+int densityImage(std::span<const std::uint64_t> counts, std::span<const double> focus, int size, int merge,
+                 bool logDensity, bool dark, std::vector<std::uint8_t>& rgba) {
+    const auto bins = static_cast<std::size_t>(size), step = static_cast<std::size_t>(std::max(1, merge));
+    const std::size_t n = (bins + step - 1) / step;
+    std::vector<double> sums(n * n), focused(focus.empty() ? 0 : n * n);
+    for (std::size_t row = 0; row < bins; ++row)
+        for (std::size_t column = 0; column < bins; ++column) {
+            const std::size_t to = row / step * n + column / step;
+            sums[to] += static_cast<double>(counts[row * bins + column]);
+            if (!focus.empty()) focused[to] += focus[row * bins + column];
+        }
     rgba.assign(n * n * 4, 0);
-    double most = 0;
-    for (std::uint64_t count : counts) most = std::max(most, static_cast<double>(count));
-    if (most <= 0) return;
+    const double most = *std::max_element(sums.begin(), sums.end());
+    if (most <= 0) return static_cast<int>(n);
     // Context grey-blue, focus orange: told apart by lightness as well as by hue.
     const std::array<double, 3> context = dark ? std::array{138.0, 156.0, 180.0} : std::array{92.0, 106.0, 128.0};
     const std::array<double, 3> hot = dark ? std::array{255.0, 178.0, 70.0} : std::array{206.0, 92.0, 0.0};
     const std::array<double, 3> plain = dark ? std::array{150.0, 196.0, 236.0} : std::array{28.0, 92.0, 158.0};
     for (std::size_t row = 0; row < n; ++row)
         for (std::size_t column = 0; column < n; ++column) {
-            const auto count = static_cast<double>(counts[row * n + column]);
+            const double count = sums[row * n + column];
             if (count <= 0) continue;
             const double share = logDensity ? std::log1p(count) / std::log1p(most) : count / most;
-            double alpha = 0.18 + 0.82 * share;
+            double alpha = 0.35 + 0.65 * share;
             std::array<double, 3> color = plain;
             if (!focus.empty()) {
-                const double doi = std::clamp(focus[row * n + column] / count, 0.0, 1.0);
+                const double doi = std::clamp(focused[row * n + column] / count, 0.0, 1.0);
                 // A few focus samples among many must still show: the square root lifts small shares.
                 const double mix = std::sqrt(doi);
                 for (std::size_t k = 0; k < 3; ++k) color[k] = context[k] + (hot[k] - context[k]) * mix;
@@ -242,6 +258,7 @@ void densityImage(std::span<const std::uint64_t> counts, std::span<const double>
             for (std::size_t k = 0; k < 3; ++k) pixel[k] = static_cast<std::uint8_t>(color[k]);
             pixel[3] = static_cast<std::uint8_t>(std::lround(255 * alpha));
         }
+    return static_cast<int>(n);
 }
 
 } // namespace tessera::app

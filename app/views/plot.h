@@ -49,13 +49,20 @@ ImU32 toColor(std::array<double, 3> srgb, double alpha = 1);
 
 enum class AxisSide { Bottom, Left };
 
+struct AxisOptions {
+    bool grid = false;        ///< faint lines across the frame
+    bool inlineTitle = false; ///< the title in the row of the numbers (bottom) or above them (left): saves a line
+    float room = 0;           ///< pixels outside of the frame for a left axis, so that several have their titles in one
+                              ///< column; 0 = as needed
+};
+
 /// Pixels that drawAxis needs outside the frame for ticks, labels and title.
 float axisRoom(AxisSide side, Range range, bool title);
 
 /// Ticks, labels and a title with unit along one side of a frame. Labels never overlap and never leave
-/// [lo, hi] pixels along the axis: those at the ends are moved inwards. `grid` draws faint lines across.
+/// [lo, hi] pixels along the axis: those at the ends are moved inwards.
 void drawAxis(ImDrawList& draw, const PlotFrame& frame, AxisSide side, std::string_view title, std::string_view unit,
-              float lo, float hi, bool grid = false);
+              float lo, float hi, const AxisOptions& options = {});
 
 /// Text turned by 90 degrees, reading upwards, centred at a point.
 void addTextUpwards(ImDrawList& draw, ImVec2 center, ImU32 color, const char* text);
@@ -75,8 +82,9 @@ void drawCrosshair(ImDrawList& draw, const PlotFrame& frame, double x, double y)
 
 /// Colours of a density plot, row 0 at the top (the largest y): transparent where no sample is, else the density from
 /// faint to full, hue by the share of focus. `counts` and `focus` have size x size bins, x fastest, row 0 = lowest y;
-/// `focus` may be empty (nothing brushed).
-void densityImage(std::span<const std::uint64_t> counts, std::span<const double> focus, int size, bool logDensity,
-                  bool dark, std::vector<std::uint8_t>& rgba);
+/// `focus` may be empty (nothing brushed). Every `merge` x `merge` bins become one pixel, so that a small plot shows
+/// every sample; returns the pixels a side.
+int densityImage(std::span<const std::uint64_t> counts, std::span<const double> focus, int size, int merge,
+                 bool logDensity, bool dark, std::vector<std::uint8_t>& rgba);
 
 } // namespace tessera::app

@@ -91,7 +91,7 @@ void drawReadout(ViewContext& context, const Readout& readout) {
     for (int axis = 0; axis < 3; ++axis) {
         const LengthUnit unit = suitableLength(info.lengthUnit, size[axis]);
         at += (axis ? "   " : "") + std::string(kAxes[axis]) + " " +
-              formatQuantity(cursor[axis] * unit.perUnit, unit.name, size[axis] * unit.perUnit / 1000);
+              formatQuantity(cursor[axis] * unit.perUnit, unit.name, size[axis] * unit.perUnit / 200);
     }
     ImGui::PushTextWrapPos(0);
     ImGui::TextUnformatted(at.c_str());
@@ -109,7 +109,7 @@ void drawReadout(ViewContext& context, const Readout& readout) {
                            ImGuiTableFlags_SizingStretchProp | ImGuiTableFlags_RowBg | ImGuiTableFlags_PadOuterX))
         return;
     ImGui::TableSetupColumn("Parameter", ImGuiTableColumnFlags_WidthStretch, 1.4f);
-    ImGui::TableSetupColumn("Interpolated", ImGuiTableColumnFlags_WidthStretch, 1);
+    ImGui::TableSetupColumn("Value", ImGuiTableColumnFlags_WidthStretch, 1);
     ImGui::TableSetupColumn("Nearest", ImGuiTableColumnFlags_WidthStretch, 1);
     ImGui::TableHeadersRow();
     const auto cell = [&](const volume::Channel& channel, const std::optional<double>& value) {

@@ -23,6 +23,7 @@ struct ScatterCache : ViewCache {
     // What the textures show.
     std::shared_ptr<const StatisticsResult> shown;
     bool shownLog = false, shownDark = false;
+    int shownMerge = 0;
 };
 
 struct Matrix {
@@ -55,7 +56,7 @@ std::vector<int> shownChannels(const volume::DatasetInfo& info, const ScatterMat
 
 void chooseChannels(const volume::DatasetInfo& info, ScatterMatrixView& view, const std::vector<int>& shown) {
     const std::string label = std::to_string(shown.size()) + " parameters";
-    ImGui::SetNextItemWidth(em() * 8.5f);
+    ImGui::SetNextItemWidth(em() * 7.8f);
     if (ImGui::BeginCombo("##channels", label.c_str(), ImGuiComboFlags_HeightLarge)) {
         const std::vector<volume::Channel> channels = info.channels();
         for (std::size_t i = 0; i < channels.size(); ++i) {
@@ -98,26 +99,27 @@ void drawToolbar(ViewContext& context, ScatterMatrixView& view, const std::vecto
     ImGui::Checkbox("log", &view.logDensity);
     if (ImGui::IsItemHovered()) tooltip("Show the logarithm of the number of samples");
     ImGui::SameLine();
-    ImGui::SetNextItemWidth(em() * 6);
+    ImGui::SetNextItemWidth(em() * 5);
     float percent = view.softness * 100;
     if (ImGui::SliderFloat("##soft", &percent, 0, 50, "soft %.0f %%")) view.softness = percent / 100;
     if (ImGui::IsItemHovered()) tooltip("Soft edge of new brushes, as a share of their width");
     const bool brushed = session.selection.active();
-    std::string text;
+    std::string text, brief;
     if (brushed && result && result->brushed) {
         const Share share = focusShare(result->statistics);
-        text = "focus " + formatShare(share.all > 0 ? share.focus / share.all : 0);
+        text = brief = "focus " + formatShare(share.all > 0 ? share.focus / share.all : 0);
         if (result->statistics.level == 0) text += " (" + formatCount(share.focus) + ")";
     } else if (session.selection.brushes.empty()) {
         text = "drag in a plot to select (brush)";
+        brief = "drag to brush";
     }
     if (!session.selection.brushes.empty()) {
         ImGui::SameLine();
-        if (ImGui::Button("Clear")) session.selection.brushes.clear();
-        if (ImGui::IsItemHovered()) tooltip("Remove all brushes (Esc)");
+        if (iconButton(context, "clear", icons::kTrash, "Remove all brushes (Esc)")) session.selection.brushes.clear();
     }
-    const float width = ImGui::CalcTextSize(text.c_str()).x;
     ImGui::SameLine();
+    if (ImGui::CalcTextSize(text.c_str()).x > ImGui::GetContentRegionAvail().x) text = brief;
+    const float width = ImGui::CalcTextSize(text.c_str()).x;
     if (ImGui::GetContentRegionAvail().x >= width) {
         ImGui::SetCursorPosX(std::max(ImGui::GetCursorPosX(), ImGui::GetContentRegionMax().x - width));
         ImGui::AlignTextToFramePadding();
@@ -130,18 +132,24 @@ void drawToolbar(ViewContext& context, ScatterMatrixView& view, const std::vecto
     }
 }
 
-void updateTextures(ScatterCache& cache, const std::shared_ptr<const StatisticsResult>& result, bool logDensity) {
+void updateTextures(ScatterCache& cache, const std::shared_ptr<const StatisticsResult>& result, bool logDensity,
+                    float cell) {
     const bool dark = darkTheme();
-    if (cache.shown == result && cache.shownLog == logDensity && cache.shownDark == dark) return;
+    const int merge =
+        std::max(1, static_cast<int>(std::lround(static_cast<float>(result->wish.bins) / std::max(8.0f, cell))));
+    if (cache.shown == result && cache.shownLog == logDensity && cache.shownDark == dark && cache.shownMerge == merge)
+        return;
+    cache.shownMerge = merge;
     cache.shown = result;
     cache.shownLog = logDensity;
     cache.shownDark = dark;
     cache.textures.resize(result->statistics.joint.size());
     for (std::size_t i = 0; i < cache.textures.size(); ++i) {
         const volume::JointHistogram& joint = result->statistics.joint[i];
-        densityImage(joint.count, result->brushed ? std::span<const double>(joint.focus) : std::span<const double>(),
-                     joint.bins, logDensity, dark, cache.pixels);
-        cache.textures[i].upload({joint.bins, joint.bins}, cache.pixels);
+        const int pixels = densityImage(
+            joint.count, result->brushed ? std::span<const double>(joint.focus) : std::span<const double>(), joint.bins,
+            merge, logDensity, dark, cache.pixels);
+        cache.textures[i].upload({pixels, pixels}, cache.pixels);
     }
 }
 
@@ -336,7 +344,6 @@ void drawScatterMatrixView(ViewContext& context, const std::string& pane, Scatte
     const StatisticsWish wish =
         makeWish(context.session, info, matrix.channels, matrix.ranges, view.bins, matrix.channels.size() > 1);
     const std::shared_ptr<const StatisticsResult> result = cache.feed.get(context, "statistics " + pane, wish);
-    if (result) updateTextures(cache, result, view.logDensity);
 
     drawToolbar(context, view, matrix.channels, result.get());
     const ImVec2 origin = ImGui::GetCursorScreenPos(), room = ImGui::GetContentRegionAvail();
@@ -354,6 +361,7 @@ void drawScatterMatrixView(ViewContext& context, const std::string& pane, Scatte
         drawHint("Not enough room", "Enlarge the pane or compare fewer parameters.");
         return;
     }
+    if (result) updateTextures(cache, result, view.logDensity, std::min(matrix.cellX, matrix.cellY));
     for (std::size_t row = 0; row < matrix.size(); ++row)
         for (std::size_t column = 0; column < matrix.size(); ++column)
             drawCell(context, cache, view, matrix, column, row, result.get());
@@ -362,11 +370,11 @@ void drawScatterMatrixView(ViewContext& context, const std::string& pane, Scatte
     ImDrawList& draw = *ImGui::GetWindowDrawList();
     for (std::size_t i = 0; i < matrix.size(); ++i) {
         const PlotFrame across = matrix.cell(i, matrix.size() - 1), up = matrix.cell(0, i);
-        drawAxis(draw, across, AxisSide::Bottom, matrix.infos[i].name, matrix.infos[i].unit,
-                 across.min.x - matrix.gap / 2, across.max.x + matrix.gap / 2);
+        drawAxis(draw, across, AxisSide::Bottom, matrix.infos[i].name, matrix.infos[i].unit, across.min.x,
+                 across.max.x);
         if (i > 0)
-            drawAxis(draw, up, AxisSide::Left, matrix.infos[i].name, matrix.infos[i].unit, up.min.y - matrix.gap / 2,
-                     up.max.y + matrix.gap / 2);
+            drawAxis(draw, up, AxisSide::Left, matrix.infos[i].name, matrix.infos[i].unit, up.min.y, up.max.y,
+                     {.room = left});
     }
     if (!cache.feed.failure().empty() && !result)
         draw.AddText({matrix.min.x, matrix.min.y}, plotColors().text, cache.feed.failure().c_str());

@@ -42,10 +42,12 @@ vis::Camera sliceCamera(const Plane& plane, const vis::WorldFrame& world) {
     return camera;
 }
 
-/// Sizes of the two columns and rows: in proportion to the box, but none too narrow to read.
-float split(double first, double second, float room) {
+/// Size of the first of two columns or rows whose plots share `room` in proportion to the box, none too narrow to
+/// read; each has `around` pixels of axes besides.
+float split(double first, double second, float room, float around) {
     const double share = first + second > 0 ? first / (first + second) : 0.5;
-    return std::round(room * static_cast<float>(std::clamp(share, 0.32, 0.68)));
+    const float plots = std::max(0.0f, room - 2 * around);
+    return std::round(around + plots * static_cast<float>(std::clamp(share, 0.3, 0.7)));
 }
 
 /// Moves the cursor along an axis by one sample and keeps it inside.
@@ -71,14 +73,14 @@ void drawPlane(ViewContext& context, SlicesCache& cache, const SlicesView& view,
     const Range rangeX{info.bounds.lo[plane.right] * unitX.perUnit, info.bounds.hi[plane.right] * unitX.perUnit};
     const Range rangeY{info.bounds.lo[plane.up] * unitY.perUnit, info.bounds.hi[plane.up] * unitY.perUnit};
 
+    const float left = axisRoom(AxisSide::Left, rangeY, false), bottom = axisRoom(AxisSide::Bottom, rangeX, false);
+    const ImVec2 lo{min.x + left, min.y + em() * 1.35f}, hi{max.x - em() * 0.8f, max.y - bottom};
     // The head line names the slice and its place, in the colour of the axis it is perpendicular to.
     const std::string place = std::string(kAxisNames[plane.normal]) + " = " +
                               formatQuantity(session.cursor[plane.normal] * unitN.perUnit, unitN.name,
                                              size[plane.normal] * unitN.perUnit / 1000);
-    draw.AddText({min.x + em() * 0.3f, min.y}, axisColor(plane.normal), place.c_str());
-
-    const float left = axisRoom(AxisSide::Left, rangeY, true), bottom = axisRoom(AxisSide::Bottom, rangeX, true);
-    const ImVec2 lo{min.x + left, min.y + em() * 1.3f}, hi{max.x - em() * 0.8f, max.y - bottom};
+    draw.AddText({std::round(hi.x - ImGui::CalcTextSize(place.c_str()).x), min.y}, axisColor(plane.normal),
+                 place.c_str());
     if (hi.x - lo.x < em() * 2 || hi.y - lo.y < em() * 2) return;
     const double worldX = world.halfSize[plane.right], worldY = world.halfSize[plane.up];
     if (!(worldX > 0) || !(worldY > 0)) {
@@ -133,10 +135,11 @@ void drawPlane(ViewContext& context, SlicesCache& cache, const SlicesView& view,
     request.wait = context.headless;
     const vis::FrameStatus status = context.renderer.render(*target, scene, request);
     if (!status.complete) context.busy = true;
-    draw.AddImage(reinterpret_cast<ImTextureID>(static_cast<std::intptr_t>(status.texture)), frame.min, frame.max);
+    addPicture(draw, status.texture, frame.min, frame.max);
     draw.AddRect(frame.min, frame.max, colors.frame);
-    drawAxis(draw, frame, AxisSide::Bottom, kAxisNames[plane.right], unitX.name, min.x, max.x);
-    drawAxis(draw, frame, AxisSide::Left, kAxisNames[plane.up], unitY.name, lo.y - em() * 0.5f, max.y);
+    drawAxis(draw, frame, AxisSide::Bottom, kAxisNames[plane.right], unitX.name, min.x,
+             std::min(max.x, frame.max.x + em() * 4), {.inlineTitle = true});
+    drawAxis(draw, frame, AxisSide::Left, kAxisNames[plane.up], unitY.name, min.y, max.y, {.inlineTitle = true});
     draw.PushClipRect(frame.min, frame.max, true);
     drawCrosshair(draw, frame, session.cursor[plane.right] * unitX.perUnit, session.cursor[plane.up] * unitY.perUnit);
     draw.PopClipRect();
@@ -180,7 +183,10 @@ void drawSlicesView(ViewContext& context, const std::string& pane, SlicesView& v
     if (room.x < em() * 10 || room.y < em() * 8) return;
     const ImVec2 max{min.x + room.x, min.y + room.y};
     const glm::dvec3 half = vis::worldFrame(info.bounds, context.session.stretch).halfSize;
-    const float x = min.x + split(half.x, half.z, room.x), y = min.y + split(half.y, half.z, room.y);
+    const float columns = split(half.x, half.z, room.x, em() * 3.2f);
+    // The head lines of both columns need some room.
+    const float x = min.x + std::clamp(columns, std::min(em() * 11.5f, room.x / 2), room.x - em() * 8),
+                y = min.y + split(half.y, half.z, room.y, em() * 2.8f);
     const float gap = em() * 0.3f;
     drawPlane(context, cache, view, name, 0, min, {x - gap, y - gap});
     drawPlane(context, cache, view, name, 1, {x + gap, min.y}, {max.x, y - gap});

@@ -20,25 +20,26 @@ struct TransferCache : ViewCache {
     double grab = 0;  ///< from the mouse to that end, in values
 };
 
-void drawControls(ViewContext& context, TransferView& view, const volume::DatasetInfo& info, std::string channel) {
-    const float room = ImGui::GetContentRegionAvail().x;
-    ImGui::SetNextItemWidth(std::min(em() * 10, room * 0.34f));
-    if (chooseChannel("##channel", &info, channel)) view.channel = channel;
-    if (ImGui::IsItemHovered()) tooltip("Parameter whose colours and opacity are edited");
-    vis::TransferFunction& function = transferOf(context.session, channel);
-    ImGui::SameLine();
-    ImGui::SetNextItemWidth(std::min(em() * 11, room * 0.36f));
-    chooseColormap("##colormap", function.colormap, function.reversed);
-    if (ImGui::IsItemHovered()) tooltip("Colour map; perceptually uniform ones come first");
-    ImGui::SameLine();
-    if (iconButton(context, "reverse", icons::kReverse, "Run the colour map backwards", true, function.reversed))
-        function.reversed = !function.reversed;
-    ImGui::SameLine();
-    ImGui::Checkbox("log", &view.logHistogram);
-    if (ImGui::IsItemHovered()) tooltip("Show the logarithm of the number of samples");
+/// A button with a small picture of the curve it sets.
+bool presetButton(OpacityPreset preset) {
+    const float size = ImGui::GetFrameHeight();
+    const std::string name(kOpacityPresetNames[static_cast<std::size_t>(preset)]);
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    const bool pressed = ImGui::Button(("##" + name).c_str(), {size * 1.25f, size});
+    const float pad = size * 0.24f;
+    std::vector<ImVec2> line;
+    for (glm::vec2 point : opacityPreset(preset))
+        line.push_back(
+            {at.x + pad + point.x * (size * 1.25f - 2 * pad), at.y + size - pad - point.y * (size - 2 * pad)});
+    ImGui::GetWindowDrawList()->AddPolyline(line.data(), static_cast<int>(line.size()),
+                                            ImGui::GetColorU32(ImGuiCol_Text), 0, std::max(1.2f, em() * 0.1f));
+    if (ImGui::IsItemHovered()) tooltip(("Opacity curve: " + name).c_str());
+    return pressed;
+}
 
-    const Range data = info.channelRange(info.channels()[static_cast<std::size_t>(*info.findChannel(channel))]);
-    Range range = vis::effectiveRange(function, data);
+/// The typed ends of the range; greyed while the range follows the data.
+void drawRange(vis::TransferFunction& function, Range data, float width) {
+    const Range range = vis::effectiveRange(function, data);
     bool fixed = !function.autoRange;
     if (ImGui::Checkbox("range", &fixed)) {
         function.autoRange = !fixed;
@@ -48,7 +49,7 @@ void drawControls(ViewContext& context, TransferView& view, const volume::Datase
     ImGui::SameLine();
     ImGui::BeginDisabled(function.autoRange);
     double ends[2] = {range.lo, range.hi};
-    ImGui::SetNextItemWidth(std::min(em() * 11, room * 0.42f));
+    ImGui::SetNextItemWidth(std::max(em() * 6, width - ImGui::GetFrameHeight() - em() * 4));
     const double step = (data.hi - data.lo) / 1000;
     const int decimals = step > 0 ? std::clamp(static_cast<int>(std::ceil(-std::log10(step))), 0, 9) : 3;
     const std::string format = std::abs(data.hi) < 1e7 && decimals < 9 ? "%." + std::to_string(decimals) + "f" : "%.5g";
@@ -57,17 +58,37 @@ void drawControls(ViewContext& context, TransferView& view, const volume::Datase
         ends[0] < ends[1])
         function.range = {ends[0], ends[1]};
     ImGui::EndDisabled();
+}
+
+void drawControls(ViewContext& context, TransferView& view, const volume::DatasetInfo& info, std::string channel) {
+    const float room = ImGui::GetContentRegionAvail().x, gap = ImGui::GetStyle().ItemSpacing.x;
+    const float reverse = ImGui::GetFrameHeight() + em() * 0.4f;
+    const float combo = std::min(em() * 11, (room - reverse - 2 * gap) / 2);
+    ImGui::SetNextItemWidth(combo);
+    if (chooseChannel("##channel", &info, channel)) view.channel = channel;
+    if (ImGui::IsItemHovered()) tooltip("Parameter whose colours and opacity are edited");
+    vis::TransferFunction& function = transferOf(context.session, channel);
+    ImGui::SameLine();
+    ImGui::SetNextItemWidth(combo);
+    chooseColormap("##colormap", function.colormap, function.reversed);
+    if (ImGui::IsItemHovered()) tooltip("Colour map; perceptually uniform ones come first");
+    ImGui::SameLine();
+    if (iconButton(context, "reverse", icons::kReverse, "Run the colour map backwards", true, function.reversed))
+        function.reversed = !function.reversed;
+
+    const Range data = info.channelRange(info.channels()[static_cast<std::size_t>(*info.findChannel(channel))]);
+    const bool wide = room > em() * 48;
+    if (wide) ImGui::SameLine(0, em());
+    drawRange(function, data, std::min(em() * 16, room));
+    if (room > em() * 30) ImGui::SameLine(0, em());
     for (std::size_t i = 0; i < std::size(kOpacityPresetNames); ++i) {
-        ImGui::SameLine(0, i == 0 ? em() * 0.8f : em() * 0.2f);
-        const std::string name(kOpacityPresetNames[i]);
-        const float width = ImGui::CalcTextSize(name.c_str()).x + ImGui::GetStyle().FramePadding.x * 2;
-        if (ImGui::GetContentRegionAvail().x < width) {
-            ImGui::NewLine();
-            break;
-        }
-        if (ImGui::Button(name.c_str())) function.opacity = opacityPreset(static_cast<OpacityPreset>(i));
-        if (ImGui::IsItemHovered()) tooltip(("Opacity curve: " + name).c_str());
+        if (i > 0) ImGui::SameLine(0, em() * 0.2f);
+        const auto preset = static_cast<OpacityPreset>(i);
+        if (presetButton(preset)) function.opacity = opacityPreset(preset);
     }
+    ImGui::SameLine(0, em() * 0.8f);
+    ImGui::Checkbox("log", &view.logHistogram);
+    if (ImGui::IsItemHovered()) tooltip("Show the logarithm of the number of samples");
 }
 
 /// The strip of colours below the curve, with handles at the ends of the range.
@@ -137,7 +158,7 @@ void drawPlot(ViewContext& context, TransferCache& cache, const TransferView& vi
     ImDrawList& draw = *ImGui::GetWindowDrawList();
     const PlotColors colors = plotColors();
     drawAxis(draw, frame, AxisSide::Left, room.y > em() * 10 ? "opacity" : "", "", frame.min.y - em() * 0.5f,
-             frame.max.y + em() * 0.5f, true);
+             frame.max.y + em() * 0.5f, {.grid = true});
     draw.PushClipRect(frame.min, frame.max, true);
     if (result && !result->statistics.channels.empty()) {
         const volume::Histogram& histogram = result->statistics.channels.front().histogram;

@@ -19,7 +19,7 @@ struct Icon {
 namespace icons {
 inline constexpr Icon kEye{icon::kEye, "on"}, kEyeOff{icon::kEyeOff, "off"}, kPlus{icon::kPlus, "+"},
     kTrash{icon::kTrash, "x"}, kCopy{icon::kCopy, "copy"}, kCube{icon::kCube, "vol"}, kIso{"\uf219", "iso"},
-    kSlice{"\uf248", "slice"}, kPlay{icon::kPlay, ">"}, kPause{icon::kPause, "||"}, kStepBack{icon::kStepBack, "<|"},
+    kSlice{"\uf24d", "slice"}, kPlay{icon::kPlay, ">"}, kPause{icon::kPause, "||"}, kStepBack{icon::kStepBack, "<|"},
     kStepForward{icon::kStepForward, "|>"}, kFirst{icon::kFirst, "|<"}, kLast{icon::kLast, ">|"},
     kRepeat{icon::kRepeat, "loop"}, kPingPong{icon::kPingPong, "<>"}, kOnce{icon::kOnce, "once"},
     kInvert{icon::kInvert, "inv"}, kReverse{"\uf0ec", "rev"};
@@ -55,6 +55,9 @@ LegendEntry legendOf(const Session& session, const volume::DatasetInfo& info, in
 
 /// The scene of the session with the theme's colours.
 vis::Scene themedScene(const Session& session);
+
+/// A picture of the renderer between two corners; its rows run upwards, as GL has them.
+void addPicture(ImDrawList& draw, std::uint32_t texture, ImVec2 min, ImVec2 max);
 
 /// Index into info.times of the session's time.
 int timeIndex(const Session& session, const volume::DatasetInfo& info);

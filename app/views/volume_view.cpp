@@ -270,7 +270,7 @@ void drawVolumeView(ViewContext& context, const std::string& pane, VolumeView& v
 
     ImDrawList& draw = *ImGui::GetWindowDrawList();
     draw.PushClipRect(picture.min, max, true);
-    draw.AddImage(reinterpret_cast<ImTextureID>(static_cast<std::intptr_t>(status.texture)), picture.min, max);
+    addPicture(draw, status.texture, picture.min, max);
     const SpaceFrame space = spaceFrame(picture.min, max, session.camera, info.bounds, session.stretch);
     if (view.showCursor) drawCursor(draw, space, session.cursor);
 
