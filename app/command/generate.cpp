@@ -1,7 +1,123 @@
 #include "app/command/command.h"
+#include "app/command/format.h"
+#include "app/session/describe_cli.h"
+#include "codec/pack.h"
+#include "volume/export.h"
+#include "volume/synthetic/fuel_cell.h"
+#include "volume/synthetic/marschner_lobb.h"
+#include "volume/synthetic/models.h"
+
+#include <cstdio>
+#include <memory>
 
 namespace tessera::app {
 
-void addGenerateCommand(CLI::App&) {}
+namespace {
+
+struct Request {
+    std::string model, output, size;
+    std::optional<int> times;
+    std::vector<std::string> settings;
+    bool list = false;
+    codec::PackOptions options;
+};
+
+// A number that is all of the text, or nothing.
+std::optional<double> wholeNumber(const std::string& text) {
+    try {
+        std::size_t used = 0;
+        const double value = std::stod(text, &used);
+        if (used == text.size() && !text.empty()) return value;
+    } catch (const std::exception&) {
+    }
+    return std::nullopt;
+}
+
+std::map<std::string, double> modelSettings(const Request& request) {
+    std::map<std::string, double> settings;
+    if (!request.size.empty()) {
+        std::string rest = request.size;
+        for (const char* key : {"nx", "ny", "nz"}) {
+            const std::size_t end = std::string(key) == "nz" ? std::string::npos : rest.find('x');
+            const auto value = wholeNumber(rest.substr(0, end));
+            if (!value || (std::string(key) != "nz" && end == std::string::npos))
+                throw CLI::ValidationError("--size", "wanted is NXxNYxNZ, not \"" + request.size + "\"");
+            settings[key] = *value;
+            if (end != std::string::npos) rest = rest.substr(end + 1);
+        }
+    }
+    if (request.times) settings["times"] = *request.times;
+    for (const std::string& setting : request.settings) {
+        const std::size_t equals = setting.find('=');
+        const auto value = equals == std::string::npos ? std::nullopt : wholeNumber(setting.substr(equals + 1));
+        if (!value) throw CLI::ValidationError("--set", "wanted is KEY=NUMBER, not \"" + setting + "\"");
+        settings[setting.substr(0, equals)] = *value;
+    }
+    return settings;
+}
+
+struct PrintSetting {
+    template <class T> void operator()(const T& value, const FieldInfo& info) const {
+        std::string range;
+        if (info.range) range = numberText(info.range->lo) + " .. " + numberText(info.range->hi);
+        std::printf("%-22s %-9s %-18s %-5s %s\n", std::string(info.key).c_str(), numberText(double(value)).c_str(),
+                    range.c_str(), std::string(info.unit).c_str(), std::string(info.doc).c_str());
+    }
+};
+
+void listSettings(const std::string& model) {
+    std::printf("%-22s %-9s %-18s %-5s %s\n", "setting", "default", "range", "unit", "meaning");
+    const volume::FuelCellSettings cell;
+    const volume::MarschnerLobbSettings signal;
+    if (model == "fuel-cell")
+        volume::FuelCellSettings::describe(cell, PrintSetting());
+    else
+        volume::MarschnerLobbSettings::describe(signal, PrintSetting());
+}
+
+void run(const Request& request) {
+    const std::map<std::string, double> settings = modelSettings(request);
+    if (request.list) {
+        listSettings(request.model);
+        return;
+    }
+    const bool archive = hasEnding(request.output, ".tsr");
+    bool known = archive;
+    for (const char* ending : {".vti", ".pvd", ".raw", ".json", ".nrrd"}) known |= hasEnding(request.output, ending);
+    if (!known)
+        throw Error("no such output; wanted is a name ending in .tsr, .vti, .pvd, .raw or .nrrd", request.output);
+
+    const Progress progress = terminalProgress("generate");
+    volume::Dataset dataset = volume::makeModel(request.model, settings, progress.part(0, 0.7));
+    if (archive) {
+        const codec::PackSummary summary = codec::pack(dataset, request.options, request.output, progress.part(0.7, 1));
+        std::printf("%s: %s of %s\n", request.output.c_str(), bytesText(double(summary.archiveBytes)).c_str(),
+                    bytesText(double(summary.sourceBytes)).c_str());
+        return;
+    }
+    for (const std::string& file : volume::exportDataset(dataset, {}, request.output, progress.part(0.7, 1)))
+        std::printf("%s\n", file.c_str());
+}
+
+} // namespace
+
+void addGenerateCommand(CLI::App& app) {
+    CLI::App* command = app.add_subcommand("generate", "Compute a built-in data set and write it");
+    const auto request = std::make_shared<Request>();
+    command->add_option("MODEL", request->model, "fuel-cell or marschner-lobb")
+        ->required()
+        ->check(CLI::IsMember(volume::modelNames()));
+    CLI::Option* output =
+        command->add_option("-o,--output", request->output, "File to write: .tsr, .vti (.pvd), .raw or .nrrd");
+    command->add_option("--size", request->size, "Samples, e.g. 11x13x101")->type_name("NXxNYxNZ");
+    command->add_option("--times", request->times, "Number of time steps");
+    command->add_option("--set", request->settings, "A setting of the model")->type_name("KEY=NUMBER");
+    command->add_flag("--list", request->list, "Show the settings of the model instead")->excludes(output);
+    addDescribed(*command, request->options);
+    command->callback([request, output] {
+        if (!request->list && output->count() == 0) throw CLI::RequiredError("--output");
+        run(*request);
+    });
+}
 
 } // namespace tessera::app
