@@ -147,7 +147,7 @@ const Program* Renderer::Impl::prepare(ViewTarget& target, const Scene& scene, c
     std::vector<glm::vec4> table = transferTables(plan, scene);
     if (table != target.tableValues) {
         const int rows = int(table.size()) / kTableSize;
-        target.table = makeTexture2D({kTableSize, rows}, GL_RGBA32F, GL_LINEAR, "transfer tables");
+        target.table = makeTexture2D({kTableSize, rows}, GL_RGBA32F, GL_NEAREST, "transfer tables");
         glTextureSubImage2D(target.table.name(), 0, 0, 0, kTableSize, rows, GL_RGBA, GL_FLOAT, table.data());
         target.tableValues = std::move(table);
     }

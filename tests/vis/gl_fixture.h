@@ -2,13 +2,11 @@
 
 #include "vis/gl/headless.h"
 #include "vis/renderer.h"
-#include "volume/memory_source.h"
 
 #include <epoxy/gl.h>
-#include <functional>
 #include <gtest/gtest.h>
 
-/// What the tests that need GL share: a context whose every error fails the test, and data sets from formulas.
+/// What the tests that need GL share: a context whose every error fails the test, and shorthands.
 namespace tessera::test {
 
 class GlTest : public ::testing::Test {
@@ -24,25 +22,6 @@ protected:
     }
     vis::HeadlessContext context{true};
 };
-
-/// One parameter, or several, of a formula of the position in cells of a CC grid (index space).
-struct Formula {
-    std::string name;
-    std::function<double(glm::dvec3)> value;
-    std::function<bool(glm::dvec3)> present = {};
-    bool categorical = false;
-};
-
-struct GridOptions {
-    volume::LatticeKind lattice = volume::LatticeKind::CC;
-    int brickSize = 32;
-    glm::dvec3 spacing{1};
-    int times = 1; ///< time t adds t to every value
-};
-
-/// Samples of formulas on a CC lattice of `size`, or on the BCC lattice that takes its place (sampled exactly there).
-std::shared_ptr<const volume::BrickSource> makeSource(glm::ivec3 size, const std::vector<Formula>& formulas,
-                                                      const GridOptions& options = {});
 
 /// A camera that looks along -z with parallel rays at the whole box, whose largest extent in x and y is `extent`.
 vis::Camera frontCamera(double extent = 1);

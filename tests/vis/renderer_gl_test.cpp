@@ -1,3 +1,4 @@
+#include "tests/vis/function_source.h"
 #include "tests/vis/gl_fixture.h"
 
 #include "vis/model/ray_setup.h"
@@ -7,7 +8,6 @@
 namespace tessera {
 namespace {
 
-using test::Formula;
 using vis::Scene;
 
 vis::RendererOptions exact() {
@@ -53,7 +53,9 @@ TEST_F(RendererTest, NothingLoadedIsBackground) {
 TEST_F(RendererTest, FurnaceOpacityIsExponential) {
     for (const volume::LatticeKind lattice : {volume::LatticeKind::CC, volume::LatticeKind::BCC}) {
         vis::Renderer renderer(exact());
-        renderer.setSource(test::makeSource({17, 17, 9}, {{"v", [](glm::dvec3) { return 0.5; }}}, {lattice}));
+        renderer.setSource(std::make_shared<vis::FunctionSource>(
+            lattice, glm::ivec3(17, 17, 9), glm::dvec3(1),
+            std::vector<vis::FunctionSource::Channel>{{"v", [](glm::dvec3) { return 0.5; }}}));
         const vis::ViewTargetPtr target = renderer.makeTarget();
         for (const float opacity : {0.001f, 0.01f, 0.1f}) {
             const Scene scene = flatScene(opacity);

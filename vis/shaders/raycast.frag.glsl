@@ -3,7 +3,8 @@
 //
 // March until hit, then shade: the inner loop only advances until something contributes, so that software GL, which
 // has no branches, shades all lanes of a group at once. What leaves the inner loop is the sample's number alone; its
-// values are taken anew (Mesa 22.3 miscompiles values that leave divergent nested loops).
+// values are taken anew (Mesa 22.3 miscompiles values that leave divergent nested loops). Where shading is cheap (FLAT)
+// there is no inner loop.
 #include "lib/bindings.glsl"
 #include "lib/color.glsl"
 #include "lib/phong.glsl"
@@ -67,7 +68,7 @@ void main() {
         float t = (slicePlane[i].w - dot(slicePlane[i].xyz, origin)) / (abs(slope) < 1e-9 ? 1e-9 : slope);
         vec3 world = origin + direction * t;
         vec3 p = toCells(clamp(world, -halfSize, halfSize));
-        vec2 s = reconstruct(kSliceField[i], p);
+        vec2 s = reconstruct(SLICE_FIELD(i), p);
         float x = s.x * sliceMap[i].x + sliceMap[i].y;
         float doi = degreeOfInterest(p);
         vec3 c = transfer(LAYERS + i, x).rgb;
@@ -106,12 +107,15 @@ void main() {
 #if HAS_ISO
         if (k > 0)
             for (int i = 0; i < LAYERS; ++i)
-                if (kLayerStyle[i] == 3) {
-                    vec2 s = reconstruct(kLayerField[i], first + float(k - 1) * cellsPerSample);
+                if (LAYER_STYLE(i) == 3) {
+                    vec2 s = reconstruct(LAYER_FIELD(i), first + float(k - 1) * cellsPerSample);
                     previous[i] = present(s) ? s.x : -1e9;
                 }
 #endif
+        vec2 here[LAYERS];
+#if !FLAT
         while (k < count) {
+#endif
             vec3 p = first + float(k) * cellsPerSample;
 #if SKIPPING
             int leap = emptySamples(p, cellsPerSample);
@@ -125,17 +129,18 @@ void main() {
             hit = float(k) >= nextSlice;
 #endif
             for (int i = 0; i < LAYERS; ++i) {
-                vec2 s = reconstruct(kLayerField[i], p);
+                vec2 s = reconstruct(LAYER_FIELD(i), p);
                 bool is = present(s);
-                if (kLayerStyle[i] == 0) {
-                    hit = hit || (is && transfer(i, s.x * layerMap[i].x + layerMap[i].y).a > 0.0);
-                } else if (kLayerStyle[i] == 3) {
+                here[i] = s;
+                if (LAYER_STYLE(i) == 0) {
+                    hit = hit || (is && opaqueAt(i, s.x * layerMap[i].x + layerMap[i].y));
+                } else if (LAYER_STYLE(i) == 3) {
                     hit = hit || (is && previous[i] > -1e8 && (s.x >= layerMap[i].z) != (previous[i] >= layerMap[i].z));
                     previous[i] = is ? s.x : -1e9;
                 } else {
                     float f = is ? focusOpacity(degreeOfInterest(p)) : 0.0;
                     float x = clamp(s.x * layerMap[i].x + layerMap[i].y, 0.0, 1.0);
-                    if (kLayerStyle[i] == 1) {
+                    if (LAYER_STYLE(i) == 1) {
                         bool better = is && x * f > best[i];
                         bestAt[i] = better ? float(k) : bestAt[i];
                         best[i] = better ? x * f : best[i];
@@ -146,11 +151,19 @@ void main() {
                     }
                 }
             }
+#if FLAT
+        hit = true;
+#else
             if (hit) break;
             ++k;
         }
+#endif
         if (hit) {
+#if !FLAT
             vec3 p = first + float(k) * cellsPerSample;
+            for (int i = 0; i < LAYERS; ++i)
+                if (LAYER_STYLE(i) == 0) here[i] = reconstruct(LAYER_FIELD(i), p);
+#endif
 #if SLICES > 0
             for (int i = 0; i < SLICES; ++i)
                 if (sliceAt[i] > passed && sliceAt[i] <= float(k)) {
@@ -164,8 +177,8 @@ void main() {
 #endif
 #if HAS_ISO
             for (int i = 0; i < LAYERS; ++i) {
-                if (kLayerStyle[i] != 3) continue;
-                int field = kLayerField[i];
+                if (LAYER_STYLE(i) != 3) continue;
+                int field = LAYER_FIELD(i);
                 float value = layerMap[i].z;
                 vec2 a = reconstruct(field, p - cellsPerSample), b = reconstruct(field, p);
                 bool crossed = k > 0 && present(a) && present(b) && (a.x >= value) != (b.x >= value);
@@ -189,14 +202,14 @@ void main() {
 #endif
 #if HAS_COMPOSITE
             for (int i = 0; i < LAYERS; ++i) {
-                if (kLayerStyle[i] != 0) continue;
-                vec2 s = reconstruct(kLayerField[i], p);
+                if (LAYER_STYLE(i) != 0) continue;
+                vec2 s = here[i];
                 vec4 c = transfer(i, s.x * layerMap[i].x + layerMap[i].y);
                 float doi = degreeOfInterest(p);
                 c.rgb = focusColor(c.rgb, doi);
                 float alpha = present(s) ? correctedOpacity(c.a * focusOpacity(doi), lengths * layerMap[i].z) : 0.0;
-                if (kLayerShaded[i] == 1) {
-                    vec3 g = cellGradient(kLayerField[i], p, s.x);
+                if (LAYER_SHADED(i) == 1) {
+                    vec3 g = cellGradient(LAYER_FIELD(i), p, s.x);
                     float fade = min(1.0, length(g) * abs(layerMap[i].x) / kFlatGradient);
                     c.rgb = phong(c.rgb, g / worldCell, fade, -direction, toLight, light);
                 }
@@ -219,10 +232,10 @@ void main() {
 #endif
 #if HAS_PROJECTION
     for (int i = 0; i < LAYERS; ++i) {
-        if (kLayerStyle[i] != 1 && kLayerStyle[i] != 2) continue;
+        if (LAYER_STYLE(i) != 1 && LAYER_STYLE(i) != 2) continue;
         vec3 p = first + bestAt[i] * cellsPerSample;
-        bool maximum = kLayerStyle[i] == 1;
-        float value = maximum ? reconstruct(kLayerField[i], p).x : sum[i] / max(weight[i], 1e-6);
+        bool maximum = LAYER_STYLE(i) == 1;
+        float value = maximum ? reconstruct(LAYER_FIELD(i), p).x : sum[i] / max(weight[i], 1e-6);
         float doi = maximum ? degreeOfInterest(p) : 1.0;
         vec4 c = transfer(i, value * layerMap[i].x + layerMap[i].y);
         bool any = maximum ? best[i] >= 0.0 : weight[i] > 0.0;

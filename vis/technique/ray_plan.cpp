@@ -20,10 +20,12 @@ int fieldOf(RayPlan& plan, const volume::DatasetInfo& info, int channel) {
     return int(plan.fields.size()) - 1;
 }
 
-template <class Use, class Member> std::string join(const std::vector<Use>& uses, Member member) {
-    std::string list;
-    for (const Use& use : uses) list += (list.empty() ? "" : ",") + std::to_string(int(member(use)));
-    return list;
+/// `member` of the i-th use as an expression of i that folds to a constant once a loop is unrolled.
+template <class Use, class Member> std::string choice(const std::vector<Use>& uses, Member member) {
+    std::string chain = "0";
+    for (std::size_t i = uses.size(); i-- > 0;)
+        chain = "((i)==" + std::to_string(i) + "?" + std::to_string(int(member(uses[i]))) + ":" + chain + ")";
+    return chain;
 }
 
 /// The channel a layer shows.
@@ -96,19 +98,23 @@ ProgramRecipe rayRecipe(const RayPlan& plan, const Scene& scene, const volume::B
                                                                                : "slots/recon_bcc_average.glsl";
     const auto define = [&](const char* name, const std::string& value) { recipe.defines.emplace_back(name, value); };
     define("FIELDS", std::to_string(plan.fields.size()));
-    define("FIELD_COVERAGE", join(plan.fields, [](const BoundField& field) { return field.encoding.coverage; }));
-    define("FIELD_NEAREST", join(plan.fields, [](const BoundField& field) { return field.categorical; }));
+    define("FIELD_COVERAGE(i)", choice(plan.fields, [](const BoundField& field) { return field.encoding.coverage; }));
+    define("FIELD_NEAREST(i)", choice(plan.fields, [](const BoundField& field) { return field.categorical; }));
     define("LAYERS", std::to_string(plan.layers.size()));
-    define("LAYER_STYLES", join(plan.layers, [](const RayLayer& layer) { return int(layer.style); }));
-    define("LAYER_FIELDS", join(plan.layers, [](const RayLayer& layer) { return layer.field; }));
-    define("LAYER_SHADED", join(plan.layers, [](const RayLayer& layer) { return layer.shaded; }));
+    define("LAYER_STYLE(i)", choice(plan.layers, [](const RayLayer& layer) { return int(layer.style); }));
+    define("LAYER_FIELD(i)", choice(plan.layers, [](const RayLayer& layer) { return layer.field; }));
+    define("LAYER_SHADED(i)", choice(plan.layers, [](const RayLayer& layer) { return layer.shaded; }));
     define("SLICES", std::to_string(plan.slices.size()));
-    define("SLICE_FIELDS", join(plan.slices, [](const SliceUse& slice) { return slice.field; }));
+    define("SLICE_FIELD(i)", choice(plan.slices, [](const SliceUse& slice) { return slice.field; }));
     define("BRUSH_FIELDS", std::to_string(plan.brushFields.size()));
-    define("BRUSH_FIELD_LIST", join(plan.brushFields, [](int field) { return field; }));
+    define("BRUSH_FIELD(i)", choice(plan.brushFields, [](int field) { return field; }));
     define("HAS_ISO", uses(RayStyle::Iso) ? "1" : "0");
     define("HAS_COMPOSITE", uses(RayStyle::Composite) ? "1" : "0");
     define("HAS_PROJECTION", uses(RayStyle::Maximum) || uses(RayStyle::XRay) ? "1" : "0");
+    define("FLAT",
+           std::none_of(plan.layers.begin(), plan.layers.end(), [](const RayLayer& layer) { return layer.shaded; })
+               ? "1"
+               : "0");
     define("TABLE_SIZE", std::to_string(kTableSize));
     define("HALO", std::to_string(kHalo));
     define("REFERENCE_LENGTHS", std::to_string(1 / kReferenceLength));
@@ -126,6 +132,11 @@ std::vector<glm::vec4> transferTables(const RayPlan& plan, const Scene& scene) {
     };
     for (const RayLayer& layer : plan.layers) add(layer.layer);
     for (const SliceUse& slice : plan.slices) add(slice.layer);
+    for (std::size_t row = 0; row < plan.layers.size(); ++row)
+        for (int i = 0; i < kTableSize; ++i) {
+            const std::size_t at = row * kTableSize + std::size_t(i);
+            table.emplace_back(glm::vec3(0), std::max(table[at].a, table[at + (i + 1 < kTableSize)].a));
+        }
     return table;
 }
 

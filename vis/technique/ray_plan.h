@@ -53,7 +53,8 @@ RayPlan planRays(const Scene& scene, const volume::DatasetInfo& info);
 ProgramRecipe rayRecipe(const RayPlan& plan, const Scene& scene, const volume::BrickGrid& grid, bool skip);
 
 inline constexpr int kTableSize = 2048;
-/// Transfer tables of layers, then slices: kTableSize x rows, linear light, not premultiplied.
+/// Transfer tables of layers, then slices: kTableSize x rows, linear light, not premultiplied; then one row per layer
+/// whose opacity at i is the greater one of entries i and i + 1.
 std::vector<glm::vec4> transferTables(const RayPlan& plan, const Scene& scene);
 
 /// Sets every uniform except the samplers' textures (unit i = field i, then transfer table, block distance) and

@@ -6,5 +6,5 @@ vec2 bccNearest(int field, vec3 p) {
     bool second = dot(b, b) < dot(a, a);
     vec4 texel = fetchTexel(field, ivec3(second ? atOdd : atEven));
     vec2 found = second ? texel.ga : texel.rb;
-    return kFieldCoverage[field] == 0 ? vec2(found.x, 1.0) : found;
+    return FIELD_COVERAGE(field) == 0 ? vec2(found.x, 1.0) : found;
 }

@@ -1,13 +1,12 @@
 // What the ray caster knows of the scene. Compiled-in (generated #defines):
-//   FIELDS                number of channels bound; FIELD_COVERAGE, FIELD_NEAREST: 0 or 1 for each
-//   LAYERS                ray layers; LAYER_STYLES (0 composite, 1 maximum, 2 x-ray, 3 iso), LAYER_FIELDS, LAYER_SHADED
-//   SLICES, SLICE_FIELDS  slice planes
-//   BRUSH_FIELDS, BRUSH_FIELD_LIST   channels that brushes look at; 0 = no brush is active
+//   FIELDS    number of channels bound; FIELD_COVERAGE(i), FIELD_NEAREST(i): 0 or 1
+//   LAYERS    ray layers; LAYER_STYLE(i) (0 composite, 1 maximum, 2 x-ray, 3 iso), LAYER_FIELD(i), LAYER_SHADED(i)
+//   SLICES    slice planes; SLICE_FIELD(i)
+//   BRUSH_FIELDS   channels that brushes look at, 0 = no brush is active; BRUSH_FIELD(i)
+// These are chains of ?: and not constant arrays, since Mesa turns such arrays into uniforms before it unrolls loops
+// and then runs every style for every layer.
 //   BCC                   lattice
 // Positions `p` are cells of the even sublattice at level 0 (Lattice::toCells); values are texel units.
-
-const int kFieldCoverage[FIELDS] = int[](FIELD_COVERAGE);
-const int kFieldNearest[FIELDS] = int[](FIELD_NEAREST);
 
 // Dense texture of a channel: texture coordinate = p * fieldScale + fieldOffset (even sublattice), fieldOdd added for
 // the moved one.
@@ -31,20 +30,16 @@ uniform vec3 toLight;
 uniform vec4 light; // ambient, diffuse, specular, shininess
 
 // Layers. layerMap: transfer coordinate = value * x + y; z = density, or the iso value; w = opacity of an iso-surface.
-// Rows of the transfer table: layers, then slices.
+// Rows of the transfer table: layers, then slices; then for each layer whether it has opacity (opaqueAt).
 uniform sampler2D transferTable;
 #if LAYERS > 0
 uniform vec4 layerMap[LAYERS];
 uniform vec3 layerColor[LAYERS];
-const int kLayerStyle[LAYERS] = int[](LAYER_STYLES);
-const int kLayerField[LAYERS] = int[](LAYER_FIELDS);
-const int kLayerShaded[LAYERS] = int[](LAYER_SHADED);
 #endif
 
 #if SLICES > 0
 uniform vec4 slicePlane[SLICES]; // normal, offset
 uniform vec4 sliceMap[SLICES];   // transfer coordinate = value * x + y; z = contours, w = opacity
-const int kSliceField[SLICES] = int[](SLICE_FIELDS);
 #endif
 
 #define MAX_INTERVALS 32
@@ -56,8 +51,16 @@ uniform vec2 context; // opacity, saturation of what is not brushed
 
 const int kTableSize = TABLE_SIZE;
 
-// Colour (linear) and opacity of row `row` at x, clamped to 0..1.
+// Colour (linear) and opacity of row `row` at x, clamped to 0..1: linear between the two nearest entries.
 vec4 transfer(int row, float x) {
-    float u = (clamp(x, 0.0, 1.0) * float(kTableSize - 1) + 0.5) / float(kTableSize);
-    return textureLod(transferTable, vec2(u, (float(row) + 0.5) / float(LAYERS + SLICES)), 0.0);
+    float u = clamp(x, 0.0, 1.0) * float(kTableSize - 1);
+    int i = int(u);
+    return mix(texelFetch(transferTable, ivec2(i, row), 0),
+               texelFetch(transferTable, ivec2(min(i + 1, kTableSize - 1), row), 0), u - float(i));
+}
+
+// Whether transfer(row, x) can have opacity: entry i says it for both ends of what lies between i and i + 1.
+bool opaqueAt(int row, float x) {
+    int i = int(clamp(x, 0.0, 1.0) * float(kTableSize - 1));
+    return texelFetch(transferTable, ivec2(i, LAYERS + SLICES + row), 0).a > 0.0;
 }

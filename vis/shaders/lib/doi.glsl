@@ -1,11 +1,9 @@
 // Degree of interest of a place; twin: degreeOfInterest() in vis/model/selection.h.
 
 #if BRUSH_FIELDS > 0
-const int kBrushField[BRUSH_FIELDS] = int[](BRUSH_FIELD_LIST);
-
 float degreeOfInterest(vec3 p) {
     vec2 samples[BRUSH_FIELDS];
-    for (int i = 0; i < BRUSH_FIELDS; ++i) samples[i] = reconstruct(kBrushField[i], p);
+    for (int i = 0; i < BRUSH_FIELDS; ++i) samples[i] = reconstruct(BRUSH_FIELD(i), p);
     float doi = combineAny == 1 ? 0.0 : 1.0, own = 1.0;
     for (int i = 0; i < intervalCount; ++i) {
         ivec2 meaning = intervalMeaning[i];

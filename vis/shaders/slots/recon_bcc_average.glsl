@@ -4,9 +4,9 @@
 
 // (value, coverage) at p; the sample is absent where coverage < 1/2.
 vec2 reconstruct(int field, vec3 p) {
-    if (kFieldNearest[field] == 1) return bccNearest(field, p);
+    if (FIELD_NEAREST(field) == 1) return bccNearest(field, p);
     vec4 even = fetchEven(field, p), odd = fetchOdd(field, p);
-    if (kFieldCoverage[field] == 0) return vec2(0.5 * (even.r + odd.g), 1.0);
+    if (FIELD_COVERAGE(field) == 0) return vec2(0.5 * (even.r + odd.g), 1.0);
     float coverage = even.b + odd.a;
     return vec2((even.r + odd.g) / max(coverage, 1e-6), 0.5 * coverage);
 }

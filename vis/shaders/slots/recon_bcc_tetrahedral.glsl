@@ -6,15 +6,15 @@
 vec2 latticePoint(int field, ivec3 corner) {
     vec4 texel = fetchTexel(field, corner >> 1);
     vec2 found = (corner.z & 1) == 1 ? texel.ga : texel.rb;
-    return kFieldCoverage[field] == 0 ? vec2(found.x, 1.0) : found;
+    return FIELD_COVERAGE(field) == 0 ? vec2(found.x, 1.0) : found;
 }
 
 // (value, coverage) at p; the sample is absent where coverage < 1/2. Coarse levels are no BCC lattice: average there.
 vec2 reconstruct(int field, vec3 p) {
-    if (kFieldNearest[field] == 1) return bccNearest(field, p);
+    if (FIELD_NEAREST(field) == 1) return bccNearest(field, p);
     if (fieldLevel[field] > 0) {
         vec4 even = fetchEven(field, p), odd = fetchOdd(field, p);
-        if (kFieldCoverage[field] == 0) return vec2(0.5 * (even.r + odd.g), 1.0);
+        if (FIELD_COVERAGE(field) == 0) return vec2(0.5 * (even.r + odd.g), 1.0);
         return vec2((even.r + odd.g) / max(even.b + odd.a, 1e-6), 0.5 * (even.b + odd.a));
     }
     vec3 h = 2.0 * p;

@@ -3,10 +3,10 @@
 // (value, coverage) at p; the sample is absent where coverage < 1/2.
 vec2 reconstruct(int field, vec3 p) {
     vec4 texel;
-    if (kFieldNearest[field] == 1)
+    if (FIELD_NEAREST(field) == 1)
         texel = fetchTexel(field, ivec3(floor(sublatticeIndex(field, p, 0) + 0.5)));
     else
         texel = fetchEven(field, p);
-    if (kFieldCoverage[field] == 0) return vec2(texel.r, 1.0);
+    if (FIELD_COVERAGE(field) == 0) return vec2(texel.r, 1.0);
     return vec2(texel.r / max(texel.g, 1e-6), texel.g);
 }
