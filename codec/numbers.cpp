@@ -52,15 +52,17 @@ std::optional<NumberCoding> binaryFractions(const volume::Field& field) {
     return NumberCoding{NumberKind::Scaled, 0, std::ldexp(1.0, -lowest)};
 }
 
+/// Of k / 10^d and k / 2^m the one with the smaller numbers k: any float has its decimals, if enough of them.
 NumberCoding chooseLossless(const volume::Field& field) {
     const std::size_t stride = std::max<std::size_t>(1, field.count() / 4096);
+    std::optional<NumberCoding> best = binaryFractions(field);
+    if (best && !reproduces(field, *best, 1)) best.reset();
     double power = 1;
-    for (int digits = 0; digits <= 7; ++digits, power *= 10) {
+    for (int digits = 0; digits <= 7 && (!best || power < best->step); ++digits, power *= 10) {
         const NumberCoding decimal{NumberKind::Scaled, 0, power};
         if (reproduces(field, decimal, stride) && reproduces(field, decimal, 1)) return decimal;
     }
-    if (const auto binary = binaryFractions(field); binary && reproduces(field, *binary, 1)) return *binary;
-    return {NumberKind::Float, 0, 1};
+    return best.value_or(NumberCoding{NumberKind::Float, 0, 1});
 }
 
 std::optional<NumberCoding> chooseQuantised(const volume::Field& field, double maxError) {

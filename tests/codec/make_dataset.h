@@ -8,6 +8,7 @@
 #include <fstream>
 #include <iterator>
 #include <random>
+#include <stdexcept>
 #include <string>
 #include <unistd.h>
 #include <vector>
@@ -113,8 +114,13 @@ inline volume::Dataset makeDataset(glm::ivec3 size, const std::vector<MadeParame
 class TemporaryFolder {
 public:
     TemporaryFolder() {
-        std::string name = (std::filesystem::temp_directory_path() / "tessera-XXXXXX").string();
-        path_ = mkdtemp(name.data());
+        // In memory where there is such a place: the hostile tests write thousands of small files.
+        std::string name = "/dev/shm/tessera-XXXXXX";
+        if (!mkdtemp(name.data())) {
+            name = (std::filesystem::temp_directory_path() / "tessera-XXXXXX").string();
+            if (!mkdtemp(name.data())) throw std::runtime_error("no temporary folder");
+        }
+        path_ = name;
     }
     ~TemporaryFolder() { std::filesystem::remove_all(path_); }
     TemporaryFolder(const TemporaryFolder&) = delete;

@@ -1,0 +1,81 @@
+#include "codec/archive.h"
+#include "codec/brick_codec.h"
+#include "codec/pack.h"
+#include "tests/codec/make_dataset.h"
+
+#include <gtest/gtest.h>
+
+namespace tessera::codec {
+namespace {
+
+using namespace testing;
+using volume::LatticeKind;
+using volume::ScalarType;
+
+std::string corpus() {
+    return std::string(TESSERA_SOURCE_DIR) + "/tests/fuzz/corpus/";
+}
+
+volume::Dataset corpusDataset() {
+    return makeDataset({5, 4, 6},
+                       {{"O2", ScalarType::F32, 1, Texture::Decimals, true, false},
+                        {"region", ScalarType::U8, 1, Texture::Noise, true, true},
+                        {"U", ScalarType::F32, 2, Texture::Nasty, false, false}},
+                       1);
+}
+
+// Archives of this version stay readable: these files were written once.
+TEST(Corpus, StoredArchivesStillDecode) {
+    const volume::Dataset made = corpusDataset();
+    const Archive archive(corpus() + "fuzz_archive/cc-exact.tsr");
+    for (int p = 0; p < 3; ++p)
+        for (int c = 0; c < made.info.parameters[std::size_t(p)].components; ++c) {
+            const volume::Field expected = made.load(p, c, 0), stored = readField(archive, p, c, 0);
+            EXPECT_EQ(expected.samples, stored.samples);
+            EXPECT_EQ(expected.mask ? *expected.mask : volume::Mask(), stored.mask ? *stored.mask : volume::Mask());
+        }
+    for (const char* name : {"bcc-exact", "bcc-bounded", "cc-bounded"})
+        EXPECT_EQ(verifyArchive(Archive(corpus() + "fuzz_archive/" + name + ".tsr")).damaged, 0u);
+}
+
+/// Not a check: writes the seeds of fuzz_brick and fuzz_archive when the format changes
+/// (--gtest_also_run_disabled_tests).
+TEST(Corpus, DISABLED_WriteSeeds) {
+    for (const LatticeKind lattice : {LatticeKind::CC, LatticeKind::BCC})
+        for (const double maxError : {0.0, 1e-2}) {
+            volume::Dataset made = corpusDataset();
+            PackOptions options;
+            options.brickSize = 4;
+            options.lattice = lattice;
+            options.maxError = maxError;
+            pack(made, options,
+                 corpus() + "fuzz_archive/" + std::string(volume::kLatticeNames[std::size_t(lattice)]) +
+                     (maxError > 0 ? "-bounded.tsr" : "-exact.tsr"));
+        }
+    Compressor compressor(3);
+    int number = 0;
+    for (int type = 0; type < 5; ++type)
+        for (int masked = 0; masked < 2; ++masked) {
+            // The head of fuzz_brick.cpp.
+            std::vector<char> head{char(masked), 8, 7, 9, 0, 5, char(type), char(masked), 0, char(masked), 0x5b, 1};
+            BrickFormat format{masked != 0 ? LatticeKind::BCC : LatticeKind::CC,
+                               {9, 8, 10},
+                               1,
+                               Wavelet::W22,
+                               static_cast<ScalarType>(type),
+                               {},
+                               masked != 0};
+            if (format.type == ScalarType::F32) format.numbers = {NumberKind::Scaled, 1, 0.5};
+            volume::Dataset made = makeDataset(format.size, {{"x", format.type, 1, Texture::Smooth, false, false}}, 1);
+            const volume::Field field = made.load(0, 0, 0);
+            std::vector<std::uint8_t> present;
+            for (std::size_t i = 0; masked != 0 && i < field.count(); ++i)
+                present.push_back((0x5b >> (i * 7 % 8) & 1) != 0);
+            const Bytes body = encodeBrick(format, field.samples, present, 0, compressor)[0];
+            for (const std::byte byte : body) head.push_back(char(byte));
+            writeFile(corpus() + "fuzz_brick/" + std::to_string(number++), head);
+        }
+}
+
+} // namespace
+} // namespace tessera::codec

@@ -1,0 +1,81 @@
+#!/bin/bash
+# pack, info, verify and unpack as a user runs them: arguments TESSERA SOURCE_DIR. Exit 77 skips (nothing to do so yet).
+set -u
+tessera=$1
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+cd "$work" || exit 1
+failures=0
+check() { # check WHAT STATUS COMMAND...: runs the command and compares its exit status
+    local what=$1 want=$2
+    shift 2
+    "$@" >out.txt 2>err.txt
+    local got=$?
+    if [ "$got" != "$want" ]; then
+        echo "FAILED: $what: exit status $got, not $want"
+        cat out.txt err.txt
+        failures=$((failures + 1))
+    fi
+}
+say() { # say TEXT FILE: the file must hold the text
+    grep -q -- "$1" "$2" || { echo "FAILED: no \"$1\" in:"; cat "$2"; failures=$((failures + 1)); }
+}
+
+# A ramp of 16-bit numbers: 9 x 7 x 5, two times, two components.
+python3 - <<'EOF'
+import json, struct
+numbers = [(i * 37 + i * i) % 65536 for i in range(9 * 7 * 5 * 2 * 2)]
+open("ramp.raw", "wb").write(struct.pack("<%dH" % len(numbers), *numbers))
+json.dump({"dims": [9, 7, 5], "dtype": "uint16", "times": [0, 0.5],
+           "components": [{"name": "a", "unit": "K"}, {"name": "b", "unit": "Pa"}]}, open("ramp.json", "w"))
+EOF
+
+check "pack as CC" 0 "$tessera" pack ramp.json -o cc.tsr --lattice cc --json
+say '"archiveBytes"' out.txt
+check "verify" 0 "$tessera" verify cc.tsr
+say whole out.txt
+check "info" 0 "$tessera" info cc.tsr
+say "9 x 7 x 5" out.txt
+check "info --json" 0 "$tessera" info cc.tsr --json
+python3 -c 'import json,sys; d=json.load(open("out.txt")); assert d["size"]==[9,7,5] and d["times"]==[0,0.5] and d["lossless"] and [p["name"] for p in d["parameters"]]==["a","b"], d' || failures=$((failures + 1))
+check "unpack" 0 "$tessera" unpack cc.tsr -o back.raw
+cmp ramp.raw back.raw || { echo "FAILED: not the same samples"; failures=$((failures + 1)); }
+check "its sidecar opens" 0 "$tessera" info back.json
+check "unpack .vti" 0 "$tessera" unpack cc.tsr -o back.vti -t 0.5
+check "unpack .nrrd" 0 "$tessera" unpack cc.tsr -o back.nrrd -p b -t 0
+check "a coarse level" 0 "$tessera" unpack cc.tsr -o coarse.raw -l 1
+check "pack as BCC" 0 "$tessera" pack ramp.json -o bcc.tsr
+check "verify BCC" 0 "$tessera" verify bcc.tsr --json
+say '"ok": true' out.txt
+check "unpack BCC" 0 "$tessera" unpack bcc.tsr -o grid.raw
+
+# Wrong usage 1, bad input 2 with one line, and nothing left behind.
+check "no output" 1 "$tessera" pack ramp.json
+check "no such wavelet" 1 "$tessera" pack ramp.json -o x.tsr --wavelet 9,9
+check "missing input" 2 "$tessera" pack nothing.raw -o x.tsr
+check "no such level" 2 "$tessera" unpack cc.tsr -o x.raw -l 17
+check "no such parameter" 2 "$tessera" unpack cc.tsr -o x.raw -p c
+check "unwritable" 3 "$tessera" pack ramp.json -o no/such/folder/x.tsr
+check "onto its input" 2 "$tessera" pack ramp.raw -o ramp.raw
+head -c 500 cc.tsr >cut.tsr
+check "a cut archive" 2 "$tessera" verify cut.tsr
+[ "$(wc -l <err.txt)" = 1 ] || { echo "FAILED: not one line:"; cat err.txt; failures=$((failures + 1)); }
+python3 -c 'b=bytearray(open("cc.tsr","rb").read()); b[200]^=4; open("flip.tsr","wb").write(b)'
+check "a flipped bit" 2 "$tessera" verify flip.tsr
+say damaged err.txt
+check "is not unpacked" 2 "$tessera" unpack flip.tsr -o x.raw
+head -c 100 ramp.raw >short.raw
+cp ramp.json short.json
+check "a short raw file" 2 "$tessera" pack short.raw -o x.tsr
+ls x.* ./*.part-* 2>/dev/null && { echo "FAILED: something was left behind"; failures=$((failures + 1)); }
+
+# Real volumes, where they are: bit for bit.
+data=${TESSERA_DATA:-${TESSERA_TEST_DATA:-}}
+for raw in "$data"/volumes/{nucleon,tooth,gfs,colpex}*.raw; do
+    [ -f "$raw" ] || continue
+    check "pack $raw" 0 "$tessera" pack "$raw" -o real.tsr --lattice cc
+    check "verify $raw" 0 "$tessera" verify real.tsr
+    check "unpack $raw" 0 "$tessera" unpack real.tsr -o real.raw
+    cmp "$raw" real.raw || { echo "FAILED: $raw differs"; failures=$((failures + 1)); }
+done
+exit $((failures > 0))

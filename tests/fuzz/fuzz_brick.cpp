@@ -1,0 +1,44 @@
+// A coded brick of any format: the first bytes say which, the rest are its segments and mask.
+#include "codec/brick_codec.h"
+
+#include <cstdint>
+#include <cstdlib>
+
+using namespace tessera;
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    constexpr std::size_t kHead = 12;
+    if (size < kHead) return 0;
+    codec::BrickFormat format;
+    format.kind = data[0] % 2 == 0 ? volume::LatticeKind::CC : volume::LatticeKind::BCC;
+    format.size = {1 + data[1] % 17, 1 + data[2] % 17, 1 + data[3] % 34};
+    format.levels = 1 + data[4] % 5;
+    format.wavelet = static_cast<codec::Wavelet>(data[5] % std::size(codec::kWaveletNames));
+    format.type = static_cast<volume::ScalarType>(data[6] % 5);
+    format.keepsAbsent = data[7] % 2 != 0;
+    if (format.type == volume::ScalarType::F32)
+        format.numbers = {static_cast<codec::NumberKind>(1 + data[8] % 3), 1, 0.5};
+    const std::size_t count = std::size_t(format.size.x) * std::size_t(format.size.y) * std::size_t(format.size.z);
+    std::vector<std::uint8_t> present;
+    if (data[9] % 2 != 0)
+        for (std::size_t i = 0; i < count; ++i) present.push_back((data[10] >> (i * 7 % 8) & 1) != 0);
+
+    // Every segment gets a share of the rest, copied so that a read beyond its end is seen.
+    const auto bytes = std::as_bytes(std::span(data + kHead, size - kHead));
+    std::vector<codec::Bytes> segments;
+    for (std::size_t s = 0, levels = std::size_t(format.levels); s < levels; ++s) {
+        const std::size_t begin =
+            bytes.size() * s * (data[11] % 4 == 0 ? s : 1) / (levels * (data[11] % 4 == 0 ? levels : 1));
+        const std::size_t end = s + 1 == levels ? bytes.size()
+                                                : bytes.size() * (s + 1) * (data[11] % 4 == 0 ? s + 1 : 1) /
+                                                      (levels * (data[11] % 4 == 0 ? levels : 1));
+        segments.emplace_back(bytes.begin() + std::ptrdiff_t(begin), bytes.begin() + std::ptrdiff_t(end));
+    }
+    for (int level = 0; level < format.levels; ++level) {
+        const std::vector<std::span<const std::byte>> parts(segments.begin(), segments.end() - level);
+        codec::DecodedBrick decoded;
+        const codec::DecodeStatus status = codec::decodeBrick(format, parts, level, present, decoded);
+        if (status == codec::DecodeStatus::Ok && level == 0 && decoded.codes.size() != count) std::abort();
+    }
+    return 0;
+}
