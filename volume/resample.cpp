@@ -205,6 +205,46 @@ void fromCc(const Field& source, Field& out, Mask* mask, ResampleFilter filter, 
     });
 }
 
+/// A gap of one absent CC sample can lie between two samples of a BCC sublattice, whose cells are sqrt 2 wide: both
+/// sides of the gap would then be neighbours, and reconstruction would mix them. Where that happens along an axis, the
+/// sample nearer to the gap becomes absent.
+template <class T> void keepGaps(const Field& source, Field& out, Mask& mask, const Progress& progress) {
+    const Lattice& target = out.lattice;
+    const Mask before = mask;
+    const glm::ivec3 steps[] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 2}}; // to the next sample of the same sublattice
+    std::array<std::vector<Tap>, 3> taps[2];
+    for (int s = 0; s < 2; ++s) {
+        AxisTaps all = tapsFor(source.lattice, target, s, ResampleFilter::Nearest);
+        taps[s] = {std::move(all.x), std::move(all.y), std::move(all.z)};
+    }
+    const auto removed = [&](glm::ivec3 at, int axis, int side) {
+        const glm::ivec3 other = at + side * steps[axis];
+        if (other[axis] < 0 || other[axis] >= target.size[axis] || before[target.index(other)] == 0) return false;
+        const auto& [x, y, z] = taps[at.z & 1];
+        const std::vector<Tap>& along = taps[at.z & 1][std::size_t(axis)];
+        const Tap& own = along[std::size_t(axis == 2 ? at.z / 2 : at[axis])];
+        const Tap& next = along[std::size_t(axis == 2 ? other.z / 2 : other[axis])];
+        if (side * (next.nearest - own.nearest) < 2) return false;
+        glm::ivec3 between(x[std::size_t(at.x)].nearest, y[std::size_t(at.y)].nearest,
+                           z[std::size_t(at.z / 2)].nearest);
+        between[axis] += side;
+        if (source.present(source.lattice.index(between))) return false;
+        const double mine = std::abs(own.cell[0] + own.fraction - between[axis]);
+        const double theirs = std::abs(next.cell[0] + next.fraction - between[axis]);
+        return mine < theirs || (mine == theirs && side > 0);
+    };
+    forSlices(target, progress, [&](int k) {
+        std::size_t index = target.index({0, 0, k});
+        for (int j = 0; j < target.size.y; ++j)
+            for (int i = 0; i < target.size.x; ++i, ++index)
+                for (int axis = 0; axis < 3 && mask[index] != 0; ++axis)
+                    if (removed({i, j, k}, axis, -1) || removed({i, j, k}, axis, 1)) {
+                        mask[index] = 0;
+                        out.as<T>()[index] = T{};
+                    }
+    });
+}
+
 /// Nearest sample of any source, copied.
 template <class T> void fromNearest(const Field& source, Field& out, Mask* mask, const Progress& progress) {
     const Lattice& target = out.lattice;
@@ -329,6 +369,8 @@ Field resample(const Field& source, const Lattice& target, ResampleFilter filter
             fromCc<T>(source, out, mask.get(), filter, progress);
         else
             fromBcc<T>(source, out, mask.get(), progress);
+        if (mask && source.lattice.kind == LatticeKind::CC && target.kind == LatticeKind::BCC)
+            keepGaps<T>(source, out, *mask, Progress{{}, progress.stop});
     });
     if (mask && !std::all_of(mask->begin(), mask->end(), [](std::uint8_t p) { return p != 0; }))
         out.mask = std::move(mask);

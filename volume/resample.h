@@ -15,8 +15,11 @@ inline constexpr std::string_view kResampleFilterNames[] = {"nearest", "linear",
 ///
 /// Absent samples take no part: a target sample is absent where the nearest source sample is, and where the kernel
 /// meets an absent sample the weights of the present ones are normalised, for Catmull-Rom those of the trilinear kernel
-/// (a sum of its own, partly negative weights could vanish). Integer types round and clamp to their range; a
-/// same-lattice target is the identity. Deterministic on any number of threads. Throws Cancelled.
+/// (a sum of its own, partly negative weights could vanish). From CC to BCC a gap of one absent sample along an axis
+/// stays a gap: where a sublattice would step over it, its sample nearer to the gap is absent too.
+///
+/// Integer types round and clamp to their range; a same-lattice target is the identity. Deterministic on any number of
+/// threads. Throws Cancelled.
 Field resample(const Field& source, const Lattice& target, ResampleFilter filter, const Progress& progress = {});
 
 /// The field on bccFor(its lattice); nearest for categorical parameters, cubic for others.

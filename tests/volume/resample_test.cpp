@@ -87,44 +87,55 @@ TEST(Resample, RoundTripOfASmoothFieldIsClose) {
 
 // Two regions of different constants with a gap of absent samples between them, whose bytes are far away from both.
 TEST(Resample, NothingBleedsOverAMask) {
-    for (const int gap : {1, 2, 3}) {
-        const Lattice cc = ccLattice({13, 11, 17}, {1, 0.25, 3});
-        Field field = sampled<std::uint8_t>(cc, [&](glm::dvec3 p) { return p.x < 5 ? 20 : p.x < 5 + gap ? 255 : 200; });
-        test::removeWhere(field, [&](glm::dvec3 p) { return p.x >= 5 && p.x < 5 + gap; });
-        const auto check = [&](const Field& out) {
-            ASSERT_TRUE(out.mask);
-            int left = 0, right = 0;
-            for (std::size_t i = 0; i < out.count(); ++i) {
-                if (!out.present(i)) continue;
-                EXPECT_TRUE(out.value(i) == 20 || out.value(i) == 200) << out.value(i);
-                (out.value(i) == 20 ? left : right) += 1;
+    for (const int gap : {1, 2, 3})
+        for (int axis = 0; axis < 3; ++axis)
+            for (int begin = 3; begin < 8; ++begin) {
+                const Lattice cc = ccLattice({13, 14, 15});
+                Field field = sampled<std::uint8_t>(cc, [&](glm::dvec3 p) {
+                    return p[axis] < begin ? 20 : p[axis] < begin + gap ? 255 : 200;
+                });
+                test::removeWhere(field, [&](glm::dvec3 p) { return p[axis] >= begin && p[axis] < begin + gap; });
+                const auto check = [&](const Field& out, double cells) {
+                    ASSERT_TRUE(out.mask);
+                    double left = 0, right = 0;
+                    for (std::size_t i = 0; i < out.count(); ++i) {
+                        if (!out.present(i)) continue;
+                        ASSERT_TRUE(out.value(i) == 20 || out.value(i) == 200) << out.value(i);
+                        (out.value(i) == 20 ? left : right) += 1;
+                    }
+                    // No side loses more than a cell.
+                    EXPECT_GT(left / double(out.count()), (begin - cells) / cc.size[axis]);
+                    EXPECT_GT(right / double(out.count()), (cc.size[axis] - begin - gap - cells) / cc.size[axis]);
+                };
+                for (const ResampleFilter filter :
+                     {ResampleFilter::Nearest, ResampleFilter::Linear, ResampleFilter::Cubic}) {
+                    const Field bcc = resample(field, bccFor(cc), filter);
+                    check(bcc, 1);
+                    check(resample(bcc, cc, ResampleFilter::Cubic), 1.5);
+                    check(resample(field, ccLattice({20, 20, 20}, {0.6, 0.65, 0.7}), filter), 1);
+                }
             }
-            EXPECT_GT(left, 0);
-            EXPECT_GT(right, left / 2);
-        };
-        for (const ResampleFilter filter : {ResampleFilter::Nearest, ResampleFilter::Linear, ResampleFilter::Cubic}) {
-            const Field bcc = resample(field, bccFor(cc), filter);
-            check(bcc);
-            // One sublattice of BCC (cells of sqrt 2) can step over a gap of one CC sample without meeting it.
-            if (gap > 1) check(resample(bcc, cc, ResampleFilter::Cubic));
-            check(resample(field, ccLattice({20, 5, 9}, {0.6, 0.5, 6}), filter));
-        }
-    }
 }
 
 TEST(Resample, TargetIsAbsentWhereTheNearestSourceSampleIs) {
     std::mt19937 random(7);
     const Lattice cc = ccLattice({9, 10, 11});
     Field field = noise(cc.size, 8);
-    test::removeWhere(field, [&](glm::dvec3) { return random() % 3 == 0; });
+    test::removeWhere(field, [&](glm::dvec3) { return random() % 6 == 0; });
     for (const Lattice& target : {bccFor(cc), ccLattice({7, 19, 5}, {1.3, 0.47, 2.1}, {0.1, 0.2, 0.3})})
         for (const ResampleFilter filter : {ResampleFilter::Nearest, ResampleFilter::Linear, ResampleFilter::Cubic}) {
             const Field out = resample(field, target, filter);
+            std::size_t more = 0;
             for (int k = 0; k < target.size.z; ++k)
                 for (int j = 0; j < target.size.y; ++j)
-                    for (int i = 0; i < target.size.x; ++i)
-                        EXPECT_EQ(out.present(target.index({i, j, k})),
-                                  field.present(cc.index(cc.nearest(target.position({i, j, k})))));
+                    for (int i = 0; i < target.size.x; ++i) {
+                        const bool there = field.present(cc.index(cc.nearest(target.position({i, j, k}))));
+                        const bool present = out.present(target.index({i, j, k}));
+                        EXPECT_TRUE(there || !present);
+                        more += there && !present ? 1 : 0;
+                    }
+            // Gaps kept open cost a few samples of BCC, and none of CC.
+            EXPECT_LE(more, target.kind == LatticeKind::BCC ? target.count() / 5 : 0);
         }
 }
 

@@ -180,6 +180,21 @@ TEST(Statistics, VolumesFillTheBox) {
     }
 }
 
+// The first layer of each BCC sublattice reaches from the face of the box half way to its next layer.
+TEST(Statistics, VolumeOfALayer) {
+    const Lattice cc = ccLattice({9, 8, 7}, {0.5, 1, 1}), bcc = bccFor(cc);
+    Dataset dataset = test::datasetOf({sampled<float>(bcc, [](glm::dvec3 p) { return p.x; })});
+    dataset.info.bounds = test::boxOf(cc);
+    const auto source = makeMemorySource(dataset, {LatticeKind::BCC, 8, 1 << 30});
+    const double even = bcc.origin.x + 0.5 * bcc.spacing.x, odd = bcc.origin.x + bcc.spacing.x;
+    StatisticsQuery query;
+    query.channels = {0};
+    query.doi = [&](std::span<const float> v) { return double(v[0]) < (even + odd) / 2 ? 1.0 : 0.0; };
+    const Statistics result = computeStatistics(*source, query);
+    EXPECT_EQ(result.channels[0].inside.samples, std::size_t(bcc.size.y) * std::size_t(bcc.size.z));
+    EXPECT_NEAR(result.channels[0].inside.volume, 7 * 6 * (even + odd) / 2, 1e-9);
+}
+
 TEST(Statistics, DegenerateChannels) {
     Field constant = sampled<float>(ccLattice({5, 5, 5}), [](glm::dvec3) { return 3.25; });
     Field absent = constant;
