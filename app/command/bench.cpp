@@ -14,7 +14,7 @@ struct NamedBench {
     const char* name;
     BenchTable (*measure)();
 };
-constexpr NamedBench kBenches[] = {{"lattice", benchLattice}, {"render", benchRender}};
+constexpr NamedBench kBenches[] = {{"lattice", benchLattice}, {"codec", benchCodec}, {"render", benchRender}};
 
 /// Columns of texts to the left, of numbers to the right.
 void print(const BenchTable& table) {
