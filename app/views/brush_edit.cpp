@@ -225,7 +225,7 @@ void drawBrushes(ImDrawList& draw, const vis::Selection& selection, const PlotFr
         const ImVec2 size = ImGui::CalcTextSize(number.c_str());
         const ImVec2 at{std::clamp(inner.min.x + 3, frame.min.x + 1, frame.max.x - size.x - 1),
                         std::clamp(inner.min.y + 1, frame.min.y + 1, frame.max.y - size.y - 1)};
-        draw.AddText(at, line, number.c_str());
+        addTextWithBackdrop(draw, at, {0, 0}, line, number.c_str());
     }
     draw.PopClipRect();
 }

@@ -63,15 +63,6 @@ void drawSummary(const volume::DatasetInfo& info) {
     ImGui::EndTable();
 }
 
-void textRight(const std::string& text, bool faint = false) {
-    const float room = ImGui::GetContentRegionAvail().x - ImGui::CalcTextSize(text.c_str()).x;
-    if (room > 0) ImGui::SetCursorPosX(ImGui::GetCursorPosX() + room);
-    if (faint)
-        ImGui::TextDisabled("%s", text.c_str());
-    else
-        ImGui::TextUnformatted(text.c_str());
-}
-
 void drawParameters(const volume::DatasetInfo& info) {
     constexpr ImGuiTableFlags kFlags =
         ImGuiTableFlags_RowBg | ImGuiTableFlags_SizingStretchProp | ImGuiTableFlags_PadOuterX;
@@ -80,11 +71,11 @@ void drawParameters(const volume::DatasetInfo& info) {
     ImGui::TableSetupColumn("Least", 0, 1);
     ImGui::TableSetupColumn("Most", 0, 1);
     ImGui::TableSetupColumn("Stored as", 0, 1.1f);
-    ImGui::TableHeadersRow();
+    tableHeader({"Parameter", "Least", "Most", "Stored as"});
     for (const volume::Channel& channel : info.channels()) {
         const volume::Parameter& parameter = info.parameters[static_cast<std::size_t>(channel.parameter)];
         const Range range = info.channelRange(channel);
-        const double digits = (range.hi - range.lo) / 1000;
+        const double digits = parameter.categorical ? 1 : (range.hi - range.lo) / 1000;
         ImGui::TableNextRow();
         ImGui::TableNextColumn();
         ImGui::TextUnformatted(titleWithUnit(channel.name, channel.unit).c_str());
@@ -159,45 +150,41 @@ void drawSelection(ViewContext& context, const StatisticsResult* result) {
             ImGui::SameLine();
             ImGui::TextDisabled("(first estimate)");
         }
-        const std::string cubic = info.lengthUnit + "3";
-        ImGui::TextDisabled("%s, %s of the volume that has data", formatQuantity(volume, cubic).c_str(),
+        const LengthUnit unit = suitableLength(info.lengthUnit, std::cbrt(volume));
+        const double cubes = volume * std::pow(unit.perUnit, 3);
+        ImGui::TextDisabled("%s, %s of the volume that has data",
+                            formatQuantity(cubes, prettyUnit(unit.name) + "3", cubes / 1000).c_str(),
                             formatShare(whole->all.volume > 0 ? volume / whole->all.volume : 0).c_str());
     }
     constexpr ImGuiTableFlags kFlags =
         ImGuiTableFlags_RowBg | ImGuiTableFlags_SizingStretchProp | ImGuiTableFlags_PadOuterX;
     const bool brushed = result->brushed;
-    if (!ImGui::BeginTable("selection", brushed ? 5 : 3, kFlags)) return;
-    ImGui::TableSetupColumn("Parameter", 0, 1.3f);
-    ImGui::TableSetupColumn(brushed ? "Mean inside" : "Mean", 0, 1);
-    if (brushed) ImGui::TableSetupColumn("outside", 0, 0.9f);
-    ImGui::TableSetupColumn(brushed ? "Range inside" : "Range now", 0, 1.6f);
-    if (brushed) ImGui::TableSetupColumn("outside", 0, 1.6f);
-    ImGui::TableHeadersRow();
+    if (!ImGui::BeginTable("selection", brushed ? 3 : 2, kFlags)) return;
+    ImGui::TableSetupColumn("Parameter", 0, 1);
+    ImGui::TableSetupColumn(brushed ? "In focus" : "Mean and range", 0, 1.2f);
+    if (brushed) ImGui::TableSetupColumn("Outside", 0, 1.2f);
+    if (brushed)
+        tableHeader({"Parameter", "In focus", "Outside"});
+    else
+        tableHeader({"Parameter", "Mean and range now"});
     const std::vector<volume::Channel> channels = info.channels();
     for (std::size_t i = 0; i < statistics.channels.size(); ++i) {
         const volume::Channel& channel = channels[static_cast<std::size_t>(result->wish.channels[i])];
         const volume::ChannelStatistics& own = statistics.channels[i];
         const Range range = info.channelRange(channel);
         const double digits = (range.hi - range.lo) / 1000;
-        const auto mean = [&](const volume::Summary& summary) {
-            return summary.samples ? formatNumber(summary.mean, digits) : std::string("-");
+        // Mean above, range below: side by side they do not fit a narrow pane.
+        const auto cell = [&](const volume::Summary& summary) {
+            ImGui::TableNextColumn();
+            textRight(summary.samples ? formatNumber(summary.mean, digits) : "-");
+            textRight(rangeText(summary, digits * 10), true);
         };
         ImGui::TableNextRow();
         ImGui::TableNextColumn();
         ImGui::TextUnformatted(titleWithUnit(channel.name, channel.unit).c_str());
-        const volume::Summary& first = brushed ? own.inside : own.all;
-        ImGui::TableNextColumn();
-        textRight(mean(first));
-        if (brushed) {
-            ImGui::TableNextColumn();
-            textRight(mean(own.outside), true);
-        }
-        ImGui::TableNextColumn();
-        textRight(rangeText(first, digits));
-        if (brushed) {
-            ImGui::TableNextColumn();
-            textRight(rangeText(own.outside, digits), true);
-        }
+
+        cell(brushed ? own.inside : own.all);
+        if (brushed) cell(own.outside);
     }
     ImGui::EndTable();
     if (ImGui::SmallButton("Copy as CSV")) ImGui::SetClipboardText(csvOf(info, *result).c_str());

@@ -65,7 +65,8 @@ bool editOpacity(OpacityDrag& drag, std::vector<glm::vec2>& curve, const PlotFra
             const glm::vec2 point = pointAt(mouse, frame, range);
             const auto place =
                 std::upper_bound(curve.begin(), curve.end(), point, [](glm::vec2 a, glm::vec2 b) { return a.x < b.x; });
-            held = static_cast<int>(curve.insert(place, point) - curve.begin());
+            held = static_cast<int>(place - curve.begin());
+            curve.insert(place, point);
         }
         drag.point = held;
         drag.left = held > 0 ? static_cast<double>(curve[static_cast<std::size_t>(held) - 1].x) : 0.0;

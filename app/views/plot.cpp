@@ -104,7 +104,7 @@ float axisRoom(AxisSide side, Range range, bool title) {
                 widest = std::max(widest, ImGui::CalcTextSize(text.c_str()).x);
         room += widest;
     }
-    return std::ceil(room + (title ? em() * 1.15f : 0.0f));
+    return std::ceil(room + (title ? em() * 1.3f : 0.0f));
 }
 
 void drawAxis(ImDrawList& draw, const PlotFrame& frame, AxisSide side, std::string_view title, std::string_view unit,
@@ -149,7 +149,7 @@ void drawAxis(ImDrawList& draw, const PlotFrame& frame, AxisSide side, std::stri
     const ImVec2 size = ImGui::CalcTextSize(label.c_str());
     if (options.inlineTitle) {
         const ImVec2 at = bottom ? ImVec2{hi - size.x, frame.max.y + tickLength() + em() * 0.1f}
-                                 : ImVec2{std::max(lo, frame.min.x - size.x), frame.min.y - em() * 1.25f};
+                                 : ImVec2{frame.min.x - size.x, frame.min.y - em() * 1.25f};
         draw.AddText({std::round(at.x), std::round(at.y)}, colors.faint, label.c_str());
         return;
     }

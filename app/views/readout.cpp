@@ -111,17 +111,10 @@ void drawReadout(ViewContext& context, const Readout& readout) {
     ImGui::TableSetupColumn("Parameter", ImGuiTableColumnFlags_WidthStretch, 1.4f);
     ImGui::TableSetupColumn("Value", ImGuiTableColumnFlags_WidthStretch, 1);
     ImGui::TableSetupColumn("Nearest", ImGuiTableColumnFlags_WidthStretch, 1);
-    ImGui::TableHeadersRow();
+    tableHeader({"Parameter", "Value", "Nearest"});
     const auto cell = [&](const volume::Channel& channel, const std::optional<double>& value) {
         ImGui::TableNextColumn();
-        const std::string text = valueText(info, channel, value);
-        // Numbers are compared by their right ends.
-        const float room = ImGui::GetContentRegionAvail().x - ImGui::CalcTextSize(text.c_str()).x - em() * 0.6f;
-        if (value && room > 0) ImGui::SetCursorPosX(ImGui::GetCursorPosX() + room);
-        if (value)
-            ImGui::TextUnformatted(text.c_str());
-        else
-            ImGui::TextDisabled("%s", text.c_str());
+        textRight(valueText(info, channel, value), !value);
     };
     for (std::size_t i = 0; i < readout.channels.size() && i < readout.state->values.size(); ++i) {
         const volume::Channel& channel = readout.channels[i];

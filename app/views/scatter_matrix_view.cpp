@@ -1,5 +1,6 @@
 #include "app/views/brush_edit.h"
 #include "app/views/readout.h"
+#include "app/views/scatter_layout.h"
 #include "app/views/statistics_feed.h"
 #include "app/views/ticks.h"
 #include "app/views/view_parts.h"
@@ -14,7 +15,7 @@ namespace {
 
 constexpr std::size_t kMostPlots = 9; ///< a side, where the user has not chosen: more are too small to read
 
-struct ScatterCache : ViewCache {
+struct ScatterCache : ScatterLayoutCache {
     StatisticsFeed feed;
     BrushDrag drag;
     Readout readout;
@@ -24,23 +25,6 @@ struct ScatterCache : ViewCache {
     std::shared_ptr<const StatisticsResult> shown;
     bool shownLog = false, shownDark = false;
     int shownMerge = 0;
-};
-
-struct Matrix {
-    std::vector<int> channels;
-    std::vector<volume::Channel> infos;
-    std::vector<Range> ranges;
-    ImVec2 min; ///< top left of the first cell
-    float cellX, cellY, gap;
-
-    std::size_t size() const { return channels.size(); }
-    PlotFrame cell(std::size_t column, std::size_t row) const {
-        const float x = min.x + cellX * static_cast<float>(column), y = min.y + cellY * static_cast<float>(row);
-        return {{std::round(x), std::round(y)},
-                {std::round(x + cellX - gap), std::round(y + cellY - gap)},
-                ranges[column],
-                ranges[row]};
-    }
 };
 
 std::vector<int> shownChannels(const volume::DatasetInfo& info, const ScatterMatrixView& view) {
@@ -201,6 +185,17 @@ void drawCorrelation(ImDrawList& draw, const PlotFrame& frame, const volume::Joi
     if (two) line(joint.focusCorrelation, middle + em() * 0.6f, 0.9f, colors.focus, "");
 }
 
+/// Parameters that never exist at the same point, like oxygen and hydrogen: said, so that the plot does not look
+/// broken.
+void drawNothingCommon(ImDrawList& draw, const PlotFrame& frame) {
+    const char* text = "nowhere both";
+    const ImVec2 size = ImGui::CalcTextSize(text);
+    if (size.x > frame.width() || size.y > frame.height()) return;
+    draw.AddText(
+        {std::round((frame.min.x + frame.max.x - size.x) / 2), std::round((frame.min.y + frame.max.y - size.y) / 2)},
+        plotColors().frame, text);
+}
+
 std::string binText(const volume::Channel& channel, Range range, std::size_t bin, std::size_t bins) {
     const double width = (range.hi - range.lo) / static_cast<double>(bins);
     const double middle = range.lo + (static_cast<double>(bin) + 0.5) * width;
@@ -214,7 +209,7 @@ std::string countText(double count, double total, double focus, bool brushed) {
     return text;
 }
 
-void hoverText(const Matrix& matrix, std::size_t column, std::size_t row, const PlotFrame& frame,
+void hoverText(const ScatterLayout& matrix, std::size_t column, std::size_t row, const PlotFrame& frame,
                const StatisticsResult& result) {
     const glm::dvec2 at = frame.data(ImGui::GetIO().MousePos);
     const volume::Statistics& statistics = result.statistics;
@@ -257,8 +252,8 @@ void hoverText(const Matrix& matrix, std::size_t column, std::size_t row, const 
     if (!text.empty()) ImGui::SetTooltip("%s", text.c_str());
 }
 
-/// One cell; true while its brush is being dragged.
-void drawCell(ViewContext& context, ScatterCache& cache, const ScatterMatrixView& view, const Matrix& matrix,
+/// One cell: plot, histogram or correlation, with brushes, cursor and read-out.
+void drawCell(ViewContext& context, ScatterCache& cache, const ScatterMatrixView& view, const ScatterLayout& matrix,
               std::size_t column, std::size_t row, const StatisticsResult* result) {
     Session& session = context.session;
     const PlotColors colors = plotColors();
@@ -289,6 +284,7 @@ void drawCell(ViewContext& context, ScatterCache& cache, const ScatterMatrixView
             for (std::size_t i = 0; i < result->statistics.joint.size(); ++i) {
                 const volume::JointHistogram& joint = result->statistics.joint[i];
                 if (joint.x != static_cast<int>(column) || joint.y != static_cast<int>(row)) continue;
+                if (joint.samples == 0) drawNothingCommon(draw, frame);
                 draw.AddImage(reinterpret_cast<ImTextureID>(static_cast<std::intptr_t>(cache.textures[i].name())),
                               frame.min, frame.max);
             }
@@ -324,7 +320,7 @@ void drawScatterMatrixView(ViewContext& context, const std::string& pane, Scatte
         return;
     }
     const volume::DatasetInfo& info = context.source->info();
-    Matrix matrix;
+    ScatterLayout matrix;
     matrix.channels = shownChannels(info, view);
     if (matrix.channels.empty()) {
         drawHint("No parameters to compare", "This data set holds only labels.");
@@ -361,6 +357,7 @@ void drawScatterMatrixView(ViewContext& context, const std::string& pane, Scatte
         drawHint("Not enough room", "Enlarge the pane or compare fewer parameters.");
         return;
     }
+    cache.layout = matrix;
     if (result) updateTextures(cache, result, view.logDensity, std::min(matrix.cellX, matrix.cellY));
     for (std::size_t row = 0; row < matrix.size(); ++row)
         for (std::size_t column = 0; column < matrix.size(); ++column)

@@ -71,6 +71,30 @@ void tooltip(const char* text) {
     ImGui::EndTooltip();
 }
 
+void tableHeader(std::initializer_list<const char*> names, int right) {
+    ImGui::TableNextRow(ImGuiTableRowFlags_Headers);
+    int column = 0;
+    for (const char* name : names) {
+        ImGui::TableSetColumnIndex(column);
+        if (column >= right) {
+            const float room = ImGui::GetContentRegionAvail().x - ImGui::CalcTextSize(name).x;
+            if (room > 0) ImGui::SetCursorPosX(ImGui::GetCursorPosX() + room);
+        }
+        ImGui::PushID(column++);
+        ImGui::TableHeader(name);
+        ImGui::PopID();
+    }
+}
+
+void textRight(const std::string& text, bool faint) {
+    const float room = ImGui::GetContentRegionAvail().x - ImGui::CalcTextSize(text.c_str()).x;
+    if (room > 0) ImGui::SetCursorPosX(ImGui::GetCursorPosX() + room);
+    if (faint)
+        ImGui::TextDisabled("%s", text.c_str());
+    else
+        ImGui::TextUnformatted(text.c_str());
+}
+
 std::vector<int> comparedChannels(const volume::DatasetInfo& info) {
     std::vector<int> out;
     const std::vector<volume::Channel> channels = info.channels();

@@ -4,6 +4,7 @@
 #include "app/views/legend.h"
 #include "app/views/view_context.h"
 
+#include <initializer_list>
 #include <optional>
 #include <string>
 #include <vector>
@@ -37,6 +38,11 @@ void drawHint(const char* title, const char* hint = "");
 
 /// Wrapped help on hover of the last item.
 void tooltip(const char* text);
+
+/// The head row of a table whose columns are set up; names from column `right` on stand over right-aligned numbers.
+void tableHeader(std::initializer_list<const char*> names, int right = 1);
+/// Text at the right edge of a table cell.
+void textRight(const std::string& text, bool faint = false);
 
 /// Indices into info.channels() of what statistics compare: scalars and vector magnitudes, no labels.
 std::vector<int> comparedChannels(const volume::DatasetInfo& info);

@@ -1,0 +1,141 @@
+#include "app/views/opacity_edit.h"
+#include "app/views/playback.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace tessera::app {
+namespace {
+
+const std::vector<double> kTimes{0, 0.1, 0.2, 0.5};
+
+std::vector<double> play(Animation animation, double time, int steps) {
+    Playback playback;
+    std::vector<double> seen;
+    for (int i = 0; i < steps; ++i) {
+        advance(playback, animation, time, kTimes, 1.0 / static_cast<double>(animation.speed) + 1e-9);
+        seen.push_back(time);
+        if (!animation.playing) break;
+    }
+    return seen;
+}
+
+TEST(Playback, RepeatsTurnsRoundOrStops) {
+    Animation animation{.playing = true, .speed = 4, .loop = Loop::Repeat};
+    EXPECT_THAT(play(animation, 0.1, 5), testing::ElementsAre(0.2, 0.5, 0, 0.1, 0.2));
+    animation.loop = Loop::PingPong;
+    EXPECT_THAT(play(animation, 0.1, 7), testing::ElementsAre(0.2, 0.5, 0.2, 0.1, 0, 0.1, 0.2));
+    animation.loop = Loop::Once;
+    EXPECT_THAT(play(animation, 0.1, 7), testing::ElementsAre(0.2, 0.5, 0.5));
+}
+
+TEST(Playback, KeepsItsSpeedWhateverTheFrameRate) {
+    for (const double frame : {0.01, 0.03, 0.11}) {
+        Animation animation{.playing = true, .speed = 10, .loop = Loop::Repeat};
+        Playback playback;
+        std::vector<double> times;
+        for (int i = 0; i < 1000; ++i) times.push_back(i);
+        double time = 0, elapsed = 0;
+        while (elapsed < 5) {
+            advance(playback, animation, time, times, frame);
+            elapsed += frame;
+        }
+        EXPECT_NEAR(time, elapsed * 10, 1.5) << frame;
+    }
+}
+
+TEST(Playback, StaysPutWhenPausedOrStatic) {
+    Animation animation{.playing = false};
+    Playback playback;
+    double time = 0.1;
+    advance(playback, animation, time, kTimes, 10);
+    EXPECT_EQ(time, 0.1);
+    animation.playing = true;
+    advance(playback, animation, time, {0.1}, 10);
+    EXPECT_EQ(time, 0.1);
+}
+
+/// A curve over values 0..10 in a plot of 200 x 100 pixels, driven by a fed mouse.
+class OpacityEdit : public testing::Test {
+protected:
+    void SetUp() override {
+        ImGui::CreateContext();
+        ImGuiIO& io = ImGui::GetIO();
+        io.DisplaySize = {400, 300};
+        io.IniFilename = nullptr;
+        unsigned char* pixels;
+        int width, height;
+        io.Fonts->GetTexDataAsRGBA32(&pixels, &width, &height);
+        frame();
+        frame();
+    }
+    void TearDown() override { ImGui::DestroyContext(); }
+    void frame() {
+        ImGuiIO& io = ImGui::GetIO();
+        io.DeltaTime = 1; // clicks a second apart are no double clicks
+        io.MousePos = mouse;
+        ImGui::NewFrame();
+        ImGui::SetNextWindowPos({0, 0});
+        ImGui::SetNextWindowSize({400, 300});
+        ImGui::Begin("test", nullptr, ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove);
+        ImGui::SetCursorScreenPos(plot.min);
+        ImGui::InvisibleButton("plot", {plot.width(), plot.height()},
+                               ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight);
+        editOpacity(drag, curve, plot, {0, 10});
+        ImGui::End();
+        ImGui::Render();
+    }
+    void button(int which, bool down) {
+        ImGui::GetIO().MouseDown[which] = down;
+        frame();
+    }
+    void moveTo(double x, double y) {
+        mouse = plot.pixel(x, y);
+        frame();
+    }
+
+    PlotFrame plot{{50, 50}, {250, 150}, {0, 10}, {0, 1}};
+    std::vector<glm::vec2> curve = opacityPreset(OpacityPreset::Ramp);
+    OpacityDrag drag;
+    ImVec2 mouse{0, 0};
+};
+
+TEST_F(OpacityEdit, AClickAddsAPointThatCanBeDraggedAtOnce) {
+    moveTo(5, 0.9);
+    button(0, true);
+    ASSERT_EQ(curve.size(), 3u);
+    moveTo(6, 0.5);
+    moveTo(20, 0.5); // no further than its neighbour
+    button(0, false);
+    EXPECT_NEAR(curve[1].x, 1, 1e-6);
+    EXPECT_NEAR(curve[1].y, 0.5, 0.02);
+    EXPECT_EQ(drag.point, -1);
+}
+
+TEST_F(OpacityEdit, RightClickRemovesButTwoPointsStay) {
+    curve = {{0, 0}, {0.5f, 0.5f}, {1, 1}};
+    moveTo(5, 0.5);
+    button(1, true);
+    button(1, false);
+    EXPECT_EQ(curve.size(), 2u);
+    moveTo(0, 0.02);
+    button(1, true);
+    button(1, false);
+    EXPECT_EQ(curve.size(), 2u);
+}
+
+TEST(OpacityPresets, AreSortedAndWithinBounds) {
+    for (std::size_t i = 0; i < std::size(kOpacityPresetNames); ++i) {
+        const std::vector<glm::vec2> curve = opacityPreset(static_cast<OpacityPreset>(i));
+        ASSERT_GE(curve.size(), 2u);
+        for (std::size_t k = 0; k < curve.size(); ++k) {
+            EXPECT_TRUE(curve[k].y >= 0 && curve[k].y <= 1);
+            EXPECT_TRUE(k == 0 || curve[k].x >= curve[k - 1].x);
+        }
+        EXPECT_EQ(curve.front().x, 0);
+        EXPECT_EQ(curve.back().x, 1);
+    }
+}
+
+} // namespace
+} // namespace tessera::app
