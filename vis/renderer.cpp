@@ -144,7 +144,7 @@ const Program* Renderer::Impl::prepare(ViewTarget& target, const Scene& scene, c
     const Program* rayProgram = program(rayRecipe(plan, scene, source->grid(), skip));
     if (!rayProgram) return nullptr;
 
-    std::vector<glm::vec4> table = transferTables(plan, scene);
+    std::vector<glm::vec4> table = transferTables(plan, scene, source->info());
     if (table != target.tableValues) {
         const int rows = int(table.size()) / kTableSize;
         target.table = makeTexture2D({kTableSize, rows}, GL_RGBA32F, GL_NEAREST, "transfer tables");

@@ -81,20 +81,35 @@ AxisTaps tapsFor(const Lattice& source, const Lattice& target, int sublattice, R
     return taps;
 }
 
-template <class T> T store(double value) {
-    if constexpr (std::is_floating_point_v<T>) {
-        return static_cast<T>(value);
-    } else {
-        constexpr double lowest = double(std::numeric_limits<T>::lowest()),
-                         highest = double(std::numeric_limits<T>::max());
-        return static_cast<T>(std::clamp(std::nearbyint(value), lowest, highest));
+/// Range of the present samples of a source, as stored. Results are clamped to it: kernels with negative weights
+/// overshoot at steps, and a concentration below 0 or a value outside the known range helps nobody.
+template <class T> struct StoredRange {
+    double lo = 0, hi = 0;
+
+    explicit StoredRange(const Field& source) {
+        const auto stored = source.as<T>();
+        T least = std::numeric_limits<T>::max(), most = std::numeric_limits<T>::lowest();
+        for (std::size_t i = 0; i < stored.size(); ++i) {
+            if (!source.present(i)) continue;
+            least = std::min(least, stored[i]);
+            most = std::max(most, stored[i]);
+        }
+        lo = double(least);
+        hi = std::max(lo, double(most)); // nothing present: never used
     }
-}
+    T store(double value) const {
+        if constexpr (std::is_floating_point_v<T>)
+            return static_cast<T>(std::clamp(value, lo, hi));
+        else
+            return static_cast<T>(std::nearbyint(std::clamp(value, lo, hi)));
+    }
+};
 
 /// One target slice of a CC source, filtered axis by axis. `absent` counts absent samples under non-zero weights.
 template <class T> class SliceFilter {
 public:
-    SliceFilter(const Field& source, const AxisTaps& taps) : source_(source), taps_(taps), stored_(source.as<T>()) {}
+    SliceFilter(const Field& source, const AxisTaps& taps, const StoredRange<T>& range)
+        : source_(source), taps_(taps), range_(range), stored_(source.as<T>()) {}
 
     /// out, present: taps.x.size() * taps.y.size(), x fastest; present is null for a source without mask.
     void run(const Tap& z, T* out, std::uint8_t* present) {
@@ -130,10 +145,10 @@ public:
                     if (present != nullptr && x.weight[k] != 0) absent |= rowAbsent_[at];
                 }
                 if (present == nullptr || absent == 0) {
-                    *out = store<T>(sum);
+                    *out = range_.store(sum);
                 } else {
                     *present = source_.present(source_.lattice.index({x.nearest, y.nearest, z.nearest})) ? 1 : 0;
-                    *out = *present != 0 ? store<T>(presentOnly(x, y, z)) : T{};
+                    *out = *present != 0 ? range_.store(presentOnly(x, y, z)) : T{};
                 }
                 ++out;
                 if (present != nullptr) ++present;
@@ -172,6 +187,7 @@ private:
 
     const Field& source_;
     const AxisTaps& taps_;
+    const StoredRange<T>& range_;
     std::span<const T> stored_;
     std::vector<double> plane_, row_;
     std::vector<std::uint8_t> absent_, rowAbsent_;
@@ -194,12 +210,13 @@ void fromCc(const Field& source, Field& out, Mask* mask, ResampleFilter filter, 
     const int sublattices = target.kind == LatticeKind::BCC ? 2 : 1;
     std::vector<AxisTaps> taps;
     for (int s = 0; s < sublattices; ++s) taps.push_back(tapsFor(source.lattice, target, s, filter));
+    const StoredRange<T> range(source);
     const std::size_t sliceSize = std::size_t(target.size.x) * std::size_t(target.size.y);
     T* const samples = out.as<T>().data();
     forSlices(target, progress, [&](int k) {
         const AxisTaps& own = taps[std::size_t(k % sublattices)];
         const std::size_t first = std::size_t(k) * sliceSize;
-        SliceFilter<T>(source, own)
+        SliceFilter<T>(source, own, range)
             .run(own.z[std::size_t(k / sublattices)], samples + first,
                  mask != nullptr ? mask->data() + first : nullptr);
     });
@@ -321,6 +338,7 @@ template <class T> void fromBcc(const Field& source, Field& out, Mask* mask, con
     std::array<std::vector<PairTap>, 2> taps[2][3]; // [target sublattice][axis][source sublattice]
     for (int s = 0; s < sublattices; ++s)
         for (int axis = 0; axis < 3; ++axis) taps[s][axis] = pairTaps(from, target, s, axis);
+    const StoredRange<T> range(source);
     T* const stored = out.as<T>().data();
     forSlices(target, progress, [&](int k) {
         const auto& [tx, ty, tz] = taps[k % sublattices];
@@ -345,7 +363,7 @@ template <class T> void fromBcc(const Field& source, Field& out, Mask* mask, con
                         blend.add(w, {double(values[at]), mask == nullptr || source.present(at)});
                     }
                 }
-                stored[to] = store<T>(blend.sum / blend.coverage);
+                stored[to] = range.store(blend.sum / blend.coverage);
             }
     });
 }

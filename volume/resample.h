@@ -18,7 +18,8 @@ inline constexpr std::string_view kResampleFilterNames[] = {"nearest", "linear",
 /// (a sum of its own, partly negative weights could vanish). From CC to BCC a gap of one absent sample along an axis
 /// stays a gap: where a sublattice would step over it, its sample nearer to the gap is absent too.
 ///
-/// Integer types round and clamp to their range; a same-lattice target is the identity. Deterministic on any number of
+/// Results stay within the range of the source's present samples, integer types round; a same-lattice target is the
+/// identity. Deterministic on any number of
 /// threads. Throws Cancelled.
 Field resample(const Field& source, const Lattice& target, ResampleFilter filter, const Progress& progress = {});
 

@@ -1,7 +1,76 @@
+#include "app/command/bench.h"
+
 #include "app/command/command.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <nlohmann/json.hpp>
 
 namespace tessera::app {
 
-void addBenchCommand(CLI::App&) {}
+namespace {
+
+struct NamedBench {
+    const char* name;
+    BenchTable (*measure)();
+};
+constexpr NamedBench kBenches[] = {{"lattice", benchLattice}, {"codec", benchCodec}, {"render", benchRender}};
+
+/// Columns of texts to the left, of numbers to the right.
+void print(const BenchTable& table) {
+    std::vector<std::size_t> widths;
+    std::vector<bool> numeric;
+    for (std::size_t c = 0; c < table.columns.size(); ++c) {
+        widths.push_back(table.columns[c].size());
+        numeric.push_back(true);
+        for (const std::vector<std::string>& row : table.rows) {
+            widths[c] = std::max(widths[c], row[c].size());
+            numeric[c] =
+                numeric[c] && (row[c].empty() || std::string("-+.0123456789").find(row[c][0]) != std::string::npos);
+        }
+    }
+    const auto line = [&](const std::vector<std::string>& cells) {
+        std::string text;
+        for (std::size_t c = 0; c < cells.size(); ++c) {
+            const std::string pad(widths[c] - cells[c].size(), ' ');
+            text += (c > 0 ? "  " : "") + (numeric[c] ? pad + cells[c] : cells[c] + pad);
+        }
+        text.erase(text.find_last_not_of(' ') + 1);
+        std::printf("%s\n", text.c_str());
+    };
+    std::printf("%s\n", table.name.c_str());
+    line(table.columns);
+    for (const std::vector<std::string>& row : table.rows) line(row);
+    std::printf("\n");
+    std::fflush(stdout);
+}
+
+} // namespace
+
+void addBenchCommand(CLI::App& app) {
+    struct Options {
+        std::vector<std::string> names;
+        bool json = false;
+    };
+    const auto options = std::make_shared<Options>();
+    CLI::App* command = app.add_subcommand("bench", "Measure on this machine the tables of the documentation");
+    std::vector<std::string> known;
+    for (const NamedBench& bench : kBenches) known.emplace_back(bench.name);
+    command->add_option("name", options->names, "Which tables (all of them)")->check(CLI::IsMember(known));
+    command->add_flag("--json", options->json, "Print JSON with stable keys");
+    command->callback([options] {
+        nlohmann::json tables = nlohmann::json::array();
+        for (const NamedBench& bench : kBenches) {
+            if (!options->names.empty() && std::ranges::find(options->names, bench.name) == options->names.end())
+                continue;
+            const BenchTable table = bench.measure();
+            if (options->json)
+                tables.push_back({{"name", table.name}, {"columns", table.columns}, {"rows", table.rows}});
+            else
+                print(table);
+        }
+        if (options->json) std::printf("%s\n", nlohmann::json{{"tables", tables}}.dump(2).c_str());
+    });
+}
 
 } // namespace tessera::app

@@ -1,7 +1,44 @@
 #include "app/command/command.h"
+#include "app/command/picture_options.h"
+#include "volume/error.h"
+
+#include <filesystem>
+#include <memory>
 
 namespace tessera::app {
 
-void addRenderCommand(CLI::App&) {}
+void addRenderCommand(CLI::App& app) {
+    struct Options {
+        PictureOptions picture;
+        std::string output;
+        std::optional<double> time;
+    };
+    auto options = std::make_shared<Options>();
+    CLI::App* command = app.add_subcommand("render", "Draw the window or one view into a PNG, without a window");
+    addPictureOptions(*command, options->picture);
+    command->add_option("--time", options->time, "Time to show, in the unit of the data");
+    command->add_option("-o,--output", options->output, "PNG to write; it carries the session")->required();
+    command->callback([options] {
+        const Progress progress = terminalProgress("render");
+        // The wrong size or a folder that does not exist is said before the work, not after it.
+        pictureRequest(options->picture, Session{});
+        const auto folder = std::filesystem::absolute(options->output).parent_path();
+        if (!std::filesystem::is_directory(folder)) throw Error("no such folder", folder.string());
+        Opened opened = openForPicture(options->picture, progress);
+        Session& session = opened.document.session;
+        if (options->time) {
+            const auto& times = opened.source->info().times;
+            if (*options->time < times.front() || *options->time > times.back())
+                throw Error("is not in " + std::to_string(times.front()) + " .. " + std::to_string(times.back()),
+                            "--time", std::to_string(*options->time));
+            session.time = *options->time;
+        }
+        opened.document.history.reset(session);
+        PictureMaker maker;
+        const vis::Image image =
+            maker.render(opened.document, opened.source, pictureRequest(options->picture, session));
+        vis::writePng(options->output, image, {{vis::kSessionTextKey, printSession(opened.document, options->output)}});
+    });
+}
 
 } // namespace tessera::app

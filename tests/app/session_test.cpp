@@ -46,7 +46,7 @@ volume::DatasetInfo cellInfo() {
 
 SessionDocument edited() {
     SessionDocument document;
-    document.session = defaultSession(cellInfo(), {.files = {}, .model = "fuel-cell", .settings = {}});
+    document.session = defaultSession(cellInfo(), {.files = {}, .model = "fuel-cell", .settings = {}, .import = {}});
     document.history.reset(document.session);
     document.session.camera.distance = 3;
     document.history.observe(document.session, false, 0);

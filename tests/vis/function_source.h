@@ -12,7 +12,8 @@
 namespace tessera::vis {
 
 /// A BrickSource whose channels are functions of the position, absent where they give nothing. The lattice replaces,
-/// or is, a CC grid of `size` samples over the box 0..(size - 1) * spacing.
+/// or is, a CC grid of `size` samples over the box 0..(size - 1) * spacing. `inset`: parts of a cell by which the
+/// bounds that are shown lie inside that box, so that rays and samples do not fall on lattice planes.
 class FunctionSource : public volume::BrickSource {
 public:
     using Function = std::function<std::optional<double>(glm::dvec3 position)>;
@@ -24,12 +25,12 @@ public:
     };
 
     FunctionSource(volume::LatticeKind kind, glm::ivec3 size, glm::dvec3 spacing, std::vector<Channel> channels,
-                   int brickSize = 8)
+                   int brickSize = 8, glm::dvec3 inset = glm::dvec3(0))
         : channels_(std::move(channels)) {
         volume::Lattice lattice;
         lattice.size = size;
         lattice.spacing = spacing;
-        info_.bounds = {glm::dvec3(0), glm::dvec3(size - 1) * spacing};
+        info_.bounds = {inset * spacing, (glm::dvec3(size - 1) - inset * 0.7) * spacing};
         if (kind == volume::LatticeKind::BCC) lattice = volume::bccFor(lattice);
         info_.name = "function";
         info_.lattice = lattice;

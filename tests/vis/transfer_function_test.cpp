@@ -95,7 +95,7 @@ TEST(TransferFunction, TableEqualsEvaluateAtCentres) {
             function.reversed = size % 2 == 0;
             function.opacity = {{0.0f, unit(engine)}, {0.3f, unit(engine)}, {0.3f, unit(engine)}, {1.0f, unit(engine)}};
             const Range range{-3, 11};
-            const std::vector<glm::vec4> table = makeTable(function, size);
+            const std::vector<glm::vec4> table = makeTable(function, size, range);
             ASSERT_EQ(table.size(), std::size_t(size));
             for (int i = 0; i < size; ++i) {
                 const double value = range.lo + (i + 0.5) / size * (range.hi - range.lo);
@@ -117,6 +117,17 @@ TEST(TransferFunction, OpacityCurveIsLinearWithJumpsAndEndsHeld) {
     EXPECT_NEAR(opacity(1), 0.3, 1e-6);
     function.opacity.clear();
     EXPECT_EQ(opacity(0.5), 0);
+}
+
+TEST(TransferFunction, LabelsKeepTheirColourInAnyRange) {
+    TransferFunction function;
+    function.colormap = "labels";
+    for (int label = -12; label <= 25; ++label) {
+        const glm::dvec3 wanted = colormapColor("labels", (((label % 10) + 10) % 10 + 0.5) / 10);
+        for (Range range : {Range{0, 3}, Range{0, 5}, Range{-7, 1000}})
+            for (double off : {-0.4, 0.0, 0.4})
+                EXPECT_EQ(glm::dvec3(evaluate(function, range, label + off)), wanted) << label << " " << off;
+    }
 }
 
 TEST(TransferFunction, RangeReversalAndDegenerateRange) {

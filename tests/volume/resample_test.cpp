@@ -162,6 +162,18 @@ TEST(Resample, IntegersRoundAndClamp) {
         EXPECT_GE(clamped.as<std::int16_t>()[i], clamped.as<std::int16_t>()[i - 1]); // no wrap around
 }
 
+TEST(Resample, ResultsStayInTheRangeOfWhatIsPresent) {
+    Field step = sampled<float>(ccLattice({12, 12, 12}), [](glm::dvec3 p) {
+        return p.x < 3 ? -50 : p.x < 7 ? 0 : 2.5;
+    });
+    test::removeWhere(step, [](glm::dvec3 p) { return p.x < 3; });
+    const Field bcc = toBcc(step, false);
+    const Field back = resample(bcc, step.lattice, ResampleFilter::Cubic);
+    for (const Field* field : {&bcc, &back})
+        for (std::size_t i = 0; i < field->count(); ++i)
+            EXPECT_TRUE(!field->present(i) || (field->value(i) >= 0 && field->value(i) <= 2.5));
+}
+
 TEST(Resample, LabelsStayLabels) {
     const Field labels = sampled<std::uint8_t>(ccLattice({15, 13, 11}), [](glm::dvec3 p) {
         return p.x < 5 ? 1 : p.y < 6 ? 3 : 7;

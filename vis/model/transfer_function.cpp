@@ -73,9 +73,19 @@ double opacityAt(const std::vector<glm::vec2>& curve, double x) {
     return glm::mix(a.y, b.y, (x - a.x) / (b.x - a.x));
 }
 
-/// evaluate() at a position 0..1 along the range.
-glm::dvec4 evaluateAt(const TransferFunction& function, const Colormap& map, double x) {
-    return {color(map, function.reversed ? 1 - x : x), clamp01(opacityAt(function.opacity, x))};
+/// Colour of a label: those of the map in turn, so that it does not depend on which other labels there are.
+glm::dvec3 labelColor(const Colormap& map, bool reversed, double label) {
+    const auto count = static_cast<double>(map.colors.size());
+    const double turn = std::isfinite(label) ? std::fmod(std::round(label), count) : 0;
+    const auto i = static_cast<std::size_t>(turn < 0 ? turn + count : turn);
+    return unpack(map.colors[reversed ? map.colors.size() - 1 - i : i]);
+}
+
+/// evaluate() at x = 0..1 along the range, where `value` is.
+glm::dvec4 evaluateAt(const TransferFunction& function, const Colormap& map, double x, double value) {
+    const glm::dvec3 shown = map.info.kind == "categorical" ? labelColor(map, function.reversed, value)
+                                                            : color(map, function.reversed ? 1 - x : x);
+    return {shown, clamp01(opacityAt(function.opacity, x))};
 }
 
 } // namespace
@@ -96,14 +106,16 @@ glm::dvec4 evaluate(const TransferFunction& function, Range range, double value)
     const double width = range.hi - range.lo;
     // A range without width still tells below from above.
     const double x = width != 0 ? (value - range.lo) / width : value > range.lo ? 1.0 : value < range.lo ? 0.0 : 0.5;
-    return evaluateAt(function, find(function.colormap), clamp01(x));
+    return evaluateAt(function, find(function.colormap), clamp01(x), value);
 }
 
-std::vector<glm::vec4> makeTable(const TransferFunction& function, int size) {
+std::vector<glm::vec4> makeTable(const TransferFunction& function, int size, Range range) {
     const Colormap& map = find(function.colormap);
     std::vector<glm::vec4> table(static_cast<std::size_t>(std::max(size, 0)));
-    for (std::size_t i = 0; i < table.size(); ++i)
-        table[i] = evaluateAt(function, map, (static_cast<double>(i) + 0.5) / size);
+    for (std::size_t i = 0; i < table.size(); ++i) {
+        const double x = (static_cast<double>(i) + 0.5) / size;
+        table[i] = evaluateAt(function, map, x, glm::mix(range.lo, range.hi, x));
+    }
     return table;
 }
 

@@ -44,17 +44,20 @@ struct ColormapInfo {
 /// The colour maps that can be chosen, perceptually uniform ones first.
 std::span<const ColormapInfo> colormaps();
 
-/// Colour (sRGB, 0..1) of a map at x in 0..1, linear between its control colours; unknown names give viridis.
+/// Colour (sRGB, 0..1) of a map at x in 0..1, linear between its control colours (a categorical map shows its colours
+/// as equal steps); unknown names give viridis.
 glm::dvec3 colormapColor(std::string_view name, double x);
 
 /// Range in use: the channel's own or the stated one.
 Range effectiveRange(const TransferFunction& function, Range channelRange);
 
-/// Colour and opacity at a physical value: the one definition that legends, tables, plots and the reference use.
+/// Colour and opacity at a physical value: the one definition that legends, tables, plots and the reference use. A
+/// categorical map colours a value by its nearest integer, whatever the range: label n has colour n modulo their
+/// number.
 glm::dvec4 evaluate(const TransferFunction& function, Range range, double value);
 
-/// evaluate() at the centres of `size` equal parts of the range, for a lookup texture. RGBA, sRGB colour, not
-/// premultiplied.
-std::vector<glm::vec4> makeTable(const TransferFunction& function, int size);
+/// evaluate() at the centres of `size` equal parts of the range, for a colour bar. RGBA, sRGB colour, not
+/// premultiplied. Only categorical maps depend on the range.
+std::vector<glm::vec4> makeTable(const TransferFunction& function, int size, Range range = {0, 1});
 
 } // namespace tessera::vis

@@ -25,8 +25,7 @@ struct DrawnLayer {
     const Samples* samples = nullptr;
     Range range;
     const TransferFunction* function = nullptr;
-    std::vector<glm::dvec4> table; ///< linear light; empty: evaluate the function
-    Plane plane;                   ///< of a slice
+    Plane plane; ///< of a slice
 
     /// Place in the range of the transfer function, 0..1.
     double place(double value) const {
@@ -36,15 +35,8 @@ struct DrawnLayer {
     }
     /// Colour (linear light) and opacity of a value.
     glm::dvec4 classify(double value) const {
-        if (table.empty()) {
-            const glm::dvec4 srgb = evaluate(*function, range, value);
-            return {linearFromSrgb(glm::dvec3(srgb)), srgb.a};
-        }
-        const double last = double(table.size() - 1);
-        const double at = std::clamp(place(value) * double(table.size()) - 0.5, 0.0, last);
-        const double below = std::min(std::floor(at), std::max(last - 1, 0.0));
-        const auto i = static_cast<std::size_t>(below);
-        return glm::mix(table[i], table[std::min(i + 1, table.size() - 1)], at - below);
+        const glm::dvec4 srgb = evaluate(*function, range, value);
+        return {linearFromSrgb(glm::dvec3(srgb)), srgb.a};
     }
 };
 
@@ -82,9 +74,6 @@ struct Prepared {
             const volume::Channel channel = info.channels()[std::size_t(*info.findChannel(name))];
             one.function = &transferFor(scene, channel.name);
             one.range = effectiveRange(*one.function, info.channelRange(channel));
-            if (options.tableSize > 0)
-                for (const glm::vec4& entry : makeTable(*one.function, options.tableSize))
-                    one.table.emplace_back(linearFromSrgb(glm::dvec3(entry)), entry.a);
             if (const auto* slice = std::get_if<SliceLayer>(one.technique))
                 one.plane = slicePlane(*slice, frame, scene.cursor);
             layers.push_back(std::move(one));

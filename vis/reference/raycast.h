@@ -19,9 +19,6 @@ struct Image {
 };
 
 struct Options {
-    /// Entries of the transfer-function table to read by linear interpolation as a texture would; 0 evaluates the
-    /// function itself.
-    int tableSize = 0;
     Flaws flaws; ///< none, except in tests
 };
 

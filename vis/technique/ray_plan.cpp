@@ -33,22 +33,28 @@ const std::string& channelOf(const Layer& layer) {
     return std::visit([](const auto& technique) -> const std::string& { return technique.channel; }, layer.technique);
 }
 
-/// x = texel * first + second is the place of a texel value in a channel's transfer function.
-glm::dvec2 transferMap(const BoundField& field, const Scene& scene, const std::string& channel,
-                       const volume::DatasetInfo& info) {
-    const volume::Channel known = info.channels()[std::size_t(field.channel)];
-    const Range range = effectiveRange(transferFor(scene, channel), info.channelRange(known));
-    const double width = range.hi != range.lo ? range.hi - range.lo : 1e-30;
+/// The transfer function of a layer's channel, whatever word the layer names it by, and the range it runs over.
+struct ChannelTransfer {
+    const TransferFunction& function;
+    Range range;
+};
+ChannelTransfer transferOf(const Scene& scene, const volume::DatasetInfo& info, int channel) {
+    const volume::Channel known = info.channels()[std::size_t(channel)];
+    const TransferFunction& function = transferFor(scene, known.name);
+    return {function, effectiveRange(function, info.channelRange(known))};
+}
+
+/// x = texel * first + second is the place of a texel value in a channel's transfer function: the middle of it where
+/// the range has no width.
+glm::dvec2 transferMap(const BoundField& field, const Scene& scene, const volume::DatasetInfo& info) {
+    const Range range = transferOf(scene, info, field.channel).range;
+    const double width = range.hi - range.lo;
+    if (width == 0) return {0, 0.5};
     return {field.encoding.scale / width, (field.encoding.offset - range.lo) / width};
 }
 
 double toTexel(const BoundField& field, double value) {
     return (value - field.encoding.offset) / field.encoding.scale;
-}
-
-/// Transfer function of a layer as drawn, without its range.
-const TransferFunction& functionOf(const Scene& scene, int layer) {
-    return transferFor(scene, channelOf(scene.layers[std::size_t(layer)]));
 }
 
 } // namespace
@@ -121,17 +127,18 @@ ProgramRecipe rayRecipe(const RayPlan& plan, const Scene& scene, const volume::B
     return recipe;
 }
 
-std::vector<glm::vec4> transferTables(const RayPlan& plan, const Scene& scene) {
+std::vector<glm::vec4> transferTables(const RayPlan& plan, const Scene& scene, const volume::DatasetInfo& info) {
     std::vector<glm::vec4> table;
-    const auto add = [&](int layer) {
-        const TransferFunction& function = functionOf(scene, layer);
+    const auto add = [&](int field) {
+        const auto [function, range] = transferOf(scene, info, plan.fields[std::size_t(field)].channel);
         for (int i = 0; i < kTableSize; ++i) {
-            const glm::dvec4 at = evaluate(function, {0, 1}, double(i) / (kTableSize - 1));
+            const double value = glm::mix(range.lo, range.hi, double(i) / (kTableSize - 1));
+            const glm::dvec4 at = evaluate(function, range, value);
             table.emplace_back(glm::vec3(linearFromSrgb(glm::dvec3(at))), float(at.a));
         }
     };
-    for (const RayLayer& layer : plan.layers) add(layer.layer);
-    for (const SliceUse& slice : plan.slices) add(slice.layer);
+    for (const RayLayer& layer : plan.layers) add(layer.field);
+    for (const SliceUse& slice : plan.slices) add(slice.field);
     for (std::size_t row = 0; row < plan.layers.size(); ++row)
         for (int i = 0; i < kTableSize; ++i) {
             const std::size_t at = row * kTableSize + std::size_t(i);
@@ -168,7 +175,7 @@ void setLayers(const Program& program, const RayPlan& plan, const Scene& scene, 
             colors.emplace_back(linearFromSrgb(glm::dvec3(iso->color)));
         } else {
             const auto& volume = std::get<VolumeLayer>(layer.technique);
-            maps.emplace_back(transferMap(field, scene, volume.channel, info), volume.density, 1);
+            maps.emplace_back(transferMap(field, scene, info), volume.density, 1);
             colors.emplace_back(1);
         }
     }
@@ -176,8 +183,8 @@ void setLayers(const Program& program, const RayPlan& plan, const Scene& scene, 
         const auto& slice = std::get<SliceLayer>(scene.layers[std::size_t(use.layer)].technique);
         const Plane plane = slicePlane(slice, frame, scene.cursor);
         planes.emplace_back(plane.normal, plane.offset);
-        slices.emplace_back(transferMap(plan.fields[std::size_t(use.field)], scene, slice.channel, info),
-                            slice.contours, slice.opacity);
+        slices.emplace_back(transferMap(plan.fields[std::size_t(use.field)], scene, info), slice.contours,
+                            slice.opacity);
     }
     program.set("layerMap", maps);
     program.set("layerColor", colors);
@@ -339,10 +346,10 @@ std::optional<BlockDistances> blockDistances(const RayPlan& plan, const Scene& s
         if (use.style == RayStyle::Iso) {
             value = toTexel(field, std::get<IsoLayer>(layer.technique).value);
         } else {
-            map = transferMap(field, scene, channelOf(layer), info);
+            map = transferMap(field, scene, info);
             for (int i = 0; i < kTableSize; ++i)
-                opacity.push_back(
-                    float(evaluate(functionOf(scene, use.layer), {0, 1}, double(i) / (kTableSize - 1)).a));
+                opacity.push_back(float(
+                    evaluate(transferOf(scene, info, field.channel).function, {0, 1}, double(i) / (kTableSize - 1)).a));
         }
         for (std::size_t i = 0; i < total; ++i) {
             if (!(blocks.min[i] <= blocks.max[i])) continue;

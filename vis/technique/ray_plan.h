@@ -55,7 +55,7 @@ ProgramRecipe rayRecipe(const RayPlan& plan, const Scene& scene, const volume::B
 inline constexpr int kTableSize = 2048;
 /// Transfer tables of layers, then slices: kTableSize x rows, linear light, not premultiplied; then one row per layer
 /// whose opacity at i is the greater one of entries i and i + 1.
-std::vector<glm::vec4> transferTables(const RayPlan& plan, const Scene& scene);
+std::vector<glm::vec4> transferTables(const RayPlan& plan, const Scene& scene, const volume::DatasetInfo& info);
 
 /// Sets every uniform except the samplers' textures (unit i = field i, then transfer table, block distance) and
 /// ndcScale and ndcOffset.

@@ -27,6 +27,23 @@ struct ImportOptions {
     /// Finds a label such as `region` and fields that are exactly 0 wherever the label has certain values, and takes
     /// them as absent there. Rules of `absent` for the same parameter take its place ("O2=none": nothing is absent).
     bool autoAbsent = true;
+
+    bool operator==(const ImportOptions&) const = default;
+    static void describe(auto& self, auto&& visit) {
+        visit(self.gridSize, FieldInfo{.key = "gridSize",
+                                       .unit = "",
+                                       .doc = "Grid that meshes are resampled to, 0 = chosen by the number of cells",
+                                       .range = Range{0, 4096}});
+        visit(self.raw, FieldInfo{.key = "raw", .unit = "", .doc = "Layout of a raw file: dims=..,type=..,..."});
+        visit(self.absent, FieldInfo{.key = "absent", .unit = "", .doc = "Rules for absent samples: O2=region:0,3"});
+        visit(self.rename, FieldInfo{.key = "rename", .unit = "", .doc = "Parameter names by names in the file"});
+        visit(self.units, FieldInfo{.key = "units", .unit = "", .doc = "Units by parameter"});
+        visit(self.lengthUnit, FieldInfo{.key = "lengthUnit", .unit = "", .doc = "Unit of length of the file"});
+        visit(self.times, FieldInfo{.key = "times", .unit = "", .doc = "Times of a series"});
+        visit(self.parameters, FieldInfo{.key = "parameters", .unit = "", .doc = "Parameters read, empty = all"});
+        visit(self.autoAbsent,
+              FieldInfo{.key = "autoAbsent", .unit = "", .doc = "Find absent samples by a label such as region"});
+    }
 };
 
 /// What a look at the headers tells, before any sample is read.

@@ -89,41 +89,65 @@ std::vector<Between> between(int shown, int solved) {
     return result;
 }
 
-/// Puts the values of some rows of the solved grid on the shown one, linearly among the cells that are `inside`; where
-/// none of the eight around is, the nearest row's of the space is taken.
+/// Up to four solved cells of a cross-section that a shown one is made of; offsets from the first of the plane.
+struct Stencil {
+    std::array<std::size_t, 4> cell{};
+    std::array<double, 4> weight{}; ///< sum 1; all 0 for a sample outside
+};
+
+/// Bilinear weights among the cells that are `inside`; where none of the four is, the nearest of the space's channel.
+template <class Inside> std::vector<Stencil> crossSection(const Solution& s, int yBegin, int rows, Inside&& inside) {
+    const auto xs = between(s.shown.nx, s.grid.nx), ys = between(s.shown.ny, s.grid.ny);
+    std::vector<Stencil> stencils;
+    stencils.reserve(xs.size() * ys.size());
+    for (int y = 0; y < s.shown.ny; ++y)
+        for (int x = 0; x < s.shown.nx; ++x) {
+            Stencil& stencil = stencils.emplace_back();
+            if (!inside(s.shown.region(x, y))) continue;
+            const Between &bx = xs[std::size_t(x)], &by = ys[std::size_t(y)];
+            const auto cell = [&](int cx, int cy) { return std::size_t(cx + s.grid.nx * (cy - yBegin)); };
+            double sum = 0;
+            for (std::size_t corner = 0; corner < 4; ++corner) {
+                const int cx = corner & 1 ? bx.hi : bx.lo, cy = corner & 2 ? by.hi : by.lo;
+                if (!inside(s.grid.region(cx, cy))) continue;
+                stencil.cell[corner] = cell(cx, cy);
+                // Never quite 0: a sample on the border still finds its own space.
+                stencil.weight[corner] = ((corner & 1 ? bx.weight : 1 - bx.weight) + 1e-30) *
+                                         ((corner & 2 ? by.weight : 1 - by.weight) + 1e-30);
+                sum += stencil.weight[corner];
+            }
+            if (sum > 0) {
+                for (double& weight : stencil.weight) weight /= sum;
+            } else {
+                stencil.cell[0] = cell(std::clamp(bx.lo, s.grid.channelBegin, s.grid.channelEnd - 1),
+                                       std::clamp(by.lo, yBegin, yBegin + rows - 1));
+                stencil.weight[0] = 1;
+            }
+        }
+    return stencils;
+}
+
+/// Puts values of some rows of the solved grid on the shown one, linearly among the cells that are `inside`.
 template <class Inside>
 void spread(const Solution& s, std::span<const float> values, int yBegin, int rows, Inside&& inside,
             std::span<float> out) {
-    const auto xs = between(s.shown.nx, s.grid.nx), ys = between(s.shown.ny, s.grid.ny),
-               zs = between(s.shown.nz, s.grid.nz);
-    const std::size_t row = std::size_t(s.grid.nx), plane = row * std::size_t(rows);
-    parallelFor(std::size_t(s.shown.nz), [&](std::size_t z) {
-        for (std::size_t y = 0; y < ys.size(); ++y)
-            for (std::size_t x = 0; x < xs.size(); ++x) {
-                const std::size_t to = (z * ys.size() + y) * xs.size() + x;
-                if (!inside(s.shown.region(int(x), int(y)))) continue;
-                double sum = 0, weights = 0;
-                for (int corner = 0; corner < 8; ++corner) {
-                    const auto pick = [&](const Between& b, int bit) { return corner & bit ? b.hi : b.lo; };
-                    const auto share = [&](const Between& b, int bit) {
-                        return corner & bit ? b.weight : 1 - b.weight;
-                    };
-                    const int cx = pick(xs[x], 1), cy = pick(ys[y], 2), cz = pick(zs[z], 4);
-                    // A weight that is never quite 0 lets a sample on the border still find its own space.
-                    const double weight = (share(xs[x], 1) + 1e-6) * (share(ys[y], 2) + 1e-6) * share(zs[z], 4);
-                    if (!inside(s.grid.region(cx, cy))) continue;
-                    sum += weight *
-                           double(values[std::size_t(cx) + row * std::size_t(cy - yBegin) + plane * std::size_t(cz)]);
-                    weights += weight;
-                }
-                if (weights > 0) {
-                    out[to] = float(sum / weights);
-                    continue;
-                }
-                const int cx = std::clamp(xs[x].lo, s.grid.channelBegin, s.grid.channelEnd - 1);
-                const int cy = std::clamp(ys[y].lo, yBegin, yBegin + rows - 1);
-                out[to] = values[std::size_t(cx) + row * std::size_t(cy - yBegin) + plane * std::size_t(zs[z].lo)];
+    const std::vector<Stencil> stencils = crossSection(s, yBegin, rows, inside);
+    const auto zs = between(s.shown.nz, s.grid.nz);
+    const std::size_t plane = std::size_t(s.grid.nx) * std::size_t(rows);
+    parallelFor(zs.size(), [&](std::size_t z) {
+        const float* lo = values.data() + plane * std::size_t(zs[z].lo);
+        const float* hi = values.data() + plane * std::size_t(zs[z].hi);
+        for (std::size_t q = 0; q < stencils.size(); ++q) {
+            const Stencil& stencil = stencils[q];
+            double below = 0, above = 0, weights = 0;
+            for (std::size_t corner = 0; corner < 4; ++corner) {
+                below += stencil.weight[corner] * double(lo[stencil.cell[corner]]);
+                above += stencil.weight[corner] * double(hi[stencil.cell[corner]]);
+                weights += stencil.weight[corner];
             }
+            // Samples outside keep what the other space wrote.
+            if (weights > 0) out[z * stencils.size() + q] = float(below + (above - below) * zs[z].weight);
+        }
     });
 }
 
@@ -242,10 +266,11 @@ Dataset makeFuelCell(const std::map<std::string, double>& given, const Progress&
     solver.settle(shown.voltageBefore, progress.part(0, 0.3));
     std::vector<double> times;
     for (int time = 0; time < shown.times; ++time) {
-        progress.advance(0.3 + 0.7 * time / shown.times, "time " + std::to_string(time));
+        const Progress part = progress.part(0.3 + 0.7 * time / shown.times, 0.3 + 0.7 * (time + 1) / shown.times);
         const double now = time * shown.interval;
         if (time > 0)
-            solver.step(shown.interval, now > shown.stepTime * (1 + 1e-12) ? shown.voltageAfter : shown.voltageBefore);
+            solver.step(shown.interval, now > shown.stepTime * (1 + 1e-12) ? shown.voltageAfter : shown.voltageBefore,
+                        part);
         times.push_back(now);
         solution->frames.push_back(keep(solver));
     }

@@ -443,7 +443,7 @@ bool FuelCellSolver::advance(double rate, double voltage, int maxIterations, dou
     bool converged = false;
     updateCurrent(voltage);
     for (iterations_ = 1; iterations_ <= maxIterations && !converged; ++iterations_) {
-        progress.advance(double(iterations_) / maxIterations, "steady state");
+        progress.advance(double(iterations_ - 1) / maxIterations, rate == 0 ? "steady state" : "load step");
         const std::vector<double> currentBefore = current_, waterBefore = waterFlux_;
         const bool refresh = iterations_ == 1 || (rate == 0 && iterations_ < 4);
         parallelFor(2, [&](std::size_t space) { solveFlow(int(space)); });
@@ -480,8 +480,8 @@ void FuelCellSolver::settle(double voltage, const Progress& progress) {
     advance(0, voltage, 200, 1e-6, progress);
 }
 
-void FuelCellSolver::step(double dt, double voltage) {
-    advance(1 / dt, voltage, 12, 1e-4, {});
+void FuelCellSolver::step(double dt, double voltage, const Progress& progress) {
+    advance(1 / dt, voltage, 12, 5e-4, progress);
 }
 
 double FuelCellSolver::totalCurrent() const {

@@ -68,8 +68,8 @@ public:
 
     /// Goes to the steady state at this cell voltage (V). Throws Cancelled.
     void settle(double voltage, const Progress& progress = {});
-    /// One implicit Euler step of `dt` seconds at this cell voltage; stable at any dt.
-    void step(double dt, double voltage);
+    /// One implicit Euler step of `dt` seconds at this cell voltage; stable at any dt. Throws Cancelled.
+    void step(double dt, double voltage, const Progress& progress = {});
 
     const FuelCellSettings& settings() const { return settings_; }
     const CellGrid& grid() const { return grid_; }

@@ -1,0 +1,110 @@
+#include "app/command/bench.h"
+
+#include "codec/archive.h"
+#include "codec/entropy.h"
+#include "codec/pack.h"
+#include "volume/import/import.h"
+#include "volume/synthetic/models.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <ctime>
+#include <filesystem>
+#include <unistd.h>
+
+namespace tessera::app {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string decimal(double value, int digits) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.*f", digits, value);
+    return text;
+}
+
+/// CPU seconds of the process that `body` takes: on a busy machine what wall time hides.
+template <class Body> double cpuSeconds(Body&& body) {
+    const std::clock_t start = std::clock();
+    body();
+    return std::max(double(std::clock() - start), 1.0) / CLOCKS_PER_SEC;
+}
+
+/// Calls `visit` with every frame of a data set.
+template <class Visit> void forFrames(const volume::DatasetInfo& info, Visit&& visit) {
+    for (int t = 0; t < int(info.times.size()); ++t)
+        for (int p = 0; p < int(info.parameters.size()); ++p)
+            for (int c = 0; c < info.parameters[std::size_t(p)].components; ++c) visit(p, c, t);
+}
+
+/// A file that disappears with the object.
+struct Scratch {
+    std::string path = (fs::temp_directory_path() / ("tessera-bench-" + std::to_string(::getpid()) + ".tsr")).string();
+    ~Scratch() { std::remove(path.c_str()); }
+};
+
+void measure(const std::string& name, volume::Dataset dataset, BenchTable& table) {
+    codec::Bytes raw;
+    forFrames(dataset.info, [&](int p, int c, int t) {
+        const volume::Field field = dataset.load(p, c, t);
+        raw.insert(raw.end(), field.samples.begin(), field.samples.end());
+    });
+    const double bytes = double(raw.size());
+
+    codec::Compressor zstd(19);
+    codec::Bytes packed = zstd.compress(raw);
+    if (packed.empty()) packed = raw;
+    codec::Bytes unpacked(raw.size());
+    const double zstdDecode = cpuSeconds([&] { (void)codec::decompress(packed, unpacked); });
+
+    for (const volume::LatticeKind lattice : {volume::LatticeKind::CC, volume::LatticeKind::BCC}) {
+        const Scratch file;
+        codec::PackOptions options;
+        options.lattice = lattice;
+        codec::PackSummary summary;
+        volume::Dataset copy = dataset;
+        const double packSeconds = cpuSeconds([&] { summary = codec::pack(copy, options, file.path); });
+        const codec::Archive archive(file.path);
+        double stored = 0;
+        const double decodeSeconds = cpuSeconds([&] {
+            forFrames(archive.info(), [&](int p, int c, int t) {
+                stored += double(codec::readField(archive, p, c, t).samples.size());
+            });
+        });
+        const double size = double(summary.archiveBytes);
+        const double decode = stored / 1e6 / decodeSeconds, peer = bytes / 1e6 / zstdDecode;
+        table.rows.push_back({name, lattice == volume::LatticeKind::CC ? "CC" : "BCC", decimal(bytes / 1e6, 2),
+                              decimal(size / 1e6, 3), decimal(bytes / size, 2),
+                              decimal(bytes / double(packed.size()), 2), decimal(double(packed.size()) / size, 2),
+                              decimal(bytes / 1e6 / packSeconds, 1), decimal(decode, 0), decimal(peer, 0),
+                              decimal(decode / peer, 2)});
+    }
+}
+
+} // namespace
+
+BenchTable benchCodec() {
+    BenchTable table;
+    table.name = "codec";
+    table.columns = {
+        "data",      "lattice",       "raw MB",          "archive MB",  "ratio",           "zstd -19 ratio",
+        "over zstd", "pack MB/CPU s", "decode MB/CPU s", "zstd decode", "decode over zstd"};
+    const auto cubic = [](double n) { return std::map<std::string, double>{{"nx", n}, {"ny", n}, {"nz", n}}; };
+    measure("marschner-lobb 64^3", volume::makeModel("marschner-lobb", cubic(64)), table);
+    const char* data = std::getenv("TESSERA_DATA");
+    std::vector<fs::path> sidecars;
+    std::error_code missing;
+    if (data)
+        for (const auto& entry : fs::directory_iterator(fs::path(data) / "volumes", missing))
+            if (entry.path().extension() == ".json") sidecars.push_back(entry.path());
+    if (sidecars.empty())
+        std::fprintf(stderr, "bench codec: real volumes are looked for in $TESSERA_DATA/volumes; there are none\n");
+    std::sort(sidecars.begin(), sidecars.end());
+    for (const fs::path& sidecar : sidecars)
+        measure(sidecar.stem().string(), volume::openFiles({sidecar.string()}, {}), table);
+    return table;
+}
+
+} // namespace tessera::app

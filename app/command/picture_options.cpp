@@ -1,0 +1,97 @@
+#include "app/command/picture_options.h"
+
+#include "app/command/import_options.h"
+#include "volume/error.h"
+
+#include <cstdio>
+#include <filesystem>
+
+namespace tessera::app {
+
+namespace {
+
+/// Applies "/json/pointer=value"; the value is JSON, or text where it is none.
+void applySetting(Json& document, const std::string& setting) {
+    const auto equals = setting.find('=');
+    if (equals == std::string::npos || !setting.starts_with("/"))
+        throw Error("needs /json/pointer=value", "--set", setting);
+    const std::string path = setting.substr(0, equals), text = setting.substr(equals + 1);
+    Json value = Json::parse(text, nullptr, false);
+    if (value.is_discarded()) value = text;
+    try {
+        const Json::json_pointer pointer(path);
+        if (!document.contains(pointer.parent_pointer())) throw Error("no such place in the session", "--set", path);
+        document[pointer] = std::move(value);
+    } catch (const Json::exception&) {
+        throw Error("no such place in the session", "--set", path);
+    }
+}
+
+} // namespace
+
+void addPictureOptions(CLI::App& command, PictureOptions& options) {
+    command.add_option("input", options.inputs, "Session, layout, picture of ours or data files; none: built-in data")
+        ->type_name("SESSION|LAYOUT|DATA");
+    command.add_option("--layout", options.layout, "Layout to show the data in, by name or file");
+    command.add_option("--view", options.view, "One view alone, e.g. volume; else the whole window");
+    command.add_option("--size", options.size, "Pixels of the picture")->type_name("WxH")->capture_default_str();
+    command.add_option("--scale", options.scale, "Size of text and lines")
+        ->check(CLI::Range(0.25, 8.0))
+        ->capture_default_str();
+    command.add_option("--set", options.settings, "Changes the session, e.g. /camera/distance=1.5")
+        ->type_name("/POINTER=VALUE")
+        ->expected(1)
+        ->take_all();
+    addImportOptions(command, options.import);
+}
+
+Opened openForPicture(const PictureOptions& options, const Progress& progress) {
+    OpenRequest request;
+    request.paths = options.inputs;
+    request.layout = options.layout;
+    if (!(options.import == volume::ImportOptions{})) request.import = options.import;
+    if (request.paths.size() == 1 && request.layout.empty() && !std::filesystem::exists(request.paths[0]) &&
+        request.paths[0].find('.') == std::string::npos) {
+        request.layout = request.paths[0]; // the name of a layout
+        request.paths.clear();
+    }
+    Opened opened = open(request, progress);
+    if (!opened.missing.empty()) {
+        const DataFile& wanted = opened.missing.front().wanted;
+        throw Error("data file not found; it was at " + wanted.absolutePath, wanted.path);
+    }
+    if (!options.settings.empty()) {
+        Json document = toJson(opened.document.session);
+        for (const std::string& setting : options.settings) applySetting(document, setting);
+        std::vector<JsonIssue> unknown;
+        opened.document.session = sessionFromJson(document, "--set", &unknown);
+        if (!unknown.empty()) throw Error("unknown key", "--set", unknown.front().path);
+        fitSession(opened.document.session, opened.source->info(), opened.messages);
+    }
+    for (const std::string& message : opened.messages) std::fprintf(stderr, "tessera: %s\n", message.c_str());
+    return opened;
+}
+
+PictureRequest pictureRequest(const PictureOptions& options, const Session& session) {
+    PictureRequest request;
+    request.scale = options.scale;
+    int end = 0;
+    if (std::sscanf(options.size.c_str(), "%dx%d%n", &request.size.x, &request.size.y, &end) != 2 ||
+        end != static_cast<int>(options.size.size()) || request.size.x < 16 || request.size.y < 16 ||
+        request.size.x > 16384 || request.size.y > 16384)
+        throw CLI::ValidationError("--size", "needs WIDTHxHEIGHT, 16 to 16384, e.g. 1600x1000");
+    request.pane = options.view;
+    if (!options.view.empty() && !session.views.contains(options.view)) {
+        for (const auto& [pane, view] : session.views) {
+            const std::string_view kind =
+                std::visit([](const auto& v) { return std::string_view(std::decay_t<decltype(v)>::kType); }, view);
+            if (kind == options.view) {
+                request.pane = pane;
+                break;
+            }
+        }
+    }
+    return request;
+}
+
+} // namespace tessera::app

@@ -1,0 +1,31 @@
+#pragma once
+
+#include "app/open.h"
+#include "app/platform/headless.h"
+#include "app/session/session_file.h"
+
+#include <CLI/CLI.hpp>
+#include <string>
+#include <vector>
+
+namespace tessera::app {
+
+/// What render and replay have in common: what is opened, and how large the picture is.
+struct PictureOptions {
+    std::vector<std::string> inputs;
+    std::string layout, view, size = "1600x1000";
+    float scale = 1;
+    std::vector<std::string> settings; ///< "/json/pointer=value"
+    volume::ImportOptions import;
+};
+
+/// Adds them to a command; `options` must outlive the parsing.
+void addPictureOptions(CLI::App& command, PictureOptions& options);
+
+/// Opens what the options name, with the settings applied. Throws Error, also for data that cannot be found.
+Opened openForPicture(const PictureOptions& options, const Progress& progress);
+
+/// Pane, size and scale. `view` may be the key of a pane or the kind of one. Throws Error.
+PictureRequest pictureRequest(const PictureOptions& options, const Session& session);
+
+} // namespace tessera::app

@@ -1,0 +1,31 @@
+#pragma once
+
+#include "vis/reference/raycast.h"
+
+#include <cstdint>
+#include <optional>
+#include <span>
+
+/// VTK's volume mappers as a peer of the benchmarks: the program tessera-vtk-peer beside this one, run as a child on
+/// the same samples, camera, transfer function, step and light. It needs an X display; without one it runs under xvfb.
+namespace tessera::app {
+
+/// True when the program is there and a display, or xvfb-run, can be had.
+bool vtkPeerAtHand();
+
+struct PeerResult {
+    double milliseconds = 0;       ///< median of the timed pictures
+    vis::reference::Image picture; ///< linear, like the reference
+};
+struct PeerResults {
+    std::optional<PeerResult> gpu, cpu; ///< empty: the mapper cannot draw this, or failed
+};
+
+struct PeerSizes {
+    int timed = 512, compared = 64, frames = 5;
+};
+
+/// Draws the one layer of `scene` from unsigned bytes (x fastest) with range 0..255.
+PeerResults runVtkPeer(std::span<const std::uint8_t> bytes, glm::ivec3 size, const vis::Scene& scene, PeerSizes sizes);
+
+} // namespace tessera::app

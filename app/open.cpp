@@ -1,0 +1,248 @@
+#include "app/open.h"
+
+#include "codec/archive.h"
+#include "vis/image_io.h"
+#include "volume/error.h"
+#include "volume/import/import.h"
+#include "volume/memory_source.h"
+#include "volume/synthetic/models.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cstdlib>
+#include <filesystem>
+#include <set>
+
+namespace tessera::app {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr const char* kFirstLayout = "overview";
+
+bool endsWith(const std::string& path, std::string_view suffix) {
+    if (path.size() < suffix.size()) return false;
+    return std::equal(suffix.rbegin(), suffix.rend(), path.rbegin(),
+                      [](char a, char b) { return a == std::tolower(static_cast<unsigned char>(b)); });
+}
+
+enum class Kind { Session, Picture, Data };
+
+Kind kindOf(const std::string& path) {
+    if (endsWith(path, ".png")) return Kind::Picture;
+    if (!endsWith(path, ".json")) return Kind::Data;
+    if (endsWith(path, ".tessera.json")) return Kind::Session;
+    // Other JSON files are sessions (layouts) or the sidecars of raw files.
+    return looksLikeSession(readText(path)) ? Kind::Session : Kind::Data;
+}
+
+std::vector<fs::path> layoutFolders() {
+    std::vector<fs::path> folders;
+    std::error_code problem;
+    const fs::path program = fs::read_symlink("/proc/self/exe", problem);
+    if (!problem) {
+        folders.push_back(program.parent_path() / "../share/tessera/layouts");
+        folders.push_back(program.parent_path() / "layouts");
+    }
+    folders.emplace_back(TESSERA_LAYOUT_DIR);
+    return folders;
+}
+
+bool hasData(const DataRef& data) {
+    return !data.files.empty() || !data.model.empty();
+}
+
+bool sameData(const DataRef& a, const DataRef& b) {
+    if (a.files.size() != b.files.size() || a.model != b.model) return false;
+    if (a.files.empty()) return true;
+    return std::equal(a.files.begin(), a.files.end(), b.files.begin(), [](const DataFile& x, const DataFile& y) {
+        return x.absolutePath == y.absolutePath || (!x.hash.empty() && x.hash == y.hash);
+    });
+}
+
+/// Takes over a document read from a file: finds its data and opens it.
+Opened openDocument(SessionDocument document, const std::string& folder, const OpenRequest& request,
+                    const Progress& progress) {
+    Opened opened;
+    opened.document = std::move(document);
+    opened.folder = folder;
+    opened.messages = opened.document.messages;
+    if (request.data) return openWith(std::move(opened), *request.data, progress);
+    ResolvedData found = resolveData(opened.document.session.data, folder);
+    opened.messages.insert(opened.messages.end(), found.warnings.begin(), found.warnings.end());
+    if (!found.missing.empty()) {
+        opened.missing = std::move(found.missing);
+        return opened;
+    }
+    DataRef data = found.data;
+    if (request.import) data.import = *request.import;
+    return openWith(std::move(opened), data, progress);
+}
+
+} // namespace
+
+std::string sessionTextOfPicture(const std::string& path) {
+    std::map<std::string, std::string> texts;
+    vis::readPng(path, &texts);
+    const auto found = texts.find(vis::kSessionTextKey);
+    if (found == texts.end()) throw Error("this picture carries no session", path);
+    return found->second;
+}
+
+std::vector<std::string> layoutNames() {
+    std::set<std::string> names;
+    for (const fs::path& folder : layoutFolders()) {
+        std::error_code problem;
+        for (const auto& entry : fs::directory_iterator(folder, problem))
+            if (entry.path().extension() == ".json") names.insert(entry.path().stem().string());
+    }
+    return {names.begin(), names.end()};
+}
+
+std::string findLayout(const std::string& nameOrPath) {
+    std::error_code problem;
+    if (endsWith(nameOrPath, ".json") && fs::is_regular_file(nameOrPath, problem)) return nameOrPath;
+    for (const fs::path& folder : layoutFolders()) {
+        const fs::path path = folder / (nameOrPath + ".json");
+        if (nameOrPath.find('/') == std::string::npos && fs::is_regular_file(path, problem)) return path.string();
+    }
+    std::string known;
+    for (const std::string& name : layoutNames()) known += (known.empty() ? "" : ", ") + name;
+    throw Error("no layout of that name; there are " + (known.empty() ? "none" : known), {}, nameOrPath);
+}
+
+DataRef dataOf(const std::vector<std::string>& paths, const volume::ImportOptions& options) {
+    DataRef data;
+    data.import = options;
+    for (const std::string& path : paths) {
+        std::error_code problem;
+        if (!fs::exists(path, problem)) throw Error("no such file", path);
+        data.files.push_back(describeFile(path));
+    }
+    return data;
+}
+
+std::shared_ptr<const volume::BrickSource> openSource(const DataRef& data, std::vector<std::string>& messages,
+                                                      const Progress& progress) {
+    if (!hasData(data)) throw Error("names no data: open data first, or give a data file", {}, "/data");
+    if (data.files.size() == 1 && endsWith(data.files[0].absolutePath, ".tsr"))
+        return codec::openArchive(data.files[0].absolutePath);
+    volume::Dataset dataset;
+    if (data.files.empty()) {
+        dataset = volume::makeModel(data.model, data.settings, progress.part(0, 0.9));
+    } else {
+        std::vector<std::string> paths;
+        for (const DataFile& file : data.files) paths.push_back(file.absolutePath);
+        dataset = volume::openFiles(paths, data.import, progress.part(0, 0.3));
+        const bool known = std::all_of(dataset.info.parameters.begin(), dataset.info.parameters.end(),
+                                       [](const volume::Parameter& parameter) { return !parameter.ranges.empty(); });
+        if (!known) volume::scanRanges(dataset, progress.part(0.3, 0.95));
+    }
+    for (const volume::Parameter& parameter : dataset.info.parameters)
+        for (const Range& range : parameter.ranges)
+            if (!(range.hi >= range.lo)) {
+                messages.push_back("parameter " + parameter.name + " has no present samples");
+                break;
+            }
+    volume::MemorySourceOptions options;
+    options.lattice = data.bcc ? volume::LatticeKind::BCC : volume::LatticeKind::CC;
+    auto source = volume::makeMemorySource(std::move(dataset), options);
+    progress.advance(1);
+    return source;
+}
+
+Opened openWith(Opened opened, const DataRef& data, const Progress& progress) {
+    opened.missing.clear();
+    opened.source = openSource(data, opened.messages, progress);
+    opened.document.session.data = data;
+    opened.document.history.setData(data);
+    fitSession(opened.document.session, opened.source->info(), opened.messages);
+    return opened;
+}
+
+Session applyLayout(const SessionDocument& layout, const volume::DatasetInfo& info, const DataRef& data,
+                    std::vector<std::string>& messages) {
+    const bool own = sameData(layout.session.data, data);
+    Json result = toJson(defaultSession(info, data));
+    for (const auto& [key, value] : layout.raw.items()) {
+        if (key == "data" || key == "schema" || key == "app" || key == "history") continue;
+        // What only means something for the data the layout was made with.
+        if (!own && (key == "title" || key == "time" || key == "cursor" || key == "stretch")) continue;
+        if (key == "transfer") {
+            for (const auto& [channel, function] : value.items())
+                if (own || function.value("autoRange", true)) result[key][channel] = function;
+        } else {
+            result[key] = value;
+        }
+    }
+    if (!own && result["selection"].is_object()) result["selection"].erase("brushes");
+    Session session = sessionFromJson(result, {});
+    std::erase_if(session.transfer, [&](const auto& entry) { return !info.findChannel(entry.first); });
+    fitSession(session, info, messages);
+    return session;
+}
+
+Opened open(const OpenRequest& request, const Progress& progress) {
+    Opened opened;
+    std::vector<std::string> dataPaths;
+    if (request.paths.size() == 1) {
+        const std::string& path = request.paths[0];
+        std::error_code problem;
+        if (!fs::exists(path, problem)) throw Error("no such file", path);
+        const Kind kind = kindOf(path);
+        if (kind != Kind::Data) {
+            SessionDocument document =
+                kind == Kind::Session ? loadSession(path) : parseSession(sessionTextOfPicture(path), path);
+            const std::string folder = fs::absolute(path).parent_path().string();
+            // What the program saved says so; anything else is a layout, which may leave things out.
+            const bool complete = document.raw.contains("app") && (hasData(document.session.data) || request.data);
+            if (request.layout.empty() && complete) {
+                opened = openDocument(std::move(document), folder, request, progress);
+                if (kind == Kind::Session) opened.sessionPath = fs::absolute(path).lexically_normal().string();
+                return opened;
+            }
+            if (!request.layout.empty()) {
+                // A session's data shown in another layout.
+                const ResolvedData found = resolveData(document.session.data, folder);
+                if (!found.missing.empty()) throw Error("data file is missing", found.missing[0].wanted.path, path);
+                OpenRequest inner{{}, request.layout, found.data, request.import};
+                return open(inner, progress);
+            }
+            OpenRequest inner{{}, path, request.data, request.import}; // a layout without data
+            return open(inner, progress);
+        }
+    }
+    std::optional<SessionDocument> layout;
+    std::string layoutFolder;
+    if (!request.layout.empty() || (request.paths.empty() && !request.data)) {
+        const std::string path = findLayout(request.layout.empty() ? kFirstLayout : request.layout);
+        layout = loadSession(path);
+        layoutFolder = fs::path(path).parent_path().string();
+    }
+    DataRef data;
+    if (request.data) {
+        data = *request.data;
+    } else if (!request.paths.empty()) {
+        data = dataOf(request.paths, request.import.value_or(volume::ImportOptions{}));
+    } else if (hasData(layout->session.data)) {
+        const ResolvedData found = resolveData(layout->session.data, layoutFolder);
+        if (!found.missing.empty()) throw Error("data file is missing", found.missing[0].wanted.path);
+        data = found.data;
+    } else {
+        data.model = "fuel-cell";
+    }
+    opened.source = openSource(data, opened.messages, progress);
+    const volume::DatasetInfo& info = opened.source->info();
+    if (layout) {
+        opened.messages.insert(opened.messages.end(), layout->messages.begin(), layout->messages.end());
+        opened.document.session = applyLayout(*layout, info, data, opened.messages);
+    } else {
+        opened.document.session = defaultSession(info, data);
+        fitSession(opened.document.session, info, opened.messages);
+    }
+    opened.document.history.reset(opened.document.session);
+    return opened;
+}
+
+} // namespace tessera::app

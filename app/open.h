@@ -1,0 +1,57 @@
+#pragma once
+
+#include "app/session/session_file.h"
+#include "volume/brick_source.h"
+#include "volume/progress.h"
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+/// Opening anything the program is given: sessions, pictures that carry one, layouts, archives, data files and built-in
+/// models. Plain functions that work off the GUI thread; the workbench only takes over what they return.
+namespace tessera::app {
+
+struct OpenRequest {
+    std::vector<std::string> paths;              ///< one session or picture, or data files that belong together
+    std::string layout;                          ///< name or file of a layout; "" = none
+    std::optional<DataRef> data;                 ///< instead of paths, or instead of the data of a session
+    std::optional<volume::ImportOptions> import; ///< for data files
+};
+
+struct Opened {
+    SessionDocument document;
+    std::shared_ptr<const volume::BrickSource> source; ///< null if data are missing
+    std::vector<MissingData> missing;
+    std::string sessionPath; ///< where Save writes; "" for data, layouts and pictures
+    std::string folder;      ///< that data paths are relative to
+    std::vector<std::string> messages;
+};
+
+/// Opens a request. Nothing at all means the overview layout with the built-in fuel cell. Files that a session names
+/// and that cannot be found come back in `missing`, without a source. Throws Error, MachineError, Cancelled.
+Opened open(const OpenRequest& request, const Progress& progress = {});
+
+/// Opens a session document whose data are `data` (found by the user, or another data set).
+Opened openWith(Opened opened, const DataRef& data, const Progress& progress = {});
+
+/// A source of bricks for what a session names; ranges known. Throws Error.
+std::shared_ptr<const volume::BrickSource> openSource(const DataRef& data, std::vector<std::string>& messages,
+                                                      const Progress& progress = {});
+
+/// The data set that files given together make.
+DataRef dataOf(const std::vector<std::string>& paths, const volume::ImportOptions& options);
+
+/// The session text inside a PNG of ours. Throws Error when there is none.
+std::string sessionTextOfPicture(const std::string& path);
+
+/// Names of the layouts that ship with the program, and the file of a layout given by name or path. Throws Error.
+std::vector<std::string> layoutNames();
+std::string findLayout(const std::string& nameOrPath);
+
+/// A layout laid over a data set: what it leaves out or cannot mean for this data comes from the data's own defaults.
+Session applyLayout(const SessionDocument& layout, const volume::DatasetInfo& info, const DataRef& data,
+                    std::vector<std::string>& messages);
+
+} // namespace tessera::app

@@ -1,0 +1,130 @@
+#include "app/platform/gui.h"
+
+#include "app/ui/keys.h"
+#include "app/workbench.h"
+#include "volume/error.h"
+
+#include <backends/imgui_impl_opengl3.h>
+#include <epoxy/gl.h>
+#include <imgui.h>
+#include <thread>
+
+namespace tessera::app {
+
+namespace {
+
+/// A colour buffer of a given size, bound while it lives.
+class Framebuffer {
+public:
+    explicit Framebuffer(glm::ivec2 size) {
+        GLint largest = 0;
+        glGetIntegerv(GL_MAX_RENDERBUFFER_SIZE, &largest);
+        if (size.x < 1 || size.y < 1 || size.x > largest || size.y > largest)
+            throw MachineError("a picture of " + std::to_string(size.x) + "x" + std::to_string(size.y) +
+                               " is too large; this machine draws up to " + std::to_string(largest));
+        glGetIntegerv(GL_FRAMEBUFFER_BINDING, &former_);
+        glCreateRenderbuffers(1, &color_);
+        glNamedRenderbufferStorage(color_, GL_RGBA8, size.x, size.y);
+        glCreateFramebuffers(1, &name_);
+        glNamedFramebufferRenderbuffer(name_, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, color_);
+        if (glCheckNamedFramebufferStatus(name_, GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
+            throw MachineError("GL cannot draw into a framebuffer of this size");
+    }
+    ~Framebuffer() {
+        glBindFramebuffer(GL_FRAMEBUFFER, static_cast<GLuint>(former_));
+        glDeleteFramebuffers(1, &name_);
+        glDeleteRenderbuffers(1, &color_);
+    }
+    Framebuffer(const Framebuffer&) = delete;
+    Framebuffer& operator=(const Framebuffer&) = delete;
+    void bind() const { glBindFramebuffer(GL_FRAMEBUFFER, name_); }
+
+private:
+    GLuint name_ = 0, color_ = 0;
+    GLint former_ = 0;
+};
+
+vis::Image readPicture(glm::ivec2 size) {
+    vis::Image image;
+    image.size = size;
+    const std::size_t row = static_cast<std::size_t>(size.x) * 4;
+    std::vector<std::uint8_t> upside(row * static_cast<std::size_t>(size.y));
+    glPixelStorei(GL_PACK_ALIGNMENT, 1);
+    glReadPixels(0, 0, size.x, size.y, GL_RGBA, GL_UNSIGNED_BYTE, upside.data());
+    image.rgba.resize(upside.size());
+    for (std::size_t y = 0; y < static_cast<std::size_t>(size.y); ++y) {
+        const auto from =
+            upside.begin() + static_cast<std::ptrdiff_t>((static_cast<std::size_t>(size.y) - 1 - y) * row);
+        std::copy(from, from + static_cast<std::ptrdiff_t>(row),
+                  image.rgba.begin() + static_cast<std::ptrdiff_t>(y * row));
+    }
+    for (std::size_t i = 3; i < image.rgba.size(); i += 4) image.rgba[i] = 255;
+    return image;
+}
+
+} // namespace
+
+Gui::Gui() {
+    IMGUI_CHECKVERSION();
+    former_ = ImGui::GetCurrentContext();
+    context_ = ImGui::CreateContext();
+    ImGui::SetCurrentContext(context_);
+    ImGuiIO& io = ImGui::GetIO();
+    io.IniFilename = nullptr; // the session keeps the arrangement
+    io.LogFilename = nullptr;
+    io.ConfigFlags |= ImGuiConfigFlags_NavEnableKeyboard;
+    io.ConfigWindowsMoveFromTitleBarOnly = true;
+    mapKeys(io);
+    ImGui_ImplOpenGL3_Init("#version 450 core");
+}
+
+Gui::~Gui() {
+    ImGui::SetCurrentContext(context_);
+    ImGui_ImplOpenGL3_Shutdown();
+    ImGui::DestroyContext(context_);
+    ImGui::SetCurrentContext(former_);
+}
+
+void Gui::uploadFonts() {
+    ImGui_ImplOpenGL3_DestroyFontsTexture();
+    ImGui_ImplOpenGL3_CreateFontsTexture();
+}
+
+void Gui::draw(glm::ivec2 framebuffer, Theme theme) {
+    glViewport(0, 0, framebuffer.x, framebuffer.y);
+    glDisable(GL_SCISSOR_TEST);
+    const float gray = theme == Theme::Dark ? 0.075f : 0.87f;
+    glClearColor(gray, gray, gray, 1);
+    glClear(GL_COLOR_BUFFER_BIT);
+    ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+}
+
+vis::Image drawUntilDone(Workbench& workbench, glm::ivec2 size, float scale) {
+    const Framebuffer target(size);
+    // Two quiet frames in a row: sizes that ImGui learns in one frame are right in the next.
+    int quiet = 0;
+    for (int frames = 0; quiet < 3; ++frames) {
+        if (workbench.prepare(scale)) Gui::uploadFonts();
+        ImGuiIO& io = ImGui::GetIO();
+        io.DisplaySize = {static_cast<float>(size.x), static_cast<float>(size.y)};
+        io.DeltaTime = 1.0f / 60;
+        io.MousePos = {-FLT_MAX, -FLT_MAX};
+        ImGui_ImplOpenGL3_NewFrame();
+        ImGui::NewFrame();
+        workbench.frame();
+        ImGui::Render();
+        target.bind();
+        Gui::draw(size, workbench.session().appearance.theme);
+        if (workbench.busy()) {
+            quiet = 0;
+            if (!workbench.jobs().list().empty()) std::this_thread::sleep_for(std::chrono::milliseconds(2));
+        } else {
+            ++quiet;
+        }
+        if (frames > 100000) throw MachineError("the picture does not become complete");
+    }
+    target.bind();
+    return readPicture(size);
+}
+
+} // namespace tessera::app

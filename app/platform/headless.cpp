@@ -1,0 +1,43 @@
+#include "app/platform/headless.h"
+
+#include "app/platform/gui.h"
+#include "vis/gl/headless.h"
+#include "volume/error.h"
+
+namespace tessera::app {
+
+vis::Image renderPicture(const SessionDocument& document, std::shared_ptr<const volume::BrickSource> source,
+                         std::shared_ptr<vis::Renderer> renderer, const PictureRequest& request) {
+    if (!request.pane.empty() && !document.session.views.contains(request.pane)) {
+        std::string known;
+        for (const std::string& pane : paneKeys(document.session)) known += (known.empty() ? "" : ", ") + pane;
+        throw Error("no view named " + request.pane + "; there are " + known);
+    }
+    const Gui gui;
+    Workbench workbench(
+        {.renderer = std::move(renderer), .render = {}, .headless = true, .onlyPane = request.pane, .stateFolder = {}});
+    Opened opened;
+    opened.document = document;
+    opened.document.session.animation.playing = false;
+    opened.source = std::move(source);
+    workbench.install(std::move(opened));
+    return drawUntilDone(workbench, request.size, request.scale);
+}
+
+struct PictureMaker::Impl {
+    vis::HeadlessContext context;
+    std::shared_ptr<vis::Renderer> renderer;
+};
+
+PictureMaker::PictureMaker(const vis::RendererOptions& options) : impl_(std::make_unique<Impl>()) {
+    impl_->renderer = std::make_shared<vis::Renderer>(options);
+}
+
+PictureMaker::~PictureMaker() = default;
+
+vis::Image PictureMaker::render(const SessionDocument& document, std::shared_ptr<const volume::BrickSource> source,
+                                const PictureRequest& request) {
+    return renderPicture(document, std::move(source), impl_->renderer, request);
+}
+
+} // namespace tessera::app

@@ -1,0 +1,29 @@
+#pragma once
+
+#include "app/workbench.h"
+
+/// The workbench without a window: the same frames, drawn into memory.
+namespace tessera::app {
+
+/// Renders a session in the GL context that is current; what the window would show. The data are `source`.
+vis::Image renderPicture(const SessionDocument& document, std::shared_ptr<const volume::BrickSource> source,
+                         std::shared_ptr<vis::Renderer> renderer, const PictureRequest& request);
+
+/// A GL context without a window together with a renderer: makes any number of pictures of one data set.
+class PictureMaker {
+public:
+    /// Throws MachineError when there is no GL.
+    explicit PictureMaker(const vis::RendererOptions& options = {});
+    ~PictureMaker();
+    PictureMaker(const PictureMaker&) = delete;
+    PictureMaker& operator=(const PictureMaker&) = delete;
+
+    vis::Image render(const SessionDocument& document, std::shared_ptr<const volume::BrickSource> source,
+                      const PictureRequest& request);
+
+private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+} // namespace tessera::app

@@ -1,0 +1,176 @@
+#include "app/platform/window.h"
+
+#include "app/platform/gui.h"
+#include "app/platform/headless.h"
+#include "app/workbench.h"
+#include "volume/error.h"
+
+#include <epoxy/gl.h>
+
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+#include <algorithm>
+#include <backends/imgui_impl_glfw.h>
+#include <backends/imgui_impl_opengl3.h>
+#include <cmath>
+#include <imgui.h>
+
+namespace tessera::app {
+
+namespace {
+
+std::string lastGlfwError() {
+    const char* text = nullptr;
+    glfwGetError(&text);
+    return text ? text : "unknown reason";
+}
+
+struct Glfw {
+    Glfw() {
+        if (glfwInit() != GLFW_TRUE) throw MachineError("no window can be opened: " + lastGlfwError());
+    }
+    ~Glfw() { glfwTerminate(); }
+    Glfw(const Glfw&) = delete;
+    Glfw& operator=(const Glfw&) = delete;
+};
+
+struct Window {
+    GLFWwindow* handle = nullptr;
+    Workbench* workbench = nullptr;
+    int freshFrames = 3; ///< frames still to draw after the last event
+
+    Window() {
+        glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 4);
+        glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 5);
+        glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
+        glfwWindowHint(GLFW_OPENGL_FORWARD_COMPAT, GLFW_TRUE);
+        glfwWindowHint(GLFW_SCALE_TO_MONITOR, GLFW_TRUE);
+        glm::ivec2 size(1500, 950);
+        if (GLFWmonitor* monitor = glfwGetPrimaryMonitor()) {
+            int x = 0, y = 0, w = 0, h = 0;
+            glfwGetMonitorWorkarea(monitor, &x, &y, &w, &h);
+            if (w > 0 && h > 0) size = glm::min(size, glm::ivec2(w, h));
+        }
+        handle = glfwCreateWindow(size.x, size.y, "Tessera", nullptr, nullptr);
+        if (!handle) throw MachineError("no window with OpenGL 4.5: " + lastGlfwError());
+        glfwMakeContextCurrent(handle);
+        glfwSwapInterval(1);
+        glfwSetWindowSizeLimits(handle, 480, 320, GLFW_DONT_CARE, GLFW_DONT_CARE);
+        glfwSetWindowUserPointer(handle, this);
+        // Set before ImGui's back end, which chains to them: every event is followed by a few frames.
+        glfwSetCursorPosCallback(handle, [](GLFWwindow* w, double, double) { wake(w); });
+        glfwSetMouseButtonCallback(handle, [](GLFWwindow* w, int, int, int) { wake(w); });
+        glfwSetScrollCallback(handle, [](GLFWwindow* w, double, double) { wake(w); });
+        glfwSetKeyCallback(handle, [](GLFWwindow* w, int, int, int, int) { wake(w); });
+        glfwSetCharCallback(handle, [](GLFWwindow* w, unsigned) { wake(w); });
+        glfwSetWindowFocusCallback(handle, [](GLFWwindow* w, int) { wake(w); });
+        glfwSetCursorEnterCallback(handle, [](GLFWwindow* w, int) { wake(w); });
+        glfwSetFramebufferSizeCallback(handle, [](GLFWwindow* w, int, int) { wake(w); });
+        glfwSetWindowRefreshCallback(handle, [](GLFWwindow* w) { wake(w); });
+        glfwSetWindowContentScaleCallback(handle, [](GLFWwindow* w, float, float) { wake(w); });
+        glfwSetDropCallback(handle, [](GLFWwindow* w, int count, const char** paths) {
+            wake(w);
+            OpenRequest request;
+            for (int i = 0; i < count; ++i) request.paths.emplace_back(paths[i]);
+            if (of(w).workbench && !request.paths.empty()) of(w).workbench->open(std::move(request));
+        });
+    }
+    ~Window() { glfwDestroyWindow(handle); }
+    Window(const Window&) = delete;
+    Window& operator=(const Window&) = delete;
+
+    static Window& of(GLFWwindow* window) { return *static_cast<Window*>(glfwGetWindowUserPointer(window)); }
+    static void wake(GLFWwindow* window) { of(window).freshFrames = 3; }
+
+    bool minimised() const {
+        int w = 0, h = 0;
+        glfwGetFramebufferSize(handle, &w, &h);
+        return w == 0 || h == 0 || glfwGetWindowAttrib(handle, GLFW_ICONIFIED) == GLFW_TRUE;
+    }
+};
+
+struct GlfwBackEnd {
+    explicit GlfwBackEnd(GLFWwindow* window) { ImGui_ImplGlfw_InitForOpenGL(window, true); }
+    ~GlfwBackEnd() { ImGui_ImplGlfw_Shutdown(); }
+    GlfwBackEnd(const GlfwBackEnd&) = delete;
+    GlfwBackEnd& operator=(const GlfwBackEnd&) = delete;
+};
+
+vis::Image readWindow(glm::ivec2 size) {
+    vis::Image image;
+    image.size = size;
+    image.rgba.resize(static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y) * 4);
+    glPixelStorei(GL_PACK_ALIGNMENT, 1);
+    const std::size_t row = static_cast<std::size_t>(size.x) * 4;
+    for (int y = 0; y < size.y; ++y)
+        glReadPixels(0, size.y - 1 - y, size.x, 1, GL_RGBA, GL_UNSIGNED_BYTE,
+                     image.rgba.data() + static_cast<std::size_t>(y) * row);
+    for (std::size_t i = 3; i < image.rgba.size(); i += 4) image.rgba[i] = 255;
+    return image;
+}
+
+} // namespace
+
+void runWindow(const OpenRequest& request, const std::string& screenshots) {
+    const Glfw glfw;
+    Window window;
+    const Gui gui;
+    const GlfwBackEnd backEnd(window.handle);
+    Workbench workbench(
+        {.renderer = nullptr, .render = {}, .headless = false, .onlyPane = {}, .stateFolder = app::stateFolder()});
+    window.workbench = &workbench;
+    workbench.jobs().wake = [] { glfwPostEmptyEvent(); };
+    workbench.takePicture = renderPicture;
+    workbench.open(request);
+
+    std::string title;
+    bool photographed = false;
+    while (!workbench.finished()) {
+        const double idle = workbench.idleSeconds();
+        if (window.minimised())
+            glfwWaitEventsTimeout(0.5);
+        else if (window.freshFrames > 0 || idle <= 0)
+            glfwPollEvents();
+        else if (std::isfinite(idle))
+            glfwWaitEventsTimeout(idle);
+        else
+            glfwWaitEvents();
+        if (glfwWindowShouldClose(window.handle) == GLFW_TRUE) {
+            glfwSetWindowShouldClose(window.handle, GLFW_FALSE);
+            workbench.requestQuit();
+            window.freshFrames = 3;
+        }
+        if (window.minimised()) continue;
+        window.freshFrames = std::max(0, window.freshFrames - 1);
+
+        float contentScale = 1, unused = 1;
+        glfwGetWindowContentScale(window.handle, &contentScale, &unused);
+        int width = 0, height = 0, pixelsX = 0, pixelsY = 0;
+        glfwGetWindowSize(window.handle, &width, &height);
+        glfwGetFramebufferSize(window.handle, &pixelsX, &pixelsY);
+        // Where the window is measured in points (Wayland, macOS) the framebuffer is denser already.
+        if (width > 0 && pixelsX > width) contentScale = std::max(1.0f, contentScale * float(width) / float(pixelsX));
+        if (workbench.prepare(contentScale)) Gui::uploadFonts();
+        ImGui_ImplOpenGL3_NewFrame();
+        ImGui_ImplGlfw_NewFrame();
+        ImGui::NewFrame();
+        workbench.frame();
+        ImGui::Render();
+        glBindFramebuffer(GL_FRAMEBUFFER, 0);
+        Gui::draw({pixelsX, pixelsY}, workbench.session().appearance.theme);
+        // Read before the swap: afterwards the back buffer is undefined.
+        const bool complete = !workbench.busy() && workbench.source() != nullptr && window.freshFrames == 0;
+        if (!screenshots.empty() && complete && !photographed)
+            vis::writePng(screenshots, readWindow({pixelsX, pixelsY}));
+        photographed = complete;
+        glfwSwapBuffers(window.handle);
+        workbench.afterFrame();
+        if (std::string next = workbench.windowTitle(); next != title) {
+            title = std::move(next);
+            glfwSetWindowTitle(window.handle, title.c_str());
+        }
+    }
+    window.workbench = nullptr;
+}
+
+} // namespace tessera::app

@@ -1,0 +1,160 @@
+#include "app/ui/commands.h"
+
+#include "app/ui/theme.h"
+
+#include <algorithm>
+#include <cctype>
+#include <imgui.h>
+#include <imgui_stdlib.h>
+
+namespace tessera::app {
+
+namespace {
+
+char lower(char c) {
+    return static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+}
+
+} // namespace
+
+void runShortcuts(const std::vector<Command>& commands) {
+    for (const Command& command : commands) {
+        for (const Shortcut& shortcut : {command.shortcut, command.alternative}) {
+            if (shortcut.key == 0) continue;
+            const bool plain = !shortcut.ctrl && !shortcut.alt && shortcut.key < key::kF1;
+            if (typing() &&
+                (plain || shortcut.key == 'C' || shortcut.key == 'V' || shortcut.key == 'Z' || shortcut.key == 'Y'))
+                continue;
+            if (plain && ImGui::IsAnyItemActive()) continue;
+            if (!pressed(shortcut, command.repeats) || !command.available()) continue;
+            const std::function<void()> run = command.run; // the table may be rebuilt by what it runs
+            run();
+            return;
+        }
+    }
+}
+
+const Command* drawMenu(const std::vector<Command>& commands, const std::string& menu) {
+    const Command* chosen = nullptr;
+    bool first = true;
+    for (const Command& command : commands) {
+        if (command.menu != menu) continue;
+        if (command.name.starts_with("-") && !first) ImGui::Separator();
+        first = false;
+        const bool checked = command.checked && command.checked();
+        if (ImGui::MenuItem(command.title().c_str(), textOf(command.shortcut).c_str(), checked, command.available()))
+            chosen = &command;
+        if (!command.help.empty() && ImGui::IsItemHovered() && ImGui::GetIO().MouseDelta.x == 0 &&
+            ImGui::GetIO().MouseDelta.y == 0 && command.help != command.title())
+            ImGui::SetTooltip("%s", command.help.c_str());
+    }
+    return chosen;
+}
+
+int matchScore(const std::string& typed, const std::string& name) {
+    if (typed.empty()) return 1;
+    std::string a, b;
+    for (const char c : typed)
+        if (c != ' ') a += lower(c);
+    for (const char c : name) b += lower(c);
+    std::string needle;
+    for (const char c : typed) needle += lower(c);
+    if (const auto at = b.find(needle); at != std::string::npos) return 1000 - static_cast<int>(at);
+    int score = 100;
+    std::size_t at = 0;
+    for (const char c : a) {
+        const std::size_t found = b.find(c, at);
+        if (found == std::string::npos) return 0;
+        const bool wordStart = found == 0 || b[found - 1] == ' ' || b[found - 1] == ':';
+        score += wordStart ? 10 : -static_cast<int>(found - at);
+        at = found + 1;
+    }
+    return std::max(score, 1);
+}
+
+const Command* drawPalette(CommandPalette& palette, const std::vector<Command>& commands) {
+    if (palette.open) {
+        ImGui::OpenPopup("###palette");
+        palette.open = false;
+        palette.text.clear();
+        palette.chosen = 0;
+        palette.shown = true;
+    }
+    if (!palette.shown) return nullptr;
+    const ImGuiViewport& viewport = *ImGui::GetMainViewport();
+    const float width = std::min(viewport.Size.x * 0.8f, ImGui::GetFontSize() * 36);
+    ImGui::SetNextWindowPos({viewport.Pos.x + (viewport.Size.x - width) / 2, viewport.Pos.y + viewport.Size.y * 0.12f});
+    ImGui::SetNextWindowSize({width, 0});
+    const Command* chosen = nullptr;
+    palette.shown = ImGui::BeginPopup("###palette", ImGuiWindowFlags_NoMove);
+    if (!palette.shown) return nullptr;
+
+    struct Match {
+        const Command* command;
+        std::string text;
+        int score;
+    };
+    std::vector<Match> matches;
+    for (const Command& command : commands) {
+        const std::string text = command.menu.empty() ? command.title() : command.menu + ": " + command.title();
+        const int score = matchScore(palette.text, text);
+        if (score > 0 && command.available()) matches.push_back({&command, text, score});
+    }
+    std::stable_sort(matches.begin(), matches.end(), [](const Match& a, const Match& b) { return a.score > b.score; });
+
+    if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
+    ImGui::SetNextItemWidth(-FLT_MIN);
+    const bool enter = ImGui::InputTextWithHint("##search", "What do you want to do?", &palette.text,
+                                                ImGuiInputTextFlags_EnterReturnsTrue);
+    if (ImGui::IsItemEdited()) palette.chosen = 0;
+    const int count = static_cast<int>(matches.size());
+    if (pressed({.key = key::kDown}, true)) ++palette.chosen;
+    if (pressed({.key = key::kUp}, true)) --palette.chosen;
+    palette.chosen = count == 0 ? 0 : std::clamp(palette.chosen, 0, count - 1);
+    ImGui::BeginChild("##list", {0, ImGui::GetFrameHeightWithSpacing() * std::min(12.0f, viewport.Size.y / 60)});
+    for (int i = 0; i < count; ++i) {
+        const Match& match = matches[static_cast<std::size_t>(i)];
+        const std::string keys = textOf(match.command->shortcut);
+        if (ImGui::Selectable(match.text.c_str(), i == palette.chosen)) chosen = match.command;
+        if (i == palette.chosen && ImGui::IsKeyPressed(key::kDown)) ImGui::SetScrollHereY(0.7f);
+        if (i == palette.chosen && ImGui::IsKeyPressed(key::kUp)) ImGui::SetScrollHereY(0.3f);
+        if (ImGui::IsItemHovered() && !match.command->help.empty())
+            ImGui::SetTooltip("%s", match.command->help.c_str());
+        if (!keys.empty()) {
+            ImGui::SameLine(ImGui::GetContentRegionMax().x - ImGui::CalcTextSize(keys.c_str()).x -
+                            ImGui::GetStyle().ItemSpacing.x);
+            ImGui::TextDisabled("%s", keys.c_str());
+        }
+    }
+    if (count == 0) ImGui::TextDisabled("Nothing of that name");
+    ImGui::EndChild();
+    if (enter && count > 0) chosen = matches[static_cast<std::size_t>(palette.chosen)].command;
+    if (chosen || pressed({.key = key::kEscape})) {
+        ImGui::CloseCurrentPopup();
+        palette.shown = false;
+    }
+    ImGui::EndPopup();
+    return chosen;
+}
+
+void drawShortcutHelp(const std::vector<Command>& commands) {
+    if (!ImGui::BeginTable("##keys", 3, ImGuiTableFlags_RowBg | ImGuiTableFlags_SizingFixedFit)) return;
+    ImGui::TableSetupColumn("keys");
+    ImGui::TableSetupColumn("name");
+    ImGui::TableSetupColumn("help", ImGuiTableColumnFlags_WidthStretch);
+    for (const Command& command : commands) {
+        if (command.shortcut.key == 0) continue;
+        ImGui::TableNextRow();
+        ImGui::TableNextColumn();
+        std::string keys = textOf(command.shortcut);
+        if (command.alternative.key != 0) keys += "  " + textOf(command.alternative);
+        ImGui::TextUnformatted(keys.c_str());
+        ImGui::TableNextColumn();
+        ImGui::TextUnformatted(command.title().c_str());
+        ImGui::TableNextColumn();
+        ImGui::TextDisabled("%s", command.help.c_str());
+    }
+    ImGui::EndTable();
+}
+
+} // namespace tessera::app

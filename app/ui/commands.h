@@ -1,0 +1,49 @@
+#pragma once
+
+#include "app/ui/keys.h"
+
+#include <functional>
+#include <string>
+#include <vector>
+
+/// The one table of what can be done: it feeds the menus, the shortcuts, the command palette and the help.
+namespace tessera::app {
+
+struct Command {
+    std::string menu; ///< "File", "Edit", "View", "Layout", "Help"; "" = only in the palette
+    std::string name; ///< "Open...", with a leading "-" a separator goes before it
+    std::string help; ///< one line
+    const char* icon = "";
+    Shortcut shortcut = {}, alternative = {};
+    std::function<void()> run = {};
+    std::function<bool()> enabled = {}; ///< empty = always
+    std::function<bool()> checked = {}; ///< empty = no check mark
+    bool repeats = false;               ///< runs again while the key is held
+
+    bool available() const { return run && (!enabled || enabled()); }
+    /// Name without separator mark.
+    std::string title() const { return name.starts_with("-") ? name.substr(1) : name; }
+};
+
+/// Runs the command whose shortcut was pressed this frame. Keys without Ctrl or Alt are left alone while text is typed.
+void runShortcuts(const std::vector<Command>& commands);
+
+/// The items of one menu, inside ImGui::BeginMenu. Returns the command chosen, to be run when the frame is drawn.
+const Command* drawMenu(const std::vector<Command>& commands, const std::string& menu);
+
+/// The command palette: a search field and the commands that match, best first.
+struct CommandPalette {
+    bool open = false; ///< set to show it
+    std::string text;
+    int chosen = 0;
+    bool shown = false;
+};
+const Command* drawPalette(CommandPalette& palette, const std::vector<Command>& commands);
+
+/// How well a name matches typed letters: higher is better, nothing when it does not (letters in order).
+int matchScore(const std::string& typed, const std::string& name);
+
+/// Table of shortcuts for the help window.
+void drawShortcutHelp(const std::vector<Command>& commands);
+
+} // namespace tessera::app

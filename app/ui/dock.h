@@ -1,0 +1,42 @@
+#pragma once
+
+#include "app/session/dock_tree.h"
+
+#include <functional>
+#include <imgui.h>
+#include <map>
+#include <string>
+
+/// Draws a dock tree: strips of tabs, splitters, panes; lets tabs be dragged to any side of any pane.
+namespace tessera::app {
+
+/// How the panes of a dock look; what is inside is drawn by `draw`, in the pane's own ImGui window.
+struct DockPanes {
+    std::function<std::string(const std::string& pane)> title;
+    std::function<void(const std::string& pane)> draw;
+    std::function<bool(const std::string& pane)> padded;  ///< false: the content fills the pane to its edge
+    std::function<void(const std::string& pane)> close;   ///< removes the view
+    std::function<void(const std::string& pane)> tabMenu; ///< further items of a tab's context menu; may be empty
+};
+
+/// What the hand is doing; lost without harm.
+struct DockHand {
+    std::string dragged; ///< pane whose tab is held, "" = none
+    bool moving = false; ///< the tab has been pulled far enough to count as dragged
+    ImVec2 grabbed{0, 0};
+    int splitter = 0; ///< id of the split being moved
+    float grabOffset = 0;
+    std::string focus; ///< pane to focus after this frame
+};
+
+/// Draws the tree into the rectangle; edits the tree. `bare` shows the maximised pane alone, without its strip.
+void drawDock(DockTree& tree, DockHand& hand, const DockPanes& panes, ImVec2 origin, ImVec2 size, float scale,
+              bool bare = false);
+
+/// Rectangles of every stack of a tree, strips included, as drawDock places them. Whole pixels, no gaps but splitters.
+struct DockRect {
+    ImVec2 lo, hi;
+};
+std::map<int, DockRect> layoutDock(DockTree& tree, ImVec2 origin, ImVec2 size, float scale);
+
+} // namespace tessera::app

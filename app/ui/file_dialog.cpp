@@ -1,0 +1,246 @@
+#include "app/ui/file_dialog.h"
+
+#include "app/ui/keys.h"
+#include "app/ui/theme.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <ctime>
+#include <filesystem>
+#include <imgui.h>
+#include <imgui_stdlib.h>
+#include <sys/stat.h>
+
+namespace tessera::app {
+
+namespace fs = std::filesystem;
+
+std::string textOfBytes(double bytes) {
+    static constexpr const char* units[] = {"B", "kB", "MB", "GB", "TB"};
+    std::size_t unit = 0;
+    while (bytes >= 1000 && unit + 1 < std::size(units)) {
+        bytes /= 1000;
+        ++unit;
+    }
+    char text[32];
+    std::snprintf(text, sizeof text, unit == 0 ? "%.0f %s" : "%.3g %s", bytes, units[unit]);
+    return text;
+}
+
+void FileDialog::show(FileMode mode, std::string title, std::string purpose, std::string folder, std::string name,
+                      std::string suffix) {
+    mode_ = mode;
+    title_ = std::move(title);
+    purpose_ = std::move(purpose);
+    name_ = std::move(name);
+    suffix_ = std::move(suffix);
+    filter_.clear();
+    opening_ = shown_ = true;
+    confirm_ = false;
+    std::error_code problem;
+    enter(folder.empty() || !fs::is_directory(folder, problem) ? fs::current_path(problem).string() : folder);
+}
+
+void FileDialog::enter(const std::string& folder) {
+    std::error_code problem;
+    const std::string absolute = fs::weakly_canonical(folder, problem).string();
+    std::vector<Entry> entries;
+    problem_.clear();
+    for (fs::directory_iterator it(absolute, problem), end; !problem && it != end; it.increment(problem)) {
+        Entry entry;
+        entry.name = it->path().filename().string();
+        if (entry.name.starts_with(".")) continue;
+        struct stat status {};
+        if (::stat(it->path().c_str(), &status) != 0) continue;
+        entry.folder = S_ISDIR(status.st_mode);
+        entry.bytes = static_cast<double>(status.st_size);
+        entry.time = status.st_mtime;
+        entries.push_back(std::move(entry));
+    }
+    if (problem) {
+        problem_ = absolute + ": " + problem.message();
+        if (!entries_.empty() || !folder_.empty()) return;
+    }
+    std::sort(entries.begin(), entries.end(),
+              [](const Entry& a, const Entry& b) { return a.folder != b.folder ? a.folder : a.name < b.name; });
+    folder_ = absolute;
+    entries_ = std::move(entries);
+    chosen_.clear();
+}
+
+void FileDialog::answerWith(std::optional<Answer>& answer) {
+    Answer result{purpose_, {}};
+    if (mode_ == FileMode::Save) {
+        std::string name = name_;
+        if (name.empty()) return;
+        if (!suffix_.empty() && !name.ends_with(suffix_)) name += suffix_;
+        const std::string path = name.starts_with("/") ? name : (fs::path(folder_) / name).string();
+        std::error_code problem;
+        if (fs::exists(path, problem) && !confirm_) {
+            confirm_ = true;
+            return;
+        }
+        result.paths = {path};
+    } else {
+        if (chosen_.empty() && !name_.empty()) {
+            const fs::path typed = name_.starts_with("/") ? fs::path(name_) : fs::path(folder_) / name_;
+            std::error_code problem;
+            if (fs::is_directory(typed, problem)) {
+                name_.clear();
+                enter(typed.string());
+                return;
+            }
+            if (!fs::exists(typed, problem)) {
+                problem_ = name_ + ": no such file";
+                return;
+            }
+            result.paths = {typed.string()};
+        }
+        for (const std::string& name : chosen_) result.paths.push_back((fs::path(folder_) / name).string());
+        if (result.paths.empty()) return;
+    }
+    answer = std::move(result);
+    shown_ = false;
+    ImGui::CloseCurrentPopup();
+}
+
+void FileDialog::drawList(std::optional<Answer>& answer, float height) {
+    constexpr ImGuiTableFlags flags = ImGuiTableFlags_ScrollY | ImGuiTableFlags_RowBg | ImGuiTableFlags_BordersInnerH;
+    if (!ImGui::BeginTable("##files", 3, flags, {0, height})) return;
+    const float em = ImGui::GetFontSize();
+    ImGui::TableSetupScrollFreeze(0, 1);
+    ImGui::TableSetupColumn("Name", ImGuiTableColumnFlags_WidthStretch);
+    ImGui::TableSetupColumn("Size", ImGuiTableColumnFlags_WidthFixed, em * 5);
+    ImGui::TableSetupColumn("Changed", ImGuiTableColumnFlags_WidthFixed, em * 8);
+    ImGui::TableHeadersRow();
+    std::string into;
+    bool decided = false;
+    for (const Entry& entry : entries_) {
+        if (!filter_.empty() && entry.name.find(filter_) == std::string::npos) continue;
+        ImGui::TableNextRow();
+        ImGui::TableNextColumn();
+        const bool selected = std::find(chosen_.begin(), chosen_.end(), entry.name) != chosen_.end();
+        const std::string label = std::string(entry.folder ? icon::kFolder : icon::kFile) + "  " + entry.name;
+        if (ImGui::Selectable(label.c_str(), selected,
+                              ImGuiSelectableFlags_SpanAllColumns | ImGuiSelectableFlags_AllowDoubleClick |
+                                  ImGuiSelectableFlags_DontClosePopups)) {
+            const bool twice = ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left);
+            if (entry.folder) {
+                if (twice || pressed({.key = key::kEnter})) into = (fs::path(folder_) / entry.name).string();
+            } else if (ImGui::GetIO().KeyCtrl && mode_ == FileMode::Open) {
+                if (selected)
+                    std::erase(chosen_, entry.name);
+                else
+                    chosen_.push_back(entry.name);
+            } else {
+                chosen_ = {entry.name};
+                name_ = entry.name;
+                confirm_ = false;
+                decided = twice;
+            }
+        }
+        ImGui::TableNextColumn();
+        if (!entry.folder) ImGui::TextDisabled("%s", textOfBytes(entry.bytes).c_str());
+        ImGui::TableNextColumn();
+        char text[32] = "";
+        std::tm local{};
+        const std::time_t time = static_cast<std::time_t>(entry.time);
+        if (localtime_r(&time, &local)) std::strftime(text, sizeof text, "%Y-%m-%d %H:%M", &local);
+        ImGui::TextDisabled("%s", text);
+    }
+    ImGui::EndTable();
+    if (!into.empty()) enter(into);
+    if (decided) answerWith(answer);
+}
+
+std::optional<FileDialog::Answer> FileDialog::draw() {
+    if (!shown_) return {};
+    const std::string id = title_ + "###files";
+    if (opening_) {
+        ImGui::OpenPopup(id.c_str());
+        opening_ = false;
+    }
+    const ImGuiViewport& viewport = *ImGui::GetMainViewport();
+    const float em = ImGui::GetFontSize();
+    ImGui::SetNextWindowPos(viewport.GetCenter(), ImGuiCond_Appearing, {0.5f, 0.5f});
+    ImGui::SetNextWindowSize({std::min(viewport.Size.x * 0.9f, em * 58), std::min(viewport.Size.y * 0.85f, em * 38)},
+                             ImGuiCond_Appearing);
+    std::optional<Answer> answer;
+    bool open = true;
+    if (!ImGui::BeginPopupModal(id.c_str(), &open, ImGuiWindowFlags_NoSavedSettings)) {
+        shown_ = false;
+        return {};
+    }
+    // The path as buttons.
+    std::string into;
+    fs::path walked;
+    int part = 0;
+    for (const fs::path& piece : fs::path(folder_)) {
+        walked /= piece;
+        if (part > 0) ImGui::SameLine(0, 2);
+        ImGui::PushID(part++);
+        if (ImGui::SmallButton(piece.c_str())) into = walked.string();
+        ImGui::PopID();
+    }
+    ImGui::SameLine();
+    ImGui::SetNextItemWidth(-FLT_MIN);
+    ImGui::InputTextWithHint("##filter", "Filter", &filter_);
+    if (!into.empty()) enter(into);
+
+    const float footer = ImGui::GetFrameHeightWithSpacing() * (options && mode_ == FileMode::Open ? 3.4f : 1.3f);
+    const bool previews = mode_ == FileMode::Open && preview;
+    const float height = std::max(ImGui::GetContentRegionAvail().y - footer, em * 6);
+    if (previews) {
+        ImGui::Columns(2, "##parts", false);
+        ImGui::SetColumnWidth(0, ImGui::GetWindowContentRegionMax().x * 0.62f);
+    }
+    drawList(answer, height);
+    if (previews) {
+        ImGui::NextColumn();
+        ImGui::BeginChild("##preview", {0, height}, true);
+        if (chosen_.empty()) {
+            ImGui::TextDisabled("Choose a file to see what is in it.");
+            ImGui::TextDisabled("Ctrl+click for several.");
+        } else {
+            ImGui::PushTextWrapPos(0);
+            const std::string text = preview((fs::path(folder_) / chosen_.back()).string());
+            if (text.empty())
+                ImGui::TextDisabled("Reading the header...");
+            else
+                ImGui::TextUnformatted(text.c_str());
+            ImGui::PopTextWrapPos();
+        }
+        ImGui::EndChild();
+        ImGui::Columns(1);
+    }
+    if (options && mode_ == FileMode::Open) options();
+
+    const float buttons = em * 13;
+    ImGui::SetNextItemWidth(-buttons);
+    if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
+    const bool enterKey = ImGui::InputTextWithHint("##name", mode_ == FileMode::Save ? "File name" : "File or folder",
+                                                   &name_, ImGuiInputTextFlags_EnterReturnsTrue);
+    if (ImGui::IsItemEdited()) {
+        chosen_.clear();
+        confirm_ = false;
+    }
+    ImGui::SameLine();
+    const char* verb = confirm_ ? "Replace" : mode_ == FileMode::Save ? "Save" : "Open";
+    if (ImGui::Button(verb, {em * 6, 0}) || enterKey) answerWith(answer);
+    ImGui::SameLine();
+    if (ImGui::Button("Cancel", {-FLT_MIN, 0}) || pressed({.key = key::kEscape})) open = false;
+    if (confirm_) {
+        ImGui::SameLine();
+        ImGui::SetTooltip("%s exists. Press again to replace it.", name_.c_str());
+    } else if (!problem_.empty()) {
+        ImGui::SetTooltip("%s", problem_.c_str());
+    }
+    if (!open) {
+        shown_ = false;
+        ImGui::CloseCurrentPopup();
+    }
+    ImGui::EndPopup();
+    return answer;
+}
+
+} // namespace tessera::app

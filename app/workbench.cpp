@@ -1,0 +1,302 @@
+#include "app/workbench.h"
+
+#include "volume/error.h"
+
+#include <algorithm>
+#include <cmath>
+#include <ctime>
+#include <filesystem>
+#include <imgui.h>
+#include <limits>
+
+namespace tessera::app {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr double kAutosaveSeconds = 30;
+constexpr double kToastSeconds = 7;
+constexpr std::size_t kMessages = 500;
+
+} // namespace
+
+Workbench::Workbench(WorkbenchOptions options) : options_(std::move(options)) {
+    renderer_ = options_.renderer ? options_.renderer : std::make_shared<vis::Renderer>(options_.render);
+    if (!options_.headless) {
+        autosave_ = std::make_unique<Autosave>(options_.stateFolder);
+        recoveries_ = autosave_->abandoned();
+    }
+    history_.reset(session_);
+    saved_ = session_;
+    files_.preview = [this](const std::string& path) { return previewOf(path); };
+    files_.options = [this] { drawImportOptions(); };
+    makeCommands();
+}
+
+Workbench::~Workbench() = default;
+
+double Workbench::now() const {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+}
+
+void Workbench::open(OpenRequest request) {
+    std::string title = "Opening the built-in fuel cell";
+    if (!request.paths.empty())
+        title = "Opening " + fs::path(request.paths.front()).filename().string();
+    else if (request.data && !request.data->model.empty())
+        title = "Computing " + request.data->model;
+    jobs_.start("open", title, [this, request](const Progress& progress) -> Jobs::Finish {
+        auto opened = std::make_shared<Opened>(app::open(request, progress));
+        return [this, opened, request] {
+            if (!opened->missing.empty()) {
+                missing_ = std::move(*opened);
+                return;
+            }
+            install(std::move(*opened));
+            for (const std::string& path : request.paths) addRecentFile(options_.stateFolder, path);
+        };
+    });
+}
+
+void Workbench::install(Opened opened) {
+    const Appearance appearance = session_.appearance;
+    const bool first = !source_;
+    source_ = std::move(opened.source);
+    renderer_->setSource(source_);
+    caches_.clear();
+    session_ = std::move(opened.document.session);
+    // A data file says nothing about the looks of the window: they stay. A session does.
+    if (!first && opened.document.raw.is_null()) session_.appearance = appearance;
+    history_ = std::move(opened.document.history);
+    unknown_ = std::move(opened.document.unknown);
+    if (history_.steps().empty()) history_.reset(session_);
+    sessionPath_ = opened.sessionPath;
+    saved_ = session_;
+    unsavedEdits_ = false;
+    playback_ = {};
+    for (const std::string& text : opened.messages) message(text);
+    if (autosave_) autosave_->remove();
+}
+
+SessionDocument Workbench::document() const {
+    SessionDocument document;
+    document.session = session_;
+    document.history = history_;
+    document.unknown = unknown_;
+    return document;
+}
+
+std::string Workbench::windowTitle() const {
+    std::string title = sessionPath_.empty() ? session_.title : fs::path(sessionPath_).filename().string();
+    if (!title.empty()) title += dirty() ? " * - " : " - ";
+    return title + "Tessera";
+}
+
+bool Workbench::dirty() const {
+    Session now = session_;
+    now.animation.playing = saved_.animation.playing;
+    now.dock = saved_.dock; // looking around is nothing to be asked about
+    now.camera = saved_.camera;
+    now.time = saved_.time;
+    return !(now == saved_);
+}
+
+void Workbench::message(const std::string& text, bool failure) {
+    char clock[16] = "";
+    const std::time_t time = std::time(nullptr);
+    std::tm local{};
+    if (localtime_r(&time, &local)) std::strftime(clock, sizeof clock, "%H:%M:%S", &local);
+    messages_.push_back({text, clock, failure, now(), false});
+    if (messages_.size() > kMessages) messages_.pop_front();
+}
+
+bool Workbench::prepare(float contentScale) {
+    bool rebuilt = false;
+    contentScale_ = contentScale;
+    const float scale = std::clamp(contentScale * session_.appearance.scale, 0.4f, 6.0f);
+    if (scale != scale_) {
+        scale_ = scale;
+        fonts_ = loadFonts(scale);
+        styled_ = false;
+        rebuilt = true;
+    }
+    if (!styled_ || theme_ != session_.appearance.theme) {
+        theme_ = session_.appearance.theme;
+        applyTheme(theme_, scale_);
+        styled_ = true;
+    }
+    return rebuilt;
+}
+
+void Workbench::frame() {
+    for (const std::string& text : jobs_.collect()) message(text, true);
+    for (const std::string& text : renderer_->takeMessages()) message(text, true);
+    if (chosen_) {
+        const std::function<void()> run = std::move(chosen_);
+        chosen_ = nullptr;
+        run();
+    }
+    std::erase_if(caches_, [&](const auto& entry) { return !session_.views.contains(entry.first); });
+    if (!options_.headless && !files_.shown() && !ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopupId))
+        runShortcuts(commands_);
+
+    busy_ = false;
+    drawn_.clear();
+    hoveredPane_.clear();
+    interacting_ = ImGui::IsAnyItemActive();
+    const ImGuiViewport& viewport = *ImGui::GetMainViewport();
+    DockPanes panes;
+    panes.title = [this](const std::string& pane) { return paneTitle(session_, pane); };
+    panes.draw = [this](const std::string& pane) { drawPane(pane); };
+    panes.padded = [this](const std::string& pane) {
+        const auto found = session_.views.find(pane);
+        return found == session_.views.end() || !std::holds_alternative<VolumeView>(found->second);
+    };
+    panes.close = [this](const std::string& pane) { closePane(pane); };
+    if (options_.onlyPane.empty()) {
+        drawMenus();
+        const float top = ImGui::GetFrameHeight(), bottom = std::round(ImGui::GetFontSize() * 1.7f);
+        drawDock(session_.dock, hand_, panes, {viewport.Pos.x, viewport.Pos.y + top},
+                 {viewport.Size.x, std::max(1.0f, viewport.Size.y - top - bottom)}, scale_);
+        drawStatusBar(bottom);
+    } else {
+        DockTree alone;
+        alone.maximised = options_.onlyPane;
+        drawDock(alone, hand_, panes, viewport.Pos, viewport.Size, scale_, true);
+    }
+    if (!options_.headless) {
+        drawDialogs();
+        if (const Command* command = drawPalette(palette_, commands_)) chosen_ = command->run;
+        drawToasts();
+        play();
+    }
+    watchEdits();
+    autosave();
+    lastFrame_ = now();
+}
+
+void Workbench::watchEdits() {
+    const bool editing = ImGui::IsAnyItemActive() || ImGui::IsMouseDown(ImGuiMouseButton_Left) ||
+                         ImGui::IsMouseDown(ImGuiMouseButton_Right) || ImGui::IsMouseDown(ImGuiMouseButton_Middle);
+    if (!source_) return;
+    if (history_.observe(session_, editing, now())) unsavedEdits_ = true;
+}
+
+void Workbench::autosave() {
+    if (!autosave_ || !unsavedEdits_ || now() - lastAutosave_ < kAutosaveSeconds) return;
+    lastAutosave_ = now();
+    unsavedEdits_ = false;
+    if (!dirty()) return;
+    const SessionDocument snapshot = document();
+    const std::string folder = options_.stateFolder;
+    jobs_.start(
+        "autosave", "Autosave",
+        [this, snapshot, folder](const Progress&) -> Jobs::Finish {
+            const std::string failure = autosave_->save(printSession(snapshot, folder + "/autosave"));
+            if (failure.empty()) return {};
+            return [this, failure] { message("Autosave: " + failure, true); };
+        },
+        true);
+}
+
+void Workbench::play() {
+    if (!source_ || !session_.animation.playing) return;
+    busy_ = true;
+    // A timeline on screen plays by itself.
+    for (const auto& [pane, view] : session_.views)
+        if (drawn_.contains(pane) && std::holds_alternative<TimelineView>(view)) return;
+    advance(playback_, session_.animation, session_.time, source_->info().times, ImGui::GetIO().DeltaTime);
+}
+
+void Workbench::step(int count) {
+    if (!source_) return;
+    const std::vector<double>& times = source_->info().times;
+    const int last = static_cast<int>(times.size()) - 1;
+    const int at = std::clamp(source_->info().nearestTime(session_.time) + count, 0, last);
+    session_.animation.playing = false;
+    session_.time = times[static_cast<std::size_t>(at)];
+}
+
+void Workbench::replace(Session session) {
+    if (session.animation.playing) session.animation.playing = false;
+    session_ = std::move(session);
+    repair(session_.dock, paneKeys(session_));
+    unsavedEdits_ = true;
+}
+
+void Workbench::closePane(const std::string& pane) {
+    removePane(session_.dock, pane);
+    session_.views.erase(pane);
+}
+
+std::string Workbench::currentPane() const {
+    if (!session_.dock.maximised.empty()) return session_.dock.maximised;
+    if (session_.views.contains(hoveredPane_)) return hoveredPane_;
+    return session_.views.contains(focusedPane_) ? focusedPane_ : std::string();
+}
+
+void Workbench::save(const std::string& path) {
+    try {
+        SessionDocument saved = document();
+        saveSession(saved, path);
+        sessionPath_ = fs::absolute(path).lexically_normal().string();
+        saved_ = session_;
+        unsavedEdits_ = false;
+        if (autosave_) autosave_->remove();
+        addRecentFile(options_.stateFolder, path);
+        message("Saved " + fs::path(path).filename().string());
+        if (quitAfterSave_) quit_ = true;
+    } catch (const Error& error) {
+        message(error.what(), true);
+    }
+    quitAfterSave_ = false;
+}
+
+void Workbench::answerFile(const FileDialog::Answer& answer) {
+    if (answer.purpose == "open") {
+        OpenRequest request;
+        request.paths = answer.paths;
+        request.import = import_;
+        open(std::move(request));
+    } else if (answer.purpose == "save") {
+        save(answer.paths.front());
+    } else if (answer.purpose == "locate" && missing_) {
+        const std::size_t index = missing_->missing[locating_].index;
+        missing_->document.session.data.files[index] = describeFile(answer.paths.front());
+        missing_->missing.erase(missing_->missing.begin() + static_cast<std::ptrdiff_t>(locating_));
+    } else if (answer.purpose == "picture") {
+        export_ = Export{picture_, answer.paths.front()};
+    }
+}
+
+void Workbench::requestQuit() {
+    if (dirty() && source_)
+        askQuit_ = true;
+    else
+        quit_ = true;
+}
+
+void Workbench::afterFrame() {
+    if (!export_ || !takePicture || !source_) return;
+    const Export job = *std::exchange(export_, {});
+    try {
+        const vis::Image image = takePicture(document(), source_, renderer_, job.request);
+        vis::writePng(job.path, image, {{vis::kSessionTextKey, printSession(document(), job.path)}});
+        message("Saved picture " + fs::path(job.path).filename().string());
+    } catch (const Error& error) {
+        message(error.what(), true);
+    }
+}
+
+double Workbench::idleSeconds() const {
+    if (busy_ || export_ || chosen_ || history_.pending()) return 0;
+    double wait = std::numeric_limits<double>::infinity();
+    for (const Jobs::Status& job : jobs_.list()) wait = std::min(wait, job.quiet ? 0.25 : 0.1);
+    for (const Message& each : messages_)
+        if (!each.gone && !each.failure) wait = std::min(wait, std::max(0.05, each.born + kToastSeconds - now()));
+    if (unsavedEdits_) wait = std::min(wait, std::max(0.1, lastAutosave_ + kAutosaveSeconds - now()));
+    return wait;
+}
+
+} // namespace tessera::app

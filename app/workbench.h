@@ -1,0 +1,163 @@
+#pragma once
+
+#include "app/open.h"
+#include "app/session/state_dir.h"
+#include "app/ui/commands.h"
+#include "app/ui/dock.h"
+#include "app/ui/file_dialog.h"
+#include "app/ui/jobs.h"
+#include "app/ui/theme.h"
+#include "app/views/playback.h"
+#include "app/views/view_context.h"
+#include "vis/image_io.h"
+
+#include <chrono>
+#include <deque>
+#include <memory>
+#include <set>
+
+/// The workbench: one session, its data, and what surrounds the views. Knows nothing of windows: the platform makes an
+/// ImGui context and a GL context current, calls prepare(), starts ImGui's frame, calls frame(), and draws.
+namespace tessera::app {
+
+/// A picture of the window, or of one pane, at any size.
+struct PictureRequest {
+    std::string pane;            ///< "" = the whole window
+    glm::ivec2 size{1920, 1080}; ///< pixels
+    float scale = 1;             ///< pixels per design pixel
+};
+
+struct WorkbenchOptions {
+    std::shared_ptr<vis::Renderer> renderer; ///< null: one of its own
+    vis::RendererOptions render;             ///< for one of its own
+    bool headless = false;   ///< pictures: no messages, dialogs or remembered files; every frame is finished
+    std::string onlyPane;    ///< shows this pane alone, without its strip
+    std::string stateFolder; ///< recent files and autosave; "" remembers nothing
+};
+
+class Workbench {
+public:
+    explicit Workbench(WorkbenchOptions options);
+    ~Workbench();
+    Workbench(const Workbench&) = delete;
+    Workbench& operator=(const Workbench&) = delete;
+
+    /// Opens in the background; what is shown stays until the new data are ready.
+    void open(OpenRequest request);
+    /// Takes over what open() returned, at once.
+    void install(Opened opened);
+
+    /// Fonts and style for a display; call before ImGui::NewFrame. True when the font atlas changed and must be
+    /// uploaded.
+    bool prepare(float contentScale);
+    /// Draws one frame, between ImGui::NewFrame and ImGui::Render.
+    void frame();
+    /// After the frame is on screen: work that needs the GL context to itself (pictures).
+    void afterFrame();
+
+    /// Seconds the platform may sleep before the next frame: 0 = draw at once, infinity = wait for input.
+    double idleSeconds() const;
+    /// True while a view refines or data are being read: a picture taken now would not be final.
+    bool busy() const { return busy_ || jobs_.list().size() > 0; }
+    bool finished() const { return quit_; }
+    /// Asks to end, and to save first if there is something to save.
+    void requestQuit();
+
+    Jobs& jobs() { return jobs_; }
+    const Session& session() const { return session_; }
+    Session& session() { return session_; }
+    const History& history() const { return history_; }
+    std::shared_ptr<const volume::BrickSource> source() const { return source_; }
+    std::shared_ptr<vis::Renderer> renderer() const { return renderer_; }
+    SessionDocument document() const;
+    std::string windowTitle() const;
+    void message(const std::string& text, bool failure = false);
+    const std::vector<Command>& commands() const { return commands_; }
+
+    /// Makes a picture of a session; given by the platform.
+    std::function<vis::Image(const SessionDocument&, std::shared_ptr<const volume::BrickSource>,
+                             std::shared_ptr<vis::Renderer>, const PictureRequest&)>
+        takePicture;
+
+private:
+    struct Message {
+        std::string text, clock;
+        bool failure = false;
+        double born = 0;
+        bool gone = false; ///< no longer shown as a toast
+    };
+    struct Export {
+        PictureRequest request;
+        std::string path;
+        bool transparentUi = false;
+    };
+
+    void makeCommands();                            // workbench_commands.cpp
+    void drawMenus();                               // workbench_commands.cpp
+    void drawDialogs();                             // workbench_dialogs.cpp
+    void drawMissing();                             // workbench_dialogs.cpp
+    void drawRecovery();                            // workbench_dialogs.cpp
+    void drawExport();                              // workbench_dialogs.cpp
+    void drawQuit();                                // workbench_dialogs.cpp
+    void drawHelp();                                // workbench_dialogs.cpp
+    void drawToasts();                              // workbench_dialogs.cpp
+    void drawImportOptions();                       // workbench_dialogs.cpp
+    std::string previewOf(const std::string& path); // workbench_dialogs.cpp
+    void drawStatusBar(float height);               // workbench_panes.cpp
+    void drawPane(const std::string& pane);         // workbench_panes.cpp
+    void drawHistoryPane();                         // workbench_panes.cpp
+    void drawLogPane();                             // workbench_panes.cpp
+
+    void answerFile(const FileDialog::Answer& answer);
+    void save(const std::string& path);
+    void replace(Session session);
+    void watchEdits();
+    void autosave();
+    void play();
+    void step(int count);
+    void closePane(const std::string& pane);
+    std::string currentPane() const;
+    double now() const;
+    bool dirty() const;
+
+    WorkbenchOptions options_;
+    std::shared_ptr<vis::Renderer> renderer_;
+    std::shared_ptr<const volume::BrickSource> source_;
+    Session session_;
+    History history_;
+    std::vector<JsonIssue> unknown_;
+    Session saved_; ///< as last saved or opened
+    std::string sessionPath_;
+    std::map<std::string, std::unique_ptr<ViewCache>> caches_;
+    Fonts fonts_;
+    float scale_ = 0, contentScale_ = 1;
+    Theme theme_ = Theme::Dark;
+    bool styled_ = false;
+
+    std::vector<Command> commands_;
+    std::function<void()> chosen_; ///< a command picked this frame, run before the next one
+    CommandPalette palette_;
+    DockHand hand_;
+    FileDialog files_;
+    volume::ImportOptions import_;
+    std::string importAbsent_;
+    std::map<std::string, std::string> previews_;
+    std::optional<Opened> missing_;
+    std::size_t locating_ = 0;
+    std::unique_ptr<Autosave> autosave_;
+    std::vector<Recovery> recoveries_;
+    std::deque<Message> messages_;
+    std::string focusedPane_, hoveredPane_;
+    std::set<std::string> drawn_;
+    Playback playback_;
+    std::optional<Export> export_;
+    PictureRequest picture_;
+    bool askPicture_ = false, askQuit_ = false, askHelp_ = false, askAbout_ = false;
+    bool quit_ = false, busy_ = true, quitAfterSave_ = false, interacting_ = false;
+    double lastAutosave_ = 0, lastFrame_ = 0;
+    bool unsavedEdits_ = false;
+    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+    Jobs jobs_; ///< last: its threads end before what they refer to
+};
+
+} // namespace tessera::app

@@ -1,0 +1,75 @@
+#include "app/session/import_memory.h"
+
+#include "volume/error.h"
+
+#include <filesystem>
+#include <fstream>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+namespace tessera::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+class ImportMemoryFile : public testing::Test {
+protected:
+    void SetUp() override {
+        folder_ = fs::temp_directory_path() / ("tessera_memory_" + std::to_string(getpid()));
+        path_ = (folder_ / "deep" / "units.json").string();
+    }
+    void TearDown() override { fs::remove_all(folder_); }
+    fs::path folder_;
+    std::string path_;
+};
+
+TEST_F(ImportMemoryFile, WhatIsStatedOnceIsKnownTheNextTime) {
+    EXPECT_EQ(loadImportMemory(path_), ImportMemory{});
+    volume::ImportOptions stated;
+    stated.units = {{"O2", "mol/m3"}, {"T", "K"}};
+    stated.absent = {"O2=region:0,3"};
+    stated.rename = {{"O2.air", "O2"}};
+    ImportMemory memory;
+    EXPECT_TRUE(remember(memory, stated, "cell"));
+    EXPECT_FALSE(remember(memory, stated, "cell"));
+    saveImportMemory(memory, path_);
+    EXPECT_EQ(loadImportMemory(path_), memory);
+
+    volume::DatasetInfo info;
+    info.name = "cell";
+    for (const char* name : {"O2.air", "T", "region"}) {
+        volume::Parameter parameter;
+        parameter.name = name;
+        info.parameters.push_back(parameter);
+    }
+    volume::ImportOptions now;
+    now.units = {{"T", "degC"}};
+    const volume::ImportOptions all = withMemory(now, memory, info);
+    EXPECT_EQ(all.units.at("O2"), "mol/m3");
+    EXPECT_EQ(all.units.at("T"), "degC");
+    EXPECT_EQ(all.absent, stated.absent);
+    EXPECT_EQ(all.rename, stated.rename);
+    volume::DatasetInfo other = info;
+    other.name = "other";
+    EXPECT_TRUE(withMemory(now, memory, other).absent.empty());
+    other = info;
+    other.parameters.erase(other.parameters.begin()); // no oxygen: neither the name nor the rule fits
+    EXPECT_TRUE(withMemory(now, memory, other).absent.empty());
+    EXPECT_TRUE(withMemory(now, memory, other).rename.empty());
+    now.absent = {"O2=0"};
+    EXPECT_EQ(withMemory(now, memory, info).absent, now.absent);
+    EXPECT_TRUE(remember(memory, now, "cell"));
+    EXPECT_EQ(memory.absent.at("cell"), now.absent);
+}
+
+TEST_F(ImportMemoryFile, DamagedFileIsAnErrorWithItsPlace) {
+    fs::create_directories(fs::path(path_).parent_path());
+    for (const char* text : {"", "[]", "{\"units\": 3}", "{\"units\": {\"T\": 1}}", "{\"absent\": {\"a\": [\"x\"]}}",
+                             "{\"absent\": {\"a\": 1}}", "{\"rename\": {\"a\": 1}}"}) {
+        std::ofstream(path_) << text;
+        EXPECT_THROW(loadImportMemory(path_), Error) << text;
+    }
+}
+
+} // namespace
+} // namespace tessera::app
