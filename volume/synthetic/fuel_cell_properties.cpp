@@ -82,4 +82,15 @@ double localCurrent(double voltage, double temperature, double hydrogen, double 
     return i;
 }
 
+double localCurrentSlope(double i, double temperature, double oxygen, double conductance, double resistance) {
+    const double limit = 4 * kFaraday * conductance * oxygen;
+    if (i <= 0 || limit <= 0) return 0;
+    const double rt = kGas * temperature, slope = rt / (kTransferCoefficient * kFaraday);
+    const double sensitivity = slope * kOxygenOrder + rt / (4 * kFaraday); // V per relative change of the oxygen
+    const double remaining = std::max(1 - i / limit, 1e-9);
+    const double perOxygen = sensitivity / (oxygen * remaining);
+    const double perCurrent = slope / i + resistance + sensitivity / (limit * remaining);
+    return std::min(perOxygen / perCurrent, i / oxygen);
+}
+
 } // namespace tessera::volume::cell

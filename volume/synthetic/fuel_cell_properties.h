@@ -73,6 +73,9 @@ double reversibleVoltage(double temperature, double hydrogen, double oxygen);
 /// 0 where the voltage is above the reversible one; always below 4 F conductance oxygen.
 double localCurrent(double voltage, double temperature, double hydrogen, double oxygen, double conductance,
                     double resistance);
+/// Its derivative with respect to `oxygen` at the current found (A m/mol); at most current / oxygen, as the current
+/// grows slower than the concentration.
+double localCurrentSlope(double current, double temperature, double oxygen, double conductance, double resistance);
 
 /// Voltage that would turn all of the reaction's enthalpy into work, product vapour: 241.8 kJ/mol / 2F.
 inline constexpr double kThermalVoltage = 1.253;

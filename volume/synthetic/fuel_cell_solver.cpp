@@ -81,6 +81,7 @@ FuelCellSolver::FuelCellSolver(const FuelCellSettings& settings)
     heat_ = StencilSystem(grid_.nx, grid_.ny, grid_.nz);
     temperature_.assign(heat_.count(), settings.coolantTemperature);
     current_.assign(columns, 0.0);
+    currentSlope_.assign(columns, 0.0);
     resistance_.assign(columns, kContactResistance);
     waterFlux_.assign(columns, 0.0);
     for (int space : {0, 1}) setUpSpace(space);
@@ -230,12 +231,16 @@ void FuelCellSolver::updateCurrent(double voltage) {
 
                 current_[column] = localCurrent(voltage, mea, fuel.reactant[nextTo(fuel)], air.reactant[nextTo(air)],
                                                 oxygenHalf, resistance_[column]);
+                currentSlope_[column] = localCurrentSlope(current_[column], mea, air.reactant[nextTo(air)], oxygenHalf,
+                                                          resistance_[column]);
                 const double transfer = settings_.backDiffusionFactor * kSulfonicDensity *
                                         membraneWaterDiffusion(content, mea) / kMembraneThickness; // mol/(m2 s)
                 waterFlux_[column] = settings_.dragFactor * dragCoefficient(content) * current_[column] / kFaraday -
                                      transfer * (contentAir - contentFuel);
-                waterSlope_[0][column] = transfer * waterContentSlope(activityFuel) / saturated;
-                waterSlope_[1][column] = transfer * waterContentSlope(activityAir) / saturated;
+                // The drag follows the mean content, back diffusion the difference.
+                const double drag = settings_.dragFactor * dragCoefficient(0.5) * current_[column] / kFaraday;
+                waterSlope_[0][column] = (transfer + drag) * waterContentSlope(activityFuel) / saturated;
+                waterSlope_[1][column] = std::max(transfer - drag, 0.0) * waterContentSlope(activityAir) / saturated;
             }
         },
         16);
@@ -322,8 +327,9 @@ void FuelCellSolver::solveSpecies(int which, bool water, double rate, const std:
             }
         }
 
-    // At the catalyst the total molar rate is given; a loss is written as proportional to the concentration, which
-    // keeps it positive, and the answer of the membrane to the water as a linear term.
+    // At the catalyst the total molar rate is given, as constant - factor * concentration: for oxygen the tangent of
+    // the current (Newton's method), for water the answer of the membrane; any other loss as proportional to the
+    // concentration, which keeps it positive.
     std::vector<double>& used = water ? waterRate_[std::size_t(which)] : reactantRate_[std::size_t(which)];
     std::vector<double> constant(used.size()), factor(used.size());
     for (int z = 0; z < g.nz; ++z)
@@ -334,19 +340,29 @@ void FuelCellSolver::solveSpecies(int which, bool water, double rate, const std:
                                    : space.air ? i / (2 * kFaraday) + waterFlux_[column]
                                                : -waterFlux_[column];
             const double now = std::max(c[p], 1e-9);
-            const double slope = water ? waterSlope_[std::size_t(which)][column] : 0.0;
-            constant[column] = std::max(release, 0.0) + slope * now;
-            factor[column] = std::max(-release, 0.0) / now + slope;
+            const double slope = water       ? waterSlope_[std::size_t(which)][column]
+                                 : space.air ? currentSlope_[column] / (4 * kFaraday)
+                                             : 0.0;
+            const bool tangent = !water && space.air;
+            constant[column] = release + slope * now;
+            factor[column] = slope;
+            if (!tangent && constant[column] < 0) {
+                factor[column] -= constant[column] / now;
+                constant[column] = 0;
+            }
             a.rhs[p] += area * constant[column];
             a.diag[p] += area * factor[column];
         }
     if (refresh || own.preconditioner.empty()) own.preconditioner = PlanePreconditioner(a);
-    solve(a, own.preconditioner, c, 1e-9);
+    const std::vector<double> start = !water && space.air ? c : std::vector<double>();
+    solve(a, own.preconditioner, c, 1e-8);
     for (int z = 0; z < g.nz; ++z)
         for (int x = 0; x < g.nx; ++x) {
             const std::size_t column = std::size_t(x + g.nx * z);
             used[column] = constant[column] - factor[column] * c[a.index(x, space.wallRow(), z)];
         }
+    if (!water && space.air)
+        for (std::size_t p = 0; p < c.size(); ++p) c[p] = std::max(c[p], 0.2 * start[p]); // a tangent can go too far
 }
 
 void FuelCellSolver::solveHeat(double voltage, double rate, const std::vector<double>& before, bool refresh) {
@@ -431,8 +447,9 @@ void FuelCellSolver::solveHeat(double voltage, double rate, const std::vector<do
             const double heat = current_[std::size_t(x + g.nx * z)] * (kThermalVoltage - voltage) * g.dx * g.dz;
             for (int y = g.rows[2]; y < g.rows[3]; ++y) a.rhs[a.index(x, y, z)] += heat / meaRows;
         }
+    // The largest factors; the flow changes them little, so that only another time step calls for new ones.
     if (refresh || heatPreconditioner_.empty()) heatPreconditioner_ = PlanePreconditioner(a);
-    solve(a, heatPreconditioner_, temperature_, 1e-10);
+    solve(a, heatPreconditioner_, temperature_, 3e-8);
 }
 
 bool FuelCellSolver::advance(double rate, double voltage, int maxIterations, double tolerance,
@@ -445,11 +462,11 @@ bool FuelCellSolver::advance(double rate, double voltage, int maxIterations, dou
     for (iterations_ = 1; iterations_ <= maxIterations && !converged; ++iterations_) {
         progress.advance(double(iterations_ - 1) / maxIterations, rate == 0 ? "steady state" : "load step");
         const std::vector<double> currentBefore = current_, waterBefore = waterFlux_;
-        const bool refresh = iterations_ == 1 || (rate == 0 && iterations_ < 4);
+        const bool refresh = iterations_ == 1 || (rate == 0 && iterations_ == 3);
         parallelFor(2, [&](std::size_t space) { solveFlow(int(space)); });
         parallelFor(5, [&](std::size_t job) {
             if (job == 0)
-                solveHeat(voltage, rate, heatBefore, refresh);
+                solveHeat(voltage, rate, heatBefore, refresh && rate != heatRate_);
             else
                 solveSpecies(int(job - 1) / 2, (job - 1) % 2 == 1, rate, gasBefore[job - 1], refresh);
         });
@@ -462,6 +479,7 @@ bool FuelCellSolver::advance(double rate, double voltage, int maxIterations, dou
         }
         converged = change <= tolerance * scale;
     }
+    heatRate_ = rate;
     const double volume = grid_.dx * grid_.dy * grid_.dz;
     for (std::size_t which : {0u, 1u}) {
         const GasSpace& space = spaces_[which];
@@ -477,7 +495,7 @@ bool FuelCellSolver::advance(double rate, double voltage, int maxIterations, dou
 }
 
 void FuelCellSolver::settle(double voltage, const Progress& progress) {
-    advance(0, voltage, 200, 1e-6, progress);
+    advance(0, voltage, 200, 1e-5, progress);
 }
 
 void FuelCellSolver::step(double dt, double voltage, const Progress& progress) {

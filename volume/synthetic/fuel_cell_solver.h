@@ -107,8 +107,10 @@ private:
     std::array<SpeciesSystem, 4> species_; // fuel reactant, fuel water, air reactant, air water
     StencilSystem heat_;
     PlanePreconditioner heatPreconditioner_;
+    double heatRate_ = -1; // 1 / time step of the last advance
     std::vector<double> temperature_, current_, resistance_;
-    std::vector<double> waterFlux_;                 // columns, mol/(m2 s), anode to cathode
+    std::vector<double> currentSlope_; // columns, A m/mol: change of the current with the oxygen next to the catalyst
+    std::vector<double> waterFlux_;    // columns, mol/(m2 s), anode to cathode
     std::array<std::vector<double>, 2> waterSlope_; // columns, m/s: change of the water flux with the concentration
     std::array<std::vector<double>, 2> reactantRate_,
         waterRate_; // columns: what the last species solve used, mol/(m2 s)
