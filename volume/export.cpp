@@ -53,6 +53,17 @@ std::string escaped(const std::string& name) {
     return out;
 }
 
+/// A name in a list of names and units: separators as %20, %2C, %3B.
+std::string listed(const std::string& name) {
+    std::string out;
+    for (const char c : name) {
+        char code[4] = {c, 0, 0, 0};
+        if (c == ' ' || c == ',' || c == ';' || c == '%') std::snprintf(code, sizeof code, "%%%02X", unsigned(c));
+        out += code;
+    }
+    return out;
+}
+
 /// Absent floats become NaN; integers stay as they are.
 void markAbsent(Field& field) {
     if (!field.mask || field.type != ScalarType::F32) return;
@@ -135,9 +146,10 @@ void writeVti(const Dataset& dataset, const std::vector<int>& parameters, int ti
         blocks.push_back({p, storage, false});
         if (storage.presence) blocks.push_back({p, storage, true});
         const Parameter& what = info.parameters[std::size_t(p)];
-        units += (units.empty() ? "" : "; ") + what.name + " " + (what.unit.empty() ? "-" : what.unit);
+        units += (units.empty() ? "" : "; ") + listed(what.name) + " " + (what.unit.empty() ? "-" : what.unit);
         for (const Label& label : what.labels)
-            labels += (labels.empty() ? "" : "; ") + what.name + " " + std::to_string(label.value) + " " + label.name;
+            labels +=
+                (labels.empty() ? "" : "; ") + listed(what.name) + " " + std::to_string(label.value) + " " + label.name;
     }
     const std::string extent = "0 " + std::to_string(lattice.size.x - 1) + " 0 " + std::to_string(lattice.size.y - 1) +
                                " 0 " + std::to_string(lattice.size.z - 1);
@@ -263,7 +275,7 @@ std::string writeNrrd(const Dataset& dataset, const ExportSelection& selection, 
     head += "space dimension: 3\nspace directions: (" + text(lattice.spacing.x) + ",0,0) (0," +
             text(lattice.spacing.y) + ",0) (0,0," + text(lattice.spacing.z) + ")\n";
     head += "space origin: (" + text(lattice.origin.x) + "," + text(lattice.origin.y) + "," + text(lattice.origin.z) +
-            ")\nencoding: raw\n";
+            ")\nkinds: domain domain domain\nencoding: raw\n";
     if (field.type != ScalarType::U8) head += "endian: little\n";
     head += "content: " + channel.name + "\nunit:=" + channel.unit +
             "\ntime:=" + text(info.times[std::size_t(times[0])]) + "\n\n";

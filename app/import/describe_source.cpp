@@ -65,6 +65,18 @@ void addArray(PieceRef& ref, const std::string& name, int vtkType, int component
     for (int c = 0; c < components; ++c) add(shown + "." + std::to_string(c), 1, c);
 }
 
+/// Undoes %20, %2C, %3B and %25 in a listed name.
+std::string unlisted(const std::string& text) {
+    std::string out;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        const std::string code = text.substr(i, 3);
+        const bool known = code == "%20" || code == "%2C" || code == "%3B" || code == "%25";
+        out += known ? static_cast<char>(std::stoi(code.substr(1), nullptr, 16)) : text[i];
+        if (known) i += 2;
+    }
+    return out;
+}
+
 /// Units, labels and the unit of lengths from the field data, in the form exportDataset writes:
 /// "O2,H2 mol/m3; T K; region -" and "region 1 air side; ...".
 void readWords(vtkFieldData* data, PieceRef& ref) {
@@ -83,7 +95,8 @@ void readWords(vtkFieldData* data, PieceRef& ref) {
         const std::size_t space = item.find(' ');
         if (space == std::string::npos) return;
         const std::string unit = item.substr(space + 1);
-        each(item.substr(0, space), ',', [&](const std::string& name) {
+        each(item.substr(0, space), ',', [&](const std::string& listed) {
+            const std::string name = unlisted(listed);
             for (ArrayRef& array : ref.arrays)
                 if (array.form.name == name && unit != "-") array.form.unit = unit;
         });
@@ -94,7 +107,7 @@ void readWords(vtkFieldData* data, PieceRef& ref) {
         int value = 0;
         if (!(in >> name >> value) || !std::getline(in >> std::ws, words)) return;
         for (ArrayRef& array : ref.arrays)
-            if (array.form.name == name) array.form.labels.push_back({value, words});
+            if (array.form.name == unlisted(name)) array.form.labels.push_back({value, words});
     });
     ref.piece.lengthUnit = text("length_unit");
 }

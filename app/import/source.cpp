@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <fstream>
 #include <stdexcept>
 #include <vtkAbstractArray.h>
 #include <vtkCell.h>
@@ -14,6 +15,7 @@
 #include <vtkFieldData.h>
 #include <vtkGenericDataObjectReader.h>
 #include <vtkGenericEnSightReader.h>
+#include <vtkImageReader2.h>
 #include <vtkInformation.h>
 #include <vtkInformationVector.h>
 #include <vtkMetaImageReader.h>
@@ -30,6 +32,7 @@
 #include <vtkXMLMultiBlockDataReader.h>
 #include <vtkXMLPImageDataReader.h>
 #include <vtkXMLPUnstructuredGridReader.h>
+#include <vtkXMLReader.h>
 #include <vtkXMLRectilinearGridReader.h>
 #include <vtkXMLStructuredGridReader.h>
 #include <vtkXMLUnstructuredGridReader.h>
@@ -90,6 +93,48 @@ template <class Reader> vtkSmartPointer<vtkAlgorithm> image(const std::string& p
     return reader.Get();
 }
 
+/// VTK's readers fill what a truncated file lacks with whatever was in memory: these checks refuse it.
+std::string readPart(const std::string& path, std::size_t begin, std::size_t count) {
+    std::ifstream in(path, std::ios::binary);
+    in.seekg(static_cast<std::streamoff>(begin));
+    std::string text(count, '\0');
+    in.read(text.data(), static_cast<std::streamsize>(count));
+    text.resize(static_cast<std::size_t>(in.gcount()));
+    return text;
+}
+
+void checkXmlEnd(const std::string& path) {
+    constexpr std::size_t kTail = 4096;
+    const std::size_t size = fs::file_size(path);
+    if (readPart(path, 0, kTail).find("<VTKFile") == std::string::npos) throw std::runtime_error("is no VTK XML file");
+    if (readPart(path, size - std::min(size, kTail), kTail).find("</VTKFile>") == std::string::npos)
+        throw std::runtime_error("ends before its last tag: truncated");
+}
+
+void checkImageSize(vtkImageReader2* reader, const std::string& path) {
+    const int* extent = reader->GetDataExtent();
+    double wanted =
+        double(vtkDataArray::GetDataTypeSize(reader->GetDataScalarType())) * reader->GetNumberOfScalarComponents();
+    for (int axis = 0; axis < 3; ++axis) wanted *= extent[2 * axis + 1] - extent[2 * axis] + 1.0;
+    constexpr std::size_t kHead = 1 << 20;
+    const std::string head = readPart(path, 0, kHead);
+    std::size_t begin = 0; // where the samples start; 0 = in another file or compressed
+    if (head.starts_with("NRRD") && head.find("encoding: raw") < head.find("\n\n"))
+        begin = head.find("data file:") < head.find("\n\n") || head.find("datafile:") < head.find("\n\n")
+                    ? 0
+                    : head.find("\n\n") + 2;
+    else if (const std::size_t local = head.find("ElementDataFile = LOCAL");
+             local != std::string::npos && head.find("CompressedData = True") == std::string::npos)
+        begin = head.find('\n', local) + 1;
+    else if (path.ends_with(".nii"))
+        begin = 348;
+    const double has = double(fs::file_size(path)) - double(begin);
+    if (begin != 0 && has < wanted)
+        throw std::runtime_error("has " + std::to_string(static_cast<long long>(has)) +
+                                 " bytes of samples, its header asks for " +
+                                 std::to_string(static_cast<long long>(wanted)));
+}
+
 vtkSmartPointer<vtkAlgorithm> openFoam(const std::string& path) {
     vtkNew<vtkOpenFOAMReader> reader;
     const std::string file = fs::is_directory(path) ? (fs::path(path) / "case.foam").string() : path;
@@ -137,6 +182,15 @@ vtkSmartPointer<vtkAlgorithm> openEnSight(const std::string& path) {
     return reader.Get();
 }
 
+vtkSmartPointer<vtkAlgorithm> openLegacy(const std::string& path) {
+    vtkNew<vtkGenericDataObjectReader> reader;
+    reader->SetFileName(path.c_str());
+    reader->ReadAllScalarsOn();
+    reader->ReadAllVectorsOn();
+    reader->ReadAllFieldsOn();
+    return reader.Get();
+}
+
 struct Known {
     const char* ending;
     const char* format;
@@ -149,7 +203,7 @@ constexpr Known kKnown[] = {{".vti", "vti", withName<vtkXMLImageDataReader>},
                             {".vtr", "vtr", withName<vtkXMLRectilinearGridReader>},
                             {".vts", "vts", withName<vtkXMLStructuredGridReader>},
                             {".vtm", "vtm", withName<vtkXMLMultiBlockDataReader>},
-                            {".vtk", "vtk", withName<vtkGenericDataObjectReader>},
+                            {".vtk", "vtk", openLegacy},
                             {".nrrd", "nrrd", image<vtkNrrdReader>},
                             {".nhdr", "nrrd", image<vtkNrrdReader>},
                             {".mha", "MetaImage", image<vtkMetaImageReader>},
@@ -204,19 +258,20 @@ void throwReported() {
     throw std::runtime_error(reason);
 }
 
+double meantTime(double time) {
+    if (time != double(float(time))) return time;
+    char text[32];
+    std::snprintf(text, sizeof text, "%.7g", time);
+    const double meant = std::stod(text);
+    return float(meant) == float(time) ? meant : time;
+}
+
 void findTime(vtkDataObject* data, std::vector<double>& times) {
     if (data == nullptr || data->GetFieldData() == nullptr) return;
     for (const char* name : {"TimeValue", "TIME", "Time"}) {
         vtkDataArray* value = data->GetFieldData()->GetArray(name);
         if (value == nullptr || value->GetNumberOfValues() != 1 || !std::isfinite(value->GetComponent(0, 0))) continue;
-        // Written as float, 0.1 is 0.10000000149: the short text is what was meant.
-        double time = value->GetComponent(0, 0);
-        if (value->GetDataType() == VTK_FLOAT) {
-            char text[32];
-            std::snprintf(text, sizeof text, "%.7g", time);
-            time = std::stod(text);
-        }
-        times.push_back(time);
+        times.push_back(meantTime(value->GetComponent(0, 0)));
         return;
     }
 }
@@ -229,21 +284,24 @@ Source openSource(const std::string& path) {
     if (known == std::end(kKnown))
         throw std::runtime_error("unknown ending \"" + ending +
                                  "\": .vti .vtu .vtm .vtr .vts .vtk .nrrd .mha .mhd .nii .foam .case .nc or .raw");
-    Source source{path, known->format, known->open(path), {}};
+    Source source{path, known->format, known->open(path), {}, {}};
+    if (vtkXMLReader::SafeDownCast(source.reader) != nullptr) checkXmlEnd(path);
     source.reader->UpdateInformation();
     throwReported();
+    if (auto* images = vtkImageReader2::SafeDownCast(source.reader)) checkImageSize(images, path);
     vtkInformation* information = source.reader->GetOutputInformation(0);
     const auto* key = vtkStreamingDemandDrivenPipeline::TIME_STEPS();
     auto* steps = const_cast<vtkInformationDoubleVectorKey*>(key);
     if (information->Has(steps) != 0)
-        source.times.assign(information->Get(steps), information->Get(steps) + information->Length(steps));
+        source.readerTimes.assign(information->Get(steps), information->Get(steps) + information->Length(steps));
+    for (const double time : source.readerTimes) source.times.push_back(meantTime(time));
     if (!std::is_sorted(source.times.begin(), source.times.end(), std::less_equal<>())) source.times.clear();
     return source;
 }
 
 std::vector<Block> readBlocks(const Source& source, int time) {
-    if (!source.times.empty())
-        source.reader->UpdateTimeStep(source.times[static_cast<std::size_t>(time)]);
+    if (static_cast<std::size_t>(time) < source.readerTimes.size())
+        source.reader->UpdateTimeStep(source.readerTimes[static_cast<std::size_t>(time)]);
     else
         source.reader->Update();
     throwReported();

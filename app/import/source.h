@@ -13,7 +13,8 @@ namespace tessera::importer {
 struct Source {
     std::string path, format;
     vtkSmartPointer<vtkAlgorithm> reader;
-    std::vector<double> times; ///< empty: not stated
+    std::vector<double> times;       ///< empty: not stated
+    std::vector<double> readerTimes; ///< the same as the reader has them (float32 made double)
 };
 
 /// A leaf of a composite data set with the name of its block.
@@ -27,6 +28,9 @@ Source openSource(const std::string& path);
 
 /// Reads everything at one time and gives the non-empty blocks of the highest dimension.
 std::vector<Block> readBlocks(const Source& source, int time);
+
+/// What was meant by a time: 0.1 for the double of the float32 nearest to 0.1.
+double meantTime(double time);
 
 /// Time stated in the field data (TimeValue), appended to `times`.
 void findTime(vtkDataObject* data, std::vector<double>& times);

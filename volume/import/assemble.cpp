@@ -133,7 +133,7 @@ Lattice chooseLattice(const std::vector<OpenedFile>& files, glm::ivec3 gridSize,
     for (const OpenedFile& file : files) {
         const bool firstOfGroup = groups.insert(file.entry.group).second;
         for (const Piece& piece : file.pieces) {
-            if (piece.format == "raw")
+            if (!piece.resamples)
                 throw Error("does not lie on the grid of " + first.file + " (" + words(piece.lattice.size) +
                                 " against " + words(first.lattice.size) + ")",
                             piece.file);

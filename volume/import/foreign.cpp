@@ -140,6 +140,7 @@ std::vector<std::vector<Piece>> openForeign(const std::vector<std::string>& path
         for (std::size_t p = 0; p < files[f].size(); ++p) {
             Piece& piece = files[f][p];
             const std::vector<Kept> kept = withoutPresence(piece.arrays);
+            piece.resamples = true;
             std::vector<ScalarType> types;
             for (const Array& array : piece.arrays) types.push_back(array.type);
             piece.load = [importer, f, p, kept, types](int array, int component, int time, const Lattice& target) {

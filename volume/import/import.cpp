@@ -4,12 +4,15 @@
 #include "volume/import/absent.h"
 #include "volume/import/assemble.h"
 #include "volume/import/foreign.h"
+#include "volume/import/nrrd.h"
 #include "volume/import/raw.h"
 
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 #include <limits>
+#include <optional>
 #include <set>
 
 namespace tessera::volume {
@@ -130,6 +133,20 @@ double bytesOf(const DatasetInfo& info) {
     return perSample * double(info.lattice.count()) * double(info.times.size());
 }
 
+/// A .nrrd file that needs no VTK.
+std::optional<Piece> openNrrd(const std::string& path) {
+    const std::filesystem::path file(path);
+    if (file.extension() != ".nrrd" && file.extension() != ".nhdr") return std::nullopt;
+    std::string head(std::size_t(1) << 20, '\0');
+    std::ifstream in(path, std::ios::binary);
+    in.read(head.data(), static_cast<std::streamsize>(head.size()));
+    head.resize(static_cast<std::size_t>(in.gcount()));
+    const std::optional<RawForm> form = parseNrrd(head, path);
+    if (!form) return std::nullopt;
+    return openForm(*form, path, form->dataFile.empty() ? path : (file.parent_path() / form->dataFile).string(),
+                    "nrrd");
+}
+
 /// Name of the only block of a file: the part a .pvd states, else the file's name without number.
 std::string blockName(const SeriesFile& entry) {
     if (!entry.part.empty()) return entry.part;
@@ -155,6 +172,8 @@ Opened open(const std::vector<std::string>& paths, const ImportOptions& options,
         files[i].entry = entries[i];
         if (isRaw(entries[i].path, options.raw))
             files[i].pieces.push_back(openRaw(entries[i].path, options.raw));
+        else if (std::optional<Piece> piece = openNrrd(entries[i].path))
+            files[i].pieces.push_back(std::move(*piece));
         else
             foreign.push_back(entries[i].path);
     }

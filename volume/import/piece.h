@@ -24,6 +24,7 @@ struct Piece {
     std::string file;       ///< as the user named it
     std::string format;     ///< "raw", "vti", "OpenFOAM", ...
     std::string name;       ///< of the block, "" where the file is one block
+    bool resamples = false; ///< `load` can sample on any grid; a grid only on its own otherwise
     bool mesh = false;      ///< cells that are sampled; else samples lie on `lattice` as they are
     bool cellData = false;  ///< mesh: values belong to cells, so samples go to the middle of cells
     Lattice lattice;        ///< of a grid

@@ -135,19 +135,23 @@ Piece openRaw(const std::string& path, const std::string& rawOption) {
             if (!form.dataFile.empty()) data = sidecar.parent_path() / form.dataFile;
         }
     }
+    return openForm(form, path, data.string(), "raw");
+}
+
+Piece openForm(const RawForm& form, const std::string& path, const std::string& data, const std::string& format) {
     std::error_code failed;
     const auto size = fs::file_size(data, failed);
-    if (failed) throw Error("no such file", data.string());
+    if (failed) throw Error("no such file", data);
     if (size != form.bytes())
         throw Error("has " + std::to_string(size) + " bytes, its form asks for " + std::to_string(form.bytes()) + " (" +
                         std::to_string(form.lattice.size.x) + " x " + std::to_string(form.lattice.size.y) + " x " +
                         std::to_string(form.lattice.size.z) + " samples, " + std::to_string(form.components.size()) +
                         " components, " + std::to_string(form.frames()) + " times)",
-                    data.string());
+                    data);
 
     Piece piece;
     piece.file = path;
-    piece.format = "raw";
+    piece.format = format;
     piece.lattice = form.lattice;
     piece.times = form.times;
     piece.lengthUnit = form.lengthUnit;
@@ -176,12 +180,11 @@ Piece openRaw(const std::string& path, const std::string& rawOption) {
         c += vector ? 3 : 1;
     }
     if (piece.arrays.empty()) throw Error("holds no parameter", path);
-    piece.load = [form, firstComponent, presence, file = data.string()](int array, int component, int time,
-                                                                        const Lattice&) {
+    piece.load = [form, firstComponent, presence, data](int array, int component, int time, const Lattice&) {
         const auto a = static_cast<std::size_t>(array), t = static_cast<std::size_t>(time);
-        Field field = readComponent(file, form, firstComponent[a] + static_cast<std::size_t>(component), t);
+        Field field = readComponent(data, form, firstComponent[a] + static_cast<std::size_t>(component), t);
         if (presence[a] != 0) {
-            const Field flags = readComponent(file, form, presence[a] - 1, t);
+            const Field flags = readComponent(data, form, presence[a] - 1, t);
             Mask mask(field.count());
             for (std::size_t i = 0; i < mask.size(); ++i) mask[i] = field.present(i) && flags.value(i) != 0 ? 1 : 0;
             field.mask = std::make_shared<const Mask>(std::move(mask));

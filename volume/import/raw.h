@@ -47,6 +47,10 @@ RawForm parseRawOption(std::string_view text);
 /// Checks the size of the file against the form; samples are read on demand.
 Piece openRaw(const std::string& path, const std::string& rawOption);
 
+/// Opens the file of a form found elsewhere; `named` is what the user calls it, `data` holds the samples. Checks the
+/// size.
+Piece openForm(const RawForm& form, const std::string& named, const std::string& data, const std::string& format);
+
 /// True for paths openRaw takes: *.raw, *.bin, *.dat with a form, or a *.json that is a sidecar.
 bool isRaw(const std::string& path, const std::string& rawOption);
 

@@ -1,0 +1,16 @@
+#pragma once
+
+#include "volume/import/raw.h"
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace tessera::volume {
+
+/// Form of a scalar .nrrd or .nhdr file of up to three axes with raw encoding, from the beginning of the file (`head`,
+/// up to 1 MiB); nothing for other encodings and vectors, which VTK reads. The keys "unit" and "time" that
+/// exportDataset writes are understood. Throws Error for a broken header.
+std::optional<RawForm> parseNrrd(std::string_view head, const std::string& file);
+
+} // namespace tessera::volume
