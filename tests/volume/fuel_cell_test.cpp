@@ -180,7 +180,7 @@ TEST(FuelCell, OnePhaseAtTheDefaultSettings) {
 TEST(FuelCell, RefinementConverges) {
     std::array<double, 3> current{};
     for (int level : {0, 1, 2}) {
-        FuelCellSolver s(sized(11 * (level + 1), 13 * (level + 1), 24 * (level + 1)));
+        FuelCellSolver s(sized(11 * (level + 1), 13 * (level + 1), 16 * (level + 1)));
         s.settle(0.55);
         current[std::size_t(level)] = s.meanCurrent();
     }
