@@ -1,0 +1,148 @@
+#pragma once
+
+#include "volume/statistics.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+/// Sums and histograms on their way, whose order of adding is either fixed or does not matter: inside of
+/// volume/statistics.cpp.
+namespace tessera::volume {
+
+inline constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+inline constexpr int kFocusBits = 10;  // interest is summed in units of 2^-10: integers add up the same in any order
+inline constexpr int kCountShift = 36; // a packed bin: count above, focus below
+inline constexpr std::size_t kFlush = std::size_t(1) << (kCountShift - kFocusBits); // samples that fit a packed bin
+
+/// Sums of one channel over a set of samples, relative to a shift so that close values keep their digits.
+struct Sums {
+    std::uint64_t n = 0;
+    double volume = 0, sum = 0, squares = 0;
+    float min = std::numeric_limits<float>::infinity(), max = -std::numeric_limits<float>::infinity();
+
+    void add(float value, double shift, double cell) {
+        const double v = double(value) - shift;
+        ++n;
+        volume += cell;
+        sum += v;
+        squares += v * v;
+        min = std::min(min, value);
+        max = std::max(max, value);
+    }
+    void add(const Sums& other) {
+        n += other.n;
+        volume += other.volume;
+        sum += other.sum;
+        squares += other.squares;
+        min = std::min(min, other.min);
+        max = std::max(max, other.max);
+    }
+    Summary summary(double shift) const {
+        if (n == 0) return {0, 0, kNan, kNan, kNan, kNan};
+        const double mean = sum / double(n);
+        const double variance = std::max(0.0, squares / double(n) - mean * mean);
+        return {n, volume, shift + mean, std::sqrt(variance), double(min), double(max)};
+    }
+};
+
+/// Values of one channel in one brick, ready to be summed.
+struct Column {
+    std::vector<float> value;       ///< physical; NaN where absent
+    std::vector<float> centred;     ///< less the channel's shift; 0 where absent
+    std::vector<float> present;     ///< 1 or 0
+    std::vector<std::uint16_t> bin; ///< the number of bins where absent or out of range
+};
+
+/// Sums of a pair of channels over samples present in both.
+struct PairSums {
+    double n = 0, x = 0, y = 0, xx = 0, yy = 0, xy = 0;
+
+    /// Adds all samples of a brick, those with weight 0 left out (weight null: none). Eight sums side by side, so that
+    /// the compiler can use vector instructions without changing the result.
+    void add(const Column& a, const Column& b, const float* weight) {
+        constexpr std::size_t kLanes = 8;
+        double lanes[6][kLanes] = {};
+        const std::size_t count = a.value.size();
+        const auto addOne = [&](std::size_t i, std::size_t lane) {
+            const double w = weight != nullptr ? double(weight[i]) : 1.0;
+            const double u = double(a.centred[i]), v = double(b.centred[i]);
+            const double p = double(a.present[i]) * w, q = double(b.present[i]) * w;
+            lanes[0][lane] += p * q;
+            lanes[1][lane] += u * q;
+            lanes[2][lane] += v * p;
+            lanes[3][lane] += u * u * q;
+            lanes[4][lane] += v * v * p;
+            lanes[5][lane] += u * v * w;
+        };
+        std::size_t i = 0;
+        for (; i + kLanes <= count; i += kLanes)
+            for (std::size_t lane = 0; lane < kLanes; ++lane) addOne(i + lane, lane);
+        for (; i < count; ++i) addOne(i, 0);
+        double* const sums[] = {&n, &x, &y, &xx, &yy, &xy};
+        for (std::size_t sum = 0; sum < 6; ++sum)
+            for (const double lane : lanes[sum]) *sums[sum] += lane;
+    }
+    void add(const PairSums& other) {
+        n += other.n;
+        x += other.x;
+        y += other.y;
+        xx += other.xx;
+        yy += other.yy;
+        xy += other.xy;
+    }
+    double correlation() const {
+        const double a = n * xx - x * x, b = n * yy - y * y;
+        // What rounding leaves of a constant channel is no variance.
+        constexpr double kEpsilon = 1e-12;
+        if (n < 2 || a <= kEpsilon * n * xx || b <= kEpsilon * n * yy) return kNan;
+        return std::clamp((n * xy - x * y) / std::sqrt(a * b), -1.0, 1.0);
+    }
+};
+
+/// What one brick adds besides histograms; merged in the order of the bricks.
+struct BrickSums {
+    std::vector<Sums> inside, outside; ///< per channel
+    std::vector<PairSums> pairs, focusPairs;
+};
+
+/// Histograms on their way: `packed` takes samples fast, the others are exact for any number of them.
+struct Bins {
+    std::vector<std::uint64_t> packed, count, focus;
+    explicit Bins(std::size_t size = 0) : packed(size), count(size), focus(size) {}
+
+    void flush() {
+        for (std::size_t i = 0; i < packed.size(); ++i) {
+            count[i] += packed[i] >> kCountShift;
+            focus[i] += packed[i] & ((std::uint64_t(1) << kCountShift) - 1);
+            packed[i] = 0;
+        }
+    }
+    void add(const Bins& flushed) {
+        for (std::size_t i = 0; i < count.size(); ++i) {
+            count[i] += flushed.count[i];
+            focus[i] += flushed.focus[i];
+        }
+    }
+};
+
+/// The histograms of one thread. Each axis has one bin more than asked for, which takes what belongs in none.
+struct BinSet {
+    std::vector<Bins> channels, pairs;
+    std::size_t samples = 0; ///< since the last flush
+
+    void flush() {
+        for (Bins& bins : channels) bins.flush();
+        for (Bins& bins : pairs) bins.flush();
+        samples = 0;
+    }
+};
+
+/// Focus 1 and count 1 of a sample in a packed bin.
+inline std::uint64_t packedSample(double doi) {
+    return (std::uint64_t(1) << kCountShift) + std::uint64_t(std::lround(doi * (1 << kFocusBits)));
+}
+
+} // namespace tessera::volume
