@@ -1,0 +1,454 @@
+#include "tests/codec/plain_decoder.h"
+
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <stdexcept>
+#include <xxhash.h>
+#include <zstd.h>
+
+namespace tessera::codec::plain {
+
+namespace {
+
+using Octets = std::vector<std::uint8_t>;
+
+void need(bool condition, const char* what) {
+    if (!condition) throw std::runtime_error(what);
+}
+
+/// Reads little-endian numbers from the front.
+struct Reader {
+    const std::uint8_t* at;
+    const std::uint8_t* end;
+
+    explicit Reader(const Octets& bytes) : at(bytes.data()), end(bytes.data() + bytes.size()) {}
+    std::uint64_t number(int bytes) {
+        need(end - at >= bytes, "truncated");
+        std::uint64_t value = 0;
+        for (int i = 0; i < bytes; ++i) value |= std::uint64_t(*at++) << (8 * i);
+        return value;
+    }
+    std::uint32_t u32() { return std::uint32_t(number(4)); }
+    double f64() { return std::bit_cast<double>(number(8)); }
+    Octets take(std::size_t count) {
+        need(std::size_t(end - at) >= count, "truncated");
+        Octets bytes(at, at + count);
+        at += count;
+        return bytes;
+    }
+};
+
+Octets unzstd(const Octets& packed, std::size_t size) {
+    Octets out(size);
+    need(ZSTD_decompress(out.data(), size, packed.data(), packed.size()) == size, "zstd");
+    return out;
+}
+
+/// 4.2
+std::vector<std::uint32_t> stream(Reader& in, std::size_t count) {
+    std::vector<std::uint32_t> symbols(count);
+    if (count == 0) return symbols;
+    const auto mode = in.number(1);
+    if (mode == 0) return symbols;
+    if (mode == 1) return std::vector<std::uint32_t>(count, in.u32());
+    need(mode == 2 || mode == 3, "mode");
+    const auto width = std::size_t(in.number(1));
+    need(width >= 1 && width <= 4, "width");
+    Octets planes;
+    if (mode == 2) {
+        planes = in.take(width * count);
+    } else {
+        const std::size_t length = in.u32();
+        planes = unzstd(in.take(length), width * count);
+    }
+    for (std::size_t i = 0; i < count; ++i)
+        for (std::size_t p = 0; p < width; ++p) symbols[i] |= std::uint32_t(planes[p * count + i]) << (8 * p);
+    return symbols;
+}
+
+std::uint32_t unzigzag(std::uint32_t symbol) {
+    return symbol % 2 == 0 ? symbol / 2 : ~(symbol / 2);
+}
+
+/// A place of the lattice or a coefficient: nothing where absent.
+using Cell = std::optional<std::uint32_t>;
+
+std::int64_t asSigned(std::uint32_t code) {
+    return std::int32_t(code);
+}
+
+float floatOf(std::uint32_t code) {
+    return std::bit_cast<float>(code < 0x80000000u ? code : ~(code ^ 0x80000000u));
+}
+
+std::uint32_t codeOf(float value) {
+    const auto bits = std::bit_cast<std::uint32_t>(value);
+    return bits < 0x80000000u ? bits : ~bits ^ 0x80000000u;
+}
+
+/// 4.3: P and U of one wavelet.
+struct Taps {
+    int center = 0;
+    std::vector<int> weights;
+    int shift = 0;
+    bool antisymmetric = false;
+};
+
+struct Line {
+    std::vector<Cell> even, odd;
+    static Cell at(const std::vector<Cell>& cells, int i) {
+        return i < 0 || i >= int(cells.size()) ? Cell() : cells[std::size_t(i)];
+    }
+    Cell e(int i) const { return at(even, i); }
+    Cell d(int i) const { return at(odd, i); }
+};
+
+std::uint32_t finish(std::int64_t sum, int shift) {
+    const std::int64_t divisor = std::int64_t(1) << shift;
+    sum += shift > 0 ? divisor / 2 : 0;
+    return std::uint32_t(sum >= 0 ? sum / divisor : -((-sum + divisor - 1) / divisor));
+}
+
+std::uint32_t predict(const Line& line, int i, int wavelet, bool asFloat) {
+    const bool mean = wavelet == 1 || wavelet >= 5;
+    const Cell left = line.e(i);
+    if (!mean) return left.value_or(0);
+    const Cell right = line.e(i + 1);
+    if (!left && !right) return 0;
+    const std::uint32_t a = left ? *left : *right, b = right ? *right : *left;
+    if (!asFloat) return finish(asSigned(a) + asSigned(b), 1);
+    const float half = 0.5f * floatOf(a), other = 0.5f * floatOf(b), sum = half + other;
+    return std::isfinite(sum) ? codeOf(sum) : 0;
+}
+
+std::uint32_t update(const Line& line, int i, int wavelet) {
+    static const Taps kTaps[] = {{1, {}, 1, false},  {8, {-1}, 4, true},      {128, {-22, 3}, 8, true},
+                                 {0, {1}, 2, false}, {0, {19, -3}, 6, false}, {0, {162, -39, 5}, 9, false}};
+    const Taps& taps = kTaps[wavelet - 2];
+    // A detail, if it was predicted from all its even samples.
+    const auto detail = [&](int k) {
+        const bool whole = line.e(k) && (taps.antisymmetric || line.e(k + 1));
+        return whole ? line.d(k) : Cell();
+    };
+    std::int64_t sum = 0;
+    if (taps.center != 0) {
+        if (!line.d(i)) return 0;
+        sum = taps.center * asSigned(*line.d(i));
+    }
+    std::int64_t pair = 0; // of the last whole pair
+    bool broken = false;
+    for (std::size_t j = 0; j < taps.weights.size(); ++j) {
+        const int n = int(j);
+        const Cell left = detail(i - 1 - n), right = detail(taps.antisymmetric ? i + 1 + n : i + n);
+        if (taps.antisymmetric) {
+            if (!left || !right) break;
+            sum += taps.weights[j] * (asSigned(*right) - asSigned(*left));
+            continue;
+        }
+        if (j == 0) {
+            if (!left && !right) return 0;
+            pair = asSigned(left ? *left : *right) + asSigned(right ? *right : *left);
+        } else if (!broken && left && right) {
+            pair = asSigned(*left) + asSigned(*right);
+        } else {
+            broken = true;
+        }
+        sum += taps.weights[j] * pair;
+    }
+    return finish(sum, taps.shift);
+}
+
+std::vector<Cell> undo(const std::vector<Cell>& cells, int wavelet, bool asFloat) {
+    const std::size_t n = cells.size(), evens = (n + 1) / 2;
+    if (n == 1) return cells;
+    Line line{{cells.begin(), cells.begin() + std::ptrdiff_t(evens)},
+              {cells.begin() + std::ptrdiff_t(evens), cells.end()}};
+    if (wavelet >= 2) {
+        std::vector<Cell> updated = line.even;
+        for (std::size_t i = 0; i < evens; ++i)
+            if (updated[i]) updated[i] = *updated[i] - update(line, int(i), wavelet);
+        line.even = updated;
+    }
+    for (std::size_t i = 0; i < line.odd.size(); ++i)
+        if (line.odd[i]) line.odd[i] = *line.odd[i] + predict(line, int(i), wavelet, asFloat);
+    std::vector<Cell> out;
+    for (std::size_t i = 0; i < n; ++i) out.push_back(i % 2 == 0 ? line.even[i / 2] : line.odd[i / 2]);
+    return out;
+}
+
+Size half(const Size& size) {
+    return {(size[0] + 1) / 2, (size[1] + 1) / 2, (size[2] + 1) / 2};
+}
+
+/// A box of cells, x fastest.
+struct Box {
+    Size size{};
+    std::vector<Cell> cells;
+    Cell& at(int x, int y, int z) {
+        return cells[(std::size_t(z) * std::size_t(size[1]) + std::size_t(y)) * std::size_t(size[0]) + std::size_t(x)];
+    }
+    Cell& at(const Size& p) { return at(p[0], p[1], p[2]); }
+};
+
+Box makeBox(const Size& size) {
+    return {size, std::vector<Cell>(std::size_t(size[0]) * std::size_t(size[1]) * std::size_t(size[2]))};
+}
+
+/// Calls `visit` with each place of [lo, hi), x fastest.
+template <class Visit> void places(const Size& lo, const Size& hi, Visit&& visit) {
+    for (int z = lo[2]; z < hi[2]; ++z)
+        for (int y = lo[1]; y < hi[1]; ++y)
+            for (int x = lo[0]; x < hi[0]; ++x) visit(Size{x, y, z});
+}
+
+/// The flags of a box in the places of the coded order: `steps` splits of what is left.
+void split(Box& flags, int steps) {
+    Size part = flags.size;
+    for (int step = 0; step < steps; ++step, part = half(part)) {
+        Box from = flags;
+        places({0, 0, 0}, part, [&](const Size& p) {
+            Size to;
+            for (std::size_t a = 0; a < 3; ++a) to[a] = p[a] % 2 == 0 ? p[a] / 2 : (part[a] + 1) / 2 + p[a] / 2;
+            flags.at(to) = from.at(p);
+        });
+    }
+}
+
+} // namespace
+
+Decoder::Decoder(std::vector<char> file) : file_(file.begin(), file.end()) {
+    // 1.1
+    need(file_.size() >= 80, "no header");
+    const std::uint8_t magic[] = {0x89, 0x54, 0x53, 0x52, 0x0d, 0x0a, 0x1a, 0x0a};
+    need(std::memcmp(file_.data(), magic, 8) == 0, "magic");
+    Reader in(file_);
+    (void)in.number(8);
+    need(in.u32() == 1 && in.u32() == 0, "version");
+    need(in.number(8) == file_.size(), "size");
+    Piece parts[2];
+    for (Piece& part : parts) {
+        part.offset = in.number(8);
+        part.length = in.number(8);
+        part.checksum = in.number(8);
+    }
+    need(in.number(8) == XXH3_64bits(file_.data(), 72), "header checksum");
+    need(parts[0].offset + parts[0].length == parts[1].offset && parts[1].offset + parts[1].length == file_.size(),
+         "parts");
+
+    // 1.2, 1.3
+    const Octets json = checked(parts[0]);
+    metadata_ = nlohmann::json::parse(json.begin(), json.end());
+    const auto& lattice = metadata_["data"]["lattice"];
+    bcc_ = lattice["kind"] == "bcc";
+    size_ = lattice["size"].get<Size>();
+    brickSize_ = metadata_["grid"]["brickSize"];
+    levels_ = metadata_["grid"]["levels"];
+    for (std::size_t a = 0; a < 3; ++a) {
+        const int covered = brickSize_ * (a == 2 && bcc_ ? 2 : 1);
+        bricks_[a] = (size_[a] + covered - 1) / covered;
+    }
+    for (const auto& parameter : metadata_["data"]["parameters"])
+        for (int c = 0; c < parameter["components"].get<int>(); ++c) types_.push_back(parameter["type"]);
+
+    // 1.4
+    const Octets index = checked(parts[1]);
+    Reader table(index);
+    const std::size_t bricks = std::size_t(bricks_[0]) * std::size_t(bricks_[1]) * std::size_t(bricks_[2]);
+    masks_.resize(table.u32());
+    frames_.resize(table.u32());
+    need(frames_.size() == types_.size() * metadata_["data"]["times"].size(), "frames");
+    for (Mask& mask : masks_) {
+        std::size_t at = table.number(8);
+        const std::size_t end = at + table.number(8);
+        for (std::size_t b = 0; b < bricks; ++b) {
+            const std::size_t length = table.u32();
+            mask.present.push_back(table.u32());
+            mask.pieces.push_back({at, length, table.number(8)});
+            at += length;
+        }
+        need(at == end, "mask chunk");
+    }
+    for (Frame& frame : frames_) {
+        std::size_t at = table.number(8);
+        const std::size_t end = at + table.number(8);
+        frame.numbers = int(table.number(1));
+        frame.wavelet = int(table.number(1));
+        frame.keepsAbsent = table.number(1) == 1;
+        need(table.number(1) == 0 && frame.numbers < 4 && frame.wavelet < 8, "frame");
+        frame.mask = int(table.u32());
+        frame.origin = table.f64();
+        frame.step = table.f64();
+        frame.valueOffset = table.f64();
+        frame.valueScale = table.f64();
+        for (std::size_t b = 0; b < bricks; ++b) (void)table.number(8); // min, max
+        for (std::size_t s = 0; s < bricks * std::size_t(levels_); ++s) {
+            const std::size_t length = table.u32();
+            frame.pieces.push_back({at, length, table.number(8)});
+            at += length;
+        }
+        need(at == end, "frame chunk");
+    }
+    need(table.at == table.end, "index");
+}
+
+std::vector<std::uint8_t> Decoder::checked(const Piece& piece) const {
+    need(piece.offset <= file_.size() && piece.length <= file_.size() - piece.offset, "outside");
+    const std::uint8_t* at = file_.data() + piece.offset;
+    need(XXH3_64bits(at, piece.length) == piece.checksum, "checksum");
+    return {at, at + piece.length};
+}
+
+Size Decoder::fineSize(int number) const {
+    const Size index{number % bricks_[0], number / bricks_[0] % bricks_[1], number / (bricks_[0] * bricks_[1])};
+    Size size;
+    for (std::size_t a = 0; a < 3; ++a) {
+        const int covered = brickSize_ * (a == 2 && bcc_ ? 2 : 1);
+        size[a] = std::min(size_[a] - index[a] * covered, covered);
+    }
+    return size;
+}
+
+/// 2
+std::vector<bool> Decoder::fineFlags(const Frame& frame, int number, const Size& size) const {
+    const std::size_t count = std::size_t(size[0]) * std::size_t(size[1]) * std::size_t(size[2]);
+    if (frame.mask < 0) return std::vector<bool>(count, true);
+    const Mask& mask = masks_[std::size_t(frame.mask)];
+    const std::uint32_t present = mask.present[std::size_t(number)];
+    const Octets bytes = checked(mask.pieces[std::size_t(number)]);
+    if (present == 0 || present == count) return std::vector<bool>(count, present != 0);
+    Octets bits(bytes.begin() + 1, bytes.end());
+    if (bytes[0] == 1) bits = unzstd(bits, (count + 7) / 8);
+    std::vector<bool> flags;
+    for (std::size_t i = 0; i < count; ++i) flags.push_back((bits[i / 8] >> (i % 8) & 1) != 0);
+    return flags;
+}
+
+Brick Decoder::brick(std::size_t frameNumber, int number, int level) const {
+    const Frame& frame = frames_[frameNumber];
+    const std::string& type = types_[frameNumber % types_.size()];
+    const Size fine = fineSize(number);
+    const std::vector<bool> flags = fineFlags(frame, number, fine);
+    const std::size_t bricks = std::size_t(bricks_[0]) * std::size_t(bricks_[1]) * std::size_t(bricks_[2]);
+    const int sublattices = bcc_ ? 2 : 1;
+
+    // The boxes of both sublattices at the wanted level, with flags where they are present.
+    std::vector<Box> boxes;
+    for (int s = 0; s < sublattices; ++s) {
+        const Size whole{fine[0], fine[1], (fine[2] + sublattices - 1 - s) / sublattices};
+        Size size = whole;
+        for (int l = 0; l < level; ++l) size = half(size);
+        Box box = makeBox(size);
+        places({0, 0, 0}, size, [&](const Size& p) {
+            const int z = (p[2] << level) * sublattices + s;
+            const std::size_t at =
+                (std::size_t(z) * std::size_t(fine[1]) + std::size_t(p[1] << level)) * std::size_t(fine[0]) +
+                std::size_t(p[0] << level);
+            if (flags[at]) box.at(p) = 0u;
+        });
+        split(box, levels_ - 1 - level);
+        boxes.push_back(std::move(box));
+    }
+
+    // 4.1: every coefficient to its place.
+    std::vector<std::uint32_t> absentBits, exactIndex, exactBits;
+    for (int segment = 0; segment < levels_ - level; ++segment) {
+        const Octets bytes = checked(frame.pieces[std::size_t(segment) * bricks + std::size_t(number)]);
+        Reader in(bytes);
+        std::vector<Cell*> order;
+        for (Box& box : boxes) {
+            Size part = box.size;
+            for (int l = level; l < levels_ - 1 - segment; ++l) part = half(part);
+            const Size low = half(part);
+            const auto add = [&](const Size& p) {
+                if (box.at(p)) order.push_back(&box.at(p));
+            };
+            if (segment == 0) places({0, 0, 0}, part, add);
+            for (int band = 1; band < 8 && segment > 0; ++band) {
+                Size lo{}, hi = low;
+                for (std::size_t a = 0; a < 3; ++a)
+                    if ((band >> a & 1) != 0) lo[a] = low[a], hi[a] = part[a];
+                places(lo, hi, add);
+            }
+        }
+        if (segment == 0 && !order.empty()) {
+            std::uint32_t code = in.u32();
+            *order[0] = code;
+            const auto symbols = stream(in, order.size() - 1);
+            for (std::size_t i = 1; i < order.size(); ++i) *order[i] = code += unzigzag(symbols[i - 1]);
+        } else if (segment > 0) {
+            const auto symbols = stream(in, order.size());
+            for (std::size_t i = 0; i < order.size(); ++i) *order[i] = unzigzag(symbols[i]);
+        }
+        if (segment == levels_ - 1) {
+            if (frame.keepsAbsent) {
+                std::size_t absent = 0;
+                for (const bool flag : flags) absent += flag ? 0 : 1;
+                absentBits = stream(in, absent);
+            }
+            if (frame.numbers == 1 || frame.numbers == 3) {
+                const std::size_t exact = in.u32();
+                exactIndex = stream(in, exact);
+                exactBits = stream(in, exact);
+            }
+        }
+        need(in.at == in.end, "trailing bytes");
+    }
+
+    // 4.3
+    const bool asFloat = frame.numbers == 2;
+    int wavelet = frame.wavelet;
+    if (asFloat) wavelet = wavelet == 0 || (wavelet >= 2 && wavelet <= 4) ? 0 : 1;
+    for (Box& box : boxes) {
+        std::vector<Size> parts{box.size};
+        for (int step = 0; step < levels_ - 1 - level; ++step) parts.push_back(half(parts.back()));
+        for (std::size_t step = parts.size() - 1; step-- > 0;) {
+            const Size part = parts[step], low = half(part);
+            for (const std::size_t axis : {2u, 1u, 0u}) {
+                Size lines = part;
+                lines[axis] = 1;
+                places({0, 0, 0}, lines, [&](const Size& start) {
+                    bool samples = asFloat;
+                    for (std::size_t earlier = 0; earlier < axis; ++earlier)
+                        samples = samples && start[earlier] < low[earlier];
+                    std::vector<Cell> line;
+                    Size p = start;
+                    for (p[axis] = 0; p[axis] < part[axis]; ++p[axis]) line.push_back(box.at(p));
+                    line = undo(line, wavelet, samples);
+                    for (p[axis] = 0; p[axis] < part[axis]; ++p[axis]) box.at(p) = line[std::size_t(p[axis])];
+                });
+            }
+        }
+    }
+
+    // 3, in storage order
+    Brick out;
+    out.size = boxes[0].size;
+    if (bcc_) out.size[2] += boxes[1].size[2];
+    std::size_t nextAbsent = 0;
+    places({0, 0, 0}, out.size, [&](const Size& p) {
+        const Cell cell = boxes[std::size_t(p[2] % sublattices)].at(p[0], p[1], p[2] / sublattices);
+        const std::size_t at = out.values.size();
+        out.present.push_back(cell.has_value());
+        const std::uint32_t code = cell.value_or(0);
+        double stored = double(asSigned(code));
+        std::uint32_t bits = code;
+        if (type == "float32") {
+            float value = 0;
+            if (frame.numbers == 1) value = float(stored / frame.step);
+            if (frame.numbers == 2) value = floatOf(code);
+            if (frame.numbers == 3) value = float(frame.origin + frame.step * stored);
+            if (level == 0)
+                for (std::size_t e = 0; e < exactIndex.size(); ++e)
+                    if (exactIndex[e] == at) value = std::bit_cast<float>(exactBits[e]);
+            stored = double(value);
+            bits = std::bit_cast<std::uint32_t>(value);
+        }
+        if (!cell && level == 0 && frame.keepsAbsent) bits = absentBits[nextAbsent++];
+        out.values.push_back(cell ? frame.valueOffset + frame.valueScale * stored : 0);
+        out.bits.push_back(bits);
+    });
+    return out;
+}
+
+} // namespace tessera::codec::plain

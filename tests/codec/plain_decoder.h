@@ -1,0 +1,65 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+/// A second reader of archives: slow, without any code of the first, following codec/FORMAT.md line by line. It refuses
+/// by std::runtime_error.
+namespace tessera::codec::plain {
+
+using Size = std::array<int, 3>;
+
+/// One brick at one level, storage order, x fastest.
+struct Brick {
+    Size size{};
+    std::vector<bool> present;
+    std::vector<double> values;      ///< physical values, not held within the range; 0 where absent
+    std::vector<std::uint32_t> bits; ///< level 0: the stored numbers, sign-extended or bits of a float; kept absent too
+};
+
+class Decoder {
+public:
+    explicit Decoder(std::vector<char> file);
+
+    const nlohmann::json& metadata() const { return metadata_; }
+    int levels() const { return levels_; }
+    Size bricks() const { return bricks_; }
+    std::size_t frames() const { return frames_.size(); }
+    /// Frame = (time * components + component); brick numbers x fastest.
+    Brick brick(std::size_t frame, int number, int level) const;
+
+private:
+    struct Piece {
+        std::size_t offset = 0, length = 0;
+        std::uint64_t checksum = 0;
+    };
+    struct Mask {
+        std::vector<Piece> pieces;
+        std::vector<std::uint32_t> present;
+    };
+    struct Frame {
+        int numbers = 0, wavelet = 0, mask = -1;
+        bool keepsAbsent = false;
+        double origin = 0, step = 1, valueOffset = 0, valueScale = 1;
+        std::vector<Piece> pieces; ///< [segment * bricks + brick]
+    };
+
+    std::vector<std::uint8_t> checked(const Piece& piece) const;
+    std::vector<bool> fineFlags(const Frame& frame, int number, const Size& size) const;
+    Size fineSize(int number) const;
+
+    std::vector<std::uint8_t> file_;
+    nlohmann::json metadata_;
+    bool bcc_ = false;
+    Size size_{}, bricks_{};
+    int brickSize_ = 0, levels_ = 0;
+    std::vector<std::string> types_; ///< of the component of each frame within a time
+    std::vector<Mask> masks_;
+    std::vector<Frame> frames_;
+};
+
+} // namespace tessera::codec::plain
