@@ -102,10 +102,13 @@ bool Renderer::Impl::bind(ViewTarget& target, const Scene& scene, const FrameReq
     const auto keyOf = [&](const BoundField& field, int time) {
         return ChannelKey{field.channel, time, prefiltered && !field.categorical};
     };
-    const glm::ivec3 texels = source->grid().lattice.texels();
+    const volume::Lattice& lattice = source->grid().lattice;
+    const WorldFrame frame = worldFrame(info.bounds, scene.stretch);
+    const glm::dvec3 eye = lattice.toCells(frame.toPhysical(cameraRay(scene.camera, 1, {0, 0}).origin));
+    const glm::ivec3 texels = lattice.texels();
     const bool large = std::size_t(texels.x) * std::size_t(texels.y) * std::size_t(texels.z) > kSmallTexels;
     for (std::size_t i = 0; i < plan.fields.size(); ++i)
-        residency.want(keyOf(plan.fields[i], wantedTime), double(i), large && !request.wait);
+        residency.want(keyOf(plan.fields[i], wantedTime), double(i), large && !request.wait, eye);
     if (request.wait) residency.finish();
 
     // All channels of one picture show one time: the wanted one if each has something there, else the former one.
@@ -131,6 +134,10 @@ bool Renderer::Impl::bind(ViewTarget& target, const Scene& scene, const FrameReq
         field.encoding = texture->encoding;
         field.textureSize = texture->size;
         field.blocks = &texture->blocks;
+        field.pages = texture->pages && texture->atlas ? texture->pages->texture.name() : 0;
+        field.atlas = field.pages ? texture->atlas->texture() : 0;
+        if (field.atlas) field.atlasSize = texture->atlas->size();
+        field.everyBrick = texture->bricksMissing == 0;
     }
     if (any) target.lastTime = time;
     status.complete = settled;
@@ -139,19 +146,25 @@ bool Renderer::Impl::bind(ViewTarget& target, const Scene& scene, const FrameReq
 
 /// Program, tables and uniforms of a bound plan. Null when the program does not compile.
 const Program* Renderer::Impl::prepare(ViewTarget& target, const Scene& scene, const RayPlan& plan) {
-    const std::optional<BlockDistances> blocks = blockDistances(plan, scene, source->info());
-    const bool skip = blocks && blocks->occupied < kSkipOccupancy;
-    const Program* rayProgram = program(rayRecipe(plan, scene, source->grid(), skip));
-    if (!rayProgram) return nullptr;
+    // Tables depend on these alone; a camera that moves keeps them.
+    if (target.tablesFor && target.tablesRevision == residency.revision() && target.tablesFor->layers == scene.layers &&
+        target.tablesFor->transfer == scene.transfer && target.tablesFor->render.filter == scene.render.filter &&
+        target.tablesTime == target.lastTime)
+        return program(rayRecipe(plan, scene, source->grid(), target.skip));
+    target.tablesFor = scene;
+    target.tablesRevision = residency.revision();
+    target.tablesTime = target.lastTime;
 
-    std::vector<glm::vec4> table = transferTables(plan, scene, source->info());
-    if (table != target.tableValues) {
-        const int rows = int(table.size()) / kTableSize;
+    const std::optional<BlockDistances> blocks = blockDistances(plan, scene, source->info());
+    target.skip = blocks && blocks->occupied < kSkipOccupancy;
+    const std::vector<glm::vec4> table = transferTables(plan, scene, source->info());
+    const int rows = int(table.size()) / kTableSize;
+    if (rows != target.tableRows) {
         target.table = makeTexture2D({kTableSize, rows}, GL_RGBA32F, GL_NEAREST, "transfer tables");
-        glTextureSubImage2D(target.table.name(), 0, 0, 0, kTableSize, rows, GL_RGBA, GL_FLOAT, table.data());
-        target.tableValues = std::move(table);
+        target.tableRows = rows;
     }
-    if (skip) {
+    glTextureSubImage2D(target.table.name(), 0, 0, 0, kTableSize, rows, GL_RGBA, GL_FLOAT, table.data());
+    if (target.skip) {
         if (target.blockCount != blocks->count || !target.blocks)
             target.blocks = makeTexture3D(blocks->count, GL_R8UI, GL_NEAREST, "block distances");
         target.blockCount = blocks->count;
@@ -160,7 +173,7 @@ const Program* Renderer::Impl::prepare(ViewTarget& target, const Scene& scene, c
                             GL_RED_INTEGER, GL_UNSIGNED_BYTE, blocks->distance.data());
         glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
     }
-    return rayProgram;
+    return program(rayRecipe(plan, scene, source->grid(), target.skip));
 }
 
 void Renderer::Impl::rays(const Program& rayProgram, const RayBuffer& buffer, glm::ivec2 size, const Tile& tile) {
@@ -207,10 +220,16 @@ void Renderer::Impl::refine(ViewTarget& target, const Scene& scene, const FrameR
     const Program* rayProgram = prepare(target, scene, plan);
     if (!rayProgram) return;
     const double aspect = double(target.size.x) / target.size.y;
-    for (std::size_t i = 0; i < plan.fields.size(); ++i) glBindTextureUnit(GLuint(i), plan.fields[i].texture);
-    const auto units = GLuint(plan.fields.size());
-    glBindTextureUnit(units, target.table.name());
-    glBindTextureUnit(units + 1, target.blocks.name());
+    const RayUnits units = rayUnits(plan);
+    for (std::size_t i = 0; i < plan.fields.size(); ++i) {
+        const BoundField& field = plan.fields[i];
+        glBindTextureUnit(GLuint(i), field.texture);
+        if (!field.atlas) continue;
+        glBindTextureUnit(GLuint(units.pages) + GLuint(i), field.pages);
+        glBindTextureUnit(GLuint(units.atlases) + GLuint(i), field.atlas);
+    }
+    glBindTextureUnit(GLuint(units.table), target.table.name());
+    glBindTextureUnit(GLuint(units.blocks), target.blocks.name());
     const volume::DatasetInfo& info = source->info();
     const double pixels = double(target.size.x) * target.size.y;
     const Tile everything{{0, 0}, target.size};
@@ -230,7 +249,6 @@ void Renderer::Impl::refine(ViewTarget& target, const Scene& scene, const FrameR
             millisecondsSince(begin) * stepFactor / std::max(1.0, double(target.reducedSize.x) * target.reducedSize.y);
         target.msPerPixel = target.msPerPixel > 0 ? 0.5 * (target.msPerPixel + cost) : cost;
         target.reducedValid = true;
-        for (std::size_t i = 0; i < plan.fields.size(); ++i) glBindTextureUnit(GLuint(i), plan.fields[i].texture);
         present(target, scene, true, everything);
         glBindTextureUnit(0, plan.fields[0].texture);
     };
@@ -308,18 +326,17 @@ FrameStatus Renderer::render(ViewTarget& target, const Scene& scene, const Frame
 
     RayPlan plan;
     bool any = false;
-    std::vector<GLuint> textures;
     if (impl_->source) {
         impl_->residency.beginFrame();
         impl_->residency.update(request.wait ? ~std::size_t(0) : kUploadPerFrame);
         plan = planRays(scene, impl_->source->info());
         any = !plan.empty() && impl_->bind(target, scene, request, plan, status);
-        for (const BoundField& field : plan.fields) textures.push_back(field.texture);
     }
-    if (!target.started || !(target.scene == scene) || target.textures != textures ||
+    const std::uint64_t revision = impl_->residency.revision();
+    if (!target.started || !(target.scene == scene) || target.revision != revision ||
         target.source != impl_->source.get()) {
         target.scene = scene;
-        target.textures = textures;
+        target.revision = revision;
         target.source = impl_->source.get();
         target.started = true;
         target.reducedValid = target.fullValid = false;

@@ -2,8 +2,12 @@
 #include "tests/vis/gl_fixture.h"
 
 #include "vis/model/ray_setup.h"
+#include "volume/error.h"
 
+#include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <thread>
 
 namespace tessera {
 namespace {
@@ -70,6 +74,241 @@ TEST_F(RendererTest, FurnaceOpacityIsExponential) {
         }
         EXPECT_TRUE(renderer.takeMessages().empty());
     }
+}
+
+/// A smooth field that is absent in a corner, a label, and a field everywhere; many small bricks.
+std::shared_ptr<vis::FunctionSource> brickedSource(volume::LatticeKind kind) {
+    const auto v = [](glm::dvec3 p) -> std::optional<double> {
+        if (p.x + p.y + p.z < 13) return std::nullopt;
+        return 0.5 + 0.4 * std::sin(0.5 * p.x) * std::cos(0.4 * p.y + 0.3 * p.z);
+    };
+    const auto w = [](glm::dvec3 p) -> std::optional<double> { return p.x * 0.04 - p.z * 0.01; };
+    const auto label = [](glm::dvec3 p) -> std::optional<double> { return p.y > 12 ? 2 : 1; };
+    return std::make_shared<vis::FunctionSource>(
+        kind, glm::ivec3(29, 25, 37), glm::dvec3(1),
+        std::vector<vis::FunctionSource::Channel>{{"v", v}, {"w", w}, {"label", label, {1, 2}, true}});
+}
+
+Scene richScene() {
+    Scene scene = flatScene(0.1f);
+    scene.camera = {};
+    scene.camera.distance = 1.8f;
+    scene.transfer["v"].opacity = {{0, 0}, {0.3f, 0}, {0.5f, 0.3f}, {1, 0.6f}};
+    std::get<vis::VolumeLayer>(scene.layers[0].technique).shaded = true;
+    scene.layers.push_back({"iso", true, vis::IsoLayer{.channel = "w", .value = 0.35, .opacity = 0.5f}});
+    scene.layers.push_back({"slice", true, vis::SliceLayer{.channel = "label", .atCursor = false, .position = 0.3}});
+    scene.selection.brushes = {{.intervals = {{"w", 0.2, 0.9, 0.1}}}};
+    return scene;
+}
+
+std::vector<glm::vec4> picture(std::shared_ptr<const volume::BrickSource> source, const vis::RendererOptions& options,
+                               const Scene& scene, glm::ivec2 size = {64, 48}) {
+    vis::Renderer renderer(options);
+    renderer.setSource(std::move(source));
+    const vis::ViewTargetPtr target = renderer.makeTarget();
+    test::renderAll(renderer, *target, scene, size);
+    for (const std::string& message : renderer.takeMessages()) ADD_FAILURE() << message;
+    return renderer.readLinear(*target);
+}
+
+// Bricks of 8 texels in an atlas and one texture of the whole give the same picture: no seams, right page table.
+TEST_F(RendererTest, BricksAndOneTextureAgree) {
+    const struct {
+        volume::LatticeKind kind;
+        vis::Filter filter;
+        bool exact;
+    } cases[] = {{volume::LatticeKind::CC, vis::Filter::AverageQuasi, true},
+                 {volume::LatticeKind::BCC, vis::Filter::Tetrahedral, true},
+                 {volume::LatticeKind::BCC, vis::Filter::AverageQuasi, false}};
+    for (const auto& test : cases) {
+        SCOPED_TRACE(std::to_string(int(test.kind)) + " " + std::to_string(int(test.filter)));
+        Scene scene = richScene();
+        scene.render.filter = test.filter;
+        vis::RendererOptions whole, bricks;
+        whole.exactTextures = bricks.exactTextures = test.exact;
+        bricks.denseTexels = 0;
+        EXPECT_LT(test::maxDifference(picture(brickedSource(test.kind), whole, scene),
+                                      picture(brickedSource(test.kind), bricks, scene)),
+                  test.exact ? 2e-4 : 1.0 / 255);
+    }
+}
+
+// A budget for a handful of bricks does not change a picture that is waited for.
+TEST_F(RendererTest, TinyBudgetStillCompletes) {
+    const auto source = brickedSource(volume::LatticeKind::BCC);
+    vis::RendererOptions tiny;
+    tiny.denseTexels = 0;
+    tiny.textureBudget = 1;
+    tiny.memoryBudget = 1;
+    EXPECT_LT(test::maxDifference(picture(source, {}, richScene()), picture(source, tiny, richScene())), 1.0 / 255);
+}
+
+/// Another source's bricks, after asking `check`.
+class CheckedSource : public volume::BrickSource {
+public:
+    CheckedSource(std::shared_ptr<const volume::BrickSource> source, std::function<void(const volume::BrickKey&)> check)
+        : source_(std::move(source)), check_(std::move(check)) {}
+    const volume::DatasetInfo& info() const override { return source_->info(); }
+    const volume::BrickGrid& grid() const override { return source_->grid(); }
+    volume::BrickStats stats(const volume::BrickKey& key) const override { return source_->stats(key); }
+    volume::BrickSamples read(const volume::BrickKey& key) const override {
+        check_(key);
+        return source_->read(key);
+    }
+
+private:
+    std::shared_ptr<const volume::BrickSource> source_;
+    std::function<void(const volume::BrickKey&)> check_;
+};
+
+// A damaged brick is absent, the others are drawn, and the log says so.
+TEST_F(RendererTest, DamagedBrickIsLeftOut) {
+    const auto flat = std::make_shared<vis::FunctionSource>(
+        volume::LatticeKind::CC, glm::ivec3(32, 16, 16), glm::dvec3(1),
+        std::vector<vis::FunctionSource::Channel>{{"v", [](glm::dvec3) { return 0.5; }}});
+    const auto damaged = std::make_shared<CheckedSource>(flat, [](const volume::BrickKey& key) {
+        if (key.index.x == 0) throw Error("checksum does not match", "cell.tsr", "brick 0");
+    });
+    for (const std::size_t dense : {std::size_t(0), std::size_t(1) << 20}) {
+        vis::RendererOptions options;
+        options.denseTexels = dense;
+        vis::Renderer renderer(options);
+        renderer.setSource(damaged);
+        const vis::ViewTargetPtr target = renderer.makeTarget();
+        test::renderAll(renderer, *target, flatScene(0.5f), {64, 64});
+        const std::vector<glm::vec4> pixels = renderer.readLinear(*target);
+        EXPECT_EQ(pixels[32 * 64 + 4].a, 0);
+        EXPECT_GT(pixels[32 * 64 + 50].a, 0.99);
+        const std::vector<std::string> messages = renderer.takeMessages();
+        ASSERT_FALSE(messages.empty());
+        EXPECT_NE(messages[0].find("checksum does not match"), std::string::npos);
+    }
+}
+
+// While fine bricks are not there a coarse level shows, in the right place: a linear field looks the same at any level.
+TEST_F(RendererTest, CoarseLevelsLieWhereFineOnesDo) {
+    for (const volume::LatticeKind kind : {volume::LatticeKind::CC, volume::LatticeKind::BCC}) {
+        const auto linear = std::make_shared<vis::FunctionSource>(
+            kind, glm::ivec3(33, 33, 33), glm::dvec3(1),
+            std::vector<vis::FunctionSource::Channel>{{"v", [](glm::dvec3 p) { return (p.x + p.y) / 64; }}});
+        std::atomic<bool> open = false;
+        const auto slow = std::make_shared<CheckedSource>(linear, [&](const volume::BrickKey& key) {
+            while (key.level == 0 && !open) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        });
+        Scene scene = flatScene(1);
+        scene.layers = {{"slice", true, vis::SliceLayer{.channel = "v", .atCursor = false, .position = 0.5}}};
+        vis::RendererOptions options = exact();
+        options.denseTexels = 0;
+        vis::Renderer renderer(options);
+        renderer.setSource(slow);
+        const vis::ViewTargetPtr target = renderer.makeTarget();
+        vis::FrameRequest request;
+        request.size = {32, 32};
+        std::vector<glm::vec4> coarse;
+        for (int i = 0; i < 2000 && (coarse.empty() || coarse[16 * 32 + 16].a == 0); ++i) {
+            const vis::FrameStatus status = renderer.render(*target, scene, request);
+            EXPECT_FALSE(status.complete);
+            EXPECT_GT(status.bricksMissing, 0);
+            coarse = renderer.readLinear(*target);
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        }
+        open = true;
+        test::renderAll(renderer, *target, scene, request.size);
+        const std::vector<glm::vec4> fine = renderer.readLinear(*target);
+        double worst = 0; // away from the edges, where coarse levels repeat their last sample
+        for (int y = 10; y < 22; ++y)
+            for (int x = 10; x < 22; ++x)
+                worst = std::max(worst, double(glm::length(coarse[y * 32 + x] - fine[y * 32 + x])));
+        EXPECT_LT(worst, 2e-3);
+        EXPECT_NEAR(fine[16 * 32 + 16].a, 1, 1e-6);
+    }
+}
+
+// Frames of a small budget lead to the picture that waiting gives, by way of presentable ones.
+TEST_F(RendererTest, RefinesToTheSamePicture) {
+    vis::Renderer renderer;
+    renderer.setSource(brickedSource(volume::LatticeKind::BCC));
+    const vis::ViewTargetPtr waited = renderer.makeTarget(), refined = renderer.makeTarget();
+    const Scene scene = richScene();
+    const glm::ivec2 size(150, 90);
+    test::renderAll(renderer, *waited, scene, size);
+    vis::FrameRequest request;
+    request.size = size;
+    request.budgetMs = 0.5;
+    request.moving = true;
+    vis::FrameStatus status = renderer.render(*refined, scene, request);
+    EXPECT_NE(status.texture, 0u);
+    glm::ivec2 got;
+    const std::vector<std::uint8_t> first = renderer.readPixels(*refined, got);
+    EXPECT_EQ(got, size);
+    EXPECT_GT(*std::max_element(first.begin(), first.begin() + 4 * 150 * 45), 60);
+    request.moving = false;
+    int frames = 0;
+    while (!status.complete && ++frames < 1000) status = renderer.render(*refined, scene, request);
+    EXPECT_TRUE(status.complete);
+    EXPECT_EQ(test::maxDifference(renderer.readLinear(*waited), renderer.readLinear(*refined)), 0);
+    // Nothing left to do: the same texture, at once.
+    EXPECT_EQ(renderer.render(*refined, scene, request).texture, status.texture);
+}
+
+TEST_F(RendererTest, PickFindsTheSurface) {
+    const auto ball = std::make_shared<vis::FunctionSource>(
+        volume::LatticeKind::CC, glm::ivec3(33), glm::dvec3(1),
+        std::vector<vis::FunctionSource::Channel>{
+            {"v", [](glm::dvec3 p) { return glm::length(p - 16.0) / 16; }, {0, 1.8}}});
+    vis::Renderer renderer;
+    renderer.setSource(ball);
+    const vis::ViewTargetPtr target = renderer.makeTarget();
+    Scene scene = flatScene(0);
+    scene.layers = {{"iso", true, vis::IsoLayer{.channel = "v", .value = 0.5}}};
+    test::renderAll(renderer, *target, scene, {65, 65});
+    const std::optional<vis::Pick> hit = renderer.pick(*target, {32, 32});
+    ASSERT_TRUE(hit);
+    EXPECT_NEAR(hit->position.x, 16, 0.05);
+    EXPECT_NEAR(hit->position.y, 16, 0.05);
+    EXPECT_NEAR(hit->position.z, 24, 0.05);
+    // y counts down: above the middle lies greater y.
+    const std::optional<vis::Pick> above = renderer.pick(*target, {32, 22});
+    ASSERT_TRUE(above);
+    EXPECT_GT(above->position.y, 20);
+    EXPECT_FALSE(renderer.pick(*target, {1, 1}));
+    EXPECT_FALSE(renderer.pick(*target, {-1, 70}));
+}
+
+TEST_F(RendererTest, LeavesTheCallersStateAlone) {
+    vis::Renderer renderer;
+    renderer.setSource(brickedSource(volume::LatticeKind::CC));
+    const vis::ViewTargetPtr target = renderer.makeTarget();
+    GLuint mine = 0;
+    glCreateFramebuffers(1, &mine);
+    glBindFramebuffer(GL_FRAMEBUFFER, mine);
+    glViewport(1, 2, 3, 4);
+    test::renderAll(renderer, *target, richScene(), {20, 10});
+    GLint framebuffer = 0, viewport[4];
+    glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &framebuffer);
+    glGetIntegerv(GL_VIEWPORT, viewport);
+    EXPECT_EQ(GLuint(framebuffer), mine);
+    EXPECT_EQ(viewport[0] * 1000 + viewport[1] * 100 + viewport[2] * 10 + viewport[3], 1234);
+    glDeleteFramebuffers(1, &mine);
+}
+
+TEST_F(RendererTest, EmptySizesAndUnknownChannels) {
+    vis::Renderer renderer;
+    renderer.setSource(brickedSource(volume::LatticeKind::CC));
+    const vis::ViewTargetPtr target = renderer.makeTarget();
+    vis::FrameRequest request;
+    request.wait = true;
+    for (const glm::ivec2 size : {glm::ivec2(0, 5), glm::ivec2(5, 0), glm::ivec2(1, 1), glm::ivec2(3, 200)}) {
+        request.size = size;
+        EXPECT_TRUE(renderer.render(*target, richScene(), request).complete);
+    }
+    Scene scene = flatScene(0.5f);
+    std::get<vis::VolumeLayer>(scene.layers[0].technique).channel = "no such";
+    test::renderAll(renderer, *target, scene, {8, 8});
+    EXPECT_EQ(renderer.readLinear(*target)[0].a, 0);
+    renderer.setSource(nullptr);
+    test::renderAll(renderer, *target, richScene(), {8, 8});
+    EXPECT_EQ(renderer.readLinear(*target)[36].a, 0);
 }
 
 } // namespace

@@ -16,18 +16,14 @@ using volume::BrickKey;
 using volume::BrickSamples;
 using volume::LatticeKind;
 
-ChannelStats channelStats(const volume::BrickSource& source, int channel, int time) {
+ChannelStats channelStats(std::span<const volume::BrickStats> bricks) {
     ChannelStats stats{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity(), false, false};
-    const glm::ivec3 count = source.grid().count();
-    for (int z = 0; z < count.z; ++z)
-        for (int y = 0; y < count.y; ++y)
-            for (int x = 0; x < count.x; ++x) {
-                const volume::BrickStats brick = source.stats({channel, time, 0, {x, y, z}});
-                if (brick.presentFraction < 1) stats.someAbsent = true;
-                if (brick.presentFraction <= 0 || !(brick.min <= brick.max)) continue;
-                stats.min = std::min(stats.min, double(brick.min));
-                stats.max = std::max(stats.max, double(brick.max));
-            }
+    for (const volume::BrickStats& brick : bricks) {
+        if (brick.presentFraction < 1) stats.someAbsent = true;
+        if (brick.presentFraction <= 0 || !(brick.min <= brick.max)) continue;
+        stats.min = std::min(stats.min, double(brick.min));
+        stats.max = std::max(stats.max, double(brick.max));
+    }
     if (!(stats.min <= stats.max)) stats = {0, 0, true, true};
     return stats;
 }
@@ -200,6 +196,7 @@ TexelBlock makeTexels(const BrickGrid& grid, const BrickKey& which, const TexelB
             }
     });
     out.blocks = blockRanges(plain, out.size, perTexel);
+    out.blocks.level = box.level;
     return out;
 }
 

@@ -1,10 +1,10 @@
 #pragma once
 
 #include "volume/brick_source.h"
-#include "volume/progress.h"
 
 #include <functional>
 #include <memory>
+#include <span>
 #include <vector>
 
 /// From bricks to the texels of a 3D texture: gathered with a halo, filtered, normalised and packed. No GL.
@@ -27,7 +27,7 @@ struct ChannelStats {
     double min = 0, max = 0;
     bool someAbsent = false, allAbsent = false;
 };
-ChannelStats channelStats(const volume::BrickSource& source, int channel, int time);
+ChannelStats channelStats(std::span<const volume::BrickStats> bricks);
 
 /// The encoding that holds a channel: unfiltered values in [0, 1] of the 16 bits minus headroom for the prefilter's
 /// overshoot (2/3 of the range on either side). Categorical values are stored as integers.
@@ -43,9 +43,11 @@ struct TexelBox {
     glm::ivec3 size() const { return end - begin; }
 };
 
-/// Texel ranges per 8^3 block, over everything that interpolation inside the block can touch; min > max: all absent.
+/// Texel ranges per block, over everything that interpolation inside the block can touch; min > max: all absent.
 struct BlockRanges {
     glm::ivec3 count{0};
+    int edge = kBlockTexels; ///< of a block, in texels of `level`
+    int level = 0;
     std::vector<float> min, max; ///< texel units, x fastest
 };
 

@@ -26,8 +26,8 @@ public:
 
     // What the buffers show.
     Scene scene;
-    std::vector<GLuint> textures; ///< of the fields, in order
-    bool started = false;         ///< the buffers hold something of `scene`
+    std::uint64_t revision = 0; ///< of what was resident
+    bool started = false;       ///< the buffers hold something of `scene`
     bool reducedValid = false;
     int tilesDone = 0, tileEdge = 256;
     const volume::BrickSource* source = nullptr;
@@ -36,10 +36,13 @@ public:
     int lastTime = -1;
     double msPerPixel = 0; ///< of a full pass; 0 = not measured
 
-    // The table textures of this scene.
+    // Transfer tables and block distances, and what they were made for.
     Texture table, blocks;
-    std::vector<glm::vec4> tableValues;
+    std::optional<Scene> tablesFor;
+    std::uint64_t tablesRevision = 0;
+    int tablesTime = -1, tableRows = 0;
     glm::ivec3 blockCount{0};
+    bool skip = false; ///< leap over empty blocks
 
     void resize(glm::ivec2 wanted, bool exact);
 };

@@ -18,7 +18,6 @@ layout(location = 0) out vec4 outColor; // linear, premultiplied
 layout(location = 1) out float outPick; // distance along the ray of what a pixel shows, < 0: nothing
 
 const float kOpaque = 0.995, kPickOpacity = 0.1, kFlatGradient = 0.005;
-const int kBisections = 6;
 const float kNoPick = -2.0;
 
 vec3 toCells(vec3 world) {
@@ -32,12 +31,12 @@ bool present(vec2 s) {
 // Change over one worldCell edge per axis, in texel units: central differences, one-sided at absent samples.
 vec3 cellGradient(int field, vec3 p, float centre) {
     vec3 result = vec3(0.0);
-    for (int axis = 0; axis < 3; ++axis) {
+    for (int axis = 0; axis < axisCount; ++axis) {
         vec3 offset = vec3(axis == 0, axis == 1, axis == 2) * gradientDelta;
         vec2 lower = reconstruct(field, p - offset), upper = reconstruct(field, p + offset);
         bool hasLower = present(lower), hasUpper = present(upper);
         float difference = (hasUpper ? upper.x : centre) - (hasLower ? lower.x : centre);
-        result[axis] = hasLower && hasUpper ? 0.5 * difference : difference;
+        result += offset / gradientDelta * (hasLower && hasUpper ? 0.5 * difference : difference);
     }
     return result; // gradientDelta cells are one worldCell edge on either lattice
 }
@@ -184,7 +183,7 @@ void main() {
                 bool crossed = k > 0 && present(a) && present(b) && (a.x >= value) != (b.x >= value);
                 bool above = a.x >= value;
                 float lo = -1.0, hi = 0.0;
-                for (int n = 0; n < kBisections; ++n) {
+                for (int n = 0; n < bisections; ++n) {
                     float middle = 0.5 * (lo + hi);
                     bool same = (reconstruct(field, p + middle * cellsPerSample).x >= value) == above;
                     lo = same ? middle : lo;

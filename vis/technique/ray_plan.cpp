@@ -57,6 +57,19 @@ double toTexel(const BoundField& field, double value) {
     return (value - field.encoding.offset) / field.encoding.scale;
 }
 
+/// The block grid that all ray layers' channels have in common; null where they have none.
+const BlockRanges* commonBlocks(const RayPlan& plan) {
+    const BlockRanges* first = nullptr;
+    for (const RayLayer& layer : plan.layers) {
+        const BlockRanges* blocks = plan.fields[std::size_t(layer.field)].blocks;
+        if (!blocks || blocks->min.empty()) return nullptr;
+        if (!first) first = blocks;
+        if (blocks->level != first->level || blocks->edge != first->edge || blocks->count != first->count)
+            return nullptr;
+    }
+    return first;
+}
+
 } // namespace
 
 RayPlan planRays(const Scene& scene, const volume::DatasetInfo& info) {
@@ -97,7 +110,9 @@ ProgramRecipe rayRecipe(const RayPlan& plan, const Scene& scene, const volume::B
     ProgramRecipe recipe;
     recipe.vertex = "screen.vert.glsl";
     recipe.fragment = "raycast.frag.glsl";
-    recipe.slots["fetch"] = "slots/fetch_dense.glsl";
+    const bool bricked =
+        std::any_of(plan.fields.begin(), plan.fields.end(), [](const BoundField& f) { return f.atlas; });
+    recipe.slots["fetch"] = bricked ? "slots/fetch_bricked.glsl" : "slots/fetch_dense.glsl";
     recipe.slots["skip"] = skip ? "slots/skip_distance.glsl" : "slots/skip_none.glsl";
     recipe.slots["reconstruct"] = !bcc                                         ? "slots/recon_cc_linear.glsl"
                                   : scene.render.filter == Filter::Tetrahedral ? "slots/recon_bcc_tetrahedral.glsl"
@@ -105,6 +120,12 @@ ProgramRecipe rayRecipe(const RayPlan& plan, const Scene& scene, const volume::B
     const auto define = [&](const char* name, const std::string& value) { recipe.defines.emplace_back(name, value); };
     define("FIELDS", std::to_string(plan.fields.size()));
     define("FIELD_COVERAGE(i)", choice(plan.fields, [](const BoundField& field) { return field.encoding.coverage; }));
+    if (bricked) {
+        define("FIELD_BRICKS(i)", choice(plan.fields, [](const BoundField& field) {
+                   return !field.atlas ? 0 : field.everyBrick ? 2 : 1;
+               }));
+        define("BRICK_TEXELS", std::to_string(grid.brickSize));
+    }
     define("FIELD_NEAREST(i)", choice(plan.fields, [](const BoundField& field) { return field.categorical; }));
     define("LAYERS", std::to_string(plan.layers.size()));
     define("LAYER_STYLE(i)", choice(plan.layers, [](const RayLayer& layer) { return int(layer.style); }));
@@ -237,7 +258,9 @@ void setBrushes(const Program& program, const RayPlan& plan, const Scene& scene,
 
 void setFields(const Program& program, const RayPlan& plan, const volume::BrickGrid& grid) {
     std::vector<glm::vec3> scales, offsets, odds;
-    std::vector<int> levels, units;
+    std::vector<glm::vec3> inverses;
+    std::vector<int> levels, units, pages, atlases;
+    const RayUnits first = rayUnits(plan);
     for (const BoundField& field : plan.fields) {
         // Texel i of level l covers the sample at cell i * 2^l + phase; its centre is at i + halo + 1/2 in the texture.
         const double step = double(1 << field.level);
@@ -246,18 +269,37 @@ void setFields(const Program& program, const RayPlan& plan, const volume::BrickG
         offsets.emplace_back((kHalo + 0.5 - grid.levelPhase(field.level) / step) / size);
         odds.emplace_back(-0.5 / step / size);
         levels.push_back(field.level);
-        units.push_back(int(units.size()));
+        inverses.emplace_back(1.0f / glm::vec3(field.atlasSize));
+        const int i = int(units.size());
+        units.push_back(i);
+        pages.push_back(first.pages + i);
+        atlases.push_back(first.atlases + i);
     }
     program.set("fieldTexture", units);
     program.set("fieldScale", scales);
     program.set("fieldOffset", offsets);
     program.set("fieldOdd", odds);
     program.set("fieldLevel", levels);
-    program.set("transferTable", int(plan.fields.size()));
-    program.set("blockDistance", int(plan.fields.size()) + 1);
+    program.set("pageTable", pages);
+    program.set("atlas", atlases);
+    program.set("atlasInverse", inverses);
+    program.set("transferTable", first.table);
+    program.set("blockDistance", first.blocks);
 }
 
 } // namespace
+
+RayUnits rayUnits(const RayPlan& plan) {
+    const int n = int(plan.fields.size());
+    const bool bricked =
+        std::any_of(plan.fields.begin(), plan.fields.end(), [](const BoundField& f) { return f.atlas; });
+    RayUnits units;
+    units.pages = n;
+    units.atlases = 2 * n;
+    units.table = bricked ? 3 * n : n;
+    units.blocks = units.table + 1;
+    return units;
+}
 
 void setRayUniforms(const Program& program, const RayPlan& plan, const Scene& scene, const volume::DatasetInfo& info,
                     const volume::BrickGrid& grid, double aspect, double stepFactor) {
@@ -274,12 +316,14 @@ void setRayUniforms(const Program& program, const RayPlan& plan, const Scene& sc
     program.set("cellsPerWorld", glm::vec3(cellsPerWorld));
     program.set("cellsOffset", glm::vec3((-frame.offset / frame.scale - grid.lattice.origin) / grid.lattice.spacing));
     program.set("gradientDelta", float(gradientDelta(grid.lattice.kind)));
+    program.set("axisCount", 3);
+    program.set("bisections", kBisections);
     program.set("toLight", glm::vec3(lightDirection(render, scene.camera)));
     program.set("light", glm::vec4(render.ambient, render.diffuse, render.specular, render.shininess));
-    if (!plan.fields.empty()) { // block grid of the first field; see blockDistances
-        const double step = double(1 << plan.fields[0].level);
-        program.set("blockScale", glm::vec3(float(1 / step / kBlockTexels)));
-        program.set("blockOffset", glm::vec3(float(-grid.levelPhase(plan.fields[0].level) / step / kBlockTexels)));
+    if (const BlockRanges* blocks = commonBlocks(plan)) {
+        const double edge = double(1 << blocks->level) * blocks->edge;
+        program.set("blockScale", glm::vec3(float(1 / edge)));
+        program.set("blockOffset", glm::vec3(float(-grid.levelPhase(blocks->level) / edge)));
     }
 }
 
@@ -326,15 +370,11 @@ void spread(std::vector<std::uint8_t>& distance, glm::ivec3 count) {
 } // namespace
 
 std::optional<BlockDistances> blockDistances(const RayPlan& plan, const Scene& scene, const volume::DatasetInfo& info) {
-    if (plan.layers.empty()) return std::nullopt;
-    const BoundField& reference = plan.fields[0];
-    for (const RayLayer& use : plan.layers) {
-        const BoundField& field = plan.fields[std::size_t(use.field)];
-        if (!field.blocks || field.level != reference.level || !reference.blocks) return std::nullopt;
-    }
+    const BlockRanges* grid = commonBlocks(plan);
+    if (!grid) return std::nullopt;
     BlockDistances out;
-    out.count = reference.blocks->count;
-    const std::size_t total = reference.blocks->min.size();
+    out.count = grid->count;
+    const std::size_t total = grid->min.size();
     out.distance.assign(total, 255);
     for (const RayLayer& use : plan.layers) {
         const BoundField& field = plan.fields[std::size_t(use.field)];

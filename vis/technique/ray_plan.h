@@ -22,6 +22,9 @@ struct BoundField {
     TexelEncoding encoding;
     glm::ivec3 textureSize{1}; ///< texels with halo
     const BlockRanges* blocks = nullptr;
+    GLuint pages = 0, atlas = 0; ///< 0: the texture is all there is
+    glm::ivec3 atlasSize{1};
+    bool everyBrick = false; ///< no page is coarse
 };
 
 enum class RayStyle { Composite, Maximum, XRay, Iso }; ///< numbers known to raycast.frag.glsl
@@ -57,7 +60,13 @@ inline constexpr int kTableSize = 2048;
 /// whose opacity at i is the greater one of entries i and i + 1.
 std::vector<glm::vec4> transferTables(const RayPlan& plan, const Scene& scene, const volume::DatasetInfo& info);
 
-/// Sets every uniform except the samplers' textures (unit i = field i, then transfer table, block distance) and
+/// Texture units: channels from 0, then page tables, atlases, the transfer tables and the block distances.
+struct RayUnits {
+    int pages = 0, atlases = 0, table = 0, blocks = 0;
+};
+RayUnits rayUnits(const RayPlan& plan);
+
+/// Sets every uniform except the samplers' textures (rayUnits) and
 /// ndcScale and ndcOffset.
 void setRayUniforms(const Program& program, const RayPlan& plan, const Scene& scene, const volume::DatasetInfo& info,
                     const volume::BrickGrid& grid, double aspect, double stepFactor);

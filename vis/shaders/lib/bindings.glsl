@@ -26,6 +26,8 @@ uniform vec3 worldCell;           // world edges of the cell that steps are meas
 uniform float stepVoxels;
 uniform vec3 cellsPerWorld, cellsOffset; // p = world * cellsPerWorld + cellsOffset
 uniform float gradientDelta;
+// 3 and kBisections: no constants, so that no compiler unrolls these loops (seconds of it on software GL).
+uniform int axisCount, bisections;
 uniform vec3 toLight;
 uniform vec4 light; // ambient, diffuse, specular, shininess
 

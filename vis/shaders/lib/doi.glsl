@@ -1,7 +1,7 @@
 // Degree of interest of a place; twin: degreeOfInterest() in vis/model/selection.h.
 
-#if BRUSH_FIELDS > 0
 float degreeOfInterest(vec3 p) {
+#if BRUSH_FIELDS > 0
     vec2 samples[BRUSH_FIELDS];
     for (int i = 0; i < BRUSH_FIELDS; ++i) samples[i] = reconstruct(BRUSH_FIELD(i), p);
     float doi = combineAny == 1 ? 0.0 : 1.0, own = 1.0;
@@ -22,12 +22,10 @@ float degreeOfInterest(vec3 p) {
         }
     }
     return doi;
-}
 #else
-float degreeOfInterest(vec3 p) {
     return 1.0;
-}
 #endif
+}
 
 // Factor on opacity.
 float focusOpacity(float doi) {

@@ -8,9 +8,14 @@ vec4 fetchOdd(int field, vec3 p) {
     return textureLod(fieldTexture[field], p * fieldScale[field] + fieldOffset[field] + fieldOdd[field], 0.0);
 }
 
-// The texel with (even) index `at` at the level of the texture.
-vec4 fetchTexel(int field, ivec3 at) {
-    return texelFetch(fieldTexture[field], at + HALO, 0);
+// Whether p is drawn at full resolution.
+bool fineAt(int field, vec3 p) {
+    return fieldLevel[field] == 0;
+}
+
+// The texel with (even) index `at` at the level of the texture; p lies near it.
+vec4 fetchTexel(int field, ivec3 at, vec3 p) {
+    return texelFetch(fieldTexture[field], clamp(at + HALO, ivec3(0), textureSize(fieldTexture[field], 0) - 1), 0);
 }
 
 // Continuous index within a sublattice, at the level of the texture.

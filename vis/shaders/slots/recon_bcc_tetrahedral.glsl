@@ -3,8 +3,8 @@
 #include "lib/bcc_nearest.glsl"
 
 // Value and presence of a lattice point given in half cells: all coordinates even, or all odd.
-vec2 latticePoint(int field, ivec3 corner) {
-    vec4 texel = fetchTexel(field, corner >> 1);
+vec2 latticePoint(int field, ivec3 corner, vec3 p) {
+    vec4 texel = fetchTexel(field, corner >> 1, p);
     vec2 found = (corner.z & 1) == 1 ? texel.ga : texel.rb;
     return FIELD_COVERAGE(field) == 0 ? vec2(found.x, 1.0) : found;
 }
@@ -12,7 +12,7 @@ vec2 latticePoint(int field, ivec3 corner) {
 // (value, coverage) at p; the sample is absent where coverage < 1/2. Coarse levels are no BCC lattice: average there.
 vec2 reconstruct(int field, vec3 p) {
     if (FIELD_NEAREST(field) == 1) return bccNearest(field, p);
-    if (fieldLevel[field] > 0) {
+    if (!fineAt(field, p)) {
         vec4 even = fetchEven(field, p), odd = fetchOdd(field, p);
         if (FIELD_COVERAGE(field) == 0) return vec2(0.5 * (even.r + odd.g), 1.0);
         return vec2((even.r + odd.g) / max(even.b + odd.a, 1e-6), 0.5 * (even.b + odd.a));
@@ -27,12 +27,12 @@ vec2 reconstruct(int field, vec3 p) {
     if (f.x < f.y) { u = f.x; f.x = f.y; f.y = u; t = s0; s0 = s1; s1 = t; }
     if (f.y < f.z) { u = f.y; f.y = f.z; f.z = u; t = s1; s1 = s2; s2 = t; }
     if (f.x < f.y) { u = f.x; f.x = f.y; f.y = u; t = s0; s0 = s1; s1 = t; }
-    vec2 sum = (1.0 - f.x) * latticePoint(field, corner);
+    vec2 sum = (1.0 - f.x) * latticePoint(field, corner, p);
     corner += s0;
-    sum += (f.x - f.y) * latticePoint(field, corner);
+    sum += (f.x - f.y) * latticePoint(field, corner, p);
     corner += s1;
-    sum += (f.y - f.z) * latticePoint(field, corner);
+    sum += (f.y - f.z) * latticePoint(field, corner, p);
     corner += s2;
-    sum += f.z * latticePoint(field, corner);
+    sum += f.z * latticePoint(field, corner, p);
     return vec2(sum.x / max(sum.y, 1e-6), sum.y);
 }

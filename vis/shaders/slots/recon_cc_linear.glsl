@@ -4,7 +4,7 @@
 vec2 reconstruct(int field, vec3 p) {
     vec4 texel;
     if (FIELD_NEAREST(field) == 1)
-        texel = fetchTexel(field, ivec3(floor(sublatticeIndex(field, p, 0) + 0.5)));
+        texel = fetchTexel(field, ivec3(floor(sublatticeIndex(field, p, 0) + 0.5)), p);
     else
         texel = fetchEven(field, p);
     if (FIELD_COVERAGE(field) == 0) return vec2(texel.r, 1.0);

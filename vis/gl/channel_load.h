@@ -1,0 +1,65 @@
+#pragma once
+
+#include "vis/gl/texels.h"
+#include "volume/brick_cache.h"
+
+#include <atomic>
+#include <mutex>
+#include <optional>
+#include <set>
+#include <stop_token>
+#include <string>
+
+/// The work of the decode threads: one channel at one level, or one brick of it, as texels. No GL.
+namespace tessera::vis {
+
+struct ChannelKey {
+    int channel = 0, time = 0;
+    bool prefiltered = true;
+    auto operator<=>(const ChannelKey&) const = default;
+};
+
+/// What is known of a channel at one time before any texel.
+struct ChannelSummary {
+    ChannelStats all;
+    std::vector<volume::BrickStats> bricks; ///< x fastest
+};
+
+/// Texels ready to upload, or the word that there are none.
+struct LoadedTexels {
+    ChannelKey key;
+    int level = 0;
+    std::optional<glm::ivec3> brick; ///< one brick of level 0, else the whole channel
+    std::shared_ptr<const ChannelSummary> summary;
+    TexelEncoding encoding;
+    TexelBlock block;
+    bool failed = false;
+    /// A brick that could not be read is drawn as absent, so the channel needs coverage from now on.
+    bool damaged = false;
+};
+
+/// What threads and the renderer share; outlives the renderer while a job still runs.
+struct LoadExchange {
+    std::shared_ptr<const volume::BrickSource> source;
+    std::unique_ptr<const volume::BrickCache> bricks;
+    std::mutex mutex;
+    std::vector<LoadedTexels> loaded;
+    std::vector<std::string> messages;
+    std::set<std::string> said; ///< each message comes once
+
+    void say(const std::string& message);
+};
+
+struct LoadRequest {
+    ChannelKey key;
+    int level = 0;
+    std::optional<glm::ivec3> brick;
+    std::shared_ptr<const ChannelSummary> summary; ///< null: find out
+    bool exact = false;
+    bool coverage = false; ///< wanted even if no sample is known to be absent
+};
+
+/// Does a request and puts the result, or the failure, into the exchange. Never throws; a stop leaves nothing.
+void loadTexels(LoadExchange& exchange, const LoadRequest& request, std::stop_token stop);
+
+} // namespace tessera::vis
