@@ -106,12 +106,14 @@ Storage storageOf(const Dataset& dataset, int parameter, const std::vector<int>&
     return storage;
 }
 
-/// A frame as `storage` wants it.
+bool isStoredAs(const Field& field, const Storage& storage) {
+    return field.type == storage.type && (field.type != ScalarType::F32 || (field.scale == 1 && field.offset == 0));
+}
+
+/// A frame as `storage` wants it, absent floats NaN.
 Field loadAs(const Dataset& dataset, int parameter, int component, int time, const Storage& storage) {
     Field field = dataset.load(parameter, component, time);
-    const bool asStored =
-        field.type == storage.type && (field.type != ScalarType::F32 || (field.scale == 1 && field.offset == 0));
-    if (!asStored) field = asFloat(field);
+    if (!isStoredAs(field, storage)) field = asFloat(field);
     markAbsent(field);
     return field;
 }
@@ -286,6 +288,39 @@ std::string writeNrrd(const Dataset& dataset, const ExportSelection& selection, 
     return path;
 }
 
+/// How absent samples of one component can be told by their stored numbers, which .raw keeps bit for bit.
+struct Marker {
+    bool works = true;           ///< false: a present sample has the number, or there are several numbers
+    std::optional<double> value; ///< none: nothing is absent, or NaN says it
+};
+
+Marker markerOf(const Dataset& dataset, int parameter, int component, const std::vector<int>& times) {
+    Marker marker;
+    for (const int time : times) {
+        const Field field = dataset.load(parameter, component, time);
+        if (!field.mask) continue;
+        dispatch(field.type, [&]<class T>(T) {
+            const auto stored = field.as<T>();
+            for (std::size_t i = 0; i < stored.size() && marker.works; ++i) {
+                const auto number = static_cast<double>(stored[i]);
+                if (field.present(i) || std::isnan(number)) continue;
+                if (!marker.value) marker.value = number;
+                marker.works = number == *marker.value;
+            }
+        });
+    }
+    if (!marker.value) return marker;
+    for (const int time : times) {
+        const Field field = dataset.load(parameter, component, time);
+        dispatch(field.type, [&]<class T>(T) {
+            const auto stored = field.as<T>();
+            for (std::size_t i = 0; i < stored.size() && marker.works; ++i)
+                marker.works = !field.present(i) || static_cast<double>(stored[i]) != *marker.value;
+        });
+    }
+    return marker;
+}
+
 std::vector<std::string> writeRaw(const Dataset& dataset, const std::vector<int>& parameters,
                                   const std::vector<int>& times, const fs::path& path, const Progress& progress) {
     const DatasetInfo& info = dataset.info;
@@ -293,9 +328,20 @@ std::vector<std::string> writeRaw(const Dataset& dataset, const std::vector<int>
     raw.replace_extension(".raw");
     sidecar.replace_extension(".json");
     std::vector<Storage> storage;
+    std::vector<std::vector<Marker>> markers; // of each component
     for (std::size_t i = 0; i < parameters.size(); ++i) {
-        progress.advance(0.1 * double(i) / double(parameters.size()), "forms");
+        progress.advance(0.3 * double(i) / double(parameters.size()), "forms");
         storage.push_back(storageOf(dataset, parameters[i], times));
+        std::vector<Marker>& own = markers.emplace_back();
+        bool works = true;
+        for (int c = 0; c < info.parameters[std::size_t(parameters[i])].components; ++c) {
+            own.push_back(markerOf(dataset, parameters[i], c, times));
+            works = works && own.back().works;
+        }
+        // Numbers that are converted to physical floats say it by NaN.
+        const bool converted = !isStoredAs(dataset.load(parameters[i], 0, times.front()), storage.back());
+        storage.back().presence = !works && !converted;
+        if (!works || converted) own.assign(own.size(), {});
     }
 
     using json = nlohmann::ordered_json;
@@ -317,6 +363,8 @@ std::vector<std::string> writeRaw(const Dataset& dataset, const std::vector<int>
             json& entry = add(what.name + suffix, what.unit, storage[i].type);
             if (storage[i].scale != 1) entry["scale"] = storage[i].scale;
             if (storage[i].offset != 0) entry["offset"] = storage[i].offset;
+            const Marker& marker = markers[i][std::size_t(c)];
+            if (marker.value) entry["missing_value"] = *marker.value;
             if (what.categorical) entry["categorical"] = true;
             for (const Label& label : what.labels) entry["labels"][std::to_string(label.value)] = label.name;
         }
@@ -327,10 +375,11 @@ std::vector<std::string> writeRaw(const Dataset& dataset, const std::vector<int>
     for (const int t : times)
         for (std::size_t i = 0; i < parameters.size(); ++i) {
             const Parameter& what = info.parameters[std::size_t(parameters[i])];
-            progress.advance(0.1 + 0.9 * done++ / double(times.size() * parameters.size()), what.name);
+            progress.advance(0.3 + 0.7 * done++ / double(times.size() * parameters.size()), what.name);
             Field field;
             for (int c = 0; c < what.components; ++c) {
-                field = loadAs(dataset, parameters[i], c, t, storage[i]);
+                field = dataset.load(parameters[i], c, t); // absent samples as they are
+                if (!isStoredAs(field, storage[i])) field = asFloat(field);
                 writeField(file, field);
                 written += double(field.samples.size());
             }

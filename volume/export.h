@@ -26,6 +26,8 @@ struct ExportSelection {
 ///         reads; a parameter whose type differs from the first's has its own "dtype".
 ///
 /// Absent samples are NaN in floating point; integers that have some get a companion array NAME.present (0 = absent).
+/// In .raw they keep their stored numbers, bit for bit: where one number tells them from the present ones, the sidecar
+/// states it as missing_value, else there is the companion array.
 /// Files appear complete or not at all; existing ones are replaced. Returns the files written. Throws Error for another
 /// ending, a BCC lattice or a selection the format cannot hold, MachineError when the disk refuses, Cancelled.
 std::vector<std::string> exportDataset(const Dataset& dataset, const ExportSelection& selection,

@@ -49,6 +49,27 @@ check "verify BCC" 0 "$tessera" verify bcc.tsr --json
 say '"ok": true' out.txt
 check "unpack BCC" 0 "$tessera" unpack bcc.tsr -o grid.raw
 
+# Absent samples keep their stored numbers: a fill value of the sidecar, NaN, a rule, and 0 that is also data elsewhere.
+python3 - <<'EOF'
+import json, math, struct
+n = 9 * 7 * 5
+a = [-999.0 if i % 5 == 0 else i * 0.25 for i in range(n)]
+b = [math.nan if i % 7 == 0 else i * 0.1 for i in range(n)]
+c = [0.0 if i % 3 == 0 else i / 3 for i in range(n)]
+d = [0.0 if i % 9 < 4 else float(i % 3) for i in range(n)]
+label = [1.0 if i % 9 >= 4 else 0.0 for i in range(n)]
+open("gaps.raw", "wb").write(struct.pack("<%df" % (5 * n), *a, *b, *c, *d, *label))
+json.dump({"dims": [9, 7, 5], "dtype": "float32",
+           "components": [{"name": "a", "missing_value": -999}, {"name": "b"}, {"name": "c"}, {"name": "d"},
+                          {"name": "label"}]}, open("gaps.json", "w"))
+EOF
+check "pack gaps" 0 "$tessera" pack gaps.json -o gaps.tsr --lattice cc --absent c=0 --no-auto-absent
+check "unpack gaps" 0 "$tessera" unpack gaps.tsr -o gaps-back.raw
+cmp gaps.raw gaps-back.raw || { echo "FAILED: absent samples differ"; failures=$((failures + 1)); }
+check "pack what came back" 0 "$tessera" pack gaps-back.json -o again.tsr --lattice cc --no-auto-absent
+[ "$("$tessera" info gaps.tsr --json | grep -A3 ranges)" = "$("$tessera" info again.tsr --json | grep -A3 ranges)" ] ||
+    { echo "FAILED: other ranges"; failures=$((failures + 1)); }
+
 # Wrong usage 1, bad input 2 with one line, and nothing left behind.
 check "no output" 1 "$tessera" pack ramp.json
 check "no such wavelet" 1 "$tessera" pack ramp.json -o x.tsr --wavelet 9,9
