@@ -57,11 +57,11 @@ a = [-999.0 if i % 5 == 0 else i * 0.25 for i in range(n)]
 b = [math.nan if i % 7 == 0 else i * 0.1 for i in range(n)]
 c = [0.0 if i % 3 == 0 else i / 3 for i in range(n)]
 d = [0.0 if i % 9 < 4 else float(i % 3) for i in range(n)]
-label = [1.0 if i % 9 >= 4 else 0.0 for i in range(n)]
-open("gaps.raw", "wb").write(struct.pack("<%df" % (5 * n), *a, *b, *c, *d, *label))
+e = [1.0 if i % 9 >= 4 else 0.0 for i in range(n)]
+open("gaps.raw", "wb").write(struct.pack("<%df" % (5 * n), *a, *b, *c, *d, *e))
 json.dump({"dims": [9, 7, 5], "dtype": "float32",
            "components": [{"name": "a", "missing_value": -999}, {"name": "b"}, {"name": "c"}, {"name": "d"},
-                          {"name": "label"}]}, open("gaps.json", "w"))
+                          {"name": "e"}]}, open("gaps.json", "w"))
 EOF
 check "pack gaps" 0 "$tessera" pack gaps.json -o gaps.tsr --lattice cc --absent c=0 --no-auto-absent
 check "unpack gaps" 0 "$tessera" unpack gaps.tsr -o gaps-back.raw
