@@ -217,6 +217,7 @@ void Renderer::Impl::present(ViewTarget& target, const Scene& scene, bool reduce
 /// Draws as much of the bound plan as the budget allows.
 void Renderer::Impl::refine(ViewTarget& target, const Scene& scene, const FrameRequest& request, const RayPlan& plan,
                             Clock::time_point start) {
+    if (target.fullValid) return;
     const Program* rayProgram = prepare(target, scene, plan);
     if (!rayProgram) return;
     const double aspect = double(target.size.x) / target.size.y;
@@ -266,7 +267,6 @@ void Renderer::Impl::refine(ViewTarget& target, const Scene& scene, const FrameR
         drawReduced(shrink, stepFactor);
         if (request.moving) return;
     }
-    if (target.fullValid) return;
 
     // Tiles as large as a third of the budget allows; the same grid until the picture is done.
     if (target.tilesDone == 0) {

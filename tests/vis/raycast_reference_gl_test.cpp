@@ -4,13 +4,17 @@
 #include "vis/model/ray_setup.h"
 #include "vis/reference/raycast.h"
 #include "vis/renderer.h"
+#include "volume/memory_source.h"
 
 #include <algorithm>
+#include <atomic>
+#include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <functional>
 #include <gtest/gtest.h>
 #include <memory>
+#include <thread>
 
 /// The shader's pictures against the double-precision reference: every style on CC and BCC, with and without absent
 /// samples, parallel and perspective. Linear light before the background, all four components.
@@ -262,6 +266,86 @@ TEST_P(RaycastReference, StepStretchAndEyeInsideAgree) {
     check("stretched");
     scene.camera.distance = 0.2f;
     check("eye inside");
+}
+
+/// A source whose levels finer than the coarsest are held back until they are released.
+struct HeldBack : volume::BrickSource {
+    std::shared_ptr<const volume::BrickSource> inner;
+    mutable std::atomic<bool> released = false;
+
+    explicit HeldBack(std::shared_ptr<const volume::BrickSource> held) : inner(std::move(held)) {}
+    const volume::DatasetInfo& info() const override { return inner->info(); }
+    const volume::BrickGrid& grid() const override { return inner->grid(); }
+    volume::BrickStats stats(const volume::BrickKey& key) const override { return inner->stats(key); }
+    volume::BrickSamples read(const volume::BrickKey& key) const override {
+        if (key.level < grid().levels - 1) released.wait(false);
+        return inner->read(key);
+    }
+    void release() const {
+        released = true;
+        released.notify_all();
+    }
+};
+
+/// While fine bricks are still on their way the coarsest level is shown: the same picture, less sharp, and not moved.
+TEST_P(RaycastReference, CoarseLevelsLieWhereTheFineOnesDo) {
+    const glm::ivec3 size(150, 161, 130); // enough that the renderer shows the coarsest level first
+    const auto wave = [](glm::dvec3 p) {
+        return 0.5 + 0.2 * std::sin(p.x * 0.06) * std::cos(p.y * 0.05) + 0.25 * std::sin(p.z * 0.06 + 0.03 * p.x);
+    };
+    const bool masked = GetParam().masked;
+    volume::Dataset dataset;
+    dataset.info.lattice.size = size;
+    dataset.info.bounds = {glm::dvec3(0), glm::dvec3(size - 1)};
+    volume::Parameter parameter;
+    parameter.name = "a";
+    parameter.ranges = {{0.05, 0.95}};
+    dataset.info.parameters = {parameter};
+    dataset.load = [=, lattice = dataset.info.lattice](int, int, int) {
+        volume::Field field = volume::makeField(lattice, volume::ScalarType::F32);
+        volume::Mask mask(field.count());
+        for (std::size_t i = 0; i < field.count(); ++i) {
+            const glm::ivec3 at(int(i) % size.x, int(i) / size.x % size.y, int(i) / (size.x * size.y));
+            field.as<float>()[i] = float(wave(glm::dvec3(at)));
+            mask[i] = !masked || glm::length(glm::dvec3(at) - glm::dvec3(73, 78, 61)) < 68;
+        }
+        field.mask = std::make_shared<const volume::Mask>(std::move(mask));
+        return field;
+    };
+    const auto memory = volume::makeMemorySource(dataset, {.lattice = GetParam().kind, .brickSize = 16});
+    Scene scene = baseScene(true);
+    scene.transfer["a"].opacity = {{0, 0.1f}, {1, 0.1f}};
+    scene.layers = {{"", true, VolumeLayer{.channel = "a", .shaded = false}}};
+    const auto held = std::make_shared<const HeldBack>(memory);
+    ASSERT_GE(held->grid().levels, 3);
+    Renderer renderer;
+    renderer.setSource(held);
+    const ViewTargetPtr target = renderer.makeTarget();
+    FrameRequest request;
+    request.size = kSize;
+    request.budgetMs = 10000;
+    Image coarse;
+    coarse.size = kSize;
+    for (int frame = 0; frame < 2000; ++frame) {
+        const FrameStatus status = renderer.render(*target, scene, request);
+        ASSERT_FALSE(status.complete);
+        coarse.pixels.clear();
+        for (const glm::vec4& pixel : renderer.readLinear(*target)) coarse.pixels.emplace_back(pixel);
+        if (std::ranges::any_of(coarse.pixels, [](glm::dvec4 pixel) { return pixel.a > 0.2; })) break;
+        std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    }
+    held->release();
+    request.wait = true;
+    EXPECT_TRUE(renderer.render(*target, scene, request).complete);
+    Image fine;
+    fine.size = kSize;
+    for (const glm::vec4& pixel : renderer.readLinear(*target)) fine.pixels.emplace_back(pixel);
+    EXPECT_GT(reference::compare(fine, reference::render(scene, *memory, kSize), 1).psnr, kPsnr16);
+    const reference::Difference difference = reference::compare(fine, coarse, kOutlier);
+    const std::string name = GetParam().name() + " coarse";
+    EXPECT_GT(difference.rmse, 1e-4) << "nothing was held back";
+    EXPECT_GT(difference.psnr, masked ? 28 : 45)
+        << name << ": " << words(difference) << "; " << evidence(name, coarse, fine);
 }
 
 /// The comparison notices every error that a shader of this kind could make.
