@@ -256,11 +256,12 @@ std::optional<glm::ivec3> Residency::slotFor(ChannelTexture& channel) {
     const std::size_t edge = std::size_t(grid.brickSize + 2 * kHalo);
     const std::size_t slotBytes = edge * edge * edge * std::size_t(components) * (options_.exactTextures ? 4 : 2);
     std::unique_ptr<BrickAtlas>& atlas = atlases_[components];
-    if (!atlas) { // half of the budget: the rest is for whole textures and other formats
-        const std::size_t slots =
+    if (!atlas) { // half of the budget at most: the rest is for whole textures and other formats
+        const std::size_t affordable =
             std::clamp<std::size_t>(options_.textureBudget / 2 / slotBytes, 1, kMaxTextureBytes / slotBytes);
-        atlas =
-            std::make_unique<BrickAtlas>(grid.brickSize, components, options_.exactTextures, slots, maxTextureSize_);
+        const std::size_t useful = texelCount(grid.count()) * 4; // a few channels
+        atlas = std::make_unique<BrickAtlas>(grid.brickSize, components, options_.exactTextures,
+                                             std::min(affordable, useful), maxTextureSize_);
     }
     channel.atlas = atlas.get();
     if (const auto slot = atlas->allocate()) return slot;
