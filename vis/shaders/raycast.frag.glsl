@@ -18,7 +18,7 @@ layout(location = 0) out vec4 outColor; // linear, premultiplied
 layout(location = 1) out float outPick; // distance along the ray of what a pixel shows, < 0: nothing
 
 const float kOpaque = 0.995, kPickOpacity = 0.1, kFlatGradient = 0.005;
-const float kNoPick = -2.0;
+const float kNoPick = -2.0, kUnknown = -1e9;
 
 vec3 toCells(vec3 world) {
     return world * cellsPerWorld + cellsOffset;
@@ -28,10 +28,11 @@ bool present(vec2 s) {
     return s.y >= 0.5;
 }
 
-// Change over one worldCell edge per axis, in texel units: central differences, one-sided at absent samples.
-vec3 cellGradient(int field, vec3 p, float centre) {
+// Change over one worldCell edge per axis, in texel units: central differences, one-sided at absent samples. Zero
+// unless `needed`: the loop then ends early, which is what software GL has in place of branches.
+vec3 cellGradient(int field, vec3 p, float centre, bool needed) {
     vec3 result = vec3(0.0);
-    for (int axis = 0; axis < axisCount; ++axis) {
+    for (int axis = 0; axis < (needed ? axisCount : 0); ++axis) {
         vec3 offset = vec3(axis == 0, axis == 1, axis == 2) * gradientDelta;
         vec2 lower = reconstruct(field, p - offset), upper = reconstruct(field, p + offset);
         bool hasLower = present(lower), hasUpper = present(upper);
@@ -98,19 +99,13 @@ void main() {
     for (int i = 0; i < LAYERS; ++i) {
         best[i] = -1.0; bestAt[i] = 0.0; sum[i] = 0.0; weight[i] = 0.0; factor[i] = 0.0;
     }
+    float before[LAYERS]; // values of iso layers at sample k - 1
+    for (int i = 0; i < LAYERS; ++i) before[i] = kUnknown;
     int k = 0;
     while (k < count && color.a < kOpaque) {
         bool hit = false;
-        float previous[LAYERS]; // values of iso layers at the former sample, NaN-free: 2 = unknown
-        for (int i = 0; i < LAYERS; ++i) previous[i] = -1e9;
-#if HAS_ISO
-        if (k > 0)
-            for (int i = 0; i < LAYERS; ++i)
-                if (LAYER_STYLE(i) == 3) {
-                    vec2 s = reconstruct(LAYER_FIELD(i), first + float(k - 1) * cellsPerSample);
-                    previous[i] = present(s) ? s.x : -1e9;
-                }
-#endif
+        float previous[LAYERS]; // values of iso layers at the former sample; far below: absent or not known
+        for (int i = 0; i < LAYERS; ++i) previous[i] = before[i];
         vec2 here[LAYERS];
 #if !FLAT
         while (k < count) {
@@ -120,7 +115,7 @@ void main() {
             int leap = emptySamples(p, cellsPerSample);
             if (leap > 0) {
                 k += leap;
-                for (int i = 0; i < LAYERS; ++i) previous[i] = -1e9;
+                for (int i = 0; i < LAYERS; ++i) previous[i] = kUnknown;
                 continue;
             }
 #endif
@@ -134,8 +129,8 @@ void main() {
                 if (LAYER_STYLE(i) == 0) {
                     hit = hit || (is && opaqueAt(i, s.x * layerMap[i].x + layerMap[i].y));
                 } else if (LAYER_STYLE(i) == 3) {
-                    hit = hit || (is && previous[i] > -1e8 && (s.x >= layerMap[i].z) != (previous[i] >= layerMap[i].z));
-                    previous[i] = is ? s.x : -1e9;
+                    hit = hit || (is && previous[i] > kUnknown && (s.x >= layerMap[i].z) != (previous[i] >= layerMap[i].z));
+                    previous[i] = is ? s.x : kUnknown;
                 } else {
                     float f = is ? focusOpacity(degreeOfInterest(p)) : 0.0;
                     float x = clamp(s.x * layerMap[i].x + layerMap[i].y, 0.0, 1.0);
@@ -182,8 +177,9 @@ void main() {
                 vec2 a = reconstruct(field, p - cellsPerSample), b = reconstruct(field, p);
                 bool crossed = k > 0 && present(a) && present(b) && (a.x >= value) != (b.x >= value);
                 bool above = a.x >= value;
+                before[i] = present(b) ? b.x : kUnknown;
                 float lo = -1.0, hi = 0.0;
-                for (int n = 0; n < bisections; ++n) {
+                for (int n = 0; n < (crossed ? bisections : 0); ++n) {
                     float middle = 0.5 * (lo + hi);
                     bool same = (reconstruct(field, p + middle * cellsPerSample).x >= value) == above;
                     lo = same ? middle : lo;
@@ -193,7 +189,8 @@ void main() {
                 vec3 q = p + at * cellsPerSample;
                 float doi = degreeOfInterest(q);
                 float alpha = crossed ? layerMap[i].w * focusOpacity(doi) : 0.0;
-                vec3 g = cellGradient(field, q, reconstruct(field, q).x) / worldCell;
+                float centre = FIELD_COVERAGE(field) == 1 ? reconstruct(field, q).x : 0.0;
+                vec3 g = cellGradient(field, q, centre, crossed) / worldCell;
                 vec3 c = phong(focusColor(layerColor[i], doi), g, 1.0, -direction, toLight, light);
                 color = under(color, vec4(c * alpha, alpha));
                 if (pick <= kNoPick && color.a > kPickOpacity) pick = float(k) + at;
@@ -208,7 +205,7 @@ void main() {
                 c.rgb = focusColor(c.rgb, doi);
                 float alpha = present(s) ? correctedOpacity(c.a * focusOpacity(doi), lengths * layerMap[i].z) : 0.0;
                 if (LAYER_SHADED(i) == 1) {
-                    vec3 g = cellGradient(LAYER_FIELD(i), p, s.x);
+                    vec3 g = cellGradient(LAYER_FIELD(i), p, s.x, alpha > 0.0);
                     float fade = min(1.0, length(g) * abs(layerMap[i].x) / kFlatGradient);
                     c.rgb = phong(c.rgb, g / worldCell, fade, -direction, toLight, light);
                 }
