@@ -25,7 +25,7 @@ struct FuelCellSettings {
     double airHumidity = 0.3;
     double fuelHumidity = 0.5;
     double coolantTemperature = 353.15;
-    double inletTemperature = 348.15;
+    double inletTemperature = 353.15;
     double outletPressure = 101325;
     double dragFactor = 1;
     double backDiffusionFactor = 1;
