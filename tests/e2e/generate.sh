@@ -1,0 +1,72 @@
+#!/bin/bash
+# generate as a user runs it: arguments TESSERA SOURCE_DIR.
+set -u
+tessera=$1
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+cd "$work" || exit 1
+failures=0
+check() { # check WHAT STATUS COMMAND...: runs the command and compares its exit status
+    local what=$1 want=$2
+    shift 2
+    "$@" >out.txt 2>err.txt
+    local got=$?
+    if [ "$got" != "$want" ]; then
+        echo "FAILED: $what: exit status $got, not $want"
+        cat out.txt err.txt
+        failures=$((failures + 1))
+    fi
+}
+fail() {
+    echo "FAILED: $1"
+    failures=$((failures + 1))
+}
+
+check "an archive" 0 "$tessera" generate fuel-cell -o cell.tsr --size 7x13x20 --times 3
+check "which is whole" 0 "$tessera" verify cell.tsr
+check "info" 0 "$tessera" info cell.tsr
+for name in O2 H2 H2O p T U region "cathode GDL" "mol/m3"; do
+    grep -q -- "$name" out.txt || fail "info says nothing of $name"
+done
+
+# Three times as .vti: numbered files and a series; once: a single file.
+check "a series" 0 "$tessera" generate fuel-cell -o cell.vti --size 7x13x20 --times 3
+for file in cell_0000.vti cell_0001.vti cell_0002.vti cell.pvd; do [ -s $file ] || fail "no $file"; done
+check "one time" 0 "$tessera" generate fuel-cell -o one.vti --size 7x13x20 --times 1
+[ -s one.vti ] || fail "no one.vti"
+
+# Packed as CC without loss and unpacked, the raw samples are those generated.
+check "raw" 0 "$tessera" generate fuel-cell -o direct.raw --size 7x13x20 --times 2
+check "lossless on CC" 0 "$tessera" generate fuel-cell -o cc.tsr --size 7x13x20 --times 2 --lattice cc --lossless
+check "unpack" 0 "$tessera" unpack cc.tsr -o back.raw
+cmp direct.raw back.raw || fail "the way through an archive changed samples"
+
+check "marschner-lobb" 0 "$tessera" generate marschner-lobb -o ml.tsr --size 17x9x5 --times 2 --set fM=4
+check "its list" 0 "$tessera" generate marschner-lobb --list
+grep -q fM out.txt || fail "the list has no fM"
+
+# What is wrong is said, and nothing is left.
+check "no such model" 1 "$tessera" generate frog -o bad.tsr
+check "a size that is none" 1 "$tessera" generate fuel-cell -o bad.tsr --size 7x13
+check "a setting that is none" 1 "$tessera" generate fuel-cell -o bad.tsr --set nx
+check "no output" 1 "$tessera" generate fuel-cell
+check "an unknown setting" 2 "$tessera" generate fuel-cell -o bad.tsr --set volts=3
+check "out of range" 2 "$tessera" generate fuel-cell -o bad.tsr --size 7x13x2000
+check "an unknown ending" 2 "$tessera" generate fuel-cell -o bad.xyz
+check "a folder that is not there" 3 "$tessera" generate fuel-cell -o missing/bad.tsr --size 5x7x8 --times 1
+ls | grep -q bad && fail "something of a bad run is left"
+
+# Ctrl-C. A background job of a script ignores SIGINT, so that python sends it.
+python3 - "$tessera" <<'EOF' || failures=$((failures + 1))
+import os, signal, subprocess, sys, time
+run = subprocess.Popen([sys.argv[1], "generate", "fuel-cell", "-o", "stopped.tsr", "--size", "33x39x200"],
+                       stderr=subprocess.PIPE, preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler))
+time.sleep(1.5)
+run.send_signal(signal.SIGINT)
+code = run.wait(timeout=60)
+left = [name for name in os.listdir(".") if name.startswith("stopped")]
+if code != 130 or left:
+    sys.exit("FAILED: interrupted generate ended with %d and left %s" % (code, left))
+EOF
+
+[ $failures = 0 ]
