@@ -64,6 +64,7 @@ struct Renderer::Impl {
     std::shared_ptr<const volume::BrickSource> source;
     VertexArray vertices = makeVertexArray("no vertices");
     std::map<std::string, Program> programs; ///< by recipe; an empty one did not compile
+    std::set<GLuint> warm;                   ///< programs that have drawn
     std::vector<std::string> messages;
     Program resolve;
 
@@ -72,7 +73,7 @@ struct Renderer::Impl {
     const Program* program(const ProgramRecipe& recipe);
     bool bind(ViewTarget& target, const Scene& scene, const FrameRequest& request, RayPlan& plan, FrameStatus& status);
     const Program* prepare(ViewTarget& target, const Scene& scene, const RayPlan& plan);
-    void rays(const Program& program, const RayBuffer& buffer, glm::ivec2 size, const Tile& tile);
+    void rays(const Program& program, const Scene& scene, const RayBuffer& buffer, glm::ivec2 size, const Tile& tile);
     void present(ViewTarget& target, const Scene& scene, bool reduced, const Tile& tile);
     void refine(ViewTarget& target, const Scene& scene, const FrameRequest& request, const RayPlan& plan,
                 Clock::time_point start);
@@ -176,11 +177,20 @@ const Program* Renderer::Impl::prepare(ViewTarget& target, const Scene& scene, c
     return program(rayRecipe(plan, scene, source->grid(), target.skip));
 }
 
-void Renderer::Impl::rays(const Program& rayProgram, const RayBuffer& buffer, glm::ivec2 size, const Tile& tile) {
+void Renderer::Impl::rays(const Program& rayProgram, const Scene& scene, const RayBuffer& buffer, glm::ivec2 size,
+                          const Tile& tile) {
+    const float nothing[] = {0, 0, 0, 0}, nowhere[] = {-1e9f, 0, 0, 0};
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, buffer.framebuffer.name());
     glViewport(0, 0, size.x, size.y);
     glEnable(GL_SCISSOR_TEST);
     glScissor(tile.begin.x, tile.begin.y, tile.end.x - tile.begin.x, tile.end.y - tile.begin.y);
+    glClearNamedFramebufferfv(buffer.framebuffer.name(), GL_COLOR, 0, nothing);
+    glClearNamedFramebufferfv(buffer.framebuffer.name(), GL_COLOR, 1, nowhere);
+    // Only where the box is.
+    const glm::ivec4 box = boxPixels(scene.camera, worldFrame(source->info().bounds, scene.stretch).halfSize, size);
+    const glm::ivec2 begin = glm::max(tile.begin, glm::ivec2(box)), end = glm::min(tile.end, glm::ivec2(box.z, box.w));
+    if (begin.x >= end.x || begin.y >= end.y) return;
+    glScissor(begin.x, begin.y, end.x - begin.x, end.y - begin.y);
     rayProgram.set("ndcScale", 2.0f / glm::vec2(size));
     rayProgram.set("ndcOffset", glm::vec2(-1));
     glUseProgram(rayProgram.name());
@@ -236,15 +246,18 @@ void Renderer::Impl::refine(ViewTarget& target, const Scene& scene, const FrameR
     const Tile everything{{0, 0}, target.size};
 
     // Software GL compiles at the first draw: do that before any clock runs.
-    setRayUniforms(*rayProgram, plan, scene, info, source->grid(), aspect, 1);
-    rays(*rayProgram, target.reduced, target.size, {{0, 0}, {1, 1}});
-    glFinish();
+    if (warm.insert(rayProgram->name()).second) {
+        setRayUniforms(*rayProgram, plan, scene, info, source->grid(), aspect, 1);
+        rays(*rayProgram, scene, target.reduced, target.size, {target.size / 2, target.size / 2 + 1});
+        glFinish();
+        target.reducedValid = false;
+    }
 
     const auto drawReduced = [&](double shrink, double stepFactor) {
         const Clock::time_point begin = Clock::now();
         target.reducedSize = glm::max(glm::ivec2(glm::vec2(target.size) / float(shrink)), glm::ivec2(1));
         setRayUniforms(*rayProgram, plan, scene, info, source->grid(), aspect, stepFactor);
-        rays(*rayProgram, target.reduced, target.reducedSize, {{0, 0}, target.reducedSize});
+        rays(*rayProgram, scene, target.reduced, target.reducedSize, {{0, 0}, target.reducedSize});
         glFinish();
         const double cost =
             millisecondsSince(begin) * stepFactor / std::max(1.0, double(target.reducedSize.x) * target.reducedSize.y);
@@ -282,7 +295,7 @@ void Renderer::Impl::refine(ViewTarget& target, const Scene& scene, const FrameR
     while (target.tilesDone < int(tiles.size()) && (request.wait || first || left() > 0)) {
         const Tile& tile = tiles[std::size_t(target.tilesDone)];
         const Clock::time_point begin = Clock::now();
-        rays(*rayProgram, target.full, target.size, tile);
+        rays(*rayProgram, scene, target.full, target.size, tile);
         glFinish();
         target.passMilliseconds += millisecondsSince(begin);
         present(target, scene, false, tile);

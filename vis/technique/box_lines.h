@@ -13,6 +13,9 @@ struct BoxLines {
     std::vector<glm::vec4> edges;
     int front = 0;
 };
+/// Pixels that a ray into the box can have: (begin x, begin y, end x, end y), the whole picture with the eye in the
+/// box.
+glm::ivec4 boxPixels(const Camera& camera, glm::dvec3 halfSize, glm::ivec2 size);
 BoxLines boxLines(const Camera& camera, glm::dvec3 halfSize, glm::ivec2 size);
 
 } // namespace tessera::vis

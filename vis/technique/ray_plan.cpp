@@ -310,7 +310,8 @@ void setRayUniforms(const Program& program, const RayPlan& plan, const Scene& sc
     setFields(program, plan, grid);
     setLayers(program, plan, scene, info, frame);
     setBrushes(program, plan, scene, info);
-    program.set("halfSize", glm::vec3(frame.halfSize));
+    // A data set of one layer has no thickness: enough of it to meet a slice.
+    program.set("halfSize", glm::vec3(glm::max(frame.halfSize, glm::dvec3(1e-5))));
     program.set("worldCell", glm::vec3(worldCell(grid.lattice, frame)));
     program.set("stepVoxels", float(render.stepVoxels * stepFactor));
     program.set("cellsPerWorld", glm::vec3(cellsPerWorld));
