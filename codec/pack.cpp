@@ -121,6 +121,8 @@ PackSummary pack(volume::Dataset& dataset, const PackOptions& options, const std
     if (info.parameters.empty() || info.times.empty()) throw Error("there is nothing to pack");
     if (!(options.maxError >= 0 && options.maxError < 1)) throw Error("the error bound must be from 0 to below 1");
     if (!options.lossless && options.maxError == 0) throw Error("without lossless an error bound is needed");
+    if (options.lattice == LatticeKind::CC && info.lattice.kind == LatticeKind::BCC)
+        throw Error("the data lies on BCC; it cannot be packed as CC");
     const bool exact = options.maxError == 0;
     const bool resamples = options.lattice == LatticeKind::BCC && info.lattice.kind == LatticeKind::CC;
 

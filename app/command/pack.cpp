@@ -36,8 +36,11 @@ Progress jsonProgress(const Progress& terminal) {
 }
 
 volume::Dataset open(const Request& request, const Progress& progress) {
-    if (request.inputs.size() == 1 && hasEnding(request.inputs[0], ".tsr"))
-        return codec::storedDataset(std::make_shared<const codec::Archive>(request.inputs[0]));
+    if (request.inputs.size() == 1 && hasEnding(request.inputs[0], ".tsr")) {
+        const auto archive = std::make_shared<const codec::Archive>(request.inputs[0]);
+        const bool asGrid = request.options.lattice == volume::LatticeKind::CC;
+        return asGrid ? codec::gridDataset(archive, 0) : codec::storedDataset(archive);
+    }
     return volume::openFiles(request.inputs, request.import, progress);
 }
 
