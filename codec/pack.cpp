@@ -43,20 +43,27 @@ void include(Range& range, double value) {
 void gatherRanges(const std::vector<Field>& components, std::vector<Range>& ranges) {
     const std::size_t n = components.size();
     ranges.resize(n == 1 ? 1 : n + 1, kNothing);
-    const std::size_t count = components.front().count();
-    for (std::size_t i = 0; i < count; ++i) {
+    for (std::size_t c = 0; c < n; ++c) {
+        const Field& field = components[c];
+        Range range = kNothing;
+        volume::dispatch(field.type, [&]<class T>(T) {
+            const auto stored = field.as<T>();
+            for (std::size_t i = 0; i < stored.size(); ++i)
+                if (field.present(i)) include(range, static_cast<double>(stored[i]));
+        });
+        if (range.lo > range.hi) continue;
+        include(ranges[c], field.offset + field.scale * range.lo);
+        include(ranges[c], field.offset + field.scale * range.hi);
+    }
+    for (std::size_t i = 0; n > 1 && i < components.front().count(); ++i) {
         double square = 0;
         bool present = true;
-        for (std::size_t c = 0; c < n; ++c) {
-            if (!components[c].present(i)) {
-                present = false;
-                continue;
-            }
-            const double value = components[c].value(i);
-            include(ranges[c], value);
+        for (const Field& field : components) {
+            present = present && field.present(i);
+            const double value = field.value(i);
             square += value * value;
         }
-        if (n > 1 && present) include(ranges[n], std::sqrt(square));
+        if (present) include(ranges[n], std::sqrt(square));
     }
 }
 
