@@ -24,6 +24,11 @@ void Workbench::drawPane(const std::string& pane) {
                         .iconFont = fonts_.icons,
                         .scale = scale_,
                         .headless = options_.headless,
+                        .runCommand =
+                            [this](const std::string& name) {
+                                for (const Command& command : commands_)
+                                    if (command.title() == name && command.available()) chosen_ = command.run;
+                            },
                         .busy = false,
                         .interacting = interacting_};
     ImGui::PushID(pane.c_str());

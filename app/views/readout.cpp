@@ -87,11 +87,15 @@ void drawReadout(ViewContext& context, const Readout& readout) {
     const glm::dvec3 cursor = context.session.cursor, size = info.bounds.size();
     static constexpr const char* kAxes[] = {"x", "y", "z"};
     const glm::ivec3 index = info.lattice.nearest(cursor);
-    std::string at;
-    for (int axis = 0; axis < 3; ++axis) {
+    // The unit once, where all three axes have the same.
+    std::string at, unitNow;
+    for (int axis = 2; axis >= 0; --axis) {
         const LengthUnit unit = suitableLength(info.lengthUnit, size[axis]);
-        at += (axis ? "   " : "") + std::string(kAxes[axis]) + " " +
-              formatQuantity(cursor[axis] * unit.perUnit, unit.name, size[axis] * unit.perUnit / 200);
+        std::string text =
+            std::string(kAxes[axis]) + " " + formatNumber(cursor[axis] * unit.perUnit, size[axis] * unit.perUnit / 200);
+        if (unit.name != unitNow) text += " " + prettyUnit(unit.name);
+        unitNow = unit.name;
+        at = text + (at.empty() ? "" : "   ") + at;
     }
     ImGui::PushTextWrapPos(0);
     ImGui::TextUnformatted(at.c_str());

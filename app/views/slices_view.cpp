@@ -44,10 +44,10 @@ vis::Camera sliceCamera(const Plane& plane, const vis::WorldFrame& world) {
 
 /// Size of the first of two columns or rows whose plots share `room` in proportion to the box, none too narrow to
 /// read; each has `around` pixels of axes besides.
-float split(double first, double second, float room, float around) {
+float split(double first, double second, float room, float around, double least) {
     const double share = first + second > 0 ? first / (first + second) : 0.5;
     const float plots = std::max(0.0f, room - 2 * around);
-    return std::round(around + plots * static_cast<float>(std::clamp(share, 0.3, 0.7)));
+    return std::round(around + plots * static_cast<float>(std::clamp(share, least, 1 - least)));
 }
 
 /// Moves the cursor along an axis by one sample and keeps it inside.
@@ -183,10 +183,10 @@ void drawSlicesView(ViewContext& context, const std::string& pane, SlicesView& v
     if (room.x < em() * 10 || room.y < em() * 8) return;
     const ImVec2 max{min.x + room.x, min.y + room.y};
     const glm::dvec3 half = vis::worldFrame(info.bounds, context.session.stretch).halfSize;
-    const float columns = split(half.x, half.z, room.x, em() * 3.2f);
+    const float columns = split(half.x, half.z, room.x, em() * 3.2f, 0.3);
     // The head lines of both columns need some room.
     const float x = min.x + std::clamp(columns, std::min(em() * 11.5f, room.x / 2), room.x - em() * 8),
-                y = min.y + split(half.y, half.z, room.y, em() * 2.8f);
+                y = min.y + split(half.y, half.z, room.y, em() * 2.8f, 0.4);
     const float gap = em() * 0.3f;
     drawPlane(context, cache, view, name, 0, min, {x - gap, y - gap});
     drawPlane(context, cache, view, name, 1, {x + gap, min.y}, {max.x, y - gap});

@@ -138,7 +138,7 @@ void drawTimelineView(ViewContext& context, const std::string& pane, TimelineVie
                                   .c_str());
         ImGui::SameLine(0, em());
         ImGui::TextDisabled("%d of %zu", index + 1, info.times.size());
-        drawTrack(context, cache, info, em() * 2.9f);
+        drawTrack(context, cache, info, std::clamp(ImGui::GetContentRegionAvail().y, em() * 1.4f, em() * 2.9f));
     } else {
         ImGui::TextDisabled("This data has one time; there is nothing to play.");
     }

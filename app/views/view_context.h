@@ -31,7 +31,7 @@ struct ViewContext {
     ImFont* iconFont = nullptr; ///< Font Awesome glyphs; null where the package is missing
     float scale = 1;            ///< pixels per design pixel
     bool headless = false;      ///< finish everything before the frame ends: no budget, no progressive states
-    /// Asks the workbench to run a command of its table after this frame ("exportView"); null in tests.
+    /// Asks the workbench to run a command of its table, by name, after this frame; null in tests.
     std::function<void(const std::string& command)> runCommand = {};
     bool busy = false;        ///< set by a view that needs another frame soon (refining, animating, waiting for a job)
     bool interacting = false; ///< some edit is in progress (mouse held on a control): draw at reduced size

@@ -155,12 +155,4 @@ int timeIndex(const Session& session, const volume::DatasetInfo& info) {
     return info.nearestTime(session.time);
 }
 
-char typedKey() {
-    const ImGuiIO& io = ImGui::GetIO();
-    if (io.WantTextInput || io.KeyCtrl || io.KeyAlt) return 0;
-    for (ImWchar c : io.InputQueueCharacters)
-        if (c < 128) return static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
-    return 0;
-}
-
 } // namespace tessera::app

@@ -68,7 +68,4 @@ void addPicture(ImDrawList& draw, std::uint32_t texture, ImVec2 min, ImVec2 max)
 /// Index into info.times of the session's time.
 int timeIndex(const Session& session, const volume::DatasetInfo& info);
 
-/// Key of a character typed this frame while no text field has the focus: '1', 'r', ...; 0 for none.
-char typedKey();
-
 } // namespace tessera::app

@@ -1,3 +1,4 @@
+#include "app/ui/keys.h"
 #include "app/views/axes3d.h"
 #include "app/views/ticks.h"
 #include "app/views/view_parts.h"
@@ -64,6 +65,26 @@ Drag dragOf(const ImGuiIO& io) {
     if (ImGui::IsMouseClicked(ImGuiMouseButton_Middle)) return Drag::Pan;
     if (ImGui::IsMouseClicked(ImGuiMouseButton_Right)) return Drag::Zoom;
     return Drag::None;
+}
+
+/// Standard views by digit, the opposite one with Shift.
+void handleKeys(vis::Camera& camera, const vis::WorldFrame& world, double aspect) {
+    using enum vis::StandardView;
+    struct Key {
+        int key;
+        vis::StandardView view, opposite;
+    };
+    static constexpr Key kKeys[] = {{'1', Front, Back}, {'3', Right, Left}, {'7', Top, Bottom}};
+    for (const Key& own : kKeys) {
+        if (pressed({.key = own.key})) look(camera, own.view, world, aspect);
+        if (pressed({.key = own.key, .shift = true})) look(camera, own.opposite, world, aspect);
+    }
+    if (pressed({.key = '9'})) look(camera, Isometric, world, aspect);
+    if (pressed({.key = '5'}))
+        camera.projection = camera.projection == vis::Projection::Perspective ? vis::Projection::Orthographic
+                                                                              : vis::Projection::Perspective;
+    if (pressed({.key = 'R'}) || (ImGui::IsWindowFocused() && pressed({.key = key::kEnter})))
+        reset(camera, world, aspect);
 }
 
 /// Turns mouse and keys over the picture into camera, cursor and menu; the picture's InvisibleButton is the last item.
@@ -134,33 +155,7 @@ bool handleMouse(ViewContext& context, VolumeCache& cache, const Picture& pictur
         const glm::ivec2 pixel(io.MousePos.x - picture.min.x, io.MousePos.y - picture.min.y);
         if (const auto pick = context.renderer.pick(*cache.target, pixel)) context.session.cursor = pick->position;
     }
-    if (hovered || ImGui::IsWindowFocused()) {
-        using enum vis::StandardView;
-        const bool back = io.KeyShift;
-        switch (typedKey()) {
-        case '1':
-            look(camera, Front, world, aspect);
-            break;
-        case '3':
-            look(camera, Right, world, aspect);
-            break;
-        case '7':
-            look(camera, Top, world, aspect);
-            break;
-        case '9':
-            look(camera, Isometric, world, aspect);
-            break;
-        case '5':
-            camera.projection = camera.projection == vis::Projection::Perspective ? vis::Projection::Orthographic
-                                                                                  : vis::Projection::Perspective;
-            break;
-        case 'r':
-            if (!back) reset(camera, world, aspect);
-            break;
-        default:
-            break;
-        }
-    }
+    if ((hovered || ImGui::IsWindowFocused()) && !typing()) handleKeys(camera, world, aspect);
     return moving;
 }
 
@@ -168,7 +163,7 @@ void drawMenu(ViewContext& context, const char* id, VolumeView& view, const vis:
     if (!ImGui::BeginPopup(id)) return;
     vis::Camera& camera = context.session.camera;
     if (ImGui::MenuItem("Reset view", "R")) reset(camera, world, aspect);
-    static constexpr const char* kKeys[] = {"1", "", "", "3", "7", "", "9"};
+    static constexpr const char* kKeys[] = {"1", "Shift+1", "Shift+3", "3", "7", "Shift+7", "9"};
     for (std::size_t i = 0; i < std::size(vis::kStandardViewNames); ++i) {
         std::string name(vis::kStandardViewNames[i]);
         name[0] = static_cast<char>(name[0] - 'a' + 'A');
@@ -185,7 +180,7 @@ void drawMenu(ViewContext& context, const char* id, VolumeView& view, const vis:
     ImGui::MenuItem("Linked cursor", "", &view.showCursor);
     if (context.runCommand) {
         ImGui::Separator();
-        if (ImGui::MenuItem("Export picture...")) context.runCommand("exportView");
+        if (ImGui::MenuItem("Save picture...", "F12")) context.runCommand("Save picture...");
     }
     ImGui::EndPopup();
 }
