@@ -103,8 +103,9 @@ void drawAxes3d(ImDrawList& draw, const SpaceFrame& frame, const vis::Camera& ca
     for (int axis = 0; axis < 3; ++axis)
         if (camera.projection == vis::Projection::Orthographic && std::abs(eye[axis]) < 1) eye[axis] = 0;
     const auto place = [&](std::pair<ImVec2, ImVec2> box, ImU32 color, const std::string& text) {
-        if (box.first.x < frame.min.x || box.second.x > frame.max.x || box.first.y < frame.min.y ||
-            box.second.y > frame.max.y)
+        const float margin = em() * 0.4f;
+        if (box.first.x < frame.min.x + margin || box.second.x > frame.max.x - margin ||
+            box.first.y < frame.min.y + margin || box.second.y > frame.max.y - margin)
             return false;
         for (const auto& taken : avoid)
             if (overlaps(box, taken, em() * 0.25f)) return false;

@@ -39,7 +39,7 @@ std::vector<int> shownChannels(const volume::DatasetInfo& info, const ScatterMat
 }
 
 void chooseChannels(const volume::DatasetInfo& info, ScatterMatrixView& view, const std::vector<int>& shown) {
-    const std::string label = std::to_string(shown.size()) + " parameters";
+    const std::string label = std::to_string(shown.size()) + (shown.size() == 1 ? " parameter" : " parameters");
     ImGui::SetNextItemWidth(em() * 7.8f);
     if (ImGui::BeginCombo("##channels", label.c_str(), ImGuiComboFlags_HeightLarge)) {
         const std::vector<volume::Channel> channels = info.channels();

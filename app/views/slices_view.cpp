@@ -73,7 +73,11 @@ void drawPlane(ViewContext& context, SlicesCache& cache, const SlicesView& view,
     const Range rangeX{info.bounds.lo[plane.right] * unitX.perUnit, info.bounds.hi[plane.right] * unitX.perUnit};
     const Range rangeY{info.bounds.lo[plane.up] * unitY.perUnit, info.bounds.hi[plane.up] * unitY.perUnit};
 
-    const float left = axisRoom(AxisSide::Left, rangeY, false), bottom = axisRoom(AxisSide::Bottom, rangeX, false);
+    // Slices below each other begin at the same pixel, whatever their numbers.
+    const LengthUnit unitZ = suitableLength(info.lengthUnit, size.z);
+    const Range rangeZ{info.bounds.lo.z * unitZ.perUnit, info.bounds.hi.z * unitZ.perUnit};
+    const float left = std::max(axisRoom(AxisSide::Left, rangeY, false), axisRoom(AxisSide::Left, rangeZ, false));
+    const float bottom = axisRoom(AxisSide::Bottom, rangeX, false);
     const ImVec2 lo{min.x + left, min.y + em() * 1.35f}, hi{max.x - em() * 0.8f, max.y - bottom};
     // The head line names the slice and its place, in the colour of the axis it is perpendicular to.
     const std::string place = std::string(kAxisNames[plane.normal]) + " = " +
@@ -90,8 +94,7 @@ void drawPlane(ViewContext& context, SlicesCache& cache, const SlicesView& view,
     }
     const double scale = std::min((hi.x - lo.x) / worldX, (hi.y - lo.y) / worldY);
     const glm::ivec2 pixels(std::max(1.0, std::floor(worldX * scale)), std::max(1.0, std::floor(worldY * scale)));
-    const ImVec2 corner{std::floor(lo.x + (hi.x - lo.x - static_cast<float>(pixels.x)) / 2),
-                        std::floor(lo.y + (hi.y - lo.y - static_cast<float>(pixels.y)) / 2)};
+    const ImVec2 corner{std::floor(lo.x), std::floor(lo.y)};
     const PlotFrame frame{corner,
                           {corner.x + static_cast<float>(pixels.x), corner.y + static_cast<float>(pixels.y)},
                           paddedRange(rangeX),
@@ -139,7 +142,8 @@ void drawPlane(ViewContext& context, SlicesCache& cache, const SlicesView& view,
     draw.AddRect(frame.min, frame.max, colors.frame);
     drawAxis(draw, frame, AxisSide::Bottom, kAxisNames[plane.right], unitX.name, min.x,
              std::min(max.x, frame.max.x + em() * 4), {.inlineTitle = true});
-    drawAxis(draw, frame, AxisSide::Left, kAxisNames[plane.up], unitY.name, min.y, max.y, {.inlineTitle = true});
+    drawAxis(draw, frame, AxisSide::Left, "", "", min.y, max.y);
+    draw.AddText({min.x, min.y}, colors.faint, titleWithUnit(kAxisNames[plane.up], unitY.name).c_str());
     draw.PushClipRect(frame.min, frame.max, true);
     drawCrosshair(draw, frame, session.cursor[plane.right] * unitX.perUnit, session.cursor[plane.up] * unitY.perUnit);
     draw.PopClipRect();
@@ -185,7 +189,7 @@ void drawSlicesView(ViewContext& context, const std::string& pane, SlicesView& v
     const glm::dvec3 half = vis::worldFrame(info.bounds, context.session.stretch).halfSize;
     const float columns = split(half.x, half.z, room.x, em() * 3.2f, 0.3);
     // The head lines of both columns need some room.
-    const float x = min.x + std::clamp(columns, std::min(em() * 11.5f, room.x / 2), room.x - em() * 8),
+    const float x = min.x + std::clamp(columns, std::min(em() * 12.5f, room.x / 2), room.x - em() * 8),
                 y = min.y + split(half.y, half.z, room.y, em() * 2.8f, 0.4);
     const float gap = em() * 0.3f;
     drawPlane(context, cache, view, name, 0, min, {x - gap, y - gap});

@@ -161,6 +161,7 @@ bool handleMouse(ViewContext& context, VolumeCache& cache, const Picture& pictur
 
 void drawMenu(ViewContext& context, const char* id, VolumeView& view, const vis::WorldFrame& world, double aspect) {
     if (!ImGui::BeginPopup(id)) return;
+    if (pressed({.key = key::kEscape})) ImGui::CloseCurrentPopup();
     vis::Camera& camera = context.session.camera;
     if (ImGui::MenuItem("Reset view", "R")) reset(camera, world, aspect);
     static constexpr const char* kKeys[] = {"1", "Shift+1", "Shift+3", "3", "7", "Shift+7", "9"};
