@@ -148,8 +148,9 @@ void drawAxis(ImDrawList& draw, const PlotFrame& frame, AxisSide side, std::stri
     if (title.empty() && unit.empty()) return;
     const ImVec2 size = ImGui::CalcTextSize(label.c_str());
     if (options.inlineTitle) {
-        const ImVec2 at = bottom ? ImVec2{hi - size.x, frame.max.y + tickLength() + em() * 0.1f}
-                                 : ImVec2{frame.min.x - size.x, frame.min.y - em() * 1.25f};
+        const ImVec2 at =
+            bottom ? ImVec2{hi - size.x, frame.max.y + tickLength() + em() * 0.1f}
+                   : ImVec2{frame.min.x - (options.room > 0 ? options.room : size.x), frame.min.y - em() * 1.25f};
         draw.AddText({std::round(at.x), std::round(at.y)}, colors.faint, label.c_str());
         return;
     }

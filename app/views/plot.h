@@ -52,8 +52,8 @@ enum class AxisSide { Bottom, Left };
 struct AxisOptions {
     bool grid = false;        ///< faint lines across the frame
     bool inlineTitle = false; ///< the title in the row of the numbers (bottom) or above them (left): saves a line
-    float room = 0;           ///< pixels outside of the frame for a left axis, so that several have their titles in one
-                              ///< column; 0 = as needed
+    /// Pixels outside of the frame for a left axis, so that several have their titles in one column; 0 = as needed.
+    float room = 0;
 };
 
 /// Pixels that drawAxis needs outside the frame for ticks, labels and title.

@@ -142,8 +142,8 @@ void drawPlane(ViewContext& context, SlicesCache& cache, const SlicesView& view,
     draw.AddRect(frame.min, frame.max, colors.frame);
     drawAxis(draw, frame, AxisSide::Bottom, kAxisNames[plane.right], unitX.name, min.x,
              std::min(max.x, frame.max.x + em() * 4), {.inlineTitle = true});
-    drawAxis(draw, frame, AxisSide::Left, "", "", min.y, max.y);
-    draw.AddText({min.x, min.y}, colors.faint, titleWithUnit(kAxisNames[plane.up], unitY.name).c_str());
+    drawAxis(draw, frame, AxisSide::Left, kAxisNames[plane.up], unitY.name, min.y, max.y,
+             {.inlineTitle = true, .room = left});
     draw.PushClipRect(frame.min, frame.max, true);
     drawCrosshair(draw, frame, session.cursor[plane.right] * unitX.perUnit, session.cursor[plane.up] * unitY.perUnit);
     draw.PopClipRect();
