@@ -1,5 +1,7 @@
 #include "app/open.h"
 
+#include "app/session/import_memory.h"
+
 #include "codec/archive.h"
 #include "vis/image_io.h"
 #include "volume/error.h"
@@ -224,7 +226,8 @@ Opened open(const OpenRequest& request, const Progress& progress) {
     if (request.data) {
         data = *request.data;
     } else if (!request.paths.empty()) {
-        data = dataOf(request.paths, request.import.value_or(volume::ImportOptions{}));
+        const volume::ImportOptions stated = request.import.value_or(volume::ImportOptions{});
+        data = dataOf(request.paths, recallOptions(request.paths, stated, progress.part(0, 0.1)));
     } else if (hasData(layout->session.data)) {
         const ResolvedData found = resolveData(layout->session.data, layoutFolder);
         if (!found.missing.empty()) throw Error("data file is missing", found.missing[0].wanted.path);

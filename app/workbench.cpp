@@ -1,5 +1,7 @@
 #include "app/workbench.h"
 
+#include "app/session/import_memory.h"
+
 #include "volume/error.h"
 
 #include <algorithm>
@@ -54,6 +56,7 @@ void Workbench::open(OpenRequest request) {
                 return;
             }
             install(std::move(*opened));
+            if (request.import && !options_.headless) rememberStated(*request.import, source_->info().name);
             for (const std::string& path : request.paths) addRecentFile(options_.stateFolder, path);
         };
     });

@@ -140,7 +140,7 @@ private:
     DockHand hand_;
     FileDialog files_;
     volume::ImportOptions import_;
-    std::string importAbsent_;
+    std::string importAbsent_, importUnits_, importNames_;
     std::map<std::string, std::string> previews_;
     std::optional<Opened> missing_;
     std::size_t locating_ = 0;

@@ -142,11 +142,32 @@ void Workbench::drawImportOptions() {
     changed |= ImGui::InputTextWithHint("##absent", "O2=region:0,3  T=nan", &importAbsent_,
                                         ImGuiInputTextFlags_EnterReturnsTrue);
     changed |= ImGui::IsItemDeactivatedAfterEdit();
+    const auto pairs = [&](const char* title, float at, float width, const char* hint, std::string& text) {
+        if (at > 0) ImGui::SameLine(em * at);
+        ImGui::AlignTextToFramePadding();
+        ImGui::TextDisabled("%s", title);
+        ImGui::SameLine(em * (at + (at > 0 ? 4 : 7)));
+        ImGui::SetNextItemWidth(width);
+        changed |= ImGui::InputTextWithHint((std::string("##") + title).c_str(), hint, &text,
+                                            ImGuiInputTextFlags_EnterReturnsTrue);
+        changed |= ImGui::IsItemDeactivatedAfterEdit();
+    };
+    pairs("Units", 0, em * 22, "O2=mol/m3  T=K (remembered)", importUnits_);
+    pairs("Names", 31, -FLT_MIN, "O2.air=O2  wO2=O2", importNames_);
     ImGui::Spacing();
     if (changed) {
         std::istringstream words(importAbsent_);
         import_.absent.clear();
         for (std::string word; words >> word;) import_.absent.push_back(word);
+        const auto read = [](const std::string& text, std::map<std::string, std::string>& into) {
+            into.clear();
+            std::istringstream list(text);
+            for (std::string word; list >> word;)
+                if (const std::size_t equals = word.find('='); equals != std::string::npos && equals > 0)
+                    into[word.substr(0, equals)] = word.substr(equals + 1);
+        };
+        read(importUnits_, import_.units);
+        read(importNames_, import_.rename);
         previews_.clear();
     }
 }

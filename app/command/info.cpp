@@ -1,6 +1,7 @@
 #include "app/command/command.h"
 #include "app/command/format.h"
 #include "app/command/import_options.h"
+#include "app/session/import_memory.h"
 #include "app/session/session_file.h"
 #include "codec/archive.h"
 
@@ -141,7 +142,8 @@ void run(const std::vector<std::string>& paths, const volume::ImportOptions& imp
     } else if (paths.size() == 1 && hasEnding(paths[0], ".json") && looksLikeSession(readText(paths[0]))) {
         printSession(paths[0], asJson);
     } else {
-        const volume::ImportPreview preview = volume::previewFiles(paths, import, terminalProgress("info"));
+        const volume::ImportPreview preview =
+            volume::previewFiles(paths, recallOptions(paths, import), terminalProgress("info"));
         std::printf("%s%s", (asJson ? describePreviewJson(preview) : describePreview(preview)).c_str(),
                     asJson ? "\n" : "");
     }

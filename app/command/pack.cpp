@@ -3,8 +3,10 @@
 #include "app/command/format.h"
 #include "app/command/import_options.h"
 #include "app/session/describe_cli.h"
+#include "app/session/import_memory.h"
 #include "codec/unpack.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -41,7 +43,16 @@ volume::Dataset open(const Request& request, const Progress& progress) {
         const bool asGrid = request.options.lattice == volume::LatticeKind::CC;
         return asGrid ? codec::gridDataset(archive, 0) : codec::storedDataset(archive);
     }
-    return volume::openFiles(request.inputs, request.import, progress);
+    const volume::ImportOptions options = recallOptions(request.inputs, request.import, progress);
+    for (const std::string& rule : options.absent)
+        if (std::find(request.import.absent.begin(), request.import.absent.end(), rule) == request.import.absent.end())
+            std::fprintf(stderr, "tessera: remembered: --absent %s\n", rule.c_str());
+    for (const auto& [from, to] : options.rename)
+        if (!request.import.rename.contains(from))
+            std::fprintf(stderr, "tessera: remembered: --rename %s=%s\n", from.c_str(), to.c_str());
+    volume::Dataset dataset = volume::openFiles(request.inputs, options, progress);
+    rememberStated(request.import, dataset.info.name);
+    return dataset;
 }
 
 void checkOutput(const Request& request) {

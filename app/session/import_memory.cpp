@@ -108,9 +108,19 @@ volume::ImportOptions withMemory(volume::ImportOptions options, const ImportMemo
 
 volume::ImportOptions recallOptions(const std::vector<std::string>& paths, const volume::ImportOptions& stated,
                                     const Progress& progress) {
+    if (paths.size() == 1 && paths[0].ends_with(".tsr")) return stated;
     const ImportMemory memory = loadImportMemory();
     if (memory == ImportMemory{}) return stated;
     return withMemory(stated, memory, volume::previewFiles(paths, stated, progress).info);
+}
+
+void rememberStated(const volume::ImportOptions& stated, const std::string& dataName, const std::string& path) {
+    if (path.empty() || (stated.units.empty() && stated.absent.empty() && stated.rename.empty())) return;
+    try {
+        ImportMemory memory = loadImportMemory(path);
+        if (remember(memory, stated, dataName)) saveImportMemory(memory, path);
+    } catch (const Error&) {
+    }
 }
 
 bool remember(ImportMemory& memory, const volume::ImportOptions& stated, const std::string& dataName) {

@@ -36,6 +36,11 @@ volume::ImportOptions withMemory(volume::ImportOptions options, const ImportMemo
 volume::ImportOptions recallOptions(const std::vector<std::string>& paths, const volume::ImportOptions& stated,
                                     const Progress& progress = {});
 
+/// Adds what was stated to the file, if anything was. A file that cannot be read or written is left: opening data does
+/// not fail for it.
+void rememberStated(const volume::ImportOptions& stated, const std::string& dataName,
+                    const std::string& path = importMemoryPath());
+
 /// Remembers what was stated. True when something is new.
 bool remember(ImportMemory& memory, const volume::ImportOptions& stated, const std::string& dataName);
 

@@ -187,7 +187,7 @@ std::optional<FileDialog::Answer> FileDialog::draw() {
     ImGui::InputTextWithHint("##filter", "Filter", &filter_);
     if (!into.empty()) enter(into);
 
-    const float footer = ImGui::GetFrameHeightWithSpacing() * (options && mode_ == FileMode::Open ? 3.4f : 1.3f);
+    const float footer = ImGui::GetFrameHeightWithSpacing() * (options && mode_ == FileMode::Open ? 4.4f : 1.3f);
     const bool previews = mode_ == FileMode::Open && preview;
     const float height = std::max(ImGui::GetContentRegionAvail().y - footer, em * 6);
     if (previews) {
