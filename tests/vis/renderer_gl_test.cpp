@@ -2,6 +2,7 @@
 #include "tests/vis/gl_fixture.h"
 
 #include "vis/model/ray_setup.h"
+#include "vis/reference/raycast.h"
 #include "volume/error.h"
 
 #include <algorithm>
@@ -249,6 +250,75 @@ TEST_F(RendererTest, RefinesToTheSamePicture) {
     EXPECT_EQ(test::maxDifference(renderer.readLinear(*waited), renderer.readLinear(*refined)), 0);
     // Nothing left to do: the same texture, at once.
     EXPECT_EQ(renderer.render(*refined, scene, request).texture, status.texture);
+}
+
+// Leaping over empty blocks changes nothing: a sparse volume, against the reference that visits every sample.
+TEST_F(RendererTest, EmptySpaceIsSkippedExactly) {
+    for (const volume::LatticeKind kind : {volume::LatticeKind::CC, volume::LatticeKind::BCC}) {
+        const auto shells = [](glm::dvec3 p) -> std::optional<double> {
+            if (p.z > 40) return std::nullopt;
+            const double r = glm::length(p - glm::dvec3(20, 22, 26));
+            return r < 15 ? 1 / (1 + 0.05 * (r - 9) * (r - 9)) : 0.2 / (1 + 0.3 * (r - 15));
+        };
+        const auto source = std::make_shared<vis::FunctionSource>(
+            kind, glm::ivec3(61, 47, 53), glm::dvec3(1), std::vector<vis::FunctionSource::Channel>{{"v", shells}}, 16);
+        Scene scene = flatScene(0);
+        scene.camera = {};
+        scene.camera.distance = 1.7f;
+        scene.transfer["v"].opacity = {{0, 0}, {0.85f, 0}, {0.95f, 0.5f}, {1, 0.8f}};
+        for (const bool shaded : {false, true}) {
+            std::get<vis::VolumeLayer>(scene.layers[0].technique).shaded = shaded;
+            if (shaded) {
+                scene.layers.push_back({"iso", true, vis::IsoLayer{.channel = "v", .value = 0.7, .opacity = 0.5f}});
+                scene.layers.push_back(
+                    {"slice", true,
+                     vis::SliceLayer{.channel = "v", .atCursor = false, .position = 0.6, .opacity = 0.5f}});
+            }
+            const glm::ivec2 size(56, 44);
+            vis::reference::Image drawn{size, {}};
+            for (const glm::vec4& pixel : picture(source, exact(), scene, size)) drawn.pixels.emplace_back(pixel);
+            const vis::reference::Difference difference =
+                vis::reference::compare(drawn, vis::reference::render(scene, *source, size), 2e-3);
+            EXPECT_LT(difference.rmseWithin, 2e-5);
+            EXPECT_LE(difference.beyond, 8u) << difference.worst.x << ", " << difference.worst.y;
+        }
+    }
+}
+
+// While the bricks of the next time are on their way the former time stays on screen.
+TEST_F(RendererTest, FormerTimeStaysUntilTheNextIsThere) {
+    class TwoTimes : public CheckedSource {
+    public:
+        using CheckedSource::CheckedSource;
+        const volume::DatasetInfo& info() const override { return info_; }
+        volume::DatasetInfo info_;
+    };
+    const auto flat = std::make_shared<vis::FunctionSource>(
+        volume::LatticeKind::CC, glm::ivec3(8), glm::dvec3(1),
+        std::vector<vis::FunctionSource::Channel>{{"v", [](glm::dvec3) { return 0.5; }}});
+    std::atomic<bool> open = false;
+    const auto source = std::make_shared<TwoTimes>(flat, [&](const volume::BrickKey& key) {
+        while (key.time == 1 && !open) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    });
+    source->info_ = flat->info();
+    source->info_.times = {0, 1};
+    vis::Renderer renderer;
+    renderer.setSource(source);
+    const vis::ViewTargetPtr target = renderer.makeTarget();
+    Scene scene = flatScene(0.5f);
+    test::renderAll(renderer, *target, scene, {9, 9});
+    const std::vector<glm::vec4> before = renderer.readLinear(*target);
+    scene.time = 1;
+    vis::FrameRequest request;
+    request.size = {9, 9};
+    request.budgetMs = 1000;
+    for (int i = 0; i < 3; ++i) {
+        const vis::FrameStatus status = renderer.render(*target, scene, request);
+        EXPECT_FALSE(status.complete);
+        EXPECT_EQ(test::maxDifference(renderer.readLinear(*target), before), 0);
+    }
+    open = true;
+    test::renderAll(renderer, *target, scene, {9, 9});
 }
 
 TEST_F(RendererTest, PickFindsTheSurface) {
