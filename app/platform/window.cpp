@@ -2,6 +2,7 @@
 
 #include "app/platform/gui.h"
 #include "app/platform/headless.h"
+#include "app/platform/input_queue.h"
 #include "app/workbench.h"
 #include "volume/error.h"
 
@@ -37,6 +38,7 @@ struct Glfw {
 struct Window {
     GLFWwindow* handle = nullptr;
     Workbench* workbench = nullptr;
+    InputQueue input;
     int freshFrames = 3; ///< frames still to draw after the last event
 
     Window() {
@@ -57,14 +59,43 @@ struct Window {
         glfwSwapInterval(1);
         glfwSetWindowSizeLimits(handle, 480, 320, GLFW_DONT_CARE, GLFW_DONT_CARE);
         glfwSetWindowUserPointer(handle, this);
-        // Set before ImGui's back end, which chains to them: every event is followed by a few frames.
-        glfwSetCursorPosCallback(handle, [](GLFWwindow* w, double, double) { wake(w); });
-        glfwSetMouseButtonCallback(handle, [](GLFWwindow* w, int, int, int) { wake(w); });
-        glfwSetScrollCallback(handle, [](GLFWwindow* w, double, double) { wake(w); });
-        glfwSetKeyCallback(handle, [](GLFWwindow* w, int, int, int, int) { wake(w); });
-        glfwSetCharCallback(handle, [](GLFWwindow* w, unsigned) { wake(w); });
-        glfwSetWindowFocusCallback(handle, [](GLFWwindow* w, int) { wake(w); });
-        glfwSetCursorEnterCallback(handle, [](GLFWwindow* w, int) { wake(w); });
+        glfwSetCursorPosCallback(handle, [](GLFWwindow* w, double x, double y) {
+            wake(w);
+            of(w).input.add({.kind = InputQueue::Event::Move, .at = {float(x), float(y)}});
+        });
+        glfwSetMouseButtonCallback(handle, [](GLFWwindow* w, int button, int action, int mods) {
+            wake(w);
+            of(w).input.add(
+                {.kind = InputQueue::Event::Button, .code = button, .mods = mods, .down = action == GLFW_PRESS});
+        });
+        glfwSetScrollCallback(handle, [](GLFWwindow* w, double x, double y) {
+            wake(w);
+            ImGui_ImplGlfw_ScrollCallback(w, x, y);
+        });
+        glfwSetKeyCallback(handle, [](GLFWwindow* w, int key, int scancode, int action, int mods) {
+            wake(w);
+            if (action == GLFW_REPEAT) return; // ImGui repeats by itself
+            of(w).input.add({.kind = InputQueue::Event::Key,
+                             .code = key,
+                             .scancode = scancode,
+                             .mods = mods,
+                             .down = action == GLFW_PRESS});
+        });
+        glfwSetCharCallback(handle, [](GLFWwindow* w, unsigned letter) {
+            wake(w);
+            ImGui_ImplGlfw_CharCallback(w, letter);
+        });
+        glfwSetWindowFocusCallback(handle, [](GLFWwindow* w, int focused) {
+            wake(w);
+            ImGui_ImplGlfw_WindowFocusCallback(w, focused);
+        });
+        glfwSetCursorEnterCallback(handle, [](GLFWwindow* w, int entered) {
+            wake(w);
+            ImGui_ImplGlfw_CursorEnterCallback(w, entered);
+            const auto& buttons = of(w).input.buttons;
+            if (entered == GLFW_FALSE && std::find(buttons.begin(), buttons.end(), true) == buttons.end())
+                of(w).input.add({.kind = InputQueue::Event::Move, .at = {-FLT_MAX, -FLT_MAX}});
+        });
         glfwSetFramebufferSizeCallback(handle, [](GLFWwindow* w, int, int) { wake(w); });
         glfwSetWindowRefreshCallback(handle, [](GLFWwindow* w) { wake(w); });
         glfwSetWindowContentScaleCallback(handle, [](GLFWwindow* w, float, float) { wake(w); });
@@ -90,7 +121,8 @@ struct Window {
 };
 
 struct GlfwBackEnd {
-    explicit GlfwBackEnd(GLFWwindow* window) { ImGui_ImplGlfw_InitForOpenGL(window, true); }
+    // The window's own callbacks stay: they go through the queue.
+    explicit GlfwBackEnd(GLFWwindow* window) { ImGui_ImplGlfw_InitForOpenGL(window, false); }
     ~GlfwBackEnd() { ImGui_ImplGlfw_Shutdown(); }
     GlfwBackEnd(const GlfwBackEnd&) = delete;
     GlfwBackEnd& operator=(const GlfwBackEnd&) = delete;
@@ -129,7 +161,7 @@ void runWindow(const OpenRequest& request, const std::string& screenshots) {
         const double idle = workbench.idleSeconds();
         if (window.minimised())
             glfwWaitEventsTimeout(0.5);
-        else if (window.freshFrames > 0 || idle <= 0)
+        else if (window.freshFrames > 0 || idle <= 0 || !window.input.empty())
             glfwPollEvents();
         else if (std::isfinite(idle))
             glfwWaitEventsTimeout(idle);
@@ -151,15 +183,29 @@ void runWindow(const OpenRequest& request, const std::string& screenshots) {
         // Where the window is measured in points (Wayland, macOS) the framebuffer is denser already.
         if (width > 0 && pixelsX > width) contentScale = std::max(1.0f, contentScale * float(width) / float(pixelsX));
         if (workbench.prepare(contentScale)) Gui::uploadFonts();
+        window.input.take([&](const InputQueue::Event& event) {
+            ImGui_ImplGlfw_KeyCallback(window.handle, event.code, event.scancode,
+                                       event.down ? GLFW_PRESS : GLFW_RELEASE, event.mods);
+        });
         ImGui_ImplOpenGL3_NewFrame();
         ImGui_ImplGlfw_NewFrame();
+        ImGuiIO& io = ImGui::GetIO();
+        io.MousePos = window.input.mouse;
+        std::copy(window.input.buttons.begin(), window.input.buttons.end(), io.MouseDown);
+        // The back end asks GLFW for the modifiers of now; these belong to the keys of this frame.
+        const auto held = [&](int left, int right) { return io.KeysDown[left] || io.KeysDown[right]; };
+        io.KeyCtrl = held(GLFW_KEY_LEFT_CONTROL, GLFW_KEY_RIGHT_CONTROL);
+        io.KeyShift = held(GLFW_KEY_LEFT_SHIFT, GLFW_KEY_RIGHT_SHIFT);
+        io.KeyAlt = held(GLFW_KEY_LEFT_ALT, GLFW_KEY_RIGHT_ALT);
+        io.KeySuper = held(GLFW_KEY_LEFT_SUPER, GLFW_KEY_RIGHT_SUPER);
         ImGui::NewFrame();
         workbench.frame();
         ImGui::Render();
         glBindFramebuffer(GL_FRAMEBUFFER, 0);
         Gui::draw({pixelsX, pixelsY}, workbench.session().appearance.theme);
         // Read before the swap: afterwards the back buffer is undefined.
-        const bool complete = !workbench.busy() && workbench.source() != nullptr && window.freshFrames == 0;
+        const bool complete =
+            !workbench.busy() && workbench.source() != nullptr && window.freshFrames == 0 && window.input.empty();
         if (!screenshots.empty() && complete && !photographed)
             vis::writePng(screenshots, readWindow({pixelsX, pixelsY}));
         photographed = complete;

@@ -131,7 +131,7 @@ void applyTheme(Theme theme, float scale) {
     c[ImGuiCol_ScrollbarGrabHovered] = dark ? rgb(0x59606C) : rgb(0xA9B1BB);
     c[ImGuiCol_ScrollbarGrabActive] = accent;
     c[ImGuiCol_CheckMark] = accent;
-    c[ImGuiCol_SliderGrab] = tint(0.85f);
+    c[ImGuiCol_SliderGrab] = tint(0.5f);
     c[ImGuiCol_SliderGrabActive] = accent;
     c[ImGuiCol_Button] = dark ? rgb(0x2F343C) : rgb(0xEBEEF2);
     c[ImGuiCol_ButtonHovered] = dark ? rgb(0x3B424C) : rgb(0xDDE6F2);

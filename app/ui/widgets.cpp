@@ -1,6 +1,7 @@
 #include "app/ui/widgets.h"
 
 #include "app/ui/theme.h"
+#include "app/views/ticks.h"
 #include "vis/model/transfer_function.h"
 
 #include <algorithm>
@@ -28,7 +29,7 @@ std::string numberFormat(std::optional<Range> range, bool logScale, bool integer
     }
     if (unit.empty()) return format;
     format += ' ';
-    for (const char c : unit) format += c == '%' ? "%%" : std::string(1, c);
+    for (const char c : prettyUnit(unit)) format += c == '%' ? "%%" : std::string(1, c);
     return format;
 }
 

@@ -1,0 +1,71 @@
+#pragma once
+
+#include <array>
+#include <cfloat>
+#include <cstddef>
+#include <deque>
+#include <imgui.h>
+
+namespace tessera::app {
+
+/// Mouse and key events in the order they came. ImGui 1.86 only sees states, once per frame: a key tapped or a button
+/// clicked during one slow frame would be lost, a drag would begin where the mouse is later. So each frame takes as
+/// many events as one set of states can tell, and the rest waits for the next.
+class InputQueue {
+public:
+    struct Event {
+        enum Kind { Move, Button, Key } kind = Move;
+        int code = 0, scancode = 0, mods = 0;
+        bool down = false;
+        ImVec2 at{0, 0};
+    };
+
+    /// Queues an event. A button is pressed where the last move went, not where the mouse is by now.
+    void add(Event event) {
+        if (event.kind == Event::Move) last_ = event.at;
+        if (event.kind == Event::Button) event.at = last_;
+        if (event.kind == Event::Move && !events_.empty() && events_.back().kind == Event::Move)
+            events_.back() = event;
+        else
+            events_.push_back(event);
+    }
+
+    /// Takes what belongs to this frame; `key(event)` is called for each key event. Afterwards `mouse` and `buttons`
+    /// hold the states of this frame.
+    template <class Function> void take(Function&& key) {
+        bool clicked = false, pressed = false;
+        std::array<bool, 512> changed{};
+        while (!events_.empty()) {
+            const Event event = events_.front();
+            if (event.kind == Event::Move) {
+                if (clicked) break; // the click happened before the move
+                mouse = event.at;
+            } else if (event.kind == Event::Button) {
+                if (clicked) break;
+                clicked = true;
+                mouse = event.at;
+                if (event.code >= 0 && event.code < 5) buttons[static_cast<std::size_t>(event.code)] = event.down;
+            } else {
+                const std::size_t code = event.code < 0 ? 0 : static_cast<std::size_t>(event.code) % changed.size();
+                // A key is pressed with the modifiers held at that moment: their release waits too.
+                if (changed[code] || pressed) break;
+                changed[code] = true;
+                const bool modifier = event.code >= 340 && event.code <= 347;
+                pressed = event.down && !modifier;
+                key(event);
+            }
+            events_.pop_front();
+        }
+    }
+
+    bool empty() const { return events_.empty(); }
+
+    ImVec2 mouse{-FLT_MAX, -FLT_MAX};
+    std::array<bool, 5> buttons{};
+
+private:
+    std::deque<Event> events_;
+    ImVec2 last_{-FLT_MAX, -FLT_MAX};
+};
+
+} // namespace tessera::app

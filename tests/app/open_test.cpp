@@ -1,0 +1,168 @@
+#include "app/open.h"
+#include "app/session/state_dir.h"
+#include "vis/image_io.h"
+#include "volume/error.h"
+
+#include <algorithm>
+#include <fcntl.h>
+#include <filesystem>
+#include <fstream>
+#include <gtest/gtest.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+namespace tessera::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+class OpenTest : public ::testing::Test {
+protected:
+    void SetUp() override {
+        folder = fs::temp_directory_path() / ("tessera-open-" + std::to_string(getpid()) + "-" +
+                                              ::testing::UnitTest::GetInstance()->current_test_info()->name());
+        fs::create_directories(folder);
+    }
+    void TearDown() override { fs::remove_all(folder); }
+    std::string in(const std::string& name) const { return (folder / name).string(); }
+    std::string raw(const std::string& name) const {
+        std::ofstream(folder / name, std::ios::binary) << std::string(5 * 6 * 7, '\x21') + std::string(210, '\x42');
+        return in(name);
+    }
+    static OpenRequest rawRequest(const std::string& path) {
+        OpenRequest request;
+        request.paths = {path};
+        request.import.emplace();
+        request.import->raw = "dims=5x6x14,type=u8";
+        return request;
+    }
+    fs::path folder;
+};
+
+TEST_F(OpenTest, ADataFileGetsTheDefaultSession) {
+    const Opened opened = open(rawRequest(raw("a.raw")));
+    ASSERT_TRUE(opened.source);
+    EXPECT_EQ(opened.source->info().parameters.size(), 1u);
+    EXPECT_EQ(opened.document.session.layers.size(), 2u);
+    EXPECT_TRUE(opened.document.history.steps().empty());
+    EXPECT_EQ(opened.document.session.data.files[0].bytes, 420);
+}
+
+TEST_F(OpenTest, ASessionBringsItsDataAndItsImportOptions) {
+    Opened opened = open(rawRequest(raw("a.raw")));
+    opened.document.session.camera.distance = 4;
+    saveSession(opened.document, in("s.tessera.json"));
+    OpenRequest request;
+    request.paths = {in("s.tessera.json")};
+    const Opened again = open(request);
+    ASSERT_TRUE(again.source);
+    EXPECT_TRUE(again.document.session == opened.document.session);
+    EXPECT_EQ(again.sessionPath, in("s.tessera.json"));
+    // Without the data: told, not thrown, so that the window can ask.
+    fs::remove(folder / "a.raw");
+    const Opened lost = open(request);
+    EXPECT_FALSE(lost.source);
+    ASSERT_EQ(lost.missing.size(), 1u);
+    EXPECT_EQ(lost.missing[0].wanted.path, "a.raw");
+    // Found by the user under another name.
+    DataRef data = dataOf({raw("b.raw")}, lost.document.session.data.import);
+    const Opened found = openWith(lost, data);
+    EXPECT_TRUE(found.source);
+    EXPECT_EQ(found.document.session.camera.distance, 4);
+}
+
+TEST_F(OpenTest, APictureCarriesItsSession) {
+    const Opened opened = open(rawRequest(raw("a.raw")));
+    vis::Image image;
+    image.size = {2, 3};
+    image.rgba.assign(24, 200);
+    vis::writePng(in("p.png"), image, {{vis::kSessionTextKey, printSession(opened.document, in("p.png"))}});
+    OpenRequest request;
+    request.paths = {in("p.png")};
+    const Opened again = open(request);
+    EXPECT_TRUE(again.document.session == opened.document.session);
+    EXPECT_EQ(again.sessionPath, "") << "a picture is no place to save a session to";
+    vis::writePng(in("plain.png"), image);
+    request.paths = {in("plain.png")};
+    EXPECT_THROW(open(request), Error);
+}
+
+TEST_F(OpenTest, ALayoutFitsAnyData) {
+    OpenRequest request = rawRequest(raw("a.raw"));
+    for (const std::string& name : layoutNames()) {
+        request.layout = name;
+        const Opened opened = open(request);
+        ASSERT_TRUE(opened.source) << name;
+        const std::string only = opened.source->info().channels()[0].name;
+        ASSERT_FALSE(opened.document.session.layers.empty()) << name;
+        for (const vis::Layer& layer : opened.document.session.layers)
+            std::visit([&](const auto& technique) { EXPECT_EQ(technique.channel, only) << name; }, layer.technique);
+        EXPECT_FALSE(opened.messages.empty()) << name << ": nobody is told that parameters were replaced";
+        EXPECT_TRUE(opened.document.session.dock.root.children.size() == 2) << name;
+    }
+}
+
+TEST_F(OpenTest, ShippedLayoutsAreValid) {
+    const std::vector<std::string> names = layoutNames();
+    EXPECT_TRUE(std::find(names.begin(), names.end(), "overview") != names.end());
+    EXPECT_TRUE(std::find(names.begin(), names.end(), "gases") != names.end());
+    for (const std::string& name : names) {
+        const SessionDocument layout = loadSession(findLayout(name));
+        EXPECT_TRUE(layout.messages.empty()) << layout.messages.front();
+        std::vector<std::string> panes = panesOf(layout.session.dock), keys = paneKeys(layout.session);
+        std::sort(panes.begin(), panes.end());
+        EXPECT_EQ(panes, keys) << name;
+    }
+    EXPECT_THROW(findLayout("no such layout"), Error);
+}
+
+TEST_F(OpenTest, BadFilesAreErrors) {
+    OpenRequest request;
+    for (const auto& [name, text] : {std::pair{"a.tessera.json", "{"},
+                                     {"b.tessera.json", "{\"schema\": 1, \"time\": []}"},
+                                     {"c.png", "not a picture"},
+                                     {"d.tsr", "not an archive"},
+                                     {"e.json", "{}"}}) {
+        std::ofstream(folder / name) << text;
+        request.paths = {in(name)};
+        EXPECT_THROW(open(request), Error) << name;
+    }
+    request.paths = {in("absent.vti")};
+    EXPECT_THROW(open(request), Error);
+    request.paths = {folder.string()};
+    EXPECT_THROW(open(request), Error);
+}
+
+TEST_F(OpenTest, RecentFilesAndAutosave) {
+    const std::string state = folder.string();
+    EXPECT_TRUE(recentFiles(state).empty());
+    std::ofstream(folder / "recent.json") << "broken; [";
+    EXPECT_TRUE(recentFiles(state).empty());
+    for (int i = 0; i < 20; ++i) addRecentFile(state, "/data/" + std::to_string(i) + ";odd name.tsr");
+    addRecentFile(state, "/data/15;odd name.tsr");
+    ASSERT_EQ(recentFiles(state).size(), 12u);
+    EXPECT_EQ(recentFiles(state)[0], "/data/15;odd name.tsr");
+
+    // Left by a run that is gone, and by one that still lives (holds its lock).
+    std::ofstream(folder / "autosave-1.tessera.json") << "{}";
+    std::ofstream(folder / "autosave-2.tessera.json") << "{}";
+    const int lock = ::open(in("autosave-2.tessera.json.lock").c_str(), O_RDWR | O_CREAT, 0600);
+    ASSERT_EQ(::flock(lock, LOCK_EX | LOCK_NB), 0);
+    std::string own;
+    {
+        Autosave autosave(state);
+        EXPECT_EQ(autosave.save("text"), "");
+        own = in("autosave-" + std::to_string(getpid()) + ".tessera.json");
+        EXPECT_EQ(readText(own), "text");
+        const std::vector<Recovery> left = autosave.abandoned();
+        ASSERT_EQ(left.size(), 1u);
+        EXPECT_EQ(left[0].path, in("autosave-1.tessera.json"));
+        Autosave::discard(left[0]);
+        EXPECT_TRUE(autosave.abandoned().empty());
+    }
+    EXPECT_FALSE(fs::exists(own));
+    ::close(lock);
+}
+
+} // namespace
+} // namespace tessera::app

@@ -1,0 +1,284 @@
+#include "app/platform/input_queue.h"
+#include "app/session/history.h"
+#include "app/ui/commands.h"
+#include "app/ui/dock.h"
+#include "app/ui/theme.h"
+#include "app/ui/widgets.h"
+
+#include <algorithm>
+#include <cmath>
+#include <gtest/gtest.h>
+#include <imgui.h>
+#include <random>
+#include <set>
+
+namespace tessera::app {
+namespace {
+
+/// ImGui without a GPU: frames of 800 x 600 with a mouse and keys that the test holds.
+class UiTest : public ::testing::Test {
+protected:
+    void SetUp() override {
+        context = ImGui::CreateContext();
+        ImGui::SetCurrentContext(context);
+        ImGuiIO& io = ImGui::GetIO();
+        io.IniFilename = nullptr;
+        io.DisplaySize = {800, 600};
+        mapKeys(io);
+        loadFonts(1);
+        applyTheme(Theme::Dark, 1);
+        unsigned char* pixels = nullptr;
+        int w = 0, h = 0;
+        io.Fonts->GetTexDataAsRGBA32(&pixels, &w, &h);
+    }
+    void TearDown() override { ImGui::DestroyContext(context); }
+
+    template <class Body> void frame(Body&& body) {
+        ImGuiIO& io = ImGui::GetIO();
+        io.DeltaTime = 1.0f / 60;
+        io.MousePos = mouse;
+        io.MouseDown[0] = held;
+        ImGui::NewFrame();
+        body();
+        ImGui::Render();
+    }
+
+    ImGuiContext* context = nullptr;
+    ImVec2 mouse{-1, -1};
+    bool held = false;
+};
+
+TEST_F(UiTest, DraggingASliderIsOneUndoStep) {
+    Session session;
+    History history;
+    history.reset(session);
+    ImVec2 slider;
+    int changes = 0, commits = 0;
+    double seconds = 0;
+    const auto body = [&] {
+        ImGui::SetNextWindowPos({0, 0});
+        ImGui::SetNextWindowSize({400, 500});
+        ImGui::Begin("test");
+        slider = {300, ImGui::GetCursorScreenPos().y + ImGui::GetFrameHeight() / 2};
+        const WidgetContext widgets;
+        if (drawDescribed(session.appearance, widgets)) ++changes;
+        ImGui::End();
+        seconds += 1.0 / 60;
+        if (history.observe(session, ImGui::IsAnyItemActive() || held, seconds)) ++commits;
+    };
+    for (int i = 0; i < 3; ++i) frame(body);
+    // The second row of Appearance is the scale.
+    mouse = {slider.x, slider.y + ImGui::GetFrameHeightWithSpacing()};
+    frame(body);
+    held = true;
+    for (int i = 0; i < 25; ++i) {
+        mouse.x += 3;
+        frame(body);
+    }
+    EXPECT_EQ(commits, 0) << "an edit was kept before it ended";
+    held = false;
+    for (int i = 0; i < 3; ++i) frame(body);
+    EXPECT_GT(changes, 10);
+    ASSERT_EQ(commits, 1);
+    ASSERT_EQ(history.steps().size(), 1u);
+    EXPECT_EQ(history.steps()[0].name, "appearance: scale");
+    EXPECT_GT(session.appearance.scale, 1);
+    session = history.undo();
+    EXPECT_EQ(session.appearance.scale, 1);
+    session = history.redo();
+    EXPECT_GT(session.appearance.scale, 1);
+}
+
+class DockTest : public UiTest {
+protected:
+    void SetUp() override {
+        UiTest::SetUp();
+        repair(tree, {"a", "b", "c"});
+        panes.title = [](const std::string& pane) { return "pane " + pane; };
+        panes.draw = [this](const std::string& pane) {
+            drawn.insert(pane);
+            ImGui::TextUnformatted(pane.c_str());
+        };
+        panes.close = [this](const std::string& pane) { removePane(tree, pane); };
+    }
+    void step(int count = 1) {
+        for (int i = 0; i < count; ++i) {
+            drawn.clear();
+            frame([&] { drawDock(tree, hand, panes, {0, 0}, {800, 600}, 1); });
+        }
+    }
+    void drag(ImVec2 from, ImVec2 to) {
+        mouse = from;
+        step(2);
+        held = true;
+        step();
+        for (int i = 1; i <= 10; ++i) {
+            mouse = {from.x + (to.x - from.x) * float(i) / 10, from.y + (to.y - from.y) * float(i) / 10};
+            step();
+        }
+        held = false;
+        step(2);
+    }
+    DockTree tree;
+    DockHand hand;
+    DockPanes panes;
+    std::set<std::string> drawn;
+};
+
+TEST_F(DockTest, OnlyThePaneInFrontIsDrawn) {
+    step(2);
+    EXPECT_EQ(drawn, std::set<std::string>{"a"});
+}
+
+TEST_F(DockTest, ATabIsDraggedToASideAndBack) {
+    step(2);
+    drag({20, 10}, {700, 300}); // tab a to the right edge of the stack
+    ASSERT_EQ(tree.root.kind, DockKind::Row);
+    EXPECT_EQ(tree.root.children[1].tabs, std::vector<std::string>{"a"});
+    EXPECT_EQ(tree.root.children[0].tabs, (std::vector<std::string>{"b", "c"}));
+    step(2);
+    EXPECT_EQ(drawn, (std::set<std::string>{"b", "a"}));
+    drag({420, 10}, {200, 300}); // and into the middle of the other one
+    ASSERT_EQ(tree.root.kind, DockKind::Tabs);
+    EXPECT_EQ(tree.root.tabs.back(), "a");
+}
+
+TEST_F(DockTest, EscapeEndsADrag) {
+    step(2);
+    mouse = {20, 10};
+    step(2);
+    held = true;
+    step();
+    mouse = {700, 300};
+    step(2);
+    ImGui::GetIO().KeysDown[key::kEscape] = true;
+    step();
+    ImGui::GetIO().KeysDown[key::kEscape] = false;
+    held = false;
+    step(2);
+    EXPECT_EQ(tree.root.kind, DockKind::Tabs);
+}
+
+TEST_F(DockTest, ASplitterFollowsTheMouseInTheSameFrame) {
+    insertPane(tree, "c", tree.root.id, DockSide::Right);
+    step(2);
+    const float edge = layoutDock(tree, {0, 0}, {800, 600}, 1).at(tree.root.children[0].id).hi.x;
+    mouse = {edge + 2, 300};
+    step(2);
+    held = true;
+    step();
+    mouse.x += 200;
+    step();
+    EXPECT_EQ(layoutDock(tree, {0, 0}, {800, 600}, 1).at(tree.root.children[0].id).hi.x, edge + 200);
+    mouse.x = 5000; // into the limit: the stored ratio is what is shown
+    step();
+    const auto rects = layoutDock(tree, {0, 0}, {800, 600}, 1);
+    const float shown = rects.at(tree.root.children[0].id).hi.x;
+    EXPECT_NEAR(tree.root.ratio, shown / (800 - (rects.at(tree.root.children[1].id).lo.x - shown)), 1e-3);
+    held = false;
+    step();
+}
+
+TEST_F(DockTest, RectanglesTileTheWindow) {
+    std::mt19937 random(4);
+    for (int i = 0; i < 200; ++i) {
+        insertPane(tree, std::string(1, char('a' + i % 3)), 1 + int(random() % 6), static_cast<DockSide>(random() % 5));
+        const ImVec2 size{float(50 + random() % 1900), float(50 + random() % 1100)};
+        for (const auto& [id, rect] : layoutDock(tree, {0, 0}, size, 1)) {
+            ASSERT_GE(rect.hi.x, rect.lo.x);
+            ASSERT_GE(rect.hi.y, rect.lo.y);
+            ASSERT_EQ(rect.lo.x, std::round(rect.lo.x));
+            ASSERT_LE(rect.hi.x, size.x + 1);
+            ASSERT_LE(rect.hi.y, size.y + 1);
+        }
+    }
+}
+
+TEST_F(DockTest, ARestlessHandLeavesAValidTree) {
+    std::mt19937 random(9);
+    for (int i = 0; i < 1500; ++i) {
+        mouse = {float(random() % 900) - 50, float(random() % 700) - 50};
+        if (random() % 4 == 0) mouse.y = float(random() % 26);
+        held = random() % 3 != 0;
+        if (random() % 150 == 0) tree.maximised = random() % 2 ? "a" : "";
+        if (random() % 90 == 0) floatPane(tree, "b", {"b", 0.2f, 0.2f, 0.4f, 0.4f});
+        if (panesOf(tree).size() < 3) repair(tree, {"a", "b", "c"});
+        step();
+        DockTree copy = tree;
+        std::vector<std::string> all = panesOf(tree);
+        repair(copy, all);
+        ASSERT_TRUE(copy.root == tree.root) << i;
+    }
+}
+
+TEST(CommandsTest, ThePaletteFindsByWordsAndLetters) {
+    EXPECT_GT(matchScore("undo", "Edit: Undo"), matchScore("undo", "Edit: un do o"));
+    EXPECT_GT(matchScore("sp", "File: Save picture"), 0);
+    EXPECT_EQ(matchScore("xyz", "File: Save picture"), 0);
+    EXPECT_GT(matchScore("", "anything"), 0);
+    EXPECT_EQ(textOf({.key = 'P', .ctrl = true, .shift = true}), "Ctrl+Shift+P");
+    EXPECT_EQ(textOf({.key = key::kF12}), "F12");
+}
+
+TEST_F(UiTest, ShortcutsNeedExactlyTheirModifiers) {
+    int undone = 0, redone = 0;
+    const std::vector<Command> commands = {
+        {.menu = "", .name = "undo", .help = "", .shortcut = {.key = 'Z', .ctrl = true}, .run = [&] { ++undone; }},
+        {.menu = "", .name = "redo", .help = "", .shortcut = {.key = 'Z', .ctrl = true, .shift = true}, .run = [&] {
+             ++redone;
+         }}};
+    ImGuiIO& io = ImGui::GetIO();
+    const auto tap = [&](bool shift) {
+        io.KeyCtrl = true;
+        io.KeyShift = shift;
+        io.KeysDown['Z'] = true;
+        frame([&] { runShortcuts(commands); });
+        io.KeysDown['Z'] = io.KeyCtrl = io.KeyShift = false;
+        frame([&] { runShortcuts(commands); });
+    };
+    tap(false);
+    EXPECT_EQ(undone, 1);
+    EXPECT_EQ(redone, 0);
+    tap(true);
+    EXPECT_EQ(undone, 1);
+    EXPECT_EQ(redone, 1);
+}
+
+TEST(InputQueueTest, ATapWithinOneFrameIsSeenAsDownAndUp) {
+    InputQueue queue;
+    std::vector<std::pair<int, bool>> keys;
+    const auto take = [&] {
+        keys.clear();
+        queue.take([&](const InputQueue::Event& event) { keys.emplace_back(event.code, event.down); });
+    };
+    using Event = InputQueue::Event;
+    // Control may be released before or after the letter.
+    for (const auto& [code, down] : {std::pair{341, true}, {int('S'), true}, {341, false}, {int('S'), false}})
+        queue.add({.kind = Event::Key, .code = code, .down = down});
+    take();
+    EXPECT_EQ(keys, (std::vector<std::pair<int, bool>>{{341, true}, {'S', true}}));
+    take();
+    EXPECT_EQ(keys, (std::vector<std::pair<int, bool>>{{341, false}, {'S', false}}));
+    EXPECT_TRUE(queue.empty());
+}
+
+TEST(InputQueueTest, ADragBeginsWhereTheButtonWentDown) {
+    InputQueue queue;
+    using Event = InputQueue::Event;
+    const auto none = [](const Event&) {};
+    queue.add({.kind = Event::Move, .at = {10, 10}});
+    queue.add({.kind = Event::Button, .down = true});
+    queue.add({.kind = Event::Move, .at = {50, 50}});
+    queue.add({.kind = Event::Move, .at = {90, 90}});
+    queue.add({.kind = Event::Button, .down = false});
+    queue.take(none);
+    EXPECT_TRUE(queue.buttons[0]);
+    EXPECT_EQ(queue.mouse.x, 10);
+    queue.take(none);
+    EXPECT_FALSE(queue.buttons[0]);
+    EXPECT_EQ(queue.mouse.x, 90);
+    EXPECT_TRUE(queue.empty());
+}
+
+} // namespace
+} // namespace tessera::app

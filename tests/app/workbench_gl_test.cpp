@@ -1,0 +1,144 @@
+#include "app/platform/gui.h"
+#include "app/platform/headless.h"
+#include "vis/gl/headless.h"
+#include "volume/error.h"
+
+#include <algorithm>
+#include <gtest/gtest.h>
+#include <imgui.h>
+
+namespace tessera::app {
+namespace {
+
+Opened smallData() {
+    OpenRequest request;
+    request.data.emplace();
+    request.data->model = "marschner-lobb";
+    request.data->settings = {{"nx", 24}, {"ny", 24}, {"nz", 24}};
+    return open(request);
+}
+
+/// Largest share of pixels with a channel off by more than `tolerance`.
+double difference(const vis::Image& a, const vis::Image& b, int tolerance) {
+    if (a.size != b.size) return 1;
+    std::size_t off = 0;
+    for (std::size_t i = 0; i < a.rgba.size(); i += 4)
+        for (std::size_t c = 0; c < 3; ++c)
+            if (std::abs(int(a.rgba[i + c]) - int(b.rgba[i + c])) > tolerance) {
+                ++off;
+                break;
+            }
+    return double(off) * 4 / double(a.rgba.size());
+}
+
+int colors(const vis::Image& image) {
+    std::vector<std::uint32_t> seen;
+    for (std::size_t i = 0; i < image.rgba.size(); i += 4)
+        seen.push_back(std::uint32_t(image.rgba[i]) << 16 | std::uint32_t(image.rgba[i + 1]) << 8 | image.rgba[i + 2]);
+    std::sort(seen.begin(), seen.end());
+    return int(std::unique(seen.begin(), seen.end()) - seen.begin());
+}
+
+TEST(WorkbenchGl, APictureIsWhatAWorkbenchFrameShows) {
+    const Opened opened = smallData();
+    PictureMaker maker;
+    const PictureRequest request{.pane = "", .size = {900, 600}, .scale = 1};
+    const vis::Image picture = maker.render(opened.document, opened.source, request);
+    EXPECT_GT(colors(picture), 300) << "nothing was drawn";
+    // Again: the same bytes.
+    EXPECT_EQ(difference(picture, maker.render(opened.document, opened.source, request), 0), 0);
+
+    // Frames of an interactive workbench, refined over time as in a window.
+    const Gui gui;
+    Workbench workbench({.renderer = nullptr, .render = {}, .headless = false, .onlyPane = {}, .stateFolder = {}});
+    workbench.install(opened);
+    const vis::Image window = drawUntilDone(workbench, {900, 600}, 1);
+    EXPECT_LT(difference(picture, window, 6), 0.002);
+}
+
+TEST(WorkbenchGl, OneViewFillsThePicture) {
+    const Opened opened = smallData();
+    PictureMaker maker;
+    for (const auto& [pane, view] : opened.document.session.views) {
+        const vis::Image image =
+            maker.render(opened.document, opened.source, {.pane = pane, .size = {400, 300}, .scale = 1});
+        EXPECT_EQ(image.size, glm::ivec2(400, 300));
+        EXPECT_GT(colors(image), 3) << pane;
+    }
+    EXPECT_THROW(maker.render(opened.document, opened.source, {.pane = "nothing", .size = {64, 64}, .scale = 1}),
+                 Error);
+}
+
+TEST(WorkbenchGl, FramesWithoutDataAndWithOddSessions) {
+    const vis::HeadlessContext gl;
+    const Gui gui;
+    Workbench workbench({.renderer = nullptr, .render = {}, .headless = false, .onlyPane = {}, .stateFolder = {}});
+    drawUntilDone(workbench, {300, 200}, 1);
+    Opened opened = smallData();
+    Session& session = opened.document.session;
+    session.layers.push_back({"lost", true, vis::VolumeLayer{.channel = "no such"}});
+    session.camera.distance = 0.01f;
+    session.selection.brushes.push_back({});
+    for (int i = 0; i < 2; ++i) addView(session, VolumeView{});
+    workbench.install(std::move(opened));
+    drawUntilDone(workbench, {300, 200}, 2);
+    drawUntilDone(workbench, {17, 17}, 1);
+    EXPECT_TRUE(workbench.source() != nullptr);
+    workbench.session().views.clear();
+    workbench.session().dock = {};
+    drawUntilDone(workbench, {300, 200}, 1);
+}
+
+TEST(WorkbenchGl, UndoBringsBackTheSameSession) {
+    const vis::HeadlessContext gl;
+    const Gui gui;
+    Workbench workbench({.renderer = nullptr, .render = {}, .headless = false, .onlyPane = {}, .stateFolder = {}});
+    workbench.install(smallData());
+    drawUntilDone(workbench, {400, 300}, 1);
+    const Session start = workbench.session();
+    const auto command = [&](const std::string& name) -> const Command& {
+        const auto found = std::find_if(workbench.commands().begin(), workbench.commands().end(),
+                                        [&](const Command& each) { return each.title() == name; });
+        EXPECT_TRUE(found != workbench.commands().end()) << name;
+        return *found;
+    };
+    command("New: Volume").run();
+    drawUntilDone(workbench, {400, 300}, 1);
+    command("Light theme").run();
+    drawUntilDone(workbench, {400, 300}, 1);
+    const Session end = workbench.session();
+    EXPECT_EQ(workbench.history().steps().size(), 2u);
+    EXPECT_EQ(end.views.size(), start.views.size() + 1);
+    while (command("Undo").available()) {
+        command("Undo").run();
+        drawUntilDone(workbench, {400, 300}, 1);
+    }
+    EXPECT_TRUE(workbench.session() == start);
+    while (command("Redo").available()) {
+        command("Redo").run();
+        drawUntilDone(workbench, {400, 300}, 1);
+    }
+    EXPECT_TRUE(workbench.session() == end);
+}
+
+TEST(WorkbenchGl, CommandNamesAndKeysAreUnique) {
+    const vis::HeadlessContext gl;
+    const Gui gui;
+    const Workbench workbench(
+        {.renderer = nullptr, .render = {}, .headless = false, .onlyPane = {}, .stateFolder = {}});
+    std::vector<std::string> names, keys;
+    for (const Command& command : workbench.commands()) {
+        names.push_back(command.title());
+        for (const Shortcut& shortcut : {command.shortcut, command.alternative})
+            if (shortcut.key != 0) keys.push_back(textOf(shortcut));
+        EXPECT_FALSE(command.help.empty()) << command.name;
+    }
+    for (auto* list : {&names, &keys}) {
+        std::sort(list->begin(), list->end());
+        const auto twice = std::adjacent_find(list->begin(), list->end());
+        EXPECT_TRUE(twice == list->end()) << *twice << " is used twice";
+    }
+}
+
+} // namespace
+} // namespace tessera::app

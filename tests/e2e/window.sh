@@ -1,0 +1,124 @@
+#!/bin/bash
+# Drives the real window: opens the built-in data, brushes, undoes, saves by shortcut and quits; then checks the saved
+# session and that it renders without a window to the picture the window showed.
+# usage: window.sh TESSERA SOURCE_DIR
+tessera=$1
+for tool in Xvfb xdotool; do
+    command -v $tool >/dev/null || { echo "skipped: no $tool"; exit 77; }
+done
+work=$(mktemp -d)
+export XDG_STATE_HOME=$work/state
+pids=()
+cleanup() {
+    for pid in "${pids[@]}"; do kill "$pid" 2>/dev/null; done
+    wait 2>/dev/null
+    rm -rf "$work"
+}
+trap cleanup EXIT
+fail() {
+    echo "FAILED: $1"
+    [ -f "$work/log" ] && cat "$work/log"
+    exit 1
+}
+
+# A free display: Xvfb itself finds one and tells its number.
+mkfifo "$work/display"
+Xvfb -displayfd 3 -screen 0 1500x950x24 -nolisten tcp -noreset 3>"$work/display" 2>"$work/xvfb.log" &
+pids+=($!)
+read -r number <"$work/display" || { echo "skipped: Xvfb does not start"; exit 77; }
+export DISPLAY=:$number
+
+# await SECONDS COMMAND...: until it succeeds.
+await() {
+    local tries=$(($1 * 5))
+    shift
+    for ((i = 0; i < tries; ++i)); do
+        "$@" && return 0
+        kill -0 "$app" 2>/dev/null || return 1
+        sleep 0.2
+    done
+    return 1
+}
+fresh() { [ "$work/shot.png" -nt "$work/mark" ]; }
+# A complete picture of the window after what follows `mark`.
+mark() {
+    sleep 0.3
+    touch "$work/mark"
+    sleep 0.05
+}
+
+cd "$work" || exit 1
+touch mark
+"$tessera" --screenshots "$work/shot.png" >"$work/log" 2>&1 &
+app=$!
+pids+=("$app")
+await 120 fresh || fail "the window does not show a picture"
+window=$(xdotool search --pid "$app" 2>/dev/null | tail -1)
+[ -n "$window" ] || window=$(xdotool search --name Tessera | tail -1)
+xdotool windowfocus "$window"
+
+# Help opens and closes by key.
+mark
+xdotool key F1
+await 30 fresh || fail "F1 draws nothing"
+mark
+xdotool key Escape
+await 30 fresh || fail "Esc draws nothing"
+
+# A brush: drag across a density plot (O2 against H2O is the third row, first column of the matrix).
+mark
+xdotool mousemove 692 572 mousedown 1
+for ((x = 696; x <= 764; x += 8)); do xdotool mousemove $x $((572 + (x - 692) / 2)); sleep 0.03; done
+xdotool mouseup 1
+await 60 fresh || fail "brushing draws nothing"
+
+# Save by shortcut: the dialog offers a name in the working folder.
+xdotool key ctrl+s
+sleep 1
+xdotool key Return
+await 30 test -f session.tessera.json || fail "Ctrl+S saves nothing"
+sleep 1
+grep -q '"intervals": \[' session.tessera.json || fail "the saved session holds no brush"
+grep -q '"history"' session.tessera.json || fail "the saved session holds no history"
+cp session.tessera.json brushed.tessera.json
+
+# Undo, save again, quit: no question is asked.
+xdotool key ctrl+z
+sleep 1
+xdotool key ctrl+s
+cleared() { grep -q '"brushes": \[\]' session.tessera.json; }
+await 30 cleared || fail "undo did not take the brush back"
+xdotool key ctrl+q
+for ((i = 0; i < 100; ++i)); do kill -0 "$app" 2>/dev/null || break; sleep 0.2; done
+kill -0 "$app" 2>/dev/null && fail "Ctrl+Q does not end the program"
+wait "$app"
+status=$?
+[ $status -eq 0 ] || fail "exit status $status"
+[ -z "$(ls "$work"/state/tessera | grep autosave)" ] || fail "a clean end leaves an autosave"
+
+# The same session in the window and without one; the mouse rests where nothing answers to it.
+xdotool mousemove 900 945
+touch mark
+"$tessera" brushed.tessera.json --screenshots "$work/shot.png" >"$work/log" 2>&1 &
+app=$!
+pids+=("$app")
+await 120 fresh || fail "the saved session does not open"
+sleep 1
+cp shot.png window.png
+# kill -9: the next start finds nothing to recover, for nothing was changed.
+kill -9 "$app"
+wait "$app" 2>/dev/null
+"$tessera" render brushed.tessera.json --size 1500x950 -o headless.png >>"$work/log" 2>&1 || fail "render fails"
+if command -v compare >/dev/null; then
+    # Pixels that differ by more than 2 % of the range, at most 0.2 % of the picture.
+    differing=$(compare -fuzz 2% -metric AE window.png headless.png null: 2>&1)
+    echo "pixels that differ: $differing of 1425000"
+    [ "${differing%%.*}" -lt 2850 ] || fail "window and headless pictures differ in $differing pixels"
+fi
+# The exported picture is a session again, and gives the same picture.
+"$tessera" render headless.png --size 1500x950 -o again.png >>"$work/log" 2>&1 || fail "a picture does not open as a session"
+if command -v compare >/dev/null; then
+    differing=$(compare -metric AE headless.png again.png null: 2>&1)
+    [ "$differing" = 0 ] || fail "the session in a picture gives another picture ($differing pixels)"
+fi
+echo "window: all good"
