@@ -60,11 +60,11 @@ glm::dvec3 phong(glm::dvec3 albedo, glm::dvec3 gradient, double weight, glm::dve
                  const RenderParams& params) {
     const double magnitude = glm::length(gradient);
     if (!(magnitude > 0)) return albedo;
-    glm::dvec3 normal = gradient / magnitude;
-    if (glm::dot(normal, toViewer) < 0) normal = -normal;
-    const glm::dvec3 half = glm::normalize(toViewer + toLight);
-    const double diffuse = std::max(glm::dot(normal, toLight), 0.0);
-    const double specular = std::pow(std::max(glm::dot(normal, half), 0.0), double(params.shininess));
+    const glm::dvec3 normal = gradient / magnitude, half = glm::normalize(toViewer + toLight);
+    const double front = std::clamp(0.5 + 0.5 * glm::dot(normal, toViewer) / kEdgeOn, 0.0, 1.0);
+    const double towards = glm::dot(normal, toLight), glance = glm::dot(normal, half);
+    const double diffuse = std::abs(towards) * (towards > 0 ? front : 1 - front);
+    const double specular = std::pow(std::abs(glance), double(params.shininess)) * (glance > 0 ? front : 1 - front);
     const glm::dvec3 lit = albedo * (params.ambient + params.diffuse * diffuse) + params.specular * specular;
     return glm::mix(albedo, lit, weight);
 }

@@ -67,10 +67,14 @@ double gradientDelta(volume::LatticeKind kind);
 /// Direction towards the light, in world axes.
 glm::dvec3 lightDirection(const RenderParams& params, const Camera& camera);
 
-/// Phong: albedo (ambient + diffuse n.l) + specular (n.h)^shininess, all in linear light, with the normal turned to the
-/// viewer. `gradient` in world axes (any length, zero gives the albedo), `toViewer` and `toLight` of length 1. `weight`
-/// 0..1 fades from the albedo to the shaded colour: 1 on iso-surfaces; in composite layers min(1, g / kFlatGradient), g
-/// the change over one worldCell edge per axis (length of that vector), in transfer-function ranges.
+inline constexpr double kEdgeOn = 0.25; ///< cosine to the viewer below which both sides of a gradient are lit
+
+/// Phong: albedo (ambient + diffuse n.l) + specular (n.h)^shininess, all in linear light, of the side that faces the
+/// viewer. Seen edge-on, |n.v| < kEdgeOn, the sides are mixed, so that a gradient across the view, as at the border of
+/// absent samples, does not make light and dark patches. `gradient` in world axes (any length, zero gives the albedo),
+/// `toViewer` and `toLight` of length 1. `weight` 0..1 fades from the albedo to the shaded colour: 1 on iso-surfaces;
+/// in composite layers min(1, g / kFlatGradient), g the change over one worldCell edge per axis (length of that
+/// vector), in transfer-function ranges.
 glm::dvec3 phong(glm::dvec3 albedo, glm::dvec3 gradient, double weight, glm::dvec3 toViewer, glm::dvec3 toLight,
                  const RenderParams& params);
 
