@@ -75,6 +75,7 @@ struct Renderer::Impl {
     const Program* prepare(ViewTarget& target, const Scene& scene, const RayPlan& plan);
     void rays(const Program& program, const Scene& scene, const RayBuffer& buffer, glm::ivec2 size, const Tile& tile);
     void present(ViewTarget& target, const Scene& scene, bool reduced, const Tile& tile);
+    void nothing(ViewTarget& target, const Scene& scene);
     void refine(ViewTarget& target, const Scene& scene, const FrameRequest& request, const RayPlan& plan,
                 Clock::time_point start);
 };
@@ -114,8 +115,10 @@ bool Renderer::Impl::bind(ViewTarget& target, const Scene& scene, const FrameReq
 
     // All channels of one picture show one time: the wanted one if each has something there, else the former one.
     const auto here = [&](int time) {
-        return std::all_of(plan.fields.begin(), plan.fields.end(),
-                           [&](const BoundField& field) { return residency.find(keyOf(field, time)) != nullptr; });
+        return std::all_of(plan.fields.begin(), plan.fields.end(), [&](const BoundField& field) {
+            const ChannelKey key = keyOf(field, time);
+            return residency.find(key) || residency.settled(key); // or it will never come
+        });
     };
     int time = wantedTime;
     if (!here(time) && target.lastTime >= 0 && target.lastTime < int(info.times.size()) && here(target.lastTime)) {
@@ -224,12 +227,22 @@ void Renderer::Impl::present(ViewTarget& target, const Scene& scene, bool reduce
     glDrawArrays(GL_TRIANGLES, 0, 3);
 }
 
+/// The background alone: nothing is loaded, or the program does not compile.
+void Renderer::Impl::nothing(ViewTarget& target, const Scene& scene) {
+    const float empty[] = {0, 0, 0, 0}, nowhere[] = {-1e9f, 0, 0, 0};
+    glDisable(GL_SCISSOR_TEST);
+    glClearNamedFramebufferfv(target.full.framebuffer.name(), GL_COLOR, 0, empty);
+    glClearNamedFramebufferfv(target.full.framebuffer.name(), GL_COLOR, 1, nowhere);
+    present(target, scene, false, {{0, 0}, target.size});
+    target.fullValid = true;
+}
+
 /// Draws as much of the bound plan as the budget allows.
 void Renderer::Impl::refine(ViewTarget& target, const Scene& scene, const FrameRequest& request, const RayPlan& plan,
                             Clock::time_point start) {
     if (target.fullValid) return;
     const Program* rayProgram = prepare(target, scene, plan);
-    if (!rayProgram) return;
+    if (!rayProgram) return nothing(target, scene);
     const double aspect = double(target.size.x) / target.size.y;
     const RayUnits units = rayUnits(plan);
     for (std::size_t i = 0; i < plan.fields.size(); ++i) {
@@ -358,11 +371,7 @@ FrameStatus Renderer::render(ViewTarget& target, const Scene& scene, const Frame
     if (any) {
         impl_->refine(target, scene, request, plan, start);
     } else if (!target.fullValid) {
-        const float nothing[] = {0, 0, 0, 0}, nowhere[] = {-1e9f, 0, 0, 0};
-        glClearNamedFramebufferfv(target.full.framebuffer.name(), GL_COLOR, 0, nothing);
-        glClearNamedFramebufferfv(target.full.framebuffer.name(), GL_COLOR, 1, nowhere);
-        impl_->present(target, scene, false, {{0, 0}, target.size});
-        target.fullValid = true;
+        impl_->nothing(target, scene);
     }
     status.complete = status.complete && target.fullValid;
     status.milliseconds = target.passMilliseconds;

@@ -18,7 +18,7 @@ struct RendererOptions {
     std::size_t memoryBudget = std::size_t(2) << 30;  ///< bytes of decoded bricks kept in RAM
     int decodeThreads = 2;
     /// Largest channel, in texels, kept as one texture: cheapest to sample. Larger ones are cut into bricks.
-    std::size_t denseTexels = std::size_t(64) << 20;
+    std::size_t denseTexels = std::size_t(32) << 20;
     bool exactTextures = false; ///< 32-bit float bricks instead of 16-bit: for comparison with the reference
 };
 

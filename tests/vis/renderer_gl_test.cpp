@@ -321,6 +321,28 @@ TEST_F(RendererTest, FormerTimeStaysUntilTheNextIsThere) {
     test::renderAll(renderer, *target, scene, {9, 9});
 }
 
+// A channel that cannot be loaded shows nothing, the others go on, also to another time.
+TEST_F(RendererTest, ChannelThatFailsIsLeftOut) {
+    class Failing : public CheckedSource {
+    public:
+        using CheckedSource::CheckedSource;
+        volume::BrickStats stats(const volume::BrickKey& key) const override {
+            if (key.channel == 1) throw Error("no such frame", "cell.pvd");
+            return CheckedSource::stats(key);
+        }
+    };
+    const auto source =
+        std::make_shared<Failing>(brickedSource(volume::LatticeKind::CC), [](const volume::BrickKey&) {});
+    vis::Renderer renderer;
+    renderer.setSource(source);
+    const vis::ViewTargetPtr target = renderer.makeTarget();
+    test::renderAll(renderer, *target, richScene(), {32, 32});
+    EXPECT_GT(renderer.readLinear(*target)[16 * 32 + 16].a, 0.01);
+    const std::vector<std::string> messages = renderer.takeMessages();
+    ASSERT_EQ(messages.size(), 1u);
+    EXPECT_EQ(messages[0], "w cannot be shown: cell.pvd: no such frame");
+}
+
 TEST_F(RendererTest, PickFindsTheSurface) {
     const auto ball = std::make_shared<vis::FunctionSource>(
         volume::LatticeKind::CC, glm::ivec3(33), glm::dvec3(1),

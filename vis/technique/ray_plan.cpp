@@ -388,9 +388,9 @@ std::optional<BlockDistances> blockDistances(const RayPlan& plan, const Scene& s
             value = toTexel(field, std::get<IsoLayer>(layer.technique).value);
         } else {
             map = transferMap(field, scene, info);
+            const TransferFunction function = transferOf(scene, info, field.channel).function;
             for (int i = 0; i < kTableSize; ++i)
-                opacity.push_back(float(
-                    evaluate(transferOf(scene, info, field.channel).function, {0, 1}, double(i) / (kTableSize - 1)).a));
+                opacity.push_back(float(evaluate(function, {0, 1}, double(i) / (kTableSize - 1)).a));
         }
         for (std::size_t i = 0; i < total; ++i) {
             if (!(blocks.min[i] <= blocks.max[i])) continue;
