@@ -334,6 +334,26 @@ TEST(FuelCell, SettingsAreChecked) {
     EXPECT_EQ(fuelCellSettings({{"nz", 77}, {"airHumidity", 0.5}}).nz, 77);
 }
 
+TEST(FuelCell, StarvedCellsAreRefused) {
+    // Hydrogen for 0.1 A/cm2 at a voltage that wants ten times as much.
+    const std::map<std::string, double> settings{{"nx", 5},
+                                                 {"ny", 13},
+                                                 {"nz", 16},
+                                                 {"times", 6},
+                                                 {"interval", 0.05},
+                                                 {"stepTime", 0},
+                                                 {"ratedCurrent", 1000},
+                                                 {"hydrogenStoichiometry", 1.2},
+                                                 {"airStoichiometry", 20},
+                                                 {"voltageAfter", 0.4}};
+    try {
+        const Dataset data = makeFuelCell(settings);
+        for (std::size_t gas : {0u, 1u, 2u}) EXPECT_GE(data.info.parameters[gas].ranges[0].lo, -1e-6);
+    } catch (const Error& error) {
+        EXPECT_NE(std::string(error.what()).find("feed more gas"), std::string::npos);
+    }
+}
+
 TEST(FuelCell, CanBeStopped) {
     std::stop_source source;
     Progress progress;

@@ -207,6 +207,20 @@ struct Widen {
     void operator()(double value) { range = {std::min(range.lo, value), std::max(range.hi, value)}; }
 };
 
+/// Throws where the equations found no state: mostly a cell that is fed less than it uses.
+void checkRanges(const std::vector<Parameter>& parameters) {
+    const auto within = [&](std::size_t index, double lo, double hi) {
+        const Range range = parameters[index].ranges[0];
+        return range.lo >= lo && range.hi <= hi; // false for NaN
+    };
+    bool good = within(kTemperature, 250, 600) && within(kPressure, 0, 1e7);
+    for (std::size_t gas : {kO2, kH2, kH2O}) good = good && within(gas, -1e-6, 1e3);
+    if (!good)
+        throw Error("no state found at these settings; feed more gas (stoichiometries, ratedCurrent) or raise the "
+                    "voltages",
+                    "fuel-cell");
+}
+
 /// Ranges over all frames of the solved grid, present cells only.
 void fillRanges(const Solution& s, std::vector<Parameter>& parameters) {
     std::array<Widen, kParameters> scalar;
@@ -282,6 +296,7 @@ Dataset makeFuelCell(const std::map<std::string, double>& given, const Progress&
     info.bounds = {solution->lattice.position({0, 0, 0}), solution->lattice.position({g.nx - 1, g.ny - 1, g.nz - 1})};
     info.parameters = describeParameters();
     fillRanges(*solution, info.parameters);
+    checkRanges(info.parameters);
     info.times = times;
     std::ostringstream text;
     text << "built-in PEM fuel cell, " << solved.nx << " x " << solved.ny << " x " << solved.nz << " volumes solved; "
