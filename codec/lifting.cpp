@@ -173,13 +173,14 @@ int splitRow(int i, int count) {
     return i % 2 == 0 ? i / 2 : (count + 1) / 2 + i / 2;
 }
 
-/// One pass over `lanes` neighbouring lines of `count` samples, `pitch` elements apart.
+/// `lanes` lines of `count` samples, `pitch` elements apart; the lines are `lanePitch` elements apart.
 struct Lines {
     std::uint32_t* values;
     std::uint8_t* present; ///< null: all present
     int count;
     std::ptrdiff_t pitch;
     int lanes;
+    std::ptrdiff_t lanePitch;
 };
 
 /// Copies lines to `scratch` or back; `splitting`: with even rows before odd ones in the copy.
@@ -187,10 +188,11 @@ template <bool toScratch, class T> void copyRows(T* lines, const Lines& shape, T
     for (int i = 0; i < shape.count; ++i) {
         T* there = scratch + std::ptrdiff_t(splitting ? splitRow(i, shape.count) : i) * shape.lanes;
         T* here = lines + i * shape.pitch;
-        if (shape.lanes == 1)
-            (toScratch ? *there : *here) = toScratch ? *here : *there;
-        else
+        if (shape.lanePitch == 1)
             std::memcpy(toScratch ? there : here, toScratch ? here : there, sizeof(T) * std::size_t(shape.lanes));
+        else
+            for (int lane = 0; lane < shape.lanes; ++lane, here += shape.lanePitch)
+                (toScratch ? there[lane] : *here) = toScratch ? *here : there[lane];
     }
 }
 
@@ -238,16 +240,17 @@ void liftAxis(const Block& block, glm::ivec3 part, int axis, const Filter& filte
               bool isForward, Scratch& scratch) {
     const std::ptrdiff_t row = block.full.x, slice = row * block.full.y;
     const glm::ivec3 low = levelSize(part, 1);
-    const auto lift = [&](std::ptrdiff_t at, int count, std::ptrdiff_t pitch, int lanes, bool samples) {
-        const Lines lines{block.values + at, block.present ? block.present + at : nullptr, count, pitch, lanes};
+    const auto lift = [&](std::ptrdiff_t at, int count, std::ptrdiff_t pitch, int lanes, bool samples,
+                          std::ptrdiff_t lanePitch = 1) {
+        const Lines lines{block.values + at, block.present ? block.present + at : nullptr, count, pitch, lanes,
+                          lanePitch};
         const bool details = arithmetic == Arithmetic::Float && !samples;
         liftLines(lines, filter, details ? Arithmetic::Wide : arithmetic, isForward, scratch);
     };
     // Under Float arithmetic, what an earlier axis made details of is predicted as integers.
     const bool cut = arithmetic == Arithmetic::Float;
     if (axis == 0) {
-        for (int z = 0; z < part.z; ++z)
-            for (int y = 0; y < part.y; ++y) lift(z * slice + y * row, part.x, 1, 1, true);
+        for (int z = 0; z < part.z; ++z) lift(z * slice, part.x, 1, part.y, true, row);
     } else if (axis == 1) {
         for (int z = 0; z < part.z; ++z) {
             lift(z * slice, part.y, row, cut ? low.x : part.x, true);

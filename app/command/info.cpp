@@ -4,8 +4,10 @@
 #include "app/session/import_memory.h"
 #include "app/session/session_file.h"
 #include "codec/archive.h"
+#include "vis/image_io.h"
 
 #include <cstdio>
+#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -103,8 +105,17 @@ void printArchive(const codec::Archive& archive) {
     if (!info.provenance.empty()) std::printf("  %s\n", info.provenance.c_str());
 }
 
+/// The session a picture of ours carries. Throws Error when it carries none.
+SessionDocument sessionOfPicture(const std::string& path) {
+    std::map<std::string, std::string> texts;
+    (void)vis::readPng(path, &texts);
+    const auto found = texts.find(vis::kSessionTextKey);
+    if (found == texts.end()) throw Error("this picture carries no session", path);
+    return parseSession(found->second, path);
+}
+
 void printSession(const std::string& path, bool asJson) {
-    const SessionDocument document = loadSession(path);
+    const SessionDocument document = hasEnding(path, ".png") ? sessionOfPicture(path) : loadSession(path);
     const Session& session = document.session;
     json files = json::array(), layers = json::array(), views = json::array();
     for (const DataFile& file : session.data.files) files.push_back(file.path);
@@ -139,7 +150,8 @@ void run(const std::vector<std::string>& paths, const volume::ImportOptions& imp
             std::printf("%s\n", archiveJson(archive).dump(1).c_str());
         else
             printArchive(archive);
-    } else if (paths.size() == 1 && hasEnding(paths[0], ".json") && looksLikeSession(readText(paths[0]))) {
+    } else if (paths.size() == 1 && (hasEnding(paths[0], ".png") ||
+                                     (hasEnding(paths[0], ".json") && looksLikeSession(readText(paths[0]))))) {
         printSession(paths[0], asJson);
     } else {
         const volume::ImportPreview preview =
@@ -152,11 +164,12 @@ void run(const std::vector<std::string>& paths, const volume::ImportOptions& imp
 } // namespace
 
 void addInfoCommand(CLI::App& app) {
-    CLI::App* command = app.add_subcommand("info", "What is in a data file, an archive or a session");
+    CLI::App* command = app.add_subcommand("info", "What is in a data file, an archive, a session or a picture");
     const auto paths = std::make_shared<std::vector<std::string>>();
     const auto import = std::make_shared<volume::ImportOptions>();
     const auto asJson = std::make_shared<bool>(false);
-    command->add_option("FILE", *paths, "Archive, session, or data files that belong together")->required();
+    command->add_option("FILE", *paths, "Archive, session, picture of ours, or data files that belong together")
+        ->required();
     command->add_flag("--json", *asJson, "Print as JSON with stable keys");
     addImportOptions(*command, *import);
     command->callback([=] { run(*paths, *import, *asJson); });
