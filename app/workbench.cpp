@@ -1,7 +1,7 @@
 #include "app/workbench.h"
 
+#include "app/pack_child.h"
 #include "app/session/import_memory.h"
-
 #include "volume/error.h"
 
 #include <algorithm>
@@ -264,6 +264,8 @@ void Workbench::answerFile(const FileDialog::Answer& answer) {
         open(std::move(request));
     } else if (answer.purpose == "save") {
         save(answer.paths.front());
+    } else if (answer.purpose == "pack") {
+        pack(answer.paths.front());
     } else if (answer.purpose == "locate" && missing_) {
         const std::size_t index = missing_->missing[locating_].index;
         missing_->document.session.data.files[index] = describeFile(answer.paths.front());
@@ -271,6 +273,28 @@ void Workbench::answerFile(const FileDialog::Answer& answer) {
     } else if (answer.purpose == "picture") {
         export_ = Export{picture_, answer.paths.front()};
     }
+}
+
+bool Workbench::showsDataFiles() const {
+    const auto& files = session_.data.files;
+    return source_ && !files.empty() && !(files.size() == 1 && files[0].absolutePath.ends_with(".tsr"));
+}
+
+void Workbench::pack(const std::string& path) {
+    std::vector<std::string> inputs;
+    for (const DataFile& file : session_.data.files) inputs.push_back(file.absolutePath);
+    const auto packed = std::make_shared<Opened>();
+    packed->document = document();
+    packed->sessionPath = sessionPath_;
+    jobs_.start("pack", "Packing " + fs::path(path).filename().string(),
+                [this, path, inputs, packed, import = session_.data.import](const Progress& progress) -> Jobs::Finish {
+                    const std::string self = fs::read_symlink("/proc/self/exe").string();
+                    const PackedArchive archive = packInChild(self, inputs, import, path, progress.part(0, 0.95));
+                    packed->messages.push_back("Packed " + textOfBytes(archive.sourceBytes) + " into " +
+                                               textOfBytes(archive.archiveBytes) + ", now shown from " + path);
+                    auto done = std::make_shared<Opened>(openWith(*packed, dataOf({path}, {}), progress.part(0.95, 1)));
+                    return [this, done] { install(std::move(*done)); };
+                });
 }
 
 void Workbench::requestQuit() {

@@ -110,6 +110,8 @@ private:
 
     void answerFile(const FileDialog::Answer& answer);
     void save(const std::string& path);
+    void pack(const std::string& path);
+    bool showsDataFiles() const; ///< files that are not an archive
     void replace(Session session);
     void watchEdits();
     void autosave();

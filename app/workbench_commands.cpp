@@ -68,6 +68,15 @@ void Workbench::makeCommands() {
              },
          .enabled = loaded});
     add({.menu = "File",
+         .name = "Pack into an archive...",
+         .help = "Compress the data files shown into one .tsr file that opens at once, and show that",
+         .run =
+             [this] {
+                 const std::string stem = fs::path(session_.data.files.front().absolutePath).stem().string();
+                 files_.show(FileMode::Save, "Pack into an archive", "pack", files_.folder(), stem + ".tsr", ".tsr");
+             },
+         .enabled = [this] { return showsDataFiles(); }});
+    add({.menu = "File",
          .name = "-Save picture...",
          .help = "The window or one view as PNG at any size; it carries the session",
          .shortcut = {.key = key::kF12},
@@ -185,11 +194,7 @@ void Workbench::makeCommands() {
                      return [this, done] { install(std::move(*done)); };
                  });
              },
-         .enabled =
-             [this] {
-                 const auto& files = session_.data.files;
-                 return source_ && !(files.size() == 1 && files[0].absolutePath.ends_with(".tsr"));
-             },
+         .enabled = [this] { return source_ && (session_.data.files.empty() || showsDataFiles()); },
          .checked = [this] { return session_.data.bcc; }});
 
     for (const ViewKind& kind : viewKinds())

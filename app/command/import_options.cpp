@@ -46,6 +46,28 @@ std::string size(double bytes) {
 
 } // namespace
 
+std::vector<std::string> importArguments(const volume::ImportOptions& options) {
+    std::vector<std::string> out;
+    const auto add = [&out](const char* option, const std::string& value) {
+        if (!value.empty()) out.insert(out.end(), {option, value});
+    };
+    add("--raw", options.raw);
+    if (options.gridSize.x > 0)
+        add("--grid", std::to_string(options.gridSize.x) + "x" + std::to_string(options.gridSize.y) + "x" +
+                          std::to_string(options.gridSize.z));
+    for (const std::string& rule : options.absent) add("--absent", rule);
+    if (!options.autoAbsent) out.push_back("--no-auto-absent");
+    for (const auto& [from, to] : options.rename) add("--rename", from + "=" + to);
+    for (const auto& [parameter, unit] : options.units) add("--unit", parameter + "=" + unit);
+    add("--length-unit", options.lengthUnit);
+    std::string times, parameters;
+    for (const double time : options.times) times += (times.empty() ? "" : ",") + nlohmann::json(time).dump();
+    for (const std::string& parameter : options.parameters) parameters += (parameters.empty() ? "" : ",") + parameter;
+    add("--times", times);
+    add("--parameters", parameters);
+    return out;
+}
+
 void addImportOptions(CLI::App& command, volume::ImportOptions& options) {
     command
         .add_option("--raw", options.raw,

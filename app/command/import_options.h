@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <string>
+#include <vector>
 
 namespace tessera::app {
 
@@ -16,5 +17,8 @@ std::string describePreview(const volume::ImportPreview& preview);
 
 /// The same with stable keys, as JSON text.
 std::string describePreviewJson(const volume::ImportPreview& preview);
+
+/// The options that state `options` again on another command line of the program.
+std::vector<std::string> importArguments(const volume::ImportOptions& options);
 
 } // namespace tessera::app
