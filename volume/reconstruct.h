@@ -15,7 +15,7 @@
 /// nearest sample of the same sublattice beyond the lattice. Positions are `cells`: Lattice::toCells of level 0.
 ///
 /// Absent samples take no part: the result is sum(weight * value) / sum(weight) over the present ones, and absent when
-/// they carry less than half of the weight.
+/// they carry less than half of the weight (kPresentCoverage).
 ///
 /// BCC filters: E. Roeber 2002, section 4.1 (average); B. Csebfalvi, An evaluation of prefiltered B-spline
 /// reconstruction for quasi-interpolation on the body-centered cubic lattice, TVCG 2010 (prefilter); A. Entezari,
@@ -119,6 +119,10 @@ template <class Samples> struct Prefiltered {
 /// less on every side. So gather with halo 2 for filtered samples with halo 1. Absent samples get the value 0.
 BrickSamples prefilter(const BrickSamples& gathered, const LevelGeometry& geometry);
 
+/// Share of the weight that present samples must carry: one half, less a margin, so that places half-way between a
+/// present and an absent sample, which rays meet often, are present whatever the rounding.
+inline constexpr double kPresentCoverage = 0.5 - 1.0 / 512;
+
 /// A weighted sum on its way: value() is normalised by coverage.
 struct Blend {
     double sum = 0, coverage = 0;
@@ -127,9 +131,9 @@ struct Blend {
         sum += weight * sample.value;
         coverage += weight;
     }
-    /// nullopt where less than half of the weight is present.
+    /// nullopt where less than half of the weight (kPresentCoverage) is present.
     std::optional<double> value() const {
-        if (coverage < 0.5 - 1e-12) return std::nullopt;
+        if (coverage < kPresentCoverage) return std::nullopt;
         return sum / coverage;
     }
 };

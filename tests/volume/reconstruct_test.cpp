@@ -130,7 +130,7 @@ TEST(Reconstruct, AbsentSamplesTakeNoPart) {
             const double coverage = linear(geometry, presence, p).sum;
             for (const std::optional<double>& value :
                  {linear(geometry, samples, p).value(), linear(geometry, filtered, p).value()}) {
-                ASSERT_EQ(value.has_value(), coverage >= 0.5);
+                ASSERT_EQ(value.has_value(), coverage >= kPresentCoverage);
                 if (value) {
                     EXPECT_DOUBLE_EQ(*value, 7.5);
                 }
@@ -138,7 +138,7 @@ TEST(Reconstruct, AbsentSamplesTakeNoPart) {
             }
             const double corners = tetrahedral(geometry, presence, p).sum;
             const std::optional<double> four = tetrahedral(geometry, samples, p).value();
-            ASSERT_EQ(four.has_value(), corners >= 0.5 - 1e-12);
+            ASSERT_EQ(four.has_value(), corners >= kPresentCoverage);
             if (four) {
                 EXPECT_DOUBLE_EQ(*four, 7.5);
             }

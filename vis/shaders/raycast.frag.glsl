@@ -25,7 +25,7 @@ vec3 toCells(vec3 world) {
 }
 
 bool present(vec2 s) {
-    return s.y >= 0.5;
+    return s.y >= PRESENT_COVERAGE;
 }
 
 // Change over one worldCell edge per axis, in texel units: central differences, one-sided at absent samples. Zero

@@ -1,6 +1,7 @@
 #include "vis/technique/ray_plan.h"
 
 #include "vis/gl/texels.h"
+#include "volume/reconstruct.h"
 
 #include <algorithm>
 #include <cmath>
@@ -144,6 +145,7 @@ ProgramRecipe rayRecipe(const RayPlan& plan, const Scene& scene, const volume::B
                : "0");
     define("TABLE_SIZE", std::to_string(kTableSize));
     define("HALO", std::to_string(kHalo));
+    define("PRESENT_COVERAGE", std::to_string(volume::kPresentCoverage));
     define("REFERENCE_LENGTHS", std::to_string(1 / kReferenceLength));
     return recipe;
 }

@@ -5,7 +5,7 @@
 //   BRUSH_FIELDS   channels that brushes look at, 0 = no brush is active; BRUSH_FIELD(i)
 // These are chains of ?: and not constant arrays, since Mesa turns such arrays into uniforms before it unrolls loops
 // and then runs every style for every layer.
-//   BCC                   lattice
+//   BCC       lattice; PRESENT_COVERAGE   kPresentCoverage of volume/reconstruct.h
 // Positions `p` are cells of the even sublattice at level 0 (Lattice::toCells); values are texel units.
 
 // Dense texture of a channel: texture coordinate = p * fieldScale + fieldOffset (even sublattice), fieldOdd added for

@@ -14,7 +14,7 @@ float degreeOfInterest(vec3 p) {
                 if (meaning.x == j) s = samples[j];
             float outside = max(max(interval[i].x - s.x, s.x - interval[i].y), 0.0);
             float inside = outside > 0.0 ? max(0.0, 1.0 - outside * interval[i].z) : 1.0;
-            own = min(own, s.y < 0.5 ? 0.0 : inside);
+            own = min(own, s.y < PRESENT_COVERAGE ? 0.0 : inside);
         }
         if ((meaning.y & 2) != 0) {
             if ((meaning.y & 4) != 0) own = 1.0 - own;

@@ -2,7 +2,7 @@
 // interpolation), or the nearest sample. Twin: linear() in volume/reconstruct.h.
 #include "lib/bcc_nearest.glsl"
 
-// (value, coverage) at p; the sample is absent where coverage < 1/2.
+// (value, coverage) at p; the sample is absent where coverage < PRESENT_COVERAGE.
 vec2 reconstruct(int field, vec3 p) {
     if (FIELD_NEAREST(field) == 1) return bccNearest(field, p);
     vec4 even = fetchEven(field, p), odd = fetchOdd(field, p);

@@ -1,6 +1,6 @@
 // Slot reconstruct: trilinear on the cubic Cartesian lattice, or the nearest sample. Twin: volume/reconstruct.h.
 
-// (value, coverage) at p; the sample is absent where coverage < 1/2.
+// (value, coverage) at p; the sample is absent where coverage < PRESENT_COVERAGE.
 vec2 reconstruct(int field, vec3 p) {
     vec4 texel;
     if (FIELD_NEAREST(field) == 1)
