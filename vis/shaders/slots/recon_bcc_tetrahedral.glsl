@@ -9,7 +9,8 @@ vec2 latticePoint(int field, ivec3 corner, vec3 p) {
     return FIELD_COVERAGE(field) == 0 ? vec2(found.x, 1.0) : found;
 }
 
-// (value, coverage) at p; the sample is absent where coverage < PRESENT_COVERAGE. Coarse levels are no BCC lattice: average there.
+// (value, coverage) at p; the sample is absent where coverage < PRESENT_COVERAGE. Coarse levels are no BCC lattice:
+// average there.
 vec2 reconstruct(int field, vec3 p) {
     if (FIELD_NEAREST(field) == 1) return bccNearest(field, p);
     if (!fineAt(field, p)) {
