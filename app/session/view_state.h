@@ -42,7 +42,8 @@ struct ScatterMatrixView {
     std::vector<std::string> channels; ///< empty = every scalar and vector magnitude
     int bins = 96;
     bool logDensity = true;
-    float softness = 0.05f; ///< soft edge of new brushes, as a share of their width
+    float softness = 0.05f;            ///< soft edge of new brushes, as a share of their width
+    std::vector<std::string> enlarged; ///< x and y of the plot that is shown large, equal for a histogram; empty = none
     bool operator==(const ScatterMatrixView&) const = default;
     static void describe(auto& self, auto&& visit) {
         visit(self.channels,
@@ -54,6 +55,11 @@ struct ScatterMatrixView {
                                        .unit = "",
                                        .doc = "Soft edge of new brushes, share of their width",
                                        .range = Range{0, 1}});
+        visit(self.enlarged, FieldInfo{.key = "enlarged",
+                                       .unit = "",
+                                       .doc = "Parameters of the plot that is shown large",
+                                       .refersTo = "channel",
+                                       .hidden = true});
     }
 };
 

@@ -176,21 +176,22 @@ bool editBrushes(BrushDrag& drag, vis::Selection& selection, const PlotFrame& fr
                 selection.brushes.clear();
         }
     }
-    if (drag.active && drag.plot == plot) {
+    if (drag.active && !ImGui::IsMouseDown(ImGuiMouseButton_Left)) {
+        drag = {};
+    } else if (drag.active && drag.plot == plot && ImGui::IsItemActive()) {
+        // The same channels may be plotted twice; the drag belongs to the plot it began in.
         if (ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape))) {
             selection = drag.original;
             drag = {};
         } else if (drag.brush >= static_cast<int>(selection.brushes.size()) && !drag.made) {
             drag = {}; // somebody else (undo) took the brush away
-        } else if (ImGui::IsMouseDown(ImGuiMouseButton_Left)) {
+        } else {
             if (drag.brush < 0 && ImGui::IsMouseDragging(ImGuiMouseButton_Left, reach()))
                 beginBrush(drag, selection, io.KeyShift, io.KeyCtrl);
             if (drag.brush >= 0 && drag.brush < static_cast<int>(selection.brushes.size())) {
                 if (!drag.made) showCursor(drag.edges);
                 dragBrush(drag, selection, frame, frame.data(io.MousePos), softness);
             }
-        } else {
-            drag = {};
         }
     }
     return !(selection == before);

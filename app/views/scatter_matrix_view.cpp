@@ -20,11 +20,12 @@ struct ScatterCache : ScatterLayoutCache {
     BrushDrag drag;
     Readout readout;
     std::vector<vis::PlotTexture> textures; ///< by pair
+    vis::PlotTexture large;                 ///< of the enlarged plot, every bin a pixel
     std::vector<std::uint8_t> pixels;
     // What the textures show.
     std::shared_ptr<const StatisticsResult> shown;
     bool shownLog = false, shownDark = false;
-    int shownMerge = 0;
+    int shownMerge = 0, shownLarge = -1;
 };
 
 std::vector<int> shownChannels(const volume::DatasetInfo& info, const ScatterMatrixView& view) {
@@ -94,7 +95,7 @@ void drawToolbar(ViewContext& context, ScatterMatrixView& view, const std::vecto
         text = brief = "focus " + formatShare(share.all > 0 ? share.focus / share.all : 0);
         if (result->statistics.level == 0) text += " (" + formatCount(share.focus) + ")";
     } else if (session.selection.brushes.empty()) {
-        text = "drag in a plot to select (brush)";
+        text = "drag in a plot to brush, click to enlarge";
         brief = "drag to brush";
     }
     if (!session.selection.brushes.empty()) {
@@ -117,12 +118,14 @@ void drawToolbar(ViewContext& context, ScatterMatrixView& view, const std::vecto
 }
 
 void updateTextures(ScatterCache& cache, const std::shared_ptr<const StatisticsResult>& result, bool logDensity,
-                    float cell) {
+                    float cell, int large) {
     const bool dark = darkTheme();
     const int merge =
         std::max(1, static_cast<int>(std::lround(static_cast<float>(result->wish.bins) / std::max(8.0f, cell))));
-    if (cache.shown == result && cache.shownLog == logDensity && cache.shownDark == dark && cache.shownMerge == merge)
+    if (cache.shown == result && cache.shownLog == logDensity && cache.shownDark == dark && cache.shownMerge == merge &&
+        cache.shownLarge == large)
         return;
+    cache.shownLarge = large;
     cache.shownMerge = merge;
     cache.shown = result;
     cache.shownLog = logDensity;
@@ -134,7 +137,42 @@ void updateTextures(ScatterCache& cache, const std::shared_ptr<const StatisticsR
             joint.count, result->brushed ? std::span<const double>(joint.focus) : std::span<const double>(), joint.bins,
             merge, logDensity, dark, cache.pixels);
         cache.textures[i].upload({pixels, pixels}, cache.pixels);
+        if (static_cast<int>(i) != large) continue;
+        densityImage(joint.count, result->brushed ? std::span<const double>(joint.focus) : std::span<const double>(),
+                     joint.bins, 1, logDensity, dark, cache.pixels);
+        cache.large.upload({joint.bins, joint.bins}, cache.pixels);
     }
+}
+
+/// The plot that is shown large, in the free corner over the correlations: which one, and the cells it covers.
+struct Enlarged {
+    std::size_t column = 0, row = 0; ///< of the plot, column <= row
+    std::size_t cells = 0;           ///< a side of the covered corner at the top right; 0 = nothing is enlarged
+    bool covers(const ScatterLayout& matrix, std::size_t c, std::size_t r) const {
+        return cells > 0 && c + cells >= matrix.size() && r < cells;
+    }
+};
+
+Enlarged enlargedPlot(const ScatterLayout& matrix, const ScatterMatrixView& view) {
+    Enlarged out;
+    // With three parameters and fewer the corner is no larger than the plots themselves.
+    if (view.enlarged.size() != 2 || matrix.size() < 4) return out;
+    std::size_t found = 0;
+    for (std::size_t i = 0; i < matrix.size(); ++i) {
+        if (matrix.infos[i].name == view.enlarged[0]) out.column = i, found |= 1;
+        if (matrix.infos[i].name == view.enlarged[1]) out.row = i, found |= 2;
+    }
+    if (out.column > out.row) std::swap(out.column, out.row);
+    if (found == 3) out.cells = matrix.size() / 2;
+    return out;
+}
+
+/// Position of a pair among the joint histograms, -1 for a histogram.
+int jointIndex(const volume::Statistics& statistics, std::size_t column, std::size_t row) {
+    for (std::size_t i = 0; i < statistics.joint.size(); ++i)
+        if (statistics.joint[i].x == static_cast<int>(column) && statistics.joint[i].y == static_cast<int>(row))
+            return static_cast<int>(i);
+    return -1;
 }
 
 void drawHistogram(ImDrawList& draw, const PlotFrame& frame, const volume::Histogram& histogram, bool brushed,
@@ -252,64 +290,89 @@ void hoverText(const ScatterLayout& matrix, std::size_t column, std::size_t row,
     if (!text.empty()) ImGui::SetTooltip("%s", text.c_str());
 }
 
-/// One cell: plot, histogram or correlation, with brushes, cursor and read-out.
-void drawCell(ViewContext& context, ScatterCache& cache, const ScatterMatrixView& view, const ScatterLayout& matrix,
-              std::size_t column, std::size_t row, const StatisticsResult* result) {
+/// A correlation cell of the upper triangle.
+void drawUpperCell(const ScatterCache& cache, const ScatterLayout& matrix, std::size_t column, std::size_t row,
+                   const StatisticsResult* result) {
+    ImDrawList& draw = *ImGui::GetWindowDrawList();
+    const PlotFrame frame = matrix.cell(column, row);
+    const int joint = result ? jointIndex(result->statistics, row, column) : -1;
+    if (joint >= 0)
+        drawCorrelation(draw, frame, result->statistics.joint[static_cast<std::size_t>(joint)], result->brushed);
+    draw.AddRect(frame.min, frame.max, plotColors().frame);
+    if (ImGui::IsMouseHoveringRect(frame.min, frame.max) && ImGui::IsWindowHovered() && !cache.drag.active && result)
+        hoverText(matrix, column, row, frame, *result);
+}
+
+/// A density plot or histogram with brushes, cursor and read-out in a frame; true when it was clicked.
+bool drawPlot(ViewContext& context, ScatterCache& cache, const ScatterMatrixView& view, const ScatterLayout& matrix,
+              std::size_t column, std::size_t row, PlotFrame frame, const vis::PlotTexture* texture,
+              const StatisticsResult* result) {
     Session& session = context.session;
     const PlotColors colors = plotColors();
     ImDrawList& draw = *ImGui::GetWindowDrawList();
-    PlotFrame frame = matrix.cell(column, row);
     const bool histogram = column == row;
     if (histogram) frame.y = {0, 1};
     const PlotChannels channels{matrix.infos[column].name, histogram ? std::string() : matrix.infos[row].name};
 
-    ImGui::PushID(static_cast<int>(row * matrix.size() + column));
     ImGui::SetCursorScreenPos(frame.min);
-    ImGui::InvisibleButton("cell", {frame.width(), frame.height()},
-                           ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight);
+    const bool pressed = ImGui::InvisibleButton("plot", {frame.width(), frame.height()},
+                                                ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight);
+    const ImVec2 way = ImGui::GetMouseDragDelta(ImGuiMouseButton_Left, 0);
+    const bool clicked =
+        pressed && ImGui::IsMouseReleased(ImGuiMouseButton_Left) && std::hypot(way.x, way.y) < em() * 0.25f;
     const bool hovered = ImGui::IsItemHovered();
-    if (column <= row) editBrushes(cache.drag, session.selection, frame, channels, view.softness);
-    ImGui::PopID();
+    editBrushes(cache.drag, session.selection, frame, channels, view.softness);
 
-    if (column > row) {
-        if (result)
-            for (const volume::JointHistogram& joint : result->statistics.joint)
-                if (joint.x == static_cast<int>(row) && joint.y == static_cast<int>(column))
-                    drawCorrelation(draw, frame, joint, result->brushed);
-    } else if (result) {
-        draw.PushClipRect(frame.min, frame.max, true);
-        if (histogram) {
-            drawHistogram(draw, frame, result->statistics.channels[column].histogram, result->brushed, view.logDensity);
-        } else {
-            for (std::size_t i = 0; i < result->statistics.joint.size(); ++i) {
-                const volume::JointHistogram& joint = result->statistics.joint[i];
-                if (joint.x != static_cast<int>(column) || joint.y != static_cast<int>(row)) continue;
-                if (joint.samples == 0) drawNothingCommon(draw, frame);
-                draw.AddImage(reinterpret_cast<ImTextureID>(static_cast<std::intptr_t>(cache.textures[i].name())),
-                              frame.min, frame.max);
-            }
-        }
-        draw.PopClipRect();
+    draw.PushClipRect(frame.min, frame.max, true);
+    if (result && histogram)
+        drawHistogram(draw, frame, result->statistics.channels[column].histogram, result->brushed, view.logDensity);
+    const int joint = result ? jointIndex(result->statistics, column, row) : -1;
+    if (joint >= 0 && texture) {
+        if (result->statistics.joint[static_cast<std::size_t>(joint)].samples == 0) drawNothingCommon(draw, frame);
+        draw.AddImage(reinterpret_cast<ImTextureID>(static_cast<std::intptr_t>(texture->name())), frame.min, frame.max);
     }
+    draw.PopClipRect();
     draw.AddRect(frame.min, frame.max, colors.frame);
-    if (column <= row) {
-        drawBrushes(draw, session.selection, frame, channels);
-        const auto x = cache.readout.value(channels.x), y = histogram ? std::nullopt : cache.readout.value(channels.y);
-        draw.PushClipRect(frame.min, frame.max, true);
-        if (x && histogram) drawCrosshair(draw, frame, *x, std::nan(""));
-        if (x && y) {
-            const ImVec2 at = frame.pixel(*x, *y);
-            draw.AddCircle(at, em() * 0.28f, colors.backdrop, 16, 3);
-            draw.AddCircle(at, em() * 0.28f, colors.cursor, 16, 1.5f);
-        }
-        draw.PopClipRect();
+    drawBrushes(draw, session.selection, frame, channels);
+    const auto x = cache.readout.value(channels.x), y = histogram ? std::nullopt : cache.readout.value(channels.y);
+    draw.PushClipRect(frame.min, frame.max, true);
+    if (x && histogram) drawCrosshair(draw, frame, *x, std::nan(""));
+    if (x && y) {
+        const ImVec2 at = frame.pixel(*x, *y);
+        draw.AddCircle(at, em() * 0.28f, colors.backdrop, 16, 3);
+        draw.AddCircle(at, em() * 0.28f, colors.cursor, 16, 1.5f);
     }
+    draw.PopClipRect();
     if (histogram && frame.height() > em() * 1.6f) {
         const std::string name = fitText(channels.x, frame.width() - em() * 0.5f);
         addTextWithBackdrop(draw, {frame.max.x - em() * 0.3f, frame.min.y + em() * 0.15f}, {1, 0}, colors.text,
                             name.c_str());
     }
     if (hovered && !cache.drag.active && result) hoverText(matrix, column, row, frame, *result);
+    return clicked;
+}
+
+/// The enlarged plot with axes of its own and a button to put it away.
+void drawLarge(ViewContext& context, ScatterCache& cache, ScatterMatrixView& view, const ScatterLayout& matrix,
+               const Enlarged& large, const StatisticsResult* result) {
+    const std::size_t last = matrix.size() - 1;
+    const ImVec2 min = matrix.cell(matrix.size() - large.cells, 0).min, max = matrix.cell(last, large.cells - 1).max;
+    const bool histogram = large.column == large.row;
+    const Range x = matrix.ranges[large.column], y = matrix.ranges[large.row];
+    const float left = histogram ? em() * 0.6f : axisRoom(AxisSide::Left, y, true);
+    const PlotFrame frame{{std::round(min.x + em() * 0.4f + left), min.y},
+                          {max.x, std::round(max.y - axisRoom(AxisSide::Bottom, x, true))},
+                          x,
+                          y};
+    ImDrawList& draw = *ImGui::GetWindowDrawList();
+    if (frame.width() < em() * 3 || frame.height() < em() * 2) return;
+    const volume::Channel &across = matrix.infos[large.column], &up = matrix.infos[large.row];
+    drawAxis(draw, frame, AxisSide::Bottom, across.name, across.unit, frame.min.x - em(), frame.max.x);
+    if (!histogram) drawAxis(draw, frame, AxisSide::Left, up.name, up.unit, frame.min.y, frame.max.y + em() * 0.5f);
+    ImGui::PushID("large");
+    drawPlot(context, cache, view, matrix, large.column, large.row, frame, &cache.large, result);
+    ImGui::PopID();
+    draw.AddRect(frame.min, frame.max, plotColors().focus);
 }
 
 } // namespace
@@ -358,10 +421,32 @@ void drawScatterMatrixView(ViewContext& context, const std::string& pane, Scatte
         return;
     }
     cache.layout = matrix;
-    if (result) updateTextures(cache, result, view.logDensity, std::min(matrix.cellX, matrix.cellY));
+    const Enlarged large = enlargedPlot(matrix, view);
+    if (result)
+        updateTextures(cache, result, view.logDensity, std::min(matrix.cellX, matrix.cellY),
+                       large.cells > 0 ? jointIndex(result->statistics, large.column, large.row) : -1);
     for (std::size_t row = 0; row < matrix.size(); ++row)
-        for (std::size_t column = 0; column < matrix.size(); ++column)
-            drawCell(context, cache, view, matrix, column, row, result.get());
+        for (std::size_t column = 0; column < matrix.size(); ++column) {
+            if (large.covers(matrix, column, row)) continue;
+            if (column > row) {
+                drawUpperCell(cache, matrix, column, row, result.get());
+                continue;
+            }
+            const int joint = result ? jointIndex(result->statistics, column, row) : -1;
+            const PlotFrame frame = matrix.cell(column, row);
+            ImGui::PushID(static_cast<int>(row * matrix.size() + column));
+            const bool clicked =
+                drawPlot(context, cache, view, matrix, column, row, frame,
+                         joint >= 0 ? &cache.textures[static_cast<std::size_t>(joint)] : nullptr, result.get());
+            ImGui::PopID();
+            const bool shown = large.cells > 0 && large.column == column && large.row == row;
+            if (shown) ImGui::GetWindowDrawList()->AddRect(frame.min, frame.max, plotColors().focus);
+            if (clicked && shown)
+                view.enlarged.clear();
+            else if (clicked)
+                view.enlarged = {matrix.infos[column].name, matrix.infos[row].name};
+        }
+    if (large.cells > 0) drawLarge(context, cache, view, matrix, large, result.get());
     if (cache.drag.active) context.interacting = true;
 
     ImDrawList& draw = *ImGui::GetWindowDrawList();

@@ -290,6 +290,48 @@ TEST_F(Views, BrushingHotAndOxygenPoorSelectsWhatBruteForceSelects) {
     ImGui::GetIO().KeysDown[256] = false;
 }
 
+// A click enlarges a plot; a drag in the large one brushes by its own pixels, not by those of the small one.
+TEST_F(Views, AClickEnlargesAPlotThatCanBeBrushed) {
+    show(fuelCell(volume::LatticeKind::BCC));
+    const auto matrix = [&] { draw("scatterMatrix", scatterView, drawScatterMatrixView, {900, 700}); };
+    const auto button = [&](bool down) {
+        ImGui::GetIO().MouseDown[0] = down;
+        frame(matrix);
+    };
+    frame(matrix);
+    frame(matrix);
+    const ScatterLayout layout = dynamic_cast<const ScatterLayoutCache*>(caches.at("scatterMatrix").get())->layout;
+    ASSERT_GE(layout.size(), 4u);
+    const PlotFrame small = layout.cell(0, 2);
+    mouse = {(small.min.x + small.max.x) / 2, (small.min.y + small.max.y) / 2};
+    frame(matrix);
+    button(true);
+    button(false);
+    const std::vector<std::string> wanted{layout.infos[0].name, layout.infos[2].name};
+    EXPECT_EQ(scatterView.enlarged, wanted);
+    EXPECT_TRUE(session.selection.brushes.empty());
+
+    const PlotFrame corner = layout.cell(layout.size() - 1, 0);
+    mouse = {corner.max.x - 10, corner.min.y + 10};
+    frame(matrix);
+    button(true);
+    mouse = {corner.max.x - 60, corner.min.y + 40};
+    frame(matrix);
+    button(false);
+    ASSERT_EQ(session.selection.brushes.size(), 1u);
+    const vis::BrushInterval& x = session.selection.brushes[0].intervals[0];
+    EXPECT_EQ(x.channel, wanted[0]);
+    // 50 pixels of a plot more than two cells wide.
+    EXPECT_LT(x.hi - x.lo, 50 * small.perPixelX());
+    EXPECT_GT(x.hi - x.lo, 10 * small.perPixelX());
+
+    mouse = {small.max.x - 3, small.max.y - 3};
+    frame(matrix);
+    button(true);
+    button(false);
+    EXPECT_TRUE(scatterView.enlarged.empty()) << "another click puts it away";
+}
+
 // A selection with a channel that is not shown, soft edges and an inverted brush: the feed's compiled function of the
 // values agrees with the definition.
 TEST_F(Views, FeedCountsWhatTheSelectionDefines) {
