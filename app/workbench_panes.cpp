@@ -114,7 +114,8 @@ void Workbench::drawStatusBar(float height) {
         std::string text = info.name;
         text += "   " + std::to_string(lattice.size.x) + " \xc3\x97 " + std::to_string(lattice.size.y) + " \xc3\x97 " +
                 std::to_string(lattice.size.z) + (lattice.kind == volume::LatticeKind::BCC ? " BCC" : " CC");
-        text += "   " + std::to_string(info.parameters.size()) + " parameters";
+        text += "   " + std::to_string(info.parameters.size()) +
+                (info.parameters.size() == 1 ? " parameter" : " parameters");
         if (info.times.size() > 1) text += ", " + std::to_string(info.times.size()) + " times";
         ImGui::TextUnformatted(text.c_str());
     } else {

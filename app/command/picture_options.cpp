@@ -66,6 +66,8 @@ Opened openForPicture(const PictureOptions& options, const Progress& progress) {
         std::vector<JsonIssue> unknown;
         opened.document.session = sessionFromJson(document, "--set", &unknown);
         if (!unknown.empty()) throw Error("unknown key", "--set", unknown.front().path);
+        const DataRef data = opened.document.session.data;
+        if (!(data == opened.document.history.data())) opened = openWith(std::move(opened), data, progress);
         fitSession(opened.document.session, opened.source->info(), opened.messages);
     }
     for (const std::string& message : opened.messages) std::fprintf(stderr, "tessera: %s\n", message.c_str());

@@ -33,15 +33,16 @@ public:
     /// Takes what belongs to this frame; `key(event)` is called for each key event. Afterwards `mouse` and `buttons`
     /// hold the states of this frame.
     template <class Function> void take(Function&& key) {
-        bool clicked = false, pressed = false;
+        bool moved = false, clicked = false, pressed = false;
         std::array<bool, 512> changed{};
         while (!events_.empty()) {
             const Event event = events_.front();
             if (event.kind == Event::Move) {
                 if (clicked) break; // the click happened before the move
+                moved = true;
                 mouse = event.at;
             } else if (event.kind == Event::Button) {
-                if (clicked) break;
+                if (clicked || moved) break; // a drag is seen at its end before it is let go
                 clicked = true;
                 mouse = event.at;
                 if (event.code >= 0 && event.code < 5) buttons[static_cast<std::size_t>(event.code)] = event.down;

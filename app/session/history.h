@@ -37,6 +37,7 @@ public:
 
     /// The same history of a session whose data were found elsewhere: no step.
     void setData(const DataRef& data) { base_.data = data; }
+    const DataRef& data() const { return base_.data; }
 
     const std::vector<HistoryStep>& steps() const { return steps_; }
     std::size_t position() const { return position_; }

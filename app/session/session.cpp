@@ -172,6 +172,10 @@ Session defaultSession(const volume::DatasetInfo& info, const DataRef& data) {
     session.cursor = info.bounds.center();
     session.time = info.times.empty() ? 0 : info.times.front();
     session.stretch = defaultStretch(info.bounds);
+    // The sphere around the box just fits between the upper and lower edge.
+    const double radius = glm::length(vis::worldFrame(info.bounds, session.stretch).halfSize);
+    const double half = glm::radians(static_cast<double>(session.camera.fieldOfView)) / 2;
+    session.camera.distance = static_cast<float>(std::max(0.5, radius / std::sin(half)));
     const std::string channel = firstChannel(info);
     if (!channel.empty()) {
         session.layers.push_back({channel, true, vis::VolumeLayer{.channel = channel}});
@@ -183,6 +187,7 @@ Session defaultSession(const volume::DatasetInfo& info, const DataRef& data) {
     for (const volume::Channel& each : channels) {
         const volume::Parameter& parameter = info.parameters[static_cast<std::size_t>(each.parameter)];
         vis::TransferFunction function;
+        function.opacity = {{0.0f, 0.0f}, {0.15f, 0.0f}, {1.0f, 0.7f}}; // what is low is mostly air or noise
         const Range range = info.channelRange(each);
         if (!parameter.categorical && each.component < parameter.components && range.lo < 0 && range.hi > 0 &&
             parameter.components > 1) {

@@ -67,8 +67,8 @@ await 30 fresh || fail "Esc draws nothing"
 
 # A brush: drag across a density plot (O2 against H2O is the third row, first column of the matrix).
 mark
-xdotool mousemove 692 572 mousedown 1
-for ((x = 696; x <= 764; x += 8)); do xdotool mousemove $x $((572 + (x - 692) / 2)); sleep 0.03; done
+xdotool mousemove 712 572 mousedown 1
+for ((x = 716; x <= 772; x += 8)); do xdotool mousemove $x $((572 + (x - 712) / 2)); sleep 0.03; done
 xdotool mouseup 1
 await 60 fresh || fail "brushing draws nothing"
 
