@@ -247,14 +247,15 @@ void Workbench::drawRecovery() {
             request.paths = {recovery.path};
             auto opened = std::make_shared<Opened>(app::open(request, progress));
             return [this, opened, recovery] {
-                opened->sessionPath.clear(); // the kept file is no place to save to
-                const bool missing = !opened->missing.empty();
-                if (missing)
+                opened->sessionPath.clear();    // the kept file is no place to save to
+                if (!opened->missing.empty()) { // kept until its data are found
                     missing_ = std::move(*opened);
-                else
-                    install(std::move(*opened));
+                    return;
+                }
+                install(std::move(*opened));
                 saved_ = Session{}; // it has never been saved
                 unsavedEdits_ = true;
+                lastAutosave_ = -1e9; // kept again at once
                 Autosave::discard(recovery);
             };
         });
