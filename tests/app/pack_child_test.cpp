@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 using namespace tessera;
 namespace fs = std::filesystem;
@@ -16,7 +17,7 @@ const std::string kProgram = std::string(TESSERA_BINARY_DIR) + "/tessera";
 
 struct PackChild : testing::Test {
     void SetUp() override {
-        folder = fs::path(testing::TempDir()) / "pack_child";
+        folder = fs::path(testing::TempDir()) / ("pack_child_" + std::to_string(getpid()));
         fs::create_directories(folder);
         std::ofstream(folder / "ramp.raw", std::ios::binary) << std::string(8 * 9 * 10, 'a');
         import.raw = "dims=8x9x10,type=u8";

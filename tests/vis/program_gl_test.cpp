@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <unistd.h>
 
 namespace tessera {
 namespace {
@@ -16,7 +17,7 @@ using vis::ProgramRecipe;
 /// A folder of shaders that lies over the built-in ones while the test runs.
 class ProgramTest : public test::GlTest {
 protected:
-    ProgramTest() : folder_(std::filesystem::path(TESSERA_BINARY_DIR) / "program-test") {
+    ProgramTest() : folder_(std::filesystem::path(TESSERA_BINARY_DIR) / ("program-test-" + std::to_string(getpid()))) {
         std::filesystem::create_directories(folder_);
         setenv("TESSERA_SHADER_DIR", folder_.c_str(), 1);
     }

@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <fstream>
 #include <random>
+#include <unistd.h>
 
 /// Functions of vis/shaders/lib against their C++ twins.
 namespace tessera {
@@ -28,7 +29,8 @@ protected:
 
     /// Evaluates an expression of a[i], b[i], c[i] (vec4) for every i.
     std::array<glm::vec4, kCases> evaluate(const std::string& includes, const std::string& expression) {
-        const std::filesystem::path folder = std::filesystem::path(TESSERA_BINARY_DIR) / "shader-lib-test";
+        const std::filesystem::path folder =
+            std::filesystem::path(TESSERA_BINARY_DIR) / ("shader-lib-test-" + std::to_string(getpid()));
         std::filesystem::create_directories(folder);
         std::ofstream(folder / "probe.frag.glsl")
             << includes << "uniform vec4 a[64], b[64], c[64];\nout vec4 result;\n"
