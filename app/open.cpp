@@ -1,5 +1,6 @@
 #include "app/open.h"
 
+#include "app/first_view.h"
 #include "app/session/import_memory.h"
 
 #include "codec/archive.h"
@@ -22,6 +23,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr const char* kFirstLayout = "overview";
+constexpr double kFirstAspect = 0.92; ///< of the volume pane in a new window, labels taken off
 
 bool endsWith(const std::string& path, std::string_view suffix) {
     if (path.size() < suffix.size()) return false;
@@ -240,9 +242,11 @@ Opened open(const OpenRequest& request, const Progress& progress) {
     if (layout) {
         opened.messages.insert(opened.messages.end(), layout->messages.begin(), layout->messages.end());
         opened.document.session = applyLayout(*layout, info, data, opened.messages);
+        if (!sameData(layout->session.data, data)) aimFirstView(opened.document.session, *opened.source, kFirstAspect);
     } else {
         opened.document.session = defaultSession(info, data);
         fitSession(opened.document.session, info, opened.messages);
+        aimFirstView(opened.document.session, *opened.source, kFirstAspect);
     }
     opened.document.history.reset(opened.document.session);
     return opened;

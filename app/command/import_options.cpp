@@ -111,7 +111,9 @@ void addImportOptions(CLI::App& command, volume::ImportOptions& options) {
         ->expected(1)
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
         ->group("Import");
-    command.add_option("--length-unit", options.lengthUnit, "Unit of positions (default: the file's, else m)")
+    command
+        .add_option("--length-unit", options.lengthUnit,
+                    "Unit of positions (default: the file's, else m; of raw and NRRD files none)")
         ->group("Import");
     command.add_option("--times", options.times, "Times of the series, separated by commas")
         ->delimiter(',')

@@ -4,6 +4,7 @@
 #include <cctype>
 #include <cmath>
 #include <cstdio>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <stdexcept>
@@ -191,6 +192,27 @@ vtkSmartPointer<vtkAlgorithm> openLegacy(const std::string& path) {
     return reader.Get();
 }
 
+/// The reader of legacy files stops at the end of a truncated one without a word: compares the arrays it gave with
+/// those that the file announces.
+void checkLegacyArrays(vtkDataObject* data, const std::string& path) {
+    const std::string text = readPart(path, 0, fs::file_size(path));
+    int announced = 0, found = 0;
+    for (std::size_t at = text.find('\n'); at != std::string::npos; at = text.find('\n', at + 1)) {
+        static constexpr const char* kWords[] = {"SCALARS ", "VECTORS ", "NORMALS ", "TENSORS ", "COLOR_SCALARS "};
+        for (const char* word : kWords)
+            if (text.compare(at + 1, std::strlen(word), word) == 0) ++announced;
+        int number = 0;
+        if (text.compare(at + 1, 6, "FIELD ") == 0 && std::sscanf(text.c_str() + at + 7, "%*255s %d", &number) == 1)
+            announced += number;
+        if (text.compare(at + 1, 10, "NULL_ARRAY") == 0) --announced;
+    }
+    for (const int kind : {vtkDataObject::POINT, vtkDataObject::CELL, vtkDataObject::FIELD})
+        if (vtkFieldData* arrays = data->GetAttributesAsFieldData(kind)) found += arrays->GetNumberOfArrays();
+    if (found < announced)
+        throw std::runtime_error("ends too early: announces " + std::to_string(announced) + " arrays, holds " +
+                                 std::to_string(found));
+}
+
 struct Known {
     const char* ending;
     const char* format;
@@ -307,6 +329,7 @@ std::vector<Block> readBlocks(const Source& source, int time) {
     throwReported();
     vtkDataObject* output = source.reader->GetOutputDataObject(0);
     if (output == nullptr) throw std::runtime_error("gave no data");
+    if (vtkGenericDataObjectReader::SafeDownCast(source.reader) != nullptr) checkLegacyArrays(output, source.path);
     // A copy, because the reader overwrites its output at the next time.
     vtkSmartPointer<vtkDataObject> copy = vtkSmartPointer<vtkDataObject>::Take(output->NewInstance());
     copy->ShallowCopy(output);

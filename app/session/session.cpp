@@ -178,8 +178,16 @@ Session defaultSession(const volume::DatasetInfo& info, const DataRef& data) {
     session.camera.distance = static_cast<float>(std::max(0.5, radius / std::sin(half)));
     const std::string channel = firstChannel(info);
     if (!channel.empty()) {
-        session.layers.push_back({channel, true, vis::VolumeLayer{.channel = channel}});
-        session.layers.push_back({channel + " slice", false, vis::SliceLayer{.channel = channel}});
+        // Data of one sample's thickness has no volume to look through.
+        vis::SliceLayer slice{.channel = channel};
+        const glm::dvec3 size = info.bounds.size();
+        const bool flat = !(size.x > 0 && size.y > 0 && size.z > 0);
+        if (flat)
+            slice.orientation = !(size.z > 0)   ? vis::SliceOrientation::Z
+                                : !(size.y > 0) ? vis::SliceOrientation::Y
+                                                : vis::SliceOrientation::X;
+        session.layers.push_back({channel, !flat, vis::VolumeLayer{.channel = channel}});
+        session.layers.push_back({channel + " slice", flat, slice});
     }
     const auto channels = info.channels();
     static constexpr std::string_view maps[] = {"viridis", "inferno", "cividis", "plasma"};

@@ -152,8 +152,8 @@ void drawSelection(ViewContext& context, const StatisticsResult* result) {
         }
         const LengthUnit unit = suitableLength(info.lengthUnit, std::cbrt(volume));
         const double cubes = volume * std::pow(unit.perUnit, 3);
-        ImGui::TextDisabled("%s, %s of the volume that has data",
-                            formatQuantity(cubes, prettyUnit(unit.name) + "3", cubes / 1000).c_str(),
+        const std::string cubic = unit.name.empty() ? "" : prettyUnit(unit.name) + "3";
+        ImGui::TextDisabled("%s, %s of the volume that has data", formatQuantity(cubes, cubic, cubes / 1000).c_str(),
                             formatShare(whole->all.volume > 0 ? volume / whole->all.volume : 0).c_str());
     }
     constexpr ImGuiTableFlags kFlags =

@@ -45,6 +45,15 @@ vis::Layer newLayer(const Session& session, const volume::DatasetInfo& info, std
     return layer;
 }
 
+/// A name that is made of the parameter ("O2", "O2 slice", "Volume of O2") follows when another is chosen.
+void followChannel(std::string& name, const std::string& before, const std::string& now) {
+    if (before.empty() || before == now) return;
+    if (name == before || name.starts_with(before + " "))
+        name = now + name.substr(before.size());
+    else if (name.ends_with(" of " + before))
+        name = name.substr(0, name.size() - before.size()) + now;
+}
+
 void drawList(ViewContext& context, int& selected) {
     std::vector<vis::Layer>& layers = context.session.layers;
     int moveFrom = -1, moveTo = -1;
@@ -79,7 +88,9 @@ void drawList(ViewContext& context, int& selected) {
                  ImGui::GetColorU32(layer.visible ? ImGuiCol_Text : ImGuiCol_TextDisabled));
         ImGui::SameLine(0, em() * 0.3f);
         ImGui::AlignTextToFramePadding();
-        const std::string channel = channelOf(layer.technique);
+        // A layer named after its parameter need not say it twice.
+        std::string channel = channelOf(layer.technique);
+        if (layer.name == channel || layer.name.starts_with(channel + " ")) channel.clear();
         const float room = ImGui::GetContentRegionAvail().x - ImGui::CalcTextSize(channel.c_str()).x - em() * 1.5f;
         const std::string name = fitText(layer.name.empty() ? kindName(layer.technique) : layer.name, room);
         if (layer.visible)
@@ -205,7 +216,9 @@ void drawLayersView(ViewContext& context, const std::string&, LayersView& view) 
             ImGui::PushID(view.selected);
             drawLabel(widgets, "Name", "Name of the layer");
             ImGui::InputText("##name", &layer.name);
+            const std::string before = channelOf(layer.technique);
             std::visit([&](auto& technique) { drawDescribed(technique, widgets); }, layer.technique);
+            followChannel(layer.name, before, channelOf(layer.technique));
             ImGui::PopID();
         }
     }

@@ -88,17 +88,28 @@ void drawReadout(ViewContext& context, const Readout& readout) {
     static constexpr const char* kAxes[] = {"x", "y", "z"};
     const glm::ivec3 index = info.lattice.nearest(cursor);
     // The unit once, where all three axes have the same.
-    std::string at, unitNow;
+    std::vector<std::string> at;
+    std::string unitNow;
     for (int axis = 2; axis >= 0; --axis) {
         const LengthUnit unit = suitableLength(info.lengthUnit, size[axis]);
         std::string text =
             std::string(kAxes[axis]) + " " + formatNumber(cursor[axis] * unit.perUnit, size[axis] * unit.perUnit / 200);
         if (unit.name != unitNow) text += " " + prettyUnit(unit.name);
         unitNow = unit.name;
-        at = text + (at.empty() ? "" : "   ") + at;
+        at.insert(at.begin(), text);
+    }
+    // Lines break between the axes, never within a number.
+    float room = 0;
+    for (const std::string& text : at) {
+        const float width = ImGui::CalcTextSize(text.c_str()).x + em() * 0.8f;
+        if (room > width)
+            ImGui::SameLine(0, em() * 0.8f);
+        else
+            room = ImGui::GetContentRegionAvail().x + em() * 0.8f;
+        room -= width;
+        ImGui::TextUnformatted(text.c_str());
     }
     ImGui::PushTextWrapPos(0);
-    ImGui::TextUnformatted(at.c_str());
     const int time = timeIndex(context.session, info);
     std::string sample =
         "sample (" + std::to_string(index.x) + ", " + std::to_string(index.y) + ", " + std::to_string(index.z) + ")";

@@ -48,6 +48,63 @@ TEST_F(OpenTest, ADataFileGetsTheDefaultSession) {
     EXPECT_EQ(opened.document.session.data.files[0].bytes, 420);
 }
 
+TEST_F(OpenTest, AFirstPictureOfAScanLeavesTheBackgroundOut) {
+    // Noise of 10..19 around a ball of 200; no unit of length is stated, so none is claimed.
+    std::string bytes;
+    for (int i = 0; i < 17 * 17 * 17; ++i) {
+        const int x = i % 17 - 8, y = i / 17 % 17 - 8, z = i / 289 - 8;
+        bytes += static_cast<char>(x * x + y * y + z * z < 25 ? 200 : 10 + i * 7 % 10);
+    }
+    std::ofstream(folder / "ball.raw", std::ios::binary) << bytes;
+    OpenRequest request;
+    request.paths = {in("ball.raw")};
+    request.import.emplace();
+    request.import->raw = "dims=17x17x17,type=u8,spacing=1x2x1";
+    const Opened opened = open(request);
+    EXPECT_EQ(opened.source->info().lengthUnit, "");
+    const Session& session = opened.document.session;
+    const std::vector<glm::vec2>& curve = session.transfer.begin()->second.opacity;
+    ASSERT_EQ(curve.size(), 3u);
+    EXPECT_EQ(curve[1].y, 0);
+    EXPECT_GT(curve[1].x, 9.0 / 190);
+    EXPECT_LT(curve[1].x, 0.2);
+    // Every corner of the box is in the picture.
+    const vis::WorldFrame world = vis::worldFrame(opened.source->info().bounds, session.stretch);
+    const glm::dmat4 matrix = vis::projectionMatrix(session.camera, 1) * vis::viewMatrix(session.camera);
+    for (int corner = 0; corner < 8; ++corner) {
+        const glm::dvec3 sign(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1);
+        const glm::dvec4 clip = matrix * glm::dvec4(world.halfSize * sign, 1);
+        EXPECT_LT(std::max(std::abs(clip.x), std::abs(clip.y)), clip.w);
+    }
+}
+
+TEST_F(OpenTest, TheFirstCursorLiesWhereThereAreSamples) {
+    // Present in the upper part only: the middle of the box is empty.
+    std::ofstream file(folder / "half.raw", std::ios::binary);
+    for (int i = 0; i < 9 * 9 * 9; ++i) {
+        const float value = i / 81 > 5 ? static_cast<float>(i) : -1.0f;
+        file.write(reinterpret_cast<const char*>(&value), sizeof value);
+    }
+    file.close();
+    std::ofstream(folder / "half.json") << R"({"dims":[9,9,9],"dtype":"float32","missing_value":-1})";
+    OpenRequest request;
+    request.paths = {in("half.raw")};
+    const Session session = open(request).document.session;
+    EXPECT_GT(session.cursor.z, 5.4);
+    EXPECT_NEAR(session.cursor.x, 4, 1);
+    EXPECT_NEAR(session.cursor.y, 4, 1);
+}
+
+TEST_F(OpenTest, DataOfOneSampleThicknessIsShownAsASlice) {
+    OpenRequest request = rawRequest(raw("a.raw"));
+    request.import->raw = "dims=20x1x21,type=u8";
+    const Session session = open(request).document.session;
+    ASSERT_EQ(session.layers.size(), 2u);
+    EXPECT_FALSE(session.layers[0].visible);
+    EXPECT_TRUE(session.layers[1].visible);
+    EXPECT_EQ(std::get<vis::SliceLayer>(session.layers[1].technique).orientation, vis::SliceOrientation::Y);
+}
+
 TEST_F(OpenTest, ASessionBringsItsDataAndItsImportOptions) {
     Opened opened = open(rawRequest(raw("a.raw")));
     opened.document.session.camera.distance = 4;

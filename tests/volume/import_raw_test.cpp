@@ -11,6 +11,7 @@
 #include <fstream>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <limits>
 #include <random>
 #include <unistd.h>
 
@@ -120,6 +121,17 @@ TEST_F(ImportRaw, SidecarSaysEverything) {
     EXPECT_FALSE(z.present(0));
     EXPECT_TRUE(z.present(1));
     EXPECT_EQ(dataset.load(1, 0, 0).value(1), 2);
+}
+
+TEST_F(ImportRaw, WhatIsNotFiniteIsAbsentAndWhatIsNotStatedHasNoUnit) {
+    const float infinite = std::numeric_limits<float>::infinity();
+    write("a.raw", bytesOf<float>({1, infinite, -infinite, std::nanf("")}, false));
+    const Dataset dataset = openFiles({write("a.json", R"({"dims":[4,1,1],"dtype":"float32"})")}, {});
+    EXPECT_EQ(dataset.info.lengthUnit, "");
+    EXPECT_EQ(dataset.info.timeUnit, "");
+    const Field field = dataset.load(0, 0, 0);
+    EXPECT_TRUE(field.present(0));
+    for (std::size_t i = 1; i < 4; ++i) EXPECT_FALSE(field.present(i));
 }
 
 TEST_F(ImportRaw, RawOptionTakesThePlaceOfASidecar) {

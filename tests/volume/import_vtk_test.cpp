@@ -285,6 +285,10 @@ TEST_F(ImportVtk, BadFilesGiveOneLine) {
         EXPECT_NE(line, "") << name;
         EXPECT_EQ(line.find('\n'), std::string::npos) << line;
     }
+    const std::string legacy = "# vtk DataFile Version 3.0\nx\nASCII\nDATASET STRUCTURED_POINTS\nDIMENSIONS 2 2 1\n"
+                               "ORIGIN 0 0 0\nSPACING 1 2 3\nPOINT_DATA 4\nFIELD FieldData 2\nT 1 4 double\n1 2 3 4\n";
+    EXPECT_EQ(failure(write("whole.vtk", legacy + "p 1 4 double\n5 6 7 8\n")), "");
+    EXPECT_THAT(failure(write("cut.vtk", legacy)), testing::HasSubstr("ends too early"));
     EXPECT_THAT(failure(write("a.xyz", "1")), testing::HasSubstr("unknown ending"));
     EXPECT_THAT(
         failure(write("none.vti", "<VTKFile type=\"ImageData\"><ImageData WholeExtent=\"0 1 0 1 0 1\" Origin=\"0 0 0\" "

@@ -79,7 +79,7 @@ bool markNaN(const Field& field, Mask& mask) {
     const auto stored = field.as<float>();
     bool any = false;
     for (std::size_t i = 0; i < stored.size(); ++i)
-        if (std::isnan(stored[i])) {
+        if (!std::isfinite(stored[i])) { // infinities would spoil every sample resampled from them
             mask[i] = 0;
             any = true;
         }

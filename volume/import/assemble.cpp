@@ -360,6 +360,9 @@ Assembled assemble(std::vector<OpenedFile> files, glm::ivec3 gridSize, bool read
     }
     info.times.assign(times.begin(), times.end());
     if (info.times.empty()) info.times = {0};
+    // Voxel files of scanners and archives of volumes leave units out; simulations write metres and seconds.
+    const std::string& format = all->groups.front().files.front()->pieces.front().format;
+    if (format == "raw" || format == "nrrd" || format == "MetaImage") info.lengthUnit = info.timeUnit = "";
     if (numbers) info.timeUnit = "step";
 
     std::map<std::string, std::size_t> byName;
