@@ -119,7 +119,9 @@ void aimFirstView(Session& session, const volume::BrickSource& source, double as
     if (!here.interpolated || !here.nearest)
         session.cursor = middleOfSamples(source, *channel, time).value_or(session.cursor);
     const auto transfer = session.transfer.find(name);
-    if (transfer == session.transfer.end() || transfer->second.opacity != vis::TransferFunction{}.opacity) return;
+    if (transfer == session.transfer.end() ||
+        transfer->second.opacity != defaultSession(info, {}).transfer[name].opacity)
+        return;
     if (const auto share = backgroundShare(source, *channel, time)) {
         const float x = static_cast<float>(*share);
         transfer->second.opacity = {{0.0f, 0.0f}, {x, 0.0f}, {1.0f, 0.8f}};

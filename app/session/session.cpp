@@ -195,7 +195,9 @@ Session defaultSession(const volume::DatasetInfo& info, const DataRef& data) {
     for (const volume::Channel& each : channels) {
         const volume::Parameter& parameter = info.parameters[static_cast<std::size_t>(each.parameter)];
         vis::TransferFunction function;
-        function.opacity = {{0.0f, 0.0f}, {0.15f, 0.0f}, {1.0f, 0.7f}}; // what is low is mostly air or noise
+        // What is low in a scan is mostly air or noise; in a simulation it is a result.
+        if (parameter.type != volume::ScalarType::F32 && !parameter.categorical)
+            function.opacity = {{0.0f, 0.0f}, {0.15f, 0.0f}, {1.0f, 0.8f}};
         const Range range = info.channelRange(each);
         if (!parameter.categorical && each.component < parameter.components && range.lo < 0 && range.hi > 0 &&
             parameter.components > 1) {
