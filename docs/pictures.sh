@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Renders the pictures of the README with the built program: docs/pictures.sh [folder with engine_crop_149x208x110_uint8.raw]
+# Renders the pictures of the README with the built program.
 set -euo pipefail
 here=$(cd "$(dirname "$0")/.." && pwd)
 tessera="$here/build/release/tessera"
@@ -9,6 +9,8 @@ mkdir -p "$out"
 "$tessera" render starved -o "$out/starved.png" --size 1600x1000
 "$tessera" render gases -o "$out/gases.png" --view volume --size 1200x700
 "$tessera" render overview -o "$out/slices.png" --view slices --size 1200x700 --time 0.6 --set /views/slices/contours=12
-if [ -n "${1:-}" ]; then
-    "$tessera" render "$1/engine_crop_149x208x110_uint8.raw" -o "$out/engine.png" --view volume --size 900x800
-fi
+"$tessera" render overview -o "$out/marschner-lobb.png" --view volume --size 900x700 \
+    --set '/data={"model":"marschner-lobb","settings":{"nx":64,"ny":64,"nz":64,"times":1}}' \
+    --set '/title="Marschner-Lobb signal"' --set '/stretch=[1,1,1]' --set /time=0 --set /camera/distance=3.4 \
+    --set /views/volume/cursor=false --set '/selection/brushes=[]' \
+    --set '/layers=[{"name":"surface","technique":{"type":"iso","channel":"rho","value":0.5,"color":[0.85,0.6,0.3]}}]'
