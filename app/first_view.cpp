@@ -1,5 +1,6 @@
 #include "app/first_view.h"
 
+#include "volume/error.h"
 #include "volume/probe.h"
 
 #include <algorithm>
@@ -107,6 +108,25 @@ std::optional<double> backgroundShare(const volume::BrickSource& source, int cha
     return std::nullopt;
 }
 
+namespace {
+
+void aimAtSamples(Session& session, const volume::BrickSource& source, int channel, const std::string& name, int time) {
+    const volume::DatasetInfo& info = source.info();
+    const volume::ProbeValue here = volume::probeChannel(source, channel, session.cursor, time);
+    if (!here.interpolated || !here.nearest)
+        session.cursor = middleOfSamples(source, channel, time).value_or(session.cursor);
+    const auto transfer = session.transfer.find(name);
+    if (transfer == session.transfer.end() ||
+        transfer->second.opacity != defaultSession(info, {}).transfer[name].opacity)
+        return;
+    if (const auto share = backgroundShare(source, channel, time)) {
+        const float x = static_cast<float>(*share);
+        transfer->second.opacity = {{0.0f, 0.0f}, {x, 0.0f}, {1.0f, 0.8f}};
+    }
+}
+
+} // namespace
+
 void aimFirstView(Session& session, const volume::BrickSource& source, double aspect) {
     const volume::DatasetInfo& info = source.info();
     vis::fit(session.camera, vis::worldFrame(info.bounds, session.stretch), aspect);
@@ -115,16 +135,9 @@ void aimFirstView(Session& session, const volume::BrickSource& source, double as
     const auto channel = info.findChannel(name);
     if (!channel) return;
     const int time = info.nearestTime(session.time);
-    const volume::ProbeValue here = volume::probeChannel(source, *channel, session.cursor, time);
-    if (!here.interpolated || !here.nearest)
-        session.cursor = middleOfSamples(source, *channel, time).value_or(session.cursor);
-    const auto transfer = session.transfer.find(name);
-    if (transfer == session.transfer.end() ||
-        transfer->second.opacity != defaultSession(info, {}).transfer[name].opacity)
-        return;
-    if (const auto share = backgroundShare(source, *channel, time)) {
-        const float x = static_cast<float>(*share);
-        transfer->second.opacity = {{0.0f, 0.0f}, {x, 0.0f}, {1.0f, 0.8f}};
+    try {
+        aimAtSamples(session, source, *channel, name, time);
+    } catch (const Error&) { // a damaged brick: what the rest says is shown all the same
     }
 }
 

@@ -16,7 +16,8 @@ std::optional<double> backgroundShare(const volume::BrickSource& source, int cha
 
 /// Moves the camera so that the box fills the picture (`aspect`: width over height) from where it looks; puts a cursor
 /// that lies where the first layer's parameter is absent to the middle of its samples; leaves the background of scans
-/// out of the default opacity curves. Throws Error when a brick is damaged.
+/// out of the default opacity curves. With a damaged
+/// brick the rest stays as it is.
 void aimFirstView(Session& session, const volume::BrickSource& source, double aspect);
 
 } // namespace tessera::app

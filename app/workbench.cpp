@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr double kAutosaveSeconds = 30;
+constexpr double kAutosaveSeconds = 10;
 constexpr double kToastSeconds = 7;
 constexpr std::size_t kMessages = 500;
 
