@@ -184,6 +184,15 @@ Session applyLayout(const SessionDocument& layout, const volume::DatasetInfo& in
     Session session = sessionFromJson(result, {});
     std::erase_if(session.transfer, [&](const auto& entry) { return !info.findChannel(entry.first); });
     fitSession(session, info, messages);
+    // Surfaces of other data: a value near or beyond the ends of this range would show nothing.
+    for (vis::Layer& layer : session.layers)
+        if (auto* iso = std::get_if<vis::IsoLayer>(&layer.technique); iso != nullptr && !own) {
+            const auto channel = info.findChannel(iso->channel);
+            if (!channel) continue;
+            const Range range = info.channelRange(info.channels()[static_cast<std::size_t>(*channel)]);
+            const double share = (iso->value - range.lo) / (range.hi - range.lo);
+            if (!(share > 0.1 && share < 0.9)) iso->value = 0.5 * (range.lo + range.hi);
+        }
     return session;
 }
 

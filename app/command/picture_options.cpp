@@ -50,10 +50,10 @@ Opened openForPicture(const PictureOptions& options, const Progress& progress) {
     request.paths = options.inputs;
     request.layout = options.layout;
     if (!(options.import == volume::ImportOptions{})) request.import = options.import;
-    if (request.paths.size() == 1 && request.layout.empty() && !std::filesystem::exists(request.paths[0]) &&
+    if (!request.paths.empty() && request.layout.empty() && !std::filesystem::exists(request.paths[0]) &&
         request.paths[0].find('.') == std::string::npos) {
-        request.layout = request.paths[0]; // the name of a layout
-        request.paths.clear();
+        request.layout = request.paths[0];          // the name of a layout
+        request.paths.erase(request.paths.begin()); // data, if any, follow
     }
     Opened opened = open(request, progress);
     if (!opened.missing.empty()) {

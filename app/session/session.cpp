@@ -132,6 +132,7 @@ void fitSession(Session& session, const volume::DatasetInfo& info, std::vector<s
         std::visit(
             [&](auto& technique) {
                 const bool replaced = replace(technique.channel);
+                if (replaced) layer.name = technique.channel;
                 if (technique.channel.empty()) technique.channel = fallback;
                 if constexpr (requires { technique.value; }) {
                     const auto index = info.findChannel(technique.channel);
