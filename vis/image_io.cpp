@@ -1,9 +1,9 @@
 #include "vis/image_io.h"
 
+#include "volume/atomic_file.h"
 #include "volume/error.h"
 
 #include <algorithm>
-#include <cerrno>
 #include <csetjmp>
 #include <cstring>
 #include <filesystem>
@@ -11,7 +11,6 @@
 #include <iterator>
 #include <png.h>
 #include <system_error>
-#include <unistd.h>
 
 namespace tessera::vis {
 
@@ -75,6 +74,36 @@ bool encode(Stream& stream, const Image& image, std::vector<png_text>& texts, st
     return true;
 }
 
+/// Everything after the header of a PNG. A function of its own, never inlined: the frame of `setjmp` holds no C++
+/// objects that a jump could leave half made (and gcc would warn of).
+[[gnu::noinline]] void readPicture(png_structp png, png_infop info, Image& image, std::vector<png_bytep>& rows,
+                                   std::map<std::string, std::string>* texts) {
+    png_read_info(png, info);
+    const png_uint_32 width = png_get_image_width(png, info), height = png_get_image_height(png, info);
+    if (std::size_t(width) * height > kMaxPixels) png_error(png, "the picture is larger than 2^28 pixels");
+    png_set_expand(png);
+    png_set_scale_16(png);
+    png_set_gray_to_rgb(png);
+    png_set_add_alpha(png, 0xff, PNG_FILLER_AFTER);
+    png_set_interlace_handling(png);
+    png_read_update_info(png, info);
+    if (png_get_rowbytes(png, info) != std::size_t(width) * 4) png_error(png, "unknown kind of pixels");
+    image.size = {static_cast<int>(width), static_cast<int>(height)};
+    image.rgba.resize(std::size_t(width) * height * 4);
+    rows.resize(height);
+    for (std::size_t y = 0; y < height; ++y) rows[y] = image.rgba.data() + y * std::size_t(width) * 4;
+    png_read_image(png, rows.data());
+    png_read_end(png, info);
+    if (texts == nullptr) return;
+    png_textp found = nullptr;
+    const int count = png_get_text(png, info, &found, nullptr);
+    for (int i = 0; i < count; ++i) {
+        const bool international = found[i].compression >= PNG_ITXT_COMPRESSION_NONE;
+        (*texts)[found[i].key] =
+            std::string(found[i].text, international ? found[i].itxt_length : found[i].text_length);
+    }
+}
+
 /// Decodes `stream`; false when libpng refused, with the reason in stream.error.
 bool decode(Stream& stream, Image& image, std::vector<png_bytep>& rows, std::map<std::string, std::string>* texts) {
     png_structp png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &stream, onError, onWarning);
@@ -92,31 +121,7 @@ bool decode(Stream& stream, Image& image, std::vector<png_bytep>& rows, std::map
     // A flipped bit in a text chunk would be a damaged session: refuse it like one in the picture.
     png_set_crc_action(png, PNG_CRC_ERROR_QUIT, PNG_CRC_ERROR_QUIT);
     png_set_chunk_malloc_max(png, kMaxChunk);
-    png_read_info(png, info);
-    const png_uint_32 width = png_get_image_width(png, info), height = png_get_image_height(png, info);
-    if (std::size_t(width) * height > kMaxPixels) png_error(png, "the picture is larger than 2^28 pixels");
-    png_set_expand(png);
-    png_set_scale_16(png);
-    png_set_gray_to_rgb(png);
-    png_set_add_alpha(png, 0xff, PNG_FILLER_AFTER);
-    png_set_interlace_handling(png);
-    png_read_update_info(png, info);
-    if (png_get_rowbytes(png, info) != std::size_t(width) * 4) png_error(png, "unknown kind of pixels");
-    image.size = {static_cast<int>(width), static_cast<int>(height)};
-    image.rgba.resize(std::size_t(width) * height * 4);
-    rows.resize(height);
-    for (std::size_t y = 0; y < height; ++y) rows[y] = image.rgba.data() + y * std::size_t(width) * 4;
-    png_read_image(png, rows.data());
-    png_read_end(png, info);
-    if (texts != nullptr) {
-        png_textp found = nullptr;
-        const int count = png_get_text(png, info, &found, nullptr);
-        for (int i = 0; i < count; ++i) {
-            const bool international = found[i].compression >= PNG_ITXT_COMPRESSION_NONE;
-            (*texts)[found[i].key] =
-                std::string(found[i].text, international ? found[i].itxt_length : found[i].text_length);
-        }
-    }
+    readPicture(png, info, image, rows, texts);
     png_destroy_read_struct(&png, &info, nullptr);
     return true;
 }
@@ -148,17 +153,9 @@ void writePng(const std::string& path, const Image& image, const std::map<std::s
     Stream stream;
     if (!encode(stream, image, chunks, rows, opaque)) throw Error(stream.error, path);
 
-    const std::string temporary = path + ".part" + std::to_string(getpid());
-    std::ofstream out(temporary, std::ios::binary | std::ios::trunc);
-    out.write(reinterpret_cast<const char*>(stream.bytes.data()), static_cast<std::streamsize>(stream.bytes.size()));
-    out.close();
-    std::error_code failed;
-    if (out) std::filesystem::rename(temporary, path, failed);
-    if (!out || failed) {
-        const std::string reason = failed ? failed.message() : std::string(std::strerror(errno));
-        std::filesystem::remove(temporary, failed);
-        throw Error("cannot be written: " + reason, path);
-    }
+    AtomicFile file(path);
+    file.write(stream.bytes.data(), stream.bytes.size());
+    file.commit();
 }
 
 Image readPng(const std::string& path, std::map<std::string, std::string>* texts) {

@@ -5,6 +5,8 @@
 #include <csignal>
 #include <cstdio>
 #include <mutex>
+#include <new>
+#include <system_error>
 #include <unistd.h>
 
 namespace tessera::app {
@@ -68,6 +70,9 @@ int runCommandLine(int argc, const char* const* argv) {
     } catch (const Error& error) {
         std::fprintf(stderr, "tessera: %s\n", error.what());
         return 2;
+    } catch (const std::system_error& error) { // a folder that may not be looked into, no more threads
+        std::fprintf(stderr, "tessera: %s\n", error.what());
+        return 3;
     } catch (const std::bad_alloc&) {
         std::fprintf(stderr, "tessera: not enough memory\n");
         return 3;

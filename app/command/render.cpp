@@ -23,7 +23,7 @@ void addRenderCommand(CLI::App& app) {
         // The wrong size or a folder that does not exist is said before the work, not after it.
         pictureRequest(options->picture, Session{});
         const auto folder = std::filesystem::absolute(options->output).parent_path();
-        if (!std::filesystem::is_directory(folder)) throw Error("no such folder", folder.string());
+        if (!std::filesystem::is_directory(folder)) throw MachineError("no such folder", folder.string());
         Opened opened = openForPicture(options->picture, progress);
         Session& session = opened.document.session;
         if (options->time) {

@@ -62,7 +62,7 @@ struct State {
 };
 
 void writeAll(const void* bytes, std::size_t size) {
-    if (std::fwrite(bytes, 1, size, stdout) != size) std::exit(1); // nobody listens any more
+    if (size != 0 && std::fwrite(bytes, 1, size, stdout) != size) std::exit(1); // nobody listens any more
 }
 
 void sendMessage(MessageKind kind, const std::string& text) {

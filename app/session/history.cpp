@@ -43,6 +43,14 @@ std::vector<std::string> splitPointer(const std::string& path) {
     return parts;
 }
 
+/// Steps hold what Json::diff makes. Other operations (a copy, say, which doubles a document each time) are refused.
+bool isDifference(const Json& patch) {
+    return patch.is_array() && std::ranges::all_of(patch, [](const Json& operation) {
+               const std::string kind = operation.at("op").get<std::string>();
+               return kind == "add" || kind == "remove" || kind == "replace";
+           });
+}
+
 bool isNumber(const std::string& text) {
     return !text.empty() && std::all_of(text.begin(), text.end(), [](unsigned char c) { return std::isdigit(c) != 0; });
 }
@@ -167,6 +175,9 @@ History History::fromJson(const Json& json, const Session& session) {
     try {
         for (const Json& step : json.at("steps"))
             history.steps_.push_back({step.at("name").get<std::string>(), step.at("forward"), step.at("inverse")});
+        for (const HistoryStep& step : history.steps_)
+            if (!isDifference(step.forward) || !isDifference(step.inverse))
+                throw Error("history holds a step that is no difference");
         const auto position = json.at("position").get<std::int64_t>();
         if (position < 0 || static_cast<std::size_t>(position) > history.steps_.size())
             throw Error("history position is not in the list");

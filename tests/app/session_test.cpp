@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -184,6 +185,11 @@ TEST(HistoryTest, UndoAllAndRedoAllOfRandomEdits) {
     const History again = History::fromJson(history.toJson(), states[3]);
     EXPECT_TRUE(again == history);
     EXPECT_THROW(History::fromJson(history.toJson(), states[4]), Error);
+    // Forty copies of the document into itself would be a million million of them.
+    Json bomb = history.toJson();
+    bomb["steps"][0]["forward"] = Json::parse(R"([{"op":"copy","from":"","path":"/more"}])");
+    EXPECT_THAT([&] { History::fromJson(bomb, states[3]); },
+                testing::ThrowsMessage<Error>(testing::HasSubstr("no difference")));
 }
 
 TEST(HistoryTest, ADragIsOneStepAndAWheelTurnIsOneStep) {

@@ -1,0 +1,81 @@
+#!/bin/bash
+# Pictures without a window: the same session gives the same picture, a picture is a session again, and a damaged
+# session or picture ends with status 2 and one line. Arguments TESSERA SOURCE_DIR.
+set -u
+tessera=$1 source=$2
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+export XDG_CONFIG_HOME=$work/config XDG_STATE_HOME=$work/state
+cd "$work" || exit 1
+fail() { echo "FAILED: $*"; [ -f err ] && cat err; exit 1; }
+size=640x400
+draw() { "$tessera" render "$@" --size $size > /dev/null 2> err; }
+
+"$tessera" generate fuel-cell -o cell.tsr --size 7x13x20 --times 2 > /dev/null 2> err || fail "generate"
+draw cell.tsr --layout "$source/layouts/overview.json" -o first.png
+status=$?
+[ $status = 3 ] && grep -q 'OpenGL' err && { cat err; exit 77; }
+[ $status = 0 ] || fail "render ends with $status"
+
+# On one machine the same session gives the same bytes, run after run.
+draw cell.tsr --layout "$source/layouts/overview.json" -o second.png || fail "render again"
+cmp first.png second.png || fail "two runs of one session differ"
+
+# What a PNG holds: its pixels, or the session in it ("pixels" or "session").
+cat > png.py <<'PY'
+import struct, sys, zlib
+data, out, at = open(sys.argv[2], "rb").read(), b"", 8
+while at < len(data):
+    size, kind = struct.unpack(">I4s", data[at:at + 8])
+    body = data[at + 8:at + 8 + size]
+    if sys.argv[1] == "pixels" and kind == b"IDAT": out += body
+    if sys.argv[1] == "session" and kind == b"iTXt" and body.startswith(b"tessera"):
+        out = body.split(b"\0", 1)[1][2:].split(b"\0", 2)[2]
+    at += 12 + size
+sys.stdout.buffer.write(zlib.decompress(out))
+PY
+pixels() { python3 png.py pixels "$1" || fail "$1 cannot be read"; }
+
+# The picture opens as a session and gives the same pixels; so does the session in it, as a file.
+draw first.png -o again.png || fail "a picture does not open as a session"
+cmp <(pixels first.png) <(pixels again.png) || fail "the session in a picture gives another picture"
+python3 png.py session first.png > s.tessera.json || fail "no session in the picture"
+draw s.tessera.json -o from-file.png || fail "the session does not open"
+cmp <(pixels first.png) <(pixels from-file.png) || fail "the session as a file gives another picture"
+
+# The comparison can fail: another camera is another picture.
+draw s.tessera.json --set /camera/distance=9 -o far.png || fail "--set"
+cmp -s <(pixels first.png) <(pixels far.png) && fail "another camera gives the same picture"
+
+# Damaged: status 2, one line, no picture.
+bad() {
+    draw "$1" -o bad.png
+    local status=$?
+    [ $status = 2 ] || fail "$1: status $status"
+    [ "$(wc -l < err)" = 1 ] || fail "$1: not one line"
+    [ ! -e bad.png ] || fail "$1: drew a picture"
+}
+bytes=$(wc -c < s.tessera.json)
+for part in 0 1 $((bytes / 3)) $((bytes / 2)) $((bytes - 3)); do
+    head -c "$part" s.tessera.json > cut.tessera.json
+    bad cut.tessera.json
+done
+python3 - <<'PY'
+text = open("s.tessera.json", "rb").read()
+for name, place in (("quote", text.index(b'"camera"')), ("number", text.index(b'"schema": ') + 10)):
+    data = bytearray(text)
+    data[place] ^= 0x40
+    open("flip-%s.tessera.json" % name, "wb").write(data)
+picture = open("first.png", "rb").read()
+for name, place in (("head", 20), ("text", picture.index(b"iTXt") + 200), ("pixels", len(picture) // 2)):
+    data = bytearray(picture)
+    data[place] ^= 4
+    open("flip-%s.png" % name, "wb").write(data)
+open("cut.png", "wb").write(picture[:len(picture) * 2 // 3])
+PY
+for file in flip-*.json flip-*.png cut.png; do bad "$file"; done
+mv cell.tsr elsewhere.tsr
+bad s.tessera.json
+grep -q 'not found' err || fail "the missing data file is not named"
+ls ./*.part-* 2> /dev/null && fail "something is left behind"
+echo "render: all good"
