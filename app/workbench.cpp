@@ -190,7 +190,7 @@ void Workbench::autosave() {
     if (!autosave_ || !unsavedEdits_ || now() - lastAutosave_ < kAutosaveSeconds) return;
     lastAutosave_ = now();
     unsavedEdits_ = false;
-    if (!dirty()) return;
+    if (session_ == saved_) return;
     const SessionDocument snapshot = document();
     const std::string folder = options_.stateFolder;
     jobs_.start(
