@@ -67,6 +67,8 @@ Dataset makeMarschnerLobb(const std::map<std::string, double>& given) {
     info.name = "marschner-lobb";
     info.lattice = lattice;
     info.bounds = {glm::dvec3(-1), glm::dvec3(1)};
+    info.lengthUnit.clear(); // a formula has no metres
+    info.timeUnit.clear();
     Parameter rho;
     rho.name = "rho";
     rho.type = bits == 8 ? ScalarType::U8 : bits == 16 ? ScalarType::U16 : ScalarType::F32;
