@@ -238,6 +238,7 @@ struct Block {
 
 void liftAxis(const Block& block, glm::ivec3 part, int axis, const Filter& filter, Arithmetic arithmetic,
               bool isForward, Scratch& scratch) {
+    if (part.x < 1 || part.y < 1 || part.z < 1) return; // the odd sublattice of a single slice
     const std::ptrdiff_t row = block.full.x, slice = row * block.full.y;
     const glm::ivec3 low = levelSize(part, 1);
     const auto lift = [&](std::ptrdiff_t at, int count, std::ptrdiff_t pitch, int lanes, bool samples,

@@ -31,7 +31,7 @@ Dataset withNames(Dataset dataset, const ImportOptions& options) {
     std::set<std::string> names;
     for (const auto& [from, to] : options.rename)
         if (std::none_of(info.parameters.begin(), info.parameters.end(),
-                         [&](const Parameter& parameter) { return parameter.name == from; }))
+                         [&from = from](const Parameter& parameter) { return parameter.name == from; }))
             throw Error("there is no array \"" + from + "\"", {}, "--rename");
     for (Parameter& parameter : info.parameters) {
         if (const auto to = options.rename.find(parameter.name); to != options.rename.end())
