@@ -29,9 +29,8 @@
 /// mix(contextSaturation, 1, d)), in linear light before shading. An x-ray layer's colour keeps its saturation.
 namespace tessera::vis {
 
-inline constexpr double kOpaque = 0.995;    ///< accumulated opacity at which a ray ends
-inline constexpr double kPickOpacity = 0.1; ///< accumulated opacity from which a pixel shows something
-inline constexpr int kBisections = 6;       ///< halvings of a step to find an iso-surface
+inline constexpr double kOpaque = 0.995; ///< accumulated opacity at which a ray ends
+inline constexpr int kBisections = 6;    ///< halvings of a step to find an iso-surface
 inline constexpr double kFlatGradient =
     0.005; ///< gradient, in transfer-function ranges per cell, from which shading is full
 

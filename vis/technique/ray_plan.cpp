@@ -248,8 +248,9 @@ void setBrushes(const Program& program, const RayPlan& plan, const Scene& scene,
     }
     constexpr std::size_t kMaxIntervals = 32; // MAX_INTERVALS in lib/bindings.glsl
     if (meanings.size() > kMaxIntervals) {
-        meanings.resize(kMaxIntervals);
-        intervals.resize(kMaxIntervals);
+        meanings.resize(kMaxIntervals); // whole brushes only: half a brush would select more than it says
+        while (!meanings.empty() && (meanings.back().y & 2) == 0) meanings.pop_back();
+        intervals.resize(meanings.size());
     }
     program.set("intervalCount", int(meanings.size()));
     program.set("intervalMeaning", std::span<const glm::ivec2>(meanings));
@@ -342,7 +343,7 @@ bool anyOpacity(const std::vector<float>& opacity, glm::dvec2 map, float lo, flo
     return false;
 }
 
-/// Distances by one pass per axis: min over the line of max(|dx|, distance) is separable for the Chebyshev metric.
+/// Chebyshev distance of every block to the nearest one whose distance is 0, in place.
 void spread(std::vector<std::uint8_t>& distance, glm::ivec3 count) {
     const std::size_t strides[] = {1, std::size_t(count.x), std::size_t(count.x) * std::size_t(count.y)};
     // Two chamfer sweeps over all 26 neighbours give the exact Chebyshev distance.

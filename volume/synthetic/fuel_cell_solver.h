@@ -82,7 +82,6 @@ public:
     double meanCurrent() const;                                             ///< A/m2
     /// Rates of the last step (stored: 0 after settle) of 0 the fuel or 1 the air side.
     Balance balance(int space) const;
-    int lastIterations() const { return iterations_; } ///< of the non-linear loop
 
 private:
     struct SpeciesSystem {
