@@ -1,0 +1,190 @@
+#include "volume/mesh/mesh_file.h"
+
+#include "volume/atomic_file.h"
+
+#include <bit>
+#include <charconv>
+#include <cstring>
+#include <functional>
+#include <glm/geometric.hpp>
+
+namespace tessera::volume {
+
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "the formats below are little-endian");
+
+/// Collects small pieces into large writes.
+class Writer {
+public:
+    Writer(const std::string& path, const Progress& progress) : file_(path), progress_(progress) {}
+
+    void text(std::string_view piece) { buffer_ += piece; }
+    template <class T> void raw(const T& value) {
+        char bytes[sizeof(T)];
+        std::memcpy(bytes, &value, sizeof(T));
+        buffer_.append(bytes, sizeof(T));
+    }
+    void vector(const glm::vec3& v) {
+        for (int i = 0; i < 3; ++i) raw(v[i]);
+    }
+    void number(auto value) {
+        char digits[32];
+        buffer_.append(digits, std::to_chars(digits, digits + sizeof digits, value).ptr);
+    }
+    /// Calls `one(i)` for each of `count`, writing on the way.
+    void each(std::size_t count, const std::function<void(std::size_t)>& one) {
+        for (std::size_t i = 0; i < count; ++i) {
+            one(i);
+            if (buffer_.size() < std::size_t(1) << 20) continue;
+            flush();
+            progress_.advance(double(i) / double(count));
+        }
+    }
+    void commit() {
+        flush();
+        file_.commit();
+    }
+
+private:
+    void flush() {
+        file_.write(buffer_);
+        buffer_.clear();
+    }
+    AtomicFile file_;
+    const Progress& progress_;
+    std::string buffer_;
+};
+
+/// A name that formats with words take: letters, digits and _.
+std::string word(const std::string& name) {
+    std::string out;
+    for (const char c : name) {
+        const bool plain = (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
+        out += plain ? c : '_';
+    }
+    return out.empty() ? "value" : out;
+}
+
+void writePly(Writer& out, const SurfaceMesh& mesh, const std::string& scalarName) {
+    out.text("ply\nformat binary_little_endian 1.0\nelement vertex " + std::to_string(mesh.positions.size()) +
+             "\nproperty float x\nproperty float y\nproperty float z\n");
+    if (!mesh.normals.empty()) out.text("property float nx\nproperty float ny\nproperty float nz\n");
+    if (!mesh.scalars.empty()) out.text("property float " + word(scalarName) + "\n");
+    out.text("element face " + std::to_string(mesh.triangles.size()) +
+             "\nproperty list uchar uint vertex_indices\nend_header\n");
+    out.each(mesh.positions.size(), [&](std::size_t i) {
+        out.vector(mesh.positions[i]);
+        if (!mesh.normals.empty()) out.vector(mesh.normals[i]);
+        if (!mesh.scalars.empty()) out.raw(mesh.scalars[i]);
+    });
+    out.each(mesh.triangles.size(), [&](std::size_t i) {
+        out.raw(std::uint8_t(3));
+        for (int c = 0; c < 3; ++c) out.raw(std::uint32_t(mesh.triangles[i][c]));
+    });
+}
+
+void writeStl(Writer& out, const SurfaceMesh& mesh) {
+    std::string header = "binary STL";
+    header.resize(80, ' ');
+    out.text(header);
+    out.raw(std::uint32_t(mesh.triangles.size()));
+    out.each(mesh.triangles.size(), [&](std::size_t i) {
+        const glm::uvec3 t = mesh.triangles[i];
+        const glm::vec3 a = mesh.positions[t.x], b = mesh.positions[t.y], c = mesh.positions[t.z];
+        const glm::dvec3 normal = glm::cross(glm::dvec3(b - a), glm::dvec3(c - a));
+        const double length = glm::length(normal);
+        out.vector(length > 0 ? glm::vec3(normal / length) : glm::vec3(0));
+        out.vector(a);
+        out.vector(b);
+        out.vector(c);
+        out.raw(std::uint16_t(0));
+    });
+}
+
+void writeObj(Writer& out, const SurfaceMesh& mesh) {
+    const auto line = [&](std::string_view key, const glm::vec3& v) {
+        out.text(key);
+        for (int i = 0; i < 3; ++i) {
+            out.text(" ");
+            out.number(v[i]);
+        }
+        out.text("\n");
+    };
+    out.each(mesh.positions.size(), [&](std::size_t i) { line("v", mesh.positions[i]); });
+    out.each(mesh.normals.size(), [&](std::size_t i) { line("vn", mesh.normals[i]); });
+    out.each(mesh.triangles.size(), [&](std::size_t i) {
+        out.text("f");
+        for (int c = 0; c < 3; ++c) {
+            const std::uint32_t number = mesh.triangles[i][c] + 1;
+            out.text(" ");
+            out.number(number);
+            if (mesh.normals.empty()) continue;
+            out.text("//");
+            out.number(number);
+        }
+        out.text("\n");
+    });
+}
+
+void writeVtp(Writer& out, const SurfaceMesh& mesh, const std::string& scalarName) {
+    const std::uint64_t points = mesh.positions.size(), triangles = mesh.triangles.size();
+    std::uint64_t offset = 0;
+    const auto array = [&](const std::string& type, const std::string& name, int components, std::uint64_t bytes) {
+        out.text("<DataArray type=\"" + type + "\" Name=\"" + name + "\" NumberOfComponents=\"" +
+                 std::to_string(components) + "\" format=\"appended\" offset=\"" + std::to_string(offset) + "\"/>\n");
+        offset += sizeof(std::uint64_t) + bytes;
+    };
+    out.text("<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\" "
+             "header_type=\"UInt64\">\n<PolyData>\n<Piece NumberOfPoints=\"" +
+             std::to_string(points) +
+             "\" NumberOfVerts=\"0\" NumberOfLines=\"0\" NumberOfStrips=\"0\" "
+             "NumberOfPolys=\"" +
+             std::to_string(triangles) + "\">\n<PointData");
+    if (!mesh.normals.empty()) out.text(" Normals=\"Normals\"");
+    if (!mesh.scalars.empty()) out.text(" Scalars=\"" + word(scalarName) + "\"");
+    out.text(">\n");
+    if (!mesh.normals.empty()) array("Float32", "Normals", 3, points * 12);
+    if (!mesh.scalars.empty()) array("Float32", word(scalarName), 1, points * 4);
+    out.text("</PointData>\n<Points>\n");
+    array("Float32", "Points", 3, points * 12);
+    out.text("</Points>\n<Polys>\n");
+    array("UInt32", "connectivity", 1, triangles * 12);
+    array("Int64", "offsets", 1, triangles * 8);
+    out.text("</Polys>\n</Piece>\n</PolyData>\n<AppendedData encoding=\"raw\">\n_");
+    if (!mesh.normals.empty()) {
+        out.raw(points * 12);
+        out.each(points, [&](std::size_t i) { out.vector(mesh.normals[i]); });
+    }
+    if (!mesh.scalars.empty()) {
+        out.raw(points * 4);
+        out.each(points, [&](std::size_t i) { out.raw(mesh.scalars[i]); });
+    }
+    out.raw(points * 12);
+    out.each(points, [&](std::size_t i) { out.vector(mesh.positions[i]); });
+    out.raw(triangles * 12);
+    out.each(triangles, [&](std::size_t i) {
+        for (int c = 0; c < 3; ++c) out.raw(std::uint32_t(mesh.triangles[i][c]));
+    });
+    out.raw(triangles * 8);
+    out.each(triangles, [&](std::size_t i) { out.raw(std::int64_t(3 * (i + 1))); });
+    out.text("\n</AppendedData>\n</VTKFile>\n");
+}
+
+} // namespace
+
+void writeMesh(const SurfaceMesh& mesh, const std::string& path, const std::string& scalarName,
+               const Progress& progress) {
+    const auto ends = [&](std::string_view ending) { return std::string_view(path).ends_with(ending); };
+    if (mesh.triangles.size() >= 0xffffffffu && ends(".stl")) throw Error("too many triangles for STL", path);
+    if (!ends(".ply") && !ends(".stl") && !ends(".obj") && !ends(".vtp"))
+        throw Error("meshes are written as .ply, .stl, .obj or .vtp", path);
+    Writer out(path, progress);
+    if (ends(".ply")) writePly(out, mesh, scalarName);
+    if (ends(".stl")) writeStl(out, mesh);
+    if (ends(".obj")) writeObj(out, mesh);
+    if (ends(".vtp")) writeVtp(out, mesh, scalarName);
+    out.commit();
+}
+
+} // namespace tessera::volume

@@ -1,0 +1,25 @@
+#pragma once
+
+#include "volume/brick_source.h"
+#include "volume/progress.h"
+
+#include <vector>
+
+namespace tessera::volume {
+
+/// All samples of one channel at one time as numbers in memory: physical values, x fastest, storage order of the
+/// lattice.
+struct SampleGrid {
+    Lattice lattice;
+    std::vector<float> values;
+    std::vector<std::uint8_t> present; ///< empty: all; else one byte per sample, 0 = absent (value undefined)
+};
+
+/// Reads every brick of a channel at a level. Coarse levels of BCC are no BCC lattice: there each pair of samples gives
+/// its mean half-way between them, on CC. Throws what the source throws, Cancelled.
+SampleGrid readSamples(const BrickSource& source, int channel, int time, int level, const Progress& progress = {});
+
+/// The grid with one cell more on every side, the nearest sample of the same sublattice repeated in it.
+SampleGrid padded(const SampleGrid& grid);
+
+} // namespace tessera::volume

@@ -1,0 +1,28 @@
+#pragma once
+
+#include "volume/lattice.h"
+
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <vector>
+
+namespace tessera::volume {
+
+/// An indexed triangle mesh in physical coordinates. Triangles run counter-clockwise seen from their outer side, the
+/// one their normals point to.
+struct SurfaceMesh {
+    std::vector<glm::vec3> positions;
+    std::vector<glm::vec3> normals;    ///< one per vertex, length 1, or 0 where there is no direction; or empty
+    std::vector<float> scalars;        ///< one per vertex, or empty; NaN where there is no value
+    std::vector<glm::uvec3> triangles; ///< indices of vertices
+    bool operator==(const SurfaceMesh&) const = default;
+};
+
+/// Leaves out vertices that no triangle uses; the others keep their order.
+void removeUnused(SurfaceMesh& mesh);
+
+/// Cuts away what lies outside of a box. New vertices lie on its faces, with attributes interpolated; they are shared
+/// as the old ones are, so a closed mesh gets borders on the faces and nowhere else.
+void clipToBox(SurfaceMesh& mesh, const Box& box);
+
+} // namespace tessera::volume
