@@ -1,0 +1,199 @@
+#include "vis/renderer_impl.h"
+
+#include "vis/technique/box_lines.h"
+#include "volume/error.h"
+
+#include <algorithm>
+
+namespace tessera::vis {
+
+namespace {
+
+constexpr double kSkipOccupancy = 0.7; ///< above, leaping costs more than it saves
+
+std::vector<Tile> tilesOf(glm::ivec2 size, int edge) {
+    std::vector<Tile> tiles;
+    for (int y = 0; y < size.y; y += edge)
+        for (int x = 0; x < size.x; x += edge) tiles.push_back({{x, y}, glm::min(glm::ivec2(x, y) + edge, size)});
+    return tiles;
+}
+
+} // namespace
+
+/// Program, tables and uniforms of a bound plan. Null when the program does not compile.
+const Program* Renderer::Impl::prepare(ViewTarget& target, const Scene& scene, const RayPlan& plan) {
+    // Tables depend on these alone; a camera that moves keeps them.
+    if (target.tablesFor && target.tablesRevision == residency.revision() && target.tablesFor->layers == scene.layers &&
+        target.tablesFor->transfer == scene.transfer && target.tablesFor->render.filter == scene.render.filter &&
+        target.tablesTime == target.lastTime)
+        return programs.find(rayRecipe(plan, scene, source->grid(), target.skip));
+    target.tablesFor = scene;
+    target.tablesRevision = residency.revision();
+    target.tablesTime = target.lastTime;
+
+    const std::optional<BlockDistances> blocks = blockDistances(plan, scene, source->info());
+    target.skip = blocks && blocks->occupied < kSkipOccupancy;
+    const std::vector<glm::vec4> table = transferTables(plan, scene, source->info());
+    const int rows = int(table.size()) / kTableSize;
+    if (rows != target.tableRows) {
+        target.table = makeTexture2D({kTableSize, rows}, GL_RGBA32F, GL_NEAREST, "transfer tables");
+        target.tableRows = rows;
+    }
+    glTextureSubImage2D(target.table.name(), 0, 0, 0, kTableSize, rows, GL_RGBA, GL_FLOAT, table.data());
+    if (target.skip) {
+        if (target.blockCount != blocks->count || !target.blocks)
+            target.blocks = makeTexture3D(blocks->count, GL_R8UI, GL_NEAREST, "block distances");
+        target.blockCount = blocks->count;
+        glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+        glTextureSubImage3D(target.blocks.name(), 0, 0, 0, 0, blocks->count.x, blocks->count.y, blocks->count.z,
+                            GL_RED_INTEGER, GL_UNSIGNED_BYTE, blocks->distance.data());
+        glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
+    }
+    return programs.find(rayRecipe(plan, scene, source->grid(), target.skip));
+}
+
+void Renderer::Impl::rays(const Program& rayProgram, const Scene& scene, const RayBuffer& buffer, glm::ivec2 size,
+                          const Tile& tile) {
+    const float nothing[] = {0, 0, 0, 0}, nowhere[] = {-1e9f, 0, 0, 0};
+    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, buffer.framebuffer.name());
+    glViewport(0, 0, size.x, size.y);
+    glEnable(GL_SCISSOR_TEST);
+    glScissor(tile.begin.x, tile.begin.y, tile.end.x - tile.begin.x, tile.end.y - tile.begin.y);
+    glClearNamedFramebufferfv(buffer.framebuffer.name(), GL_COLOR, 0, nothing);
+    glClearNamedFramebufferfv(buffer.framebuffer.name(), GL_COLOR, 1, nowhere);
+    // Only where the box is.
+    const glm::ivec4 box = boxPixels(scene.camera, worldFrame(source->info().bounds, scene.stretch).halfSize, size);
+    const glm::ivec2 begin = glm::max(tile.begin, glm::ivec2(box)), end = glm::min(tile.end, glm::ivec2(box.z, box.w));
+    if (begin.x >= end.x || begin.y >= end.y) return;
+    glScissor(begin.x, begin.y, end.x - begin.x, end.y - begin.y);
+    rayProgram.set("ndcScale", 2.0f / glm::vec2(size));
+    rayProgram.set("ndcOffset", glm::vec2(-1));
+    glUseProgram(rayProgram.name());
+    glBindVertexArray(vertices.name());
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+}
+
+void Renderer::Impl::present(ViewTarget& target, const Scene& scene, bool reduced, const Tile& tile) {
+    const Program* found = programs.find({"screen.vert.glsl", "resolve.frag.glsl", {}, {}});
+    if (!found) throw Error("the program that presents pictures does not compile");
+    const Program& resolve = *found;
+    const RayBuffer& from = reduced ? target.reduced : target.full;
+    const glm::vec2 used(reduced ? target.reducedSize : target.size), whole(from.size);
+    resolve.set("source", 0);
+    resolve.set("sourceScale", used / glm::vec2(target.size) / whole);
+    resolve.set("sourceLimit", (used - 0.5f) / whole);
+    resolve.set("background", glm::vec3(linearFromSrgb(glm::dvec3(scene.background))));
+    resolve.set("boxColor", glm::vec3(linearFromSrgb(glm::dvec3(scene.boxColor))));
+    resolve.set("lineWidth", 1.3f);
+    BoxLines lines;
+    if (scene.showBox && source)
+        lines = boxLines(scene.camera, worldFrame(source->info().bounds, scene.stretch).halfSize, target.size);
+    resolve.set("edgeCount", int(lines.edges.size()));
+    resolve.set("frontCount", lines.front);
+    resolve.set("edges", lines.edges);
+    glBindTextureUnit(0, from.color.name());
+    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, target.outputFramebuffer.name());
+    glViewport(0, 0, target.size.x, target.size.y);
+    glEnable(GL_SCISSOR_TEST);
+    glScissor(tile.begin.x, tile.begin.y, tile.end.x - tile.begin.x, tile.end.y - tile.begin.y);
+    glUseProgram(resolve.name());
+    glBindVertexArray(vertices.name());
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+}
+
+/// The background alone: nothing is loaded, or the program does not compile.
+void Renderer::Impl::nothing(ViewTarget& target, const Scene& scene) {
+    const float empty[] = {0, 0, 0, 0}, nowhere[] = {-1e9f, 0, 0, 0};
+    glDisable(GL_SCISSOR_TEST);
+    glClearNamedFramebufferfv(target.full.framebuffer.name(), GL_COLOR, 0, empty);
+    glClearNamedFramebufferfv(target.full.framebuffer.name(), GL_COLOR, 1, nowhere);
+    present(target, scene, false, {{0, 0}, target.size});
+    target.fullValid = true;
+}
+
+/// Draws as much of the bound plan as the budget allows.
+void Renderer::Impl::refine(ViewTarget& target, const Scene& scene, const FrameRequest& request, const RayPlan& plan,
+                            Clock::time_point start) {
+    if (target.fullValid) return;
+    const Program* rayProgram = prepare(target, scene, plan);
+    if (!rayProgram) return nothing(target, scene);
+    const double aspect = double(target.size.x) / target.size.y;
+    const RayUnits units = rayUnits(plan);
+    for (std::size_t i = 0; i < plan.fields.size(); ++i) {
+        const BoundField& field = plan.fields[i];
+        glBindTextureUnit(GLuint(i), field.texture);
+        if (!field.atlas) continue;
+        glBindTextureUnit(GLuint(units.pages) + GLuint(i), field.pages);
+        glBindTextureUnit(GLuint(units.atlases) + GLuint(i), field.atlas);
+    }
+    glBindTextureUnit(GLuint(units.table), target.table.name());
+    glBindTextureUnit(GLuint(units.blocks), target.blocks.name());
+    const volume::DatasetInfo& info = source->info();
+    const double pixels = double(target.size.x) * target.size.y;
+    const Tile everything{{0, 0}, target.size};
+
+    // Software GL compiles at the first draw: do that before any clock runs.
+    if (programs.firstUse(*rayProgram)) {
+        setRayUniforms(*rayProgram, plan, scene, info, source->grid(), aspect, 1);
+        rays(*rayProgram, scene, target.reduced, target.size, {target.size / 2, target.size / 2 + 1});
+        glFinish();
+        target.reducedValid = false;
+    }
+
+    const auto drawReduced = [&](double shrink, double stepFactor) {
+        const Clock::time_point begin = Clock::now();
+        target.reducedSize = glm::max(glm::ivec2(glm::vec2(target.size) / float(shrink)), glm::ivec2(1));
+        setRayUniforms(*rayProgram, plan, scene, info, source->grid(), aspect, stepFactor);
+        rays(*rayProgram, scene, target.reduced, target.reducedSize, {{0, 0}, target.reducedSize});
+        glFinish();
+        const double cost =
+            millisecondsSince(begin) * stepFactor / std::max(1.0, double(target.reducedSize.x) * target.reducedSize.y);
+        target.msPerPixel = target.msPerPixel > 0 ? 0.5 * (target.msPerPixel + cost) : cost;
+        target.reducedValid = true;
+        present(target, scene, true, everything);
+        glBindTextureUnit(0, plan.fields[0].texture);
+    };
+    const auto left = [&] { return request.budgetMs - millisecondsSince(start); };
+    const double expected = target.msPerPixel * pixels;
+    const bool fast = target.msPerPixel > 0 && expected < std::max(left(), 1.0);
+    if (!request.wait && !fast && (request.moving || !target.reducedValid)) {
+        double shrink = 4, stepFactor = 2;
+        if (target.msPerPixel > 0)
+            for (double candidate : {1.5, 2.0, 3.0, 4.0, 6.0}) {
+                shrink = candidate;
+                stepFactor = candidate < 2 ? 1.5 : 2;
+                if (expected / (shrink * shrink * stepFactor) < left()) break;
+            }
+        drawReduced(shrink, stepFactor);
+        if (request.moving) return;
+    }
+
+    // Tiles as large as a third of the budget allows; the same grid until the picture is done.
+    if (target.tilesDone == 0) {
+        target.passMilliseconds = 0;
+        target.tileEdge = 1024;
+        const double perTile = request.wait ? 1e9 : std::max(request.budgetMs / 3, 2.0);
+        while (target.tileEdge > 64 && target.msPerPixel * target.tileEdge * target.tileEdge > perTile)
+            target.tileEdge /= 2;
+    }
+    const std::vector<Tile> tiles = tilesOf(target.size, target.tileEdge);
+    setRayUniforms(*rayProgram, plan, scene, info, source->grid(), aspect, 1);
+    bool first = true;
+    while (target.tilesDone < int(tiles.size()) && (request.wait || first || left() > 0)) {
+        const Tile& tile = tiles[std::size_t(target.tilesDone)];
+        const Clock::time_point begin = Clock::now();
+        rays(*rayProgram, scene, target.full, target.size, tile);
+        glFinish();
+        target.passMilliseconds += millisecondsSince(begin);
+        present(target, scene, false, tile);
+        glBindTextureUnit(0, plan.fields[0].texture);
+        ++target.tilesDone;
+        first = false;
+    }
+    if (target.tilesDone == int(tiles.size())) {
+        target.fullValid = true;
+        target.msPerPixel = target.passMilliseconds / pixels;
+    }
+}
+
+} // namespace tessera::vis

@@ -1,0 +1,44 @@
+#pragma once
+
+#include "vis/gl/program_cache.h"
+#include "vis/gl/residency.h"
+#include "vis/gl/view_target.h"
+#include "vis/renderer.h"
+#include "vis/technique/ray_plan.h"
+
+/// Inside the renderer: renderer.cpp has what is public, binding.cpp asks for textures, frame.cpp draws with them.
+namespace tessera::vis {
+
+using Clock = std::chrono::steady_clock;
+
+inline double millisecondsSince(Clock::time_point start) {
+    return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+/// Pixels [begin, end) of a picture.
+struct Tile {
+    glm::ivec2 begin, end;
+};
+
+struct Renderer::Impl {
+    RendererOptions options;
+    Residency residency;
+    std::shared_ptr<const volume::BrickSource> source;
+    VertexArray vertices = makeVertexArray("no vertices");
+    ProgramCache programs;
+
+    explicit Impl(const RendererOptions& given) : options(given), residency(given) {}
+
+    // binding.cpp
+    bool bind(ViewTarget& target, const Scene& scene, const FrameRequest& request, RayPlan& plan, FrameStatus& status);
+
+    // frame.cpp
+    const Program* prepare(ViewTarget& target, const Scene& scene, const RayPlan& plan);
+    void rays(const Program& program, const Scene& scene, const RayBuffer& buffer, glm::ivec2 size, const Tile& tile);
+    void present(ViewTarget& target, const Scene& scene, bool reduced, const Tile& tile);
+    void nothing(ViewTarget& target, const Scene& scene);
+    void refine(ViewTarget& target, const Scene& scene, const FrameRequest& request, const RayPlan& plan,
+                Clock::time_point start);
+};
+
+} // namespace tessera::vis
