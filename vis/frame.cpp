@@ -1,6 +1,8 @@
 #include "vis/renderer_impl.h"
 
 #include "vis/technique/box_lines.h"
+#include "vis/technique/ray_tables.h"
+#include "vis/technique/ray_uniforms.h"
 #include "volume/error.h"
 
 #include <algorithm>

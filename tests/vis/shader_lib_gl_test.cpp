@@ -1,63 +1,13 @@
-#include "tests/vis/gl_fixture.h"
-
-#include "vis/gl/handles.h"
-#include "vis/gl/program.h"
+#include "tests/vis/shader_probe.h"
 #include "vis/model/ray_setup.h"
 
-#include <array>
 #include <cmath>
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
-#include <random>
-#include <unistd.h>
 
 /// Functions of vis/shaders/lib against their C++ twins.
 namespace tessera {
 namespace {
 
-constexpr int kCases = 64;
-
-class ShaderLib : public test::GlTest {
-protected:
-    ShaderLib() {
-        std::mt19937 random(7);
-        std::uniform_real_distribution<float> number(-1, 1);
-        for (auto* list : {&a, &b, &c})
-            for (glm::vec4& v : *list) v = {number(random), number(random), number(random), number(random)};
-    }
-
-    /// Evaluates an expression of a[i], b[i], c[i] (vec4) for every i.
-    std::array<glm::vec4, kCases> evaluate(const std::string& includes, const std::string& expression) {
-        const std::filesystem::path folder =
-            std::filesystem::path(TESSERA_BINARY_DIR) / ("shader-lib-test-" + std::to_string(getpid()));
-        std::filesystem::create_directories(folder);
-        std::ofstream(folder / "probe.frag.glsl")
-            << includes << "uniform vec4 a[64], b[64], c[64];\nout vec4 result;\n"
-            << "void main() { int i = int(gl_FragCoord.x); result = " << expression << "; }\n";
-        setenv("TESSERA_SHADER_DIR", folder.c_str(), 1);
-        const vis::Program program = vis::makeProgram({"screen.vert.glsl", "probe.frag.glsl", {}, {}});
-        unsetenv("TESSERA_SHADER_DIR");
-        std::filesystem::remove_all(folder);
-        program.set("a", std::span<const glm::vec4>(a));
-        program.set("b", std::span<const glm::vec4>(b));
-        program.set("c", std::span<const glm::vec4>(c));
-        const vis::Texture texture = vis::makeTexture2D({kCases, 1}, GL_RGBA32F, GL_NEAREST, "probe");
-        const vis::Framebuffer framebuffer = vis::makeFramebuffer({texture.name()}, "probe");
-        const vis::VertexArray vertices = vis::makeVertexArray("probe");
-        glBindFramebuffer(GL_FRAMEBUFFER, framebuffer.name());
-        glViewport(0, 0, kCases, 1);
-        glUseProgram(program.name());
-        glBindVertexArray(vertices.name());
-        glDrawArrays(GL_TRIANGLES, 0, 3);
-        std::array<glm::vec4, kCases> out;
-        glGetTextureImage(texture.name(), 0, GL_RGBA, GL_FLOAT, sizeof out, out.data());
-        glBindFramebuffer(GL_FRAMEBUFFER, 0);
-        return out;
-    }
-
-    std::array<glm::vec4, kCases> a, b, c;
-};
+using ShaderLib = test::ShaderProbe;
 
 TEST_F(ShaderLib, ColorsAreEncodedAlike) {
     const auto got =

@@ -1,14 +1,10 @@
 #include "vis/reference/raycast.h"
 
-#include "vis/model/ray_setup.h"
+#include "vis/reference/prepared.h"
 #include "volume/parallel.h"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
-#include <limits>
-#include <map>
-#include <memory>
 
 namespace tessera::vis::reference {
 
@@ -18,92 +14,6 @@ constexpr double kFaceTolerance = 1e-5; ///< world units by which a slice on a f
 
 template <class Number> using Vec3 = glm::vec<3, Number>;
 template <class Number> using Vec4 = glm::vec<4, Number>;
-
-/// A layer with all that it needs to be drawn.
-struct DrawnLayer {
-    const Technique* technique = nullptr;
-    const Samples* samples = nullptr;
-    Range range;
-    const TransferFunction* function = nullptr;
-    Plane plane; ///< of a slice
-
-    /// Place in the range of the transfer function, 0..1.
-    double place(double value) const {
-        const double width = range.hi - range.lo;
-        if (width == 0) return value > range.lo ? 1 : value < range.lo ? 0 : 0.5;
-        return std::clamp((value - range.lo) / width, 0.0, 1.0);
-    }
-    /// Colour (linear light) and opacity of a value.
-    glm::dvec4 classify(double value) const {
-        const glm::dvec4 srgb = evaluate(*function, range, value);
-        return {linearFromSrgb(glm::dvec3(srgb)), srgb.a};
-    }
-};
-
-/// A scene made ready for its rays.
-struct Prepared {
-    const Scene& scene;
-    Options options;
-    volume::Lattice lattice;
-    WorldFrame frame;
-    glm::dvec3 cell{1}, toLight{0};
-    std::map<std::string, std::unique_ptr<Samples>> samples; ///< by channel name
-    std::vector<DrawnLayer> layers;
-
-    Prepared(const Scene& drawn, const volume::BrickSource& source, const Options& wanted)
-        : scene(drawn), options(wanted), lattice(source.grid().lattice) {
-        const volume::DatasetInfo& info = source.info();
-        frame = worldFrame(info.bounds, scene.stretch);
-        cell = worldCell(lattice, frame);
-        toLight = lightDirection(scene.render, scene.camera);
-        const int time = info.nearestTime(scene.time);
-        const auto load = [&](const std::string& name) -> const Samples* {
-            const std::optional<int> channel = info.findChannel(name);
-            if (!channel) return nullptr;
-            std::unique_ptr<Samples>& entry = samples[name];
-            if (!entry) entry = std::make_unique<Samples>(source, *channel, time, scene.render.filter, options.flaws);
-            return entry.get();
-        };
-        for (const Layer& layer : scene.layers) {
-            const std::string& name =
-                std::visit([](const auto& t) -> const std::string& { return t.channel; }, layer.technique);
-            DrawnLayer one;
-            one.technique = &layer.technique;
-            one.samples = layer.visible ? load(name) : nullptr;
-            if (one.samples == nullptr) continue;
-            const volume::Channel channel = info.channels()[std::size_t(*info.findChannel(name))];
-            one.function = &transferFor(scene, channel.name);
-            one.range = effectiveRange(*one.function, info.channelRange(channel));
-            if (const auto* slice = std::get_if<SliceLayer>(one.technique))
-                one.plane = slicePlane(*slice, frame, scene.cursor);
-            layers.push_back(std::move(one));
-        }
-        for (const Brush& brush : scene.selection.brushes)
-            for (const BrushInterval& interval : brush.intervals)
-                if (brush.enabled) load(interval.channel);
-    }
-
-    glm::dvec3 cells(glm::dvec3 world) const { return lattice.toCells(frame.toPhysical(world)); }
-    /// Degree of interest of a world point.
-    double interest(glm::dvec3 world) const {
-        if (!scene.selection.active()) return 1;
-        return degreeOfInterest(scene.selection, [&](const std::string& channel) {
-            const auto found = samples.find(channel);
-            const std::optional<double> value =
-                found == samples.end() ? std::nullopt : found->second->value(cells(world));
-            return value.value_or(std::numeric_limits<double>::quiet_NaN());
-        });
-    }
-    /// Gradient of a channel, per cell of the sublattice and axis.
-    glm::dvec3 gradient(const Samples& of, glm::dvec3 world) const {
-        return volume::gradient([&](glm::dvec3 at) { return of.value(at); }, cells(world), gradientDelta(lattice.kind));
-    }
-    double opacityFactor(double doi) const { return glm::mix(double(scene.selection.contextOpacity), 1.0, doi); }
-    glm::dvec3 saturated(glm::dvec3 color, double doi) const {
-        return glm::mix(glm::dvec3(luminance(color)), color,
-                        glm::mix(double(scene.selection.contextSaturation), 1.0, doi));
-    }
-};
 
 /// One ray from front to back.
 template <class Number> struct Caster {
@@ -273,35 +183,6 @@ Image render(const Scene& scene, const volume::BrickSource& source, glm::ivec2 s
 
 Image renderSingle(const Scene& scene, const volume::BrickSource& source, glm::ivec2 size, const Options& options) {
     return renderWith<float>(scene, source, size, options);
-}
-
-Difference compare(const Image& a, const Image& b, double threshold) {
-    assert(a.size == b.size && a.pixels.size() == b.pixels.size());
-    Difference difference;
-    double squares = 0, within = 0;
-    for (std::size_t i = 0; i < a.pixels.size(); ++i) {
-        double most = 0, own = 0;
-        for (int c = 0; c < 4; ++c) {
-            const double apart = std::abs(a.pixels[i][c] - b.pixels[i][c]);
-            own += apart * apart;
-            // NaN is as far apart as can be.
-            most = std::isnan(apart) ? std::numeric_limits<double>::infinity() : std::max(most, apart);
-        }
-        squares += own;
-        if (most > threshold)
-            ++difference.beyond;
-        else
-            within += own;
-        if (most > difference.maximum) {
-            difference.maximum = most;
-            difference.worst = {int(i) % a.size.x, int(i) / a.size.x};
-        }
-    }
-    difference.rmse = std::sqrt(squares / double(std::max<std::size_t>(a.pixels.size() * 4, 1)));
-    difference.rmseWithin =
-        std::sqrt(within / double(std::max<std::size_t>((a.pixels.size() - difference.beyond) * 4, 1)));
-    difference.psnr = -20 * std::log10(difference.rmse);
-    return difference;
 }
 
 } // namespace tessera::vis::reference

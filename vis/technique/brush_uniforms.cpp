@@ -1,16 +1,10 @@
 #include "vis/technique/brush_uniforms.h"
 
+#include "vis/technique/ray_field.h"
+
 #include <algorithm>
 
 namespace tessera::vis {
-
-namespace {
-
-double toTexel(const BoundField& field, double value) {
-    return (value - field.encoding.offset) / field.encoding.scale;
-}
-
-} // namespace
 
 void setBrushUniforms(const Program& program, const RayPlan& plan, const Scene& scene,
                       const volume::DatasetInfo& info) {

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-/// From a scene to one program of the ray caster: which channels it samples, which variant it needs, its uniforms.
+/// From a scene to one program of the ray caster: which channels it samples, which variant it needs.
 namespace tessera::vis {
 
 /// A channel as the program sees it now.
@@ -54,31 +54,5 @@ RayPlan planRays(const Scene& scene, const volume::DatasetInfo& info);
 
 /// The program variant of a plan whose fields are bound. `skip`: leap over empty blocks.
 ProgramRecipe rayRecipe(const RayPlan& plan, const Scene& scene, const volume::BrickGrid& grid, bool skip);
-
-inline constexpr int kTableSize = 2048;
-/// Transfer tables of layers, then slices: kTableSize x rows, linear light, not premultiplied; then one row per layer
-/// whose opacity at i is the greater one of entries i and i + 1.
-std::vector<glm::vec4> transferTables(const RayPlan& plan, const Scene& scene, const volume::DatasetInfo& info);
-
-/// Texture units: channels from 0, then page tables, atlases, the transfer tables and the block distances.
-struct RayUnits {
-    int pages = 0, atlases = 0, table = 0, blocks = 0;
-};
-RayUnits rayUnits(const RayPlan& plan);
-
-/// Sets every uniform except the samplers' textures (rayUnits) and
-/// ndcScale and ndcOffset.
-void setRayUniforms(const Program& program, const RayPlan& plan, const Scene& scene, const volume::DatasetInfo& info,
-                    const volume::BrickGrid& grid, double aspect, double stepFactor);
-
-/// Which blocks a layer of the plan can show something in, as Chebyshev distances (in blocks, at most 255) to the
-/// nearest such block; nullopt when the layers' fields have no common block grid.
-struct BlockDistances {
-    glm::ivec3 count{0};
-    std::vector<std::uint8_t> distance;
-    double occupied = 1;         ///< share of blocks at distance 0
-    glm::ivec3 begin{0}, end{0}; ///< box of the occupied blocks
-};
-std::optional<BlockDistances> blockDistances(const RayPlan& plan, const Scene& scene, const volume::DatasetInfo& info);
 
 } // namespace tessera::vis

@@ -1,0 +1,145 @@
+#pragma once
+
+#include "tests/vis/function_source.h"
+#include "vis/gl/headless.h"
+#include "vis/image_io.h"
+#include "vis/model/ray_setup.h"
+#include "vis/reference/raycast.h"
+#include "vis/renderer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <gtest/gtest.h>
+#include <memory>
+#include <string>
+
+/// Pictures of the shader beside those of the reference ray caster, small enough to draw many.
+///
+/// Tolerance with 32-bit textures (Mesa's software GL reaches RMSE 1e-6 and two outliers): RMSE <= kRmse over the
+/// pixels that are within kOutlier of the reference, and at most kOutliers pixels of the picture that are not. Outliers
+/// are pixels where a yes or no (present or absent, above or below an iso-value, one sample more or less, the nearest
+/// label) falls the other way in single precision. Tolerance with 16-bit textures and a 16-bit float target: PSNR >=
+/// kPsnr16 for a peak of 1 (reached: 75 dB).
+namespace tessera::vis {
+
+using reference::Flaws;
+using volume::LatticeKind;
+using Linear = reference::Image;
+
+inline constexpr glm::ivec2 kSize{72, 56};
+inline constexpr double kRmse = 2e-6, kOutlier = 1e-4;
+inline constexpr std::size_t kOutliers = 8; // of 4032 pixels
+inline constexpr double kPsnr16 = 65;
+
+/// Two scalars, a label and (where masked) absent samples outside a ball and in a slab; sizes that fill no brick.
+inline std::shared_ptr<FunctionSource> source(LatticeKind kind, bool masked) {
+    const auto present = [masked](glm::dvec3 p) {
+        return !masked || (glm::length((p - glm::dvec3(9, 8, 12)) / glm::dvec3(9.3, 8.4, 12.7)) < 1 &&
+                           std::abs(p.x - p.z * 0.5 - 2.2) > 1.7);
+    };
+    const auto a = [=](glm::dvec3 p) -> std::optional<double> {
+        if (!present(p)) return std::nullopt;
+        return 300 + 40 * std::sin(0.45 * p.x + 0.2) * std::cos(0.5 * p.y) + 35 * std::sin(0.4 * p.z + 0.1 * p.x);
+    };
+    const auto b = [=](glm::dvec3 p) -> std::optional<double> {
+        if (!present({p.x, p.y + 1, p.z})) return std::nullopt;
+        return 0.04 * (p.x + p.y) + 0.3 * std::cos(0.35 * p.z);
+    };
+    const auto label = [](glm::dvec3 p) -> std::optional<double> {
+        return std::floor(p.z / 6.3) + (p.x > 7.3 ? 1 : 0);
+    };
+    return std::make_shared<FunctionSource>(kind, glm::ivec3(19, 17, 25), glm::dvec3(1),
+                                            std::vector<FunctionSource::Channel>{{"a", a, {225, 375}},
+                                                                                 {"b", b, {-0.3, 1.7}},
+                                                                                 {"label", label, {0, 5}, true}},
+                                            8, glm::dvec3(0.137, 0.211, 0.173));
+}
+
+inline Scene baseScene(bool perspective) {
+    Scene scene;
+    scene.camera.projection = perspective ? Projection::Perspective : Projection::Orthographic;
+    scene.camera.distance = perspective ? 1.7f : 2.1f;
+    scene.camera.target = {0.04f, -0.03f, 0.02f};
+    scene.showBox = false;
+    scene.transfer["a"].opacity = {{0, 0}, {0.3f, 0}, {1, 0.06f}};
+    scene.transfer["b"].colormap = "inferno";
+    scene.transfer["b"].opacity = {{0, 0.3f}, {1, 1}};
+    scene.transfer["label"].colormap = "labels";
+    scene.transfer["label"].opacity = {{0, 0.02f}, {1, 0.02f}};
+    scene.cursor = {9.3, 7.7, 12.2};
+    return scene;
+}
+
+/// One renderer for a data set and its pictures.
+struct Drawing {
+    std::shared_ptr<FunctionSource> data;
+    Renderer renderer;
+
+    Drawing(LatticeKind kind, bool masked, bool exact)
+        : data(source(kind, masked)), renderer(RendererOptions{.exactTextures = exact}) {
+        renderer.setSource(data);
+    }
+    Linear draw(const Scene& scene) {
+        const ViewTargetPtr target = renderer.makeTarget();
+        FrameRequest request;
+        request.size = kSize;
+        request.wait = true;
+        const FrameStatus status = renderer.render(*target, scene, request);
+        EXPECT_TRUE(status.complete);
+        Linear image;
+        image.size = kSize;
+        for (const glm::vec4& pixel : renderer.readLinear(*target)) image.pixels.emplace_back(pixel);
+        EXPECT_EQ(image.pixels.size(), std::size_t(kSize.x * kSize.y));
+        for (const std::string& message : renderer.takeMessages()) ADD_FAILURE() << message;
+        return image;
+    }
+    Linear truth(const Scene& scene, const Flaws& flaws = {}) const {
+        return reference::render(scene, *data, kSize, {.flaws = flaws});
+    }
+};
+
+/// Writes the picture as PNG, colours over black and encoded.
+inline void save(const std::string& name, const Linear& image) {
+    vis::Image out{image.size, {}};
+    for (const glm::dvec4& pixel : image.pixels) {
+        for (int c = 0; c < 3; ++c)
+            out.rgba.push_back(std::uint8_t(255 * std::clamp(srgbFromLinear(std::max(pixel[c], 0.0)), 0.0, 1.0) + 0.5));
+        out.rgba.push_back(255);
+    }
+    writePng(name, out);
+}
+
+/// Saves what was got, what was wanted and ten times their difference, and says where.
+inline std::string evidence(const std::string& name, const Linear& got, const Linear& wanted) {
+    const std::filesystem::path folder = std::filesystem::path(TESSERA_BINARY_DIR) / "test-pictures";
+    std::filesystem::create_directories(folder);
+    Linear difference = got;
+    for (std::size_t i = 0; i < got.pixels.size(); ++i)
+        difference.pixels[i] = glm::abs(got.pixels[i] - wanted.pixels[i]) * 10.0;
+    std::string stem = (folder / name).string();
+    save(stem + " got.png", got);
+    save(stem + " wanted.png", wanted);
+    save(stem + " difference.png", difference);
+    return "see " + stem + " *.png";
+}
+
+inline std::string words(const reference::Difference& d) {
+    return "RMSE within " + std::to_string(d.rmseWithin * 1e6) + "e-6, " + std::to_string(d.beyond) +
+           " outliers, maximum " + std::to_string(d.maximum) + " at " + std::to_string(d.worst.x) + "," +
+           std::to_string(d.worst.y) + ", PSNR " + std::to_string(d.psnr) + " dB";
+}
+
+inline bool agrees(const reference::Difference& difference) {
+    return difference.rmseWithin <= kRmse && difference.beyond <= kOutliers;
+}
+
+struct Case {
+    LatticeKind kind;
+    bool masked;
+    std::string name() const {
+        return std::string(volume::kLatticeNames[std::size_t(kind)]) + (masked ? "_masked" : "_whole");
+    }
+};
+
+} // namespace tessera::vis

@@ -1,0 +1,61 @@
+#include "vis/reference/prepared.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace tessera::vis::reference {
+
+double DrawnLayer::place(double value) const {
+    const double width = range.hi - range.lo;
+    if (width == 0) return value > range.lo ? 1 : value < range.lo ? 0 : 0.5;
+    return std::clamp((value - range.lo) / width, 0.0, 1.0);
+}
+
+glm::dvec4 DrawnLayer::classify(double value) const {
+    const glm::dvec4 srgb = evaluate(*function, range, value);
+    return {linearFromSrgb(glm::dvec3(srgb)), srgb.a};
+}
+
+Prepared::Prepared(const Scene& drawn, const volume::BrickSource& source, const Options& wanted)
+    : scene(drawn), options(wanted), lattice(source.grid().lattice) {
+    const volume::DatasetInfo& info = source.info();
+    frame = worldFrame(info.bounds, scene.stretch);
+    cell = worldCell(lattice, frame);
+    toLight = lightDirection(scene.render, scene.camera);
+    const int time = info.nearestTime(scene.time);
+    const auto load = [&](const std::string& name) -> const Samples* {
+        const std::optional<int> channel = info.findChannel(name);
+        if (!channel) return nullptr;
+        std::unique_ptr<Samples>& entry = samples[name];
+        if (!entry) entry = std::make_unique<Samples>(source, *channel, time, scene.render.filter, options.flaws);
+        return entry.get();
+    };
+    for (const Layer& layer : scene.layers) {
+        const std::string& name =
+            std::visit([](const auto& t) -> const std::string& { return t.channel; }, layer.technique);
+        DrawnLayer one;
+        one.technique = &layer.technique;
+        one.samples = layer.visible ? load(name) : nullptr;
+        if (one.samples == nullptr) continue;
+        const volume::Channel channel = info.channels()[std::size_t(*info.findChannel(name))];
+        one.function = &transferFor(scene, channel.name);
+        one.range = effectiveRange(*one.function, info.channelRange(channel));
+        if (const auto* slice = std::get_if<SliceLayer>(one.technique))
+            one.plane = slicePlane(*slice, frame, scene.cursor);
+        layers.push_back(std::move(one));
+    }
+    for (const Brush& brush : scene.selection.brushes)
+        for (const BrushInterval& interval : brush.intervals)
+            if (brush.enabled) load(interval.channel);
+}
+
+double Prepared::interest(glm::dvec3 world) const {
+    if (!scene.selection.active()) return 1;
+    return degreeOfInterest(scene.selection, [&](const std::string& channel) {
+        const auto found = samples.find(channel);
+        const std::optional<double> value = found == samples.end() ? std::nullopt : found->second->value(cells(world));
+        return value.value_or(std::numeric_limits<double>::quiet_NaN());
+    });
+}
+
+} // namespace tessera::vis::reference

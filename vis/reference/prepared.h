@@ -1,0 +1,54 @@
+#pragma once
+
+#include "vis/model/ray_setup.h"
+#include "vis/reference/raycast.h"
+
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace tessera::vis::reference {
+
+/// A layer with all that it needs to be drawn.
+struct DrawnLayer {
+    const Technique* technique = nullptr;
+    const Samples* samples = nullptr;
+    Range range;
+    const TransferFunction* function = nullptr;
+    Plane plane; ///< of a slice
+
+    /// Place in the range of the transfer function, 0..1.
+    double place(double value) const;
+    /// Colour (linear light) and opacity of a value.
+    glm::dvec4 classify(double value) const;
+};
+
+/// A scene made ready for its rays.
+struct Prepared {
+    const Scene& scene;
+    Options options;
+    volume::Lattice lattice;
+    WorldFrame frame;
+    glm::dvec3 cell{1}, toLight{0};
+    std::map<std::string, std::unique_ptr<Samples>> samples; ///< by channel name
+    std::vector<DrawnLayer> layers;
+
+    /// Throws Error when the source does.
+    Prepared(const Scene& drawn, const volume::BrickSource& source, const Options& wanted);
+
+    glm::dvec3 cells(glm::dvec3 world) const { return lattice.toCells(frame.toPhysical(world)); }
+    /// Degree of interest of a world point.
+    double interest(glm::dvec3 world) const;
+    /// Gradient of a channel, per cell of the sublattice and axis.
+    glm::dvec3 gradient(const Samples& of, glm::dvec3 world) const {
+        return volume::gradient([&](glm::dvec3 at) { return of.value(at); }, cells(world), gradientDelta(lattice.kind));
+    }
+    double opacityFactor(double doi) const { return glm::mix(double(scene.selection.contextOpacity), 1.0, doi); }
+    glm::dvec3 saturated(glm::dvec3 color, double doi) const {
+        return glm::mix(glm::dvec3(luminance(color)), color,
+                        glm::mix(double(scene.selection.contextSaturation), 1.0, doi));
+    }
+};
+
+} // namespace tessera::vis::reference

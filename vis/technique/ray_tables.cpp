@@ -1,0 +1,120 @@
+#include "vis/technique/ray_tables.h"
+
+#include "vis/technique/ray_field.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tessera::vis {
+
+std::vector<glm::vec4> transferTables(const RayPlan& plan, const Scene& scene, const volume::DatasetInfo& info) {
+    std::vector<glm::vec4> table;
+    const auto add = [&](int field) {
+        const auto [function, range] = transferOf(scene, info, plan.fields[std::size_t(field)].channel);
+        for (int i = 0; i < kTableSize; ++i) {
+            const double value = glm::mix(range.lo, range.hi, double(i) / (kTableSize - 1));
+            const glm::dvec4 at = evaluate(function, range, value);
+            table.emplace_back(glm::vec3(linearFromSrgb(glm::dvec3(at))), float(at.a));
+        }
+    };
+    for (const RayLayer& layer : plan.layers) add(layer.field);
+    for (const SliceUse& slice : plan.slices) add(slice.field);
+    for (std::size_t row = 0; row < plan.layers.size(); ++row)
+        for (int i = 0; i < kTableSize; ++i) {
+            const std::size_t at = row * kTableSize + std::size_t(i);
+            table.emplace_back(glm::vec3(0), std::max(table[at].a, table[at + (i + 1 < kTableSize)].a));
+        }
+    return table;
+}
+
+namespace {
+
+/// Whether some texel value between lo and hi gets opacity from a transfer function; asks a running maximum free table.
+bool anyOpacity(const std::vector<float>& opacity, glm::dvec2 map, float lo, float hi) {
+    const auto place = [&](double texel) { return std::clamp(texel * map.x + map.y, 0.0, 1.0) * (kTableSize - 1); };
+    double a = place(lo), b = place(hi);
+    if (a > b) std::swap(a, b);
+    for (auto i = std::size_t(std::floor(a)); i <= std::size_t(std::ceil(b)); ++i)
+        if (opacity[i] > 0) return true;
+    return false;
+}
+
+/// Chebyshev distance of every block to the nearest one whose distance is 0, in place.
+void spread(std::vector<std::uint8_t>& distance, glm::ivec3 count) {
+    const std::size_t strides[] = {1, std::size_t(count.x), std::size_t(count.x) * std::size_t(count.y)};
+    // Two chamfer sweeps over all 26 neighbours give the exact Chebyshev distance.
+    const auto relax = [&](int x, int y, int z, bool forward) {
+        const std::size_t at = std::size_t(x) + strides[1] * std::size_t(y) + strides[2] * std::size_t(z);
+        int best = distance[at];
+        for (int dz = -1; dz <= 1 && best > 0; ++dz)
+            for (int dy = -1; dy <= 1; ++dy)
+                for (int dx = -1; dx <= 1; ++dx) {
+                    const int order = dz * 9 + dy * 3 + dx;
+                    if (forward ? order >= 0 : order <= 0) continue;
+                    const int nx = x + dx, ny = y + dy, nz = z + dz;
+                    if (nx < 0 || ny < 0 || nz < 0 || nx >= count.x || ny >= count.y || nz >= count.z) continue;
+                    best = std::min(
+                        best,
+                        1 + distance[std::size_t(nx) + strides[1] * std::size_t(ny) + strides[2] * std::size_t(nz)]);
+                }
+        distance[at] = std::uint8_t(std::min(best, 255));
+    };
+    for (int z = 0; z < count.z; ++z)
+        for (int y = 0; y < count.y; ++y)
+            for (int x = 0; x < count.x; ++x) relax(x, y, z, true);
+    for (int z = count.z - 1; z >= 0; --z)
+        for (int y = count.y - 1; y >= 0; --y)
+            for (int x = count.x - 1; x >= 0; --x) relax(x, y, z, false);
+}
+
+} // namespace
+
+std::optional<BlockDistances> blockDistances(const RayPlan& plan, const Scene& scene, const volume::DatasetInfo& info) {
+    const BlockRanges* grid = commonBlocks(plan);
+    if (!grid) return std::nullopt;
+    BlockDistances out;
+    out.count = grid->count;
+    const std::size_t total = grid->min.size();
+    out.distance.assign(total, 255);
+    for (const RayLayer& use : plan.layers) {
+        const BoundField& field = plan.fields[std::size_t(use.field)];
+        const Layer& layer = scene.layers[std::size_t(use.layer)];
+        const BlockRanges& blocks = *field.blocks;
+        std::vector<float> opacity;
+        glm::dvec2 map{0};
+        double value = 0;
+        if (use.style == RayStyle::Iso) {
+            value = toTexel(field, std::get<IsoLayer>(layer.technique).value);
+        } else {
+            map = transferMap(field, scene, info);
+            const TransferFunction function = transferOf(scene, info, field.channel).function;
+            for (int i = 0; i < kTableSize; ++i)
+                opacity.push_back(float(evaluate(function, {0, 1}, double(i) / (kTableSize - 1)).a));
+        }
+        for (std::size_t i = 0; i < total; ++i) {
+            if (!(blocks.min[i] <= blocks.max[i])) continue;
+            // Rounding of the texture and of its interpolation.
+            const float slack = 1e-4f, lo = blocks.min[i] - slack, hi = blocks.max[i] + slack;
+            bool shows = true;
+            if (use.style == RayStyle::Iso) shows = lo <= value && value <= hi;
+            if (use.style == RayStyle::Composite) shows = anyOpacity(opacity, map, lo, hi);
+            if (shows) out.distance[i] = 0;
+        }
+    }
+    std::size_t occupied = 0;
+    out.begin = out.count;
+    for (std::size_t i = 0; i < total; ++i)
+        if (out.distance[i] == 0) {
+            ++occupied;
+            const glm::ivec3 at(int(i % std::size_t(out.count.x)),
+                                int(i / std::size_t(out.count.x) % std::size_t(out.count.y)),
+                                int(i / std::size_t(out.count.x) / std::size_t(out.count.y)));
+            out.begin = glm::min(out.begin, at);
+            out.end = glm::max(out.end, at + 1);
+        }
+    out.occupied = total ? double(occupied) / double(total) : 1;
+    spread(out.distance, out.count);
+    return out;
+}
+
+} // namespace tessera::vis

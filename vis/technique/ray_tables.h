@@ -1,0 +1,23 @@
+#pragma once
+
+#include "vis/technique/ray_plan.h"
+
+/// What the ray caster looks up beside the data: transfer functions as tables, and where nothing can show.
+namespace tessera::vis {
+
+inline constexpr int kTableSize = 2048;
+/// Transfer tables of layers, then slices: kTableSize x rows, linear light, not premultiplied; then one row per layer
+/// whose opacity at i is the greater one of entries i and i + 1.
+std::vector<glm::vec4> transferTables(const RayPlan& plan, const Scene& scene, const volume::DatasetInfo& info);
+
+/// Which blocks a layer of the plan can show something in, as Chebyshev distances (in blocks, at most 255) to the
+/// nearest such block; nullopt when the layers' fields have no common block grid.
+struct BlockDistances {
+    glm::ivec3 count{0};
+    std::vector<std::uint8_t> distance;
+    double occupied = 1;         ///< share of blocks at distance 0
+    glm::ivec3 begin{0}, end{0}; ///< box of the occupied blocks
+};
+std::optional<BlockDistances> blockDistances(const RayPlan& plan, const Scene& scene, const volume::DatasetInfo& info);
+
+} // namespace tessera::vis

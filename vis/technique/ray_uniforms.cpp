@@ -1,0 +1,127 @@
+#include "vis/technique/ray_uniforms.h"
+
+#include "vis/technique/brush_uniforms.h"
+#include "vis/technique/ray_field.h"
+
+#include <algorithm>
+
+namespace tessera::vis {
+
+namespace {
+
+void setCamera(const Program& program, const Scene& scene, double aspect) {
+    const Ray middle = cameraRay(scene.camera, aspect, {0, 0});
+    const Ray right = cameraRay(scene.camera, aspect, {1, 0}), up = cameraRay(scene.camera, aspect, {0, 1});
+    // Directions scaled to reach the same plane are linear in the picture.
+    const auto onPlane = [&](glm::dvec3 d) { return d / glm::dot(d, middle.direction) - middle.direction; };
+    program.set("rayOrigin", glm::vec3(middle.origin));
+    program.set("rayOriginX", glm::vec3(right.origin - middle.origin));
+    program.set("rayOriginY", glm::vec3(up.origin - middle.origin));
+    program.set("rayDirection", glm::vec3(middle.direction));
+    program.set("rayDirectionX", glm::vec3(onPlane(right.direction)));
+    program.set("rayDirectionY", glm::vec3(onPlane(up.direction)));
+    program.set("rayBegin", scene.camera.projection == Projection::Perspective ? 0.0f : -1e6f);
+}
+
+void setLayers(const Program& program, const RayPlan& plan, const Scene& scene, const volume::DatasetInfo& info,
+               const WorldFrame& frame) {
+    std::vector<glm::vec4> maps, slices, planes;
+    std::vector<glm::vec3> colors;
+    for (const RayLayer& use : plan.layers) {
+        const Layer& layer = scene.layers[std::size_t(use.layer)];
+        const BoundField& field = plan.fields[std::size_t(use.field)];
+        if (const auto* iso = std::get_if<IsoLayer>(&layer.technique)) {
+            maps.emplace_back(1, 0, toTexel(field, iso->value), iso->opacity);
+            colors.emplace_back(linearFromSrgb(glm::dvec3(iso->color)));
+        } else {
+            const auto& volume = std::get<VolumeLayer>(layer.technique);
+            maps.emplace_back(transferMap(field, scene, info), volume.density, 1);
+            colors.emplace_back(1);
+        }
+    }
+    for (const SliceUse& use : plan.slices) {
+        const auto& slice = std::get<SliceLayer>(scene.layers[std::size_t(use.layer)].technique);
+        const Plane plane = slicePlane(slice, frame, scene.cursor);
+        planes.emplace_back(plane.normal, plane.offset);
+        slices.emplace_back(transferMap(plan.fields[std::size_t(use.field)], scene, info), slice.contours,
+                            slice.opacity);
+    }
+    program.set("layerMap", maps);
+    program.set("layerColor", colors);
+    program.set("slicePlane", planes);
+    program.set("sliceMap", slices);
+}
+
+void setFields(const Program& program, const RayPlan& plan, const volume::BrickGrid& grid) {
+    std::vector<glm::vec3> scales, offsets, odds;
+    std::vector<glm::vec3> inverses;
+    std::vector<int> levels, units, pages, atlases;
+    const RayUnits first = rayUnits(plan);
+    for (const BoundField& field : plan.fields) {
+        // Texel i of level l covers the sample at cell i * 2^l + phase; its centre is at i + halo + 1/2 in the texture.
+        const double step = double(1 << field.level);
+        const glm::dvec3 size(field.textureSize);
+        scales.emplace_back(1.0 / step / size);
+        offsets.emplace_back((kHalo + 0.5 - grid.levelPhase(field.level) / step) / size);
+        odds.emplace_back(-0.5 / step / size);
+        levels.push_back(field.level);
+        inverses.emplace_back(1.0f / glm::vec3(field.atlasSize));
+        const int i = int(units.size());
+        units.push_back(i);
+        pages.push_back(first.pages + i);
+        atlases.push_back(first.atlases + i);
+    }
+    program.set("fieldTexture", units);
+    program.set("fieldScale", scales);
+    program.set("fieldOffset", offsets);
+    program.set("fieldOdd", odds);
+    program.set("fieldLevel", levels);
+    program.set("pageTable", pages);
+    program.set("atlas", atlases);
+    program.set("atlasInverse", inverses);
+    program.set("transferTable", first.table);
+    program.set("blockDistance", first.blocks);
+}
+
+} // namespace
+
+RayUnits rayUnits(const RayPlan& plan) {
+    const int n = int(plan.fields.size());
+    const bool bricked =
+        std::any_of(plan.fields.begin(), plan.fields.end(), [](const BoundField& f) { return f.atlas; });
+    RayUnits units;
+    units.pages = n;
+    units.atlases = 2 * n;
+    units.table = bricked ? 3 * n : n;
+    units.blocks = units.table + 1;
+    return units;
+}
+
+void setRayUniforms(const Program& program, const RayPlan& plan, const Scene& scene, const volume::DatasetInfo& info,
+                    const volume::BrickGrid& grid, double aspect, double stepFactor) {
+    const WorldFrame frame = worldFrame(info.bounds, scene.stretch);
+    const glm::dvec3 cellsPerWorld = 1.0 / (frame.scale * grid.lattice.spacing);
+    const RenderParams& render = scene.render;
+    setCamera(program, scene, aspect);
+    setFields(program, plan, grid);
+    setLayers(program, plan, scene, info, frame);
+    setBrushUniforms(program, plan, scene, info);
+    // A data set of one layer has no thickness: enough of it to meet a slice.
+    program.set("halfSize", glm::vec3(glm::max(frame.halfSize, glm::dvec3(1e-5))));
+    program.set("worldCell", glm::vec3(worldCell(grid.lattice, frame)));
+    program.set("stepVoxels", float(render.stepVoxels * stepFactor));
+    program.set("cellsPerWorld", glm::vec3(cellsPerWorld));
+    program.set("cellsOffset", glm::vec3((-frame.offset / frame.scale - grid.lattice.origin) / grid.lattice.spacing));
+    program.set("gradientDelta", float(gradientDelta(grid.lattice.kind)));
+    program.set("axisCount", 3);
+    program.set("bisections", kBisections);
+    program.set("toLight", glm::vec3(lightDirection(render, scene.camera)));
+    program.set("light", glm::vec4(render.ambient, render.diffuse, render.specular, render.shininess));
+    if (const BlockRanges* blocks = commonBlocks(plan)) {
+        const double edge = double(1 << blocks->level) * blocks->edge;
+        program.set("blockScale", glm::vec3(float(1 / edge)));
+        program.set("blockOffset", glm::vec3(float(-grid.levelPhase(blocks->level) / edge)));
+    }
+}
+
+} // namespace tessera::vis
