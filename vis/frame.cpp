@@ -22,13 +22,13 @@ std::vector<Tile> tilesOf(glm::ivec2 size, int edge) {
 
 } // namespace
 
-/// Program, tables and uniforms of a bound plan. Null when the program does not compile.
-const Program* Renderer::Impl::prepare(ViewTarget& target, const Scene& scene, const RayPlan& plan) {
+/// Tables of a bound plan and the program variant it wants.
+ProgramRecipe Renderer::Impl::prepare(ViewTarget& target, const Scene& scene, const RayPlan& plan) {
     // Tables depend on these alone; a camera that moves keeps them.
     if (target.tablesFor && target.tablesRevision == residency.revision() && target.tablesFor->layers == scene.layers &&
         target.tablesFor->transfer == scene.transfer && target.tablesFor->render.filter == scene.render.filter &&
         target.tablesTime == target.lastTime)
-        return programs.find(rayRecipe(plan, scene, source->grid(), target.skip));
+        return rayRecipe(plan, scene, source->grid(), target.skip);
     target.tablesFor = scene;
     target.tablesRevision = residency.revision();
     target.tablesTime = target.lastTime;
@@ -51,7 +51,7 @@ const Program* Renderer::Impl::prepare(ViewTarget& target, const Scene& scene, c
                             GL_RED_INTEGER, GL_UNSIGNED_BYTE, blocks->distance.data());
         glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
     }
-    return programs.find(rayRecipe(plan, scene, source->grid(), target.skip));
+    return rayRecipe(plan, scene, source->grid(), target.skip);
 }
 
 void Renderer::Impl::rays(const Program& rayProgram, const Scene& scene, const RayBuffer& buffer, glm::ivec2 size,
@@ -101,6 +101,7 @@ void Renderer::Impl::present(ViewTarget& target, const Scene& scene, bool reduce
     glUseProgram(resolve.name());
     glBindVertexArray(vertices.name());
     glDrawArrays(GL_TRIANGLES, 0, 3);
+    target.shows = true;
 }
 
 /// The background alone: nothing is loaded, or the program does not compile.
@@ -117,8 +118,16 @@ void Renderer::Impl::nothing(ViewTarget& target, const Scene& scene) {
 void Renderer::Impl::refine(ViewTarget& target, const Scene& scene, const FrameRequest& request, const RayPlan& plan,
                             Clock::time_point start) {
     if (target.fullValid) return;
-    const Program* rayProgram = prepare(target, scene, plan);
-    if (!rayProgram) return nothing(target, scene);
+    const ProgramRecipe recipe = prepare(target, scene, plan);
+    const ProgramAnswer answer = request.wait ? ProgramAnswer{programs.find(recipe), ProgramStage::Ready}
+                                              : programs.request(recipe, request.budgetMs / 4);
+    // A variant that is being compiled, or does not compile, leaves the former picture as it is.
+    if (!answer.program) {
+        if (!target.shows || request.wait) nothing(target, scene);
+        target.fullValid = answer.stage == ProgramStage::Failed || request.wait;
+        return;
+    }
+    const Program* rayProgram = answer.program;
     const double aspect = double(target.size.x) / target.size.y;
     const RayUnits units = rayUnits(plan);
     for (std::size_t i = 0; i < plan.fields.size(); ++i) {
@@ -134,6 +143,11 @@ void Renderer::Impl::refine(ViewTarget& target, const Scene& scene, const FrameR
     const double pixels = double(target.size.x) * target.size.y;
     const Tile everything{{0, 0}, target.size};
 
+    if (answer.stage == ProgramStage::Linked) {
+        setRayUniforms(*rayProgram, plan, scene, info, source->grid(), aspect, 1);
+        programs.warmUp(recipe, target.full.framebuffer);
+        return;
+    }
     // Software GL compiles at the first draw: do that before any clock runs.
     if (programs.firstUse(*rayProgram)) {
         setRayUniforms(*rayProgram, plan, scene, info, source->grid(), aspect, 1);

@@ -33,7 +33,7 @@ struct Renderer::Impl {
     bool bind(ViewTarget& target, const Scene& scene, const FrameRequest& request, RayPlan& plan, FrameStatus& status);
 
     // frame.cpp
-    const Program* prepare(ViewTarget& target, const Scene& scene, const RayPlan& plan);
+    ProgramRecipe prepare(ViewTarget& target, const Scene& scene, const RayPlan& plan);
     void rays(const Program& program, const Scene& scene, const RayBuffer& buffer, glm::ivec2 size, const Tile& tile);
     void present(ViewTarget& target, const Scene& scene, bool reduced, const Tile& tile);
     void nothing(ViewTarget& target, const Scene& scene);

@@ -53,7 +53,12 @@ struct Window {
             glfwGetMonitorWorkarea(monitor, &x, &y, &w, &h);
             if (w > 0 && h > 0) size = glm::min(size, glm::ivec2(w, h));
         }
-        handle = glfwCreateWindow(size.x, size.y, "Tessera", nullptr, nullptr);
+        // EGL first: there shaders compile in a second context while this one draws.
+        for (const int api : {GLFW_EGL_CONTEXT_API, GLFW_NATIVE_CONTEXT_API}) {
+            glfwWindowHint(GLFW_CONTEXT_CREATION_API, api);
+            handle = glfwCreateWindow(size.x, size.y, "Tessera", nullptr, nullptr);
+            if (handle) break;
+        }
         if (!handle) throw MachineError("no window with OpenGL 4.5: " + lastGlfwError());
         glfwMakeContextCurrent(handle);
         glfwSwapInterval(1);

@@ -18,17 +18,19 @@ std::string ProgramRecipe::key() const {
 }
 
 const std::string* shaderText(const std::string& path) {
-    static std::map<std::string, std::string> read;
     if (const char* folder = std::getenv("TESSERA_SHADER_DIR")) {
+        static std::map<std::string, std::string> read;
         std::ifstream file(std::string(folder) + '/' + path);
         std::stringstream text;
         if (file && text << file.rdbuf()) return &(read[path] = text.str());
     }
-    const auto found = read.find(path);
-    if (found != read.end()) return &found->second;
-    for (const ShaderFile& file : embeddedShaders())
-        if (file.path == path) return &(read[path] = std::string(file.text));
-    return nullptr;
+    static const std::map<std::string, std::string> builtIn = [] {
+        std::map<std::string, std::string> texts;
+        for (const ShaderFile& file : embeddedShaders()) texts.emplace(file.path, file.text);
+        return texts;
+    }();
+    const auto found = builtIn.find(path);
+    return found != builtIn.end() ? &found->second : nullptr;
 }
 
 namespace {
@@ -73,8 +75,7 @@ struct Composer {
     }
 };
 
-GLuint compile(GLenum stage, const std::string& root, const ProgramRecipe& recipe) {
-    const ComposedShader composed = composeShader(root, recipe);
+GLuint compile(GLenum stage, const std::string& root, const ComposedShader& composed) {
     const GLuint shader = glCreateShader(stage);
     const char* text = composed.text.c_str();
     glShaderSource(shader, 1, &text, nullptr);
@@ -123,12 +124,21 @@ std::string mapLines(std::string_view log, const std::vector<std::string>& files
     return out;
 }
 
+ProgramText composeProgram(const ProgramRecipe& recipe) {
+    return {recipe.vertex, recipe.fragment, composeShader(recipe.vertex, recipe),
+            composeShader(recipe.fragment, recipe)};
+}
+
 Program makeProgram(const ProgramRecipe& recipe) {
+    return linkProgram(composeProgram(recipe));
+}
+
+Program linkProgram(const ProgramText& text) {
     ProgramObject object(glCreateProgram());
-    const GLuint vertex = compile(GL_VERTEX_SHADER, recipe.vertex, recipe);
+    const GLuint vertex = compile(GL_VERTEX_SHADER, text.vertex, text.vertexShader);
     GLuint fragment = 0;
     try {
-        fragment = compile(GL_FRAGMENT_SHADER, recipe.fragment, recipe);
+        fragment = compile(GL_FRAGMENT_SHADER, text.fragment, text.fragmentShader);
     } catch (...) {
         glDeleteShader(vertex);
         throw;
@@ -144,9 +154,9 @@ Program makeProgram(const ProgramRecipe& recipe) {
         glGetProgramiv(object.name(), GL_INFO_LOG_LENGTH, &length);
         std::string log(static_cast<std::size_t>(length), '\0');
         glGetProgramInfoLog(object.name(), length, &length, log.data());
-        throw Error("does not link: " + log, recipe.fragment);
+        throw Error("does not link: " + log, text.fragment);
     }
-    glObjectLabel(GL_PROGRAM, object.name(), -1, recipe.fragment.c_str());
+    glObjectLabel(GL_PROGRAM, object.name(), -1, text.fragment.c_str());
     return Program(std::move(object));
 }
 

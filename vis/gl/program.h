@@ -38,6 +38,13 @@ struct ComposedShader {
 /// Resolves includes and slots. Throws Error naming the file and line of a missing include or slot.
 ComposedShader composeShader(const std::string& root, const ProgramRecipe& recipe);
 
+/// Both stages of a recipe: all that the driver needs, so that another thread can compile it.
+struct ProgramText {
+    std::string vertex, fragment; ///< file names
+    ComposedShader vertexShader, fragmentShader;
+};
+ProgramText composeProgram(const ProgramRecipe& recipe);
+
 /// A compiler's message with "file * 10000 + line" turned into "path:line".
 std::string mapLines(std::string_view log, const std::vector<std::string>& files);
 
@@ -73,5 +80,7 @@ private:
 
 /// Composes, compiles and links. Throws Error with "path:line: text" lines when the compiler refuses.
 Program makeProgram(const ProgramRecipe& recipe);
+/// Compiles and links what is composed already.
+Program linkProgram(const ProgramText& text);
 
 } // namespace tessera::vis

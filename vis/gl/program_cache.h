@@ -1,24 +1,59 @@
 #pragma once
 
-#include "vis/gl/program.h"
+#include "vis/gl/job_queue.h"
+#include "vis/gl/shared_context.h"
+#include "vis/gl/warm_up.h"
 
+#include <condition_variable>
 #include <set>
 
 namespace tessera::vis {
 
-/// The programs made so far, by recipe. One that does not compile is tried once; the reason becomes a message.
+/// The programs made so far, by recipe. New ones are made on a thread with a context of its own where there is one, so
+/// that nobody waits for a compiler:
+///
+///     const ProgramAnswer answer = cache.request(recipe, 10);
+///     if (answer.stage == ProgramStage::Linked) { set its uniforms, bind its textures; cache.warmUp(recipe, ...); }
+///     if (answer.stage != ProgramStage::Ready) show the former picture;
+///
+/// One that does not compile is tried once; the reason becomes a message.
+enum class ProgramStage {
+    Linking, ///< on the way
+    Linked,  ///< wants warmUp() once its uniforms and textures are set
+    Warming, ///< on the way
+    Ready,
+    Failed
+};
+struct ProgramAnswer {
+    const Program* program = nullptr; ///< when Linked or Ready
+    ProgramStage stage = ProgramStage::Failed;
+};
+
 class ProgramCache {
 public:
+    ProgramCache();
+    ~ProgramCache(); ///< waits for a compilation that has begun
+
     /// The program of a recipe, made now if need be; null when it does not compile.
     const Program* find(const ProgramRecipe& recipe);
-    /// True once per program: software GL compiles at the first draw.
+    /// The same in the background; waits at most so long for it. Ready at once where there is no second context.
+    ProgramAnswer request(const ProgramRecipe& recipe, double milliseconds);
+    /// Lets the other context draw with a linked program, in the state that will draw it here.
+    void warmUp(const ProgramRecipe& recipe, const Framebuffer& framebuffer);
+    /// True once per program: its first draw may take long, so nobody should time it.
     bool firstUse(const Program& program) { return drawn_.insert(program.name()).second; }
-    std::vector<std::string> takeMessages() { return std::exchange(messages_, {}); }
+    std::vector<std::string> takeMessages();
 
 private:
-    std::map<std::string, Program> programs_; ///< an empty one did not compile
+    struct Entry;
+    struct Shared;
+    Entry& make(const ProgramRecipe& recipe, bool background);
+
+    std::map<std::string, std::shared_ptr<Entry>> programs_;
+    std::shared_ptr<Shared> shared_;
     std::set<GLuint> drawn_;
-    std::vector<std::string> messages_;
+    std::unique_ptr<SharedContext> context_; ///< null: everything here and now
+    std::unique_ptr<JobQueue> worker_;       ///< last: its jobs end before anything else goes
 };
 
 } // namespace tessera::vis

@@ -28,6 +28,7 @@ public:
     Scene scene;
     std::uint64_t revision = 0; ///< of what was resident
     bool started = false;       ///< the buffers hold something of `scene`
+    bool shows = false;         ///< `output` holds a picture, of whatever scene
     bool reducedValid = false;
     int tilesDone = 0, tileEdge = 256;
     const volume::BrickSource* source = nullptr;

@@ -1,0 +1,141 @@
+#include "tests/vis/function_source.h"
+#include "tests/vis/gl_fixture.h"
+
+#include "vis/gl/program_cache.h"
+
+#include <chrono>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <unistd.h>
+
+namespace tessera {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double millisecondsSince(Clock::time_point start) {
+    return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+/// An empty folder until the process ends: Mesa goes on writing into its cache.
+const std::filesystem::path& scratch() {
+    struct Folder {
+        std::filesystem::path path;
+        ~Folder() {
+            std::error_code ignored;
+            std::filesystem::remove_all(path, ignored);
+        }
+    };
+    static const Folder folder{std::filesystem::path(TESSERA_BINARY_DIR) /
+                               ("program-cache-" + std::to_string(getpid()))};
+    std::filesystem::create_directories(folder.path);
+    return folder.path;
+}
+
+/// With an empty disk cache of Mesa's, so that machine code is made anew.
+class ProgramCacheTest : public ::testing::Test {
+protected:
+    ProgramCacheTest() {
+        setenv("MESA_SHADER_CACHE_DIR", scratch().c_str(), 1);
+        context_ = std::make_unique<vis::HeadlessContext>();
+    }
+    ~ProgramCacheTest() override {
+        context_.reset();
+        unsetenv("MESA_SHADER_CACHE_DIR");
+        unsetenv("TESSERA_SHADER_DIR");
+    }
+    std::unique_ptr<vis::HeadlessContext> context_;
+};
+
+/// A volume, two surfaces and a brush: seconds of work for the compiler of software GL.
+vis::Scene heavyScene() {
+    vis::Scene scene;
+    vis::VolumeLayer volume;
+    volume.channel = "v";
+    scene.layers.push_back({"volume", true, volume});
+    scene.layers.push_back({"iso", true, vis::IsoLayer{.channel = "w", .value = 0.4, .opacity = 0.5f}});
+    scene.layers.push_back({"iso 2", true, vis::IsoLayer{.channel = "v", .value = 0.6, .opacity = 0.5f}});
+    scene.selection.brushes = {{.intervals = {{"w", 0.2, 0.9, 0.1}}}};
+    return scene;
+}
+
+std::shared_ptr<vis::FunctionSource> source() {
+    return std::make_shared<vis::FunctionSource>(
+        volume::LatticeKind::BCC, glm::ivec3(29, 25, 37), glm::dvec3(1),
+        std::vector<vis::FunctionSource::Channel>{{"v", [](glm::dvec3 p) { return 0.03 * p.x; }},
+                                                  {"w", [](glm::dvec3 p) { return 0.02 * p.y; }}});
+}
+
+// While a variant is compiled, calls return within a frame's time and the former picture stays; then the picture is the
+// one that waiting gives.
+TEST_F(ProgramCacheTest, CompilingBlocksNobody) {
+    vis::Renderer renderer;
+    renderer.setSource(source());
+    const vis::ViewTargetPtr target = renderer.makeTarget(), waited = renderer.makeTarget();
+    vis::Scene simple = heavyScene();
+    simple.layers.resize(1);
+    simple.selection = {};
+    vis::FrameRequest request;
+    request.size = {64, 64};
+    test::renderAll(renderer, *target, simple, request.size);
+    glm::ivec2 size;
+    const std::vector<std::uint8_t> former = renderer.readPixels(*target, size);
+    test::renderAll(renderer, *waited, simple, request.size);
+
+    const vis::Scene heavy = heavyScene();
+    double longest = 0, total = 0;
+    int unchanged = 0;
+    vis::FrameStatus status;
+    for (int frame = 0; frame < 20000 && !status.complete; ++frame) {
+        const Clock::time_point start = Clock::now();
+        status = renderer.render(*target, heavy, request);
+        longest = std::max(longest, millisecondsSince(start));
+        total += millisecondsSince(start);
+        if (unchanged == frame && renderer.readPixels(*target, size) == former) ++unchanged;
+    }
+    ASSERT_TRUE(status.complete);
+    EXPECT_GT(unchanged, 3) << "the former picture stays";
+    // Compiling takes a second or more; how long a call takes depends on what else the machine does.
+    EXPECT_LT(longest, std::max(0.35 * total, 120.0)) << "of " << total << " ms";
+    RecordProperty("longest_ms", int(longest));
+    RecordProperty("total_ms", int(total));
+    test::renderAll(renderer, *waited, heavy, request.size);
+    EXPECT_EQ(test::maxDifference(renderer.readLinear(*target), renderer.readLinear(*waited)), 0);
+    EXPECT_TRUE(renderer.takeMessages().empty());
+}
+
+// A variant that does not compile says so once; the picture before it stays, and the next good variant replaces it.
+TEST_F(ProgramCacheTest, BrokenVariantKeepsTheFormerPicture) {
+    vis::Renderer renderer;
+    renderer.setSource(source());
+    const vis::ViewTargetPtr target = renderer.makeTarget();
+    vis::Scene scene = heavyScene();
+    scene.layers.resize(1);
+    scene.selection = {};
+    test::renderAll(renderer, *target, scene, {32, 32});
+    glm::ivec2 size;
+    const std::vector<std::uint8_t> former = renderer.readPixels(*target, size);
+    std::filesystem::create_directories(scratch() / "shaders/lib");
+    std::ofstream(scratch() / "shaders/lib/doi.glsl") << "float broken() { return nothing; }\n";
+    setenv("TESSERA_SHADER_DIR", (scratch() / "shaders").c_str(), 1);
+    vis::FrameRequest request;
+    request.size = {32, 32};
+    std::vector<std::string> messages;
+    vis::FrameStatus status;
+    for (int frame = 0; frame < 2000 && !status.complete; ++frame) {
+        status = renderer.render(*target, heavyScene(), request);
+        for (std::string& message : renderer.takeMessages()) messages.push_back(std::move(message));
+    }
+    EXPECT_TRUE(status.complete);
+    ASSERT_FALSE(messages.empty());
+    EXPECT_NE(messages[0].find("doi.glsl:1"), std::string::npos) << messages[0];
+    EXPECT_EQ(renderer.readPixels(*target, size), former);
+    unsetenv("TESSERA_SHADER_DIR");
+    scene.camera.distance *= 0.7f;
+    test::renderAll(renderer, *target, scene, {32, 32});
+    EXPECT_NE(renderer.readPixels(*target, size), former);
+}
+
+} // namespace
+} // namespace tessera
