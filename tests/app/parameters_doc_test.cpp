@@ -1,13 +1,14 @@
 #include "app/session/describe_markdown.h"
 
 #include <cstdlib>
+#include <filesystem>
 #include <fstream>
 #include <gtest/gtest.h>
 #include <iterator>
 
 // docs/parameters.md is written by this test when TESSERA_UPDATE_DOCS is set, and compared otherwise.
 TEST(ParameterReference, PageIsUpToDate) {
-    const std::string path = std::string(TESSERA_SOURCE_DIR) + "/docs/parameters.md";
+    const std::filesystem::path path = std::filesystem::path(TESSERA_SOURCE_DIR) / "docs/parameters.md";
     const std::string wanted = tessera::app::parameterReference();
     if (std::getenv("TESSERA_UPDATE_DOCS") != nullptr) std::ofstream(path, std::ios::binary) << wanted;
     std::ifstream in(path, std::ios::binary);
