@@ -7,60 +7,118 @@ namespace tessera::vis {
 namespace {
 
 constexpr std::size_t kSmallTexels = std::size_t(1) << 20; ///< channels up to here need no coarse picture first
+constexpr double kAfterTheRest = 1e6;
+constexpr double kMovingDetail = 2; ///< coarser bricks will do while something moves
 
 } // namespace
 
-/// Asks for what the plan samples and binds what is here; false when nothing of it is here yet.
+/// Which bricks the picture needs, by what is known of the plan's channels at a time; true when that is something else
+/// than before.
+bool Renderer::Impl::demandBricks(ViewTarget& target, const Scene& scene, const FrameRequest& request,
+                                  const RayPlan& plan, const std::vector<ChannelKey>& keys) {
+    if (!residency.bricked()) {
+        target.demands.assign(keys.size(), nullptr);
+        return false;
+    }
+    RayPlan known = plan;
+    std::vector<const BlockRanges*> ranges(keys.size(), nullptr);
+    std::vector<ChannelKey> state;
+    for (std::size_t i = 0; i < keys.size(); ++i) {
+        const ChannelTexture* channel = residency.known(keys[i]);
+        if (!channel || !channel->bricks) continue;
+        ranges[i] = &channel->bricks->brickRanges();
+        known.fields[i].encoding = channel->encoding;
+        state.push_back(keys[i]);
+    }
+    DemandSettings settings{request.size, scene.render.detail * (request.moving ? kMovingDetail : 1)};
+    if (target.demandsFor && *target.demandsFor == scene && target.demandSettings == settings &&
+        target.demandsKnown == state && target.demands.size() == keys.size())
+        return false;
+    target.demandsFor = scene;
+    target.demandSettings = settings;
+    target.demandsKnown = state;
+    std::vector<std::shared_ptr<const BrickDemand>> demands =
+        brickDemands(std::move(known), scene, source->info(), source->grid(), ranges, settings);
+    const bool changed = !std::equal(demands.begin(), demands.end(), target.demands.begin(), target.demands.end(),
+                                     [](const auto& a, const auto& b) { return a == b || (a && b && *a == *b); });
+    if (changed) target.demands = std::move(demands);
+    return changed;
+}
+
+/// Asks for what the plan samples and binds what is here; false when it cannot be drawn yet.
 bool Renderer::Impl::bind(ViewTarget& target, const Scene& scene, const FrameRequest& request, RayPlan& plan,
                           FrameStatus& status) {
     const volume::DatasetInfo& info = source->info();
     const bool prefiltered = scene.render.filter == Filter::AverageQuasi;
     const int wantedTime = info.nearestTime(scene.time);
-    const auto keyOf = [&](const BoundField& field, int time) {
-        return ChannelKey{field.channel, time, prefiltered && !field.categorical};
+    const auto keysAt = [&](int time) {
+        std::vector<ChannelKey> keys;
+        for (const BoundField& field : plan.fields)
+            keys.push_back({field.channel, time, prefiltered && !field.categorical});
+        return keys;
     };
-    const volume::Lattice& lattice = source->grid().lattice;
-    const WorldFrame frame = worldFrame(info.bounds, scene.stretch);
-    const glm::dvec3 eye = lattice.toCells(frame.toPhysical(cameraRay(scene.camera, 1, {0, 0}).origin));
-    const glm::ivec3 texels = lattice.texels();
+    const std::vector<ChannelKey> wanted = keysAt(wantedTime);
+    const glm::ivec3 texels = source->grid().lattice.texels();
     const bool large = std::size_t(texels.x) * std::size_t(texels.y) * std::size_t(texels.z) > kSmallTexels;
-    for (std::size_t i = 0; i < plan.fields.size(); ++i)
-        residency.want(keyOf(plan.fields[i], wantedTime), double(i), large && !request.wait, eye);
-    if (request.wait) residency.finish();
+    demandBricks(target, scene, request, plan, wanted);
+    do {
+        for (std::size_t i = 0; i < wanted.size(); ++i)
+            residency.want(wanted[i], double(i), large && !request.wait, target.demands[i]);
+        if (request.wait) residency.finish();
+    } while (request.wait && demandBricks(target, scene, request, plan, wanted));
 
     // All channels of one picture show one time: the wanted one if each has something there, else the former one.
-    const auto here = [&](int time) {
-        return std::all_of(plan.fields.begin(), plan.fields.end(), [&](const BoundField& field) {
-            const ChannelKey key = keyOf(field, time);
+    const auto here = [&](const std::vector<ChannelKey>& keys) {
+        return std::all_of(keys.begin(), keys.end(), [&](const ChannelKey& key) {
             return residency.find(key) || residency.settled(key); // or it will never come
         });
     };
     int time = wantedTime;
-    if (!here(time) && target.lastTime >= 0 && target.lastTime < int(info.times.size()) && here(target.lastTime)) {
+    if (!here(wanted) && target.lastTime >= 0 && target.lastTime < int(info.times.size()) &&
+        here(keysAt(target.lastTime))) {
         time = target.lastTime;
-        for (const BoundField& field : plan.fields) residency.keep(keyOf(field, time));
+        for (const ChannelKey& key : keysAt(time)) residency.keep(key);
     }
+    const std::vector<ChannelKey> shown = keysAt(time);
     bool any = false, settled = true;
-    for (BoundField& field : plan.fields) {
-        const ChannelKey wanted = keyOf(field, wantedTime);
-        settled = settled && residency.settled(wanted);
-        status.bricksMissing += residency.missing(wanted);
-        const ChannelTexture* texture = residency.find(keyOf(field, time));
-        if (!texture) texture = &residency.nothing();
-        any = any || texture != &residency.nothing();
-        field.texture = texture->texture.name();
-        field.level = texture->level;
-        field.encoding = texture->encoding;
-        field.textureSize = texture->size;
-        field.blocks = &texture->blocks;
-        field.pages = texture->pages && texture->atlas ? texture->pages->texture.name() : 0;
-        field.atlas = field.pages ? texture->atlas->texture() : 0;
-        if (field.atlas) field.atlasSize = texture->atlas->size();
-        field.everyBrick = texture->bricksMissing == 0;
+    for (std::size_t i = 0; i < plan.fields.size(); ++i) {
+        settled = settled && residency.settled(wanted[i]);
+        status.bricksMissing += residency.missing(wanted[i]);
+        any = bindField(plan.fields[i], shown[i]) || any;
     }
+    // Part of the channels would want a program of its own, for a moment.
+    if (!here(shown)) any = false;
     if (any) target.lastTime = time;
+    // While the time moves on, the frame after this one comes next.
+    if (wantedTime != target.wantedTime) target.timeStep = target.wantedTime < 0 ? 0 : wantedTime - target.wantedTime;
+    target.wantedTime = wantedTime;
+    const int next = wantedTime + target.timeStep;
+    if (settled && !request.wait && target.timeStep != 0 && next >= 0 && next < int(info.times.size())) {
+        const std::vector<ChannelKey> coming = keysAt(next);
+        for (std::size_t i = 0; i < coming.size(); ++i)
+            residency.want(coming[i], kAfterTheRest + double(i), false, target.demands[i]);
+    }
     status.complete = settled;
     return any;
+}
+
+bool Renderer::Impl::bindField(BoundField& field, const ChannelKey& key) {
+    const ChannelTexture* found = residency.find(key);
+    const ChannelTexture& texture = found ? *found : residency.nothing();
+    field.texture = texture.texture.name();
+    field.level = texture.level;
+    field.encoding = texture.encoding;
+    field.textureSize = texture.size;
+    field.blocks = &texture.blocks();
+    if (texture.bricks) {
+        field.pages = texture.bricks->pageTexture();
+        field.atlas = texture.atlas->texture();
+        field.atlasSize = texture.atlas->size();
+    } else if (residency.bricked()) {
+        field.pages = residency.nothingPages();
+        field.atlas = texture.texture.name();
+    }
+    return found != nullptr;
 }
 
 } // namespace tessera::vis

@@ -71,6 +71,7 @@ FrameStatus Renderer::render(ViewTarget& target, const Scene& scene, const Frame
         target.source != impl_->source.get()) {
         target.scene = scene;
         target.revision = revision;
+        target.shows = target.shows && target.source == impl_->source.get();
         target.source = impl_->source.get();
         target.started = true;
         target.reducedValid = target.fullValid = false;
@@ -78,7 +79,7 @@ FrameStatus Renderer::render(ViewTarget& target, const Scene& scene, const Frame
     }
     if (any) {
         impl_->refine(target, scene, request, plan, start);
-    } else if (!target.fullValid) {
+    } else if (!target.fullValid && (plan.empty() || status.complete || !target.shows)) {
         impl_->nothing(target, scene);
     }
     status.complete = status.complete && target.fullValid;

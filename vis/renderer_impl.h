@@ -30,6 +30,9 @@ struct Renderer::Impl {
     explicit Impl(const RendererOptions& given) : options(given), residency(given) {}
 
     // binding.cpp
+    bool demandBricks(ViewTarget& target, const Scene& scene, const FrameRequest& request, const RayPlan& plan,
+                      const std::vector<ChannelKey>& keys);
+    bool bindField(BoundField& field, const ChannelKey& key);
     bool bind(ViewTarget& target, const Scene& scene, const FrameRequest& request, RayPlan& plan, FrameStatus& status);
 
     // frame.cpp

@@ -4,6 +4,7 @@
 #include "app/platform/headless.h"
 #include "app/platform/input_queue.h"
 #include "app/workbench.h"
+#include "vis/gl/requirements.h"
 #include "volume/error.h"
 
 #include <epoxy/gl.h>
@@ -35,6 +36,19 @@ struct Glfw {
     Glfw& operator=(const Glfw&) = delete;
 };
 
+/// What a driver that refuses 4.5 lacks, by a look at the best that it has.
+std::string whyNot() {
+    glfwDefaultWindowHints();
+    glfwWindowHint(GLFW_VISIBLE, GLFW_FALSE);
+    GLFWwindow* const window = glfwCreateWindow(16, 16, "Tessera", nullptr, nullptr);
+    if (!window) return {};
+    glfwMakeContextCurrent(window);
+    const std::string missing = vis::missingFeatures();
+    glfwMakeContextCurrent(nullptr);
+    glfwDestroyWindow(window);
+    return missing.empty() ? missing : "; " + missing;
+}
+
 struct Window {
     GLFWwindow* handle = nullptr;
     Workbench* workbench = nullptr;
@@ -59,7 +73,7 @@ struct Window {
             handle = glfwCreateWindow(size.x, size.y, "Tessera", nullptr, nullptr);
             if (handle) break;
         }
-        if (!handle) throw MachineError("no window with OpenGL 4.5: " + lastGlfwError());
+        if (!handle) throw MachineError("no window with OpenGL 4.5: " + lastGlfwError() + whyNot());
         glfwMakeContextCurrent(handle);
         glfwSwapInterval(1);
         glfwSetWindowSizeLimits(handle, 480, 320, GLFW_DONT_CARE, GLFW_DONT_CARE);

@@ -21,8 +21,8 @@ GLenum texelLayout(int components) {
 }
 
 BrickAtlas::BrickAtlas(int brickSize, int components, bool exact, std::size_t slots, int maxTextureSize)
-    : exact_(exact) {
-    const int edge = brickSize + 2 * kHalo, most = std::max(1, maxTextureSize / edge);
+    : exact_(exact), edge_(brickSize + 2 * kHalo) {
+    const int edge = edge_, most = std::max(1, maxTextureSize / edge);
     // As cubic as possible.
     glm::ivec3 count(1);
     count.x = std::clamp(int(std::ceil(std::cbrt(double(slots)))), 1, most);
@@ -52,19 +52,20 @@ void BrickAtlas::upload(glm::ivec3 slot, const TexelBlock& block) {
     glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
 }
 
-PageTable::PageTable(glm::ivec3 bricks)
-    : texture(makeTexture3D(bricks, GL_RGBA16UI, GL_NEAREST, "page table")), count(bricks),
-      pages(std::size_t(bricks.x) * std::size_t(bricks.y) * std::size_t(bricks.z), glm::u16vec4(0)) {
-    glTextureSubImage3D(texture.name(), 0, 0, 0, 0, count.x, count.y, count.z, GL_RGBA_INTEGER, GL_UNSIGNED_SHORT,
-                        pages.data());
+void BrickAtlas::copy(const BrickAtlas& from, glm::ivec3 fromSlot, glm::ivec3 slot) {
+    glCopyImageSubData(from.texture(), GL_TEXTURE_3D, 0, fromSlot.x, fromSlot.y, fromSlot.z, texture_.name(),
+                       GL_TEXTURE_3D, 0, slot.x, slot.y, slot.z, edge_, edge_, edge_);
 }
 
-void PageTable::set(glm::ivec3 brick, glm::ivec3 slot, std::uint16_t state) {
-    const glm::u16vec4 page(slot.x, slot.y, slot.z, state);
-    pages[(std::size_t(brick.z) * std::size_t(count.y) + std::size_t(brick.y)) * std::size_t(count.x) +
-          std::size_t(brick.x)] = page;
-    glTextureSubImage3D(texture.name(), 0, brick.x, brick.y, brick.z, 1, 1, 1, GL_RGBA_INTEGER, GL_UNSIGNED_SHORT,
-                        &page);
+PageTable::PageTable(glm::ivec3 bricks)
+    : texture(makeTexture3D(bricks, GL_RGBA16UI, GL_NEAREST, "page table")), count(bricks),
+      pages(std::size_t(bricks.x) * std::size_t(bricks.y) * std::size_t(bricks.z), {0, 0, 0, kNowhere}) {
+    upload();
+}
+
+void PageTable::upload() {
+    glTextureSubImage3D(texture.name(), 0, 0, 0, 0, count.x, count.y, count.z, GL_RGBA_INTEGER, GL_UNSIGNED_SHORT,
+                        pages.data());
 }
 
 } // namespace tessera::vis

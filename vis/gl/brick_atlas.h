@@ -22,10 +22,13 @@ public:
     std::optional<glm::ivec3> allocate();
     void release(glm::ivec3 slot) { free_.push_back(slot); }
     void upload(glm::ivec3 slot, const TexelBlock& block);
+    /// Copies a slot of another atlas of the same kind.
+    void copy(const BrickAtlas& from, glm::ivec3 fromSlot, glm::ivec3 slot);
 
     GLuint texture() const { return texture_.name(); }
     glm::ivec3 size() const { return size_; }
     std::size_t capacity() const { return capacity_; }
+    std::size_t unused() const { return free_.size(); }
     std::size_t bytes() const { return bytes_; }
 
 private:
@@ -33,19 +36,20 @@ private:
     glm::ivec3 size_{0};
     std::size_t capacity_ = 0, bytes_ = 0;
     bool exact_ = false;
+    int edge_ = 0;
     std::vector<glm::ivec3> free_;
 };
 
-/// Where the bricks of one channel are. Texel of the page table: first texel of the slot, then kAbsent, kCoarse or
-/// kResident.
+/// Where the bricks of one channel are: per brick of full resolution the first texel of its part of a slot, then its
+/// level, kAbsent (no sample there) or kNowhere.
 struct PageTable {
-    static constexpr std::uint16_t kCoarse = 0, kResident = 1, kAbsent = 2;
+    static constexpr std::uint16_t kNowhere = 254, kAbsent = 255;
     explicit PageTable(glm::ivec3 bricks);
-    void set(glm::ivec3 brick, glm::ivec3 slot, std::uint16_t state);
+    void upload();
 
     Texture texture;
     glm::ivec3 count{0};
-    std::vector<glm::u16vec4> pages; ///< what the texture holds, x fastest
+    std::vector<glm::u16vec4> pages; ///< x fastest; what the texture holds after upload()
 };
 
 } // namespace tessera::vis

@@ -29,7 +29,7 @@ struct ChannelSummary {
 struct LoadedTexels {
     ChannelKey key;
     int level = 0;
-    std::optional<glm::ivec3> brick; ///< one brick of level 0, else the whole channel
+    std::optional<glm::ivec3> brick; ///< one brick of the level's own (vis/gl/brick_levels.h), else the whole channel
     std::shared_ptr<const ChannelSummary> summary;
     TexelEncoding encoding;
     TexelBlock block;

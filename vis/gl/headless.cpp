@@ -1,5 +1,6 @@
 #include "vis/gl/headless.h"
 
+#include "vis/gl/requirements.h"
 #include "volume/error.h"
 
 #include <epoxy/egl.h>
@@ -58,6 +59,18 @@ std::vector<Candidate> candidates() {
     return all;
 }
 
+/// What a driver that refuses 4.5 lacks, by a look at the best that it has.
+std::string whyNot(EGLDisplay display, EGLConfig config) {
+    const EGLint any[] = {EGL_NONE};
+    const EGLContext context = eglCreateContext(display, config, EGL_NO_CONTEXT, any);
+    if (context == EGL_NO_CONTEXT) return {};
+    std::string text;
+    if (eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context)) text = ": " + missingFeatures();
+    eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+    eglDestroyContext(display, context);
+    return text;
+}
+
 /// Makes a context current; returns the reason when it cannot.
 std::string tryContext(EGLDisplay display, bool debug, EGLContext& context) {
     if (display == EGL_NO_DISPLAY) return "no display";
@@ -81,7 +94,7 @@ std::string tryContext(EGLDisplay display, bool debug, EGLContext& context) {
                                  debug ? EGL_TRUE : EGL_FALSE,
                                  EGL_NONE};
     context = eglCreateContext(display, config, EGL_NO_CONTEXT, attributes);
-    if (context == EGL_NO_CONTEXT) return "no OpenGL 4.5 core";
+    if (context == EGL_NO_CONTEXT) return "no OpenGL 4.5 core" + whyNot(display, config);
     if (eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context)) return {};
     eglDestroyContext(display, context);
     context = EGL_NO_CONTEXT;

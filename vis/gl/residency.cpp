@@ -11,39 +11,13 @@ namespace tessera::vis {
 
 namespace {
 
-constexpr int kBricksInFlight = 48;       ///< brick jobs queued per channel; the rest follows as they end
-constexpr std::uint64_t kFramesInUse = 8; ///< several views draw in turn: what one of the last frames used stays
-constexpr std::size_t kMaxTextureBytes = std::size_t(1) << 30; ///< software GL refuses more in one texture
+constexpr int kBricksInFlight = 12; ///< brick jobs queued per channel: few, so that the order follows the view
 
 std::size_t texelCount(glm::ivec3 size) {
     return std::size_t(size.x) * std::size_t(size.y) * std::size_t(size.z);
 }
 
-glm::ivec3 unravel(std::size_t index, glm::ivec3 count) {
-    return {int(index % std::size_t(count.x)), int(index / std::size_t(count.x) % std::size_t(count.y)),
-            int(index / std::size_t(count.x) / std::size_t(count.y))};
-}
-
 } // namespace
-
-/// Whole channels are uploaded a few slices per frame.
-struct Residency::Upload {
-    LoadedTexels item;
-    Texture texture;
-    int slices = 0;
-};
-
-struct Residency::Entry {
-    std::shared_ptr<const ChannelSummary> summary;
-    std::optional<ChannelTexture> shown;
-    bool loading = false;  ///< a job for the whole channel is under way
-    bool failed = false;   ///< nothing more will come
-    bool coverage = false; ///< a damaged brick asks for it
-    std::vector<std::uint8_t> bricksAsked;
-    int bricksInFlight = 0;
-    bool stuck = false; ///< the atlas cannot grow either
-    std::uint64_t used = 0;
-};
 
 Residency::Residency(const RendererOptions& options) : options_(options), jobs_(options.decodeThreads) {
     glGetIntegerv(GL_MAX_3D_TEXTURE_SIZE, &maxTextureSize_);
@@ -63,6 +37,7 @@ void Residency::setSource(std::shared_ptr<const volume::BrickSource> source) {
     exchange_ = std::make_shared<LoadExchange>();
     exchange_->source = source;
     exchange_->bricks = std::make_unique<const volume::BrickCache>(source, options_.memoryBudget);
+    makeNothing();
 }
 
 int Residency::componentsOf(bool coverage) const {
@@ -89,53 +64,57 @@ void Residency::add(double priority, LoadRequest request) {
     });
 }
 
-void Residency::want(const ChannelKey& key, double priority, bool coarseFirst, glm::dvec3 focus) {
+std::size_t Residency::slotBytes(int components) const {
+    const std::size_t edge = std::size_t(exchange_->source->grid().brickSize + 2 * kHalo);
+    return edge * edge * edge * std::size_t(components) * (options_.exactTextures ? 4 : 2);
+}
+
+void Residency::want(const ChannelKey& key, double priority, bool coarseFirst,
+                     std::shared_ptr<const BrickDemand> demand) {
     if (!exchange_) return;
     Entry& entry = entries_[key];
     entry.used = frame_;
     if (entry.failed || entry.loading) return;
+    const volume::BrickGrid& grid = exchange_->source->grid();
     const int level = textureLevel();
-    if (!entry.shown || entry.shown->level > level) {
+    LoadRequest request;
+    request.key = key;
+    request.summary = entry.summary;
+    request.coverage = entry.coverage;
+    if (level > 0) {
+        if (entry.shown) {
+            if (entry.demand != demand && !(entry.demand && demand && *entry.demand == *demand))
+                entry.shown->outOfRoom = entry.stuck = false; // another view may have less in sight
+            entry.demand = std::move(demand);
+            entry.shown->bricks->want(entry.demand.get(), frame_);
+            queueBricks(key, entry, priority);
+            return;
+        }
+        request.level = grid.levels - 1;
+        request.brick = glm::ivec3(0);
+        entry.loading = true;
+        add(priority - 1e6, std::move(request));
+    } else if (!entry.shown || entry.shown->level > level) {
         const bool coarse = !entry.shown && coarseFirst;
-        LoadRequest request;
-        request.key = key;
-        request.level = coarse ? exchange_->source->grid().levels - 1 : level;
-        request.summary = entry.summary;
-        request.coverage = entry.coverage;
+        request.level = coarse ? grid.levels - 1 : level;
         entry.loading = true;
         add(coarse ? priority - 1e6 : priority, std::move(request));
-    } else if (entry.shown->pages) {
-        queueBricks(key, entry, 1e6 + priority, focus);
     }
 }
 
-void Residency::queueBricks(const ChannelKey& key, Entry& entry, double priority, glm::dvec3 focus) {
-    ChannelTexture& shown = *entry.shown;
-    if (shown.bricksMissing == 0 || (shown.outOfRoom && (!waiting_ || entry.stuck)) ||
-        entry.bricksInFlight >= kBricksInFlight)
-        return;
-    const volume::BrickGrid& grid = exchange_->source->grid();
-    std::vector<std::pair<double, glm::ivec3>> order;
-    for (std::size_t i = 0; i < shown.pages->pages.size(); ++i) {
-        if (entry.bricksAsked[i]) continue;
-        const glm::ivec3 brick = unravel(i, shown.pages->count);
-        const glm::dvec3 apart = (glm::dvec3(brick) + 0.5) * double(grid.brickSize) - focus;
-        order.emplace_back(glm::dot(apart, apart), brick);
-    }
-    const auto nearer = [](const auto& a, const auto& b) { return a.first < b.first; };
-    const std::size_t room = std::min(order.size(), std::size_t(kBricksInFlight - entry.bricksInFlight));
-    std::partial_sort(order.begin(), order.begin() + std::ptrdiff_t(room), order.end(), nearer);
-    for (std::size_t n = 0; n < room; ++n) {
-        const glm::ivec3 brick = order[n].second, count = shown.pages->count;
-        entry.bricksAsked[(std::size_t(brick.z) * std::size_t(count.y) + std::size_t(brick.y)) * std::size_t(count.x) +
-                          std::size_t(brick.x)] = 1;
+void Residency::queueBricks(const ChannelKey& key, Entry& entry, double priority) {
+    const ChannelTexture& shown = *entry.shown;
+    const int room = kBricksInFlight - entry.bricksInFlight;
+    if (room <= 0 || (shown.outOfRoom && (!waiting_ || entry.stuck))) return;
+    for (const BrickId& id : shown.bricks->ask(std::size_t(room))) {
         ++entry.bricksInFlight;
         LoadRequest request;
         request.key = key;
-        request.brick = brick;
+        request.level = id.level;
+        request.brick = id.index;
         request.summary = entry.summary;
         request.coverage = entry.coverage;
-        add(priority + std::sqrt(order[n].first), std::move(request));
+        add(priority + double(shown.bricks->priority(id)), std::move(request));
     }
 }
 
@@ -144,20 +123,26 @@ void Residency::keep(const ChannelKey& key) {
     if (found != entries_.end()) found->second.used = frame_;
 }
 
-const ChannelTexture* Residency::find(const ChannelKey& key) const {
+const ChannelTexture* Residency::known(const ChannelKey& key) const {
     const auto found = entries_.find(key);
     return found != entries_.end() && found->second.shown ? &*found->second.shown : nullptr;
 }
 
-const ChannelTexture& Residency::nothing() {
-    if (!nothing_.texture) {
-        nothing_.texture = makeTexture3D(glm::ivec3(1), GL_RGBA16, GL_LINEAR, "nothing");
-        const std::uint16_t zero[4] = {0, 0, 0, 0};
-        glTextureSubImage3D(nothing_.texture.name(), 0, 0, 0, 0, 1, 1, 1, GL_RGBA, GL_UNSIGNED_SHORT, zero);
-        nothing_.encoding.coverage = true;
-        nothing_.size = glm::ivec3(1);
-    }
-    return nothing_;
+const ChannelTexture* Residency::find(const ChannelKey& key) const {
+    const ChannelTexture* channel = known(key);
+    return channel && channel->bricks && !channel->bricks->drawable() && !channel->outOfRoom ? nullptr : channel;
+}
+
+/// One texel, or one page, of nothing.
+void Residency::makeNothing() {
+    nothing_ = {};
+    nothing_.texture = makeTexture3D(glm::ivec3(1), GL_RGBA16, GL_LINEAR, "nothing");
+    const std::uint16_t zero[4] = {0, 0, 0, 0};
+    glTextureSubImage3D(nothing_.texture.name(), 0, 0, 0, 0, 1, 1, 1, GL_RGBA, GL_UNSIGNED_SHORT, zero);
+    nothing_.encoding.coverage = true;
+    nothing_.size = glm::ivec3(1);
+    nothing_.wholeBlocks = blockGrid(exchange_->source->grid());
+    nothingPages_ = std::make_unique<PageTable>(glm::ivec3(1));
 }
 
 bool Residency::settled(const ChannelKey& key) const {
@@ -165,16 +150,18 @@ bool Residency::settled(const ChannelKey& key) const {
     if (found == entries_.end()) return false;
     const Entry& entry = found->second;
     if (entry.failed) return true;
-    return entry.shown && entry.shown->level <= textureLevel() &&
-           (entry.shown->bricksMissing == 0 || (entry.shown->outOfRoom && (!waiting_ || entry.stuck)));
+    if (!entry.shown) return false;
+    if (!entry.shown->bricks) return entry.shown->level <= textureLevel();
+    const bool stays = entry.shown->outOfRoom && (!waiting_ || entry.stuck);
+    return stays || (entry.shown->bricks->drawable() && entry.shown->bricks->missing() == 0);
 }
 
 int Residency::missing(const ChannelKey& key) const {
     const auto found = entries_.find(key);
     if (!exchange_ || found == entries_.end() || found->second.failed) return 0;
     const Entry& entry = found->second;
-    if (entry.shown && (entry.shown->pages || entry.shown->level == 0)) return entry.shown->bricksMissing;
-    return int(texelCount(exchange_->source->grid().count()));
+    if (entry.shown && entry.shown->bricks) return entry.shown->bricks->missing();
+    return entry.shown && entry.shown->level == 0 ? 0 : int(texelCount(exchange_->source->grid().count()));
 }
 
 bool Residency::uploadWhole(Upload& upload, Entry& entry, std::size_t& bytes) {
@@ -201,127 +188,11 @@ bool Residency::uploadWhole(Upload& upload, Entry& entry, std::size_t& bytes) {
     made.encoding = item.encoding;
     made.size = block.size;
     made.bytes = block.bytes();
-    made.blocks = std::move(item.block.blocks);
-    if (item.level > 0 && item.level <= textureLevel()) makePages(made, *item.summary);
-    if (made.pages) {
-        entry.bricksAsked.clear();
-        for (const glm::u16vec4& page : made.pages->pages) entry.bricksAsked.push_back(page.w != PageTable::kCoarse);
-    }
+    made.wholeBlocks =
+        item.level == 0 ? std::move(item.block.blocks) : onBlockGrid(exchange_->source->grid(), item.block.blocks);
     entry.coverage = item.encoding.coverage;
     entry.shown = std::move(made);
     return true;
-}
-
-/// A page table with every page coarse, but absent where neither a brick nor its neighbours have a sample; block ranges
-/// of whole bricks by what is known before decoding.
-void Residency::makePages(ChannelTexture& channel, const ChannelSummary& summary) {
-    const volume::BrickGrid& grid = exchange_->source->grid();
-    const glm::ivec3 count = grid.count();
-    channel.pages = std::make_unique<PageTable>(count);
-    BlockRanges& blocks = channel.blocks;
-    blocks = {};
-    blocks.count = count;
-    blocks.edge = grid.brickSize;
-    const double overshoot = channel.encoding.prefiltered ? 2.0 / 3 : 0;
-    for (std::size_t i = 0; i < summary.bricks.size(); ++i) {
-        const glm::ivec3 brick = unravel(i, count);
-        const glm::ivec3 lo = glm::max(brick - 1, glm::ivec3(0)), hi = glm::min(brick + 2, count);
-        double min = std::numeric_limits<double>::infinity(), max = -min;
-        for (int z = lo.z; z < hi.z; ++z)
-            for (int y = lo.y; y < hi.y; ++y)
-                for (int x = lo.x; x < hi.x; ++x) {
-                    const volume::BrickStats& stats =
-                        summary.bricks[(std::size_t(z) * std::size_t(count.y) + std::size_t(y)) * std::size_t(count.x) +
-                                       std::size_t(x)];
-                    if (stats.presentFraction <= 0) continue;
-                    min = std::min(min, double(stats.min));
-                    max = std::max(max, double(stats.max));
-                }
-        const double margin = (max - min) * overshoot;
-        const auto texel = [&](double value) {
-            return float((value - channel.encoding.offset) / channel.encoding.scale);
-        };
-        blocks.min.push_back(min <= max ? texel(min - margin) : 1.0f);
-        blocks.max.push_back(min <= max ? texel(max + margin) : -1.0f);
-        if (min <= max)
-            ++channel.bricksMissing;
-        else
-            channel.pages->set(brick, glm::ivec3(0), PageTable::kAbsent);
-    }
-}
-
-std::optional<glm::ivec3> Residency::slotFor(ChannelTexture& channel) {
-    const int components = componentsOf(channel.encoding.coverage);
-    const volume::BrickGrid& grid = exchange_->source->grid();
-    const std::size_t edge = std::size_t(grid.brickSize + 2 * kHalo);
-    const std::size_t slotBytes = edge * edge * edge * std::size_t(components) * (options_.exactTextures ? 4 : 2);
-    std::unique_ptr<BrickAtlas>& atlas = atlases_[components];
-    if (!atlas) { // half of the budget at most: the rest is for whole textures and other formats
-        const std::size_t affordable =
-            std::clamp<std::size_t>(options_.textureBudget / 2 / slotBytes, 1, kMaxTextureBytes / slotBytes);
-        const std::size_t useful = texelCount(grid.count()) * 4; // a few channels
-        atlas = std::make_unique<BrickAtlas>(grid.brickSize, components, options_.exactTextures,
-                                             std::min(affordable, useful), maxTextureSize_);
-    }
-    channel.atlas = atlas.get();
-    if (const auto slot = atlas->allocate()) return slot;
-    // Bricks of channels that no view has used lately make room.
-    auto oldest = entries_.end();
-    for (auto it = entries_.begin(); it != entries_.end(); ++it)
-        if (it->second.shown && it->second.shown->atlas == atlas.get() && &*it->second.shown != &channel &&
-            it->second.used + (waiting_ ? 0 : kFramesInUse) < frame_ &&
-            (oldest == entries_.end() || it->second.used < oldest->second.used))
-            oldest = it;
-    if (oldest != entries_.end()) drop(oldest);
-    if (const auto slot = atlas->allocate()) return slot;
-    if (!waiting_) return std::nullopt;
-    // A picture that must be complete: a larger atlas, and everything in the former one comes again.
-    const std::size_t slots = atlas->capacity() * 2;
-    if (slots * slotBytes > kMaxTextureBytes) return std::nullopt;
-    auto larger =
-        std::make_unique<BrickAtlas>(grid.brickSize, components, options_.exactTextures, slots, maxTextureSize_);
-    if (larger->capacity() <= atlas->capacity()) return std::nullopt;
-    for (auto& [key, entry] : entries_) {
-        if (!entry.shown || entry.shown->atlas != atlas.get()) continue;
-        entry.shown->atlas = larger.get();
-        for (std::size_t i = 0; i < entry.shown->pages->pages.size(); ++i) {
-            if (entry.shown->pages->pages[i].w != PageTable::kResident) continue;
-            entry.shown->pages->set(unravel(i, entry.shown->pages->count), glm::ivec3(0), PageTable::kCoarse);
-            entry.bricksAsked[i] = 0;
-            ++entry.shown->bricksMissing;
-        }
-    }
-    atlas = std::move(larger);
-    return atlas->allocate();
-}
-
-void Residency::takeBrick(LoadedTexels& brick, Entry& entry) {
-    entry.bricksInFlight = std::max(0, entry.bricksInFlight - 1);
-    // The channel may have been dropped and begun anew since the brick was asked for.
-    if (!entry.shown || !entry.shown->pages || !(entry.shown->encoding == brick.encoding)) return;
-    ChannelTexture& shown = *entry.shown;
-    const glm::ivec3 at = *brick.brick, count = shown.pages->count;
-    const std::size_t index =
-        (std::size_t(at.z) * std::size_t(count.y) + std::size_t(at.y)) * std::size_t(count.x) + std::size_t(at.x);
-    if (shown.pages->pages[index].w != PageTable::kCoarse) return;
-    const std::optional<glm::ivec3> slot = slotFor(shown);
-    if (!slot) {
-        entry.bricksAsked[index] = 0;
-        if (waiting_ || !shown.outOfRoom)
-            exchange_->say("the texture budget holds only part of the data at full resolution; the rest is coarser");
-        shown.outOfRoom = true;
-        entry.stuck = waiting_;
-        return;
-    }
-    atlases_[brick.block.components]->upload(*slot, brick.block);
-    shown.pages->set(at, *slot, PageTable::kResident);
-    --shown.bricksMissing;
-    shown.blocks.min[index] = std::numeric_limits<float>::infinity();
-    shown.blocks.max[index] = -std::numeric_limits<float>::infinity();
-    for (std::size_t i = 0; i < brick.block.blocks.min.size(); ++i) {
-        shown.blocks.min[index] = std::min(shown.blocks.min[index], brick.block.blocks.min[i]);
-        shown.blocks.max[index] = std::max(shown.blocks.max[index], brick.block.blocks.max[i]);
-    }
 }
 
 void Residency::update(std::size_t bytes) {
@@ -351,12 +222,15 @@ void Residency::update(std::size_t bytes) {
                 fresh.summary = summary;
                 fresh.coverage = true;
             } else if (upload.item.brick) {
-                if (!upload.item.failed) {
+                if (!upload.item.failed)
                     takeBrick(upload.item, entry);
-                } else if (entry.shown) { // out of memory, say: what is here stays as it is
+                else if (entry.shown) { // out of memory, say: what is here stays as it is
                     entry.bricksInFlight = std::max(0, entry.bricksInFlight - 1);
+                    entry.shown->bricks->forget({upload.item.level, *upload.item.brick});
                     entry.shown->outOfRoom = entry.stuck = true;
-                }
+                } else
+                    entry.failed = true;
+                entry.loading = false;
                 bytes -= std::min(bytes, upload.item.block.bytes());
             } else {
                 if (!upload.item.failed && !uploadWhole(upload, entry, bytes)) break;
@@ -385,7 +259,7 @@ void Residency::finish() {
         for (const auto& [key, entry] : entries_)
             if (entry.used == frame_ && !settled(key)) pending.push_back(key);
         if (pending.empty()) break;
-        for (const ChannelKey& key : pending) want(key, 0, false, glm::dvec3(0));
+        for (const ChannelKey& key : pending) want(key, 0, false, entries_[key].demand);
         jobs_.waitForOne();
     }
     waiting_ = false;
@@ -393,10 +267,7 @@ void Residency::finish() {
 
 void Residency::drop(std::map<ChannelKey, Entry>::iterator entry) {
     ChannelTexture* shown = entry->second.shown ? &*entry->second.shown : nullptr;
-    if (shown && shown->pages && shown->atlas)
-        for (const glm::u16vec4& page : shown->pages->pages)
-            if (page.w == PageTable::kResident)
-                atlases_[componentsOf(shown->encoding.coverage)]->release(glm::ivec3(page));
+    if (shown && shown->bricks) shown->bricks->eachSlot([&](glm::ivec3& slot) { shown->atlas->release(slot); });
     entries_.erase(entry);
     ++revision_;
 }
@@ -404,11 +275,12 @@ void Residency::drop(std::map<ChannelKey, Entry>::iterator entry) {
 void Residency::evict() {
     std::vector<std::pair<std::uint64_t, ChannelKey>> idle;
     std::size_t total = 0;
-    for (const auto& [components, atlas] : atlases_) total += atlas ? atlas->bytes() : 0;
+    for (const auto& [components, list] : atlases_)
+        for (const auto& atlas : list) total += atlas->bytes();
     for (const auto& [key, entry] : entries_) {
         if (!entry.shown) continue;
         total += entry.shown->bytes;
-        if (entry.used + kFramesInUse < frame_ && !entry.loading && entry.bricksInFlight == 0)
+        if (!entry.shown->bricks && entry.used + kFramesInUse < frame_ && !entry.loading)
             idle.emplace_back(entry.used, key);
     }
     std::sort(idle.begin(), idle.end());
@@ -427,12 +299,13 @@ ResidencyInfo Residency::info() const {
     if (!exchange_) return info;
     info.memoryBytes = exchange_->bricks->bytes();
     info.bricksQueued = jobs_.unfinished();
-    for (const auto& [components, atlas] : atlases_) info.textureBytes += atlas ? atlas->bytes() : 0;
+    for (const auto& [components, list] : atlases_)
+        for (const auto& atlas : list) info.textureBytes += atlas->bytes();
     const int bricks = int(texelCount(exchange_->source->grid().count()));
     for (const auto& [key, entry] : entries_)
         if (entry.shown) {
             info.textureBytes += entry.shown->bytes;
-            info.bricksResident += bricks - missing(key);
+            info.bricksResident += entry.shown->bricks ? entry.shown->bricks->resident() : bricks - missing(key);
         }
     return info;
 }

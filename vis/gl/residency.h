@@ -1,7 +1,6 @@
 #pragma once
 
-#include "vis/gl/brick_atlas.h"
-#include "vis/gl/channel_load.h"
+#include "vis/gl/brick_levels.h"
 #include "vis/gl/handles.h"
 #include "vis/gl/job_queue.h"
 #include "vis/renderer.h"
@@ -13,19 +12,23 @@
 /// per frame, within a budget.
 namespace tessera::vis {
 
-/// One channel at one time on the GPU: a texture of the whole at the finest level that fits one, and where that is not
-/// the full resolution, its bricks in an atlas.
+inline constexpr std::uint64_t kFramesInUse = 8; ///< several views draw in turn: what one of the last frames used stays
+inline constexpr std::size_t kMaxTextureBytes = std::size_t(1) << 30; ///< software GL refuses more in one texture
+
+/// One channel at one time on the GPU: a texture of the whole where that is small enough, else bricks in an atlas.
 struct ChannelTexture {
     Texture texture;
-    int level = 0;
+    int level = 0; ///< of the texture
     TexelEncoding encoding;
     glm::ivec3 size{0}; ///< texels with halo
-    BlockRanges blocks;
+    BlockRanges wholeBlocks;
     std::size_t bytes = 0;
-    std::unique_ptr<PageTable> pages; ///< null where the texture is all there is
-    const BrickAtlas* atlas = nullptr;
-    int bricksMissing = 0;  ///< pages still coarse
-    bool outOfRoom = false; ///< and they stay so: the atlas is full
+    std::unique_ptr<BrickLevels> bricks; ///< null where the texture is all there is
+    BrickAtlas* atlas = nullptr;
+    bool outOfRoom = false; ///< missing bricks stay so: the atlas is full
+
+    /// Texel ranges on blockGrid().
+    const BlockRanges& blocks() const { return bricks ? bricks->blocks() : wholeBlocks; }
 };
 
 class Residency {
@@ -38,17 +41,23 @@ public:
     /// A new frame begins: textures not wanted in one of the last few frames may leave if the budget asks for it.
     void beginFrame() { ++frame_; }
     /// Says that a channel is needed in this frame and queues what is missing. `coarseFirst`: get a first picture soon.
-    /// Bricks nearer to `focus` (cells) come first.
-    void want(const ChannelKey& key, double priority, bool coarseFirst, glm::dvec3 focus);
+    /// `demand`: which bricks of a bricked channel; null: the coarsest level alone.
+    void want(const ChannelKey& key, double priority, bool coarseFirst, std::shared_ptr<const BrickDemand> demand);
+    /// Whether channels of this data set are cut into bricks.
+    bool bricked() const { return exchange_ && textureLevel() > 0; }
+    /// What is known of a channel, whether it can be drawn yet or not.
+    const ChannelTexture* known(const ChannelKey& key) const;
     /// Keeps a channel that is shown though another time of it is wanted.
     void keep(const ChannelKey& key);
     /// What is here of a channel, if anything.
     const ChannelTexture* find(const ChannelKey& key) const;
     /// A texture of absent samples, for a channel that is not here.
-    const ChannelTexture& nothing();
+    const ChannelTexture& nothing() const { return nothing_; }
+    /// A page table of nothing, for the same.
+    GLuint nothingPages() const { return nothingPages_->texture.name(); }
     /// True when nothing better than find() will come.
     bool settled(const ChannelKey& key) const;
-    /// Bricks of a channel still shown coarser than at full resolution.
+    /// Bricks of a channel still shown coarser than they were wanted last.
     int missing(const ChannelKey& key) const;
 
     /// Takes what the threads have finished and uploads at most `bytes` of it.
@@ -62,25 +71,56 @@ public:
     std::vector<std::string> takeMessages();
 
 private:
-    struct Entry;
-    struct Upload;
+    /// Whole channels are uploaded a few slices per frame.
+    struct Upload {
+        LoadedTexels item;
+        Texture texture;
+        int slices = 0;
+    };
+    struct Entry {
+        std::shared_ptr<const ChannelSummary> summary;
+        std::optional<ChannelTexture> shown;
+        std::shared_ptr<const BrickDemand> demand;
+        bool loading = false;  ///< a job for the whole channel, or its first brick, is under way
+        bool failed = false;   ///< nothing more will come
+        bool coverage = false; ///< a damaged brick asks for it
+        int bricksInFlight = 0;
+        bool stuck = false; ///< the atlas cannot grow either
+        std::uint64_t used = 0;
+    };
     int textureLevel() const;
     int componentsOf(bool coverage) const;
+    std::size_t slotBytes(int components) const;
     void add(double priority, LoadRequest request);
-    void queueBricks(const ChannelKey& key, Entry& entry, double priority, glm::dvec3 focus);
+    void queueBricks(const ChannelKey& key, Entry& entry, double priority);
     bool uploadWhole(Upload& upload, Entry& entry, std::size_t& bytes);
-    void makePages(ChannelTexture& channel, const ChannelSummary& summary);
-    void takeBrick(LoadedTexels& brick, Entry& entry);
-    std::optional<glm::ivec3> slotFor(ChannelTexture& channel);
+    void makeNothing();
     void drop(std::map<ChannelKey, Entry>::iterator entry);
     void evict();
 
+    // residency_bricks.cpp
+    void beginBricks(const LoadedTexels& first, Entry& entry);
+    void takeBrick(LoadedTexels& brick, Entry& entry);
+    BrickAtlas& atlasFor(int components);
+    std::unique_ptr<BrickAtlas> makeAtlas(int components, std::size_t slots);
+    std::optional<glm::ivec3> slotFor(ChannelTexture& channel, float priority);
+    bool makeRoom(const ChannelTexture& channel, float priority);
+    bool grow(BrickAtlas* atlas);
+
     RendererOptions options_;
-    std::shared_ptr<LoadExchange> exchange_;             ///< null while there is no source
-    std::map<int, std::unique_ptr<BrickAtlas>> atlases_; ///< by components; outlive the entries
+    std::shared_ptr<LoadExchange> exchange_;                          ///< null while there is no source
+    std::map<int, std::vector<std::unique_ptr<BrickAtlas>>> atlases_; ///< by components; outlive the entries
     std::map<ChannelKey, Entry> entries_;
     std::deque<Upload> uploads_;
     ChannelTexture nothing_;
+    std::unique_ptr<PageTable> nothingPages_;
+    struct Guest {
+        ChannelKey key;
+        BrickLevels::Guest brick;
+    };
+    std::vector<Guest> guests_; ///< bricks that could make room in guestsOf_, the first to go last
+    const BrickAtlas* guestsOf_ = nullptr;
+    std::uint64_t guestsFrame_ = 0;
     std::uint64_t frame_ = 1, revision_ = 0;
     bool waiting_ = false; ///< finish() runs: the budget may be exceeded
     int maxTextureSize_ = 0;

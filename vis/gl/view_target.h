@@ -1,7 +1,9 @@
 #pragma once
 
+#include "vis/gl/channel_load.h"
 #include "vis/gl/handles.h"
 #include "vis/renderer.h"
+#include "vis/technique/brick_demand.h"
 
 #include <vector>
 
@@ -36,6 +38,13 @@ public:
     double passMilliseconds = 0;
     int lastTime = -1;
     double msPerPixel = 0; ///< of a full pass; 0 = not measured
+
+    // Bricks wanted, and what they were wanted for.
+    std::vector<std::shared_ptr<const BrickDemand>> demands; ///< per field of the plan
+    std::optional<Scene> demandsFor;
+    DemandSettings demandSettings;
+    std::vector<ChannelKey> demandsKnown;
+    int wantedTime = -1, timeStep = 0; ///< which way the time runs
 
     // Transfer tables and block distances, and what they were made for.
     Texture table, blocks;

@@ -18,6 +18,7 @@ inline constexpr std::string_view kFilterNames[] = {"quasi", "average", "tetrahe
 struct RenderParams {
     Filter filter =
         Filter::AverageQuasi; ///< reconstruction; on CC "quasi" is prefiltered trilinear, the others trilinear
+    float detail = 1;         ///< pixels; voxels of bricked data finer than this are shown at a coarser level
     float stepVoxels = 0.5f;  ///< distance between samples, in cells of the finest direction on screen at rest
     float ambient = 0.25f, diffuse = 0.65f, specular = 0.25f, shininess = 30;
     float azimuth = -30, elevation = 40; ///< of the light, degrees from the viewer
@@ -32,6 +33,11 @@ struct RenderParams {
                                          .doc = "Distance between samples along a ray",
                                          .range = Range{0.05, 4},
                                          .logScale = true});
+        visit(self.detail, FieldInfo{.key = "detail",
+                                     .unit = "pixel",
+                                     .doc = "Voxels smaller than this are shown at a coarser level, in data too large "
+                                            "for one texture; 0 = full resolution",
+                                     .range = Range{0, 8}});
         visit(self.ambient, FieldInfo{.key = "ambient", .unit = "", .doc = "Ambient light", .range = Range{0, 1}});
         visit(self.diffuse, FieldInfo{.key = "diffuse", .unit = "", .doc = "Diffuse reflection", .range = Range{0, 1}});
         visit(self.specular,

@@ -84,9 +84,6 @@ ProgramRecipe rayRecipe(const RayPlan& plan, const Scene& scene, const volume::B
     define("FIELDS", std::to_string(plan.fields.size()));
     define("FIELD_COVERAGE(i)", choice(plan.fields, [](const BoundField& field) { return field.encoding.coverage; }));
     if (bricked) {
-        define("FIELD_BRICKS(i)", choice(plan.fields, [](const BoundField& field) {
-                   return !field.atlas ? 0 : field.everyBrick ? 2 : 1;
-               }));
         define("BRICK_TEXELS", std::to_string(grid.brickSize));
     }
     define("FIELD_NEAREST(i)", choice(plan.fields, [](const BoundField& field) { return field.categorical; }));

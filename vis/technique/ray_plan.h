@@ -24,7 +24,6 @@ struct BoundField {
     const BlockRanges* blocks = nullptr;
     GLuint pages = 0, atlas = 0; ///< 0: the texture is all there is
     glm::ivec3 atlasSize{1};
-    bool everyBrick = false; ///< no page is coarse
 };
 
 enum class RayStyle { Composite, Maximum, XRay, Iso }; ///< numbers known to raycast.frag.glsl

@@ -81,6 +81,7 @@ void setFields(const Program& program, const RayPlan& plan, const volume::BrickG
     program.set("atlasInverse", inverses);
     program.set("transferTable", first.table);
     program.set("blockDistance", first.blocks);
+    program.set("levelPhase", float(grid.phase));
 }
 
 } // namespace

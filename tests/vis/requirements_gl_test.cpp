@@ -1,0 +1,34 @@
+#include "vis/gl/headless.h"
+#include "vis/gl/requirements.h"
+#include "volume/error.h"
+
+#include <cstdlib>
+#include <gtest/gtest.h>
+
+namespace tessera {
+namespace {
+
+TEST(Requirements, NothingIsMissingHere) {
+    const vis::HeadlessContext context;
+    EXPECT_EQ(vis::missingFeatures(), "");
+}
+
+// Mesa can pretend to be an older driver, if it has not been looked at yet in this process.
+TEST(Requirements, AnOldDriverIsToldWhatItLacks) {
+    GTEST_FLAG_SET(death_test_style, "threadsafe"); // runs in a process of its own
+    EXPECT_EXIT(
+        {
+            setenv("MESA_GL_VERSION_OVERRIDE", "4.1", 1);
+            setenv("MESA_EXTENSION_OVERRIDE", "-GL_ARB_direct_state_access -GL_ARB_copy_image", 1);
+            try {
+                const vis::HeadlessContext context;
+            } catch (const MachineError& error) {
+                std::fprintf(stderr, "%s\n", error.what());
+            }
+            std::exit(0);
+        },
+        ::testing::ExitedWithCode(0), "OpenGL 4.1, 4.5 is needed; it lacks.*direct state access");
+}
+
+} // namespace
+} // namespace tessera

@@ -1,0 +1,277 @@
+#include "tests/vis/function_source.h"
+#include "tests/vis/gl_fixture.h"
+
+#include "vis/gl/brick_levels.h"
+#include "vis/technique/brick_demand.h"
+
+#include <algorithm>
+#include <mutex>
+#include <set>
+#include <thread>
+#include <tuple>
+
+namespace tessera {
+namespace {
+
+using vis::Scene;
+
+/// Remembers which bricks were read, and can hold them back.
+class Watched : public volume::BrickSource {
+public:
+    explicit Watched(std::shared_ptr<const volume::BrickSource> source, int times = 1)
+        : source_(std::move(source)), info_(source_->info()) {
+        info_.times.clear();
+        for (int i = 0; i < times; ++i) info_.times.push_back(i);
+    }
+    const volume::DatasetInfo& info() const override { return info_; }
+    const volume::BrickGrid& grid() const override { return source_->grid(); }
+    volume::BrickStats stats(const volume::BrickKey& key) const override { return source_->stats(key); }
+    volume::BrickSamples read(const volume::BrickKey& key) const override {
+        {
+            const std::lock_guard lock(mutex_);
+            read_.insert({key.time, key.level, key.index.x, key.index.y, key.index.z});
+        }
+        return source_->read(key);
+    }
+    /// Bricks read so far at a time and level.
+    int count(int time, int level) const {
+        const std::lock_guard lock(mutex_);
+        return int(std::count_if(read_.begin(), read_.end(), [&](const auto& key) {
+            return std::get<0>(key) == time && std::get<1>(key) == level;
+        }));
+    }
+
+private:
+    std::shared_ptr<const volume::BrickSource> source_;
+    volume::DatasetInfo info_;
+    mutable std::mutex mutex_;
+    mutable std::set<std::tuple<int, int, int, int, int>> read_;
+};
+
+std::shared_ptr<Watched> waves(int times = 1) {
+    const auto v = [](glm::dvec3 p) -> std::optional<double> {
+        return 0.5 + 0.4 * std::sin(0.2 * p.x) * std::cos(0.15 * p.y + 0.1 * p.z);
+    };
+    return std::make_shared<Watched>(
+        std::make_shared<vis::FunctionSource>(volume::LatticeKind::BCC, glm::ivec3(60, 52, 71), glm::dvec3(1),
+                                              std::vector<vis::FunctionSource::Channel>{{"v", v}}, 8),
+        times);
+}
+
+/// Half of it transparent.
+Scene volumeScene() {
+    Scene scene;
+    scene.camera.distance = 1.8f;
+    vis::VolumeLayer layer;
+    layer.channel = "v";
+    scene.layers.push_back({"volume", true, layer});
+    vis::TransferFunction function;
+    function.autoRange = false;
+    function.range = {0, 1};
+    function.opacity = {{0, 0}, {0.5f, 0}, {0.7f, 0.4f}, {1, 0.6f}};
+    scene.transfer["v"] = function;
+    scene.showBox = false;
+    return scene;
+}
+
+vis::RendererOptions bricks() {
+    vis::RendererOptions options;
+    options.denseTexels = 0;
+    return options;
+}
+
+std::vector<glm::vec4> picture(std::shared_ptr<const volume::BrickSource> source, const vis::RendererOptions& options,
+                               const Scene& scene, glm::ivec2 size) {
+    vis::Renderer renderer(options);
+    renderer.setSource(std::move(source));
+    const vis::ViewTargetPtr target = renderer.makeTarget();
+    test::renderAll(renderer, *target, scene, size);
+    return renderer.readLinear(*target);
+}
+
+class ResidencyTest : public test::GlTest {
+protected:
+    /// Draws frame after frame, as a window does, until nothing is left to do.
+    static vis::FrameStatus refine(vis::Renderer& renderer, vis::ViewTarget& target, const Scene& scene,
+                                   glm::ivec2 size) {
+        vis::FrameRequest request;
+        request.size = size;
+        vis::FrameStatus status;
+        for (int frame = 0; frame < 20000 && !status.complete; ++frame) {
+            status = renderer.render(target, scene, request);
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        }
+        EXPECT_TRUE(status.complete);
+        return status;
+    }
+};
+
+// Whole, in bricks, and with budgets of a few bricks only: the same picture.
+TEST_F(ResidencyTest, AnyCacheSizeGivesTheSamePicture) {
+    const auto source = waves();
+    Scene scene = volumeScene();
+    scene.render.detail = 0;
+    const glm::ivec2 size(48, 40);
+    const std::vector<glm::vec4> whole = picture(source, {}, scene, size);
+    for (const std::size_t texture : {std::size_t(1), std::size_t(1) << 20, std::size_t(1) << 30})
+        for (const std::size_t memory : {std::size_t(1), std::size_t(1) << 30}) {
+            vis::RendererOptions options = bricks();
+            options.textureBudget = texture;
+            options.memoryBudget = memory;
+            EXPECT_LT(test::maxDifference(whole, picture(source, options, scene, size)), 1.0 / 255)
+                << texture << ' ' << memory;
+        }
+}
+
+// Only what the picture shows is read at full resolution.
+TEST_F(ResidencyTest, BricksOutOfSightAreNotRead) {
+    Scene scene = volumeScene();
+    scene.render.detail = 0;
+    const auto all = waves(), part = waves();
+    const std::vector<glm::vec4> far = picture(all, bricks(), scene, {32, 32});
+    scene.camera.distance = 0.6f;
+    scene.camera.target = {0.3f, 0.2f, 0.3f};
+    const std::vector<glm::vec4> near = picture(part, bricks(), scene, {32, 32});
+    EXPECT_LT(test::maxDifference(near, picture(part, {}, scene, {32, 32})), 1.0 / 255);
+    const auto again = waves();
+    picture(again, bricks(), scene, {32, 32});
+    EXPECT_LT(again->count(0, 0), all->count(0, 0) * 3 / 4);
+    EXPECT_GT(again->count(0, 0), 0);
+}
+
+// Nor is what the transfer function makes transparent.
+TEST_F(ResidencyTest, TransparentBricksAreNotRead) {
+    Scene scene = volumeScene();
+    scene.render.detail = 0;
+    const auto peak = [](glm::dvec3 p) -> std::optional<double> {
+        return std::exp(-glm::dot(p - glm::dvec3(14), p - glm::dvec3(14)) / 60);
+    };
+    const auto make = [&] {
+        return std::make_shared<Watched>(
+            std::make_shared<vis::FunctionSource>(volume::LatticeKind::CC, glm::ivec3(64), glm::dvec3(1),
+                                                  std::vector<vis::FunctionSource::Channel>{{"v", peak}}, 8));
+    };
+    const auto source = make(), other = make();
+    const std::vector<glm::vec4> seen = picture(source, bricks(), scene, {40, 40});
+    EXPECT_GT(source->count(0, 0), 0);
+    EXPECT_LT(source->count(0, 0), 512 / 3);
+    EXPECT_LT(test::maxDifference(seen, picture(other, {}, scene, {40, 40})), 1.0 / 255);
+    scene.layers = {{"iso", true, vis::IsoLayer{.channel = "v", .value = 0.8}}};
+    const auto surface = make();
+    picture(surface, bricks(), scene, {40, 40});
+    EXPECT_LT(surface->count(0, 0), 512 / 3);
+}
+
+// Voxels smaller than a pixel come from a coarser level, which hardly shows.
+TEST_F(ResidencyTest, DistantBricksAreCoarse) {
+    const auto source = waves();
+    Scene scene = volumeScene();
+    const glm::ivec2 size(12, 12);
+    const std::vector<glm::vec4> coarse = picture(source, bricks(), scene, size);
+    EXPECT_EQ(source->count(0, 0), 0);
+    scene.render.detail = 0;
+    const std::vector<glm::vec4> fine = picture(source, bricks(), scene, size);
+    EXPECT_GT(source->count(0, 0), 0);
+    double sum = 0;
+    for (std::size_t i = 0; i < fine.size(); ++i) sum += glm::dot(fine[i] - coarse[i], fine[i] - coarse[i]);
+    EXPECT_LT(std::sqrt(sum / (4 * double(fine.size()))), 0.03);
+}
+
+// A budget that holds only some of the bricks: no hole while bricks come and go, and it says so.
+TEST_F(ResidencyTest, NoHolesWithinTheBudget) {
+    vis::RendererOptions options = bricks();
+    options.textureBudget = std::size_t(1) << 20; // half of it for bricks: about 70 of 400
+    vis::Renderer renderer(options);
+    renderer.setSource(waves());
+    const vis::ViewTargetPtr target = renderer.makeTarget();
+    Scene scene = volumeScene();
+    scene.render.detail = 0;
+    scene.transfer["v"].opacity = {{0, 0.5f}, {1, 0.5f}}; // opaque wherever there is something
+    std::vector<std::string> said;
+    for (int view = 0; view < 4; ++view) {
+        vis::orbit(scene.camera, {0, 0}, {0.4f, 0.1f});
+        refine(renderer, *target, scene, {24, 24});
+        EXPECT_GT(renderer.readLinear(*target)[12 * 24 + 12].a, 0.9);
+        for (std::string& message : renderer.takeMessages()) said.push_back(std::move(message));
+        const vis::ResidencyInfo info = renderer.residency();
+        EXPECT_LE(info.textureBytes, options.textureBudget);
+        EXPECT_GT(info.bricksResident, 20);
+    }
+    ASSERT_EQ(said.size(), 1u);
+    EXPECT_NE(said[0].find("budget"), std::string::npos);
+}
+
+// While time moves on, the next frame is read before it is wanted.
+TEST_F(ResidencyTest, NextTimeIsPrefetched) {
+    for (const bool dense : {true, false}) {
+        const auto source = waves(4);
+        vis::Renderer renderer(dense ? vis::RendererOptions() : bricks());
+        renderer.setSource(source);
+        const vis::ViewTargetPtr target = renderer.makeTarget();
+        Scene scene = volumeScene();
+        vis::FrameRequest request;
+        request.size = {16, 16};
+        for (int time = 0; time < 2; ++time) {
+            scene.time = time;
+            refine(renderer, *target, scene, request.size);
+        }
+        const auto coming = [&] { return source->count(2, 0) + source->count(2, 1) + source->count(2, 2); };
+        for (int frame = 0; frame < 500 && coming() == 0; ++frame) {
+            renderer.render(*target, scene, request);
+            std::this_thread::sleep_for(std::chrono::milliseconds(2));
+        }
+        EXPECT_GT(coming(), 0);
+        EXPECT_EQ(source->count(3, 0), 0);
+    }
+}
+
+// Minimised windows, odd sizes and a storm of them: no GL error, and the last one is drawn.
+TEST_F(ResidencyTest, SizesComeAndGo) {
+    vis::Renderer renderer;
+    renderer.setSource(waves());
+    const vis::ViewTargetPtr target = renderer.makeTarget();
+    const Scene scene = volumeScene();
+    vis::FrameRequest request;
+    for (const glm::ivec2 size : {glm::ivec2(0, 0), glm::ivec2(1, 1), glm::ivec2(300, 1), glm::ivec2(-1, 5),
+                                  glm::ivec2(64, 48), glm::ivec2(0, 48), glm::ivec2(65, 47), glm::ivec2(64, 48)}) {
+        request.size = size;
+        request.moving = size.x % 2 == 0;
+        const vis::FrameStatus status = renderer.render(*target, scene, request);
+        EXPECT_EQ(status.texture != 0, size.x > 0 && size.y > 0);
+    }
+    test::renderAll(renderer, *target, scene, {64, 48});
+    EXPECT_TRUE(renderer.takeMessages().empty());
+}
+
+// A coarse level on the grid of full resolution covers at least what its own blocks say.
+TEST(BlockGrid, CoarseRangesAreConservative) {
+    volume::BrickGrid grid;
+    grid.lattice.size = {37, 21, 45};
+    grid.brickSize = 16;
+    grid.phase = 0.5;
+    for (int level = 0; level < 3; ++level) {
+        vis::BlockRanges coarse;
+        coarse.level = level;
+        coarse.count = (vis::levelTexels(grid, level) + 7) / 8;
+        const glm::ivec3 n = coarse.count;
+        for (int i = 0; i < n.x * n.y * n.z; ++i) {
+            coarse.min.push_back(float(i));
+            coarse.max.push_back(float(i));
+        }
+        const vis::BlockRanges fine = vis::onBlockGrid(grid, coarse);
+        for (int z = 0; z < 45; ++z)
+            for (int y = 0; y < 21; ++y)
+                for (int x = 0; x < 37; ++x) {
+                    const glm::dvec3 texel = (glm::dvec3(x, y, z) - grid.levelPhase(level)) / double(1 << level);
+                    const glm::ivec3 from = glm::clamp(glm::ivec3(glm::floor(texel / 8.0)), glm::ivec3(0), n - 1);
+                    const float value = float((from.z * n.y + from.y) * n.x + from.x);
+                    const glm::ivec3 to(x / 8, y / 8, z / 8), m = fine.count;
+                    const std::size_t at = std::size_t((to.z * m.y + to.y) * m.x + to.x);
+                    ASSERT_LE(fine.min[at], value);
+                    ASSERT_GE(fine.max[at], value);
+                }
+    }
+}
+
+} // namespace
+} // namespace tessera

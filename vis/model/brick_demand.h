@@ -1,0 +1,17 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+namespace tessera::vis {
+
+/// What one picture needs of a channel: per brick of full resolution, x fastest, the level it should be shown at and
+/// how urgent that is (smaller: sooner).
+struct BrickDemand {
+    static constexpr std::uint8_t kNotWanted = 255; ///< out of sight, or transparent
+    std::vector<std::uint8_t> level;
+    std::vector<float> priority;
+    bool operator==(const BrickDemand&) const = default;
+};
+
+} // namespace tessera::vis

@@ -1,0 +1,150 @@
+#include "vis/technique/brick_demand.h"
+
+#include "vis/technique/ray_tables.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/geometric.hpp>
+
+namespace tessera::vis {
+
+namespace {
+
+std::size_t countOf(glm::ivec3 size) {
+    return std::size_t(size.x) * std::size_t(size.y) * std::size_t(size.z);
+}
+
+/// An axis-aligned box in world space.
+struct WorldBox {
+    glm::dvec3 centre, half;
+    double below(glm::dvec3 normal) const { // the least dot(normal, p)
+        return glm::dot(normal, centre) - glm::dot(glm::abs(normal), half);
+    }
+};
+
+/// What the picture sees, as planes and as the size of a pixel.
+class Sight {
+public:
+    Sight(const Camera& camera, glm::ivec2 size) {
+        const double aspect = double(size.x) / size.y;
+        const std::array<Ray, 4> corners{cameraRay(camera, aspect, {-1, -1}), cameraRay(camera, aspect, {1, -1}),
+                                         cameraRay(camera, aspect, {1, 1}), cameraRay(camera, aspect, {-1, 1})};
+        const Ray middle = cameraRay(camera, aspect, {0, 0}), up = cameraRay(camera, aspect, {0, 1});
+        perspective_ = camera.projection == Projection::Perspective;
+        eye_ = middle.origin;
+        forward_ = middle.direction;
+        const glm::dvec3 inside = middle.origin + middle.direction;
+        for (std::size_t i = 0; i < 4; ++i) {
+            const Ray &a = corners[i], &b = corners[(i + 1) % 4];
+            glm::dvec3 normal = glm::cross(a.direction, perspective_ ? b.direction : b.origin - a.origin);
+            if (glm::dot(normal, inside - a.origin) < 0) normal = -normal;
+            normals_[i] = glm::normalize(normal);
+            offsets_[i] = glm::dot(normals_[i], a.origin);
+        }
+        const double half = perspective_ ? glm::length(up.direction / glm::dot(up.direction, forward_) - forward_)
+                                         : glm::length(up.origin - middle.origin);
+        pixel_ = 2 * half / size.y;
+    }
+
+    bool sees(const WorldBox& box) const {
+        for (std::size_t i = 0; i < 4; ++i)
+            if (-box.below(-normals_[i]) < offsets_[i]) return false;
+        return !perspective_ || -box.below(-forward_) > glm::dot(forward_, eye_);
+    }
+    /// Distance along the view of the nearest point of a box; 0 when the eye is inside.
+    double depth(const WorldBox& box) const { return std::max(0.0, box.below(forward_) - glm::dot(forward_, eye_)); }
+    /// World size of a pixel at a depth.
+    double pixel(double depth) const { return perspective_ ? pixel_ * std::max(depth, 1e-6) : pixel_; }
+    /// Distance of a point from the middle of the picture.
+    double aside(glm::dvec3 point) const {
+        const glm::dvec3 from = point - eye_;
+        return glm::length(from - forward_ * glm::dot(from, forward_));
+    }
+
+private:
+    bool perspective_ = true;
+    glm::dvec3 eye_{0}, forward_{0, 0, -1};
+    std::array<glm::dvec3, 4> normals_{};
+    std::array<double, 4> offsets_{};
+    double pixel_ = 0; ///< at depth 1, or everywhere
+};
+
+/// Marks bricks where a layer of the field shows something.
+void markShown(std::vector<std::uint8_t>& shown, const RayPlan& plan, int field, const Scene& scene,
+               const volume::DatasetInfo& info) {
+    RayPlan part = plan;
+    std::erase_if(part.layers, [&](const RayLayer& layer) { return layer.field != field; });
+    if (part.layers.empty()) return;
+    const std::optional<BlockDistances> blocks = blockDistances(part, scene, info);
+    for (std::size_t i = 0; i < shown.size(); ++i)
+        if (!blocks || i >= blocks->distance.size() || blocks->distance[i] == 0) shown[i] = 1;
+}
+
+} // namespace
+
+std::vector<std::shared_ptr<const BrickDemand>>
+brickDemands(RayPlan plan, const Scene& scene, const volume::DatasetInfo& info, const volume::BrickGrid& grid,
+             const std::vector<const BlockRanges*>& ranges, const DemandSettings& settings) {
+    const glm::ivec3 count = grid.count();
+    const std::size_t total = countOf(count), fields = plan.fields.size();
+    const WorldFrame frame = worldFrame(info.bounds, scene.stretch);
+    const volume::Lattice& lattice = grid.lattice;
+    const Sight sight(scene.camera, glm::max(settings.size, glm::ivec2(1)));
+    const glm::dvec3 cellWorld = frame.scale * lattice.spacing, cursor = frame.toWorld(scene.cursor);
+    const glm::dvec3 voxels = worldCell(lattice, frame);
+    const double voxel = std::max({voxels.x, voxels.y, voxels.z});
+
+    std::vector<std::vector<std::uint8_t>> shown(fields, std::vector<std::uint8_t>(total, 0));
+    for (std::size_t f = 0; f < fields; ++f) {
+        plan.fields[f].blocks = ranges[f];
+        if (ranges[f]) markShown(shown[f], plan, int(f), scene, info);
+    }
+    std::vector<Plane> planes;
+    for (const SliceUse& use : plan.slices)
+        planes.push_back(
+            slicePlane(std::get<SliceLayer>(scene.layers[std::size_t(use.layer)].technique), frame, scene.cursor));
+
+    BrickDemand none;
+    none.level.assign(total, BrickDemand::kNotWanted);
+    none.priority.assign(total, 0);
+    std::vector<BrickDemand> demands(fields, none);
+    std::size_t i = 0;
+    for (int z = 0; z < count.z; ++z)
+        for (int y = 0; y < count.y; ++y)
+            for (int x = 0; x < count.x; ++x, ++i) {
+                // One cell more on every side: the moved sublattice and interpolation reach that far.
+                const glm::dvec3 lo = glm::dvec3(glm::ivec3(x, y, z) * grid.brickSize) - 1.0,
+                                 hi = lo + double(grid.brickSize) + 2.0;
+                const auto world = [&](glm::dvec3 cell) {
+                    return frame.toWorld(lattice.origin + cell * lattice.spacing);
+                };
+                const WorldBox box{0.5 * (world(lo) + world(hi)), 0.5 * glm::abs(cellWorld) * (hi - lo)};
+                if (!sight.sees(box)) continue;
+                const double depth = sight.depth(box), pixels = voxel / sight.pixel(depth);
+                int level = 0;
+                while (level + 1 < grid.levels && pixels * double(2 << level) <= settings.detail) ++level;
+                const double toCursor = glm::length(glm::max(glm::abs(cursor - box.centre) - box.half, 0.0));
+                const double priority = depth + 0.5 * sight.aside(box.centre) + 0.25 * toCursor;
+                bool any = false;
+                for (std::size_t s = 0; s < planes.size(); ++s) {
+                    const double offset = planes[s].offset;
+                    if (box.below(planes[s].normal) > offset || -box.below(-planes[s].normal) < offset) continue;
+                    shown[std::size_t(plan.slices[s].field)][i] = 1;
+                }
+                for (const std::vector<std::uint8_t>& field : shown) any = any || field[i] != 0;
+                for (const int brush : plan.brushFields)
+                    if (any) shown[std::size_t(brush)][i] = 1;
+                for (std::size_t f = 0; f < fields; ++f)
+                    if (shown[f][i]) {
+                        demands[f].level[i] = std::uint8_t(level);
+                        demands[f].priority[i] = float(priority);
+                    }
+            }
+    std::vector<std::shared_ptr<const BrickDemand>> out;
+    for (std::size_t f = 0; f < fields; ++f)
+        out.push_back(ranges[f] ? std::make_shared<const BrickDemand>(std::move(demands[f])) : nullptr);
+    return out;
+}
+
+} // namespace tessera::vis
