@@ -140,6 +140,7 @@ void Renderer::Impl::refine(ViewTarget& target, const Scene& scene, const FrameR
     glBindTextureUnit(GLuint(units.table), target.table.name());
     glBindTextureUnit(GLuint(units.blocks), target.blocks.name());
     const volume::DatasetInfo& info = source->info();
+    glBindTextureUnit(GLuint(units.lassos), brushes.update(brushTests(plan, scene, info)));
     const double pixels = double(target.size.x) * target.size.y;
     const Tile everything{{0, 0}, target.size};
 

@@ -139,6 +139,7 @@ ResidencyInfo Renderer::residency() const {
 std::vector<std::string> Renderer::takeMessages() {
     std::vector<std::string> all = impl_->programs.takeMessages();
     for (std::string& message : impl_->residency.takeMessages()) all.push_back(std::move(message));
+    for (std::string& message : impl_->brushes.takeMessages()) all.push_back(std::move(message));
     return all;
 }
 

@@ -4,6 +4,7 @@
 #include "vis/gl/residency.h"
 #include "vis/gl/view_target.h"
 #include "vis/renderer.h"
+#include "vis/technique/brush_uniforms.h"
 #include "vis/technique/ray_plan.h"
 
 /// Inside the renderer: renderer.cpp has what is public, binding.cpp asks for textures, frame.cpp draws with them.
@@ -26,6 +27,7 @@ struct Renderer::Impl {
     std::shared_ptr<const volume::BrickSource> source;
     VertexArray vertices = makeVertexArray("no vertices");
     ProgramCache programs;
+    BrushTables brushes;
 
     explicit Impl(const RendererOptions& given) : options(given), residency(given) {}
 

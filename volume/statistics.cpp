@@ -1,6 +1,7 @@
 #include "volume/statistics.h"
 
 #include "volume/parallel.h"
+#include "volume/sample_position.h"
 #include "volume/statistics_sums.h"
 
 #include <algorithm>
@@ -150,9 +151,10 @@ private:
         bins.samples += count;
         std::vector<std::uint64_t> packed(count, packedSample(1));
         std::vector<float> inside(count, 1.0f), values(channels);
-        for (std::size_t i = 0; query_.doi && i < count; ++i) {
+        SamplePositions position(grid_, index, query_.level);
+        for (std::size_t i = 0; query_.doi && i < count; ++i, position.next()) {
             for (std::size_t c = 0; c < channels; ++c) values[c] = columns[c].value[i];
-            const double doi = std::clamp(query_.doi(values), 0.0, 1.0);
+            const double doi = std::clamp(query_.doi(values, position.at()), 0.0, 1.0);
             packed[i] = packedSample(doi);
             inside[i] = doi >= kFocusHalf ? 1 : 0;
         }

@@ -19,9 +19,9 @@ struct StatisticsQuery {
     int level = 0;             ///< of detail: ask for grid().levels - 1 first, then refine
     int bins = 128;            ///< per axis, of histograms and joint histograms; below 65535
     std::vector<Range> ranges; ///< of the bins, by position in `channels`; empty: DatasetInfo::channelRange
-    /// Degree of interest 0..1 of a sample, given the physical values of `channels` (NaN where absent). Called from
-    /// several threads at once. Empty: everything has 1.
-    std::function<double(std::span<const float> values)> doi;
+    /// Degree of interest 0..1 of a sample, given the physical values of `channels` (NaN where absent) and its
+    /// position. Called from several threads at once. Empty: everything has 1.
+    std::function<double(std::span<const float> values, glm::dvec3 position)> doi;
 };
 
 /// All pairs {i, j} with i < j < count: the lower half of a scatterplot matrix, row j, column i.

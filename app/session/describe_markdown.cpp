@@ -46,8 +46,12 @@ std::string parameterReference() {
     out += markdownSection<vis::IsoLayer>("Layer of type `iso`", "A surface of equal value.");
     out += markdownSection<vis::SliceLayer>("Layer of type `slice`", "A coloured plane with contour lines.");
     out += markdownSection<vis::TransferFunction>("transfer", "Colour and opacity of one parameter, by its name.");
-    out += markdownSection<vis::Brush>("selection.brushes", "A brush: intervals of parameters that must all hold.");
-    out += markdownSection<vis::BrushInterval>("selection.brushes.intervals", "One interval of a brush.");
+    out += markdownSection<vis::Brush>("selection.brushes", "A brush: a region and how it meets the others.");
+    out += markdownSection<vis::BrushInterval>("selection.brushes.region.intervals", "One interval of a range.");
+    out += markdownSection<vis::EllipseRegion>("Region of type `ellipse`", "An ellipse in two parameters.");
+    out += markdownSection<vis::LassoRegion>("Region of type `lasso`", "A polygon in two parameters.");
+    out += markdownSection<vis::SphereRegion>("Region of type `sphere`", "A ball in space.");
+    out += markdownSection<vis::BoxRegion>("Region of type `box`", "A box in space.");
     out += markdownSection<VolumeView>("View of type `volume`", "The 3D view.");
     out += markdownSection<SlicesView>("View of type `slices`", "Three orthogonal slices.");
     out += markdownSection<ScatterMatrixView>("View of type `scatterMatrix`", "Every pair of parameters.");

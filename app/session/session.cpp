@@ -153,8 +153,8 @@ void fitSession(Session& session, const volume::DatasetInfo& info, std::vector<s
         }
     }
     std::erase_if(session.selection.brushes, [&](const vis::Brush& brush) {
-        const bool lost = std::any_of(brush.intervals.begin(), brush.intervals.end(),
-                                      [&](const vis::BrushInterval& side) { return !known(side.channel); });
+        const std::vector<std::string> names = vis::regionChannels(brush.region);
+        const bool lost = !std::all_of(names.begin(), names.end(), known);
         if (lost) messages.push_back("brush " + brush.name + " is dropped: its parameters are not in the data");
         return lost;
     });

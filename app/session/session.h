@@ -13,7 +13,7 @@
 /// The session: everything that decides what is on screen, as one value, and its JSON file (*.tessera.json).
 namespace tessera::app {
 
-inline constexpr int kSessionSchema = 1;
+inline constexpr int kSessionSchema = 2;
 
 /// A file a session shows, found again by path (relative to the session file), size and hash.
 struct DataFile {

@@ -87,6 +87,30 @@ bool looksLikeSession(std::string_view text) {
     }
 }
 
+namespace {
+
+/// Up to schema 1 every brush was a rectangle, and one word said how all of them met.
+void migrateBrushes(Json& document) {
+    // Steps back to such brushes would not fit the new ones.
+    if (const auto history = document.find("history");
+        history != document.end() && history->dump().find("/selection/") != std::string::npos)
+        document.erase("history");
+    const auto selection = document.find("selection");
+    if (selection == document.end() || !selection->is_object()) return;
+    const bool any = selection->value("combine", Json()) == "any";
+    selection->erase("combine");
+    const auto brushes = selection->find("brushes");
+    if (brushes == selection->end() || !brushes->is_array()) return;
+    for (Json& brush : *brushes) {
+        if (!brush.is_object() || !brush.contains("intervals")) continue;
+        brush["region"] = {{"type", "range"}, {"intervals", brush["intervals"]}};
+        brush.erase("intervals");
+        if (any) brush["combine"] = "or";
+    }
+}
+
+} // namespace
+
 void migrate(Json& document, const std::string& file) {
     if (!document.is_object()) throw Error("not a session: needs an object", file, "/");
     const auto found = document.find("schema");
@@ -103,6 +127,7 @@ void migrate(Json& document, const std::string& file) {
         if (const auto stretch = document.find("stretch"); stretch != document.end() && stretch->is_number())
             *stretch = Json::array({1, 1, stretch->get<double>()});
     }
+    if (schema < 2) migrateBrushes(document);
     document["schema"] = kSessionSchema;
 }
 

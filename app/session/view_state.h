@@ -37,11 +37,16 @@ struct SlicesView {
     }
 };
 
+/// What a drag in a plot makes.
+enum class BrushTool { Rectangle, Ellipse, Lasso };
+inline constexpr std::string_view kBrushToolNames[] = {"rectangle", "ellipse", "lasso"};
+
 struct ScatterMatrixView {
     static constexpr std::string_view kType = "scatterMatrix";
     std::vector<std::string> channels; ///< empty = every scalar and vector magnitude
     int bins = 96;
     bool logDensity = true;
+    BrushTool tool = BrushTool::Rectangle;
     float softness = 0.05f;            ///< soft edge of new brushes, as a share of their width
     std::vector<std::string> enlarged; ///< x and y of the plot that is shown large, equal for a histogram; empty = none
     bool operator==(const ScatterMatrixView&) const = default;
@@ -51,6 +56,7 @@ struct ScatterMatrixView {
         visit(self.bins,
               FieldInfo{.key = "bins", .unit = "", .doc = "Bins along each axis of a plot", .range = Range{16, 512}});
         visit(self.logDensity, FieldInfo{.key = "logDensity", .unit = "", .doc = "Show the logarithm of the density"});
+        visit(self.tool, FieldInfo{.key = "tool", .unit = "", .doc = "Shape of new brushes", .names = kBrushToolNames});
         visit(self.softness, FieldInfo{.key = "softness",
                                        .unit = "",
                                        .doc = "Soft edge of new brushes, share of their width",

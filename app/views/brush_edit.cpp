@@ -1,61 +1,21 @@
 #include "app/views/brush_edit.h"
 
+#include "app/views/brush_shape.h"
+
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 namespace tessera::app {
 
 namespace {
 
-const vis::BrushInterval* intervalOf(const vis::Brush& brush, const std::string& channel) {
-    for (const vis::BrushInterval& interval : brush.intervals)
-        if (interval.channel == channel) return &interval;
-    return nullptr;
-}
-
-struct Rect {
-    ImVec2 min, max;
-    bool bandX = false, bandY = false; ///< no interval on that axis: the brush runs through the whole plot
-};
-
-/// Pixels of a brush, grown by its soft edge times `soft`.
-Rect rectOf(const vis::Brush& brush, const PlotFrame& frame, const PlotChannels& plot, double soft) {
-    const vis::BrushInterval* x = intervalOf(brush, plot.x);
-    const vis::BrushInterval* y = plot.y.empty() ? nullptr : intervalOf(brush, plot.y);
-    const ImVec2 low = frame.pixel(x ? x->lo - soft * x->soft : frame.x.lo, y ? y->lo - soft * y->soft : frame.y.lo);
-    const ImVec2 high = frame.pixel(x ? x->hi + soft * x->soft : frame.x.hi, y ? y->hi + soft * y->soft : frame.y.hi);
-    return {{low.x, high.y}, {high.x, low.y}, x == nullptr, y == nullptr};
-}
+/// Told apart by hue and lightness; the first is the colour of a lone brush.
+constexpr glm::vec3 kColors[] = {{1.0f, 0.69f, 0.25f},  {0.36f, 0.8f, 0.98f}, {0.96f, 0.48f, 0.78f},
+                                 {0.55f, 0.87f, 0.42f}, {0.74f, 0.62f, 1.0f}, {0.95f, 0.42f, 0.36f},
+                                 {0.93f, 0.88f, 0.42f}, {0.35f, 0.86f, 0.74f}};
 
 float reach() {
     return std::max(4.0f, em() * 0.35f);
-}
-
-/// One side of a new or changed interval: ordered, within the plot, soft in proportion to its width.
-void setInterval(vis::BrushInterval& interval, double a, double b, Range within, double softness) {
-    interval.lo = std::clamp(std::min(a, b), within.lo, within.hi);
-    interval.hi = std::clamp(std::max(a, b), within.lo, within.hi);
-    interval.soft = softness * (interval.hi - interval.lo);
-}
-
-void resizeInterval(vis::BrushInterval& now, const vis::BrushInterval& before, double delta, bool lower, bool upper,
-                    Range within) {
-    const double width = before.hi - before.lo;
-    if (!lower && !upper) {
-        // Moving keeps the width, so stop at the edge of the plot as a whole.
-        const double room = std::max(0.0, (within.hi - within.lo) - width);
-        const double lo = std::clamp(before.lo + delta, within.lo, within.lo + room);
-        now.lo = before.lo < within.lo || before.hi > within.hi ? before.lo + delta : lo;
-        now.hi = now.lo + width;
-        return;
-    }
-    double lo = before.lo, hi = before.hi;
-    if (lower) lo = std::clamp(lo + delta, within.lo, within.hi);
-    if (upper) hi = std::clamp(hi + delta, within.lo, within.hi);
-    now.lo = std::min(lo, hi);
-    now.hi = std::max(lo, hi);
-    now.soft = width > 0 ? before.soft * (now.hi - now.lo) / width : before.soft;
 }
 
 void showCursor(int edges) {
@@ -73,50 +33,85 @@ void showCursor(int edges) {
         ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeAll);
 }
 
+vis::Region newRegion(const PlotChannels& plot, const BrushPen& pen) {
+    const bool two = !plot.y.empty() && plot.y != plot.x;
+    if (two && pen.tool == BrushTool::Ellipse) return vis::EllipseRegion{.x = plot.x, .y = plot.y};
+    if (two && pen.tool == BrushTool::Lasso)
+        return vis::LassoRegion{.x = plot.x, .y = plot.y, .points = {}, .soft = 2.0 * double(pen.softness)};
+    vis::RangeRegion range;
+    range.intervals.push_back({.channel = plot.x});
+    if (two) range.intervals.push_back({.channel = plot.y});
+    return range;
+}
+
 /// Adds the brush of a drag that has gone far enough; brushes of the same plot make room unless a modifier keeps them.
-void beginBrush(BrushDrag& drag, vis::Selection& selection, bool add, bool subtract) {
+void beginBrush(BrushDrag& drag, vis::Selection& selection, const BrushPen& pen, bool add, bool subtract) {
     const auto samePlot = [&](const vis::Brush& brush) {
         const std::size_t wanted = drag.plot.y.empty() ? 1 : 2;
-        return brush.intervals.size() == wanted && brushFits(brush, drag.plot);
+        return vis::regionChannels(brush.region).size() == wanted && brushFits(brush, drag.plot);
     };
-    if (!add && !subtract)
-        std::erase_if(selection.brushes, samePlot);
-    else if (add && !selection.brushes.empty() &&
-             std::all_of(selection.brushes.begin(), selection.brushes.end(), samePlot))
-        // Two separate ranges of the same quantities can never hold both: adding means either.
-        selection.combine = vis::Combine::Any;
+    if (!add && !subtract) std::erase_if(selection.brushes, samePlot);
     vis::Brush brush;
-    brush.name = newBrushName(selection, drag.plot);
-    brush.inverted = subtract;
-    brush.intervals.push_back({.channel = drag.plot.x});
-    if (!drag.plot.y.empty() && drag.plot.y != drag.plot.x) brush.intervals.push_back({.channel = drag.plot.y});
+    const PlotChannels& plot = drag.plot;
+    brush.name = newBrushName(selection, plot.y.empty() || plot.y == plot.x ? plot.x : plot.x + " \u00d7 " + plot.y);
+    brush.color = newBrushColor(selection);
+    brush.combine = subtract ? vis::BrushCombine::Minus : add ? vis::BrushCombine::Or : vis::BrushCombine::And;
+    brush.region = newRegion(plot, pen);
     selection.brushes.push_back(brush);
     drag.brush = static_cast<int>(selection.brushes.size()) - 1;
 }
 
-void dragBrush(BrushDrag& drag, vis::Selection& selection, const PlotFrame& frame, glm::dvec2 now, float softness) {
-    vis::Brush& brush = selection.brushes[static_cast<std::size_t>(drag.brush)];
-    for (vis::BrushInterval& interval : brush.intervals) {
-        const bool isX = interval.channel == drag.plot.x;
-        const Range within = isX ? frame.x : frame.y;
-        const double from = isX ? drag.start.x : drag.start.y, to = isX ? now.x : now.y;
-        if (drag.made) {
-            setInterval(interval, from, to, within, softness);
-            continue;
-        }
-        const vis::Brush& before = drag.original.brushes[static_cast<std::size_t>(drag.brush)];
-        const vis::BrushInterval* own = intervalOf(before, interval.channel);
-        const bool lower = drag.edges & (isX ? kLeftEdge : kBottomEdge);
-        const bool upper = drag.edges & (isX ? kRightEdge : kTopEdge);
-        if (drag.edges == 0 || lower || upper) resizeInterval(interval, *own, to - from, lower, upper, within);
-    }
+/// One more corner of a lasso, where the mouse has moved far enough from the last one.
+void extendLasso(vis::LassoRegion& lasso, const PlotFrame& frame, glm::dvec2 start, ImVec2 mouse) {
+    if (lasso.points.empty()) lasso.points.push_back(start);
+    const ImVec2 last = frame.pixel(lasso.points.back().x, lasso.points.back().y);
+    if (std::hypot(mouse.x - last.x, mouse.y - last.y) < 3) return;
+    const glm::dvec2 at = frame.data(mouse);
+    lasso.points.emplace_back(std::clamp(at.x, frame.x.lo, frame.x.hi), std::clamp(at.y, frame.y.lo, frame.y.hi));
+}
+
+void dragBrush(BrushDrag& drag, vis::Selection& selection, const PlotFrame& frame, const BrushPen& pen) {
+    const ImVec2 mouse = ImGui::GetIO().MousePos;
+    vis::Region& region = selection.brushes[static_cast<std::size_t>(drag.brush)].region;
+    const glm::dvec2 now = frame.data(mouse);
+    if (!drag.made)
+        dragRegion(region, drag.original.brushes[static_cast<std::size_t>(drag.brush)].region, drag.edges,
+                   now - drag.start, frame, drag.plot);
+    else if (auto* lasso = std::get_if<vis::LassoRegion>(&region))
+        extendLasso(*lasso, frame, drag.start, mouse);
+    else
+        spanRegion(region, drag.start, now, frame, drag.plot, static_cast<double>(pen.softness));
+}
+
+/// Which edges of its box a point of an ellipse means: none well inside.
+int ellipseEdges(const BrushRect& rect, ImVec2 at) {
+    const float u = (at.x - rect.min.x) / std::max(1.0f, rect.max.x - rect.min.x) * 2 - 1;
+    const float v = 1 - (at.y - rect.min.y) / std::max(1.0f, rect.max.y - rect.min.y) * 2;
+    if (std::hypot(u, v) < 0.75f) return 0;
+    return (u < -0.45f  ? kLeftEdge
+            : u > 0.45f ? kRightEdge
+                        : 0) |
+           (v < -0.45f  ? kBottomEdge
+            : v > 0.45f ? kTopEdge
+                        : 0);
+}
+
+int rangeEdges(const BrushRect& rect, ImVec2 at, float near) {
+    int edges = 0;
+    // Of two edges close together the nearer one is meant; small brushes keep a middle to move them by.
+    const float nearX = std::min(near, std::max(1.5f, (rect.max.x - rect.min.x) / 4));
+    const float nearY = std::min(near, std::max(1.5f, (rect.max.y - rect.min.y) / 4));
+    if (!rect.bandX) edges |= at.x < rect.min.x + nearX ? kLeftEdge : at.x > rect.max.x - nearX ? kRightEdge : 0;
+    if (!rect.bandY) edges |= at.y > rect.max.y - nearY ? kBottomEdge : at.y < rect.min.y + nearY ? kTopEdge : 0;
+    return edges;
 }
 
 } // namespace
 
 bool brushFits(const vis::Brush& brush, const PlotChannels& plot) {
-    return !brush.intervals.empty() && std::all_of(brush.intervals.begin(), brush.intervals.end(), [&](const auto& i) {
-        return i.channel == plot.x || (!plot.y.empty() && i.channel == plot.y);
+    const std::vector<std::string> channels = vis::regionChannels(brush.region);
+    return !channels.empty() && std::all_of(channels.begin(), channels.end(), [&](const std::string& channel) {
+        return channel == plot.x || (!plot.y.empty() && channel == plot.y);
     });
 }
 
@@ -125,33 +120,19 @@ BrushHit hitBrush(const vis::Selection& selection, const PlotFrame& frame, const
     for (int i = static_cast<int>(selection.brushes.size()) - 1; i >= 0; --i) {
         const vis::Brush& brush = selection.brushes[static_cast<std::size_t>(i)];
         if (!brushFits(brush, plot)) continue;
-        const Rect rect = rectOf(brush, frame, plot, 0);
+        const BrushRect rect = brushRect(brush.region, frame, plot, 0);
         if (at.x < rect.min.x - near || at.x > rect.max.x + near || at.y < rect.min.y - near ||
             at.y > rect.max.y + near)
             continue;
-        int edges = 0;
-        // Of two edges close together the nearer one is meant; small brushes keep a middle to move them by.
-        const float nearX = std::min(near, std::max(1.5f, (rect.max.x - rect.min.x) / 4));
-        const float nearY = std::min(near, std::max(1.5f, (rect.max.y - rect.min.y) / 4));
-        if (!rect.bandX) {
-            if (at.x < rect.min.x + nearX)
-                edges |= kLeftEdge;
-            else if (at.x > rect.max.x - nearX)
-                edges |= kRightEdge;
-        }
-        if (!rect.bandY) {
-            if (at.y > rect.max.y - nearY)
-                edges |= kBottomEdge;
-            else if (at.y < rect.min.y + nearY)
-                edges |= kTopEdge;
-        }
-        return {i, edges};
+        if (std::holds_alternative<vis::RangeRegion>(brush.region)) return {i, rangeEdges(rect, at, near)};
+        if (!insideOutline(brushOutline(brush.region, frame, plot, 0), at)) continue;
+        return {i, std::holds_alternative<vis::EllipseRegion>(brush.region) ? ellipseEdges(rect, at) : 0};
     }
     return {};
 }
 
 bool editBrushes(BrushDrag& drag, vis::Selection& selection, const PlotFrame& frame, const PlotChannels& plot,
-                 float softness) {
+                 const BrushPen& pen) {
     const ImGuiIO& io = ImGui::GetIO();
     const vis::Selection before = selection;
     const bool hovered = ImGui::IsItemHovered();
@@ -187,10 +168,10 @@ bool editBrushes(BrushDrag& drag, vis::Selection& selection, const PlotFrame& fr
             drag = {}; // somebody else (undo) took the brush away
         } else {
             if (drag.brush < 0 && ImGui::IsMouseDragging(ImGuiMouseButton_Left, reach()))
-                beginBrush(drag, selection, io.KeyShift, io.KeyCtrl);
+                beginBrush(drag, selection, pen, io.KeyShift, io.KeyCtrl);
             if (drag.brush >= 0 && drag.brush < static_cast<int>(selection.brushes.size())) {
                 if (!drag.made) showCursor(drag.edges);
-                dragBrush(drag, selection, frame, frame.data(io.MousePos), softness);
+                dragBrush(drag, selection, frame, pen);
             }
         }
     }
@@ -198,26 +179,35 @@ bool editBrushes(BrushDrag& drag, vis::Selection& selection, const PlotFrame& fr
 }
 
 void drawBrushes(ImDrawList& draw, const vis::Selection& selection, const PlotFrame& frame, const PlotChannels& plot) {
-    const PlotColors colors = plotColors();
     draw.PushClipRect(frame.min, frame.max, true);
+    const float thick = std::max(1.0f, em() * 0.1f);
     for (std::size_t i = 0; i < selection.brushes.size(); ++i) {
         const vis::Brush& brush = selection.brushes[i];
         if (!brushFits(brush, plot)) continue;
-        const ImU32 line = brush.enabled ? colors.brush : colors.frame;
-        Rect rect = rectOf(brush, frame, plot, 0);
-        const auto widen = [&](Rect& r) {
-            // A band has no ends: its lines along the plot's border would look like a range.
-            if (r.bandX) r.min.x -= 4, r.max.x += 4;
-            if (r.bandY) r.min.y -= 4, r.max.y += 4;
-        };
-        widen(rect);
-        if (brush.enabled && !brush.inverted) draw.AddRectFilled(rect.min, rect.max, colors.brushFill);
-        const Rect inner = rect;
-        Rect outer = rectOf(brush, frame, plot, 1);
-        widen(outer);
-        draw.AddRect(outer.min, outer.max, (line & ~IM_COL32_A_MASK) | IM_COL32(0, 0, 0, 90));
-        draw.AddRect(inner.min, inner.max, line, 0, 0, std::max(1.0f, em() * 0.1f));
-        if (brush.inverted) {
+        const bool taken = brush.inverted != (brush.combine == vis::BrushCombine::Minus);
+        const ImU32 line = brush.enabled ? brushColor(brush) : plotColors().frame;
+        const ImU32 faint = (line & ~IM_COL32_A_MASK) | IM_COL32(0, 0, 0, 90);
+        const bool fill = brush.enabled && !taken;
+        BrushRect inner = brushRect(brush.region, frame, plot, 0);
+        if (std::holds_alternative<vis::RangeRegion>(brush.region)) {
+            BrushRect outer = brushRect(brush.region, frame, plot, 1);
+            for (BrushRect* rect : {&inner, &outer}) {
+                // A band has no ends: its lines along the plot's border would look like a range.
+                if (rect->bandX) rect->min.x -= 4, rect->max.x += 4;
+                if (rect->bandY) rect->min.y -= 4, rect->max.y += 4;
+            }
+            if (fill) draw.AddRectFilled(inner.min, inner.max, brushColor(brush, 0.11f));
+            draw.AddRect(outer.min, outer.max, faint);
+            draw.AddRect(inner.min, inner.max, line, 0, 0, thick);
+        } else {
+            const std::vector<ImVec2> outline = brushOutline(brush.region, frame, plot, 0);
+            const std::vector<ImVec2> outer = brushOutline(brush.region, frame, plot, 1);
+            if (fill && std::holds_alternative<vis::EllipseRegion>(brush.region))
+                draw.AddConvexPolyFilled(outline.data(), static_cast<int>(outline.size()), brushColor(brush, 0.11f));
+            draw.AddPolyline(outer.data(), static_cast<int>(outer.size()), faint, ImDrawFlags_Closed, 1);
+            draw.AddPolyline(outline.data(), static_cast<int>(outline.size()), line, ImDrawFlags_Closed, thick);
+        }
+        if (taken) {
             // Struck through: what is inside is taken away. Not colour alone.
             draw.AddLine(inner.min, inner.max, line);
             draw.AddLine({inner.min.x, inner.max.y}, {inner.max.x, inner.min.y}, line);
@@ -231,8 +221,7 @@ void drawBrushes(ImDrawList& draw, const vis::Selection& selection, const PlotFr
     draw.PopClipRect();
 }
 
-std::string newBrushName(const vis::Selection& selection, const PlotChannels& plot) {
-    const std::string base = plot.y.empty() || plot.y == plot.x ? plot.x : plot.x + " \u00d7 " + plot.y;
+std::string newBrushName(const vis::Selection& selection, const std::string& base) {
     const auto taken = [&](const std::string& name) {
         return std::any_of(selection.brushes.begin(), selection.brushes.end(),
                            [&](const vis::Brush& brush) { return brush.name == name; });
@@ -240,6 +229,25 @@ std::string newBrushName(const vis::Selection& selection, const PlotChannels& pl
     std::string name = base;
     for (int i = 2; taken(name); ++i) name = base + " " + std::to_string(i);
     return name;
+}
+
+glm::vec3 newBrushColor(const vis::Selection& selection) {
+    for (const glm::vec3& color : kColors)
+        if (std::none_of(selection.brushes.begin(), selection.brushes.end(),
+                         [&](const vis::Brush& brush) { return brush.color == color; }))
+            return color;
+    return kColors[selection.brushes.size() % std::size(kColors)];
+}
+
+ImU32 brushColor(const vis::Brush& brush, float alpha) {
+    const float dim = darkTheme() ? 1.0f : 0.7f; // light colours vanish on white
+    return ImGui::ColorConvertFloat4ToU32({brush.color.r * dim, brush.color.g * dim, brush.color.b * dim, alpha});
+}
+
+ImU32 focusColor(const vis::Selection& selection) {
+    for (auto brush = selection.brushes.rbegin(); brush != selection.brushes.rend(); ++brush)
+        if (brush->enabled && !brush->inverted && brush->combine != vis::BrushCombine::Minus) return brushColor(*brush);
+    return plotColors().focus;
 }
 
 } // namespace tessera::app

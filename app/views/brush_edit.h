@@ -1,5 +1,6 @@
 #pragma once
 
+#include "app/session/view_state.h"
 #include "app/views/plot.h"
 #include "vis/model/selection.h"
 
@@ -15,6 +16,12 @@ struct PlotChannels {
     bool operator==(const PlotChannels&) const = default;
 };
 
+/// What a drag on an empty place of a plot makes.
+struct BrushPen {
+    BrushTool tool = BrushTool::Rectangle;
+    float softness = 0; ///< soft edge of new brushes, as a share of their width
+};
+
 /// The drag in progress. One per view, since only one mouse drags.
 struct BrushDrag {
     bool active = false;
@@ -28,7 +35,7 @@ struct BrushDrag {
 
 enum BrushEdge { kLeftEdge = 1, kRightEdge = 2, kBottomEdge = 4, kTopEdge = 8 };
 
-/// True if every channel of the brush is an axis of the plot: then the brush is drawn and edited there.
+/// True if the brush looks at axes of the plot alone: then it is drawn and edited there.
 bool brushFits(const vis::Brush& brush, const PlotChannels& plot);
 
 /// The brush under a point and which of its edges, -1 if there is none; the last made lies on top.
@@ -38,17 +45,23 @@ struct BrushHit {
 BrushHit hitBrush(const vis::Selection& selection, const PlotFrame& frame, const PlotChannels& plot, ImVec2 at);
 
 /// Handles the mouse on a plot whose InvisibleButton (left and right) was the last ImGui item; returns true when the
-/// selection changed. Left drag on the plot makes a brush, replacing those of this very plot; Shift keeps them, Ctrl
-/// keeps them and takes away (an inverted brush); dragging a brush moves it, its edges and corners resize it; Esc takes
-/// the drag back; right click removes the brush under the mouse, or all of them where there is none.
-/// `softness` is the soft edge of new brushes as a share of their width.
+/// selection changed. Left drag on the plot makes a brush, replacing those of this very plot; Shift keeps them and adds
+/// ("or"), Ctrl keeps them and takes away ("minus"); dragging a brush moves it, its edges and corners resize it; Esc
+/// takes the drag back; right click removes the brush under the mouse, or all of them where there is none.
 bool editBrushes(BrushDrag& drag, vis::Selection& selection, const PlotFrame& frame, const PlotChannels& plot,
-                 float softness);
+                 const BrushPen& pen);
 
-/// Outlines of the brushes that fit the plot, soft edges as a fainter outer line, numbers as in the list of brushes.
+/// Outlines of the brushes that fit the plot in their colours, soft edges as a fainter outer line, numbers as in the
+/// list of brushes.
 void drawBrushes(ImDrawList& draw, const vis::Selection& selection, const PlotFrame& frame, const PlotChannels& plot);
 
-/// "T x O2", numbered when the selection has one of that name.
-std::string newBrushName(const vis::Selection& selection, const PlotChannels& plot);
+/// `base`, numbered when the selection has a brush of that name.
+std::string newBrushName(const vis::Selection& selection, const std::string& base);
+/// A colour that no brush of the selection has yet, while there are some.
+glm::vec3 newBrushColor(const vis::Selection& selection);
+/// A brush's colour on the theme's background.
+ImU32 brushColor(const vis::Brush& brush, float alpha = 1);
+/// The colour that stands for the whole selection: of the last enabled brush that adds to it.
+ImU32 focusColor(const vis::Selection& selection);
 
 } // namespace tessera::app

@@ -1,4 +1,5 @@
 #include "app/ui/widgets.h"
+#include "app/views/brush_list.h"
 #include "app/views/ticks.h"
 #include "app/views/view_parts.h"
 
@@ -139,60 +140,6 @@ void drawListButtons(ViewContext& context, const volume::DatasetInfo& info, int&
     ImGui::TextDisabled("drag to reorder");
 }
 
-std::string intervalText(const volume::DatasetInfo& info, const vis::BrushInterval& interval) {
-    const auto channel = info.findChannel(interval.channel);
-    if (!channel) return interval.channel + " (missing)";
-    const volume::Channel own = info.channels()[static_cast<std::size_t>(*channel)];
-    const Range range = info.channelRange(own);
-    const double digits = (range.hi - range.lo) / 1000;
-    return interval.channel + "  " + formatNumber(interval.lo, digits) + " .. " +
-           formatQuantity(interval.hi, own.unit, digits);
-}
-
-void drawBrushList(ViewContext& context, const volume::DatasetInfo& info) {
-    vis::Selection& selection = context.session.selection;
-    const WidgetContext widgets{.info = &info};
-    int removed = -1;
-    for (std::size_t i = 0; i < selection.brushes.size(); ++i) {
-        vis::Brush& brush = selection.brushes[i];
-        ImGui::PushID(static_cast<int>(i));
-        ImGui::Checkbox("##enabled", &brush.enabled);
-        if (ImGui::IsItemHovered()) tooltip("Takes part in the selection");
-        ImGui::SameLine(0, em() * 0.3f);
-        ImGui::AlignTextToFramePadding();
-        ImGui::Text("%zu", i + 1);
-        ImGui::SameLine(0, em() * 0.4f);
-        const float buttons = ImGui::GetFrameHeight() * 2 + em() * 0.9f;
-        ImGui::SetNextItemWidth(std::max(em() * 3, ImGui::GetContentRegionAvail().x - buttons));
-        ImGui::InputText("##name", &brush.name);
-        ImGui::SameLine(0, em() * 0.3f);
-        if (iconButton(context, "invert", icons::kInvert, "Select what lies outside", true, brush.inverted))
-            brush.inverted = !brush.inverted;
-        ImGui::SameLine(0, em() * 0.2f);
-        if (iconButton(context, "delete", icons::kTrash, "Remove this brush")) removed = static_cast<int>(i);
-        ImGui::Indent(em() * 1.6f);
-        for (std::size_t k = 0; k < brush.intervals.size(); ++k) {
-            vis::BrushInterval& interval = brush.intervals[k];
-            ImGui::PushID(static_cast<int>(k));
-            const std::string text = (brush.inverted ? "not " : "") + intervalText(info, interval) + "###interval";
-            if (ImGui::TreeNodeEx(text.c_str(), ImGuiTreeNodeFlags_SpanAvailWidth)) {
-                drawDescribed(interval, widgets);
-                if (interval.hi < interval.lo) std::swap(interval.lo, interval.hi);
-                interval.soft = std::max(0.0, interval.soft);
-                ImGui::TreePop();
-            }
-            ImGui::PopID();
-        }
-        ImGui::Unindent(em() * 1.6f);
-        ImGui::PopID();
-    }
-    if (removed >= 0) selection.brushes.erase(selection.brushes.begin() + removed);
-    if (selection.brushes.empty())
-        ImGui::TextDisabled("No brushes: drag in a plot to select.");
-    else if (ImGui::SmallButton("Clear all"))
-        selection.brushes.clear();
-}
-
 } // namespace
 
 void drawLayersView(ViewContext& context, const std::string&, LayersView& view) {
@@ -223,7 +170,7 @@ void drawLayersView(ViewContext& context, const std::string&, LayersView& view) 
         }
     }
     if (ImGui::CollapsingHeader("Focus and context", ImGuiTreeNodeFlags_DefaultOpen)) {
-        drawBrushList(context, info);
+        drawBrushList(context);
         drawDescribed(session.selection, widgets);
     }
     if (ImGui::CollapsingHeader("Light and quality")) drawDescribed(session.render, widgets);

@@ -224,7 +224,7 @@ void drawCrosshair(ImDrawList& draw, const PlotFrame& frame, double x, double y)
 }
 
 int densityImage(std::span<const std::uint64_t> counts, std::span<const double> focus, int size, int merge,
-                 bool logDensity, bool dark, std::vector<std::uint8_t>& rgba) {
+                 bool logDensity, bool dark, ImU32 focusColor, std::vector<std::uint8_t>& rgba) {
     const auto bins = static_cast<std::size_t>(size), step = static_cast<std::size_t>(std::max(1, merge));
     const std::size_t n = (bins + step - 1) / step;
     std::vector<double> sums(n * n), focused(focus.empty() ? 0 : n * n);
@@ -237,9 +237,11 @@ int densityImage(std::span<const std::uint64_t> counts, std::span<const double> 
     rgba.assign(n * n * 4, 0);
     const double most = *std::max_element(sums.begin(), sums.end());
     if (most <= 0) return static_cast<int>(n);
-    // Context grey-blue, focus orange: told apart by lightness as well as by hue.
+    // Context grey-blue, focus in a strong colour: told apart by lightness as well as by hue.
     const std::array<double, 3> context = dark ? std::array{138.0, 156.0, 180.0} : std::array{92.0, 106.0, 128.0};
-    const std::array<double, 3> hot = dark ? std::array{255.0, 178.0, 70.0} : std::array{206.0, 92.0, 0.0};
+    const std::array<double, 3> hot{double(focusColor >> IM_COL32_R_SHIFT & 255),
+                                    double(focusColor >> IM_COL32_G_SHIFT & 255),
+                                    double(focusColor >> IM_COL32_B_SHIFT & 255)};
     const std::array<double, 3> plain = dark ? std::array{150.0, 196.0, 236.0} : std::array{28.0, 92.0, 158.0};
     for (std::size_t row = 0; row < n; ++row)
         for (std::size_t column = 0; column < n; ++column) {

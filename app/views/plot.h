@@ -83,8 +83,8 @@ void drawCrosshair(ImDrawList& draw, const PlotFrame& frame, double x, double y)
 /// Colours of a density plot, row 0 at the top (the largest y): transparent where no sample is, else the density from
 /// faint to full, hue by the share of focus. `counts` and `focus` have size x size bins, x fastest, row 0 = lowest y;
 /// `focus` may be empty (nothing brushed). Every `merge` x `merge` bins become one pixel, so that a small plot shows
-/// every sample; returns the pixels a side.
+/// every sample; returns the pixels a side. `focusColor` is the hue of the focus.
 int densityImage(std::span<const std::uint64_t> counts, std::span<const double> focus, int size, int merge,
-                 bool logDensity, bool dark, std::vector<std::uint8_t>& rgba);
+                 bool logDensity, bool dark, ImU32 focusColor, std::vector<std::uint8_t>& rgba);
 
 } // namespace tessera::app

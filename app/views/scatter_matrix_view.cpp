@@ -26,6 +26,7 @@ struct ScatterCache : ScatterLayoutCache {
     std::shared_ptr<const StatisticsResult> shown;
     bool shownLog = false, shownDark = false;
     int shownMerge = 0, shownLarge = -1;
+    ImU32 shownFocus = 0;
 };
 
 std::vector<int> shownChannels(const volume::DatasetInfo& info, const ScatterMatrixView& view) {
@@ -62,6 +63,18 @@ void chooseChannels(const volume::DatasetInfo& info, ScatterMatrixView& view, co
     if (ImGui::IsItemHovered()) tooltip("Parameters that are compared");
 }
 
+void chooseTool(BrushTool& tool) {
+    static constexpr const char* kTools[] = {"rectangle", "ellipse", "lasso"};
+    ImGui::SetNextItemWidth(em() * 5.4f);
+    if (ImGui::BeginCombo("##tool", kTools[static_cast<std::size_t>(tool)])) {
+        for (int i = 0; i < 3; ++i)
+            if (ImGui::Selectable(kTools[i], static_cast<int>(tool) == i)) tool = static_cast<BrushTool>(i);
+        ImGui::EndCombo();
+    }
+    if (ImGui::IsItemHovered())
+        tooltip("What a drag in a plot draws; Shift adds to the selection, Ctrl takes away from it");
+}
+
 /// Focus samples and all samples: of the parameter that exists at most points.
 struct Share {
     double focus = 0, all = 0;
@@ -83,6 +96,8 @@ void drawToolbar(ViewContext& context, ScatterMatrixView& view, const std::vecto
     ImGui::SameLine();
     ImGui::Checkbox("log", &view.logDensity);
     if (ImGui::IsItemHovered()) tooltip("Show the logarithm of the number of samples");
+    ImGui::SameLine();
+    chooseTool(view.tool);
     ImGui::SameLine();
     ImGui::SetNextItemWidth(em() * 5);
     float percent = view.softness * 100;
@@ -118,14 +133,15 @@ void drawToolbar(ViewContext& context, ScatterMatrixView& view, const std::vecto
 }
 
 void updateTextures(ScatterCache& cache, const std::shared_ptr<const StatisticsResult>& result, bool logDensity,
-                    float cell, int large) {
+                    float cell, int large, ImU32 focus) {
     const bool dark = darkTheme();
     const int merge =
         std::max(1, static_cast<int>(std::lround(static_cast<float>(result->wish.bins) / std::max(8.0f, cell))));
     if (cache.shown == result && cache.shownLog == logDensity && cache.shownDark == dark && cache.shownMerge == merge &&
-        cache.shownLarge == large)
+        cache.shownLarge == large && cache.shownFocus == focus)
         return;
     cache.shownLarge = large;
+    cache.shownFocus = focus;
     cache.shownMerge = merge;
     cache.shown = result;
     cache.shownLog = logDensity;
@@ -135,11 +151,11 @@ void updateTextures(ScatterCache& cache, const std::shared_ptr<const StatisticsR
         const volume::JointHistogram& joint = result->statistics.joint[i];
         const int pixels = densityImage(
             joint.count, result->brushed ? std::span<const double>(joint.focus) : std::span<const double>(), joint.bins,
-            merge, logDensity, dark, cache.pixels);
+            merge, logDensity, dark, focus, cache.pixels);
         cache.textures[i].upload({pixels, pixels}, cache.pixels);
         if (static_cast<int>(i) != large) continue;
         densityImage(joint.count, result->brushed ? std::span<const double>(joint.focus) : std::span<const double>(),
-                     joint.bins, 1, logDensity, dark, cache.pixels);
+                     joint.bins, 1, logDensity, dark, focus, cache.pixels);
         cache.large.upload({joint.bins, joint.bins}, cache.pixels);
     }
 }
@@ -176,7 +192,7 @@ int jointIndex(const volume::Statistics& statistics, std::size_t column, std::si
 }
 
 void drawHistogram(ImDrawList& draw, const PlotFrame& frame, const volume::Histogram& histogram, bool brushed,
-                   bool logCounts) {
+                   bool logCounts, ImU32 focusShade) {
     const PlotColors colors = plotColors();
     std::uint64_t most = 1;
     for (std::uint64_t count : histogram.count) most = std::max(most, count);
@@ -190,7 +206,7 @@ void drawHistogram(ImDrawList& draw, const PlotFrame& frame, const volume::Histo
         if (brushed) focus.push_back(histogram.focus[i] > 0 ? height(histogram.focus[i]) : 0.0f);
     }
     drawBars(draw, frame, all, colors.bars);
-    if (brushed) drawBars(draw, frame, focus, colors.focus);
+    if (brushed) drawBars(draw, frame, focus, focusShade);
 }
 
 /// Correlation as a number on a tint: orange for rising together, blue for against each other.
@@ -321,11 +337,12 @@ bool drawPlot(ViewContext& context, ScatterCache& cache, const ScatterMatrixView
     const bool clicked =
         pressed && ImGui::IsMouseReleased(ImGuiMouseButton_Left) && std::hypot(way.x, way.y) < em() * 0.25f;
     const bool hovered = ImGui::IsItemHovered();
-    editBrushes(cache.drag, session.selection, frame, channels, view.softness);
+    editBrushes(cache.drag, session.selection, frame, channels, {view.tool, view.softness});
 
     draw.PushClipRect(frame.min, frame.max, true);
     if (result && histogram)
-        drawHistogram(draw, frame, result->statistics.channels[column].histogram, result->brushed, view.logDensity);
+        drawHistogram(draw, frame, result->statistics.channels[column].histogram, result->brushed, view.logDensity,
+                      focusColor(session.selection));
     const int joint = result ? jointIndex(result->statistics, column, row) : -1;
     if (joint >= 0 && texture) {
         if (result->statistics.joint[static_cast<std::size_t>(joint)].samples == 0) drawNothingCommon(draw, frame);
@@ -424,7 +441,8 @@ void drawScatterMatrixView(ViewContext& context, const std::string& pane, Scatte
     const Enlarged large = enlargedPlot(matrix, view);
     if (result)
         updateTextures(cache, result, view.logDensity, std::min(matrix.cellX, matrix.cellY),
-                       large.cells > 0 ? jointIndex(result->statistics, large.column, large.row) : -1);
+                       large.cells > 0 ? jointIndex(result->statistics, large.column, large.row) : -1,
+                       focusColor(context.session.selection));
     for (std::size_t row = 0; row < matrix.size(); ++row)
         for (std::size_t column = 0; column < matrix.size(); ++column) {
             if (large.covers(matrix, column, row)) continue;

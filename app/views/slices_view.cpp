@@ -1,5 +1,6 @@
 #include "app/ui/widgets.h"
 #include "app/views/axes3d.h"
+#include "app/views/brush_list.h"
 #include "app/views/readout.h"
 #include "app/views/ticks.h"
 #include "app/views/view_parts.h"
@@ -103,6 +104,10 @@ void drawPlane(ViewContext& context, SlicesCache& cache, const SlicesView& view,
     ImGui::SetCursorScreenPos(frame.min);
     ImGui::PushID(index);
     ImGui::InvisibleButton("plane", {frame.width(), frame.height()});
+    if (ImGui::BeginPopupContextItem("menu")) {
+        drawBrushMenu(context);
+        ImGui::EndPopup();
+    }
     ImGui::PopID();
     const ImGuiIO& io = ImGui::GetIO();
     if (ImGui::IsItemActivated()) cache.dragging = index;
@@ -145,6 +150,8 @@ void drawPlane(ViewContext& context, SlicesCache& cache, const SlicesView& view,
     drawAxis(draw, frame, AxisSide::Left, kAxisNames[plane.up], unitY.name, min.y, max.y,
              {.inlineTitle = true, .room = left});
     draw.PushClipRect(frame.min, frame.max, true);
+    drawBrushSections(draw, frame, session.selection, plane.right, plane.up, plane.normal, session.cursor[plane.normal],
+                      {unitX.perUnit, unitY.perUnit});
     drawCrosshair(draw, frame, session.cursor[plane.right] * unitX.perUnit, session.cursor[plane.up] * unitY.perUnit);
     draw.PopClipRect();
 }

@@ -4,6 +4,7 @@
 #include "volume/error.h"
 
 #include <algorithm>
+#include <cmath>
 #include <list>
 
 namespace tessera::app {
@@ -11,16 +12,6 @@ namespace tessera::app {
 namespace {
 
 constexpr std::size_t kKept = 32; ///< results; one of six parameters and 96 bins is 2 MB
-
-/// A brush whose channels are positions in the values given to it.
-struct PlacedInterval {
-    int position = -1;
-    vis::BrushInterval interval;
-};
-struct PlacedBrush {
-    bool inverted = false;
-    std::vector<PlacedInterval> intervals;
-};
 
 std::shared_ptr<const StatisticsResult> compute(const volume::BrickSource& source, const StatisticsWish& wish,
                                                 int level, const Progress& progress) {
@@ -68,13 +59,13 @@ StatisticsWish makeWish(const Session& session, const volume::DatasetInfo& info,
     wish.ranges = ranges;
     wish.bins = bins;
     wish.time = timeIndex(session, info);
-    wish.selection.combine = session.selection.combine;
     if (pairs) wish.pairs = volume::allPairs(static_cast<int>(channels.size()));
     for (vis::Brush brush : session.selection.brushes) {
         if (!brush.enabled) continue;
-        brush.name.clear();
-        for (const vis::BrushInterval& interval : brush.intervals) {
-            const auto channel = info.findChannel(interval.channel);
+        brush.name.clear(); // looks do not change the numbers
+        brush.color = {};
+        for (const std::string& name : vis::regionChannels(brush.region)) {
+            const auto channel = info.findChannel(name);
             if (!channel || std::find(wish.channels.begin(), wish.channels.end(), *channel) != wish.channels.end())
                 continue;
             wish.channels.push_back(*channel);
@@ -94,34 +85,23 @@ volume::StatisticsQuery makeQuery(const StatisticsWish& wish, const volume::Data
     query.bins = wish.bins;
     query.level = level;
     if (!wish.selection.active()) return query;
-    std::vector<PlacedBrush> brushes;
-    for (const vis::Brush& brush : wish.selection.brushes) {
-        PlacedBrush placed{brush.inverted, {}};
-        for (const vis::BrushInterval& interval : brush.intervals) {
-            PlacedInterval own{-1, interval};
-            if (const auto channel = info.findChannel(interval.channel)) {
-                const auto found = std::find(wish.channels.begin(), wish.channels.end(), *channel);
-                if (found != wish.channels.end()) own.position = static_cast<int>(found - wish.channels.begin());
-            }
-            placed.intervals.push_back(own);
-        }
-        brushes.push_back(std::move(placed));
+    const vis::DoiFunction doi(wish.selection);
+    std::vector<int> positions; // of its channels in the values, -1: unknown, absent everywhere
+    for (const std::string& name : doi.channels()) {
+        const auto channel = info.findChannel(name);
+        const auto found =
+            channel ? std::find(wish.channels.begin(), wish.channels.end(), *channel) : wish.channels.end();
+        positions.push_back(found == wish.channels.end() ? -1 : static_cast<int>(found - wish.channels.begin()));
     }
-    const bool all = wish.selection.combine == vis::Combine::All;
-    query.doi = [brushes = std::move(brushes), all](std::span<const float> values) {
-        double doi = all ? 1 : 0;
-        for (const PlacedBrush& brush : brushes) {
-            double own = 1;
-            for (const PlacedInterval& placed : brush.intervals)
-                own = placed.position < 0
-                          ? 0
-                          : std::min(own, vis::intervalDoi(
-                                              placed.interval,
-                                              static_cast<double>(values[static_cast<std::size_t>(placed.position)])));
-            if (brush.inverted) own = 1 - own;
-            doi = all ? std::min(doi, own) : std::max(doi, own);
-        }
-        return doi;
+    query.doi = [doi, positions](std::span<const float> values, glm::dvec3 position) {
+        constexpr std::size_t kMost = 32;
+        double few[kMost];
+        std::vector<double> many(positions.size() > kMost ? positions.size() : 0);
+        double* given = many.empty() ? few : many.data();
+        for (std::size_t i = 0; i < positions.size(); ++i)
+            given[i] =
+                positions[i] < 0 ? std::nan("") : static_cast<double>(values[static_cast<std::size_t>(positions[i])]);
+        return doi({given, positions.size()}, position);
     };
     return query;
 }

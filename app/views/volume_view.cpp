@@ -1,5 +1,6 @@
 #include "app/ui/keys.h"
 #include "app/views/axes3d.h"
+#include "app/views/brush_list.h"
 #include "app/views/ticks.h"
 #include "app/views/view_parts.h"
 
@@ -175,6 +176,8 @@ void drawMenu(ViewContext& context, const char* id, VolumeView& view, const vis:
     if (ImGui::MenuItem("Parallel projection", "5", &parallel))
         camera.projection = parallel ? vis::Projection::Orthographic : vis::Projection::Perspective;
     ImGui::Separator();
+    drawBrushMenu(context);
+    ImGui::Separator();
     ImGui::MenuItem("Box", "", &view.showBox);
     ImGui::MenuItem("Axes", "", &view.showAxes);
     ImGui::MenuItem("Legends", "", &view.showLegend);
@@ -269,6 +272,7 @@ void drawVolumeView(ViewContext& context, const std::string& pane, VolumeView& v
     addPicture(draw, status.texture, picture.min, max);
     const SpaceFrame space = spaceFrame(picture.min, max, session.camera, info.bounds, session.stretch);
     if (view.showCursor) drawCursor(draw, space, session.cursor);
+    drawSpaceBrushes(draw, space, session.selection);
 
     std::vector<std::pair<ImVec2, ImVec2>> taken;
     if (view.showLegend) {

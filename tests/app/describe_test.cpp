@@ -11,7 +11,8 @@ namespace {
 /// Every described struct of the program.
 using Structs =
     ::testing::Types<vis::Camera, vis::VolumeLayer, vis::IsoLayer, vis::SliceLayer, vis::Layer, vis::RenderParams,
-                     vis::BrushInterval, vis::Brush, vis::Selection, vis::TransferFunction, DockNode, FloatingPane,
+                     vis::BrushInterval, vis::RangeRegion, vis::EllipseRegion, vis::LassoRegion, vis::SphereRegion,
+                     vis::BoxRegion, vis::Brush, vis::Selection, vis::TransferFunction, DockNode, FloatingPane,
                      DockTree, DataFile, DataRef, Animation, Appearance, VolumeView, SlicesView, ScatterMatrixView,
                      TransferView, LayersView, TimelineView, DataView, HistoryView, LogView, Session>;
 

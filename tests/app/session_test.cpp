@@ -228,13 +228,27 @@ TEST(HistoryTest, PlayingIsNoEdit) {
     EXPECT_EQ(history.undo().time, 5);
 }
 
+TEST(SessionTest, BrushesOfTheFirstSchemaBecomeRegions) {
+    const SessionDocument old = parseSession(R"({"schema": 1, "selection": {"combine": "any", "contextOpacity": 0.5,
+        "brushes": [{"name": "hot", "inverted": true, "intervals": [{"channel": "T", "lo": 3, "hi": 4, "soft": 0.5}]},
+                    {"enabled": false, "intervals": []}]}})",
+                                             "old");
+    EXPECT_TRUE(old.messages.empty());
+    const vis::Selection& selection = old.session.selection;
+    ASSERT_EQ(selection.brushes.size(), 2u);
+    EXPECT_TRUE(selection.brushes[0].inverted);
+    EXPECT_EQ(selection.brushes[0].combine, vis::BrushCombine::Or);
+    const std::vector<vis::BrushInterval> wanted{{"T", 3, 4, 0.5}};
+    EXPECT_EQ(std::get<vis::RangeRegion>(selection.brushes[0].region).intervals, wanted);
+    EXPECT_EQ(selection.contextOpacity, 0.5f);
+}
+
 TEST(SessionTest, FitReplacesWhatIsNotThere) {
     Session session = defaultSession(cellInfo(), {});
     session.layers = {{"a", true, vis::VolumeLayer{.channel = "salt"}},
                       {"b", true, vis::IsoLayer{.channel = "sugar", .value = 1e9}},
                       {"c", true, vis::IsoLayer{.channel = "T", .value = 2}}};
-    session.selection.brushes = {{.name = "x", .intervals = {{.channel = "salt"}}},
-                                 {.name = "y", .intervals = {{.channel = "T"}}}};
+    session.selection.brushes = {vis::rangeBrush({{.channel = "salt"}}, "x"), vis::rangeBrush({{.channel = "T"}}, "y")};
     session.cursor = {50, 1, 1};
     session.time = 77;
     std::vector<std::string> messages;

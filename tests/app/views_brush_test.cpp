@@ -33,7 +33,7 @@ protected:
         ImGui::SetCursorScreenPos(plot.min);
         ImGui::InvisibleButton("plot", {plot.width(), plot.height()},
                                ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight);
-        changed = editBrushes(drag, selection, plot, channels, 0.1f);
+        changed = editBrushes(drag, selection, plot, channels, {tool, 0.1f});
         drawBrushes(*ImGui::GetWindowDrawList(), selection, plot, channels);
         ImGui::End();
         ImGui::Render();
@@ -54,7 +54,7 @@ protected:
         button(0, false);
     }
     const vis::BrushInterval& interval(std::size_t brush, std::size_t i) {
-        return selection.brushes[brush].intervals[i];
+        return std::get<vis::RangeRegion>(selection.brushes[brush].region).intervals[i];
     }
 
     PlotFrame plot{{50, 50}, {250, 150}, {0, 10}, {0, 1}};
@@ -63,12 +63,13 @@ protected:
     vis::Selection selection;
     ImVec2 mouse{0, 0};
     bool changed = false;
+    BrushTool tool = BrushTool::Rectangle;
 };
 
 TEST_F(BrushEdit, DraggingMakesABrushWithSoftEdges) {
     dragFromTo(2, 0.8, 6, 0.2);
     ASSERT_EQ(selection.brushes.size(), 1u);
-    ASSERT_EQ(selection.brushes[0].intervals.size(), 2u);
+    ASSERT_EQ(std::get<vis::RangeRegion>(selection.brushes[0].region).intervals.size(), 2u);
     EXPECT_EQ(interval(0, 0).channel, "T");
     EXPECT_EQ(interval(0, 1).channel, "O2");
     EXPECT_NEAR(interval(0, 0).lo, 2, 0.1);
@@ -113,9 +114,7 @@ TEST_F(BrushEdit, EdgesAndCornersResize) {
 }
 
 TEST_F(BrushEdit, ANewBrushReplacesTheOldOneOfThePlotOnly) {
-    vis::Brush other;
-    other.intervals = {{.channel = "p", .lo = 0, .hi = 1}};
-    selection.brushes.push_back(other);
+    selection.brushes.push_back(vis::rangeBrush({{.channel = "p", .lo = 0, .hi = 1}}));
     dragFromTo(1, 0.1, 3, 0.3);
     dragFromTo(6, 0.6, 9, 0.9);
     ASSERT_EQ(selection.brushes.size(), 2u);
@@ -130,7 +129,8 @@ TEST_F(BrushEdit, ShiftAddsAndCtrlSubtracts) {
     dragFromTo(6, 0.6, 9, 0.9);
     ImGui::GetIO().KeyShift = false;
     ASSERT_EQ(selection.brushes.size(), 2u);
-    EXPECT_EQ(selection.combine, vis::Combine::Any);
+    EXPECT_EQ(selection.brushes[1].combine, vis::BrushCombine::Or);
+    EXPECT_NE(selection.brushes[0].color, selection.brushes[1].color);
     EXPECT_NE(selection.brushes[0].name, selection.brushes[1].name);
     ImGui::GetIO().KeyCtrl = true;
     ImGui::GetIO().KeyMods = ImGuiKeyModFlags_Ctrl;
@@ -138,7 +138,7 @@ TEST_F(BrushEdit, ShiftAddsAndCtrlSubtracts) {
     ImGui::GetIO().KeyCtrl = false;
     ImGui::GetIO().KeyMods = 0;
     ASSERT_EQ(selection.brushes.size(), 3u);
-    EXPECT_TRUE(selection.brushes[2].inverted);
+    EXPECT_EQ(selection.brushes[2].combine, vis::BrushCombine::Minus);
 }
 
 TEST_F(BrushEdit, EscapeTakesTheDragBack) {
@@ -158,9 +158,7 @@ TEST_F(BrushEdit, EscapeTakesTheDragBack) {
 
 TEST_F(BrushEdit, RightClickRemovesTheBrushOrClearsAll) {
     dragFromTo(1, 0.1, 3, 0.3);
-    vis::Brush other;
-    other.intervals = {{.channel = "p", .lo = 0, .hi = 1}};
-    selection.brushes.push_back(other);
+    selection.brushes.push_back(vis::rangeBrush({{.channel = "p", .lo = 0, .hi = 1}}));
     moveTo(2, 0.2);
     button(1, true);
     button(1, false);
@@ -176,7 +174,7 @@ TEST_F(BrushEdit, HistogramsBrushOneChannel) {
     channels = {"T", ""};
     dragFromTo(2, 0.5, 6, 0.9);
     ASSERT_EQ(selection.brushes.size(), 1u);
-    ASSERT_EQ(selection.brushes[0].intervals.size(), 1u);
+    ASSERT_EQ(std::get<vis::RangeRegion>(selection.brushes[0].region).intervals.size(), 1u);
     EXPECT_NEAR(interval(0, 0).hi, 6, 0.1);
     // The band is drawn, and can be held, in every plot with that channel on an axis.
     EXPECT_TRUE(brushFits(selection.brushes[0], {"T", "O2"}));
@@ -188,6 +186,50 @@ TEST_F(BrushEdit, HistogramsBrushOneChannel) {
     dragFromTo(0.5, 4, 0.5, 6);
     EXPECT_NEAR(interval(0, 0).lo, 4, 0.1);
     EXPECT_NEAR(interval(0, 0).hi, 8, 0.1);
+}
+
+TEST_F(BrushEdit, EllipsesAreDrawnCornerToCornerAndHeldByTheirRim) {
+    tool = BrushTool::Ellipse;
+    dragFromTo(2, 0.2, 6, 0.8);
+    ASSERT_EQ(selection.brushes.size(), 1u);
+    const auto ellipse = [&] { return std::get<vis::EllipseRegion>(selection.brushes[0].region); };
+    EXPECT_NEAR(ellipse().center.x, 4, 0.1);
+    EXPECT_NEAR(ellipse().radius.y, 0.3, 0.02);
+    EXPECT_NEAR(ellipse().soft, 0.2, 1e-6);
+    dragFromTo(4, 0.5, 5, 0.5); // the middle moves it
+    ASSERT_EQ(selection.brushes.size(), 1u);
+    EXPECT_NEAR(ellipse().center.x, 5, 0.1);
+    EXPECT_NEAR(ellipse().radius.x, 2, 0.1);
+    dragFromTo(6.9, 0.5, 8.9, 0.5); // the right rim widens it
+    EXPECT_NEAR(ellipse().center.x, 6, 0.1);
+    EXPECT_NEAR(ellipse().radius.x, 3, 0.1);
+    // Seen with the axes exchanged it is the same one.
+    channels = {"O2", "T"};
+    plot.x = {0, 1};
+    plot.y = {0, 10};
+    dragFromTo(0.5, 6, 0.5, 5);
+    EXPECT_NEAR(ellipse().center.x, 5, 0.1);
+    EXPECT_NEAR(ellipse().center.y, 0.5, 0.02);
+}
+
+TEST_F(BrushEdit, ALassoFollowsTheMouse) {
+    tool = BrushTool::Lasso;
+    moveTo(2, 0.2);
+    button(0, true);
+    for (const auto& [x, y] : {std::pair{6.0, 0.2}, {6.0, 0.8}, {2.0, 0.8}}) moveTo(x, y);
+    button(0, false);
+    ASSERT_EQ(selection.brushes.size(), 1u);
+    const auto lasso = [&] { return std::get<vis::LassoRegion>(selection.brushes[0].region); };
+    ASSERT_EQ(lasso().points.size(), 4u);
+    EXPECT_NEAR(lasso().points[2].x, 6, 0.1);
+    EXPECT_NEAR(lasso().points[2].y, 0.8, 0.02);
+    dragFromTo(4, 0.5, 5, 0.6);
+    ASSERT_EQ(selection.brushes.size(), 1u) << "moved, not drawn anew";
+    EXPECT_NEAR(lasso().points[0].x, 3, 0.1);
+    EXPECT_NEAR(lasso().points[0].y, 0.3, 0.02);
+    // One of three corners at most holds nothing and cannot be held: a click beside it starts another.
+    dragFromTo(8, 0.1, 9, 0.2);
+    ASSERT_EQ(selection.brushes.size(), 1u);
 }
 
 } // namespace

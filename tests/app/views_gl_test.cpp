@@ -167,7 +167,8 @@ TEST_F(Views, TinyConstantAndEmptyData) {
 TEST_F(Views, ASessionThatDoesNotFitTheData) {
     show(fuelCell(volume::LatticeKind::BCC));
     session.layers.push_back({"gone", true, vis::IsoLayer{.channel = "no such thing"}});
-    session.selection.brushes.push_back({"gone", true, false, {{"no such thing", 0, 1, 0.1}}});
+    session.selection.brushes.push_back(vis::rangeBrush({{"no such thing", 0, 1, 0.1}}, "gone"));
+    session.selection.brushes.push_back({.name = "empty lasso", .region = vis::LassoRegion{"T", "nothing", {}, 0.1}});
     session.time = 1e9;
     session.cursor = {1e9, -1e9, 0};
     scatterView.channels = {"nothing", "T", "T"};
@@ -249,7 +250,7 @@ TEST_F(Views, BrushingHotAndOxygenPoorSelectsWhatBruteForceSelects) {
     ImGui::GetIO().MouseDown[0] = false;
     frame(matrix);
     ASSERT_EQ(session.selection.brushes.size(), 1u);
-    const vis::Brush& brush = session.selection.brushes[0];
+    const auto& brush = std::get<vis::RangeRegion>(session.selection.brushes[0].region);
     ASSERT_EQ(brush.intervals.size(), 2u);
     EXPECT_EQ(brush.intervals[0].channel, "O2");
     EXPECT_EQ(brush.intervals[1].channel, "T");
@@ -319,7 +320,7 @@ TEST_F(Views, AClickEnlargesAPlotThatCanBeBrushed) {
     frame(matrix);
     button(false);
     ASSERT_EQ(session.selection.brushes.size(), 1u);
-    const vis::BrushInterval& x = session.selection.brushes[0].intervals[0];
+    const vis::BrushInterval& x = std::get<vis::RangeRegion>(session.selection.brushes[0].region).intervals[0];
     EXPECT_EQ(x.channel, wanted[0]);
     // 50 pixels of a plot more than two cells wide.
     EXPECT_LT(x.hi - x.lo, 50 * small.perPixelX());
@@ -342,12 +343,14 @@ TEST_F(Views, FeedCountsWhatTheSelectionDefines) {
     const Range water = info.channelRange(info.channels()[static_cast<std::size_t>(channelOf("H2O"))]);
     const double width = water.hi - water.lo;
     session.selection.brushes = {
-        {"water", true, false, {{"H2O", water.lo, water.lo + width * 0.4, width * 0.2}}},
-        {"heat", true, true, {{"T", heat.lo, (heat.lo + heat.hi) / 2, 0}}},
-        {"off", false, false, {{"T", 0, 1, 0}}},
+        vis::rangeBrush({{"H2O", water.lo, water.lo + width * 0.4, width * 0.2}}, "water"),
+        vis::rangeBrush({{"T", heat.lo, (heat.lo + heat.hi) / 2, 0}}, "heat"),
+        vis::rangeBrush({{"T", 0, 1, 0}}, "off"),
     };
-    for (const vis::Combine combine : {vis::Combine::All, vis::Combine::Any}) {
-        session.selection.combine = combine;
+    session.selection.brushes[1].inverted = true;
+    session.selection.brushes[2].enabled = false;
+    for (const vis::BrushCombine combine : {vis::BrushCombine::And, vis::BrushCombine::Or, vis::BrushCombine::Minus}) {
+        session.selection.brushes[1].combine = combine;
         ViewContext context{session, source, renderer, jobs, caches};
         context.headless = true;
         StatisticsFeed feed;

@@ -60,9 +60,22 @@ const Mode kModes[] = {
                      {"", true, SliceLayer{.channel = "a", .orientation = SliceOrientation::Y, .opacity = 0.8f}},
                      {"", false, IsoLayer{.channel = "a", .value = 300}},
                      {"", true, VolumeLayer{.channel = "b", .style = VolumeStyle::Maximum, .density = 0.5f}}};
-         s.selection.brushes = {{.intervals = {{"a", 290, 340, 12}, {"b", 0.1, 0.9, 0.2}}},
-                                {.inverted = true, .intervals = {{"b", 0.3, 0.4, 0.05}}}};
+         s.selection.brushes = {rangeBrush({{"a", 290, 340, 12}, {"b", 0.1, 0.9, 0.2}}),
+                                rangeBrush({{"b", 0.3, 0.4, 0.05}})};
+         s.selection.brushes[1].inverted = true;
          s.selection.contextOpacity = 0.2f;
+     }},
+    {"brushes of every shape",
+     [](Scene& s) {
+         s.layers = {{"", true, VolumeLayer{.channel = "a"}},
+                     {"", true, SliceLayer{.channel = "b", .orientation = SliceOrientation::Y}}};
+         s.selection.brushes = {
+             {.region = EllipseRegion{"a", "b", {310, 0.5}, {40, 0.4}, 0.5, 0.4}},
+             {.combine = BrushCombine::Or,
+              .region = LassoRegion{"b", "a", {{0.1, 280}, {0.9, 290}, {0.5, 310}, {0.8, 350}, {0.2, 340}}, 0.3}},
+             {.combine = BrushCombine::Minus, .region = SphereRegion{s.cursor, glm::dvec3(4, 3, 5), 0.5}},
+             {.inverted = true, .region = BoxRegion{s.cursor * 0.5, glm::dvec3(2, 3, 2), 0.4}}};
+         s.selection.contextOpacity = 0.1f;
      }},
 };
 

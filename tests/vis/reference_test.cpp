@@ -161,15 +161,15 @@ TEST(Reference, BrushDimsAndGraysWhatIsOutside) {
     Scene scene =
         frontal(SliceLayer{.channel = "c", .orientation = SliceOrientation::Z, .atCursor = false, .position = 0.5});
     scene.transfer["c"].colormap = "viridis";
-    scene.selection.brushes = {{.intervals = {{"c", 0.9, 1.0, 0}}}};
+    scene.selection.brushes = {rangeBrush({{"c", 0.9, 1.0, 0}})};
     scene.selection.contextOpacity = 0.25f;
     scene.selection.contextSaturation = 0;
     const glm::dvec3 color = linearFromSrgb(colormapColor("viridis", 0.5));
     const double gray = 0.25 * luminance(color);
     expectPixel(reference::render(scene, ramp(LatticeKind::CC), {3, 3}), {1, 1}, {gray, gray, gray, 0.25}, 1e-6);
-    scene.selection.brushes[0].intervals[0].lo = 0.4;
+    std::get<RangeRegion>(scene.selection.brushes[0].region).intervals[0].lo = 0.4;
     expectPixel(reference::render(scene, ramp(LatticeKind::CC), {3, 3}), {1, 1}, {color, 1}, 1e-6);
-    scene.selection.brushes[0].intervals[0] = {"no such channel", 0, 1, 0};
+    scene.selection.brushes = {rangeBrush({{"no such channel", 0, 1, 0}})};
     expectPixel(reference::render(scene, ramp(LatticeKind::CC), {3, 3}), {1, 1}, {gray, gray, gray, 0.25}, 1e-6);
 }
 

@@ -30,7 +30,8 @@ TEST(Selection, NoEnabledBrushMeansEverything) {
     Selection selection;
     EXPECT_FALSE(selection.active());
     EXPECT_EQ(doi(selection, 1, 2), 1);
-    selection.brushes.push_back({.enabled = false, .intervals = {{"T", 5, 6, 0}}});
+    selection.brushes.push_back(rangeBrush({{"T", 5, 6, 0}}));
+    selection.brushes[0].enabled = false;
     EXPECT_FALSE(selection.active());
     EXPECT_EQ(doi(selection, 1, 2), 1);
 }
@@ -43,14 +44,16 @@ TEST(Selection, IsMinimumOrMaximumOverBrushes) {
         const double vt = unit(engine), vo = unit(engine);
         const double a = intervalDoi(t, vt), b = intervalDoi(o2, vo);
         Selection one; // a rectangle: both sides must hold
-        one.brushes = {{.intervals = {t, o2}}};
+        one.brushes = {rangeBrush({t, o2})};
         EXPECT_EQ(doi(one, vt, vo), std::min(a, b));
         one.brushes[0].inverted = true;
         EXPECT_EQ(doi(one, vt, vo), 1 - std::min(a, b));
         Selection two;
-        two.brushes = {{.intervals = {t}}, {.intervals = {o2}}};
+        two.brushes = {rangeBrush({t}), rangeBrush({o2})};
         EXPECT_EQ(doi(two, vt, vo), std::min(a, b));
-        two.combine = Combine::Any;
+        two.brushes[1].combine = BrushCombine::Minus;
+        EXPECT_EQ(doi(two, vt, vo), std::min(a, 1 - b));
+        two.brushes[0].combine = two.brushes[1].combine = BrushCombine::Or;
         EXPECT_EQ(doi(two, vt, vo), std::max(a, b));
         two.brushes[1].enabled = false;
         EXPECT_EQ(doi(two, vt, vo), a);
@@ -61,9 +64,62 @@ TEST(Selection, IsMinimumOrMaximumOverBrushes) {
 
 TEST(Selection, AbsentValuesAreNeverBrushed) {
     Selection selection;
-    selection.brushes = {{.intervals = {{"O2", -1e30, 1e30, 0}}}};
+    selection.brushes = {rangeBrush({{"O2", -1e30, 1e30, 0}})};
     EXPECT_EQ(doi(selection, 1, kNaN), 0);
     EXPECT_EQ(doi(selection, kNaN, 1), 1);
+}
+
+TEST(Selection, EllipseIsItsEquation) {
+    Selection selection;
+    selection.brushes = {{.region = EllipseRegion{"T", "O2", {300, 0.5}, {20, 0.1}, 0.6, 0.5}}};
+    EXPECT_EQ(doi(selection, 300, 0.5), 1);
+    EXPECT_NEAR(doi(selection, 320, 0.5 + 0.06), 1, 1e-9) << "touches its box where v = c u";
+    EXPECT_LT(doi(selection, 320.01, 0.5 + 0.06), 1);
+    EXPECT_EQ(doi(selection, 300 - 15, 0.5 + 0.075), 0) << "across the falling diagonal it is narrow";
+    EXPECT_EQ(doi(selection, 300 + 15, 0.5 + 0.075), 1);
+    std::get<EllipseRegion>(selection.brushes[0].region).correlation = 0;
+    EXPECT_NEAR(doi(selection, 300 + 20 * 1.25, 0.5), 0.5, 1e-12);
+    EXPECT_EQ(doi(selection, kNaN, 0.5), 0);
+}
+
+TEST(Selection, LassoHoldsItsPolygonUpToATableEntry) {
+    // An L: the notch at the upper right is outside.
+    LassoRegion lasso{"T", "O2", {{0, 0}, {10, 0}, {10, 1}, {4, 1}, {4, 3}, {0, 3}}, 0};
+    const LassoTable table = lassoTable(lasso);
+    const double entryX = 10 * table.place.extent / (kLassoTable - 1),
+                 entryY = 3 * table.place.extent / (kLassoTable - 1);
+    std::mt19937_64 engine(7);
+    std::uniform_real_distribution<double> x(-2, 12), y(-1, 4);
+    for (int i = 0; i < 20000; ++i) {
+        const double px = x(engine), py = y(engine);
+        const auto inside = [&](double mx, double my) { // of the L grown by a margin
+            return px > -mx && px < 10 + mx && py > -my && py < (px < 4 + mx ? 3 : 1) + my;
+        };
+        const double value = table.at(px, py);
+        if (inside(-1.5 * entryX, -1.5 * entryY)) EXPECT_EQ(value, 1) << px << " " << py;
+        if (!inside(1.5 * entryX, 1.5 * entryY)) EXPECT_EQ(value, 0) << px << " " << py;
+    }
+    lasso.soft = 0.4; // of the half sizes: 2 to the left, 0.6 below
+    const LassoTable soft = lassoTable(lasso);
+    EXPECT_NEAR(soft.at(-1, 1.5), 0.5, 0.01);
+    EXPECT_NEAR(soft.at(5, -0.3), 0.5, 0.01);
+    EXPECT_EQ(lassoTable({"T", "O2", {{0, 0}, {1, 1}}, 0}).at(0.5, 0.5), 0) << "two corners hold nothing";
+}
+
+TEST(Selection, RegionsInSpaceAreMeasuredInTheirRadii) {
+    Selection selection;
+    selection.brushes = {{.region = SphereRegion{{1, 2, 3}, {1, 2, 4}, 0.5}}};
+    const auto at = [&](glm::dvec3 p) { return degreeOfInterest(selection, {}, p); };
+    EXPECT_TRUE(selectsSpace(selection));
+    EXPECT_EQ(at({1, 2, 3}), 1);
+    EXPECT_EQ(at({1, 4, 3}), 1);
+    EXPECT_DOUBLE_EQ(at({1, 2, 8}), 0.5); // 5 / 4 of the radius
+    EXPECT_EQ(at({3, 2, 3}), 0);
+    selection.brushes[0].region = BoxRegion{{1, 2, 3}, {1, 2, 4}, 0};
+    EXPECT_EQ(at({2, 4, 7}), 1);
+    EXPECT_EQ(at({2.001, 4, 7}), 0);
+    selection.brushes[0].inverted = true;
+    EXPECT_EQ(at({2.001, 4, 7}), 1);
 }
 
 } // namespace

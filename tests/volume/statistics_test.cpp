@@ -42,7 +42,7 @@ StatisticsQuery fullQuery() {
     query.channels = {0, 1, 2};
     query.pairs = allPairs(3);
     query.bins = kBins;
-    query.doi = doiOf;
+    query.doi = [](std::span<const float> v, glm::dvec3) { return doiOf(v); };
     return query;
 }
 
@@ -171,7 +171,7 @@ TEST(Statistics, VolumesFillTheBox) {
             StatisticsQuery query;
             query.channels = {0};
             query.level = level;
-            query.doi = [&](std::span<const float> v) { return double(v[0]) < -1 + 0.016 ? 1.0 : 0.0; };
+            query.doi = [&](std::span<const float> v, glm::dvec3) { return double(v[0]) < -1 + 0.016 ? 1.0 : 0.0; };
             const Statistics result = computeStatistics(*source, query);
             const double box = size.x * size.y * size.z;
             EXPECT_NEAR(result.channels[0].all.volume, box, 1e-9 * box);
@@ -189,7 +189,7 @@ TEST(Statistics, VolumeOfALayer) {
     const double even = bcc.origin.x + 0.5 * bcc.spacing.x, odd = bcc.origin.x + bcc.spacing.x;
     StatisticsQuery query;
     query.channels = {0};
-    query.doi = [&](std::span<const float> v) { return double(v[0]) < (even + odd) / 2 ? 1.0 : 0.0; };
+    query.doi = [&](std::span<const float> v, glm::dvec3) { return double(v[0]) < (even + odd) / 2 ? 1.0 : 0.0; };
     const Statistics result = computeStatistics(*source, query);
     EXPECT_EQ(result.channels[0].inside.samples, std::size_t(bcc.size.y) * std::size_t(bcc.size.z));
     EXPECT_NEAR(result.channels[0].inside.volume, 7 * 6 * (even + odd) / 2, 1e-9);

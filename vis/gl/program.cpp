@@ -191,8 +191,8 @@ void Program::set(const char* uniform, std::span<const int> values) const {
 void Program::set(const char* uniform, std::span<const float> values) const {
     if (!values.empty()) glProgramUniform1fv(name(), location(uniform), GLsizei(values.size()), values.data());
 }
-void Program::set(const char* uniform, std::span<const glm::ivec2> values) const {
-    if (!values.empty()) glProgramUniform2iv(name(), location(uniform), GLsizei(values.size()), &values[0].x);
+void Program::set(const char* uniform, std::span<const glm::ivec4> values) const {
+    if (!values.empty()) glProgramUniform4iv(name(), location(uniform), GLsizei(values.size()), &values[0].x);
 }
 void Program::set(const char* uniform, std::span<const glm::vec3> values) const {
     if (!values.empty()) glProgramUniform3fv(name(), location(uniform), GLsizei(values.size()), &values[0].x);

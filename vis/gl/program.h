@@ -68,7 +68,7 @@ public:
     void set(const char* uniform, glm::vec4 value) const;
     void set(const char* uniform, std::span<const int> values) const;
     void set(const char* uniform, std::span<const float> values) const;
-    void set(const char* uniform, std::span<const glm::ivec2> values) const;
+    void set(const char* uniform, std::span<const glm::ivec4> values) const;
     void set(const char* uniform, std::span<const glm::vec3> values) const;
     void set(const char* uniform, std::span<const glm::vec4> values) const;
 

@@ -17,7 +17,7 @@ glm::dvec4 DrawnLayer::classify(double value) const {
 }
 
 Prepared::Prepared(const Scene& drawn, const volume::BrickSource& source, const Options& wanted)
-    : scene(drawn), options(wanted), lattice(source.grid().lattice) {
+    : scene(drawn), options(wanted), lattice(source.grid().lattice), interestOf(drawn.selection) {
     const volume::DatasetInfo& info = source.info();
     frame = worldFrame(info.bounds, scene.stretch);
     cell = worldCell(lattice, frame);
@@ -44,18 +44,16 @@ Prepared::Prepared(const Scene& drawn, const volume::BrickSource& source, const 
             one.plane = slicePlane(*slice, frame, scene.cursor);
         layers.push_back(std::move(one));
     }
-    for (const Brush& brush : scene.selection.brushes)
-        for (const BrushInterval& interval : brush.intervals)
-            if (brush.enabled) load(interval.channel);
+    for (const std::string& channel : interestOf.channels()) brushed.push_back(load(channel));
 }
 
 double Prepared::interest(glm::dvec3 world) const {
     if (!scene.selection.active()) return 1;
-    return degreeOfInterest(scene.selection, [&](const std::string& channel) {
-        const auto found = samples.find(channel);
-        const std::optional<double> value = found == samples.end() ? std::nullopt : found->second->value(cells(world));
-        return value.value_or(std::numeric_limits<double>::quiet_NaN());
-    });
+    std::vector<double> values;
+    for (const Samples* of : brushed)
+        values.push_back(
+            (of ? of->value(cells(world)) : std::nullopt).value_or(std::numeric_limits<double>::quiet_NaN()));
+    return interestOf(values, frame.toPhysical(world));
 }
 
 } // namespace tessera::vis::reference

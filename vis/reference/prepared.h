@@ -33,6 +33,8 @@ struct Prepared {
     glm::dvec3 cell{1}, toLight{0};
     std::map<std::string, std::unique_ptr<Samples>> samples; ///< by channel name
     std::vector<DrawnLayer> layers;
+    DoiFunction interestOf;
+    std::vector<const Samples*> brushed; ///< of interestOf.channels(); null: unknown
 
     /// Throws Error when the source does.
     Prepared(const Scene& drawn, const volume::BrickSource& source, const Options& wanted);

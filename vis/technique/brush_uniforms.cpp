@@ -1,54 +1,166 @@
 #include "vis/technique/brush_uniforms.h"
 
-#include "vis/technique/ray_field.h"
-
 #include <algorithm>
 
 namespace tessera::vis {
 
-void setBrushUniforms(const Program& program, const RayPlan& plan, const Scene& scene,
-                      const volume::DatasetInfo& info) {
-    std::vector<glm::ivec2> meanings;
-    std::vector<glm::vec3> intervals;
-    for (const Brush& brush : scene.selection.brushes) {
-        if (!brush.enabled || plan.brushFields.empty()) continue;
-        const std::size_t first = meanings.size();
-        for (const BrushInterval& interval : brush.intervals) {
-            const std::optional<int> channel = info.findChannel(interval.channel);
-            int use = -1;
-            for (std::size_t i = 0; channel && i < plan.brushFields.size(); ++i)
-                if (plan.fields[std::size_t(plan.brushFields[i])].channel == *channel) use = int(i);
-            if (use < 0) { // an unknown channel has no value anywhere: never holds
-                meanings.emplace_back(0, 0);
-                intervals.emplace_back(1e30f, -1e30f, 1e30f);
+namespace {
+
+enum Kind { kAlways, kRange, kEllipse, kLasso, kSphere, kBox };
+
+/// 1 / soft, or a hard edge.
+double inverse(double soft) {
+    return soft > 1e-30 ? 1 / soft : 1e30;
+}
+
+class Encoder {
+public:
+    Encoder(const RayPlan& plan, const volume::DatasetInfo& info) : plan_(plan), info_(info) {}
+
+    BrushTests tests;
+
+    void add(const Brush& brush) {
+        const std::size_t first = tests.meanings.size(), lassos = tests.lassos.size();
+        std::visit([&](const auto& region) { encode(region); }, brush.region);
+        if (tests.meanings.size() == first) test(kAlways, 0, 0, glm::vec4(0), glm::vec4(0));
+        // Whole brushes only: half a brush would select more than it says.
+        if (tests.dropped > 0 || tests.meanings.size() > std::size_t(kMaxBrushTests)) {
+            ++tests.dropped;
+            tests.meanings.resize(first);
+            tests.shapes.resize(2 * first);
+            tests.lassos.resize(lassos);
+            return;
+        }
+        if (first == 0) tests.start = brush.combine == BrushCombine::Or ? 0.0f : 1.0f;
+        tests.meanings[first].w |= 1;
+        const bool turned = brush.inverted != (brush.combine == BrushCombine::Minus);
+        tests.meanings.back().w |= 2 | (turned ? 4 : 0) | (brush.combine == BrushCombine::Or ? 8 : 0);
+    }
+
+private:
+    void test(Kind kind, int x, int y, glm::vec4 a, glm::vec4 b) {
+        tests.meanings.emplace_back(kind, x, y, 0);
+        tests.shapes.push_back(a);
+        tests.shapes.push_back(b);
+    }
+
+    /// Position of a channel among the brush fields, -1 where the data lack it: then it has no value anywhere.
+    int use(const std::string& name) const {
+        const std::optional<int> channel = info_.findChannel(name);
+        for (std::size_t i = 0; channel && i < plan_.brushFields.size(); ++i)
+            if (plan_.fields[std::size_t(plan_.brushFields[i])].channel == *channel) return int(i);
+        return -1;
+    }
+    const BoundField& field(int at) const {
+        return plan_.fields[std::size_t(plan_.brushFields[std::size_t(std::max(0, at))])];
+    }
+    /// Centre, and 1 / radius, in texel units.
+    glm::vec4 plane(int x, int y, glm::dvec2 center, glm::dvec2 radius) const {
+        const TexelEncoding &across = field(x).encoding, &up = field(y).encoding;
+        return {(center.x - across.offset) / across.scale, (center.y - up.offset) / up.scale, across.scale / radius.x,
+                up.scale / radius.y};
+    }
+
+    // Range: lo, hi, 1 / soft in texel units.
+    void encode(const RangeRegion& region) {
+        for (const BrushInterval& interval : region.intervals) {
+            const int at = use(interval.channel);
+            if (at < 0) {
+                test(kRange, -1, -1, glm::vec4(0), glm::vec4(0));
                 continue;
             }
-            const BoundField& field = plan.fields[std::size_t(plan.brushFields[std::size_t(use)])];
+            const TexelEncoding& encoding = field(at).encoding;
             // Labels are integers: a little room, so that [1, 1] means the label 1 in float too.
-            const double room = field.categorical ? 0.25 : 0;
-            const double soft = interval.soft / field.encoding.scale;
-            meanings.emplace_back(use, 0);
-            intervals.emplace_back(toTexel(field, interval.lo - room), toTexel(field, interval.hi + room),
-                                   soft > 1e-30 ? 1 / soft : 1e30);
+            const double room = field(at).categorical ? 0.25 : 0;
+            test(kRange, at, at,
+                 {(interval.lo - room - encoding.offset) / encoding.scale,
+                  (interval.hi + room - encoding.offset) / encoding.scale, inverse(interval.soft / encoding.scale), 0},
+                 glm::vec4(0));
         }
-        if (meanings.size() == first) { // no interval: holds everywhere
-            meanings.emplace_back(-1, 0);
-            intervals.emplace_back(0);
-        }
-        meanings[first].y |= 1;
-        meanings.back().y |= 2 | (brush.inverted ? 4 : 0);
     }
-    constexpr std::size_t kMaxIntervals = 32; // MAX_INTERVALS in lib/bindings.glsl
-    if (meanings.size() > kMaxIntervals) {
-        meanings.resize(kMaxIntervals); // whole brushes only: half a brush would select more than it says
-        while (!meanings.empty() && (meanings.back().y & 2) == 0) meanings.pop_back();
-        intervals.resize(meanings.size());
+    // Ellipse: centre, 1 / radius; correlation c, 1 / (1 - c^2), 1 / soft.
+    void encode(const EllipseRegion& region) {
+        const int x = use(region.x), y = use(region.y);
+        if (x < 0 || y < 0) return test(kEllipse, -1, -1, glm::vec4(0), glm::vec4(0));
+        const double c = region.correlation;
+        test(kEllipse, x, y, plane(x, y, region.center, region.radius), {c, 1 / (1 - c * c), inverse(region.soft), 0});
     }
-    program.set("intervalCount", int(meanings.size()));
-    program.set("intervalMeaning", std::span<const glm::ivec2>(meanings));
-    program.set("interval", intervals);
-    program.set("combineAny", scene.selection.combine == Combine::Any ? 1 : 0);
+    // Lasso: centre, 1 / half size of its table; first row of the table.
+    void encode(const LassoRegion& region) {
+        const int x = use(region.x), y = use(region.y);
+        if (x < 0 || y < 0) return test(kLasso, -1, -1, glm::vec4(0), glm::vec4(0));
+        const LassoPlace place = lassoPlace(region);
+        test(kLasso, x, y, plane(x, y, place.center, place.halfSize * place.extent),
+             {float(tests.lassos.size()) * kLassoTable, 0, 0, 0});
+        tests.lassos.push_back(region);
+    }
+    // Sphere and box: centre in cells, 1 / soft; 1 / radius in cells.
+    void space(Kind kind, const auto& region) {
+        test(kind, -1, -1, {info_.lattice.toCells(region.center), inverse(region.soft)},
+             {info_.lattice.spacing / region.radius, 0});
+    }
+    void encode(const SphereRegion& region) { space(kSphere, region); }
+    void encode(const BoxRegion& region) { space(kBox, region); }
+
+    const RayPlan& plan_;
+    const volume::DatasetInfo& info_;
+};
+
+bool has(const BrushTests& tests, std::initializer_list<int> kinds) {
+    return std::any_of(tests.meanings.begin(), tests.meanings.end(), [&](const glm::ivec4& meaning) {
+        return std::find(kinds.begin(), kinds.end(), meaning.x) != kinds.end();
+    });
+}
+
+} // namespace
+
+BrushTests brushTests(const RayPlan& plan, const Scene& scene, const volume::DatasetInfo& info) {
+    Encoder encoder(plan, info);
+    for (const Brush& brush : scene.selection.brushes)
+        if (brush.enabled) encoder.add(brush);
+    return std::move(encoder.tests);
+}
+
+std::vector<std::pair<std::string, std::string>> brushDefines(const BrushTests& tests) {
+    std::vector<std::pair<std::string, std::string>> defines;
+    const auto define = [&](const char* name, int value) { defines.emplace_back(name, std::to_string(value)); };
+    // Few sizes, so that a brush more rarely means another program.
+    const int count = int(tests.meanings.size());
+    define("BRUSH_TESTS", count == 0 ? 0 : count <= 8 ? 8 : count <= 32 ? 32 : kMaxBrushTests);
+    define("BRUSH_RANGES", has(tests, {kRange}));
+    define("BRUSH_ELLIPSES", has(tests, {kEllipse}));
+    define("BRUSH_LASSOS", has(tests, {kLasso}));
+    define("BRUSH_SPACE", has(tests, {kSphere, kBox}));
+    define("LASSO_TABLE", kLassoTable);
+    return defines;
+}
+
+void setBrushUniforms(const Program& program, const BrushTests& tests, const Scene& scene) {
+    program.set("brushTestCount", int(tests.meanings.size()));
+    program.set("brushMeaning", std::span<const glm::ivec4>(tests.meanings));
+    program.set("brushShape", tests.shapes);
+    program.set("brushStart", tests.start);
     program.set("context", glm::vec2(scene.selection.contextOpacity, scene.selection.contextSaturation));
+}
+
+GLuint BrushTables::update(const BrushTests& tests) {
+    if (tests.dropped > dropped_)
+        messages_.push_back("the last " + std::to_string(tests.dropped) +
+                            " brushes are more than the 3D views can test; plots and tables count them");
+    dropped_ = tests.dropped;
+    if (tests.lassos == shown_) return texture_.name();
+    if (tests.lassos.size() != shown_.size())
+        texture_ = tests.lassos.empty() ? Texture()
+                                        : makeTexture2D({kLassoTable, kLassoTable * int(tests.lassos.size())}, GL_R32F,
+                                                        GL_NEAREST, "lasso tables");
+    for (std::size_t i = 0; i < tests.lassos.size(); ++i) {
+        if (tests.lassos.size() == shown_.size() && tests.lassos[i] == shown_[i]) continue;
+        const LassoTable table = lassoTable(tests.lassos[i]);
+        glTextureSubImage2D(texture_.name(), 0, 0, kLassoTable * int(i), kLassoTable, kLassoTable, GL_RED, GL_FLOAT,
+                            table.doi.data());
+    }
+    shown_ = tests.lassos;
+    return texture_.name();
 }
 
 } // namespace tessera::vis

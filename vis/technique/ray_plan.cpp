@@ -1,5 +1,7 @@
 #include "vis/technique/ray_plan.h"
 
+#include "vis/technique/brush_uniforms.h"
+
 #include "vis/technique/ray_tables.h"
 #include "volume/reconstruct.h"
 
@@ -50,17 +52,19 @@ RayPlan planRays(const Scene& scene, const volume::DatasetInfo& info) {
         else
             plan.slices.push_back({int(i), field});
     }
+    plan.brushDefines = brushDefines({});
     if (plan.empty() || !scene.selection.active()) return plan;
-    for (const Brush& brush : scene.selection.brushes)
-        for (const BrushInterval& interval : brush.intervals) {
-            const std::optional<int> channel = info.findChannel(interval.channel);
-            if (!brush.enabled || !channel) continue;
-            const int field = fieldOf(plan, info, *channel);
-            if (std::find(plan.brushFields.begin(), plan.brushFields.end(), field) == plan.brushFields.end())
-                plan.brushFields.push_back(field);
-        }
-    // An enabled brush without a known channel still decides: sample something.
-    if (plan.brushFields.empty()) plan.brushFields.push_back(0);
+    const std::vector<std::string> brushed = selectedChannels(scene.selection);
+    for (const std::string& name : brushed) {
+        const std::optional<int> channel = info.findChannel(name);
+        if (!channel) continue;
+        const int field = fieldOf(plan, info, *channel);
+        if (std::find(plan.brushFields.begin(), plan.brushFields.end(), field) == plan.brushFields.end())
+            plan.brushFields.push_back(field);
+    }
+    // Brushes whose channels are unknown still decide: sample something.
+    if (plan.brushFields.empty() && !brushed.empty()) plan.brushFields.push_back(0);
+    plan.brushDefines = brushDefines(brushTests(plan, scene, info));
     return plan;
 }
 
@@ -95,6 +99,7 @@ ProgramRecipe rayRecipe(const RayPlan& plan, const Scene& scene, const volume::B
     define("SLICE_FIELD(i)", choice(plan.slices, [](const SliceUse& slice) { return slice.field; }));
     define("BRUSH_FIELDS", std::to_string(plan.brushFields.size()));
     define("BRUSH_FIELD(i)", choice(plan.brushFields, [](int field) { return field; }));
+    recipe.defines.insert(recipe.defines.end(), plan.brushDefines.begin(), plan.brushDefines.end());
     define("HAS_ISO", uses(RayStyle::Iso) ? "1" : "0");
     define("HAS_COMPOSITE", uses(RayStyle::Composite) ? "1" : "0");
     define("HAS_PROJECTION", uses(RayStyle::Maximum) || uses(RayStyle::XRay) ? "1" : "0");

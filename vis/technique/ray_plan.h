@@ -45,6 +45,7 @@ struct RayPlan {
     std::vector<RayLayer> layers;
     std::vector<SliceUse> slices;
     std::vector<int> brushFields;
+    std::vector<std::pair<std::string, std::string>> brushDefines; ///< which tests of brushes the program needs
     bool empty() const { return layers.empty() && slices.empty(); }
 };
 

@@ -82,6 +82,7 @@ void setFields(const Program& program, const RayPlan& plan, const volume::BrickG
     program.set("transferTable", first.table);
     program.set("blockDistance", first.blocks);
     program.set("levelPhase", float(grid.phase));
+    program.set("lassoTables", first.lassos);
 }
 
 } // namespace
@@ -95,6 +96,7 @@ RayUnits rayUnits(const RayPlan& plan) {
     units.atlases = 2 * n;
     units.table = bricked ? 3 * n : n;
     units.blocks = units.table + 1;
+    units.lassos = units.blocks + 1;
     return units;
 }
 
@@ -106,7 +108,7 @@ void setRayUniforms(const Program& program, const RayPlan& plan, const Scene& sc
     setCamera(program, scene, aspect);
     setFields(program, plan, grid);
     setLayers(program, plan, scene, info, frame);
-    setBrushUniforms(program, plan, scene, info);
+    setBrushUniforms(program, brushTests(plan, scene, info), scene);
     // A data set of one layer has no thickness: enough of it to meet a slice.
     program.set("halfSize", glm::vec3(glm::max(frame.halfSize, glm::dvec3(1e-5))));
     program.set("worldCell", glm::vec3(worldCell(grid.lattice, frame)));

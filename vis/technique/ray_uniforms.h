@@ -5,9 +5,10 @@
 /// Everything a program of the ray caster is told before it draws.
 namespace tessera::vis {
 
-/// Texture units: channels from 0, then page tables, atlases, the transfer tables and the block distances.
+/// Texture units: channels from 0, then page tables, atlases, the transfer tables, the block distances and
+/// the tables of lassos.
 struct RayUnits {
-    int pages = 0, atlases = 0, table = 0, blocks = 0;
+    int pages = 0, atlases = 0, table = 0, blocks = 0, lassos = 0;
 };
 RayUnits rayUnits(const RayPlan& plan);
 

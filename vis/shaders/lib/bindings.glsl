@@ -2,7 +2,8 @@
 //   FIELDS    number of channels bound; FIELD_COVERAGE(i), FIELD_NEAREST(i): 0 or 1
 //   LAYERS    ray layers; LAYER_STYLE(i) (0 composite, 1 maximum, 2 x-ray, 3 iso), LAYER_FIELD(i), LAYER_SHADED(i)
 //   SLICES    slice planes; SLICE_FIELD(i)
-//   BRUSH_FIELDS   channels that brushes look at, 0 = no brush is active; BRUSH_FIELD(i)
+//   BRUSH_TESTS    room for tests of brushes, 0 = no brush is active; BRUSH_RANGES, BRUSH_ELLIPSES, BRUSH_LASSOS,
+//                  BRUSH_SPACE: 0 or 1; BRUSH_FIELDS channels they look at, BRUSH_FIELD(i)
 // These are chains of ?: and not constant arrays, since Mesa turns such arrays into uniforms before it unrolls loops
 // and then runs every style for every layer.
 //   BCC       lattice; PRESENT_COVERAGE   kPresentCoverage of volume/reconstruct.h
@@ -44,11 +45,13 @@ uniform vec4 slicePlane[SLICES]; // normal, offset
 uniform vec4 sliceMap[SLICES];   // transfer coordinate = value * x + y; z = contours, w = opacity
 #endif
 
-#define MAX_INTERVALS 32
-uniform int intervalCount;
-uniform ivec2 intervalMeaning[MAX_INTERVALS]; // brush field; 1: first of its brush, 2: last, 4: brush inverted
-uniform vec3 interval[MAX_INTERVALS];         // lo, hi, 1 / soft, in texel units
-uniform int combineAny;
+#if BRUSH_TESTS > 0
+uniform int brushTestCount;
+uniform ivec4 brushMeaning[BRUSH_TESTS];   // kind, brush fields, flags: BrushTests in vis/technique/brush_uniforms.h
+uniform vec4 brushShape[2 * BRUSH_TESTS];
+uniform float brushStart;
+uniform sampler2D lassoTables;
+#endif
 uniform vec2 context; // opacity, saturation of what is not brushed
 
 const int kTableSize = TABLE_SIZE;

@@ -1,24 +1,74 @@
-// Degree of interest of a place; twin: degreeOfInterest() in vis/model/selection.h.
+// Degree of interest of a place; twin: DoiFunction in vis/model/selection.h. The brushes come as tests in a row (see
+// vis/technique/brush_uniforms.h); kinds that no brush has are left out at compile time.
+
+#if BRUSH_TESTS > 0
+// 1 up to one radius, 0 from 1 + soft on; `inverseSoft` 1e30 for a hard edge.
+float radialDoi(float radii, float inverseSoft) {
+    return radii > 1.0 ? max(0.0, 1.0 - (radii - 1.0) * inverseSoft) : 1.0;
+}
+
+#if BRUSH_LASSOS
+// Entry (i, j) of the lasso whose table begins at row `row`.
+float lassoEntry(int row, int i, int j) {
+    return texelFetch(lassoTables, ivec2(i, row + j), 0).x;
+}
+
+// `place` in entries; linear between them, 0 beyond.
+float lassoDoi(int row, vec2 place) {
+    const float kLast = float(LASSO_TABLE - 1);
+    bool inside = place.x >= 0.0 && place.y >= 0.0 && place.x <= kLast && place.y <= kLast;
+    ivec2 at = ivec2(clamp(place, vec2(0.0), vec2(kLast - 1.0)));
+    vec2 f = place - vec2(at);
+    float lower = mix(lassoEntry(row, at.x, at.y), lassoEntry(row, at.x + 1, at.y), f.x);
+    float upper = mix(lassoEntry(row, at.x, at.y + 1), lassoEntry(row, at.x + 1, at.y + 1), f.x);
+    return inside ? mix(lower, upper, f.y) : 0.0;
+}
+#endif
+#endif
 
 float degreeOfInterest(vec3 p) {
+#if BRUSH_TESTS > 0
 #if BRUSH_FIELDS > 0
     vec2 samples[BRUSH_FIELDS];
     for (int i = 0; i < BRUSH_FIELDS; ++i) samples[i] = reconstruct(BRUSH_FIELD(i), p);
-    float doi = combineAny == 1 ? 0.0 : 1.0, own = 1.0;
-    for (int i = 0; i < intervalCount; ++i) {
-        ivec2 meaning = intervalMeaning[i];
-        if ((meaning.y & 1) != 0) own = 1.0;
-        if (meaning.x >= 0) {
-            vec2 s = samples[0];
-            for (int j = 1; j < BRUSH_FIELDS; ++j)
-                if (meaning.x == j) s = samples[j];
-            float outside = max(max(interval[i].x - s.x, s.x - interval[i].y), 0.0);
-            float inside = outside > 0.0 ? max(0.0, 1.0 - outside * interval[i].z) : 1.0;
-            own = min(own, s.y < PRESENT_COVERAGE ? 0.0 : inside);
+#endif
+    float doi = brushStart, own = 1.0;
+    for (int i = 0; i < brushTestCount; ++i) {
+        ivec4 meaning = brushMeaning[i]; // kind, first field or -1, second field, flags
+        vec4 a = brushShape[2 * i], b = brushShape[2 * i + 1];
+        if ((meaning.w & 1) != 0) own = 1.0;
+        float test = meaning.x == 0 ? 1.0 : 0.0;
+#if BRUSH_FIELDS > 0
+        vec2 x = samples[0], y = samples[0];
+        for (int j = 1; j < BRUSH_FIELDS; ++j) {
+            if (meaning.y == j) x = samples[j];
+            if (meaning.z == j) y = samples[j];
         }
-        if ((meaning.y & 2) != 0) {
-            if ((meaning.y & 4) != 0) own = 1.0 - own;
-            doi = combineAny == 1 ? max(doi, own) : min(doi, own);
+        bool both = x.y >= PRESENT_COVERAGE && y.y >= PRESENT_COVERAGE && meaning.y >= 0 && meaning.z >= 0;
+#if BRUSH_RANGES
+        float outside = max(max(a.x - x.x, x.x - a.y), 0.0);
+        if (meaning.x == 1) test = both ? (outside > 0.0 ? max(0.0, 1.0 - outside * a.z) : 1.0) : 0.0;
+#endif
+#if BRUSH_ELLIPSES || BRUSH_LASSOS
+        vec2 away = (vec2(x.x, y.x) - a.xy) * a.zw;
+#endif
+#if BRUSH_ELLIPSES
+        float squared = (dot(away, away) - 2.0 * b.x * away.x * away.y) * b.y;
+        if (meaning.x == 2) test = both ? radialDoi(sqrt(max(squared, 0.0)), b.z) : 0.0;
+#endif
+#if BRUSH_LASSOS
+        if (meaning.x == 3) test = both ? lassoDoi(int(b.x), (away + 1.0) * (0.5 * float(LASSO_TABLE - 1))) : 0.0;
+#endif
+#endif
+#if BRUSH_SPACE
+        vec3 from = abs((p - a.xyz) * b.xyz);
+        if (meaning.x == 4) test = radialDoi(length(from), a.w);
+        if (meaning.x == 5) test = radialDoi(max(from.x, max(from.y, from.z)), a.w);
+#endif
+        own = min(own, test);
+        if ((meaning.w & 2) != 0) {
+            if ((meaning.w & 4) != 0) own = 1.0 - own;
+            doi = (meaning.w & 8) != 0 ? max(doi, own) : min(doi, own);
         }
     }
     return doi;

@@ -1,0 +1,250 @@
+#include "app/views/brush_list.h"
+
+#include "app/ui/widgets.h"
+#include "app/views/brush_edit.h"
+#include "app/views/ticks.h"
+#include "app/views/view_parts.h"
+
+#include <algorithm>
+#include <cmath>
+#include <imgui_stdlib.h>
+
+namespace tessera::app {
+
+namespace {
+
+constexpr int kParts = 48; ///< of a circle
+
+/// One line that says what a region holds.
+std::string regionText(const volume::DatasetInfo& info, const vis::Region& region) {
+    const auto length = [&](double value, double size) {
+        const LengthUnit unit = suitableLength(info.lengthUnit, size);
+        return formatQuantity(value * unit.perUnit, unit.name, size * unit.perUnit / 1000);
+    };
+    if (const auto* range = std::get_if<vis::RangeRegion>(&region)) {
+        std::string text;
+        for (const vis::BrushInterval& interval : range->intervals) {
+            const auto channel = info.findChannel(interval.channel);
+            if (!text.empty()) text += ", ";
+            if (!channel) {
+                text += interval.channel + " (missing)";
+                continue;
+            }
+            const volume::Channel own = info.channels()[static_cast<std::size_t>(*channel)];
+            const Range all = info.channelRange(own);
+            const double digits = (all.hi - all.lo) / 1000;
+            text += interval.channel + "  " + formatNumber(interval.lo, digits) + " .. " +
+                    formatQuantity(interval.hi, own.unit, digits);
+        }
+        return text.empty() ? "everything" : text;
+    }
+    if (const auto* ellipse = std::get_if<vis::EllipseRegion>(&region))
+        return "ellipse in " + ellipse->x + " \u00d7 " + ellipse->y;
+    if (const auto* lasso = std::get_if<vis::LassoRegion>(&region))
+        return "lasso in " + lasso->x + " \u00d7 " + lasso->y + ", " + std::to_string(lasso->points.size()) +
+               " corners";
+    const bool box = std::holds_alternative<vis::BoxRegion>(region);
+    const glm::dvec3 radius =
+        box ? std::get<vis::BoxRegion>(region).radius : std::get<vis::SphereRegion>(region).radius;
+    std::string text = box ? "box" : "sphere";
+    for (int axis = 0; axis < 3; ++axis) text += (axis ? " \u00d7 " : "  ") + length(2 * radius[axis], radius[axis]);
+    return text;
+}
+
+/// How a brush meets the ones before it, as a letter-wide choice.
+void chooseCombine(vis::Brush& brush) {
+    static constexpr const char* kWords[] = {"and", "or", "minus"};
+    ImGui::SetNextItemWidth(em() * 4.2f);
+    if (ImGui::BeginCombo("##combine", kWords[static_cast<std::size_t>(brush.combine)])) {
+        for (int i = 0; i < 3; ++i)
+            if (ImGui::Selectable(kWords[i], static_cast<int>(brush.combine) == i))
+                brush.combine = static_cast<vis::BrushCombine>(i);
+        ImGui::EndCombo();
+    }
+    if (ImGui::IsItemHovered())
+        tooltip("How it meets the brushes above: and = where both hold, or = where either holds, minus = without this");
+}
+
+/// Numbers that make no sense are turned into the nearest that do.
+void mend(vis::Region& region) {
+    if (auto* range = std::get_if<vis::RangeRegion>(&region))
+        for (vis::BrushInterval& interval : range->intervals) {
+            if (interval.hi < interval.lo) std::swap(interval.lo, interval.hi);
+            interval.soft = std::max(0.0, interval.soft);
+        }
+    const auto positive = [](auto& radius) {
+        for (int i = 0; i < radius.length(); ++i)
+            if (!(radius[i] > 0)) radius[i] = 1e-12;
+    };
+    if (auto* ellipse = std::get_if<vis::EllipseRegion>(&region)) positive(ellipse->radius);
+    if (auto* sphere = std::get_if<vis::SphereRegion>(&region)) positive(sphere->radius);
+    if (auto* box = std::get_if<vis::BoxRegion>(&region)) positive(box->radius);
+}
+
+/// One brush; true when it is to be removed.
+bool drawBrush(ViewContext& context, vis::Brush& brush, std::size_t index) {
+    const volume::DatasetInfo& info = context.source->info();
+    const WidgetContext widgets{.info = &info};
+    ImGui::Checkbox("##enabled", &brush.enabled);
+    if (ImGui::IsItemHovered()) tooltip("Takes part in the selection");
+    ImGui::SameLine(0, em() * 0.3f);
+    ImGui::ColorEdit3("##color", &brush.color.x,
+                      ImGuiColorEditFlags_NoInputs | ImGuiColorEditFlags_NoLabel | ImGuiColorEditFlags_NoTooltip);
+    if (ImGui::IsItemHovered()) tooltip(("Colour of brush " + std::to_string(index + 1) + " in the plots").c_str());
+    ImGui::SameLine(0, em() * 0.3f);
+    chooseCombine(brush);
+    ImGui::SameLine(0, em() * 0.3f);
+    const float buttons = ImGui::GetFrameHeight() * 2 + em() * 0.9f;
+    ImGui::SetNextItemWidth(std::max(em() * 3, ImGui::GetContentRegionAvail().x - buttons));
+    ImGui::InputText("##name", &brush.name);
+    ImGui::SameLine(0, em() * 0.3f);
+    if (iconButton(context, "invert", icons::kInvert, "Select what lies outside", true, brush.inverted))
+        brush.inverted = !brush.inverted;
+    ImGui::SameLine(0, em() * 0.2f);
+    const bool removed = iconButton(context, "delete", icons::kTrash, "Remove this brush");
+    ImGui::Indent(em() * 1.6f);
+    const std::string text = std::to_string(index + 1) + "  " + (brush.inverted ? "not " : "") +
+                             regionText(info, brush.region) + "###region";
+    if (ImGui::TreeNodeEx(text.c_str(), ImGuiTreeNodeFlags_SpanAvailWidth)) {
+        if (auto* range = std::get_if<vis::RangeRegion>(&brush.region)) {
+            for (std::size_t k = 0; k < range->intervals.size(); ++k) {
+                ImGui::PushID(static_cast<int>(k));
+                drawDescribed(range->intervals[k], widgets);
+                ImGui::PopID();
+            }
+        } else {
+            std::visit([&](auto& region) { drawDescribed(region, widgets); }, brush.region);
+        }
+        mend(brush.region);
+        ImGui::TreePop();
+    }
+    ImGui::Unindent(em() * 1.6f);
+    return removed;
+}
+
+void addAtCursor(ViewContext& context, bool box) {
+    vis::Selection& selection = context.session.selection;
+    vis::Brush brush = spaceBrush(context.session, context.source->info(), box);
+    brush.name = newBrushName(selection, brush.name);
+    brush.color = newBrushColor(selection);
+    selection.brushes.push_back(std::move(brush));
+}
+
+/// Calls `line(from, to)` for the lines that show a brush in space, in units of its radius.
+template <class Line> void wires(bool box, const Line& line) {
+    if (box) {
+        for (int axis = 0; axis < 3; ++axis)
+            for (int corner = 0; corner < 4; ++corner) {
+                glm::dvec3 a(0);
+                a[(axis + 1) % 3] = corner & 1 ? 1 : -1;
+                a[(axis + 2) % 3] = corner & 2 ? 1 : -1;
+                glm::dvec3 b = a;
+                a[axis] = -1;
+                b[axis] = 1;
+                line(a, b);
+            }
+        return;
+    }
+    for (int axis = 0; axis < 3; ++axis)
+        for (int i = 0; i < kParts; ++i) {
+            const auto at = [&](int k) {
+                const double angle = 2 * 3.14159265358979 * k / kParts;
+                glm::dvec3 p(0);
+                p[(axis + 1) % 3] = std::cos(angle);
+                p[(axis + 2) % 3] = std::sin(angle);
+                return p;
+            };
+            line(at(i), at(i + 1));
+        }
+}
+
+/// Centre and radius of a brush in space.
+struct SpaceShape {
+    bool box = false;
+    glm::dvec3 center{0}, radius{1};
+};
+std::optional<SpaceShape> spaceShape(const vis::Brush& brush) {
+    if (const auto* sphere = std::get_if<vis::SphereRegion>(&brush.region))
+        return SpaceShape{false, sphere->center, sphere->radius};
+    if (const auto* box = std::get_if<vis::BoxRegion>(&brush.region)) return SpaceShape{true, box->center, box->radius};
+    return std::nullopt;
+}
+
+} // namespace
+
+void drawBrushList(ViewContext& context) {
+    vis::Selection& selection = context.session.selection;
+    int removed = -1;
+    for (std::size_t i = 0; i < selection.brushes.size(); ++i) {
+        ImGui::PushID(static_cast<int>(i));
+        if (drawBrush(context, selection.brushes[i], i)) removed = static_cast<int>(i);
+        ImGui::PopID();
+    }
+    if (removed >= 0) selection.brushes.erase(selection.brushes.begin() + removed);
+    if (selection.brushes.empty()) ImGui::TextDisabled("No brushes: drag in a plot to select.");
+    if (ImGui::SmallButton("Sphere at cursor")) addAtCursor(context, false);
+    ImGui::SameLine();
+    if (ImGui::SmallButton("Box at cursor")) addAtCursor(context, true);
+    if (!selection.brushes.empty()) {
+        ImGui::SameLine();
+        if (ImGui::SmallButton("Clear all")) selection.brushes.clear();
+    }
+}
+
+vis::Brush spaceBrush(const Session& session, const volume::DatasetInfo& info, bool box) {
+    const glm::dvec3 size = info.bounds.size() * session.stretch;
+    const double radius = std::max({size.x, size.y, size.z}) / 12;
+    const glm::dvec3 radii = radius / session.stretch;
+    vis::Brush brush;
+    brush.name = box ? "box" : "sphere";
+    if (box)
+        brush.region = vis::BoxRegion{.center = session.cursor, .radius = radii};
+    else
+        brush.region = vis::SphereRegion{.center = session.cursor, .radius = radii, .soft = 0.1};
+    return brush;
+}
+
+void drawBrushMenu(ViewContext& context) {
+    if (ImGui::MenuItem("Brush a sphere at the cursor")) addAtCursor(context, false);
+    if (ImGui::MenuItem("Brush a box at the cursor")) addAtCursor(context, true);
+    if (ImGui::MenuItem("Clear brushes", "Esc", false, !context.session.selection.brushes.empty()))
+        context.session.selection.brushes.clear();
+}
+
+void drawSpaceBrushes(ImDrawList& draw, const SpaceFrame& frame, const vis::Selection& selection) {
+    for (const vis::Brush& brush : selection.brushes) {
+        const auto shape = spaceShape(brush);
+        if (!shape) continue;
+        const ImU32 color = brushColor(brush, brush.enabled ? 0.8f : 0.3f);
+        wires(shape->box, [&](glm::dvec3 a, glm::dvec3 b) {
+            const auto from = frame.pixel(shape->center + a * shape->radius),
+                       to = frame.pixel(shape->center + b * shape->radius);
+            if (from && to) draw.AddLine(*from, *to, color, std::max(1.0f, em() * 0.08f));
+        });
+    }
+}
+
+void drawBrushSections(ImDrawList& draw, const PlotFrame& frame, const vis::Selection& selection, int right, int up,
+                       int normal, double at, glm::dvec2 perUnit) {
+    for (const vis::Brush& brush : selection.brushes) {
+        const auto shape = spaceShape(brush);
+        if (!shape) continue;
+        const double away = std::abs(at - shape->center[normal]) / shape->radius[normal];
+        if (away > 1) continue;
+        const double share = shape->box ? 1 : std::sqrt(1 - away * away);
+        const ImU32 color = brushColor(brush, brush.enabled ? 0.9f : 0.35f);
+        std::vector<ImVec2> outline;
+        const int parts = shape->box ? 4 : kParts;
+        for (int i = 0; i < parts; ++i) {
+            const double angle = 2 * 3.14159265358979 * (i + 0.5) / parts;
+            const double reach = shape->box ? std::sqrt(2.0) : share;
+            outline.push_back(
+                frame.pixel((shape->center[right] + shape->radius[right] * reach * std::cos(angle)) * perUnit.x,
+                            (shape->center[up] + shape->radius[up] * reach * std::sin(angle)) * perUnit.y));
+        }
+        draw.AddPolyline(outline.data(), static_cast<int>(outline.size()), color, ImDrawFlags_Closed,
+                         std::max(1.0f, em() * 0.1f));
+    }
+}
+
+} // namespace tessera::app
