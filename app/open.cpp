@@ -72,7 +72,11 @@ Opened openDocument(SessionDocument document, const std::string& folder, const O
     opened.document = std::move(document);
     opened.folder = folder;
     opened.messages = opened.document.messages;
-    if (request.data) return openWith(std::move(opened), *request.data, progress);
+    if (request.data) {
+        DataRef data = *request.data;
+        if (data.derived.empty()) data.derived = opened.document.session.data.derived;
+        return openWith(std::move(opened), data, progress);
+    }
     ResolvedData found = resolveData(opened.document.session.data, folder);
     opened.messages.insert(opened.messages.end(), found.warnings.begin(), found.warnings.end());
     if (!found.missing.empty()) {
@@ -127,7 +131,9 @@ DataRef dataOf(const std::vector<std::string>& paths, const volume::ImportOption
     return data;
 }
 
-std::shared_ptr<const volume::BrickSource> openSource(const DataRef& data, std::vector<std::string>& messages,
+namespace {
+
+std::shared_ptr<const volume::BrickSource> openStored(const DataRef& data, std::vector<std::string>& messages,
                                                       const Progress& progress) {
     if (!hasData(data)) throw Error("names no data: open data first, or give a data file", {}, "/data");
     if (data.files.size() == 1 && endsWith(data.files[0].absolutePath, ".tsr"))
@@ -151,7 +157,16 @@ std::shared_ptr<const volume::BrickSource> openSource(const DataRef& data, std::
             }
     volume::MemorySourceOptions options;
     options.lattice = data.bcc ? volume::LatticeKind::BCC : volume::LatticeKind::CC;
-    auto source = volume::makeMemorySource(std::move(dataset), options);
+    return volume::makeMemorySource(std::move(dataset), options);
+}
+
+} // namespace
+
+std::shared_ptr<const volume::BrickSource> openSource(const DataRef& data, std::vector<std::string>& messages,
+                                                      const Progress& progress) {
+    const double stored = data.derived.empty() ? 1 : 0.7;
+    auto source = openStored(data, messages, progress.part(0, stored));
+    source = volume::deriveAll(source, data.derived, messages, progress.part(stored, 1));
     progress.advance(1);
     return source;
 }
@@ -246,6 +261,7 @@ Opened open(const OpenRequest& request, const Progress& progress) {
     } else {
         data.model = "fuel-cell";
     }
+    if (layout && data.derived.empty()) data.derived = layout->session.data.derived;
     opened.source = openSource(data, opened.messages, progress);
     const volume::DatasetInfo& info = opened.source->info();
     if (layout) {

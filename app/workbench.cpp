@@ -69,6 +69,7 @@ void Workbench::install(Opened opened) {
     renderer_->setSource(source_);
     caches_.clear();
     session_ = std::move(opened.document.session);
+    derivedShown_ = derivedWanted_ = session_.data.derived;
     // A data file says nothing about the looks of the window: they stay. A session does.
     if (!first && opened.document.raw.is_null()) session_.appearance = appearance;
     history_ = std::move(opened.document.history);
@@ -140,6 +141,7 @@ void Workbench::frame() {
         chosen_ = nullptr;
         run();
     }
+    followDerived();
     std::erase_if(caches_, [&](const auto& entry) { return !session_.views.contains(entry.first); });
     if (!options_.headless && !files_.shown() && !ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopupId))
         runShortcuts(commands_);
@@ -177,6 +179,28 @@ void Workbench::frame() {
     watchEdits();
     autosave();
     lastFrame_ = now();
+}
+
+/// Makes the source again when the parameters derived from it have been edited; what is shown stays until then.
+void Workbench::followDerived() {
+    if (!source_ || session_.data.derived == derivedShown_) return;
+    if (session_.data.derived == derivedWanted_ && jobs_.running("derive")) return;
+    derivedWanted_ = session_.data.derived;
+    jobs_.start("derive", "Deriving parameters",
+                [this, below = volume::underived(source_), wanted = derivedWanted_,
+                 from = source_](const Progress& progress) -> Jobs::Finish {
+                    auto messages = std::make_shared<std::vector<std::string>>();
+                    const auto made = volume::deriveAll(below, wanted, *messages, progress);
+                    return [this, messages, made, wanted, from] {
+                        if (source_ != from) return; // other data were opened meanwhile
+                        source_ = made;
+                        derivedShown_ = wanted;
+                        renderer_->setSource(source_);
+                        caches_.clear();
+                        fitSession(session_, source_->info(), *messages);
+                        for (const std::string& text : *messages) message(text, true);
+                    };
+                });
 }
 
 void Workbench::watchEdits() {

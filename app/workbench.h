@@ -115,6 +115,7 @@ private:
     void replace(Session session);
     void watchEdits();
     void autosave();
+    void followDerived();
     void play();
     void step(int count);
     void closePane(const std::string& pane);
@@ -128,7 +129,8 @@ private:
     Session session_;
     History history_;
     std::vector<JsonIssue> unknown_;
-    Session saved_; ///< as last saved or opened
+    Session saved_;                                                      ///< as last saved or opened
+    std::vector<volume::DerivedParameter> derivedShown_, derivedWanted_; ///< of the source, and of one being made
     std::string sessionPath_;
     std::map<std::string, std::unique_ptr<ViewCache>> caches_;
     Fonts fonts_;

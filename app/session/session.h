@@ -4,6 +4,7 @@
 #include "app/session/view_state.h"
 #include "vis/model/scene.h"
 #include "volume/dataset.h"
+#include "volume/derived.h"
 #include "volume/import/import.h"
 
 #include <map>
@@ -33,17 +34,20 @@ struct DataFile {
 
 /// What is shown: files, or a model computed by the program.
 struct DataRef {
-    std::vector<DataFile> files;            ///< an archive, or data files opened together
-    std::string model;                      ///< "fuel-cell", "marschner-lobb", ...: used when there are no files
-    std::map<std::string, double> settings; ///< of the model: e.g. nx, ny, nz, times
-    bool bcc = true;                        ///< show unpacked data on the BCC lattice at 70.7 % of the samples
-    volume::ImportOptions import;           ///< what was stated about files that do not say it themselves
+    std::vector<DataFile> files;                   ///< an archive, or data files opened together
+    std::string model;                             ///< "fuel-cell", "marschner-lobb", ...: used when there are no files
+    std::map<std::string, double> settings;        ///< of the model: e.g. nx, ny, nz, times
+    bool bcc = true;                               ///< show unpacked data on the BCC lattice at 70.7 % of the samples
+    std::vector<volume::DerivedParameter> derived; ///< computed from the others
+    volume::ImportOptions import;                  ///< what was stated about files that do not say it themselves
     bool operator==(const DataRef&) const = default;
     static void describe(auto& self, auto&& visit) {
         visit(self.files, FieldInfo{.key = "files", .unit = "", .doc = "Files that are shown together"});
         visit(self.model, FieldInfo{.key = "model", .unit = "", .doc = "Built-in model shown when there is no file"});
         visit(self.settings, FieldInfo{.key = "settings", .unit = "", .doc = "Settings of the model"});
         visit(self.bcc, FieldInfo{.key = "bcc", .unit = "", .doc = "Resample unpacked data to the BCC lattice"});
+        visit(self.derived,
+              FieldInfo{.key = "derived", .unit = "", .doc = "Parameters computed from the others", .hidden = true});
         visit(self.import, FieldInfo{.key = "import", .unit = "", .doc = "What was stated about the files"});
     }
 };

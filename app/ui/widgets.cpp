@@ -157,6 +157,19 @@ bool chooseChannel(const char* id, const volume::DatasetInfo* info, std::string&
     return changed;
 }
 
+bool chooseVector(const char* id, const volume::DatasetInfo* info, std::string& value) {
+    bool changed = false;
+    if (!ImGui::BeginCombo(id, value.empty() ? "none" : value.c_str())) return false;
+    if (info)
+        for (const volume::Parameter& parameter : info->parameters)
+            if (parameter.components == 3 && ImGui::Selectable(parameter.name.c_str(), parameter.name == value)) {
+                changed = parameter.name != value;
+                value = parameter.name;
+            }
+    ImGui::EndCombo();
+    return changed;
+}
+
 bool chooseColormap(const char* id, std::string& value, bool reversed) {
     bool changed = false;
     const float height = ImGui::GetFrameHeight();
@@ -201,6 +214,7 @@ bool chooseColormap(const char* id, std::string& value, bool reversed) {
 bool drawText(const WidgetContext& context, const FieldInfo& info, std::string& value) {
     drawLabel(context, labelOf(info.key), info.doc);
     if (info.refersTo == "channel") return chooseChannel(idOf(info).c_str(), context.info, value, "as first layer");
+    if (info.refersTo == "vector") return chooseVector(idOf(info).c_str(), context.info, value);
     if (info.refersTo == "colormap") return chooseColormap(idOf(info).c_str(), value);
     return ImGui::InputText(idOf(info).c_str(), &value);
 }

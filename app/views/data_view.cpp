@@ -1,3 +1,4 @@
+#include "app/views/derived_list.h"
 #include "app/views/statistics_feed.h"
 #include "app/views/ticks.h"
 #include "app/views/view_parts.h"
@@ -12,6 +13,7 @@ namespace {
 
 struct DataCache : ViewCache {
     StatisticsFeed feed;
+    DerivedDraft derived;
 };
 
 void row(const char* label, const std::string& text) {
@@ -212,6 +214,8 @@ void drawDataView(ViewContext& context, const std::string& pane, DataView&) {
     ImGui::BeginChild("data");
     if (ImGui::CollapsingHeader("Data set", ImGuiTreeNodeFlags_DefaultOpen)) drawSummary(info);
     if (ImGui::CollapsingHeader("Selection", ImGuiTreeNodeFlags_DefaultOpen)) drawSelection(context, result.get());
+    if (ImGui::CollapsingHeader("Derived parameters", ImGuiTreeNodeFlags_DefaultOpen))
+        drawDerivedList(context, cache.derived);
     if (ImGui::CollapsingHeader("Parameters over all times", ImGuiTreeNodeFlags_DefaultOpen)) drawParameters(info);
     if (!cache.feed.failure().empty()) ImGui::TextWrapped("%s", cache.feed.failure().c_str());
     ImGui::EndChild();

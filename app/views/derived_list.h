@@ -1,0 +1,29 @@
+#pragma once
+
+#include "app/views/view_context.h"
+#include "volume/derived.h"
+
+/// The panel of parameters computed from others.
+namespace tessera::app {
+
+/// What the panel edits; taken over into the session when no field is held any more, so that half a formula is never
+/// computed.
+struct DerivedDraft {
+    std::vector<volume::DerivedParameter> parameters;
+    std::vector<std::string> problems; ///< of each, for `checked`
+    std::vector<volume::DerivedParameter> checked;
+    bool edited = false;
+};
+
+void drawDerivedList(ViewContext& context, DerivedDraft& draft);
+
+/// A derived parameter of this kind that can be computed at once where the data allow it, with a name that is free.
+volume::DerivedParameter newDerived(const volume::DatasetInfo& info, std::size_t kind, const std::string& channel);
+
+/// Names of the kinds, in the order of volume::DerivedRecipe.
+inline constexpr const char* kDerivedKinds[] = {"Formula",    "Magnitude", "Gradient",
+                                                "Divergence", "Vorticity", "Deviation over time",
+                                                "Smoothed",   "Position",  "Time"};
+static_assert(std::size(kDerivedKinds) == std::variant_size_v<volume::DerivedRecipe>);
+
+} // namespace tessera::app

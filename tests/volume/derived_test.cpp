@@ -1,0 +1,252 @@
+#include "volume/derived.h"
+
+#include "volume/error.h"
+#include "volume/expression.h"
+#include "volume/sample_position.h"
+
+#include <array>
+#include <cmath>
+#include <functional>
+#include <gtest/gtest.h>
+
+namespace tessera::volume {
+namespace {
+
+/// A scalar "f", another "g" and a vector "U" of functions of position and time, on any lattice; absent where told.
+class Functions final : public BrickSource {
+public:
+    std::array<std::function<double(glm::dvec3, double)>, 5> value;
+    std::function<bool(glm::dvec3)> absent = [](glm::dvec3) { return false; };
+
+    explicit Functions(LatticeKind kind) {
+        grid_.lattice = {kind, {13, 11, kind == LatticeKind::BCC ? 26 : 13}, {0.5, 1, 2}, {-1, 3, 0.25}};
+        grid_.brickSize = 4;
+        grid_.levels = 3;
+        grid_.phase = 0.5;
+        info_.lattice = grid_.lattice;
+        info_.bounds = {grid_.lattice.origin, grid_.lattice.position(grid_.lattice.size - 1)};
+        info_.times = {0, 1, 3};
+        info_.parameters.resize(3);
+        info_.parameters[0].name = "f";
+        info_.parameters[1].name = "g g";
+        info_.parameters[2].name = "U";
+        info_.parameters[2].components = 3;
+        for (auto& own : value) own = [](glm::dvec3, double) { return 1.0; };
+    }
+    const DatasetInfo& info() const override { return info_; }
+    const BrickGrid& grid() const override { return grid_; }
+    BrickStats stats(const BrickKey&) const override { return {-1e9f, 1e9f, 1}; }
+    BrickSamples read(const BrickKey& key) const override {
+        BrickSamples out;
+        out.size = grid_.brickSamples(key.index, key.level);
+        const auto count = std::size_t(out.size.x) * std::size_t(out.size.y) * std::size_t(out.size.z);
+        SamplePositions position(grid_, key.index, key.level);
+        for (std::size_t i = 0; i < count; ++i, position.next()) {
+            out.values.push_back(
+                float(value[std::size_t(key.channel)](position.at(), info_.times[std::size_t(key.time)])));
+            out.present.push_back(absent(position.at()) ? 0 : 1);
+        }
+        return out;
+    }
+
+private:
+    BrickGrid grid_;
+    DatasetInfo info_;
+};
+
+/// Calls body(position, value or nothing) for every sample of a channel.
+template <class Body> void forSamples(const BrickSource& source, int channel, int time, int level, const Body& body) {
+    const glm::ivec3 count = source.grid().count();
+    for (int n = 0; n < count.x * count.y * count.z; ++n) {
+        const BrickKey key{channel, time, level, {n % count.x, n / count.x % count.y, n / (count.x * count.y)}};
+        const BrickSamples samples = source.read(key);
+        SamplePositions position(source.grid(), key.index, level);
+        for (std::size_t i = 0; i < samples.values.size(); ++i, position.next()) {
+            const bool present = samples.present.empty() || samples.present[i] != 0;
+            body(position.at(), present ? std::optional<double>(double(samples.values[i])) : std::nullopt);
+        }
+    }
+}
+
+std::shared_ptr<Functions> functions(LatticeKind kind) {
+    auto source = std::make_shared<Functions>(kind);
+    source->value[0] = [](glm::dvec3 p, double t) { return 2 + 3 * p.x - p.y + 0.5 * p.z + t; };
+    source->value[1] = [](glm::dvec3 p, double) { return p.x * p.y; };
+    // Turns around an axis and grows along x: curl 2 (0.1, -0.2, 0.3), divergence 4.
+    source->value[2] = [](glm::dvec3 p, double) { return -0.2 * p.z - 0.3 * p.y + 4 * p.x; };
+    source->value[3] = [](glm::dvec3 p, double) { return 0.3 * p.x - 0.1 * p.z; };
+    source->value[4] = [](glm::dvec3 p, double) { return 0.1 * p.y + 0.2 * p.x; };
+    return source;
+}
+
+constexpr LatticeKind kKinds[] = {LatticeKind::CC, LatticeKind::BCC};
+
+std::string problemOf(const std::string& formula) {
+    return derivedProblem({"new", "", ExpressionRecipe{formula}}, functions(LatticeKind::CC)->info());
+}
+
+TEST(Expression, SaysWhereItIsWrong) {
+    EXPECT_EQ(problemOf("f / (f + U.x)"), "");
+    EXPECT_EQ(problemOf("`g g` * 2e-3 + |U| - U + x*y*z*t + _pi"), "");
+    EXPECT_EQ(problemOf("max(abs(f - 434), 1.5e+2) > 3 ? 1 : 0"), "");
+    EXPECT_EQ(problemOf("f + foo"), "position 5: no parameter is named \"foo\"");
+    EXPECT_EQ(problemOf("f + fo(3)").substr(0, 12), "position 5: ");
+    EXPECT_EQ(problemOf("f + * 2").substr(0, 12), "position 5: ");
+    EXPECT_NE(problemOf("(f + 2").find("parenthesis"), std::string::npos);
+    EXPECT_NE(problemOf("U.x f").substr(0, 12).find("position 5"), std::string::npos);
+    EXPECT_EQ(problemOf("1 + `g"), "position 5: the closing back quote is missing");
+    EXPECT_EQ(problemOf("  "), "position 1: the formula is empty");
+    EXPECT_NE(problemOf("1, 2"), "");
+    EXPECT_NE(problemOf("f = 3"), "");
+    EXPECT_NE(problemOf("f f2"), "") << "a name ends where its letters end";
+}
+
+TEST(Derived, FormulasAreComputedAtEverySampleOfEveryLevel) {
+    for (const LatticeKind kind : kKinds) {
+        const auto below = functions(kind);
+        below->absent = [](glm::dvec3 p) { return p.x > 2 && p.y < 6; };
+        const auto source = derive(below, {"h", "K/s", ExpressionRecipe{"f*f - `g g`/2 + x - 10*t + 0/(f - f*(z<9))"}});
+        ASSERT_EQ(source->info().parameters.back().name, "h");
+        const int h = *source->info().findChannel("h");
+        for (const int time : {0, 2})
+            for (int level = 0; level < 3; ++level) {
+                std::size_t some = 0, none = 0;
+                forSamples(*source, h, time, level, [&](glm::dvec3 p, std::optional<double> value) {
+                    const double t = below->info().times[std::size_t(time)];
+                    const double f = below->value[0](p, t), g = below->value[1](p, t);
+                    // 0/0 where z < 9: no number, so absent.
+                    const bool present = !below->absent(p) && !(p.z < 9);
+                    ASSERT_EQ(value.has_value(), present) << p.x << " " << p.y << " " << p.z;
+                    ++(present ? some : none);
+                    EXPECT_NEAR(value.value_or(f * f - g / 2 + p.x - 10 * t), f * f - g / 2 + p.x - 10 * t,
+                                1e-4 * (1 + f * f));
+                });
+                EXPECT_GT(some, 0u);
+                EXPECT_GT(none, 0u);
+            }
+        EXPECT_EQ(source->read({0, 0, 0, {0, 0, 0}}).values, below->read({0, 0, 0, {0, 0, 0}}).values);
+    }
+}
+
+TEST(Derived, DifferencesOfLinearFieldsAreExact) {
+    for (const LatticeKind kind : kKinds)
+        for (const bool holes : {false, true}) {
+            const auto below = functions(kind);
+            if (holes)
+                below->absent = [](glm::dvec3 p) { return std::fmod(std::abs(p.x * 7.3 + p.y * 3.1 + p.z), 5) < 1; };
+            const std::vector<DerivedParameter> wanted = {{"grad", "K/m", GradientRecipe{"f"}},
+                                                          {"div", "1/s", DivergenceRecipe{"U"}},
+                                                          {"curl", "1/s", VorticityRecipe{"U"}}};
+            std::vector<std::string> messages;
+            const auto source = deriveAll(below, wanted, messages);
+            ASSERT_TRUE(messages.empty()) << messages.front();
+            const auto check = [&](const char* channel, double expected) {
+                const auto index = source->info().findChannel(channel);
+                ASSERT_TRUE(index) << channel;
+                for (const int level : {0, 1}) {
+                    std::size_t right = 0, isolated = 0;
+                    forSamples(*source, *index, 1, level, [&](glm::dvec3 p, std::optional<double> value) {
+                        EXPECT_EQ(value.has_value(), !below->absent(p));
+                        if (!value) return;
+                        ++(std::abs(*value - expected) < 1e-4 ? right : isolated);
+                        EXPECT_NEAR(holes ? expected : *value, expected, 1e-4) << channel << " level " << level;
+                    });
+                    // Between two holes there is no difference to take.
+                    EXPECT_GT(right, isolated * 4) << channel;
+                }
+            };
+            check("grad.x", 3);
+            check("grad.y", -1);
+            check("grad.z", 0.5);
+            check("|grad|", std::sqrt(9 + 1 + 0.25));
+            check("div", 4);
+            check("curl.x", 0.2);
+            check("curl.y", -0.4);
+            check("curl.z", 0.6);
+            // Ranges are known, and a formula may use what is derived.
+            const auto chained = derive(source, {"twice", "", ExpressionRecipe{"2 * |grad|"}});
+            const Range range = chained->info().parameters.back().ranges.front();
+            if (!holes) {
+                EXPECT_NEAR(range.lo, 2 * std::sqrt(10.25), 1e-3);
+                EXPECT_NEAR(range.hi, 2 * std::sqrt(10.25), 1e-3);
+            }
+            EXPECT_EQ(underived(chained), std::shared_ptr<const BrickSource>(below));
+        }
+}
+
+TEST(Derived, DeviationIsMeasuredOverTheTimes) {
+    const auto below = functions(LatticeKind::BCC);
+    below->value[0] = [](glm::dvec3 p, double t) { return 1000 + p.x * t; }; // times 0, 1, 3: mean 4/3
+    const auto source = derive(derive(below, {"d", "K", DeviationRecipe{"f", TimeMeasure::FromMean}}),
+                               {"s", "K", DeviationRecipe{"f", TimeMeasure::StandardDeviation}});
+    const double spread = std::sqrt((16.0 / 9 + 1.0 / 9 + 25.0 / 9) / 3);
+    forSamples(*source, *source->info().findChannel("d"), 2, 0, [&](glm::dvec3 p, std::optional<double> value) {
+        EXPECT_NEAR(value.value_or(1e9), p.x * (3 - 4.0 / 3), 1e-3);
+    });
+    forSamples(*source, *source->info().findChannel("s"), 0, 0, [&](glm::dvec3 p, std::optional<double> value) {
+        EXPECT_NEAR(value.value_or(1e9), std::abs(p.x) * spread, 1e-3);
+    });
+}
+
+TEST(Derived, SmoothingKeepsWhatIsLinearAndMixesOnlyWhatIsPresent) {
+    for (const LatticeKind kind : kKinds) {
+        const auto below = functions(kind);
+        const auto smooth = [&](double width) { return derive(below, {"s", "K", SmoothRecipe{"f", width}}); };
+        const auto source = smooth(0.8);
+        const Box& box = below->info().bounds;
+        const glm::dvec3 margin = below->grid().lattice.spacing * 3.0;
+        std::size_t inner = 0;
+        forSamples(*source, *source->info().findChannel("s"), 0, 0, [&](glm::dvec3 p, std::optional<double> value) {
+            for (int axis = 0; axis < 3; ++axis)
+                if (p[axis] < box.lo[axis] + margin[axis] || p[axis] > box.hi[axis] - margin[axis]) return;
+            ++inner;
+            EXPECT_NEAR(value.value_or(1e9), below->value[0](p, 0), 1e-4);
+        });
+        EXPECT_GT(inner, 50u);
+        // A lone sample among absent ones keeps its value; absent ones stay absent.
+        below->absent = [](glm::dvec3 p) { return p.x > 0; };
+        below->value[0] = [](glm::dvec3 p, double) { return p.x > 0 ? 1e6 : 7.0; };
+        const auto masked = smooth(2);
+        for (int level = 0; level < 3; ++level)
+            forSamples(*masked, *masked->info().findChannel("s"), 0, level,
+                       [&](glm::dvec3 p, std::optional<double> value) {
+                           EXPECT_EQ(value.has_value(), !(p.x > 0));
+                           EXPECT_NEAR(value.value_or(7), 7, 1e-4);
+                       });
+        below->absent = [](glm::dvec3) { return false; };
+    }
+}
+
+TEST(Derived, CoordinatesAreParameters) {
+    const auto source =
+        derive(derive(functions(LatticeKind::BCC), {"position", "m", PositionRecipe{}}), {"time", "s", TimeRecipe{}});
+    forSamples(*source, *source->info().findChannel("position.z"), 1, 1,
+               [&](glm::dvec3 p, std::optional<double> value) { EXPECT_NEAR(*value, p.z, 1e-5); });
+    forSamples(*source, *source->info().findChannel("time"), 2, 0,
+               [&](glm::dvec3, std::optional<double> value) { EXPECT_EQ(*value, 3); });
+    const auto channels = source->info().channels();
+    const Range range = source->info().channelRange(channels[std::size_t(*source->info().findChannel("position.x"))]);
+    EXPECT_EQ(range.lo, source->info().bounds.lo.x);
+    const BrickStats stats = source->stats({*source->info().findChannel("time"), 2, 0, {0, 0, 0}});
+    EXPECT_EQ(stats.min, 3);
+    EXPECT_EQ(stats.presentFraction, 1);
+}
+
+TEST(Derived, WhatCannotBeIsLeftOutWithAMessage) {
+    const auto below = functions(LatticeKind::CC);
+    std::vector<std::string> messages;
+    const auto source = deriveAll(below,
+                                  {{"a", "", ExpressionRecipe{"nothing"}},
+                                   {"f", "", ExpressionRecipe{"1"}},
+                                   {"", "", ExpressionRecipe{"1"}},
+                                   {"b", "", GradientRecipe{"salt"}},
+                                   {"c", "", DivergenceRecipe{"f"}},
+                                   {"good", "", ExpressionRecipe{"f"}}},
+                                  messages);
+    EXPECT_EQ(messages.size(), 5u);
+    EXPECT_EQ(source->info().parameters.size(), below->info().parameters.size() + 1);
+    EXPECT_THROW(derive(below, {"a", "", ExpressionRecipe{"1 +"}}), Error);
+}
+
+} // namespace
+} // namespace tessera::volume

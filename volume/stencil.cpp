@@ -1,0 +1,96 @@
+#include "volume/stencil.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tessera::volume {
+
+namespace {
+
+std::size_t indexIn(glm::ivec3 size, glm::ivec3 at) {
+    return (std::size_t(at.z) * std::size_t(size.y) + std::size_t(at.y)) * std::size_t(size.x) + std::size_t(at.x);
+}
+
+} // namespace
+
+Neighbourhood::Neighbourhood(const BrickGrid& grid, const BrickKey& key, int reach, const ReadSamples& read)
+    : samples_(gather(grid, key, reach, read)), size_(grid.brickSamples(key.index, key.level)),
+      first_(grid.levelBegin(key.index, key.level)), whole_(grid.levelSamples(key.level)),
+      spacing_(grid.lattice.spacing * double(1 << key.level)), reach_(reach),
+      slices_(grid.lattice.kind == LatticeKind::BCC ? 2 : 1) {}
+
+std::optional<double> Neighbourhood::at(glm::ivec3 in, int axis, int steps) const {
+    in[axis] += steps * (axis == 2 ? slices_ : 1);
+    const int global = first_[axis] + in[axis];
+    if (global < 0 || global >= whole_[axis]) return std::nullopt;
+    const std::size_t index = indexIn(samples_.size, in + glm::ivec3(reach_, reach_, reach_ * slices_));
+    if (!samples_.present.empty() && samples_.present[index] == 0) return std::nullopt;
+    return double(samples_.values[index]);
+}
+
+double Neighbourhood::derivative(glm::ivec3 in, int axis) const {
+    std::optional<double> lower = at(in, axis, -1), upper = at(in, axis, 1);
+    double width = 2 * spacing_[axis];
+    if (lower.has_value() != upper.has_value()) {
+        (lower ? upper : lower) = at(in);
+        width = spacing_[axis];
+    }
+    return lower && upper ? (*upper - *lower) / width : 0;
+}
+
+BrickSamples smoothed(const BrickGrid& grid, const BrickKey& key, double width, const ReadSamples& read) {
+    const double sigma = width / (1 << key.level); // in samples of this level
+    const int reach = std::max(1, int(std::ceil(3 * sigma)));
+    std::vector<double> weights;
+    for (int i = -reach; i <= reach; ++i) weights.push_back(std::exp(-0.5 * i * i / (sigma * sigma)));
+    const BrickSamples wide = gather(grid, key, reach, read);
+    const glm::ivec3 own = grid.brickSamples(key.index, key.level);
+    const int slices = grid.lattice.kind == LatticeKind::BCC ? 2 : 1;
+    // Value times weight, and weight, smoothed along one axis after the other; each pass drops its border.
+    glm::ivec3 size = wide.size;
+    std::vector<double> sum(wide.values.size()), coverage(wide.values.size());
+    for (std::size_t i = 0; i < sum.size(); ++i) {
+        const bool present = wide.present.empty() || wide.present[i] != 0;
+        coverage[i] = present ? 1 : 0;
+        sum[i] = present ? double(wide.values[i]) : 0;
+    }
+    for (int axis = 0; axis < 3; ++axis) {
+        const int step = axis == 2 ? slices : 1;
+        glm::ivec3 smaller = size;
+        smaller[axis] = own[axis];
+        std::vector<double> nextSum(std::size_t(smaller.x) * std::size_t(smaller.y) * std::size_t(smaller.z));
+        std::vector<double> nextCoverage(nextSum.size());
+        const std::size_t stride = std::size_t(step) * (axis == 0   ? 1
+                                                        : axis == 1 ? std::size_t(size.x)
+                                                                    : std::size_t(size.x) * std::size_t(size.y));
+        std::size_t to = 0;
+        for (int z = 0; z < smaller.z; ++z)
+            for (int y = 0; y < smaller.y; ++y)
+                for (int x = 0; x < smaller.x; ++x, ++to) {
+                    std::size_t from = indexIn(size, {x, y, z});
+                    for (std::size_t k = 0; k < weights.size(); ++k, from += stride) {
+                        nextSum[to] += weights[k] * sum[from];
+                        nextCoverage[to] += weights[k] * coverage[from];
+                    }
+                }
+        size = smaller;
+        sum = std::move(nextSum);
+        coverage = std::move(nextCoverage);
+    }
+    BrickSamples out;
+    out.size = own;
+    out.values.resize(sum.size());
+    if (!wide.present.empty()) out.present.assign(sum.size(), 1);
+    std::size_t i = 0;
+    for (int z = 0; z < own.z; ++z)
+        for (int y = 0; y < own.y; ++y)
+            for (int x = 0; x < own.x; ++x, ++i) {
+                const bool present = wide.present.empty() ||
+                                     wide.present[indexIn(wide.size, {x + reach, y + reach, z + reach * slices})] != 0;
+                if (!present) out.present[i] = 0;
+                out.values[i] = present ? float(sum[i] / coverage[i]) : 0;
+            }
+    return out;
+}
+
+} // namespace tessera::volume

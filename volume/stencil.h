@@ -1,0 +1,36 @@
+#pragma once
+
+#include "volume/brick_source.h"
+
+#include <functional>
+#include <optional>
+
+/// Differences and smoothing on the samples of one brick, at its level, with what lies around it.
+namespace tessera::volume {
+
+using ReadSamples = std::function<BrickSamples(const BrickKey&)>;
+
+/// A brick with `reach` samples of each sublattice around it. Samples beyond the lattice are absent.
+class Neighbourhood {
+public:
+    Neighbourhood(const BrickGrid& grid, const BrickKey& key, int reach, const ReadSamples& read);
+
+    glm::ivec3 size() const { return size_; } ///< of the brick itself
+    /// The sample at a place of the brick, `steps` samples of its sublattice away along an axis; nothing where absent.
+    std::optional<double> at(glm::ivec3 in, int axis = 0, int steps = 0) const;
+    /// Change per physical length along an axis: central difference, one-sided beside absent samples, 0 where both
+    /// neighbours are absent. The sample itself must be present.
+    double derivative(glm::ivec3 in, int axis) const;
+
+private:
+    BrickSamples samples_;
+    glm::ivec3 size_, first_, whole_;
+    glm::dvec3 spacing_; ///< between samples of a sublattice at this level
+    int reach_, slices_;
+};
+
+/// A Gaussian of `width` cells over the present samples of each sublattice, cut at three widths; absent samples stay
+/// absent.
+BrickSamples smoothed(const BrickGrid& grid, const BrickKey& key, double width, const ReadSamples& read);
+
+} // namespace tessera::volume
