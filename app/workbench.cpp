@@ -294,6 +294,16 @@ void Workbench::answerFile(const FileDialog::Answer& answer) {
         const std::size_t index = missing_->missing[locating_].index;
         missing_->document.session.data.files[index] = describeFile(answer.paths.front());
         missing_->missing.erase(missing_->missing.begin() + static_cast<std::ptrdiff_t>(locating_));
+    } else if (answer.purpose == "export" && exportText_) {
+        const std::string path = answer.paths.front(), name = fs::path(path).filename().string();
+        jobs_.start(
+            "export " + path, "Exporting " + name,
+            [this, path, name, make = std::exchange(exportText_, {})](const Progress& progress) -> Jobs::Finish {
+                const std::string text = make(progress);
+                progress.advance(1);
+                writeTextAtomically(path, text);
+                return [this, name] { message("Exported " + name); };
+            });
     } else if (answer.purpose == "picture") {
         export_ = Export{picture_, answer.paths.front()};
     }

@@ -155,6 +155,7 @@ private:
     std::set<std::string> drawn_;
     Playback playback_;
     std::optional<Export> export_;
+    std::function<std::string(const Progress&)> exportText_; ///< what the next answer of "export" writes
     PictureRequest picture_;
     bool askPicture_ = false, askQuit_ = false, askHelp_ = false, askAbout_ = false;
     bool quit_ = false, busy_ = true, quitAfterSave_ = false, interacting_ = false;

@@ -30,7 +30,11 @@ std::vector<ViewKind> viewKinds() {
             {"Timeline", "Play through time", TimelineView{}},
             {"Data", "What is in the data set and the selection", DataView{}},
             {"History", "Every edit, undone and redone by a click", HistoryView{}},
-            {"Messages", "What the program had to say", LogView{}}};
+            {"Messages", "What the program had to say", LogView{}},
+            {"Statistics", "Every parameter inside and outside of the selection", StatisticsView{}},
+            {"Histogram", "One parameter's histogram; drag to select", HistogramView{}},
+            {"Line profile", "Parameters along a line", ProfileView{}},
+            {"Slice matrix", "Parameters on parallel planes", SliceMatrixView{}}};
 }
 
 } // namespace
@@ -148,8 +152,10 @@ void Workbench::makeCommands() {
     add({.menu = "Edit",
          .name = "-Clear brushes",
          .help = "Nothing is selected: everything is in focus",
+         .shortcut = {.key = key::kEscape},
          .run = [this] { session_.selection.brushes.clear(); },
-         .enabled = [this] { return !session_.selection.brushes.empty(); }});
+         // While something is dragged Esc takes back that alone.
+         .enabled = [this] { return !session_.selection.brushes.empty() && !ImGui::IsAnyItemActive(); }});
     add({.menu = "Edit",
          .name = "Invert brushes",
          .help = "Focus what is outside of every brush",

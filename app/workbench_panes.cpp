@@ -29,6 +29,13 @@ void Workbench::drawPane(const std::string& pane) {
                                 for (const Command& command : commands_)
                                     if (command.title() == name && command.available()) chosen_ = command.run;
                             },
+                        .exportText =
+                            [this](const std::string& name, std::function<std::string(const Progress&)> make) {
+                                exportText_ = std::move(make);
+                                const auto dot = name.rfind('.');
+                                files_.show(FileMode::Save, "Export", "export", files_.folder(), name,
+                                            dot == std::string::npos ? "" : name.substr(dot));
+                            },
                         .busy = false,
                         .interacting = interacting_};
     ImGui::PushID(pane.c_str());
@@ -49,6 +56,14 @@ void Workbench::drawPane(const std::string& pane) {
                 drawTimelineView(context, pane, view);
             else if constexpr (std::is_same_v<View, DataView>)
                 drawDataView(context, pane, view);
+            else if constexpr (std::is_same_v<View, StatisticsView>)
+                drawStatisticsView(context, pane, view);
+            else if constexpr (std::is_same_v<View, HistogramView>)
+                drawHistogramView(context, pane, view);
+            else if constexpr (std::is_same_v<View, ProfileView>)
+                drawProfileView(context, pane, view);
+            else if constexpr (std::is_same_v<View, SliceMatrixView>)
+                drawSliceMatrixView(context, pane, view);
             else if constexpr (std::is_same_v<View, HistoryView>)
                 drawHistoryPane();
             else

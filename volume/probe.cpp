@@ -2,6 +2,8 @@
 
 #include "volume/reconstruct.h"
 
+#include <algorithm>
+#include <glm/geometric.hpp>
 #include <glm/vector_relational.hpp>
 #include <vector>
 
@@ -46,10 +48,10 @@ private:
     mutable std::vector<Held> held_;
 };
 
-ProbeValue probeOne(const BrickSource& source, const Channel& channel, int index, glm::dvec3 position, int time) {
+ProbeValue probeOne(const BrickSource& source, const Channel& channel, const SourceSamples& samples,
+                    glm::dvec3 position) {
     const Box& bounds = source.info().bounds;
     if (glm::any(glm::lessThan(position, bounds.lo)) || glm::any(glm::greaterThan(position, bounds.hi))) return {};
-    const SourceSamples samples(source, index, time);
     const LevelGeometry geometry = levelGeometry(source.grid(), 0);
     const Lattice& lattice = source.grid().lattice;
     const Sample near = samples(lattice.nearest(position));
@@ -66,12 +68,44 @@ ProbeValue probeOne(const BrickSource& source, const Channel& channel, int index
 std::vector<ProbeValue> probe(const BrickSource& source, glm::dvec3 position, int time) {
     std::vector<ProbeValue> values;
     for (const Channel& channel : source.info().channels())
-        values.push_back(probeOne(source, channel, int(values.size()), position, time));
+        values.push_back(probeOne(source, channel, SourceSamples(source, int(values.size()), time), position));
     return values;
 }
 
 ProbeValue probeChannel(const BrickSource& source, int channel, glm::dvec3 position, int time) {
-    return probeOne(source, source.info().channels()[std::size_t(channel)], channel, position, time);
+    return probeOne(source, source.info().channels()[std::size_t(channel)], SourceSamples(source, channel, time),
+                    position);
+}
+
+std::vector<ProbeValue> probeAlong(const BrickSource& source, int channel, std::span<const glm::dvec3> positions,
+                                   int time) {
+    const Channel known = source.info().channels()[std::size_t(channel)];
+    const SourceSamples samples(source, channel, time);
+    std::vector<ProbeValue> values;
+    for (const glm::dvec3& position : positions) values.push_back(probeOne(source, known, samples, position));
+    return values;
+}
+
+std::vector<glm::dvec3> alongPolyline(std::span<const glm::dvec3> corners, int count) {
+    std::vector<glm::dvec3> out;
+    if (corners.empty() || count < 1) return out;
+    double length = 0;
+    for (std::size_t i = 1; i < corners.size(); ++i) length += glm::distance(corners[i - 1], corners[i]);
+    std::size_t part = 1;
+    double before = 0; // length of the parts before this one
+    for (int i = 0; i < count; ++i) {
+        const double at = count > 1 ? length * i / (count - 1) : 0;
+        while (part + 1 < corners.size() && before + glm::distance(corners[part - 1], corners[part]) < at)
+            before += glm::distance(corners[part - 1], corners[part]), ++part;
+        if (corners.size() < 2) {
+            out.push_back(corners[0]);
+            continue;
+        }
+        const double own = glm::distance(corners[part - 1], corners[part]);
+        const double share = own > 0 ? std::min(1.0, (at - before) / own) : 0;
+        out.push_back(corners[part - 1] + (corners[part] - corners[part - 1]) * share);
+    }
+    return out;
 }
 
 } // namespace tessera::volume

@@ -3,6 +3,7 @@
 #include "volume/brick_source.h"
 
 #include <optional>
+#include <span>
 #include <vector>
 
 namespace tessera::volume {
@@ -19,6 +20,13 @@ struct ProbeValue {
 /// outside DatasetInfo::bounds. Reads one to eight bricks per channel: put a BrickCache before an archive. Throws
 /// Error.
 std::vector<ProbeValue> probe(const BrickSource& source, glm::dvec3 position, int time);
+
+/// One channel at many positions, in order: bricks are read once for all of them. Throws Error.
+std::vector<ProbeValue> probeAlong(const BrickSource& source, int channel, std::span<const glm::dvec3> positions,
+                                   int time);
+
+/// Positions at `count` even distances along a polyline, both ends included.
+std::vector<glm::dvec3> alongPolyline(std::span<const glm::dvec3> corners, int count);
 
 /// The same for one channel.
 ProbeValue probeChannel(const BrickSource& source, int channel, glm::dvec3 position, int time);

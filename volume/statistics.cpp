@@ -17,8 +17,6 @@ namespace tessera::volume {
 
 namespace {
 
-constexpr double kFocusHalf = 0.5; // at least this much interest is "inside"
-
 /// Length of every sample's cell along one axis of a sublattice at a level, within the box: the cells tile the box.
 std::vector<double> cellLengths(const BrickGrid& grid, const Box& box, int level, int sublattice, int axis) {
     const Lattice& lattice = grid.lattice;
@@ -87,7 +85,7 @@ private:
     BinSet emptyBins() const {
         BinSet set;
         set.channels.assign(query_.channels.size(), Bins(stride()));
-        set.pairs.assign(query_.pairs.size(), Bins(stride() * stride()));
+        set.pairs.assign(query_.pairs.size(), Bins(stride() * stride(), query_.meanOf >= 0));
         return set;
     }
 
@@ -156,20 +154,25 @@ private:
             for (std::size_t c = 0; c < channels; ++c) values[c] = columns[c].value[i];
             const double doi = std::clamp(query_.doi(values, position.at()), 0.0, 1.0);
             packed[i] = packedSample(doi);
-            inside[i] = doi >= kFocusHalf ? 1 : 0;
+            inside[i] = float(doi);
         }
         for (std::size_t c = 0; c < channels; ++c) {
             std::vector<std::uint64_t>& histogram = bins.channels[c].packed;
             for (std::size_t i = 0; i < count; ++i) {
                 if (columns[c].present[i] == 0) continue;
                 histogram[columns[c].bin[i]] += packed[i];
-                (inside[i] != 0 ? sums.inside : sums.outside)[c].add(columns[c].value[i], shifts_[c], cell[i]);
+                const double weight = double(inside[i]);
+                sums.inside[c].add(columns[c].value[i], shifts_[c], cell[i], weight);
+                // What is just half in is in: one of both has the sample's value in its range.
+                sums.outside[c].add(columns[c].value[i], shifts_[c], cell[i],
+                                    weight == 0.5 ? std::nextafter(0.5, 0.0) : 1 - weight);
             }
         }
         for (std::size_t p = 0; p < query_.pairs.size(); ++p) {
             const Column &x = columns[std::size_t(query_.pairs[p][0])], &y = columns[std::size_t(query_.pairs[p][1])];
             std::vector<std::uint64_t>& histogram = bins.pairs[p].packed;
             for (std::size_t i = 0; i < count; ++i) histogram[y.bin[i] * stride() + x.bin[i]] += packed[i];
+            if (query_.meanOf >= 0) addThird(bins.pairs[p], x, y, columns[std::size_t(query_.meanOf)]);
             sums.pairs[p].add(x, y, nullptr);
             if (query_.doi)
                 sums.focusPairs[p].add(x, y, inside.data());
@@ -177,6 +180,32 @@ private:
                 sums.focusPairs[p] = sums.pairs[p];
         }
         return sums;
+    }
+
+    /// Adds the value of a third channel to the bins of a pair, as integers: they add up the same in any order.
+    void addThird(Bins& bins, const Column& x, const Column& y, const Column& third) const {
+        const Range& range = ranges_[std::size_t(query_.meanOf)];
+        const double scale = range.hi > range.lo ? 65535 / (range.hi - range.lo) : 0;
+        for (std::size_t i = 0; i < third.value.size(); ++i) {
+            if (third.present[i] == 0) continue;
+            const std::size_t at = y.bin[i] * stride() + x.bin[i];
+            bins.third[at] +=
+                std::uint64_t(std::clamp((double(third.value[i]) - range.lo) * scale, 0.0, 65535.0) + 0.5);
+            ++bins.thirdCount[at];
+        }
+    }
+
+    std::vector<double> thirdMeans(const Bins& bins) const {
+        std::vector<double> means;
+        if (query_.meanOf < 0) return means;
+        const Range& range = ranges_[std::size_t(query_.meanOf)];
+        for (int row = 0; row < query_.bins; ++row)
+            for (int bin = 0; bin < query_.bins; ++bin) {
+                const std::size_t at = std::size_t(row) * stride() + std::size_t(bin);
+                const double n = double(bins.thirdCount[at]);
+                means.push_back(n > 0 ? range.lo + double(bins.third[at]) / n / 65535 * (range.hi - range.lo) : kNan);
+            }
+        return means;
     }
 
     /// Leaves out the bins that take what belongs in none; `rows` is 1 or the number of bins.
@@ -204,6 +233,7 @@ private:
             channel.histogram.range = ranges_[c];
             unpack(bins.channels[c], 1, channel.histogram.count, channel.histogram.focus);
             channel.all = all.summary(shifts_[c]);
+            channel.all.samples = std::round(channel.all.samples); // whole: d + (1 - d) each
             channel.inside = inside.summary(shifts_[c]);
             channel.outside = outside.summary(shifts_[c]);
             out.channels.push_back(std::move(channel));
@@ -224,6 +254,8 @@ private:
             joint.samples = std::uint64_t(all.n);
             joint.correlation = all.correlation();
             joint.focusCorrelation = focus.correlation();
+            joint.outsideCorrelation = all.without(focus).correlation();
+            joint.mean = thirdMeans(bins.pairs[p]);
             out.joint.push_back(std::move(joint));
         }
         return out;

@@ -17,6 +17,7 @@ struct StatisticsQuery {
     std::vector<std::array<int, 2>> pairs; ///< joint histograms wanted: positions in `channels`, {x, y}
     int time = 0;
     int level = 0;             ///< of detail: ask for grid().levels - 1 first, then refine
+    int meanOf = -1;           ///< position in `channels` whose mean every bin of the joint histograms gets
     int bins = 128;            ///< per axis, of histograms and joint histograms; below 65535
     std::vector<Range> ranges; ///< of the bins, by position in `channels`; empty: DatasetInfo::channelRange
     /// Degree of interest 0..1 of a sample, given the physical values of `channels` (NaN where absent) and its
@@ -41,21 +42,23 @@ struct JointHistogram {
     int bins = 0;
     std::vector<std::uint64_t> count;
     std::vector<double> focus;
-    std::uint64_t samples = 0;   ///< present in both channels, outside the ranges too
-    double correlation = 0;      ///< Pearson's r over them; NaN where a channel is constant or nothing is there
-    double focusCorrelation = 0; ///< the same over samples with a degree of interest of at least 1/2
+    std::uint64_t samples = 0; ///< present in both channels, outside the ranges too
+    double correlation = 0;    ///< Pearson's r over them; NaN where a channel is constant or nothing is there
+    double focusCorrelation = 0, outsideCorrelation = 0; ///< weighted by the degree of interest d, and by 1 - d
+    std::vector<double> mean; ///< of the channel StatisticsQuery::meanOf per bin, NaN where it has no sample
 };
 
-/// Of present samples. `mean`, `deviation`, `min` and `max` are NaN when there is no sample.
+/// Of present samples, each with a weight. `mean`, `deviation`, `min` and `max` are NaN when there is no sample.
 struct Summary {
-    std::uint64_t samples = 0;
-    double volume = 0; ///< they stand for, in cubic length units: every sample's cell within DatasetInfo::bounds
-    double mean = 0, deviation = 0, min = 0, max = 0; ///< over samples, not volume; deviation: population
+    double samples = 0; ///< sum of the weights
+    double volume = 0;  ///< they stand for, in cubic length units: every sample's cell within DatasetInfo::bounds
+    double mean = 0, deviation = 0; ///< over samples, not volume; deviation: population
+    double min = 0, max = 0;        ///< of samples with a weight of at least 1/2
 };
 
 struct ChannelStatistics {
     Histogram histogram;
-    Summary all, inside, outside; ///< of the selection: inside has a degree of interest of at least 1/2
+    Summary all, inside, outside; ///< weights 1, the degree of interest d, and 1 - d
 };
 
 struct Statistics {

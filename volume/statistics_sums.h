@@ -17,18 +17,19 @@ inline constexpr int kFocusBits = 10;  // interest is summed in units of 2^-10: 
 inline constexpr int kCountShift = 36; // a packed bin: count above, focus below
 inline constexpr std::size_t kFlush = std::size_t(1) << (kCountShift - kFocusBits); // samples that fit a packed bin
 
-/// Sums of one channel over a set of samples, relative to a shift so that close values keep their digits.
+/// Weighted sums of one channel over a set of samples, relative to a shift so that close values keep their digits.
 struct Sums {
-    std::uint64_t n = 0;
-    double volume = 0, sum = 0, squares = 0;
+    double n = 0, volume = 0, sum = 0, squares = 0;
     float min = std::numeric_limits<float>::infinity(), max = -std::numeric_limits<float>::infinity();
 
-    void add(float value, double shift, double cell) {
+    void add(float value, double shift, double cell, double weight) {
+        if (weight <= 0) return;
         const double v = double(value) - shift;
-        ++n;
-        volume += cell;
-        sum += v;
-        squares += v * v;
+        n += weight;
+        volume += weight * cell;
+        sum += weight * v;
+        squares += weight * v * v;
+        if (weight < 0.5) return;
         min = std::min(min, value);
         max = std::max(max, value);
     }
@@ -41,10 +42,11 @@ struct Sums {
         max = std::max(max, other.max);
     }
     Summary summary(double shift) const {
-        if (n == 0) return {0, 0, kNan, kNan, kNan, kNan};
-        const double mean = sum / double(n);
-        const double variance = std::max(0.0, squares / double(n) - mean * mean);
-        return {n, volume, shift + mean, std::sqrt(variance), double(min), double(max)};
+        if (n <= 0) return {0, 0, kNan, kNan, kNan, kNan};
+        const double mean = sum / n;
+        const double variance = std::max(0.0, squares / n - mean * mean);
+        const bool any = min <= max;
+        return {n, volume, shift + mean, std::sqrt(variance), any ? double(min) : kNan, any ? double(max) : kNan};
     }
 };
 
@@ -60,7 +62,7 @@ struct Column {
 struct PairSums {
     double n = 0, x = 0, y = 0, xx = 0, yy = 0, xy = 0;
 
-    /// Adds all samples of a brick, those with weight 0 left out (weight null: none). Eight sums side by side, so that
+    /// Adds all samples of a brick with their weights (null: 1). Eight sums side by side, so that
     /// the compiler can use vector instructions without changing the result.
     void add(const Column& a, const Column& b, const float* weight) {
         constexpr std::size_t kLanes = 8;
@@ -70,7 +72,7 @@ struct PairSums {
             const double w = weight != nullptr ? double(weight[i]) : 1.0;
             const double u = double(a.centred[i]), v = double(b.centred[i]);
             const double p = double(a.present[i]) * w, q = double(b.present[i]) * w;
-            lanes[0][lane] += p * q;
+            lanes[0][lane] += double(a.present[i]) * q;
             lanes[1][lane] += u * q;
             lanes[2][lane] += v * p;
             lanes[3][lane] += u * u * q;
@@ -93,6 +95,9 @@ struct PairSums {
         yy += other.yy;
         xy += other.xy;
     }
+    PairSums without(const PairSums& part) const {
+        return {n - part.n, x - part.x, y - part.y, xx - part.xx, yy - part.yy, xy - part.xy};
+    }
     double correlation() const {
         const double a = n * xx - x * x, b = n * yy - y * y;
         // What rounding leaves of a constant channel is no variance.
@@ -111,7 +116,9 @@ struct BrickSums {
 /// Histograms on their way: `packed` takes samples fast, the others are exact for any number of them.
 struct Bins {
     std::vector<std::uint64_t> packed, count, focus;
-    explicit Bins(std::size_t size = 0) : packed(size), count(size), focus(size) {}
+    std::vector<std::uint64_t> third, thirdCount; ///< sum in units of a channel's range / 65535, and how many; or empty
+    explicit Bins(std::size_t size = 0, bool withThird = false)
+        : packed(size), count(size), focus(size), third(withThird ? size : 0), thirdCount(third.size()) {}
 
     void flush() {
         for (std::size_t i = 0; i < packed.size(); ++i) {
@@ -124,6 +131,10 @@ struct Bins {
         for (std::size_t i = 0; i < count.size(); ++i) {
             count[i] += flushed.count[i];
             focus[i] += flushed.focus[i];
+        }
+        for (std::size_t i = 0; i < third.size(); ++i) {
+            third[i] += flushed.third[i];
+            thirdCount[i] += flushed.thirdCount[i];
         }
     }
 };

@@ -56,6 +56,15 @@ std::string parameterReference() {
     out += markdownSection<SlicesView>("View of type `slices`", "Three orthogonal slices.");
     out += markdownSection<ScatterMatrixView>("View of type `scatterMatrix`", "Every pair of parameters.");
     out += markdownSection<TransferView>("View of type `transfer`", "The transfer-function editor.");
+    out += markdownSection<StatisticsView>("View of type `statistics`", "Numbers inside and outside of the selection.");
+    out += markdownSection<HistogramView>("View of type `histogram`", "One parameter's histogram.");
+    out += markdownSection<ProfileView>("View of type `profile`", "Parameters along a line.");
+    out += markdownSection<SliceMatrixView>("View of type `sliceMatrix`", "Parameters on parallel planes.");
+    out += markdownSection<volume::DerivedParameter>("data.derived", "A parameter computed from others.");
+    out += markdownSection<volume::ExpressionRecipe>("Recipe of type `expression`", "A formula.");
+    out += markdownSection<volume::GradientRecipe>("Recipe of type `gradient`", "A vector.");
+    out += markdownSection<volume::DeviationRecipe>("Recipe of type `deviation`", "Departure from the mean over time.");
+    out += markdownSection<volume::SmoothRecipe>("Recipe of type `smooth`", "A Gaussian.");
     return out;
 }
 

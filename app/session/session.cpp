@@ -86,8 +86,9 @@ std::vector<std::string> paneKeys(const Session& session) {
 std::string paneTitle(const Session& session, const std::string& pane) {
     const auto found = session.views.find(pane);
     if (found == session.views.end()) return pane;
-    static constexpr std::string_view titles[] = {"Volume",   "Slices", "Scatterplots", "Transfer function", "Layers",
-                                                  "Timeline", "Data",   "History",      "Messages"};
+    static constexpr std::string_view titles[] = {
+        "Volume",  "Slices",   "Scatterplots", "Transfer function", "Layers",       "Timeline",    "Data",
+        "History", "Messages", "Statistics",   "Histogram",         "Line profile", "Slice matrix"};
     static_assert(std::variant_size_v<ViewState> == std::size(titles));
     std::string title(titles[found->second.index()]);
     if (const auto dash = pane.rfind('-'); dash != std::string::npos) title += " " + pane.substr(dash + 1);
@@ -147,6 +148,13 @@ void fitSession(Session& session, const volume::DatasetInfo& info, std::vector<s
     for (auto& [key, view] : session.views) {
         if (auto* slices = std::get_if<SlicesView>(&view)) replace(slices->channel);
         if (auto* transfer = std::get_if<TransferView>(&view)) replace(transfer->channel);
+        if (auto* histogram = std::get_if<HistogramView>(&view)) replace(histogram->channel);
+        std::visit(
+            [&](auto& each) {
+                if constexpr (requires { each.channels; })
+                    std::erase_if(each.channels, [&](const std::string& name) { return !known(name); });
+            },
+            view);
         if (auto* scatter = std::get_if<ScatterMatrixView>(&view)) {
             if (std::none_of(scatter->channels.begin(), scatter->channels.end(), known)) scatter->channels.clear();
             std::erase_if(scatter->channels, [&](const std::string& name) { return !known(name); });

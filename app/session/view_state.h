@@ -2,6 +2,8 @@
 
 #include "volume/describe.h"
 
+#include <glm/vec3.hpp>
+#include <map>
 #include <string>
 #include <variant>
 #include <vector>
@@ -48,6 +50,9 @@ struct ScatterMatrixView {
     bool logDensity = true;
     BrushTool tool = BrushTool::Rectangle;
     float softness = 0.05f;            ///< soft edge of new brushes, as a share of their width
+    std::string colorBy;               ///< bins are coloured by the mean of this; "" = by density and selection
+    bool outliers = true;              ///< dots where few samples lie
+    std::map<std::string, Range> zoom; ///< shown values by parameter; others: all
     std::vector<std::string> enlarged; ///< x and y of the plot that is shown large, equal for a histogram; empty = none
     bool operator==(const ScatterMatrixView&) const = default;
     static void describe(auto& self, auto&& visit) {
@@ -61,6 +66,12 @@ struct ScatterMatrixView {
                                        .unit = "",
                                        .doc = "Soft edge of new brushes, share of their width",
                                        .range = Range{0, 1}});
+        visit(self.colorBy, FieldInfo{.key = "colorBy",
+                                      .unit = "",
+                                      .doc = "Parameter whose mean colours the plots; none: the density",
+                                      .refersTo = "channel"});
+        visit(self.outliers, FieldInfo{.key = "outliers", .unit = "", .doc = "Mark places where few samples lie"});
+        visit(self.zoom, FieldInfo{.key = "zoom", .unit = "", .doc = "Values shown, by parameter", .hidden = true});
         visit(self.enlarged, FieldInfo{.key = "enlarged",
                                        .unit = "",
                                        .doc = "Parameters of the plot that is shown large",
@@ -122,7 +133,79 @@ struct LogView {
     static void describe(auto&, auto&&) {}
 };
 
-using ViewState = std::variant<VolumeView, SlicesView, ScatterMatrixView, TransferView, LayersView, TimelineView,
-                               DataView, HistoryView, LogView>;
+inline constexpr FieldInfo kShownChannels{
+    .key = "channels", .unit = "", .doc = "Parameters shown; none: every scalar and magnitude", .refersTo = "channel"};
+
+/// Count, volume, mean, spread and correlation of every parameter inside and outside of the selection.
+struct StatisticsView {
+    static constexpr std::string_view kType = "statistics";
+    std::vector<std::string> channels;
+    std::string correlateWith; ///< "" = the first parameter
+    bool operator==(const StatisticsView&) const = default;
+    static void describe(auto& self, auto&& visit) {
+        visit(self.channels, kShownChannels);
+        visit(self.correlateWith, FieldInfo{.key = "correlateWith",
+                                            .unit = "",
+                                            .doc = "Parameter that the others are correlated with",
+                                            .refersTo = "channel"});
+    }
+};
+
+struct HistogramView {
+    static constexpr std::string_view kType = "histogram";
+    std::string channel; ///< "" = the channel of the first layer
+    int bins = 192;
+    bool logCounts = false;
+    float softness = 0.05f; ///< soft edge of new brushes, as a share of their width
+    bool operator==(const HistogramView&) const = default;
+    static void describe(auto& self, auto&& visit) {
+        visit(self.channel, FieldInfo{.key = "channel", .unit = "", .doc = "Parameter shown", .refersTo = "channel"});
+        visit(self.bins, FieldInfo{.key = "bins", .unit = "", .doc = "Bins", .range = Range{8, 1024}});
+        visit(self.logCounts, FieldInfo{.key = "logCounts", .unit = "", .doc = "Show the logarithm of the counts"});
+        visit(self.softness, FieldInfo{.key = "softness",
+                                       .unit = "",
+                                       .doc = "Soft edge of new brushes, share of their width",
+                                       .range = Range{0, 1}});
+    }
+};
+
+/// Parameters along a polyline in space.
+struct ProfileView {
+    static constexpr std::string_view kType = "profile";
+    std::vector<std::string> channels;
+    std::vector<glm::dvec3> points; ///< corners; fewer than two: the longest axis through the cursor
+    int samples = 256;
+    bool operator==(const ProfileView&) const = default;
+    static void describe(auto& self, auto&& visit) {
+        visit(self.channels, kShownChannels);
+        visit(self.points,
+              FieldInfo{.key = "points", .unit = "m", .doc = "Corners of the line; none: along the longest axis"});
+        visit(self.samples,
+              FieldInfo{.key = "samples", .unit = "", .doc = "Places along the line", .range = Range{16, 4096}});
+    }
+};
+
+enum class SliceAxis { X, Y, Z };
+inline constexpr std::string_view kSliceAxisNames[] = {"x", "y", "z"};
+
+/// Parameters (rows) on parallel planes (columns).
+struct SliceMatrixView {
+    static constexpr std::string_view kType = "sliceMatrix";
+    std::vector<std::string> channels;
+    SliceAxis axis = SliceAxis::Z;
+    int planes = 4;
+    bool operator==(const SliceMatrixView&) const = default;
+    static void describe(auto& self, auto&& visit) {
+        visit(self.channels, kShownChannels);
+        visit(self.axis,
+              FieldInfo{.key = "axis", .unit = "", .doc = "Axis the planes stand on", .names = kSliceAxisNames});
+        visit(self.planes,
+              FieldInfo{.key = "planes", .unit = "", .doc = "Planes, evenly spread", .range = Range{1, 12}});
+    }
+};
+
+using ViewState =
+    std::variant<VolumeView, SlicesView, ScatterMatrixView, TransferView, LayersView, TimelineView, DataView,
+                 HistoryView, LogView, StatisticsView, HistogramView, ProfileView, SliceMatrixView>;
 
 } // namespace tessera::app

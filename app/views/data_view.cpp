@@ -105,25 +105,6 @@ std::string rangeText(const volume::Summary& summary, double digits) {
     return formatNumber(summary.min, digits) + " .. " + formatNumber(summary.max, digits);
 }
 
-std::string csvOf(const volume::DatasetInfo& info, const StatisticsResult& result) {
-    std::string csv = "parameter,unit,part,samples,volume,mean,deviation,min,max\n";
-    const std::vector<volume::Channel> channels = info.channels();
-    for (std::size_t i = 0; i < result.statistics.channels.size(); ++i) {
-        const volume::Channel& channel = channels[static_cast<std::size_t>(result.wish.channels[i])];
-        const volume::ChannelStatistics& own = result.statistics.channels[i];
-        const std::pair<const char*, const volume::Summary*> parts[] = {
-            {"all", &own.all}, {"inside", &own.inside}, {"outside", &own.outside}};
-        for (const auto& [part, summary] : parts) {
-            char line[256];
-            std::snprintf(line, sizeof line, ",%s,%llu,%.9g,%.9g,%.9g,%.9g,%.9g\n", part,
-                          static_cast<unsigned long long>(summary->samples), summary->volume, summary->mean,
-                          summary->deviation, summary->min, summary->max);
-            csv += channel.name + "," + channel.unit + line;
-        }
-    }
-    return csv;
-}
-
 void drawSelection(ViewContext& context, const StatisticsResult* result) {
     const volume::DatasetInfo& info = context.source->info();
     if (!context.session.selection.active()) {
@@ -138,16 +119,14 @@ void drawSelection(ViewContext& context, const StatisticsResult* result) {
     const volume::ChannelStatistics* whole = nullptr;
     for (const volume::ChannelStatistics& channel : statistics.channels)
         if (!whole || channel.all.samples > whole->all.samples) whole = &channel;
-    std::uint64_t inside = 0;
-    double volume = 0;
+    double inside = 0, volume = 0;
     for (const volume::ChannelStatistics& channel : statistics.channels) {
         inside = std::max(inside, channel.inside.samples);
         volume = std::max(volume, channel.inside.volume);
     }
     if (whole && whole->all.samples > 0 && result->brushed) {
-        ImGui::Text("%s of %s samples in focus, %s", formatCount(static_cast<double>(inside)).c_str(),
-                    formatCount(static_cast<double>(whole->all.samples)).c_str(),
-                    formatShare(static_cast<double>(inside) / static_cast<double>(whole->all.samples)).c_str());
+        ImGui::Text("%s of %s samples in focus, %s", formatCount(std::round(inside)).c_str(),
+                    formatCount(whole->all.samples).c_str(), formatShare(inside / whole->all.samples).c_str());
         if (statistics.level > 0) {
             ImGui::SameLine();
             ImGui::TextDisabled("(first estimate)");
@@ -178,7 +157,7 @@ void drawSelection(ViewContext& context, const StatisticsResult* result) {
         // Mean above, range below: side by side they do not fit a narrow pane.
         const auto cell = [&](const volume::Summary& summary) {
             ImGui::TableNextColumn();
-            textRight(summary.samples ? formatNumber(summary.mean, digits) : "-");
+            textRight(summary.samples > 0 ? formatNumber(summary.mean, digits) : "-");
             textRight(rangeText(summary, digits * 10), true);
         };
         ImGui::TableNextRow();
@@ -189,7 +168,7 @@ void drawSelection(ViewContext& context, const StatisticsResult* result) {
         if (brushed) cell(own.outside);
     }
     ImGui::EndTable();
-    if (ImGui::SmallButton("Copy as CSV")) ImGui::SetClipboardText(csvOf(info, *result).c_str());
+    if (context.runCommand && ImGui::SmallButton("Open the full table")) context.runCommand("New: Statistics");
 }
 
 } // namespace

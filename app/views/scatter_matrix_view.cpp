@@ -29,40 +29,6 @@ struct ScatterCache : ScatterLayoutCache {
     ImU32 shownFocus = 0;
 };
 
-std::vector<int> shownChannels(const volume::DatasetInfo& info, const ScatterMatrixView& view) {
-    std::vector<int> out;
-    for (const std::string& name : view.channels)
-        if (const auto channel = info.findChannel(name))
-            if (std::find(out.begin(), out.end(), *channel) == out.end()) out.push_back(*channel);
-    if (!out.empty()) return out;
-    out = comparedChannels(info);
-    if (out.size() > kMostPlots) out.resize(kMostPlots);
-    return out;
-}
-
-void chooseChannels(const volume::DatasetInfo& info, ScatterMatrixView& view, const std::vector<int>& shown) {
-    const std::string label = std::to_string(shown.size()) + (shown.size() == 1 ? " parameter" : " parameters");
-    ImGui::SetNextItemWidth(em() * 7.8f);
-    if (ImGui::BeginCombo("##channels", label.c_str(), ImGuiComboFlags_HeightLarge)) {
-        const std::vector<volume::Channel> channels = info.channels();
-        for (std::size_t i = 0; i < channels.size(); ++i) {
-            if (info.parameters[static_cast<std::size_t>(channels[i].parameter)].categorical) continue;
-            bool on = std::find(shown.begin(), shown.end(), static_cast<int>(i)) != shown.end();
-            if (!ImGui::Checkbox(titleWithUnit(channels[i].name, channels[i].unit).c_str(), &on)) continue;
-            std::vector<std::string> names;
-            for (std::size_t k = 0; k < channels.size(); ++k) {
-                const bool was = std::find(shown.begin(), shown.end(), static_cast<int>(k)) != shown.end();
-                if (k == i ? on : was) names.push_back(channels[k].name);
-            }
-            if (!names.empty()) view.channels = names;
-        }
-        ImGui::Separator();
-        if (ImGui::Selectable("All scalars and magnitudes")) view.channels.clear();
-        ImGui::EndCombo();
-    }
-    if (ImGui::IsItemHovered()) tooltip("Parameters that are compared");
-}
-
 void chooseTool(BrushTool& tool) {
     static constexpr const char* kTools[] = {"rectangle", "ellipse", "lasso"};
     ImGui::SetNextItemWidth(em() * 5.4f);
@@ -92,7 +58,7 @@ void drawToolbar(ViewContext& context, ScatterMatrixView& view, const std::vecto
                  const StatisticsResult* result) {
     Session& session = context.session;
     const volume::DatasetInfo& info = context.source->info();
-    chooseChannels(info, view, shown);
+    chooseChannels(info, view.channels, shown);
     ImGui::SameLine();
     ImGui::Checkbox("log", &view.logDensity);
     if (ImGui::IsItemHovered()) tooltip("Show the logarithm of the number of samples");
@@ -401,7 +367,7 @@ void drawScatterMatrixView(ViewContext& context, const std::string& pane, Scatte
     }
     const volume::DatasetInfo& info = context.source->info();
     ScatterLayout matrix;
-    matrix.channels = shownChannels(info, view);
+    matrix.channels = chosenChannels(info, view.channels, kMostPlots);
     if (matrix.channels.empty()) {
         drawHint("No parameters to compare", "This data set holds only labels.");
         return;

@@ -1,6 +1,7 @@
 #include "app/ui/widgets.h"
 #include "app/views/axes3d.h"
 #include "app/views/brush_list.h"
+#include "app/views/profile_line.h"
 #include "app/views/readout.h"
 #include "app/views/ticks.h"
 #include "app/views/view_parts.h"
@@ -152,6 +153,7 @@ void drawPlane(ViewContext& context, SlicesCache& cache, const SlicesView& view,
     draw.PushClipRect(frame.min, frame.max, true);
     drawBrushSections(draw, frame, session.selection, plane.right, plane.up, plane.normal, session.cursor[plane.normal],
                       {unitX.perUnit, unitY.perUnit});
+    drawProfileLines(draw, frame, session, plane.right, plane.up, {unitX.perUnit, unitY.perUnit});
     drawCrosshair(draw, frame, session.cursor[plane.right] * unitX.perUnit, session.cursor[plane.up] * unitY.perUnit);
     draw.PopClipRect();
 }

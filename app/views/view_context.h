@@ -33,6 +33,8 @@ struct ViewContext {
     bool headless = false;      ///< finish everything before the frame ends: no budget, no progressive states
     /// Asks the workbench to run a command of its table, by name, after this frame; null in tests.
     std::function<void(const std::string& command)> runCommand = {};
+    /// Asks where to save, then writes what `make` returns, in the background; null in tests.
+    std::function<void(const std::string& fileName, std::function<std::string(const Progress&)> make)> exportText = {};
     bool busy = false;        ///< set by a view that needs another frame soon (refining, animating, waiting for a job)
     bool interacting = false; ///< some edit is in progress (mouse held on a control): draw at reduced size
 };
@@ -52,5 +54,9 @@ void drawTransferView(ViewContext& context, const std::string& pane, TransferVie
 void drawLayersView(ViewContext& context, const std::string& pane, LayersView& view);
 void drawTimelineView(ViewContext& context, const std::string& pane, TimelineView& view);
 void drawDataView(ViewContext& context, const std::string& pane, DataView& view);
+void drawStatisticsView(ViewContext& context, const std::string& pane, StatisticsView& view);
+void drawHistogramView(ViewContext& context, const std::string& pane, HistogramView& view);
+void drawProfileView(ViewContext& context, const std::string& pane, ProfileView& view);
+void drawSliceMatrixView(ViewContext& context, const std::string& pane, SliceMatrixView& view);
 
 } // namespace tessera::app

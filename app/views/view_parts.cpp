@@ -106,6 +106,41 @@ std::vector<int> comparedChannels(const volume::DatasetInfo& info) {
     return out;
 }
 
+std::vector<int> chosenChannels(const volume::DatasetInfo& info, const std::vector<std::string>& names,
+                                std::size_t most) {
+    std::vector<int> out;
+    for (const std::string& name : names)
+        if (const auto channel = info.findChannel(name))
+            if (std::find(out.begin(), out.end(), *channel) == out.end()) out.push_back(*channel);
+    if (!out.empty()) return out;
+    out = comparedChannels(info);
+    if (out.size() > most) out.resize(most);
+    return out;
+}
+
+void chooseChannels(const volume::DatasetInfo& info, std::vector<std::string>& names, const std::vector<int>& shown) {
+    const std::string label = std::to_string(shown.size()) + (shown.size() == 1 ? " parameter" : " parameters");
+    ImGui::SetNextItemWidth(em() * 7.8f);
+    if (ImGui::BeginCombo("##channels", label.c_str(), ImGuiComboFlags_HeightLarge)) {
+        const std::vector<volume::Channel> channels = info.channels();
+        for (std::size_t i = 0; i < channels.size(); ++i) {
+            if (info.parameters[static_cast<std::size_t>(channels[i].parameter)].categorical) continue;
+            bool on = std::find(shown.begin(), shown.end(), static_cast<int>(i)) != shown.end();
+            if (!ImGui::Checkbox(titleWithUnit(channels[i].name, channels[i].unit).c_str(), &on)) continue;
+            std::vector<std::string> chosen;
+            for (std::size_t k = 0; k < channels.size(); ++k) {
+                const bool was = std::find(shown.begin(), shown.end(), static_cast<int>(k)) != shown.end();
+                if (k == i ? on : was) chosen.push_back(channels[k].name);
+            }
+            if (!chosen.empty()) names = chosen;
+        }
+        ImGui::Separator();
+        if (ImGui::Selectable("All scalars and magnitudes")) names.clear();
+        ImGui::EndCombo();
+    }
+    if (ImGui::IsItemHovered()) tooltip("Parameters that are shown");
+}
+
 std::optional<int> resolveChannel(const volume::DatasetInfo& info, const Session& session, const std::string& wanted) {
     if (const auto found = info.findChannel(wanted); found && !wanted.empty()) return found;
     for (const vis::Layer& layer : session.layers) {

@@ -47,6 +47,13 @@ void textRight(const std::string& text, bool faint = false);
 /// Indices into info.channels() of what statistics compare: scalars and vector magnitudes, no labels.
 std::vector<int> comparedChannels(const volume::DatasetInfo& info);
 
+/// The channels a view shows: those of its names that the data have, each once; without any, the compared ones up to
+/// `most`.
+std::vector<int> chosenChannels(const volume::DatasetInfo& info, const std::vector<std::string>& names,
+                                std::size_t most);
+/// A list with a tick for each of them.
+void chooseChannels(const volume::DatasetInfo& info, std::vector<std::string>& names, const std::vector<int>& shown);
+
 /// The channel a view shows: the wanted one if the data has it, else that of the first layer, else the first. Nothing
 /// for data without parameters.
 std::optional<int> resolveChannel(const volume::DatasetInfo& info, const Session& session, const std::string& wanted);

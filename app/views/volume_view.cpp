@@ -1,6 +1,7 @@
 #include "app/ui/keys.h"
 #include "app/views/axes3d.h"
 #include "app/views/brush_list.h"
+#include "app/views/profile_line.h"
 #include "app/views/ticks.h"
 #include "app/views/view_parts.h"
 
@@ -273,6 +274,7 @@ void drawVolumeView(ViewContext& context, const std::string& pane, VolumeView& v
     const SpaceFrame space = spaceFrame(picture.min, max, session.camera, info.bounds, session.stretch);
     if (view.showCursor) drawCursor(draw, space, session.cursor);
     drawSpaceBrushes(draw, space, session.selection);
+    drawProfileLines(draw, space, session);
 
     std::vector<std::pair<ImVec2, ImVec2>> taken;
     if (view.showLegend) {

@@ -14,7 +14,8 @@ using Structs =
                      vis::BrushInterval, vis::RangeRegion, vis::EllipseRegion, vis::LassoRegion, vis::SphereRegion,
                      vis::BoxRegion, vis::Brush, vis::Selection, vis::TransferFunction, DockNode, FloatingPane,
                      DockTree, DataFile, DataRef, Animation, Appearance, VolumeView, SlicesView, ScatterMatrixView,
-                     TransferView, LayersView, TimelineView, DataView, HistoryView, LogView, Session>;
+                     TransferView, LayersView, TimelineView, DataView, HistoryView, LogView, StatisticsView,
+                     HistogramView, ProfileView, SliceMatrixView, volume::DerivedParameter, Session>;
 
 template <class T> class DescribeTest : public ::testing::Test {};
 TYPED_TEST_SUITE(DescribeTest, Structs);

@@ -8,6 +8,7 @@
 
 #include <atomic>
 #include <cmath>
+#include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 #include <random>
 #include <thread>
@@ -107,6 +108,28 @@ TEST(BrickCache, ReadsOnceAndKeepsTheBudget) {
     EXPECT_FALSE(all.has({0, 0, 1, {0, 0, 0}}));
     counting->failing = false;
     EXPECT_NO_THROW(all.get({0, 0, 1, {0, 0, 0}}));
+}
+
+TEST(Probe, AProfileOverARampIsLinear) {
+    const Lattice cc = test::ccLattice({9, 17, 33}, {0.5, 0.25, 0.125});
+    const auto ramp = [](glm::dvec3 p) { return 3 + 2 * p.x - p.y + 4 * p.z; };
+    const auto source =
+        makeMemorySource(test::datasetOf({test::sampled<float>(cc, ramp)}), {LatticeKind::CC, 8, 1 << 24});
+    const glm::dvec3 corners[] = {{0, 0, 0}, {4, 4, 0}, {4, 4, 4}, {0, 0, 4}};
+    const std::vector<glm::dvec3> places = alongPolyline(corners, 101);
+    ASSERT_EQ(places.size(), 101u);
+    EXPECT_EQ(places.front(), corners[0]);
+    EXPECT_NEAR(glm::distance(places.back(), corners[3]), 0, 1e-12);
+    const std::vector<ProbeValue> values = probeAlong(*source, 0, places, 0);
+    const double step = (2 * std::sqrt(32.0) + 4) / 100;
+    for (std::size_t i = 0; i < places.size(); ++i) {
+        EXPECT_NEAR(values[i].interpolated.value_or(1e9), ramp(places[i]), 1e-5);
+        if (i > 0) {
+            EXPECT_LE(glm::distance(places[i - 1], places[i]), step + 1e-12);
+        }
+    }
+    const glm::dvec3 beyond[] = {{-1, 0, 0}, {1, 0, 0}};
+    EXPECT_FALSE(probeAlong(*source, 0, alongPolyline(beyond, 3), 0)[0].interpolated.has_value());
 }
 
 } // namespace

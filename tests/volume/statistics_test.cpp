@@ -42,6 +42,7 @@ StatisticsQuery fullQuery() {
     query.channels = {0, 1, 2};
     query.pairs = allPairs(3);
     query.bins = kBins;
+    query.meanOf = 1;
     query.doi = [](std::span<const float> v, glm::dvec3) { return doiOf(v); };
     return query;
 }
@@ -78,9 +79,11 @@ TEST(Statistics, AgreesWithBruteForce) {
                 double n = 0, sum = 0, squares = 0, lo = INFINITY, hi = -INFINITY;
                 for (std::size_t i = 0; i < count; ++i) {
                     const double v = double(value(c, i));
-                    if (std::isnan(v) || (doi(i) >= 0.5) != inside) continue;
-                    ++n;
-                    sum += v;
+                    if (std::isnan(v)) continue;
+                    const double weight = inside ? doi(i) : 1 - doi(i);
+                    n += weight;
+                    sum += weight * v;
+                    if ((doi(i) >= 0.5) != inside) continue;
                     lo = std::min(lo, v);
                     hi = std::max(hi, v);
                     if (const int bin = binOf(channel.histogram.range, v); bin >= 0) {
@@ -90,20 +93,22 @@ TEST(Statistics, AgreesWithBruteForce) {
                 }
                 for (std::size_t i = 0; i < count; ++i) {
                     const double v = double(value(c, i));
-                    if (!std::isnan(v) && (doi(i) >= 0.5) == inside) squares += (v - sum / n) * (v - sum / n);
+                    if (!std::isnan(v)) squares += (inside ? doi(i) : 1 - doi(i)) * (v - sum / n) * (v - sum / n);
                 }
                 const Summary& summary = inside ? channel.inside : channel.outside;
-                EXPECT_EQ(double(summary.samples), n);
+                EXPECT_NEAR(summary.samples, n, 1e-6 * (1 + n));
                 if (n == 0) {
                     EXPECT_TRUE(std::isnan(summary.mean));
                     continue;
                 }
                 EXPECT_NEAR(summary.mean, sum / n, 1e-7);
                 EXPECT_NEAR(summary.deviation, std::sqrt(squares / n), 1e-5);
+                if (lo > hi) continue; // none of weight 1/2
                 EXPECT_EQ(summary.min, lo);
                 EXPECT_EQ(summary.max, hi);
             }
-            EXPECT_EQ(channel.all.samples, channel.inside.samples + channel.outside.samples);
+            EXPECT_NEAR(channel.all.samples, channel.inside.samples + channel.outside.samples,
+                        1e-6 * channel.all.samples);
             EXPECT_EQ(channel.histogram.count, bins);
             for (std::size_t b = 0; b < kBins; ++b)
                 EXPECT_NEAR(channel.histogram.focus[b], focus[b], 6e-4 * double(1 + bins[b]));
@@ -111,6 +116,7 @@ TEST(Statistics, AgreesWithBruteForce) {
         for (const JointHistogram& joint : result.joint) {
             std::vector<std::uint64_t> bins(kBins * kBins);
             std::vector<double> focus(kBins * kBins);
+            std::vector<double> third(kBins * kBins), thirdCount(kBins * kBins);
             double n = 0, mx = 0, my = 0, xx = 0, yy = 0, xy = 0;
             const auto both = [&](std::size_t i) {
                 return !std::isnan(value(joint.x, i)) && !std::isnan(value(joint.y, i));
@@ -125,6 +131,37 @@ TEST(Statistics, AgreesWithBruteForce) {
                 if (bx < 0 || by < 0) continue;
                 ++bins[std::size_t(by * kBins + bx)];
                 focus[std::size_t(by * kBins + bx)] += doi(i);
+                if (std::isnan(value(1, i))) continue;
+                third[std::size_t(by * kBins + bx)] += std::clamp(double(value(1, i)), -20.0, 100.0);
+                ++thirdCount[std::size_t(by * kBins + bx)];
+            }
+            for (std::size_t b = 0; b < bins.size(); ++b) {
+                EXPECT_EQ(std::isnan(joint.mean[b]), thirdCount[b] == 0);
+                if (thirdCount[b] > 0) {
+                    EXPECT_NEAR(joint.mean[b], third[b] / thirdCount[b], 120.0 / 65535);
+                }
+            }
+            // Correlation weighted by the degree of interest, by its definition.
+            for (const bool inside : {true, false}) {
+                double w = 0, wx = 0, wy = 0, wxx = 0, wyy = 0, wxy = 0;
+                const auto weight = [&](std::size_t i) { return inside ? doi(i) : 1 - doi(i); };
+                for (std::size_t i = 0; i < count; ++i) {
+                    if (!both(i)) continue;
+                    w += weight(i);
+                    wx += weight(i) * double(value(joint.x, i));
+                    wy += weight(i) * double(value(joint.y, i));
+                }
+                for (std::size_t i = 0; i < count; ++i) {
+                    if (!both(i)) continue;
+                    const double x = double(value(joint.x, i)) - wx / w, y = double(value(joint.y, i)) - wy / w;
+                    wxx += weight(i) * x * x;
+                    wyy += weight(i) * y * y;
+                    wxy += weight(i) * x * y;
+                }
+                if (size.x > 10) {
+                    EXPECT_NEAR(inside ? joint.focusCorrelation : joint.outsideCorrelation, wxy / std::sqrt(wxx * wyy),
+                                1e-5);
+                }
             }
             for (std::size_t i = 0; i < count; ++i) {
                 if (!both(i)) continue;
@@ -191,7 +228,7 @@ TEST(Statistics, VolumeOfALayer) {
     query.channels = {0};
     query.doi = [&](std::span<const float> v, glm::dvec3) { return double(v[0]) < (even + odd) / 2 ? 1.0 : 0.0; };
     const Statistics result = computeStatistics(*source, query);
-    EXPECT_EQ(result.channels[0].inside.samples, std::size_t(bcc.size.y) * std::size_t(bcc.size.z));
+    EXPECT_EQ(result.channels[0].inside.samples, double(bcc.size.y) * bcc.size.z);
     EXPECT_NEAR(result.channels[0].inside.volume, 7 * 6 * (even + odd) / 2, 1e-9);
 }
 
@@ -205,10 +242,10 @@ TEST(Statistics, DegenerateChannels) {
     query.pairs = {{0, 1}, {0, 0}};
     query.ranges = {{3.25, 3.25}, {0, 1}};
     const Statistics result = computeStatistics(*source, query);
-    EXPECT_EQ(result.channels[0].all.samples, 125u);
+    EXPECT_EQ(result.channels[0].all.samples, 125);
     EXPECT_EQ(result.channels[0].histogram.count[0], 125u);
     EXPECT_EQ(result.channels[0].all.deviation, 0);
-    EXPECT_EQ(result.channels[1].all.samples, 0u);
+    EXPECT_EQ(result.channels[1].all.samples, 0);
     EXPECT_TRUE(std::isnan(result.channels[1].all.mean));
     EXPECT_EQ(result.joint[0].samples, 0u);
     EXPECT_TRUE(std::isnan(result.joint[0].correlation));

@@ -1,0 +1,197 @@
+#include "app/views/figure.h"
+
+#include "app/views/ticks.h"
+#include "app/views/view_parts.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace tessera::app {
+
+namespace {
+
+// In points: a panel with room for its numbers and titles.
+constexpr double kWidth = 300, kHeight = 240, kLeft = 62, kBottom = 42, kTop = 22, kRight = 12;
+
+std::string number(double value) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.2f", value);
+    return text;
+}
+
+std::string escaped(const std::string& text) {
+    std::string out;
+    for (const char c : text) {
+        if (c == '<')
+            out += "&lt;";
+        else if (c == '&')
+            out += "&amp;";
+        else if (c == '"')
+            out += "&quot;";
+        else
+            out += c;
+    }
+    return out;
+}
+
+std::string colorOf(glm::vec3 color) {
+    char text[16];
+    const auto byte = [](float v) { return static_cast<int>(std::lround(std::clamp(v, 0.0f, 1.0f) * 255)); };
+    std::snprintf(text, sizeof text, "#%02x%02x%02x", byte(color.r), byte(color.g), byte(color.b));
+    return text;
+}
+
+class Panel {
+public:
+    Panel(const FigurePanel& panel, double left, double top)
+        : panel_(panel), x0_(left + kLeft), x1_(left + kWidth - kRight), y0_(top + kHeight - kBottom), y1_(top + kTop) {
+    }
+
+    std::string svg() {
+        image();
+        axes();
+        for (const FigureSeries& series : panel_.series) series.bars ? bars(series) : line(series);
+        legend();
+        return out_;
+    }
+
+private:
+    static double place(Range range, double value, double from, double to) {
+        const double span = range.hi > range.lo ? range.hi - range.lo : 1;
+        return from + (value - range.lo) / span * (to - from);
+    }
+    double px(double value) const { return place(panel_.x.range, value, x0_, x1_); }
+    double py(double value) const { return place(panel_.y.range, value, y0_, y1_); }
+
+    void text(double x, double y, const std::string& what, const char* anchor, double turn = 0) {
+        out_ += "<text x=\"" + number(x) + "\" y=\"" + number(y) + "\" text-anchor=\"" + anchor + "\"";
+        if (turn != 0) out_ += " transform=\"rotate(" + number(turn) + " " + number(x) + " " + number(y) + ")\"";
+        out_ += ">" + escaped(what) + "</text>\n";
+    }
+    void stroke(double ax, double ay, double bx, double by, const char* color) {
+        out_ += "<line x1=\"" + number(ax) + "\" y1=\"" + number(ay) + "\" x2=\"" + number(bx) + "\" y2=\"" +
+                number(by) + "\" stroke=\"" + color + "\" stroke-width=\"0.7\"/>\n";
+    }
+    void axes() {
+        out_ += "<rect x=\"" + number(x0_) + "\" y=\"" + number(y1_) + "\" width=\"" + number(x1_ - x0_) +
+                "\" height=\"" + number(y0_ - y1_) + "\" fill=\"none\" stroke=\"#444\" stroke-width=\"0.7\"/>\n";
+        const TickLabels across = tickLabels(panel_.x.range, 5), up = tickLabels(panel_.y.range, 5);
+        for (std::size_t i = 0; i < across.values.size(); ++i) {
+            stroke(px(across.values[i]), y0_, px(across.values[i]), y0_ + 4, "#444");
+            text(px(across.values[i]), y0_ + 14, across.texts[i], "middle");
+        }
+        for (std::size_t i = 0; i < up.values.size(); ++i) {
+            stroke(x0_ - 4, py(up.values[i]), x0_, py(up.values[i]), "#444");
+            text(x0_ - 6, py(up.values[i]) + 3, up.texts[i], "end");
+        }
+        const auto noted = [](const FigureAxis& axis, const TickLabels& ticks) {
+            return axis.title + (ticks.note.empty() ? "" : "  " + ticks.note);
+        };
+        text((x0_ + x1_) / 2, y0_ + 30, noted(panel_.x, across), "middle");
+        text(x0_ - 46, (y0_ + y1_) / 2, noted(panel_.y, up), "middle", -90);
+        text(x0_, y1_ - 7, panel_.title, "start");
+    }
+    void bars(const FigureSeries& series) {
+        if (series.points.size() < 2) return;
+        const double half = (px(series.points[1].x) - px(series.points[0].x)) / 2;
+        for (const glm::dvec2& bar : series.points) {
+            if (!(bar.y > 0)) continue;
+            const double top = std::max(py(bar.y), y1_);
+            out_ += "<rect x=\"" + number(px(bar.x) - half) + "\" y=\"" + number(top) + "\" width=\"" +
+                    number(2 * half) + "\" height=\"" + number(y0_ - top) + "\" fill=\"" + colorOf(series.color) +
+                    "\"/>\n";
+        }
+    }
+    void line(const FigureSeries& series) {
+        std::string path;
+        bool down = false;
+        for (const glm::dvec2& point : series.points) {
+            const bool is = std::isfinite(point.x) && std::isfinite(point.y);
+            if (is) path += (down ? "L" : "M") + number(px(point.x)) + " " + number(py(point.y));
+            down = is;
+        }
+        out_ +=
+            "<path d=\"" + path + "\" fill=\"none\" stroke=\"" + colorOf(series.color) + "\" stroke-width=\"1.2\"/>\n";
+    }
+    /// Runs of cells of one colour as one rectangle.
+    void image() {
+        const FigureImage& image = panel_.image;
+        if (image.width <= 0 || image.height <= 0) return;
+        const double cellX = (x1_ - x0_) / image.width, cellY = (y0_ - y1_) / image.height;
+        for (int row = 0; row < image.height; ++row)
+            for (int begin = 0, end = 0; begin < image.width; begin = end) {
+                const auto at = [&](int column) {
+                    return &image.rgba[(static_cast<std::size_t>(row) * static_cast<std::size_t>(image.width) +
+                                        static_cast<std::size_t>(column)) *
+                                       4];
+                };
+                const std::uint8_t* pixel = at(begin);
+                for (end = begin + 1; end < image.width && std::equal(pixel, pixel + 4, at(end));) ++end;
+                if (pixel[3] == 0) continue;
+                const auto channel = [&](int i) { return static_cast<float>(pixel[i]) / 255; };
+                out_ += "<rect x=\"" + number(x0_ + begin * cellX) + "\" y=\"" + number(y1_ + row * cellY) +
+                        "\" width=\"" + number((end - begin) * cellX + 0.05) + "\" height=\"" + number(cellY + 0.05) +
+                        "\" fill=\"" + colorOf({channel(0), channel(1), channel(2)}) + "\" fill-opacity=\"" +
+                        number(static_cast<double>(pixel[3]) / 255) + "\"/>\n";
+            }
+    }
+    void legend() {
+        if (panel_.series.size() < 2) return;
+        double y = y1_ + 12;
+        for (const FigureSeries& series : panel_.series) {
+            out_ += "<rect x=\"" + number(x1_ - 12) + "\" y=\"" + number(y - 6) +
+                    "\" width=\"8\" height=\"4\" fill=\"" + colorOf(series.color) + "\"/>\n";
+            text(x1_ - 15, y, series.name, "end");
+            y += 11;
+        }
+    }
+
+    const FigurePanel& panel_;
+    double x0_, x1_, y0_, y1_;
+    std::string out_;
+};
+
+} // namespace
+
+std::string figureSvg(const std::vector<FigurePanel>& panels, int columns) {
+    const int across = std::max(1, std::min(columns, static_cast<int>(panels.size())));
+    const int rows = (static_cast<int>(panels.size()) + across - 1) / across;
+    const std::string width = number(across * kWidth), height = number(std::max(1, rows) * kHeight);
+    std::string out = "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" + width + "pt\" height=\"" + height +
+                      "pt\" viewBox=\"0 0 " + width + " " + height +
+                      "\" font-family=\"Helvetica, Arial, sans-serif\" font-size=\"9\" fill=\"#222\">\n"
+                      "<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n";
+    for (std::size_t i = 0; i < panels.size(); ++i)
+        out += Panel(panels[i], static_cast<int>(i) % across * kWidth, static_cast<int>(i) / across * kHeight).svg();
+    return out + "</svg>\n";
+}
+
+std::string csvField(const std::string& text) {
+    if (text.find_first_of(",\"\n") == std::string::npos) return text;
+    std::string out = "\"";
+    for (const char c : text) out += c == '"' ? std::string("\"\"") : std::string(1, c);
+    return out + "\"";
+}
+
+std::string csvNumber(double value) {
+    if (!std::isfinite(value)) return {};
+    char text[32];
+    std::snprintf(text, sizeof text, "%.9g", value);
+    return text;
+}
+
+void exportMenu(ViewContext& context, const std::string& name, std::function<std::string(const Progress&)> svg,
+                std::function<std::string(const Progress&)> csv) {
+    const bool possible = context.exportText != nullptr;
+    ImGui::BeginDisabled(!possible);
+    if (ImGui::Button("Export")) ImGui::OpenPopup("export");
+    ImGui::EndDisabled();
+    if (!ImGui::BeginPopup("export")) return;
+    if (ImGui::MenuItem("Picture (PNG)...") && context.runCommand) context.runCommand("Save picture...");
+    if (svg && ImGui::MenuItem("Vector graphics (SVG)...")) context.exportText(name + ".svg", std::move(svg));
+    if (csv && ImGui::MenuItem("Table (CSV)...")) context.exportText(name + ".csv", std::move(csv));
+    ImGui::EndPopup();
+}
+
+} // namespace tessera::app

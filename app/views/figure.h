@@ -1,0 +1,49 @@
+#pragma once
+
+#include "app/views/view_context.h"
+#include "volume/describe.h"
+
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
+/// Plots as vector graphics and tables, for papers and other programs.
+namespace tessera::app {
+
+struct FigureAxis {
+    std::string title; ///< with its unit
+    Range range;
+};
+
+struct FigureSeries {
+    std::string name;
+    std::vector<glm::dvec2> points; ///< NaN breaks a line; bars: centre and height
+    glm::vec3 color{0};
+    bool bars = false;
+};
+
+/// A picture of cells between the ends of both axes: RGBA, row 0 at the top.
+struct FigureImage {
+    int width = 0, height = 0;
+    std::vector<std::uint8_t> rgba;
+};
+
+struct FigurePanel {
+    std::string title;
+    FigureAxis x, y;
+    std::vector<FigureSeries> series;
+    FigureImage image;
+};
+
+/// Panels in rows of `columns`, black on white.
+std::string figureSvg(const std::vector<FigurePanel>& panels, int columns);
+
+/// A text as one field of a CSV line.
+std::string csvField(const std::string& text);
+/// A number for CSV, empty where it is not finite.
+std::string csvNumber(double value);
+
+/// A button whose menu exports what a view shows: its picture, vector graphics, a table.
+void exportMenu(ViewContext& context, const std::string& name, std::function<std::string(const Progress&)> svg,
+                std::function<std::string(const Progress&)> csv);
+
+} // namespace tessera::app

@@ -1,0 +1,253 @@
+#include "app/views/figure.h"
+#include "app/views/ticks.h"
+#include "app/views/view_parts.h"
+#include "volume/error.h"
+#include "volume/probe.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/gtc/quaternion.hpp>
+
+namespace tessera::app {
+
+namespace {
+
+constexpr std::size_t kMostRows = 6; ///< where the user has not chosen
+constexpr int kExported = 96;        ///< places along the longer edge of an exported slice
+
+struct SliceMatrixCache : ViewCache {
+    std::vector<vis::ViewTargetPtr> targets;
+};
+
+/// The axes that run to the right and up in a slice; the longer one lies level.
+struct PlaneAxes {
+    int right = 0, up = 1, normal = 2;
+};
+PlaneAxes axesOf(SliceAxis axis, const vis::WorldFrame& world) {
+    const int normal = static_cast<int>(axis);
+    PlaneAxes out{normal == 0 ? 1 : 0, normal == 2 ? 1 : 2, normal};
+    if (world.halfSize[out.up] > world.halfSize[out.right]) std::swap(out.right, out.up);
+    return out;
+}
+
+/// Looks straight at a plane so that it fills the picture.
+vis::Camera cameraOf(const PlaneAxes& axes, const vis::WorldFrame& world) {
+    vis::Camera camera;
+    camera.projection = vis::Projection::Orthographic;
+    glm::vec3 right(0), up(0);
+    right[axes.right] = 1;
+    up[axes.up] = 1;
+    camera.orientation = glm::normalize(glm::quat_cast(glm::transpose(glm::mat3(right, up, glm::cross(right, up)))));
+    camera.fieldOfView = 35;
+    camera.distance = static_cast<float>(world.halfSize[axes.up]) / std::tan(glm::radians(camera.fieldOfView) / 2);
+    return camera;
+}
+
+/// Where plane `index` of `count` lies: in the middle of its share of the box.
+double planePosition(const volume::Box& bounds, int axis, int index, int count) {
+    return bounds.lo[axis] + bounds.size()[axis] * (index + 0.5) / count;
+}
+
+void drawSlice(ViewContext& context, vis::ViewTargetPtr& target, const std::string& channel, const PlaneAxes& axes,
+               double position, ImVec2 min, glm::ivec2 pixels, double budget) {
+    const volume::DatasetInfo& info = context.source->info();
+    vis::Scene scene = themedScene(context.session);
+    scene.camera = cameraOf(axes, vis::worldFrame(info.bounds, context.session.stretch));
+    scene.showBox = false;
+    vis::SliceLayer layer;
+    layer.channel = channel;
+    layer.orientation = static_cast<vis::SliceOrientation>(axes.normal);
+    scene.layers = {vis::Layer{"slice", true, layer}};
+    scene.cursor = info.bounds.center();
+    scene.cursor[axes.normal] = position;
+    if (!target) target = context.renderer.makeTarget();
+    vis::FrameRequest request;
+    request.size = pixels;
+    request.budgetMs = budget;
+    request.moving = !context.headless && (context.interacting || context.session.animation.playing);
+    request.wait = context.headless;
+    const vis::FrameStatus status = context.renderer.render(*target, scene, request);
+    if (!status.complete) context.busy = true;
+    const ImVec2 max{min.x + static_cast<float>(pixels.x), min.y + static_cast<float>(pixels.y)};
+    addPicture(*ImGui::GetWindowDrawList(), status.texture, min, max);
+    ImGui::GetWindowDrawList()->AddRect(min, max, plotColors().frame);
+}
+
+/// Every slice as numbers: plane, position in it, values.
+std::string sliceCsv(const volume::BrickSource& source, const std::vector<int>& channels, const PlaneAxes& axes,
+                     int planes, int time, const Progress& progress) {
+    const volume::DatasetInfo& info = source.info();
+    const std::vector<volume::Channel> all = info.channels();
+    std::string csv = "x,y,z";
+    for (const int channel : channels) {
+        const volume::Channel& own = all[static_cast<std::size_t>(channel)];
+        csv += "," + csvField(titleWithUnit(own.name, own.unit));
+    }
+    csv += "\n";
+    const glm::dvec3 size = info.bounds.size();
+    const double longest = std::max(size[axes.right], size[axes.up]);
+    const auto places = [&](int axis) {
+        return std::max(2, static_cast<int>(std::lround(kExported * (longest > 0 ? size[axis] / longest : 1))));
+    };
+    const int across = places(axes.right), up = places(axes.up);
+    for (int plane = 0; plane < planes; ++plane)
+        for (int j = 0; j < up; ++j) {
+            progress.advance((plane + static_cast<double>(j) / up) / planes);
+            std::vector<glm::dvec3> row;
+            for (int i = 0; i < across; ++i) {
+                glm::dvec3 at(0);
+                at[axes.normal] = planePosition(info.bounds, axes.normal, plane, planes);
+                at[axes.right] = info.bounds.lo[axes.right] + size[axes.right] * i / (across - 1);
+                at[axes.up] = info.bounds.lo[axes.up] + size[axes.up] * j / (up - 1);
+                row.push_back(at);
+            }
+            std::vector<std::vector<volume::ProbeValue>> values;
+            for (const int channel : channels) values.push_back(volume::probeAlong(source, channel, row, time));
+            for (std::size_t i = 0; i < row.size(); ++i) {
+                csv += csvNumber(row[i].x) + "," + csvNumber(row[i].y) + "," + csvNumber(row[i].z);
+                for (const auto& column : values) csv += "," + csvNumber(column[i].interpolated.value_or(std::nan("")));
+                csv += "\n";
+            }
+        }
+    return csv;
+}
+
+/// The slices as vector graphics, coloured by their transfer functions.
+std::string sliceSvg(const volume::BrickSource& source, const Session& session, const std::vector<int>& channels,
+                     const PlaneAxes& axes, int planes, const Progress& progress) {
+    const volume::DatasetInfo& info = source.info();
+    const std::vector<volume::Channel> all = info.channels();
+    const LengthUnit unitX = suitableLength(info.lengthUnit, info.bounds.size()[axes.right]),
+                     unitY = suitableLength(info.lengthUnit, info.bounds.size()[axes.up]);
+    std::vector<FigurePanel> panels;
+    for (const int channel : channels)
+        for (int plane = 0; plane < planes; ++plane) {
+            progress.advance(static_cast<double>(panels.size()) /
+                             static_cast<double>(channels.size() * static_cast<std::size_t>(planes)));
+            const volume::Channel& own = all[static_cast<std::size_t>(channel)];
+            const vis::TransferFunction& function = transferOf(session, own.name);
+            const Range range = vis::effectiveRange(function, info.channelRange(own));
+            FigurePanel panel;
+            const double position = planePosition(info.bounds, axes.normal, plane, planes);
+            panel.title = own.name + ", " + "xyz"[axes.normal] + " = " + formatNumber(position) + " " + info.lengthUnit;
+            panel.x = {std::string(1, "xyz"[axes.right]) + " [" + unitX.name + "]",
+                       {info.bounds.lo[axes.right] * unitX.perUnit, info.bounds.hi[axes.right] * unitX.perUnit}};
+            panel.y = {std::string(1, "xyz"[axes.up]) + " [" + unitY.name + "]",
+                       {info.bounds.lo[axes.up] * unitY.perUnit, info.bounds.hi[axes.up] * unitY.perUnit}};
+            panel.image.width = panel.image.height = kExported;
+            for (int j = kExported - 1; j >= 0; --j) {
+                std::vector<glm::dvec3> row;
+                for (int i = 0; i < kExported; ++i) {
+                    glm::dvec3 at(0);
+                    at[axes.normal] = position;
+                    at[axes.right] =
+                        info.bounds.lo[axes.right] + info.bounds.size()[axes.right] * (i + 0.5) / kExported;
+                    at[axes.up] = info.bounds.lo[axes.up] + info.bounds.size()[axes.up] * (j + 0.5) / kExported;
+                    row.push_back(at);
+                }
+                for (const volume::ProbeValue& value :
+                     volume::probeAlong(source, channel, row, timeIndex(session, info))) {
+                    const glm::dvec4 color =
+                        value.interpolated ? vis::evaluate(function, range, *value.interpolated) : glm::dvec4(0);
+                    for (int k = 0; k < 3; ++k)
+                        panel.image.rgba.push_back(
+                            static_cast<std::uint8_t>(std::lround(255 * std::clamp(color[k], 0.0, 1.0))));
+                    panel.image.rgba.push_back(value.interpolated ? 255 : 0);
+                }
+            }
+            panels.push_back(std::move(panel));
+        }
+    return figureSvg(panels, planes);
+}
+
+void drawToolbar(ViewContext& context, SliceMatrixView& view, const std::vector<int>& shown, const PlaneAxes& axes) {
+    const volume::DatasetInfo& info = context.source->info();
+    chooseChannels(info, view.channels, shown);
+    ImGui::SameLine();
+    ImGui::SetNextItemWidth(em() * 3.4f);
+    if (ImGui::BeginCombo("##axis", kSliceAxisNames[static_cast<std::size_t>(view.axis)].data())) {
+        for (int i = 0; i < 3; ++i)
+            if (ImGui::Selectable(kSliceAxisNames[i].data(), static_cast<int>(view.axis) == i))
+                view.axis = static_cast<SliceAxis>(i);
+        ImGui::EndCombo();
+    }
+    if (ImGui::IsItemHovered()) tooltip("Axis the planes stand on");
+    ImGui::SameLine();
+    ImGui::SetNextItemWidth(em() * 6);
+    ImGui::SliderInt("##planes", &view.planes, 1, 12, view.planes == 1 ? "%d plane" : "%d planes");
+    ImGui::SameLine();
+    const int time = timeIndex(context.session, info);
+    exportMenu(
+        context, "slices",
+        [source = context.source, session = context.session, shown, axes, planes = view.planes](
+            const Progress& progress) { return sliceSvg(*source, session, shown, axes, planes, progress); },
+        [source = context.source, shown, axes, planes = view.planes, time](const Progress& progress) {
+            return sliceCsv(*source, shown, axes, planes, time, progress);
+        });
+}
+
+} // namespace
+
+void drawSliceMatrixView(ViewContext& context, const std::string& pane, SliceMatrixView& view) {
+    if (!context.source) {
+        drawHint("No data", "Every parameter on several planes appears here.");
+        return;
+    }
+    const volume::DatasetInfo& info = context.source->info();
+    SliceMatrixCache& cache = cacheOf<SliceMatrixCache>(context, pane);
+    const std::vector<int> shown = chosenChannels(info, view.channels, kMostRows);
+    const vis::WorldFrame world = vis::worldFrame(info.bounds, context.session.stretch);
+    const PlaneAxes axes = axesOf(view.axis, world);
+    view.planes = std::clamp(view.planes, 1, 12);
+    drawToolbar(context, view, shown, axes);
+    if (shown.empty()) return drawHint("No parameters", "This data set holds only labels.");
+    const double worldX = world.halfSize[axes.right], worldY = world.halfSize[axes.up];
+    if (!(worldX > 0) || !(worldY > 0)) return drawHint("No extent", "The data are flat along this axis' planes.");
+
+    const ImVec2 origin = ImGui::GetCursorScreenPos(), room = ImGui::GetContentRegionAvail();
+    const std::vector<volume::Channel> channels = info.channels();
+    const float title = em() * 1.5f, gap = em() * 0.4f, head = em() * 1.3f;
+    const float cellX = (room.x - title) / static_cast<float>(view.planes) - gap;
+    const float cellY = (room.y - head) / static_cast<float>(shown.size()) - gap;
+    if (cellX < em() * 2 || cellY < em() * 1.2f)
+        return drawHint("Not enough room", "Enlarge the pane, or show fewer parameters or planes.");
+    const double scale = std::min(static_cast<double>(cellX) / worldX, static_cast<double>(cellY) / worldY);
+    const glm::ivec2 pixels(std::max(1.0, std::floor(worldX * scale)), std::max(1.0, std::floor(worldY * scale)));
+    ImDrawList& draw = *ImGui::GetWindowDrawList();
+    const PlotColors colors = plotColors();
+    const LengthUnit unit = suitableLength(info.lengthUnit, info.bounds.size()[axes.normal]);
+    cache.targets.resize(shown.size() * static_cast<std::size_t>(view.planes));
+    for (int plane = 0; plane < view.planes; ++plane) {
+        const double position = planePosition(info.bounds, axes.normal, plane, view.planes);
+        const float x = std::round(origin.x + title + (cellX + gap) * static_cast<float>(plane));
+        const std::string place =
+            std::string(1, "xyz"[axes.normal]) + " = " +
+            formatQuantity(position * unit.perUnit, unit.name, info.bounds.size()[axes.normal] * unit.perUnit / 100);
+        draw.AddText({x, origin.y}, colors.text, fitText(place, cellX).c_str());
+        for (std::size_t row = 0; row < shown.size(); ++row) {
+            const float y = std::round(origin.y + head + (cellY + gap) * static_cast<float>(row));
+            const volume::Channel& channel = channels[static_cast<std::size_t>(shown[row])];
+            drawSlice(context,
+                      cache.targets[row * static_cast<std::size_t>(view.planes) + static_cast<std::size_t>(plane)],
+                      channel.name, axes, position, {x, y}, pixels, 40.0 / static_cast<double>(cache.targets.size()));
+            if (plane > 0) continue;
+            addTextUpwards(
+                draw, {origin.x + em() * 0.6f, y + static_cast<float>(pixels.y) / 2}, colors.text,
+                fitText(titleWithUnit(channel.name, channel.unit), static_cast<float>(pixels.y) + gap).c_str());
+        }
+    }
+    // A click moves the linked cursor there.
+    const ImVec2 mouse = ImGui::GetIO().MousePos;
+    if (!ImGui::IsWindowHovered() || !ImGui::IsMouseClicked(ImGuiMouseButton_Left)) return;
+    const float inX = (mouse.x - origin.x - title) / (cellX + gap), inY = (mouse.y - origin.y - head) / (cellY + gap);
+    if (inX < 0 || inY < 0 || inX >= static_cast<float>(view.planes) || inY >= static_cast<float>(shown.size())) return;
+    const float u = (inX - std::floor(inX)) * (cellX + gap) / static_cast<float>(pixels.x),
+                v = 1 - (inY - std::floor(inY)) * (cellY + gap) / static_cast<float>(pixels.y);
+    if (u > 1 || v < 0) return;
+    glm::dvec3& cursor = context.session.cursor;
+    cursor[axes.normal] = planePosition(info.bounds, axes.normal, static_cast<int>(inX), view.planes);
+    cursor[axes.right] = glm::mix(info.bounds.lo[axes.right], info.bounds.hi[axes.right], static_cast<double>(u));
+    cursor[axes.up] = glm::mix(info.bounds.lo[axes.up], info.bounds.hi[axes.up], static_cast<double>(v));
+}
+
+} // namespace tessera::app
