@@ -14,6 +14,7 @@ struct ScatterLayout {
     std::vector<int> channels; ///< indices of DatasetInfo::channels()
     std::vector<volume::Channel> infos;
     std::vector<Range> ranges; ///< shown, by position in `channels`
+    std::vector<Range> whole;  ///< of all values
     ImVec2 min{0, 0};          ///< top left of the first cell, pixels
     float cellX = 0, cellY = 0, gap = 0;
 

@@ -1,6 +1,7 @@
 #include "app/views/brush_edit.h"
 #include "app/views/readout.h"
-#include "app/views/scatter_layout.h"
+#include "app/views/scatter_cells.h"
+#include "app/views/scatter_toolbar.h"
 #include "app/views/statistics_feed.h"
 #include "app/views/ticks.h"
 #include "app/views/view_parts.h"
@@ -15,6 +16,13 @@ namespace {
 
 constexpr std::size_t kMostPlots = 9; ///< a side, where the user has not chosen: more are too small to read
 
+/// How the mean of a third parameter is coloured; no range width: densities instead.
+struct MeanColors {
+    vis::TransferFunction function;
+    Range range{0, 0};
+    bool operator==(const MeanColors&) const = default;
+};
+
 struct ScatterCache : ScatterLayoutCache {
     StatisticsFeed feed;
     BrushDrag drag;
@@ -27,87 +35,39 @@ struct ScatterCache : ScatterLayoutCache {
     bool shownLog = false, shownDark = false;
     int shownMerge = 0, shownLarge = -1;
     ImU32 shownFocus = 0;
+    MeanColors shownColors;
 };
 
-void chooseTool(BrushTool& tool) {
-    static constexpr const char* kTools[] = {"rectangle", "ellipse", "lasso"};
-    ImGui::SetNextItemWidth(em() * 5.4f);
-    if (ImGui::BeginCombo("##tool", kTools[static_cast<std::size_t>(tool)])) {
-        for (int i = 0; i < 3; ++i)
-            if (ImGui::Selectable(kTools[i], static_cast<int>(tool) == i)) tool = static_cast<BrushTool>(i);
-        ImGui::EndCombo();
-    }
-    if (ImGui::IsItemHovered())
-        tooltip("What a drag in a plot draws; Shift adds to the selection, Ctrl takes away from it");
+/// Position of the channel that colours the plots among the wish's channels, added where it is not shown; -1: none.
+int meanChannel(StatisticsWish& wish, const volume::DatasetInfo& info, const std::string& name) {
+    const auto channel = info.findChannel(name);
+    if (name.empty() || !channel) return -1;
+    const auto found = std::find(wish.channels.begin(), wish.channels.end(), *channel);
+    if (found != wish.channels.end()) return static_cast<int>(found - wish.channels.begin());
+    wish.channels.push_back(*channel);
+    wish.ranges.push_back(info.channelRange(info.channels()[static_cast<std::size_t>(*channel)]));
+    return static_cast<int>(wish.channels.size()) - 1;
 }
 
-/// Focus samples and all samples: of the parameter that exists at most points.
-struct Share {
-    double focus = 0, all = 0;
-};
-Share focusShare(const volume::Statistics& statistics) {
-    Share share;
-    for (const volume::ChannelStatistics& channel : statistics.channels) {
-        share.focus = std::max(share.focus, static_cast<double>(channel.inside.samples));
-        share.all = std::max(share.all, static_cast<double>(channel.all.samples));
-    }
-    return share;
-}
-
-void drawToolbar(ViewContext& context, ScatterMatrixView& view, const std::vector<int>& shown,
-                 const StatisticsResult* result) {
-    Session& session = context.session;
-    const volume::DatasetInfo& info = context.source->info();
-    chooseChannels(info, view.channels, shown);
-    ImGui::SameLine();
-    ImGui::Checkbox("log", &view.logDensity);
-    if (ImGui::IsItemHovered()) tooltip("Show the logarithm of the number of samples");
-    ImGui::SameLine();
-    chooseTool(view.tool);
-    ImGui::SameLine();
-    ImGui::SetNextItemWidth(em() * 5);
-    float percent = view.softness * 100;
-    if (ImGui::SliderFloat("##soft", &percent, 0, 50, "soft %.0f %%")) view.softness = percent / 100;
-    if (ImGui::IsItemHovered()) tooltip("Soft edge of new brushes, as a share of their width");
-    const bool brushed = session.selection.active();
-    std::string text, brief;
-    if (brushed && result && result->brushed) {
-        const Share share = focusShare(result->statistics);
-        text = brief = "focus " + formatShare(share.all > 0 ? share.focus / share.all : 0);
-        if (result->statistics.level == 0) text += " (" + formatCount(share.focus) + ")";
-    } else if (session.selection.brushes.empty()) {
-        text = "drag in a plot to brush, click to enlarge";
-        brief = "drag to brush";
-    }
-    if (!session.selection.brushes.empty()) {
-        ImGui::SameLine();
-        if (iconButton(context, "clear", icons::kTrash, "Remove all brushes (Esc)")) session.selection.brushes.clear();
-    }
-    ImGui::SameLine();
-    if (ImGui::CalcTextSize(text.c_str()).x > ImGui::GetContentRegionAvail().x) text = brief;
-    const float width = ImGui::CalcTextSize(text.c_str()).x;
-    if (ImGui::GetContentRegionAvail().x >= width) {
-        ImGui::SetCursorPosX(std::max(ImGui::GetCursorPosX(), ImGui::GetContentRegionMax().x - width));
-        ImGui::AlignTextToFramePadding();
-        if (brushed)
-            ImGui::TextUnformatted(text.c_str());
-        else
-            ImGui::TextDisabled("%s", text.c_str());
-    } else {
-        ImGui::NewLine();
-    }
+MeanColors meanColors(const Session& session, const volume::DatasetInfo& info, const std::string& name) {
+    const auto channel = info.findChannel(name);
+    if (name.empty() || !channel) return {};
+    const vis::TransferFunction& function = transferOf(session, name);
+    return {function,
+            vis::effectiveRange(function, info.channelRange(info.channels()[static_cast<std::size_t>(*channel)]))};
 }
 
 void updateTextures(ScatterCache& cache, const std::shared_ptr<const StatisticsResult>& result, bool logDensity,
-                    float cell, int large, ImU32 focus) {
+                    float cell, int large, ImU32 focus, const MeanColors& colors) {
     const bool dark = darkTheme();
     const int merge =
         std::max(1, static_cast<int>(std::lround(static_cast<float>(result->wish.bins) / std::max(8.0f, cell))));
     if (cache.shown == result && cache.shownLog == logDensity && cache.shownDark == dark && cache.shownMerge == merge &&
-        cache.shownLarge == large && cache.shownFocus == focus)
+        cache.shownLarge == large && cache.shownFocus == focus && cache.shownColors == colors)
         return;
     cache.shownLarge = large;
     cache.shownFocus = focus;
+    cache.shownColors = colors;
     cache.shownMerge = merge;
     cache.shown = result;
     cache.shownLog = logDensity;
@@ -115,13 +75,16 @@ void updateTextures(ScatterCache& cache, const std::shared_ptr<const StatisticsR
     cache.textures.resize(result->statistics.joint.size());
     for (std::size_t i = 0; i < cache.textures.size(); ++i) {
         const volume::JointHistogram& joint = result->statistics.joint[i];
-        const int pixels = densityImage(
-            joint.count, result->brushed ? std::span<const double>(joint.focus) : std::span<const double>(), joint.bins,
-            merge, logDensity, dark, focus, cache.pixels);
+        const auto paint = [&](int step) {
+            if (!joint.mean.empty()) return meanImage(joint, step, colors.function, colors.range, cache.pixels);
+            return densityImage(joint.count,
+                                result->brushed ? std::span<const double>(joint.focus) : std::span<const double>(),
+                                joint.bins, step, logDensity, dark, focus, cache.pixels);
+        };
+        const int pixels = paint(merge);
         cache.textures[i].upload({pixels, pixels}, cache.pixels);
         if (static_cast<int>(i) != large) continue;
-        densityImage(joint.count, result->brushed ? std::span<const double>(joint.focus) : std::span<const double>(),
-                     joint.bins, 1, logDensity, dark, focus, cache.pixels);
+        paint(1);
         cache.large.upload({joint.bins, joint.bins}, cache.pixels);
     }
 }
@@ -149,129 +112,6 @@ Enlarged enlargedPlot(const ScatterLayout& matrix, const ScatterMatrixView& view
     return out;
 }
 
-/// Position of a pair among the joint histograms, -1 for a histogram.
-int jointIndex(const volume::Statistics& statistics, std::size_t column, std::size_t row) {
-    for (std::size_t i = 0; i < statistics.joint.size(); ++i)
-        if (statistics.joint[i].x == static_cast<int>(column) && statistics.joint[i].y == static_cast<int>(row))
-            return static_cast<int>(i);
-    return -1;
-}
-
-void drawHistogram(ImDrawList& draw, const PlotFrame& frame, const volume::Histogram& histogram, bool brushed,
-                   bool logCounts, ImU32 focusShade) {
-    const PlotColors colors = plotColors();
-    std::uint64_t most = 1;
-    for (std::uint64_t count : histogram.count) most = std::max(most, count);
-    const auto height = [&](double count) {
-        const double top = static_cast<double>(most);
-        return static_cast<float>((logCounts ? std::log1p(count) / std::log1p(top) : count / top) * 0.94);
-    };
-    std::vector<float> all, focus;
-    for (std::size_t i = 0; i < histogram.count.size(); ++i) {
-        all.push_back(height(static_cast<double>(histogram.count[i])));
-        if (brushed) focus.push_back(histogram.focus[i] > 0 ? height(histogram.focus[i]) : 0.0f);
-    }
-    drawBars(draw, frame, all, colors.bars);
-    if (brushed) drawBars(draw, frame, focus, focusShade);
-}
-
-/// Correlation as a number on a tint: orange for rising together, blue for against each other.
-void drawCorrelation(ImDrawList& draw, const PlotFrame& frame, const volume::JointHistogram& joint, bool brushed) {
-    const PlotColors colors = plotColors();
-    const auto line = [&](double r, float centerY, float scale, ImU32 color, const char* prefix) {
-        char text[48];
-        if (std::isnan(r))
-            std::snprintf(text, sizeof text, "%s-", prefix);
-        else
-            std::snprintf(text, sizeof text, "%s%+.2f", prefix, r);
-        float size = em() * scale;
-        ImFont* font = ImGui::GetFont();
-        const float width = font->CalcTextSizeA(size, 1e6f, 0, text).x;
-        if (width > frame.width() * 0.92f) size *= frame.width() * 0.92f / width;
-        if (size < em() * 0.55f) return;
-        const ImVec2 extent = font->CalcTextSizeA(size, 1e6f, 0, text);
-        draw.AddText(font, size,
-                     {std::round((frame.min.x + frame.max.x - extent.x) / 2), std::round(centerY - extent.y / 2)},
-                     color, text);
-    };
-    if (!std::isnan(joint.correlation)) {
-        const int alpha = static_cast<int>(std::abs(joint.correlation) * 70);
-        draw.AddRectFilled(frame.min, frame.max,
-                           joint.correlation > 0 ? IM_COL32(230, 140, 40, alpha) : IM_COL32(50, 120, 220, alpha));
-    }
-    const float middle = (frame.min.y + frame.max.y) / 2;
-    const bool two = brushed && frame.height() > em() * 2.4f;
-    line(joint.correlation, two ? middle - em() * 0.55f : middle, 1, colors.text, "");
-    if (two) line(joint.focusCorrelation, middle + em() * 0.6f, 0.9f, colors.focus, "");
-}
-
-/// Parameters that never exist at the same point, like oxygen and hydrogen: said, so that the plot does not look
-/// broken.
-void drawNothingCommon(ImDrawList& draw, const PlotFrame& frame) {
-    const char* text = "nowhere both";
-    const ImVec2 size = ImGui::CalcTextSize(text);
-    if (size.x > frame.width() || size.y > frame.height()) return;
-    draw.AddText(
-        {std::round((frame.min.x + frame.max.x - size.x) / 2), std::round((frame.min.y + frame.max.y - size.y) / 2)},
-        plotColors().frame, text);
-}
-
-std::string binText(const volume::Channel& channel, Range range, std::size_t bin, std::size_t bins) {
-    const double width = (range.hi - range.lo) / static_cast<double>(bins);
-    const double middle = range.lo + (static_cast<double>(bin) + 0.5) * width;
-    return channel.name + " " + formatQuantity(middle, channel.unit, width);
-}
-
-std::string countText(double count, double total, double focus, bool brushed) {
-    std::string text = formatCount(count) + (count == 1 ? " sample" : " samples");
-    if (total > 0) text += ", " + formatShare(count / total);
-    if (brushed && count > 0) text += "\n" + formatShare(std::min(1.0, focus / count)) + " of them in focus";
-    return text;
-}
-
-void hoverText(const ScatterLayout& matrix, std::size_t column, std::size_t row, const PlotFrame& frame,
-               const StatisticsResult& result) {
-    const glm::dvec2 at = frame.data(ImGui::GetIO().MousePos);
-    const volume::Statistics& statistics = result.statistics;
-    const auto bin = [](double value, Range range, std::size_t bins) {
-        const double u = (value - range.lo) / (range.hi - range.lo) * static_cast<double>(bins);
-        return static_cast<std::size_t>(std::clamp(u, 0.0, static_cast<double>(bins - 1)));
-    };
-    std::string text;
-    if (column == row) {
-        const volume::ChannelStatistics& channel = statistics.channels[column];
-        const std::size_t bins = channel.histogram.count.size(), i = bin(at.x, channel.histogram.range, bins);
-        text = binText(matrix.infos[column], channel.histogram.range, i, bins) + "\n" +
-               countText(static_cast<double>(channel.histogram.count[i]), static_cast<double>(channel.all.samples),
-                         channel.histogram.focus[i], result.brushed);
-    } else {
-        for (const volume::JointHistogram& joint : statistics.joint) {
-            if (joint.x != static_cast<int>(std::min(column, row)) ||
-                joint.y != static_cast<int>(std::max(column, row)))
-                continue;
-            const auto bins = static_cast<std::size_t>(joint.bins);
-            if (column > row) {
-                text = matrix.infos[row].name + " and " + matrix.infos[column].name + "\ncorrelation ";
-                text += std::isnan(joint.correlation) ? "not defined" : formatNumber(joint.correlation, 0.001);
-                if (result.brushed)
-                    text += "\nin focus " + (std::isnan(joint.focusCorrelation)
-                                                 ? std::string("not defined")
-                                                 : formatNumber(joint.focusCorrelation, 0.001));
-                text += "\n" + formatCount(static_cast<double>(joint.samples)) + " samples have both";
-            } else {
-                const std::size_t bx = bin(at.x, joint.xRange, bins), by = bin(at.y, joint.yRange, bins);
-                const std::size_t i = by * bins + bx;
-                text = binText(matrix.infos[column], joint.xRange, bx, bins) + "\n" +
-                       binText(matrix.infos[row], joint.yRange, by, bins) + "\n" +
-                       countText(static_cast<double>(joint.count[i]), static_cast<double>(joint.samples),
-                                 joint.focus[i], result.brushed);
-            }
-        }
-    }
-    if (result.statistics.level > 0) text += "\n(from a coarser level so far)";
-    if (!text.empty()) ImGui::SetTooltip("%s", text.c_str());
-}
-
 /// A correlation cell of the upper triangle.
 void drawUpperCell(const ScatterCache& cache, const ScatterLayout& matrix, std::size_t column, std::size_t row,
                    const StatisticsResult* result) {
@@ -282,11 +122,44 @@ void drawUpperCell(const ScatterCache& cache, const ScatterLayout& matrix, std::
         drawCorrelation(draw, frame, result->statistics.joint[static_cast<std::size_t>(joint)], result->brushed);
     draw.AddRect(frame.min, frame.max, plotColors().frame);
     if (ImGui::IsMouseHoveringRect(frame.min, frame.max) && ImGui::IsWindowHovered() && !cache.drag.active && result)
-        hoverText(matrix, column, row, frame, *result);
+        hoverText(matrix, column, row, frame, *result, {});
+}
+
+/// The wheel zooms about the mouse, the middle button pans, its double click shows all again; the same for every plot
+/// of these parameters.
+void zoomAndPan(ScatterMatrixView& view, const PlotFrame& frame, const PlotChannels& channels, Range wholeX,
+                Range wholeY, bool histogram) {
+    const ImGuiIO& io = ImGui::GetIO();
+    const auto change = [&](const std::string& channel, Range now, Range whole, double about, double factor,
+                            double shift) {
+        Range next{about + (now.lo - about) * factor + shift, about + (now.hi - about) * factor + shift};
+        const double width = next.hi - next.lo, all = whole.hi - whole.lo;
+        if (width >= all * 0.999) {
+            view.zoom.erase(channel);
+            return;
+        }
+        if (width < all * 1e-4) return;
+        next.lo = std::clamp(next.lo, whole.lo, whole.hi - width);
+        next.hi = next.lo + width;
+        view.zoom[channel] = next;
+    };
+    const auto both = [&](glm::dvec2 about, double factor, glm::dvec2 shift) {
+        change(channels.x, frame.x, wholeX, about.x, factor, shift.x);
+        if (!histogram) change(channels.y, frame.y, wholeY, about.y, factor, shift.y);
+    };
+    if (io.MouseWheel != 0) both(frame.data(io.MousePos), std::pow(0.85, static_cast<double>(io.MouseWheel)), {0, 0});
+    if (ImGui::IsMouseDragging(ImGuiMouseButton_Middle, 0) && (io.MouseDelta.x != 0 || io.MouseDelta.y != 0))
+        both({0, 0}, 1,
+             {-static_cast<double>(io.MouseDelta.x) * frame.perPixelX(),
+              static_cast<double>(io.MouseDelta.y) * frame.perPixelY()});
+    if (ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Middle)) {
+        view.zoom.erase(channels.x);
+        if (!histogram) view.zoom.erase(channels.y);
+    }
 }
 
 /// A density plot or histogram with brushes, cursor and read-out in a frame; true when it was clicked.
-bool drawPlot(ViewContext& context, ScatterCache& cache, const ScatterMatrixView& view, const ScatterLayout& matrix,
+bool drawPlot(ViewContext& context, ScatterCache& cache, ScatterMatrixView& view, const ScatterLayout& matrix,
               std::size_t column, std::size_t row, PlotFrame frame, const vis::PlotTexture* texture,
               const StatisticsResult* result) {
     Session& session = context.session;
@@ -303,6 +176,8 @@ bool drawPlot(ViewContext& context, ScatterCache& cache, const ScatterMatrixView
     const bool clicked =
         pressed && ImGui::IsMouseReleased(ImGuiMouseButton_Left) && std::hypot(way.x, way.y) < em() * 0.25f;
     const bool hovered = ImGui::IsItemHovered();
+    if (hovered && !cache.drag.active)
+        zoomAndPan(view, frame, channels, matrix.whole[column], matrix.whole[row], histogram);
     editBrushes(cache.drag, session.selection, frame, channels, {view.tool, view.softness});
 
     draw.PushClipRect(frame.min, frame.max, true);
@@ -312,7 +187,13 @@ bool drawPlot(ViewContext& context, ScatterCache& cache, const ScatterMatrixView
     const int joint = result ? jointIndex(result->statistics, column, row) : -1;
     if (joint >= 0 && texture) {
         if (result->statistics.joint[static_cast<std::size_t>(joint)].samples == 0) drawNothingCommon(draw, frame);
-        draw.AddImage(reinterpret_cast<ImTextureID>(static_cast<std::intptr_t>(texture->name())), frame.min, frame.max);
+        // At the range it was counted over: while the plot is zoomed the next one is still being counted.
+        const volume::JointHistogram& counted = result->statistics.joint[static_cast<std::size_t>(joint)];
+        const ImVec2 low = frame.pixel(counted.xRange.lo, counted.yRange.lo),
+                     high = frame.pixel(counted.xRange.hi, counted.yRange.hi);
+        draw.AddImage(reinterpret_cast<ImTextureID>(static_cast<std::intptr_t>(texture->name())), {low.x, high.y},
+                      {high.x, low.y});
+        if (view.outliers) drawOutliers(draw, frame, counted, plotColors().faint);
     }
     draw.PopClipRect();
     draw.AddRect(frame.min, frame.max, colors.frame);
@@ -331,7 +212,7 @@ bool drawPlot(ViewContext& context, ScatterCache& cache, const ScatterMatrixView
         addTextWithBackdrop(draw, {frame.max.x - em() * 0.3f, frame.min.y + em() * 0.15f}, {1, 0}, colors.text,
                             name.c_str());
     }
-    if (hovered && !cache.drag.active && result) hoverText(matrix, column, row, frame, *result);
+    if (hovered && !cache.drag.active && result) hoverText(matrix, column, row, frame, *result, view.colorBy);
     return clicked;
 }
 
@@ -376,25 +257,26 @@ void drawScatterMatrixView(ViewContext& context, const std::string& pane, Scatte
     const std::vector<volume::Channel> all = info.channels();
     for (int channel : matrix.channels) {
         matrix.infos.push_back(all[static_cast<std::size_t>(channel)]);
-        matrix.ranges.push_back(paddedRange(info.channelRange(matrix.infos.back()), 0.02));
+        matrix.whole.push_back(paddedRange(info.channelRange(matrix.infos.back()), 0.02));
+        const auto zoomed = view.zoom.find(matrix.infos.back().name);
+        const bool usable = zoomed != view.zoom.end() && zoomed->second.hi > zoomed->second.lo;
+        matrix.ranges.push_back(usable ? zoomed->second : matrix.whole.back());
     }
     // Esc clears, wherever in the view the mouse is; during a drag it belongs to the drag.
     if (!cache.drag.active && ImGui::IsWindowHovered(ImGuiHoveredFlags_ChildWindows) &&
         ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape), false))
         context.session.selection.brushes.clear();
     updateReadout(context, cache.readout);
-    const StatisticsWish wish =
+    StatisticsWish wish =
         makeWish(context.session, info, matrix.channels, matrix.ranges, view.bins, matrix.channels.size() > 1);
+    wish.meanOf = meanChannel(wish, info, view.colorBy);
     const std::shared_ptr<const StatisticsResult> result = cache.feed.get(context, "statistics " + pane, wish);
 
-    drawToolbar(context, view, matrix.channels, result.get());
+    drawScatterToolbar(context, view, matrix.channels, result);
     const ImVec2 origin = ImGui::GetCursorScreenPos(), room = ImGui::GetContentRegionAvail();
     const auto n = static_cast<float>(matrix.size());
-    float left = 0;
-    for (std::size_t i = 0; i < matrix.size(); ++i)
-        if (i > 0 || matrix.size() == 1) left = std::max(left, axisRoom(AxisSide::Left, matrix.ranges[i], true));
-    if (matrix.size() == 1) left = em();
-    const float bottom = axisRoom(AxisSide::Bottom, matrix.ranges[0], true);
+    const MatrixTitles titles = matrixTitles(matrix, (room.x - em() * 4) / n, (room.y - em() * 3) / n);
+    const float left = titles.left, bottom = titles.bottom;
     matrix.gap = std::round(em() * 0.35f);
     matrix.min = {origin.x + left, origin.y + em() * 0.2f};
     matrix.cellX = (room.x - left - em() * 0.2f) / n;
@@ -408,7 +290,7 @@ void drawScatterMatrixView(ViewContext& context, const std::string& pane, Scatte
     if (result)
         updateTextures(cache, result, view.logDensity, std::min(matrix.cellX, matrix.cellY),
                        large.cells > 0 ? jointIndex(result->statistics, large.column, large.row) : -1,
-                       focusColor(context.session.selection));
+                       focusColor(context.session.selection), meanColors(context.session, info, view.colorBy));
     for (std::size_t row = 0; row < matrix.size(); ++row)
         for (std::size_t column = 0; column < matrix.size(); ++column) {
             if (large.covers(matrix, column, row)) continue;
@@ -434,14 +316,7 @@ void drawScatterMatrixView(ViewContext& context, const std::string& pane, Scatte
     if (cache.drag.active) context.interacting = true;
 
     ImDrawList& draw = *ImGui::GetWindowDrawList();
-    for (std::size_t i = 0; i < matrix.size(); ++i) {
-        const PlotFrame across = matrix.cell(i, matrix.size() - 1), up = matrix.cell(0, i);
-        drawAxis(draw, across, AxisSide::Bottom, matrix.infos[i].name, matrix.infos[i].unit, across.min.x,
-                 across.max.x);
-        if (i > 0)
-            drawAxis(draw, up, AxisSide::Left, matrix.infos[i].name, matrix.infos[i].unit, up.min.y, up.max.y,
-                     {.room = left});
-    }
+    drawMatrixAxes(draw, matrix, titles);
     if (!cache.feed.failure().empty() && !result)
         draw.AddText({matrix.min.x, matrix.min.y}, plotColors().text, cache.feed.failure().c_str());
 }

@@ -83,6 +83,7 @@ volume::StatisticsQuery makeQuery(const StatisticsWish& wish, const volume::Data
     query.ranges = wish.ranges;
     query.time = wish.time;
     query.bins = wish.bins;
+    query.meanOf = wish.meanOf;
     query.level = level;
     if (!wish.selection.active()) return query;
     const vis::DoiFunction doi(wish.selection);

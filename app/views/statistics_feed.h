@@ -17,6 +17,7 @@ struct StatisticsWish {
     std::vector<std::array<int, 2>> pairs; ///< positions in `channels`
     std::vector<Range> ranges;             ///< of the bins, by position in `channels`
     int time = 0, bins = 96;
+    int meanOf = -1;          ///< position in `channels`: see StatisticsQuery
     vis::Selection selection; ///< brushes and how they combine; the rest plays no part
     bool operator==(const StatisticsWish&) const = default;
 };

@@ -1,0 +1,195 @@
+#include "app/views/scatter_toolbar.h"
+
+#include "app/ui/widgets.h"
+#include "app/views/brush_edit.h"
+#include "app/views/derived_list.h"
+#include "app/views/figure.h"
+#include "app/views/ticks.h"
+#include "app/views/view_parts.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tessera::app {
+
+namespace {
+
+void chooseTool(BrushTool& tool) {
+    static constexpr const char* kTools[] = {"rectangle", "ellipse", "lasso"};
+    ImGui::SetNextItemWidth(em() * 5.4f);
+    if (ImGui::BeginCombo("##tool", kTools[static_cast<std::size_t>(tool)])) {
+        for (int i = 0; i < 3; ++i)
+            if (ImGui::Selectable(kTools[i], static_cast<int>(tool) == i)) tool = static_cast<BrushTool>(i);
+        ImGui::EndCombo();
+    }
+    if (ImGui::IsItemHovered())
+        tooltip("What a drag in a plot draws; Shift adds to the selection, Ctrl takes away from it");
+}
+
+/// Focus samples and all samples: of the parameter that exists at most points.
+struct Share {
+    double focus = 0, all = 0;
+};
+Share focusShare(const volume::Statistics& statistics) {
+    Share share;
+    for (const volume::ChannelStatistics& channel : statistics.channels) {
+        share.focus = std::max(share.focus, static_cast<double>(channel.inside.samples));
+        share.all = std::max(share.all, static_cast<double>(channel.all.samples));
+    }
+    return share;
+}
+
+/// Adds a derived parameter to the session, if it has none like it, and to the plots.
+void addAxis(ViewContext& context, ScatterMatrixView& view, const std::vector<int>& shown, std::size_t kind,
+             const std::string& channel) {
+    const volume::DatasetInfo& info = context.source->info();
+    volume::DerivedParameter wanted = newDerived(info, kind, channel);
+    std::vector<volume::DerivedParameter>& derived = context.session.data.derived;
+    const auto same = std::find_if(derived.begin(), derived.end(),
+                                   [&](const volume::DerivedParameter& own) { return own.recipe == wanted.recipe; });
+    if (same == derived.end())
+        derived.push_back(wanted);
+    else
+        wanted = *same;
+    if (view.channels.empty())
+        for (const int each : shown) view.channels.push_back(info.channels()[static_cast<std::size_t>(each)].name);
+    const auto show = [&](const std::string& name) {
+        if (std::find(view.channels.begin(), view.channels.end(), name) == view.channels.end())
+            view.channels.push_back(name);
+    };
+    if (std::holds_alternative<volume::GradientRecipe>(wanted.recipe))
+        show("|" + wanted.name + "|");
+    else if (std::holds_alternative<volume::PositionRecipe>(wanted.recipe))
+        for (const char* axis : {".x", ".y", ".z"}) show(wanted.name + axis);
+    else
+        show(wanted.name);
+}
+
+std::string matrixCsv(const volume::DatasetInfo& info, const StatisticsResult& result) {
+    const std::vector<volume::Channel> channels = info.channels();
+    const auto nameOf = [&](int position) {
+        const volume::Channel& own =
+            channels[static_cast<std::size_t>(result.wish.channels[static_cast<std::size_t>(position)])];
+        return csvField(titleWithUnit(own.name, own.unit));
+    };
+    std::string csv = "x parameter,y parameter,x,y,samples,in focus\n";
+    for (const volume::JointHistogram& joint : result.statistics.joint)
+        for (int y = 0; y < joint.bins; ++y)
+            for (int x = 0; x < joint.bins; ++x) {
+                const auto i = static_cast<std::size_t>(y * joint.bins + x);
+                if (joint.count[i] == 0) continue;
+                const auto middle = [&](Range range, int bin) {
+                    return range.lo + (range.hi - range.lo) * (bin + 0.5) / joint.bins;
+                };
+                csv += nameOf(joint.x) + "," + nameOf(joint.y) + "," + csvNumber(middle(joint.xRange, x)) + "," +
+                       csvNumber(middle(joint.yRange, y)) + "," + csvNumber(static_cast<double>(joint.count[i])) + "," +
+                       csvNumber(joint.focus[i]) + "\n";
+            }
+    return csv;
+}
+
+std::string matrixSvg(const volume::DatasetInfo& info, const StatisticsResult& result, bool logDensity, ImU32 focus) {
+    const std::vector<volume::Channel> channels = info.channels();
+    std::vector<FigurePanel> panels;
+    for (const volume::JointHistogram& joint : result.statistics.joint) {
+        const auto titleOf = [&](int position) {
+            const volume::Channel& own =
+                channels[static_cast<std::size_t>(result.wish.channels[static_cast<std::size_t>(position)])];
+            return titleWithUnit(own.name, own.unit);
+        };
+        FigurePanel panel;
+        panel.x = {titleOf(joint.x), joint.xRange};
+        panel.y = {titleOf(joint.y), joint.yRange};
+        if (!std::isnan(joint.correlation)) panel.title = "r = " + formatNumber(joint.correlation, 0.001);
+        const int size =
+            densityImage(joint.count, result.brushed ? std::span<const double>(joint.focus) : std::span<const double>(),
+                         joint.bins, 1, logDensity, false, focus, panel.image.rgba);
+        panel.image.width = panel.image.height = size;
+        panels.push_back(std::move(panel));
+    }
+    return figureSvg(panels, 3);
+}
+
+/// What is seldom changed: the colours, the axes that are derived, exports.
+void drawMore(ViewContext& context, ScatterMatrixView& view, const std::vector<int>& shown,
+              const std::shared_ptr<const StatisticsResult>& result) {
+    const volume::DatasetInfo& info = context.source->info();
+    if (ImGui::Button("More")) ImGui::OpenPopup("more");
+    if (ImGui::IsItemHovered()) tooltip("Colours, further axes, zoom");
+    if (ImGui::BeginPopup("more")) {
+        ImGui::SetNextItemWidth(em() * 10);
+        chooseChannel("colour by mean of##colorBy", &info, view.colorBy, "density");
+        ImGui::Checkbox("Mark outliers", &view.outliers);
+        if (ImGui::MenuItem("Show all values", nullptr, false, !view.zoom.empty())) view.zoom.clear();
+        ImGui::Separator();
+        if (ImGui::BeginMenu("Add gradient magnitude of")) {
+            for (const int channel : comparedChannels(info)) {
+                const std::string name = info.channels()[static_cast<std::size_t>(channel)].name;
+                if (ImGui::MenuItem(name.c_str())) addAxis(context, view, shown, 2, name);
+            }
+            ImGui::EndMenu();
+        }
+        if (ImGui::MenuItem("Add position")) addAxis(context, view, shown, 7, {});
+        if (ImGui::MenuItem("Add time")) addAxis(context, view, shown, 8, {});
+        ImGui::EndPopup();
+    }
+    if (!result) return;
+    ImGui::SameLine();
+    exportMenu(
+        context, "scatterplots",
+        [info, result, logDensity = view.logDensity, focus = focusColor(context.session.selection)](const Progress&) {
+            return matrixSvg(info, *result, logDensity, focus);
+        },
+        [info, result](const Progress&) { return matrixCsv(info, *result); });
+}
+
+} // namespace
+
+void drawScatterToolbar(ViewContext& context, ScatterMatrixView& view, const std::vector<int>& shown,
+                        const std::shared_ptr<const StatisticsResult>& shared) {
+    const StatisticsResult* result = shared.get();
+    Session& session = context.session;
+    const volume::DatasetInfo& info = context.source->info();
+    chooseChannels(info, view.channels, shown);
+    ImGui::SameLine();
+    ImGui::Checkbox("log", &view.logDensity);
+    if (ImGui::IsItemHovered()) tooltip("Show the logarithm of the number of samples");
+    ImGui::SameLine();
+    drawMore(context, view, shown, shared);
+    ImGui::SameLine();
+    chooseTool(view.tool);
+    ImGui::SameLine();
+    ImGui::SetNextItemWidth(em() * 5);
+    float percent = view.softness * 100;
+    if (ImGui::SliderFloat("##soft", &percent, 0, 50, "soft %.0f %%")) view.softness = percent / 100;
+    if (ImGui::IsItemHovered()) tooltip("Soft edge of new brushes, as a share of their width");
+    const bool brushed = session.selection.active();
+    std::string text, brief;
+    if (brushed && result && result->brushed) {
+        const Share share = focusShare(result->statistics);
+        text = brief = "focus " + formatShare(share.all > 0 ? share.focus / share.all : 0);
+        if (result->statistics.level == 0) text += " (" + formatCount(share.focus) + ")";
+    } else if (session.selection.brushes.empty()) {
+        text = "drag in a plot to brush, click to enlarge";
+        brief = "drag to brush";
+    }
+    if (!session.selection.brushes.empty()) {
+        ImGui::SameLine();
+        if (iconButton(context, "clear", icons::kTrash, "Remove all brushes (Esc)")) session.selection.brushes.clear();
+    }
+    ImGui::SameLine();
+    if (ImGui::CalcTextSize(text.c_str()).x > ImGui::GetContentRegionAvail().x) text = brief;
+    const float width = ImGui::CalcTextSize(text.c_str()).x;
+    if (ImGui::GetContentRegionAvail().x >= width) {
+        ImGui::SetCursorPosX(std::max(ImGui::GetCursorPosX(), ImGui::GetContentRegionMax().x - width));
+        ImGui::AlignTextToFramePadding();
+        if (brushed)
+            ImGui::TextUnformatted(text.c_str());
+        else
+            ImGui::TextDisabled("%s", text.c_str());
+    } else {
+        ImGui::NewLine();
+    }
+}
+
+} // namespace tessera::app
