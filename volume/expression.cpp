@@ -120,6 +120,9 @@ struct Translator {
         for (std::size_t at = 0; at < text.size();) {
             const char c = text[at];
             const bool inWord = at > 0 && isWord(text[at - 1]);
+            if (c == '=' && text.substr(at, 2) != "==" &&
+                (at == 0 || std::string_view("=<>!").find(text[at - 1]) == std::string_view::npos))
+                fail("\"=\" would assign: compare with \"==\"", at);
             if (c == '`') {
                 at = quoted(at);
             } else if (const auto name = inWord ? std::nullopt : nameAt(at)) {
@@ -164,10 +167,14 @@ void Expression::evaluate(std::span<const std::vector<double>> inputs, std::span
     if (out.empty()) return;
     try {
         mu::Parser parser;
-        for (std::size_t i = 0; i < used_.size(); ++i)
-            parser.DefineVar(variable(used_[i]), const_cast<double*>(inputs[i].data())); // read only: no assignment
+        // Point by point: muParser's own loop would start threads inside of ours.
+        std::vector<double> now(used_.size());
+        for (std::size_t i = 0; i < used_.size(); ++i) parser.DefineVar(variable(used_[i]), &now[i]);
         parser.SetExpr(translated_);
-        parser.Eval(out.data(), int(out.size()));
+        for (std::size_t k = 0; k < out.size(); ++k) {
+            for (std::size_t i = 0; i < now.size(); ++i) now[i] = inputs[i][k];
+            out[k] = parser.Eval();
+        }
     } catch (const mu::Parser::exception_type& error) {
         throw Error(error.GetMsg());
     }

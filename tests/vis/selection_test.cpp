@@ -96,8 +96,8 @@ TEST(Selection, LassoHoldsItsPolygonUpToATableEntry) {
             return px > -mx && px < 10 + mx && py > -my && py < (px < 4 + mx ? 3 : 1) + my;
         };
         const double value = table.at(px, py);
-        if (inside(-1.5 * entryX, -1.5 * entryY)) EXPECT_EQ(value, 1) << px << " " << py;
-        if (!inside(1.5 * entryX, 1.5 * entryY)) EXPECT_EQ(value, 0) << px << " " << py;
+        const double wanted = inside(-1.5 * entryX, -1.5 * entryY) ? 1 : inside(1.5 * entryX, 1.5 * entryY) ? value : 0;
+        EXPECT_EQ(value, wanted) << px << " " << py;
     }
     lasso.soft = 0.4; // of the half sizes: 2 to the left, 0.6 below
     const LassoTable soft = lassoTable(lasso);

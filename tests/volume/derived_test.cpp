@@ -152,7 +152,8 @@ TEST(Derived, DifferencesOfLinearFieldsAreExact) {
                         EXPECT_NEAR(holes ? expected : *value, expected, 1e-4) << channel << " level " << level;
                     });
                     // Between two holes there is no difference to take.
-                    EXPECT_GT(right, isolated * 4) << channel;
+                    EXPECT_GT(right, 100u) << channel;
+                    EXPECT_TRUE(holes || isolated == 0) << channel;
                 }
             };
             check("grad.x", 3);
