@@ -76,6 +76,10 @@ protected:
         draw("layers", layersView, drawLayersView, size);
         draw("timeline", timelineView, drawTimelineView, size);
         draw("data", dataView, drawDataView, size);
+        draw("statistics", statisticsView, drawStatisticsView, size);
+        draw("histogram", histogramView, drawHistogramView, size);
+        draw("profile", profileView, drawProfileView, size);
+        draw("sliceMatrix", sliceMatrixView, drawSliceMatrixView, size);
     }
     void drawAllSizes() {
         for (const ImVec2 size : {ImVec2{640, 480}, ImVec2{200, 120}, ImVec2{40, 30}})
@@ -99,6 +103,10 @@ protected:
     LayersView layersView;
     TimelineView timelineView;
     DataView dataView;
+    StatisticsView statisticsView;
+    HistogramView histogramView;
+    ProfileView profileView;
+    SliceMatrixView sliceMatrixView;
 };
 
 std::shared_ptr<const BrickSource> fuelCell(volume::LatticeKind lattice) {
