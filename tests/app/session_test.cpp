@@ -47,7 +47,8 @@ volume::DatasetInfo cellInfo() {
 
 SessionDocument edited() {
     SessionDocument document;
-    document.session = defaultSession(cellInfo(), {.files = {}, .model = "fuel-cell", .settings = {}, .derived = {}, .import = {}});
+    document.session =
+        defaultSession(cellInfo(), {.files = {}, .model = "fuel-cell", .settings = {}, .derived = {}, .import = {}});
     document.history.reset(document.session);
     document.session.camera.distance = 3;
     document.history.observe(document.session, false, 0);
