@@ -184,7 +184,7 @@ void Workbench::frame() {
 /// Makes the source again when the parameters derived from it have been edited; what is shown stays until then.
 void Workbench::followDerived() {
     if (!source_ || session_.data.derived == derivedShown_) return;
-    if (session_.data.derived == derivedWanted_ && jobs_.running("derive")) return;
+    if (session_.data.derived == derivedWanted_) return; // on its way, or cancelled
     derivedWanted_ = session_.data.derived;
     jobs_.start("derive", "Deriving parameters",
                 [this, below = volume::underived(source_), wanted = derivedWanted_,
@@ -326,7 +326,9 @@ void Workbench::pack(const std::string& path) {
                     const PackedArchive archive = packInChild(self, inputs, import, path, progress.part(0, 0.95));
                     packed->messages.push_back("Packed " + textOfBytes(archive.sourceBytes) + " into " +
                                                textOfBytes(archive.archiveBytes) + ", now shown from " + path);
-                    auto done = std::make_shared<Opened>(openWith(*packed, dataOf({path}, {}), progress.part(0.95, 1)));
+                    DataRef data = dataOf({path}, {});
+                    data.derived = packed->document.session.data.derived;
+                    auto done = std::make_shared<Opened>(openWith(*packed, data, progress.part(0.95, 1)));
                     return [this, done] { install(std::move(*done)); };
                 });
 }

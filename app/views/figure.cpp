@@ -181,8 +181,10 @@ std::string csvNumber(double value) {
     return text;
 }
 
-void exportMenu(ViewContext& context, const std::string& name, std::function<std::string(const Progress&)> svg,
+void exportMenu(ViewContext& context, const std::string& title, std::function<std::string(const Progress&)> svg,
                 std::function<std::string(const Progress&)> csv) {
+    std::string name = title; // as a file
+    std::replace(name.begin(), name.end(), '/', '_');
     const bool possible = context.exportText != nullptr;
     ImGui::BeginDisabled(!possible);
     if (ImGui::Button("Export")) ImGui::OpenPopup("export");

@@ -69,14 +69,24 @@ void update(ViewContext& context, ProfileCache& cache, const std::string& pane, 
     context.jobs.start(
         key, "Line profile",
         [&context = context.caches, source = context.source, pane, wish](const Progress& progress) -> Jobs::Finish {
-            auto made = std::make_shared<const Profile>(compute(*source, wish, progress));
-            return [&context, pane, made] {
+            std::shared_ptr<const Profile> made;
+            std::string failure;
+            try {
+                made = std::make_shared<const Profile>(compute(*source, wish, progress));
+            } catch (const Error& error) {
+                failure = error.what();
+            }
+            return [&context, pane, made, wish, failure] {
                 const auto found = context.find(pane);
-                if (found == context.end()) return;
-                if (auto* own = dynamic_cast<ProfileCache*>(found->second.get())) {
+                auto* own = found == context.end() ? nullptr : dynamic_cast<ProfileCache*>(found->second.get());
+                if (!own) return;
+                own->running.reset();
+                if (made) {
                     own->profile = made;
-                    own->running.reset();
+                    return;
                 }
+                own->failed = wish; // not tried again every frame
+                throw Error(failure);
             };
         },
         true);
