@@ -290,6 +290,8 @@ void Workbench::answerFile(const FileDialog::Answer& answer) {
         save(answer.paths.front());
     } else if (answer.purpose == "pack") {
         pack(answer.paths.front());
+    } else if (answer.purpose == "surface") {
+        exportSurface(answer.paths.front());
     } else if (answer.purpose == "locate" && missing_) {
         const std::size_t index = missing_->missing[locating_].index;
         missing_->document.session.data.files[index] = describeFile(answer.paths.front());

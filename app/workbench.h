@@ -111,7 +111,9 @@ private:
     void answerFile(const FileDialog::Answer& answer);
     void save(const std::string& path);
     void pack(const std::string& path);
-    bool showsDataFiles() const; ///< files that are not an archive
+    int chosenSurface() const;            // workbench_surface.cpp
+    void exportSurface(std::string path); // workbench_surface.cpp
+    bool showsDataFiles() const;          ///< files that are not an archive
     void replace(Session session);
     void watchEdits();
     void autosave();

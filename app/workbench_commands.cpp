@@ -91,6 +91,11 @@ void Workbench::makeCommands() {
              },
          .enabled = loaded});
     add({.menu = "File",
+         .name = "Export surface...",
+         .help = "The selected iso-surface layer at full resolution as PLY, STL, OBJ or VTP, by the ending",
+         .run = [this] { files_.show(FileMode::Save, "Export surface", "surface", files_.folder(), "surface.ply"); },
+         .enabled = [this] { return source_ && chosenSurface() >= 0; }});
+    add({.menu = "File",
          .name = "Copy session",
          .help = "The session as text, for a colleague or an issue",
          .shortcut = {.key = 'C', .ctrl = true},

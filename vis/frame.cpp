@@ -1,5 +1,6 @@
 #include "vis/renderer_impl.h"
 
+#include "vis/model/proxy.h"
 #include "vis/technique/box_lines.h"
 #include "vis/technique/ray_tables.h"
 #include "vis/technique/ray_uniforms.h"
@@ -37,11 +38,11 @@ ProgramRecipe Renderer::Impl::prepare(ViewTarget& target, const Scene& scene, co
     target.skip = blocks && blocks->occupied < kSkipOccupancy;
     const std::vector<glm::vec4> table = transferTables(plan, scene, source->info());
     const int rows = int(table.size()) / kTableSize;
-    if (rows != target.tableRows) {
+    if (rows > 0 && rows != target.tableRows) {
         target.table = makeTexture2D({kTableSize, rows}, GL_RGBA32F, GL_NEAREST, "transfer tables");
         target.tableRows = rows;
     }
-    glTextureSubImage2D(target.table.name(), 0, 0, 0, kTableSize, rows, GL_RGBA, GL_FLOAT, table.data());
+    if (rows > 0) glTextureSubImage2D(target.table.name(), 0, 0, 0, kTableSize, rows, GL_RGBA, GL_FLOAT, table.data());
     if (target.skip) {
         if (target.blockCount != blocks->count || !target.blocks)
             target.blocks = makeTexture3D(blocks->count, GL_R8UI, GL_NEAREST, "block distances");
@@ -54,8 +55,40 @@ ProgramRecipe Renderer::Impl::prepare(ViewTarget& target, const Scene& scene, co
     return rayRecipe(plan, scene, source->grid(), target.skip);
 }
 
+/// Rasterises the geometry for a picture of this size, unless that is what the target has.
+void Renderer::Impl::geometry(ViewTarget& target, const Scene& scene, glm::ivec2 size) {
+    const int peels = peelsOf(scene.geometry);
+    if (peels == 0) return;
+    if (target.geometrySize != size) {
+        target.geometry.resize(target.size, peels);
+        geometryPass.draw(target.geometry, scene, source->info(), size);
+        target.geometrySize = size;
+    }
+    glBindTextureUnit(GLuint(RayUnits::kGeometry), target.geometry.color.name());
+    glBindTextureUnit(GLuint(RayUnits::kGeometry) + 1, target.geometry.distance.name());
+}
+
+/// Blends the proxy surfaces front to back into the part of the buffer that is cleared and in the scissor.
+void Renderer::Impl::proxies(const Program& program, const Scene& scene, const RayBuffer& buffer, double stepFactor) {
+    const WorldFrame frame = worldFrame(source->info().bounds, scene.stretch);
+    const ProxySurfaces surfaces = proxySurfaces(scene, source->grid().lattice, frame, stepFactor);
+    program.set("proxyShells", surfaces.shells ? 1 : 0);
+    program.set("proxyNormal", glm::vec3(surfaces.normal));
+    program.set("proxyFirst", float(surfaces.first));
+    program.set("proxySpacing", float(surfaces.spacing));
+    const float unknown[] = {1e9f, 0, 0, 0};
+    glClearNamedFramebufferfv(buffer.framebuffer.name(), GL_COLOR, 1, unknown);
+    glUseProgram(program.name());
+    glEnable(GL_BLEND);
+    glBlendFunci(0, GL_ONE_MINUS_DST_ALPHA, GL_ONE);
+    glBlendEquationi(1, GL_MIN); // the nearest noticeable surface
+    glDrawArraysInstanced(GL_TRIANGLES, 0, 3, surfaces.count);
+    glBlendEquation(GL_FUNC_ADD);
+    glDisable(GL_BLEND);
+}
+
 void Renderer::Impl::rays(const Program& rayProgram, const Scene& scene, const RayBuffer& buffer, glm::ivec2 size,
-                          const Tile& tile) {
+                          const Tile& tile, double stepFactor) {
     const float nothing[] = {0, 0, 0, 0}, nowhere[] = {-1e9f, 0, 0, 0};
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, buffer.framebuffer.name());
     glViewport(0, 0, size.x, size.y);
@@ -70,8 +103,9 @@ void Renderer::Impl::rays(const Program& rayProgram, const Scene& scene, const R
     glScissor(begin.x, begin.y, end.x - begin.x, end.y - begin.y);
     rayProgram.set("ndcScale", 2.0f / glm::vec2(size));
     rayProgram.set("ndcOffset", glm::vec2(-1));
-    glUseProgram(rayProgram.name());
     glBindVertexArray(vertices.name());
+    if (drawnByProxy(scene)) return proxies(rayProgram, scene, buffer, stepFactor);
+    glUseProgram(rayProgram.name());
     glDrawArrays(GL_TRIANGLES, 0, 3);
 }
 
@@ -152,6 +186,7 @@ void Renderer::Impl::refine(ViewTarget& target, const Scene& scene, const FrameR
     // Software GL compiles at the first draw: do that before any clock runs.
     if (programs.firstUse(*rayProgram)) {
         setRayUniforms(*rayProgram, plan, scene, info, source->grid(), aspect, 1);
+        geometry(target, scene, target.size);
         rays(*rayProgram, scene, target.reduced, target.size, {target.size / 2, target.size / 2 + 1});
         glFinish();
         target.reducedValid = false;
@@ -161,7 +196,8 @@ void Renderer::Impl::refine(ViewTarget& target, const Scene& scene, const FrameR
         const Clock::time_point begin = Clock::now();
         target.reducedSize = glm::max(glm::ivec2(glm::vec2(target.size) / float(shrink)), glm::ivec2(1));
         setRayUniforms(*rayProgram, plan, scene, info, source->grid(), aspect, stepFactor);
-        rays(*rayProgram, scene, target.reduced, target.reducedSize, {{0, 0}, target.reducedSize});
+        geometry(target, scene, target.reducedSize);
+        rays(*rayProgram, scene, target.reduced, target.reducedSize, {{0, 0}, target.reducedSize}, stepFactor);
         glFinish();
         const double cost =
             millisecondsSince(begin) * stepFactor / std::max(1.0, double(target.reducedSize.x) * target.reducedSize.y);
@@ -195,6 +231,7 @@ void Renderer::Impl::refine(ViewTarget& target, const Scene& scene, const FrameR
     }
     const std::vector<Tile> tiles = tilesOf(target.size, target.tileEdge);
     setRayUniforms(*rayProgram, plan, scene, info, source->grid(), aspect, 1);
+    geometry(target, scene, target.size);
     bool first = true;
     while (target.tilesDone < int(tiles.size()) && (request.wait || first || left() > 0)) {
         const Tile& tile = tiles[std::size_t(target.tilesDone)];

@@ -1,6 +1,7 @@
 #include "vis/renderer_impl.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace tessera::vis {
 
@@ -76,6 +77,7 @@ FrameStatus Renderer::render(ViewTarget& target, const Scene& scene, const Frame
         target.started = true;
         target.reducedValid = target.fullValid = false;
         target.tilesDone = 0;
+        target.geometrySize = {0, 0};
     }
     if (any) {
         impl_->refine(target, scene, request, plan, start);
@@ -102,7 +104,7 @@ std::optional<Pick> Renderer::pick(ViewTarget& target, glm::ivec2 pixel) {
     float distance = 0;
     glGetTextureSubImage(from.pick.name(), 0, texel.x, texel.y, 0, 1, 1, 1, GL_RED, GL_FLOAT, sizeof distance,
                          &distance);
-    if (distance < -1e8f) return std::nullopt;
+    if (std::abs(distance) > 1e8f) return std::nullopt;
     const Ray ray = cameraRay(target.scene.camera, size.x / size.y, at / size * 2.0 - 1.0);
     const WorldFrame frame = worldFrame(impl_->source->info().bounds, target.scene.stretch);
     return Pick{frame.toPhysical(ray.origin + ray.direction * double(distance))};

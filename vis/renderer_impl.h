@@ -28,6 +28,7 @@ struct Renderer::Impl {
     VertexArray vertices = makeVertexArray("no vertices");
     ProgramCache programs;
     BrushTables brushes;
+    GeometryPass geometryPass;
 
     explicit Impl(const RendererOptions& given) : options(given), residency(given) {}
 
@@ -39,7 +40,10 @@ struct Renderer::Impl {
 
     // frame.cpp
     ProgramRecipe prepare(ViewTarget& target, const Scene& scene, const RayPlan& plan);
-    void rays(const Program& program, const Scene& scene, const RayBuffer& buffer, glm::ivec2 size, const Tile& tile);
+    void geometry(ViewTarget& target, const Scene& scene, glm::ivec2 size);
+    void rays(const Program& program, const Scene& scene, const RayBuffer& buffer, glm::ivec2 size, const Tile& tile,
+              double stepFactor = 1);
+    void proxies(const Program& program, const Scene& scene, const RayBuffer& buffer, double stepFactor);
     void present(ViewTarget& target, const Scene& scene, bool reduced, const Tile& tile);
     void nothing(ViewTarget& target, const Scene& scene);
     void refine(ViewTarget& target, const Scene& scene, const FrameRequest& request, const RayPlan& plan,

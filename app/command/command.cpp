@@ -51,6 +51,7 @@ int runCommandLine(int argc, const char* const* argv) {
     addBenchCommand(app);
     addGenerateCommand(app);
     addInfoCommand(app);
+    addMeshCommand(app);
     addPackCommand(app);
     addRenderCommand(app);
     addReplayCommand(app);

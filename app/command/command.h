@@ -12,6 +12,7 @@ namespace tessera::app {
 void addBenchCommand(CLI::App& app);
 void addGenerateCommand(CLI::App& app);
 void addInfoCommand(CLI::App& app);
+void addMeshCommand(CLI::App& app);
 void addPackCommand(CLI::App& app);
 void addRenderCommand(CLI::App& app);
 void addReplayCommand(CLI::App& app);

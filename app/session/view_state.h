@@ -14,13 +14,16 @@ namespace tessera::app {
 
 struct VolumeView {
     static constexpr std::string_view kType = "volume";
-    bool showBox = true, showAxes = true, showLegend = true, showCursor = true;
+    bool showBox = true, showAxes = true, showLegend = true, showCursor = true, showGizmo = true, showScaleBar = true;
     bool operator==(const VolumeView&) const = default;
     static void describe(auto& self, auto&& visit) {
         visit(self.showBox, FieldInfo{.key = "box", .unit = "", .doc = "Draw the box around the data"});
         visit(self.showAxes, FieldInfo{.key = "axes", .unit = "", .doc = "Draw axes with ticks and units"});
         visit(self.showLegend, FieldInfo{.key = "legend", .unit = "", .doc = "Draw colour legends"});
         visit(self.showCursor, FieldInfo{.key = "cursor", .unit = "", .doc = "Draw the linked cross-hair"});
+        visit(self.showGizmo,
+              FieldInfo{.key = "gizmo", .unit = "", .doc = "Draw the axis triad; a click on an end looks along it"});
+        visit(self.showScaleBar, FieldInfo{.key = "scaleBar", .unit = "", .doc = "Draw a bar of a round length"});
     }
 };
 

@@ -215,6 +215,8 @@ bool drawText(const WidgetContext& context, const FieldInfo& info, std::string& 
     drawLabel(context, labelOf(info.key), info.doc);
     if (info.refersTo == "channel") return chooseChannel(idOf(info).c_str(), context.info, value, "as first layer");
     if (info.refersTo == "vector") return chooseVector(idOf(info).c_str(), context.info, value);
+    if (info.refersTo == "colorChannel")
+        return chooseChannel(idOf(info).c_str(), context.info, value, "its own colour");
     if (info.refersTo == "colormap") return chooseColormap(idOf(info).c_str(), value);
     return ImGui::InputText(idOf(info).c_str(), &value);
 }

@@ -2,6 +2,8 @@
 #include "app/views/axes3d.h"
 #include "app/views/brush_list.h"
 #include "app/views/profile_line.h"
+#include "app/views/scale_bar.h"
+#include "app/views/surface_feed.h"
 #include "app/views/ticks.h"
 #include "app/views/view_parts.h"
 
@@ -17,6 +19,7 @@ enum class Drag { None, Orbit, Pan, Zoom, Roll };
 
 struct VolumeCache : ViewCache {
     vis::ViewTargetPtr target;
+    SurfaceFeed surfaces;
     Drag drag = Drag::None;
     ImVec2 last{0, 0}; ///< mouse of the former frame
     bool inTriad = false;
@@ -183,6 +186,8 @@ void drawMenu(ViewContext& context, const char* id, VolumeView& view, const vis:
     ImGui::MenuItem("Axes", "", &view.showAxes);
     ImGui::MenuItem("Legends", "", &view.showLegend);
     ImGui::MenuItem("Linked cursor", "", &view.showCursor);
+    ImGui::MenuItem("Direction gizmo", "", &view.showGizmo);
+    ImGui::MenuItem("Scale bar", "", &view.showScaleBar);
     if (context.runCommand) {
         ImGui::Separator();
         if (ImGui::MenuItem("Save picture...", "F12")) context.runCommand("Save picture...");
@@ -206,6 +211,11 @@ std::vector<LegendEntry> legendsOf(const Session& session, const volume::Dataset
             entry.color = {iso->color.r, iso->color.g, iso->color.b};
             entry.value = iso->value;
             entries.push_back(entry);
+            const auto color = info.findChannel(iso->colorBy);
+            if (iso->method == vis::SurfaceMethod::Polygons && color && !iso->colorBy.empty()) {
+                entries.back().color = {0.5, 0.5, 0.5};
+                if (seen.insert(iso->colorBy).second) entries.push_back(legendOf(session, info, *color));
+            }
         } else if (seen.insert(name).second) {
             entries.push_back(entry);
         }
@@ -251,7 +261,7 @@ void drawVolumeView(ViewContext& context, const std::string& pane, VolumeView& v
     const bool hovered = ImGui::IsItemHovered();
     const float triad = em() * 2.6f;
     const ImVec2 triadAt{picture.min.x + triad + em(), max.y - triad - em()};
-    const bool showTriad = view.showAxes && picture.size.x > em() * 14 && picture.size.y > em() * 12;
+    const bool showTriad = view.showGizmo && picture.size.x > em() * 14 && picture.size.y > em() * 12;
     const ImVec2 mouse = ImGui::GetIO().MousePos;
     cache.inTriad = showTriad && hovered && std::hypot(mouse.x - triadAt.x, mouse.y - triadAt.y) < triad + em() * 0.5f;
     const bool moving = handleMouse(context, cache, picture, world, "menu");
@@ -265,6 +275,7 @@ void drawVolumeView(ViewContext& context, const std::string& pane, VolumeView& v
     request.size = {picture.size.x, picture.size.y};
     request.moving = (moving || context.interacting || session.animation.playing) && !context.headless;
     request.wait = context.headless;
+    scene.geometry = cache.surfaces.get(context, pane, request.moving);
     const vis::FrameStatus status = context.renderer.render(*cache.target, scene, request);
     if (!status.complete) context.busy = true;
 
@@ -286,6 +297,15 @@ void drawVolumeView(ViewContext& context, const std::string& pane, VolumeView& v
                                        cache.inTriad && ImGui::IsMouseClicked(ImGuiMouseButton_Left));
         if (clicked) look(session.camera, *clicked, world, picture.aspect());
         taken.push_back({{triadAt.x - triad, triadAt.y - triad}, {triadAt.x + triad, triadAt.y + triad}});
+    }
+    if (view.showScaleBar) {
+        const float left = showTriad ? triadAt.x + triad + em() : picture.min.x + em();
+        const float right = taken.empty() || !view.showLegend ? max.x : taken.front().first.x;
+        const float most = std::min(em() * 9, right - left - em());
+        const ScaleBar bar = scaleBar(session.camera, world, session.stretch, info.lengthUnit, picture.size.y, most);
+        const float width = std::max(bar.pixels, ImGui::CalcTextSize(bar.text.c_str()).x);
+        if (bar.pixels >= em() * 2 && left + width < right)
+            taken.push_back(drawScaleBar(draw, {left, max.y - em() * 0.5f}, bar));
     }
     const PlotColors colors = plotColors();
     if (const std::string text = stretchText(session.stretch); !text.empty()) {

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "vis/gl/channel_load.h"
-#include "vis/gl/handles.h"
+#include "vis/gl/geometry_pass.h"
 #include "vis/renderer.h"
 #include "vis/technique/brick_demand.h"
 
@@ -25,6 +25,9 @@ public:
     glm::ivec2 reducedSize{0};
     Texture output;
     Framebuffer outputFramebuffer;
+
+    GeometryBuffer geometry;
+    glm::ivec2 geometrySize{0}; ///< of the picture it shows; 0: none of `scene`
 
     // What the buffers show.
     Scene scene;

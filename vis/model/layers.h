@@ -35,13 +35,18 @@ struct VolumeLayer {
     }
 };
 
-/// A surface of equal value drawn by the ray caster, intersection refined by bisection, Phong shaded.
+enum class SurfaceMethod { Rays, Polygons };
+inline constexpr std::string_view kSurfaceMethodNames[] = {"rays", "polygons"};
+
+/// A surface of equal value: met by the rays, intersection refined by bisection, or extracted as a mesh.
 struct IsoLayer {
     static constexpr std::string_view kType = "iso";
     std::string channel;
     double value = 0.5;                  ///< physical
     glm::vec3 color{0.8f, 0.45f, 0.15f}; ///< sRGB
     float opacity = 1;
+    SurfaceMethod method = SurfaceMethod::Rays;
+    std::string colorBy = {}; ///< "" = `color`
     bool operator==(const IsoLayer&) const = default;
     static void describe(auto& self, auto&& visit) {
         visit(
@@ -52,6 +57,14 @@ struct IsoLayer {
               FieldInfo{.key = "color", .unit = "", .doc = "Colour of the surface (sRGB)", .range = Range{0, 1}});
         visit(self.opacity,
               FieldInfo{.key = "opacity", .unit = "", .doc = "Opacity of the surface", .range = Range{0, 1}});
+        visit(self.method, FieldInfo{.key = "method",
+                                     .unit = "",
+                                     .doc = "Found along each ray, or extracted once as polygons",
+                                     .names = kSurfaceMethodNames});
+        visit(self.colorBy, FieldInfo{.key = "colorBy",
+                                      .unit = "",
+                                      .doc = "Parameter whose transfer function colours the surface; polygons only",
+                                      .refersTo = "colorChannel"});
     }
 };
 

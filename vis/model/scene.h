@@ -1,6 +1,7 @@
 #pragma once
 
 #include "vis/model/camera.h"
+#include "vis/model/geometry.h"
 #include "vis/model/layers.h"
 #include "vis/model/selection.h"
 #include "vis/model/transfer_function.h"
@@ -14,6 +15,10 @@ namespace tessera::vis {
 enum class Filter { AverageQuasi, Average, Tetrahedral };
 inline constexpr std::string_view kFilterNames[] = {"quasi", "average", "tetrahedral"};
 
+/// What samples composite volumes; see vis/model/proxy.h.
+enum class Proxy { Rays, Slices, Shells, Stacks };
+inline constexpr std::string_view kProxyNames[] = {"rays", "slices", "shells", "stacks"};
+
 /// Settings of the shared ray caster.
 struct RenderParams {
     Filter filter =
@@ -22,6 +27,8 @@ struct RenderParams {
     float stepVoxels = 0.5f;  ///< distance between samples, in cells of the finest direction on screen at rest
     float ambient = 0.25f, diffuse = 0.65f, specular = 0.25f, shininess = 30;
     float azimuth = -30, elevation = 40; ///< of the light, degrees from the viewer
+
+    Proxy proxy = Proxy::Rays;
 
     bool operator==(const RenderParams&) const = default;
     static void describe(auto& self, auto&& visit) {
@@ -51,6 +58,12 @@ struct RenderParams {
                                       .range = Range{-180, 180}});
         visit(self.elevation,
               FieldInfo{.key = "elevation", .unit = "deg", .doc = "Light above the viewer", .range = Range{-90, 90}});
+        visit(self.proxy, FieldInfo{.key = "proxy",
+                                    .unit = "",
+                                    .doc = "What samples composite volumes: rays, or for comparison planes across the "
+                                           "view, spheres around the eye, the lattice's own planes; other layers "
+                                           "always use rays",
+                                    .names = kProxyNames});
     }
 };
 
@@ -61,6 +74,7 @@ struct Scene {
     std::map<std::string, TransferFunction> transfer; ///< by channel name; a channel without one uses the default
     Selection selection;
     RenderParams render;
+    std::vector<GeometryLayer> geometry; ///< meshes and lines, made outside of the renderer
     glm::dvec3 stretch{1};
     glm::dvec3 cursor{0}; ///< physical
     double time = 0;

@@ -11,36 +11,17 @@
 #include "lib/ray.glsl"
 #include <slot:fetch>
 #include <slot:reconstruct>
+#include "lib/gradient.glsl"
 #include "lib/doi.glsl"
 #include <slot:skip>
 
 layout(location = 0) out vec4 outColor; // linear, premultiplied
 layout(location = 1) out float outPick; // distance along the ray of what a pixel shows, < 0: nothing
 
+#define EVENTS (SLICES + GEOMETRY)
+
 const float kOpaque = 0.995, kPickOpacity = 0.1, kFlatGradient = 0.005;
 const float kNoPick = -2.0, kUnknown = -1e9;
-
-vec3 toCells(vec3 world) {
-    return world * cellsPerWorld + cellsOffset;
-}
-
-bool present(vec2 s) {
-    return s.y >= PRESENT_COVERAGE;
-}
-
-// Change over one worldCell edge per axis, in texel units: central differences, one-sided at absent samples. Zero
-// unless `needed`: the loop then ends early, which is what software GL has in place of branches.
-vec3 cellGradient(int field, vec3 p, float centre, bool needed) {
-    vec3 result = vec3(0.0);
-    for (int axis = 0; axis < (needed ? axisCount : 0); ++axis) {
-        vec3 offset = vec3(axis == 0, axis == 1, axis == 2) * gradientDelta;
-        vec2 lower = reconstruct(field, p - offset), upper = reconstruct(field, p + offset);
-        bool hasLower = present(lower), hasUpper = present(upper);
-        float difference = (hasUpper ? upper.x : centre) - (hasLower ? lower.x : centre);
-        result += offset / gradientDelta * (hasLower && hasUpper ? 0.5 * difference : difference);
-    }
-    return result; // gradientDelta cells are one worldCell edge on either lattice
-}
 
 void main() {
     vec2 ndc = gl_FragCoord.xy * ndcScale + ndcOffset;
@@ -59,10 +40,11 @@ void main() {
     vec4 color = vec4(0.0);
     float pick = kNoPick;
 
+#if EVENTS > 0
+    // Where slices and rasterised surfaces are met (in samples: sample k at k), and what is seen there; nearest first.
+    float eventAt[EVENTS];
+    vec4 eventColor[EVENTS];
 #if SLICES > 0
-    // Where the planes are met (in samples: sample k at k), and what is seen there; nearest first.
-    float sliceAt[SLICES];
-    vec4 sliceColor[SLICES];
     for (int i = 0; i < SLICES; ++i) {
         float slope = dot(slicePlane[i].xyz, direction);
         float t = (slicePlane[i].w - dot(slicePlane[i].xyz, origin)) / (abs(slope) < 1e-9 ? 1e-9 : slope);
@@ -80,18 +62,31 @@ void main() {
         }
         float tolerance = 1e-5;
         bool seen = meets && abs(slope) > 1e-6 && t > inside.x - tolerance && t < inside.y + tolerance && present(s);
-        sliceAt[i] = seen ? (t - inside.x) / stepLength - 0.5 : 1e9;
+        eventAt[i] = seen ? (t - inside.x) / stepLength - 0.5 : 1e9;
         float alpha = sliceMap[i].w * focusOpacity(doi);
-        sliceColor[i] = vec4(focusColor(c, doi) * alpha, alpha);
+        eventColor[i] = vec4(focusColor(c, doi) * alpha, alpha);
     }
-    for (int i = 0; i < SLICES; ++i)
-        for (int j = SLICES - 1; j > i; --j)
-            if (sliceAt[j] < sliceAt[j - 1]) {
-                float at = sliceAt[j]; sliceAt[j] = sliceAt[j - 1]; sliceAt[j - 1] = at;
-                vec4 c = sliceColor[j]; sliceColor[j] = sliceColor[j - 1]; sliceColor[j - 1] = c;
+#endif
+#if GEOMETRY > 0
+    for (int i = 0; i < GEOMETRY; ++i) {
+        ivec3 texel = ivec3(gl_FragCoord.xy, i);
+        float t = texelFetch(geometryDistance, texel, 0).r;
+        bool seen = meets && t < 1e8;
+        eventAt[SLICES + i] = seen ? (t - inside.x) / stepLength - 0.5 : 1e9;
+        eventColor[SLICES + i] = seen ? texelFetch(geometryColor, texel, 0) : vec4(0.0);
+        // Nothing behind what is opaque: the ray ends there.
+        if (eventColor[SLICES + i].a >= kOpaque)
+            count = clamp(int(floor(min(eventAt[SLICES + i], 1e8))) + 1, 0, count);
+    }
+#endif
+    for (int i = 0; i < EVENTS; ++i)
+        for (int j = EVENTS - 1; j > i; --j)
+            if (eventAt[j] < eventAt[j - 1]) {
+                float at = eventAt[j]; eventAt[j] = eventAt[j - 1]; eventAt[j - 1] = at;
+                vec4 c = eventColor[j]; eventColor[j] = eventColor[j - 1]; eventColor[j - 1] = c;
             }
-    float passed = -1e8; // slices up to here are in `color`
-    float nextSlice = sliceAt[0];
+    float passed = -1e8; // events up to here are in `color`
+    float nextEvent = eventAt[0];
 #endif
 
 #if LAYERS > 0
@@ -119,8 +114,8 @@ void main() {
                 continue;
             }
 #endif
-#if SLICES > 0
-            hit = float(k) >= nextSlice;
+#if EVENTS > 0
+            hit = float(k) >= nextEvent;
 #endif
             for (int i = 0; i < LAYERS; ++i) {
                 vec2 s = reconstruct(LAYER_FIELD(i), p);
@@ -158,16 +153,16 @@ void main() {
             for (int i = 0; i < LAYERS; ++i)
                 if (LAYER_STYLE(i) == 0) here[i] = reconstruct(LAYER_FIELD(i), p);
 #endif
-#if SLICES > 0
-            for (int i = 0; i < SLICES; ++i)
-                if (sliceAt[i] > passed && sliceAt[i] <= float(k)) {
-                    color = under(color, sliceColor[i]);
-                    if (pick <= kNoPick && color.a > kPickOpacity) pick = sliceAt[i];
+#if EVENTS > 0
+            for (int i = 0; i < EVENTS; ++i)
+                if (eventAt[i] > passed && eventAt[i] <= float(k)) {
+                    color = under(color, eventColor[i]);
+                    if (pick <= kNoPick && color.a > kPickOpacity) pick = eventAt[i];
                 }
             passed = float(k);
-            nextSlice = 1e9;
-            for (int i = SLICES - 1; i >= 0; --i)
-                if (sliceAt[i] > passed) nextSlice = sliceAt[i];
+            nextEvent = 1e9;
+            for (int i = EVENTS - 1; i >= 0; --i)
+                if (eventAt[i] > passed) nextEvent = eventAt[i];
 #endif
 #if HAS_ISO
             for (int i = 0; i < LAYERS; ++i) {
@@ -218,12 +213,12 @@ void main() {
     }
 #endif
 
-#if SLICES > 0
+#if EVENTS > 0
     if (color.a < kOpaque)
-        for (int i = 0; i < SLICES; ++i)
-            if (sliceAt[i] > passed && sliceAt[i] < 1e8) {
-                color = under(color, sliceColor[i]);
-                if (pick <= kNoPick && color.a > kPickOpacity) pick = sliceAt[i];
+        for (int i = 0; i < EVENTS; ++i)
+            if (eventAt[i] > passed && eventAt[i] < 1e8) {
+                color = under(color, eventColor[i]);
+                if (pick <= kNoPick && color.a > kPickOpacity) pick = eventAt[i];
             }
 #endif
 #if HAS_PROJECTION

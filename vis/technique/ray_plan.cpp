@@ -1,7 +1,7 @@
 #include "vis/technique/ray_plan.h"
 
+#include "vis/model/proxy.h"
 #include "vis/technique/brush_uniforms.h"
-
 #include "vis/technique/ray_tables.h"
 #include "volume/reconstruct.h"
 
@@ -43,16 +43,20 @@ RayPlan planRays(const Scene& scene, const volume::DatasetInfo& info) {
         const Layer& layer = scene.layers[i];
         const std::optional<int> channel = info.findChannel(channelOf(layer));
         if (!layer.visible || !channel) continue;
+        const auto* surface = std::get_if<IsoLayer>(&layer.technique);
+        if (surface && surface->method == SurfaceMethod::Polygons) continue; // comes as Scene::geometry
         const int field = fieldOf(plan, info, *channel);
         if (const auto* volume = std::get_if<VolumeLayer>(&layer.technique))
             plan.layers.push_back({int(i), RayStyle(int(volume->style)), field,
                                    volume->shaded && volume->style == VolumeStyle::Composite});
-        else if (std::holds_alternative<IsoLayer>(layer.technique))
+        else if (surface)
             plan.layers.push_back({int(i), RayStyle::Iso, field, true});
         else
             plan.slices.push_back({int(i), field});
     }
     plan.brushDefines = brushDefines({});
+    plan.peels = peelsOf(scene.geometry);
+    if (plan.peels > 0 && plan.fields.empty() && !info.channels().empty()) fieldOf(plan, info, 0); // samplers need one
     if (plan.empty() || !scene.selection.active()) return plan;
     const std::vector<std::string> brushed = selectedChannels(scene.selection);
     for (const std::string& name : brushed) {
@@ -75,8 +79,9 @@ ProgramRecipe rayRecipe(const RayPlan& plan, const Scene& scene, const volume::B
                            [&](const RayLayer& layer) { return layer.style == style; });
     };
     ProgramRecipe recipe;
-    recipe.vertex = "screen.vert.glsl";
-    recipe.fragment = "raycast.frag.glsl";
+    const bool proxy = drawnByProxy(scene);
+    recipe.vertex = proxy ? "proxy.vert.glsl" : "screen.vert.glsl";
+    recipe.fragment = proxy ? "proxy.frag.glsl" : "raycast.frag.glsl";
     const bool bricked =
         std::any_of(plan.fields.begin(), plan.fields.end(), [](const BoundField& f) { return f.atlas; });
     recipe.slots["fetch"] = bricked ? "slots/fetch_bricked.glsl" : "slots/fetch_dense.glsl";
@@ -86,6 +91,7 @@ ProgramRecipe rayRecipe(const RayPlan& plan, const Scene& scene, const volume::B
                                                                                : "slots/recon_bcc_average.glsl";
     const auto define = [&](const char* name, const std::string& value) { recipe.defines.emplace_back(name, value); };
     define("FIELDS", std::to_string(plan.fields.size()));
+    define("GEOMETRY", std::to_string(plan.peels));
     define("FIELD_COVERAGE(i)", choice(plan.fields, [](const BoundField& field) { return field.encoding.coverage; }));
     if (bricked) {
         define("BRICK_TEXELS", std::to_string(grid.brickSize));

@@ -46,7 +46,8 @@ struct RayPlan {
     std::vector<SliceUse> slices;
     std::vector<int> brushFields;
     std::vector<std::pair<std::string, std::string>> brushDefines; ///< which tests of brushes the program needs
-    bool empty() const { return layers.empty() && slices.empty(); }
+    int peels = 0; ///< layers of rasterised geometry that lie among the samples
+    bool empty() const { return layers.empty() && slices.empty() && peels == 0; }
 };
 
 /// Visible layers whose channel the data set has; layers of unknown channels are left out.

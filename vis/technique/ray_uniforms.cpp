@@ -83,6 +83,8 @@ void setFields(const Program& program, const RayPlan& plan, const volume::BrickG
     program.set("blockDistance", first.blocks);
     program.set("levelPhase", float(grid.phase));
     program.set("lassoTables", first.lassos);
+    program.set("geometryColor", RayUnits::kGeometry);
+    program.set("geometryDistance", RayUnits::kGeometry + 1);
 }
 
 } // namespace

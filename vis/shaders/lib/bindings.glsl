@@ -2,6 +2,7 @@
 //   FIELDS    number of channels bound; FIELD_COVERAGE(i), FIELD_NEAREST(i): 0 or 1
 //   LAYERS    ray layers; LAYER_STYLE(i) (0 composite, 1 maximum, 2 x-ray, 3 iso), LAYER_FIELD(i), LAYER_SHADED(i)
 //   SLICES    slice planes; SLICE_FIELD(i)
+//   GEOMETRY  layers of rasterised surfaces
 //   BRUSH_TESTS    room for tests of brushes, 0 = no brush is active; BRUSH_RANGES, BRUSH_ELLIPSES, BRUSH_LASSOS,
 //                  BRUSH_SPACE: 0 or 1; BRUSH_FIELDS channels they look at, BRUSH_FIELD(i)
 // These are chains of ?: and not constant arrays, since Mesa turns such arrays into uniforms before it unrolls loops
@@ -43,6 +44,11 @@ uniform vec3 layerColor[LAYERS];
 #if SLICES > 0
 uniform vec4 slicePlane[SLICES]; // normal, offset
 uniform vec4 sliceMap[SLICES];   // transfer coordinate = value * x + y; z = contours, w = opacity
+#endif
+
+#if GEOMETRY > 0
+uniform sampler2DArray geometryColor;    // linear, premultiplied; layer 0 the nearest
+uniform sampler2DArray geometryDistance; // along the ray; 1e9: nothing
 #endif
 
 #if BRUSH_TESTS > 0

@@ -1,0 +1,57 @@
+#!/bin/bash
+# mesh as a user runs it: arguments TESSERA SOURCE_DIR.
+set -u
+tessera=$1
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+cd "$work" || exit 1
+failures=0
+check() { # check WHAT STATUS COMMAND...: runs the command and compares its exit status
+    local what=$1 want=$2
+    shift 2
+    "$@" >out.txt 2>err.txt
+    local got=$?
+    if [ "$got" != "$want" ]; then
+        echo "FAILED: $what: exit status $got, not $want"
+        cat out.txt err.txt
+        failures=$((failures + 1))
+    fi
+}
+fail() {
+    echo "FAILED: $1"
+    failures=$((failures + 1))
+}
+
+check "data" 0 "$tessera" generate marschner-lobb -o ml.tsr --size 24x24x24
+check "data as .vti" 0 "$tessera" generate marschner-lobb -o ml.vti --size 24x24x24
+for ending in ply stl obj vtp; do
+    check "a mesh as .$ending" 0 "$tessera" mesh ml.tsr --channel rho --iso 0.5 -o surface.$ending
+    [ -s surface.$ending ] || fail "no surface.$ending"
+done
+grep -q "triangles" out.txt || fail "mesh says nothing"
+[ "$(head -c 3 surface.ply)" = ply ] || fail "surface.ply is none"
+check "with another parameter" 0 "$tessera" mesh ml.tsr --channel rho --iso 0.5 --color-by rho --level 1 -o coarse.ply
+grep -aq "property float rho" coarse.ply || fail "no scalars"
+check "a surface that is not there" 2 "$tessera" mesh ml.tsr --channel rho --iso 50 -o none.ply
+[ -e none.ply ] && fail "none.ply was written"
+check "an unknown parameter" 2 "$tessera" mesh ml.tsr --channel nothing --iso 0.5 -o none.ply
+grep -q "rho" err.txt || fail "the known parameters are not named"
+check "an unknown form" 2 "$tessera" mesh ml.tsr --channel rho --iso 0.5 -o none.xyz
+check "no value" 1 "$tessera" mesh ml.tsr --channel rho -o none.ply
+check "of a model" 0 "$tessera" mesh marschner-lobb --channel rho --iso 0.5 -o model.ply
+
+# VTK reads what we wrote, where it is installed.
+if python3 -c "import vtk" 2>/dev/null; then
+    python3 - <<'PYTHON' || fail "VTK reads the files otherwise"
+import vtk
+counts = set()
+for reader, name in ((vtk.vtkPLYReader(), "surface.ply"), (vtk.vtkXMLPolyDataReader(), "surface.vtp"),
+                     (vtk.vtkOBJReader(), "surface.obj"), (vtk.vtkSTLReader(), "surface.stl")):
+    reader.SetFileName(name)
+    reader.Update()
+    counts.add(reader.GetOutput().GetNumberOfPolys())
+assert len(counts) == 1 and min(counts) > 1000, counts
+PYTHON
+fi
+
+exit $((failures > 0))

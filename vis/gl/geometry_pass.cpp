@@ -1,0 +1,222 @@
+#include "vis/gl/geometry_pass.h"
+
+#include "vis/model/ray_setup.h"
+
+#include <algorithm>
+#include <glm/gtc/matrix_transform.hpp>
+
+namespace tessera::vis {
+
+namespace {
+
+constexpr int kColors = 1024;                    ///< entries of a colour table's row
+constexpr int kTableUnit = 42, kFormerUnit = 43; ///< texture units that no plan of rays uses
+
+Texture makeArray(glm::ivec2 size, int layers, GLenum format, const char* label) {
+    GLuint name = 0;
+    glCreateTextures(GL_TEXTURE_2D_ARRAY, 1, &name);
+    Texture texture(name);
+    glTextureStorage3D(name, 1, format, size.x, size.y, layers);
+    glTextureParameteri(name, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+    glTextureParameteri(name, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+    glObjectLabel(GL_TEXTURE, name, -1, label);
+    return texture;
+}
+
+template <class T> Buffer makeBuffer(const std::vector<T>& content, const char* label) {
+    GLuint name = 0;
+    glCreateBuffers(1, &name);
+    Buffer buffer(name);
+    glNamedBufferStorage(name, GLsizeiptr(content.size() * sizeof(T)), content.data(), 0);
+    glObjectLabel(GL_BUFFER, name, -1, label);
+    return buffer;
+}
+
+/// Attribute `index` of `count` floats, `first` floats into an element.
+void attribute(GLuint array, GLuint index, int count, int first) {
+    glEnableVertexArrayAttrib(array, index);
+    glVertexArrayAttribFormat(array, index, count, GL_FLOAT, GL_FALSE, GLuint(first) * GLuint(sizeof(float)));
+    glVertexArrayAttribBinding(array, index, 0);
+}
+
+/// Position, normal, scalar of each vertex.
+std::vector<float> interleaved(const volume::SurfaceMesh& mesh) {
+    std::vector<float> out;
+    out.reserve(mesh.positions.size() * 7);
+    for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+        const glm::vec3 normal = mesh.normals.empty() ? glm::vec3(0) : mesh.normals[i];
+        for (int c = 0; c < 3; ++c) out.push_back(mesh.positions[i][c]);
+        for (int c = 0; c < 3; ++c) out.push_back(normal[c]);
+        out.push_back(mesh.scalars.empty() ? 0 : mesh.scalars[i]);
+    }
+    return out;
+}
+
+/// Both ends and their scalars of each segment.
+std::vector<float> segmentsOf(const LineSet& lines) {
+    std::vector<float> out;
+    std::uint32_t first = 0;
+    for (const std::uint32_t end : lines.ends) {
+        for (std::uint32_t i = first; i + 1 < std::min<std::size_t>(end, lines.positions.size()); ++i) {
+            for (const std::uint32_t v : {i, i + 1})
+                for (int c = 0; c < 3; ++c) out.push_back(lines.positions[v][c]);
+            for (const std::uint32_t v : {i, i + 1}) out.push_back(lines.scalars.empty() ? 0 : lines.scalars[v]);
+        }
+        first = end;
+    }
+    return out;
+}
+
+} // namespace
+
+void GeometryBuffer::resize(glm::ivec2 wanted, int wantedPeels) {
+    if (size == wanted && peels >= wantedPeels) return;
+    size = wanted;
+    peels = wantedPeels;
+    framebuffers.clear();
+    color = makeArray(size, peels, GL_RGBA16F, "geometry colours");
+    distance = makeArray(size, peels, GL_R32F, "geometry distances");
+    depth = makeTexture2D(size, GL_DEPTH_COMPONENT32F, GL_NEAREST, "geometry depth");
+    for (int layer = 0; layer < peels; ++layer) {
+        GLuint name = 0;
+        glCreateFramebuffers(1, &name);
+        Framebuffer framebuffer(name);
+        glNamedFramebufferTextureLayer(name, GL_COLOR_ATTACHMENT0, color.name(), 0, layer);
+        glNamedFramebufferTextureLayer(name, GL_COLOR_ATTACHMENT1, distance.name(), 0, layer);
+        glNamedFramebufferTexture(name, GL_DEPTH_ATTACHMENT, depth.name(), 0);
+        const GLenum buffers[] = {GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1};
+        glNamedFramebufferDrawBuffers(name, 2, buffers);
+        glObjectLabel(GL_FRAMEBUFFER, name, -1, "geometry");
+        framebuffers.push_back(std::move(framebuffer));
+    }
+}
+
+const GeometryPass::Uploaded& GeometryPass::upload(const std::shared_ptr<const Geometry>& geometry) {
+    std::erase_if(uploaded_, [](const auto& entry) { return entry.second.of.expired(); });
+    Uploaded& up = uploaded_[geometry.get()];
+    if (up.of.lock() == geometry) return up;
+    up = {};
+    up.of = geometry;
+    if (!geometry->mesh.triangles.empty()) {
+        up.vertices = makeBuffer(interleaved(geometry->mesh), "mesh vertices");
+        up.indices = makeBuffer(geometry->mesh.triangles, "mesh triangles");
+        up.indexCount = GLsizei(geometry->mesh.triangles.size() * 3);
+        up.mesh = makeVertexArray("mesh");
+        glVertexArrayVertexBuffer(up.mesh.name(), 0, up.vertices.name(), 0, 7 * sizeof(float));
+        glVertexArrayElementBuffer(up.mesh.name(), up.indices.name());
+        attribute(up.mesh.name(), 0, 3, 0);
+        attribute(up.mesh.name(), 1, 3, 3);
+        attribute(up.mesh.name(), 2, 1, 6);
+    }
+    if (const std::vector<float> segments = segmentsOf(geometry->lines); !segments.empty()) {
+        up.segments = makeBuffer(segments, "line segments");
+        up.segmentCount = GLsizei(segments.size() / 8);
+        up.lines = makeVertexArray("lines");
+        glVertexArrayVertexBuffer(up.lines.name(), 0, up.segments.name(), 0, 8 * sizeof(float));
+        glVertexArrayBindingDivisor(up.lines.name(), 0, 1);
+        attribute(up.lines.name(), 0, 3, 0);
+        attribute(up.lines.name(), 1, 3, 3);
+        attribute(up.lines.name(), 2, 2, 6);
+    }
+    return up;
+}
+
+void GeometryPass::table(const Scene& scene, const volume::DatasetInfo& info) {
+    std::vector<glm::vec4> colors;
+    maps_.clear();
+    for (const GeometryLayer& layer : scene.geometry) {
+        const glm::dvec3 own = linearFromSrgb(glm::dvec3(layer.color));
+        const std::optional<int> channel = layer.channel.empty() ? std::nullopt : info.findChannel(layer.channel);
+        if (!channel) {
+            maps_.emplace_back(0);
+            colors.insert(colors.end(), kColors, glm::vec4(own, 1));
+            continue;
+        }
+        const volume::Channel known = info.channels()[std::size_t(*channel)];
+        const TransferFunction& function = transferFor(scene, known.name);
+        const Range range = effectiveRange(function, info.channelRange(known));
+        const double width = range.hi - range.lo;
+        maps_.push_back(width == 0 ? glm::vec2(0, 0.5) : glm::vec2(1 / width, -range.lo / width));
+        for (int i = 0; i < kColors; ++i) {
+            const glm::dvec4 srgb = evaluate(function, {0, 1}, double(i) / (kColors - 1));
+            colors.emplace_back(linearFromSrgb(glm::dvec3(srgb)), 1);
+        }
+    }
+    const int rows = int(scene.geometry.size());
+    if (rows > tableRows_) {
+        table_ = makeTexture2D({kColors, rows}, GL_RGBA32F, GL_LINEAR, "geometry colour tables");
+        tableRows_ = rows;
+    }
+    glTextureSubImage2D(table_.name(), 0, 0, 0, kColors, rows, GL_RGBA, GL_FLOAT, colors.data());
+}
+
+void GeometryPass::draw(GeometryBuffer& buffer, const Scene& scene, const volume::DatasetInfo& info, glm::ivec2 size,
+                        glm::dvec2 jitter) {
+    const int peels = peelsOf(scene.geometry);
+    if (peels == 0) return;
+    if (!mesh_) mesh_ = makeProgram({"geometry_mesh.vert.glsl", "geometry.frag.glsl", {}, {{"LINES", "0"}}});
+    if (!lines_) lines_ = makeProgram({"geometry_lines.vert.glsl", "geometry.frag.glsl", {}, {{"LINES", "1"}}});
+    table(scene, info);
+    const double aspect = double(size.x) / size.y;
+    const WorldFrame frame = worldFrame(info.bounds, scene.stretch);
+    const Ray middle = cameraRay(scene.camera, aspect, {0, 0});
+    // A ray's ndc is its pixel's plus 2 jitter / size, so what is drawn moves the other way.
+    const glm::dmat4 moved = glm::translate(glm::dmat4(1), glm::dvec3(-2.0 * jitter / glm::dvec2(size), 0));
+    const glm::mat4 worldToClip(moved * projectionMatrix(scene.camera, aspect) * viewMatrix(scene.camera));
+    for (const Program* program : {&mesh_, &lines_}) {
+        program->set("worldScale", glm::vec3(frame.scale));
+        program->set("worldOffset", glm::vec3(frame.offset));
+        glProgramUniformMatrix4fv(program->name(), glGetUniformLocation(program->name(), "worldToClip"), 1, GL_FALSE,
+                                  &worldToClip[0][0]);
+        program->set("rayOrigin", glm::vec3(middle.origin));
+        program->set("forward", glm::vec3(middle.direction));
+        program->set("perspective", scene.camera.projection == Projection::Perspective ? 1 : 0);
+        program->set("toLight", glm::vec3(lightDirection(scene.render, scene.camera)));
+        program->set("light", glm::vec4(scene.render.ambient, scene.render.diffuse, scene.render.specular,
+                                        scene.render.shininess));
+        program->set("pixels", glm::vec2(size));
+        program->set("colors", kTableUnit);
+        program->set("former", kFormerUnit);
+    }
+    glBindTextureUnit(kTableUnit, table_.name());
+    glBindTextureUnit(kFormerUnit, buffer.distance.name());
+    glDisable(GL_BLEND);
+    glDisable(GL_SCISSOR_TEST);
+    glEnable(GL_DEPTH_TEST);
+    glDepthMask(GL_TRUE);
+    glDepthFunc(GL_LESS);
+    glViewport(0, 0, size.x, size.y);
+    const float empty[] = {0, 0, 0, 0}, nowhere[] = {kNoGeometry, 0, 0, 0}, far = 1;
+    for (int peel = 0; peel < peels; ++peel) {
+        const GLuint framebuffer = buffer.framebuffers[std::size_t(peel)].name();
+        glBindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer);
+        glClearNamedFramebufferfv(framebuffer, GL_COLOR, 0, empty);
+        glClearNamedFramebufferfv(framebuffer, GL_COLOR, 1, nowhere);
+        glClearNamedFramebufferfv(framebuffer, GL_DEPTH, 0, &far);
+        for (std::size_t i = 0; i < scene.geometry.size(); ++i) {
+            const GeometryLayer& layer = scene.geometry[i];
+            if (!layer.geometry || layer.opacity <= 0) continue;
+            const Uploaded& up = upload(layer.geometry);
+            for (const Program* program : {&mesh_, &lines_}) {
+                const bool lines = program == &lines_;
+                if ((lines ? up.segmentCount : up.indexCount) == 0) continue;
+                program->set("peel", peel);
+                program->set("row", (float(i) + 0.5f) / float(tableRows_));
+                program->set("map", maps_[i]);
+                program->set("plain", glm::vec3(linearFromSrgb(glm::dvec3(layer.color))));
+                program->set("opacity", layer.opacity);
+                program->set("lineWidth", layer.lineWidth);
+                glUseProgram(program->name());
+                glBindVertexArray(lines ? up.lines.name() : up.mesh.name());
+                if (lines)
+                    glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, up.segmentCount);
+                else
+                    glDrawElements(GL_TRIANGLES, up.indexCount, GL_UNSIGNED_INT, nullptr);
+            }
+        }
+        glTextureBarrier(); // the next peel reads what this one wrote
+    }
+    glDisable(GL_DEPTH_TEST);
+}
+
+} // namespace tessera::vis

@@ -1,0 +1,50 @@
+#pragma once
+
+#include "vis/gl/handles.h"
+#include "vis/gl/program.h"
+#include "vis/model/scene.h"
+#include "volume/dataset.h"
+
+#include <map>
+
+namespace tessera::vis {
+
+/// What the rasteriser found at each pixel: surfaces by distance along the ray, nearest in layer 0 of both arrays.
+struct GeometryBuffer {
+    Texture color;    ///< linear light, premultiplied
+    Texture distance; ///< world units from the ray's origin; kNoGeometry: nothing
+    Texture depth;
+    std::vector<Framebuffer> framebuffers; ///< one per layer
+    glm::ivec2 size{0};
+    int peels = 0;
+    void resize(glm::ivec2 wanted, int wantedPeels);
+};
+inline constexpr float kNoGeometry = 1e9f;
+
+/// Draws Scene::geometry by depth peeling (Everitt 2001): each further pass keeps what lies behind the former one.
+/// Keeps what it uploaded for as long as someone holds the geometry.
+class GeometryPass {
+public:
+    /// Fills the buffer's lower left `size` pixels with what a picture of that size shows; every pixel's centre is
+    /// moved by `jitter` pixels. Nothing is drawn, and no layer made, when the scene has no geometry.
+    void draw(GeometryBuffer& buffer, const Scene& scene, const volume::DatasetInfo& info, glm::ivec2 size,
+              glm::dvec2 jitter = glm::dvec2(0));
+
+private:
+    struct Uploaded {
+        std::weak_ptr<const Geometry> of;
+        Buffer vertices, indices, segments;
+        VertexArray mesh, lines;
+        GLsizei indexCount = 0, segmentCount = 0;
+    };
+    const Uploaded& upload(const std::shared_ptr<const Geometry>& geometry);
+    void table(const Scene& scene, const volume::DatasetInfo& info);
+
+    Program mesh_, lines_;
+    std::map<const Geometry*, Uploaded> uploaded_;
+    Texture table_;
+    int tableRows_ = 0;
+    std::vector<glm::vec2> maps_; ///< of each layer: place in its table row = scalar * x + y
+};
+
+} // namespace tessera::vis

@@ -1,0 +1,18 @@
+// Vertices of a mesh, physical coordinates.
+layout(location = 0) in vec3 position;
+layout(location = 1) in vec3 normal;
+layout(location = 2) in float scalar;
+
+uniform vec3 worldScale, worldOffset; // world = physical * scale + offset
+uniform mat4 worldToClip;
+
+out vec3 world, direction; // direction: the normal, any length
+out float value, side;
+
+void main() {
+    world = position * worldScale + worldOffset;
+    direction = normal / worldScale;
+    value = scalar;
+    side = 0.0;
+    gl_Position = worldToClip * vec4(world, 1.0);
+}

@@ -1,0 +1,23 @@
+// Places and changes of a channel, on top of the slot reconstruct.
+
+vec3 toCells(vec3 world) {
+    return world * cellsPerWorld + cellsOffset;
+}
+
+bool present(vec2 s) {
+    return s.y >= PRESENT_COVERAGE;
+}
+
+// Change over one worldCell edge per axis, in texel units: central differences, one-sided at absent samples. Zero
+// unless `needed`: the loop then ends early, which is what software GL has in place of branches.
+vec3 cellGradient(int field, vec3 p, float centre, bool needed) {
+    vec3 result = vec3(0.0);
+    for (int axis = 0; axis < (needed ? axisCount : 0); ++axis) {
+        vec3 offset = vec3(axis == 0, axis == 1, axis == 2) * gradientDelta;
+        vec2 lower = reconstruct(field, p - offset), upper = reconstruct(field, p + offset);
+        bool hasLower = present(lower), hasUpper = present(upper);
+        float difference = (hasUpper ? upper.x : centre) - (hasLower ? lower.x : centre);
+        result += offset / gradientDelta * (hasLower && hasUpper ? 0.5 * difference : difference);
+    }
+    return result; // gradientDelta cells are one worldCell edge on either lattice
+}

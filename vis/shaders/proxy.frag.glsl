@@ -1,0 +1,56 @@
+// Proxy geometry: one surface of a stack of planes or spheres, textured with composite layers; the frame buffer blends
+// the surfaces front to back. What a surface stands for is written down in vis/model/proxy.h.
+#include "lib/bindings.glsl"
+#include "lib/color.glsl"
+#include "lib/phong.glsl"
+#include "lib/ray.glsl"
+#include <slot:fetch>
+#include <slot:reconstruct>
+#include "lib/gradient.glsl"
+#include "lib/doi.glsl"
+
+flat in int surface;
+
+uniform int proxyShells;                 // 1: spheres around the eye, 0: planes
+uniform vec3 proxyNormal;                // of the planes
+uniform float proxyFirst, proxySpacing;  // of surface 0, and between surfaces: along the normal, or of the radius
+
+layout(location = 0) out vec4 outColor; // linear, premultiplied
+layout(location = 1) out float outPick; // distance along the ray; large: nothing noticeable
+
+const float kFlatGradient = 0.005, kProxyPickOpacity = 0.02;
+
+void main() {
+    vec2 ndc = gl_FragCoord.xy * ndcScale + ndcOffset;
+    vec3 origin = rayOrigin + ndc.x * rayOriginX + ndc.y * rayOriginY;
+    vec3 direction = normalize(rayDirection + ndc.x * rayDirectionX + ndc.y * rayDirectionY);
+    vec2 inside = clipToBox(origin, direction, halfSize);
+    inside.x = max(inside.x, rayBegin);
+    float at = proxyFirst + float(surface) * proxySpacing;
+    float slope = proxyShells == 1 ? 1.0 : dot(proxyNormal, direction);
+    float t = proxyShells == 1 ? at : (at - dot(proxyNormal, origin)) / (abs(slope) < 1e-6 ? 1e-6 : slope);
+    if (abs(slope) < 1e-6 || t < inside.x || t > inside.y) discard;
+    // It stands for the way to half of either neighbour, the outermost ones for all that is left of the box.
+    float between = proxySpacing / abs(slope);
+    float from = t - between < inside.x ? inside.x : t - 0.5 * between;
+    float to = t + between > inside.y ? inside.y : t + 0.5 * between;
+    float lengths = (to - from) * REFERENCE_LENGTHS;
+    vec3 p = toCells(origin + direction * t);
+    vec4 color = vec4(0.0);
+    for (int i = 0; i < LAYERS; ++i) {
+        vec2 s = reconstruct(LAYER_FIELD(i), p);
+        vec4 c = transfer(i, s.x * layerMap[i].x + layerMap[i].y);
+        float doi = degreeOfInterest(p);
+        c.rgb = focusColor(c.rgb, doi);
+        float alpha = present(s) ? correctedOpacity(c.a * focusOpacity(doi), lengths * layerMap[i].z) : 0.0;
+        if (LAYER_SHADED(i) == 1) {
+            vec3 g = cellGradient(LAYER_FIELD(i), p, s.x, alpha > 0.0);
+            float fade = min(1.0, length(g) * abs(layerMap[i].x) / kFlatGradient);
+            c.rgb = phong(c.rgb, g / worldCell, fade, -direction, toLight, light);
+        }
+        color = under(color, vec4(c.rgb * alpha, alpha));
+    }
+    if (color.a <= 0.0) discard;
+    outColor = color;
+    outPick = color.a > kProxyPickOpacity ? t : 1e9;
+}
