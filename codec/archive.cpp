@@ -1,6 +1,7 @@
 #include "codec/archive.h"
 
 #include "codec/brick_access.h"
+#include "codec/brick_codec_v1.h"
 #include "codec/mapped_file.h"
 #include "volume/memory_source.h"
 #include "volume/parallel.h"
@@ -11,6 +12,7 @@
 #include <cassert>
 #include <cmath>
 #include <cstring>
+#include <list>
 #include <mutex>
 
 namespace tessera::codec {
@@ -22,6 +24,9 @@ struct Archive::Impl {
     Index index;
     std::vector<volume::Channel> channels;
     std::size_t components = 0, bricks = 0;
+    /// The models used last, the latest first; their tables take about 200 KiB each.
+    mutable std::list<std::pair<std::int32_t, std::shared_ptr<const BandDecoder>>> decoders;
+    mutable std::mutex decodersMutex;
 
     explicit Impl(const std::string& name) : path(name), file(name) {}
 
@@ -42,6 +47,7 @@ struct Archive::Impl {
     const volume::Parameter& parameter(int number) const { return metadata.info.parameters[std::size_t(number)]; }
     std::span<const std::byte> segment(const Segment& segment) const;
     std::vector<std::uint8_t> flags(const FrameRecord& frame, std::size_t brick) const;
+    std::shared_ptr<const BandDecoder> decoder(std::int32_t model) const;
     DecodedBrick decode(const FrameRecord& frame, const BrickFormat& format, std::size_t brick, int level,
                         std::span<const std::uint8_t> present) const;
     volume::BrickSamples readComponent(int parameter, int component, const volume::BrickKey& key) const;
@@ -110,13 +116,34 @@ std::vector<std::uint8_t> Archive::Impl::flags(const FrameRecord& frame, std::si
     return flags;
 }
 
+/// The decoder of a model, kept for the next brick.
+std::shared_ptr<const BandDecoder> Archive::Impl::decoder(std::int32_t model) const {
+    const std::lock_guard lock(decodersMutex);
+    for (auto at = decoders.begin(); at != decoders.end(); ++at)
+        if (at->first == model) {
+            decoders.splice(decoders.begin(), decoders, at);
+            return at->second;
+        }
+    const ModelRecord& record = index.models[std::size_t(model)];
+    const auto bytes = checkedPart(file.bytes(), record.offset, record.length, record.checksum, path, "a model");
+    Model parsed;
+    if (const DecodeStatus status = parseModel(bytes, metadata.grid.levels, parsed); status != DecodeStatus::Ok)
+        damaged(path, record.offset, std::string("a model cannot be read: ") + reason(status));
+    constexpr std::size_t kKept = 16;
+    decoders.emplace_front(model, std::make_shared<const BandDecoder>(std::move(parsed)));
+    if (decoders.size() > kKept) decoders.pop_back();
+    return decoders.front().second;
+}
+
 DecodedBrick Archive::Impl::decode(const FrameRecord& frame, const BrickFormat& format, std::size_t brick, int level,
                                    std::span<const std::uint8_t> present) const {
     std::vector<std::span<const std::byte>> segments;
     for (int s = 0; s < format.levels - level; ++s)
         segments.push_back(segment(frame.segments[std::size_t(s) * bricks + brick]));
     DecodedBrick decoded;
-    const DecodeStatus status = decodeBrick(format, segments, level, present, decoded);
+    const DecodeStatus status = frame.model < 0
+                                    ? decodeBrickV1(format, segments, level, present, decoded)
+                                    : decodeBrick(format, segments, level, present, *decoder(frame.model), decoded);
     if (status != DecodeStatus::Ok)
         damaged(path, frame.segments[(segments.size() - 1) * bricks + brick].offset, reason(status));
     return decoded;
@@ -175,8 +202,8 @@ Archive::Archive(const std::string& path) : impl_(std::make_unique<Impl>(path)) 
     const auto index =
         checkedPart(bytes, header.indexOffset, header.indexLength, header.indexChecksum, path, "the index");
     const std::uint64_t bricks = checkedBrickCount(impl.metadata.grid, path);
-    impl.index = parseIndex(index, impl.metadata.info.times.size() * impl.components, bricks, impl.metadata.grid.levels,
-                            header.metadataOffset, path);
+    impl.index = parseIndex(index, header.version, impl.metadata.info.times.size() * impl.components, bricks,
+                            impl.metadata.grid.levels, header.metadataOffset, path);
     impl.bricks = bricks;
     for (std::size_t f = 0; f < impl.index.frames.size(); ++f) {
         const FrameRecord& frame = impl.index.frames[f];
@@ -186,6 +213,8 @@ Archive::Archive(const std::string& path) : impl_(std::make_unique<Impl>(path)) 
         const bool isFloat = impl.metadata.info.parameters[number].type == volume::ScalarType::F32;
         if (isFloat == (frame.numbers.kind == NumberKind::Integer) || (frame.mask < 0 && frame.keepsAbsent))
             throw Error("a frame is coded in a way its type does not allow", path, "index");
+        if (!isFloat && frame.model >= 0 && frame.codeBits != codeBitsOf(impl.metadata.info.parameters[number].type))
+            throw Error("a frame states another width than its type has", path, "index");
     }
 }
 
@@ -337,6 +366,13 @@ struct Verifier {
         report.bytes += bytes;
     }
 
+    void models() {
+        for (std::size_t m = 0; m < impl.index.models.size(); ++m) {
+            guarded("model " + std::to_string(m), [&] { (void)impl.decoder(static_cast<std::int32_t>(m)); });
+            report.bytes += impl.index.models[m].length;
+        }
+    }
+
     /// Masks no brick above has read; their bytes are counted here.
     void masks() {
         for (std::size_t m = 0; m < impl.index.masks.size(); ++m) {
@@ -353,6 +389,7 @@ VerifyReport verifyArchive(const Archive& archive, const Progress& progress) {
     // Header, metadata and index were checked when the archive was opened.
     const Archive::Impl& impl = *archive.impl_;
     Verifier verifier{impl, {}, {}};
+    verifier.models();
     verifier.masks();
     const std::size_t frames = impl.index.frames.size();
     for (std::size_t f = 0; f < frames; ++f) {

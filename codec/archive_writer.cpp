@@ -1,6 +1,7 @@
 #include "codec/archive_writer.h"
 
 #include "codec/brick_access.h"
+#include "codec/filter.h"
 #include "volume/parallel.h"
 
 #include <algorithm>
@@ -12,7 +13,9 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
+#include <limits>
 #include <map>
+#include <optional>
 #include <unistd.h>
 #include <xxhash.h>
 
@@ -79,6 +82,7 @@ struct ArchiveWriter::Impl {
     std::vector<bool> written;
     std::uint64_t at = 0;
     std::map<std::array<std::uint64_t, 2>, int> maskByHash;
+    std::map<std::size_t, std::pair<std::int32_t, Model>> lastModel; ///< of each component
 
     ~Impl() {
         if (file) std::fclose(file);
@@ -90,6 +94,8 @@ struct ArchiveWriter::Impl {
         at += bytes.size();
     }
     int maskFor(const volume::Field& field, int zstdLevel);
+    BandEncoder modelFor(const volume::Field& field, std::size_t component, FrameRecord& frame,
+                         const FrameOptions& options);
 };
 
 /// Index of the record of a field's mask, written when it is new; -1 where everything is present.
@@ -127,6 +133,116 @@ int ArchiveWriter::Impl::maskFor(const volume::Field& field, int zstdLevel) {
     return found->second;
 }
 
+namespace {
+
+/// The samples of one brick as encodeBrick wants them.
+struct BrickInput {
+    Bytes samples;
+    std::vector<std::uint8_t> present; ///< empty: all
+
+    void take(const volume::BrickGrid& grid, glm::ivec3 brick, const volume::Field& field, bool masked) {
+        const std::size_t sampleBytes = volume::byteSize(field.type);
+        samples.clear();
+        present.clear();
+        bool mixed = false;
+        forBrickRows(grid, brick, [&](std::size_t from, std::size_t, std::size_t n) {
+            const auto row = field.samples.begin() + std::ptrdiff_t(from * sampleBytes);
+            samples.insert(samples.end(), row, row + std::ptrdiff_t(n * sampleBytes));
+            for (std::size_t i = from; masked && i < from + n; ++i) {
+                present.push_back(field.present(i) ? 1 : 0);
+                mixed = mixed || present.back() == 0;
+            }
+        });
+        if (!mixed) present.clear();
+    }
+};
+
+/// Tokens of some bricks of a frame, spread over it.
+Histogram sampleTokens(const volume::BrickGrid& grid, const volume::Field& field, const FrameRecord& frame,
+                       std::size_t most, int shift) {
+    const std::size_t bricks = brickCount(grid), count = std::min(bricks, most);
+    std::vector<Histogram> parts(count, Histogram(grid.levels));
+    parallelFor(count, [&](std::size_t i) {
+        const glm::ivec3 brick = brickIndex(grid, i * bricks / count);
+        BrickInput input;
+        input.take(grid, brick, field, frame.mask >= 0);
+        countBrick(brickFormat(grid, brick, field.type, frame), input.samples, input.present, shift, parts[i]);
+    });
+    Histogram sum(grid.levels);
+    for (const Histogram& part : parts)
+        for (std::size_t c = 0; c < sum.counts.size(); ++c)
+            for (std::size_t t = 0; t < kTokens; ++t) sum.counts[c][t] += part.counts[c][t];
+    return sum;
+}
+
+/// A shift that brings the typical detail of full resolution to some tens, where the contexts tell sizes apart.
+int shiftFor(const Histogram& histogram) {
+    double count = 0, octaves = 0;
+    for (std::size_t c = 0; c < std::size_t(kClasses) && c < histogram.counts.size(); ++c)
+        for (std::uint32_t t = 0; t < kTokens; ++t) {
+            count += histogram.counts[c][t];
+            octaves += histogram.counts[c][t] * double(std::bit_width(symbolBase(t) / 2));
+        }
+    constexpr double kWanted = 6;
+    return count == 0 ? 0 : std::max(0, int(std::lround(octaves / count - kWanted)));
+}
+
+/// Bits of |code| over the present samples of a frame of floats.
+int codeBitsOf(const volume::Field& field, const NumberCoding& numbers) {
+    if (field.type != volume::ScalarType::F32) return codec::codeBitsOf(field.type);
+    if (numbers.kind == NumberKind::Float) return 32;
+    std::uint32_t all = 0;
+    const auto samples = field.as<float>();
+    for (std::size_t i = 0; i < samples.size(); ++i)
+        if (field.present(i)) {
+            const auto code = static_cast<std::int32_t>(codeOf(numbers, samples[i]));
+            all |= static_cast<std::uint32_t>(code < 0 ? ~code : code);
+        }
+    return std::max(1, int(std::bit_width(all)) + 1);
+}
+
+constexpr std::size_t kTrialBricks = 6, kModelBricks = 32;
+constexpr int kMostTables = 24;
+
+} // namespace
+
+/// The model of a frame: that of the component's frame before where its tables serve as well as new ones would.
+BandEncoder ArchiveWriter::Impl::modelFor(const volume::Field& field, std::size_t component, FrameRecord& frame,
+                                          const FrameOptions& options) {
+    const volume::BrickGrid& grid = metadata.grid;
+    const auto last = lastModel.find(component);
+    if (!options.wavelet) {
+        // By trial. Predictions alone alias in coarse levels: they have to be clearly better.
+        constexpr Wavelet kTried[] = {Wavelet::W22, Wavelet::W42, Wavelet::W44, Wavelet::N2, Wavelet::N4};
+        constexpr double kPredictionHandicap = 1.015;
+        double best = std::numeric_limits<double>::infinity();
+        Wavelet chosen = Wavelet::W22;
+        for (const Wavelet wavelet : kTried) {
+            if (frame.numbers.kind == NumberKind::Float) break; // only predicted anyway
+            frame.wavelet = wavelet;
+            double bits = sampleTokens(grid, field, frame, kTrialBricks, 0).bits();
+            if (!filterOf(wavelet).updates) bits *= kPredictionHandicap;
+            if (bits < best) best = bits, chosen = wavelet;
+        }
+        frame.wavelet = chosen;
+    }
+    int shift = 0;
+    if (frame.codeBits > 16) shift = shiftFor(sampleTokens(grid, field, frame, kTrialBricks, 0));
+    const Histogram histogram = sampleTokens(grid, field, frame, kModelBricks, shift);
+    const Model fresh = makeModel(histogram, shift, kMostTables);
+    const Bytes bytes = serialise(fresh);
+    if (last != lastModel.end() && last->second.second.shift == shift &&
+        bitsWith(last->second.second, histogram) <= bitsWith(fresh, histogram) + 8.0 * double(bytes.size())) {
+        frame.model = last->second.first;
+        return BandEncoder(last->second.second);
+    }
+    frame.model = static_cast<std::int32_t>(index.models.size());
+    index.models.push_back({at, bytes.size(), checksum(bytes)});
+    write(bytes);
+    lastModel[component] = {frame.model, fresh};
+    return BandEncoder(fresh);
+}
+
 ArchiveWriter::ArchiveWriter(const std::string& path, const Metadata& metadata) : impl_(std::make_unique<Impl>()) {
     impl_->path = path;
     impl_->metadata = metadata;
@@ -156,15 +272,16 @@ void ArchiveWriter::addFrame(int parameter, int component, int time, const volum
     FrameRecord& frame = impl_->index.frames[number];
     frame.mask = impl_->maskFor(field, options.zstdLevel);
     frame.numbers = chooseCoding(field, options.maxError);
-    frame.wavelet = options.wavelet;
+    frame.wavelet = options.wavelet.value_or(Wavelet::W22);
     frame.keepsAbsent = options.keepsAbsent && frame.mask >= 0;
     frame.valueOffset = field.offset;
     frame.valueScale = field.scale;
+    frame.codeBits = codeBitsOf(field, frame.numbers);
+    const BandEncoder encoder = impl_->modelFor(field, number % componentCount(info), frame, options);
     frame.offset = impl_->at;
     const double maxError = frame.numbers.kind == NumberKind::Quantised ? options.maxError : 0;
 
     const std::size_t bricks = brickCount(grid), levels = std::size_t(grid.levels);
-    const std::size_t sampleBytes = volume::byteSize(field.type);
     frame.bricks.resize(bricks);
     frame.segments.resize(bricks * levels);
     std::vector<std::vector<Bytes>> coded(bricks);
@@ -174,25 +291,13 @@ void ArchiveWriter::addFrame(int parameter, int component, int time, const volum
         const std::size_t count = std::min(kBatch, bricks - first);
         parallelRanges(count, [&](std::size_t begin, std::size_t end) {
             Compressor compressor(options.zstdLevel);
-            Bytes samples;
-            std::vector<std::uint8_t> present;
+            BrickInput input;
             for (std::size_t b = first + begin; b < first + end; ++b) {
                 const glm::ivec3 brick = brickIndex(grid, b);
                 const BrickFormat format = brickFormat(grid, brick, field.type, frame);
-                samples.clear();
-                present.clear();
-                bool mixed = false;
-                forBrickRows(grid, brick, [&](std::size_t from, std::size_t, std::size_t n) {
-                    const auto row = field.samples.begin() + std::ptrdiff_t(from * sampleBytes);
-                    samples.insert(samples.end(), row, row + std::ptrdiff_t(n * sampleBytes));
-                    for (std::size_t i = from; frame.mask >= 0 && i < from + n; ++i) {
-                        present.push_back(field.present(i) ? 1 : 0);
-                        mixed = mixed || present.back() == 0;
-                    }
-                });
-                if (!mixed) present.clear();
-                frame.bricks[b] = rangeOf(format, field, samples, present, maxError);
-                coded[b] = encodeBrick(format, samples, present, maxError, compressor);
+                input.take(grid, brick, field, frame.mask >= 0);
+                frame.bricks[b] = rangeOf(format, field, input.samples, input.present, maxError);
+                coded[b] = encodeBrick(format, input.samples, input.present, maxError, compressor, encoder);
             }
         });
         progress.advance(double(first + count) / double(bricks));

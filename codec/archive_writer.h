@@ -6,15 +6,16 @@
 #include "volume/progress.h"
 
 #include <memory>
+#include <optional>
 #include <string>
 
 namespace tessera::codec {
 
 /// How one frame is coded.
 struct FrameOptions {
-    Wavelet wavelet = Wavelet::W22;
-    double maxError = 0;      ///< absolute, in stored units; 0: every sample exactly
-    bool keepsAbsent = false; ///< also the stored numbers of absent samples
+    std::optional<Wavelet> wavelet = Wavelet::W22; ///< none: the best of some, by trial
+    double maxError = 0;                           ///< absolute, in stored units; 0: every sample exactly
+    bool keepsAbsent = false;                      ///< also the stored numbers of absent samples
     int zstdLevel = 3;
 };
 

@@ -1,9 +1,12 @@
 #include "codec/brick_codec.h"
 
+#include "codec/brick_levels.h"
+
 #include <algorithm>
 #include <bit>
 #include <cassert>
 #include <cstring>
+#include <utility>
 
 namespace tessera::codec {
 
@@ -12,120 +15,269 @@ namespace {
 using volume::LatticeKind;
 using volume::ScalarType;
 
-std::size_t countOf(glm::ivec3 size) {
-    return std::size_t(size.x) * std::size_t(size.y) * std::size_t(size.z);
-}
+/// How the coefficients of a segment are coded; below kBands the modes of streams.
+constexpr std::byte kBands{4}, kWhole{5};
+constexpr std::byte kNothing{0};
 
-int sublattices(const BrickFormat& format) {
-    return format.kind == LatticeKind::BCC ? 2 : 1;
-}
+// Below these bits a coefficient, or a sample, the matches that zstd finds are worth a try.
+constexpr double kTryStream = 1.0, kTryWhole = 0.8;
 
-/// Full-resolution samples of one sublattice of the brick.
-glm::ivec3 sublatticeSize(const BrickFormat& format, int sublattice) {
-    if (format.kind == LatticeKind::CC) return format.size;
-    return {format.size.x, format.size.y, (format.size.z + 1 - sublattice) / 2};
-}
-
-Arithmetic arithmeticOf(const BrickFormat& format) {
-    if (format.numbers.kind == NumberKind::Float) return Arithmetic::Float;
-    return format.type == ScalarType::I32 || format.type == ScalarType::F32 ? Arithmetic::Wide : Arithmetic::Narrow;
-}
-
-/// Floats are only predicted: an update would mix exponents and overshoot by powers of two.
-Wavelet waveletOf(const BrickFormat& format) {
-    if (format.numbers.kind != NumberKind::Float) return format.wavelet;
-    return levelPhase(format.wavelet) == 0 && format.wavelet != Wavelet::N1 ? Wavelet::N2 : Wavelet::N1;
-}
-
-/// Calls `visit(begin, count)` for each row of coefficients of a level: the corner of the coarsest one, or of the seven
-/// others of a finer one those with high x, then high y, high x and y, high z, ...
-template <class Visit> void forRows(glm::ivec3 full, glm::ivec3 part, glm::ivec3 low, bool coarsest, Visit&& visit) {
-    for (int band = coarsest ? 0 : 1; band < (coarsest ? 1 : 8); ++band) {
-        glm::ivec3 lo(0), hi = coarsest ? part : low;
-        for (int axis = 0; axis < 3; ++axis)
-            if ((band >> axis & 1) != 0) lo[axis] = low[axis], hi[axis] = part[axis];
-        if (hi.x <= lo.x) continue;
-        for (int z = lo.z; z < hi.z; ++z)
-            for (int y = lo.y; y < hi.y; ++y)
-                visit((std::size_t(z) * std::size_t(full.y) + std::size_t(y)) * std::size_t(full.x) + std::size_t(lo.x),
-                      std::size_t(hi.x - lo.x));
-    }
-}
-
-/// One sublattice while it is transformed: coefficients and flags of the box of some level.
-struct Plane {
-    glm::ivec3 size{0};
-    std::vector<std::uint32_t> values;
-    std::vector<std::uint8_t> present; ///< empty: all present
+/// Codes of the samples, and what is stored beside them.
+struct Numbers {
+    std::vector<std::uint32_t> codes, exactIndex, exactBits, absentBits;
 };
 
-/// Slices of one sublattice of a storage array, in order.
-template <class T>
-void takeSlices(std::span<const T> storage, glm::ivec3 size, int sublattice, int step, std::vector<T>& out) {
-    const std::size_t slice = std::size_t(size.x) * std::size_t(size.y);
-    for (int z = sublattice; z < size.z; z += step) {
-        const T* from = storage.data() + std::size_t(z) * slice;
-        out.insert(out.end(), from, from + slice);
-    }
-}
-template <class T>
-void putSlices(const std::vector<T>& plane, glm::ivec3 size, int sublattice, int step, std::vector<T>& storage) {
-    const std::size_t slice = std::size_t(size.x) * std::size_t(size.y);
-    const T* from = plane.data();
-    for (int z = sublattice; z < size.z; z += step, from += slice)
-        std::copy(from, from + slice, storage.begin() + std::ptrdiff_t(std::size_t(z) * slice));
-}
-
-std::vector<std::uint32_t> sampleBits(const BrickFormat& format, std::span<const std::byte> samples) {
-    std::vector<std::uint32_t> bits(countOf(format.size));
+Numbers numbersOf(const BrickFormat& format, std::span<const std::byte> samples, std::span<const std::uint8_t> present,
+                  double maxError) {
+    Numbers numbers;
+    numbers.codes.resize(countOf(format.size));
     volume::dispatch(format.type, [&]<class T>(T) {
-        for (std::size_t i = 0; i < bits.size(); ++i) {
+        for (std::size_t i = 0; i < numbers.codes.size(); ++i) {
             T sample;
             std::memcpy(&sample, samples.data() + i * sizeof(T), sizeof(T));
-            if constexpr (std::same_as<T, float>)
-                bits[i] = std::bit_cast<std::uint32_t>(sample);
-            else
-                bits[i] = codeOf(format.numbers, sample);
+            const bool absent = !present.empty() && present[i] == 0;
+            if constexpr (std::same_as<T, float>) {
+                if (absent) {
+                    numbers.absentBits.push_back(std::bit_cast<std::uint32_t>(sample));
+                    continue;
+                }
+                numbers.codes[i] = codeOf(format.numbers, sample);
+                if (!format.canHaveExact()) continue;
+                if (close(format.numbers, maxError, sample, sampleOf<float>(format.numbers, numbers.codes[i])))
+                    continue;
+                numbers.exactIndex.push_back(static_cast<std::uint32_t>(i));
+                numbers.exactBits.push_back(std::bit_cast<std::uint32_t>(sample));
+            } else {
+                numbers.codes[i] = codeOf(format.numbers, sample);
+                if (absent) numbers.absentBits.push_back(numbers.codes[i]);
+            }
         }
     });
-    return bits;
+    return numbers;
 }
 
-/// Coefficients of one level of all sublattices that belong to present samples, in the order of the format.
-std::vector<std::uint32_t> collect(const BrickFormat& format, std::span<const Plane> planes, int level) {
-    std::vector<std::uint32_t> coefficients;
-    for (const Plane& plane : planes)
-        forRows(plane.size, levelSize(plane.size, level), levelSize(plane.size, level + 1), level == format.levels - 1,
-                [&](std::size_t begin, std::size_t count) {
-                    if (plane.present.empty()) {
-                        const auto from = plane.values.begin() + std::ptrdiff_t(begin);
-                        coefficients.insert(coefficients.end(), from, from + std::ptrdiff_t(count));
-                        return;
-                    }
-                    for (std::size_t i = begin; i < begin + count; ++i)
-                        if (plane.present[i] != 0) coefficients.push_back(plane.values[i]);
-                });
-    return coefficients;
+/// Calls `visit(word)` for the present coefficients, band by band.
+template <class Word, class Visit> void forCoefficients(std::span<const Band<Word>> bands, Visit&& visit) {
+    for (const Band<Word>& band : bands)
+        for (int z = 0; z < band.size.z; ++z)
+            for (int y = 0; y < band.size.y; ++y) {
+                const std::ptrdiff_t at = z * band.slicePitch + y * band.rowPitch;
+                for (int x = 0; x < band.size.x; ++x)
+                    if (!band.present || band.present[at + x] != 0) visit(band.values[at + x]);
+            }
 }
 
-/// Index of what is stored beside the coefficients of full resolution.
-bool canHaveExact(const BrickFormat& format) {
-    return format.numbers.kind == NumberKind::Scaled || format.numbers.kind == NumberKind::Quantised;
+std::uint32_t bitsOf(std::int32_t value) {
+    return static_cast<std::uint32_t>(value);
+}
+
+/// Each coarse sample as the difference from the one before, and back.
+template <class Word> void toDifferences(std::span<const Band<Word>> bands) {
+    std::uint32_t before = 0;
+    forCoefficients(bands, [&](Word& word) {
+        const std::uint32_t code = bitsOf(word);
+        word = static_cast<Word>(static_cast<std::int32_t>(code - before));
+        before = code;
+    });
+}
+template <class Word> void fromDifferences(std::span<const Band<Word>> bands) {
+    std::uint32_t code = 0;
+    forCoefficients(bands, [&](Word& word) {
+        code += bitsOf(word);
+        word = static_cast<Word>(static_cast<std::int32_t>(code));
+    });
+}
+
+template <class Word> std::vector<Band<const Word>> constBands(std::span<const Band<Word>> bands) {
+    std::vector<Band<const Word>> out;
+    for (const Band<Word>& band : bands)
+        out.push_back({band.values, band.present, band.size, band.rowPitch, band.slicePitch});
+    return out;
+}
+
+template <class Word>
+std::span<LevelBox<Word>> boxesAt(BrickLevels<Word>& levels, const BrickFormat& format, int level) {
+    const std::size_t step = std::size_t(format.sublattices());
+    return std::span(levels).subspan(std::size_t(level) * step, step);
+}
+
+template <class Word>
+void countLevels(const BrickFormat& format, const Numbers& numbers, std::span<const std::uint8_t> present, int shift,
+                 Histogram& histogram) {
+    BrickLevels<Word> levels = splitBrick<Word>(format, numbers.codes, present, format.levels);
+    for (int level = 0; level < format.levels; ++level) {
+        const bool coarsest = level == format.levels - 1;
+        const auto bands = bandsOf<Word>(boxesAt(levels, format, level), coarsest);
+        if (coarsest) toDifferences<Word>(bands);
+        countTokens<Word>(constBands<Word>(bands), level, shift, histogram);
+    }
+}
+
+/// Coefficients of one level: the shorter of bands and a stream.
+template <class Word>
+void encodeLevel(std::span<const Band<Word>> bands, int level, const BandEncoder& encoder, Compressor& compressor,
+                 Bytes& out) {
+    if (bands.empty()) return;
+    Bytes coded{kBands};
+    encoder.encode<Word>(constBands<Word>(bands), level, coded);
+    if (coded.size() == 1) {
+        coded[0] = kNothing;
+    } else {
+        std::size_t count = 0;
+        forCoefficients(bands, [&](Word) { ++count; });
+        if (8.0 * double(coded.size()) < kTryStream * double(count) || count < 64) {
+            std::vector<std::uint32_t> symbols;
+            symbols.reserve(count);
+            forCoefficients(bands, [&](Word word) { symbols.push_back(zigzag(bitsOf(word))); });
+            Bytes stream;
+            encodeStream(symbols, compressor, stream);
+            if (stream.size() < coded.size()) coded = std::move(stream);
+        }
+    }
+    out.insert(out.end(), coded.begin(), coded.end());
+}
+
+template <class Word>
+std::vector<Bytes> encodeLevels(const BrickFormat& format, const Numbers& numbers,
+                                std::span<const std::uint8_t> present, Compressor& compressor,
+                                const BandEncoder& encoder) {
+    BrickLevels<Word> levels = splitBrick<Word>(format, numbers.codes, present, format.levels);
+    std::vector<Bytes> segments(static_cast<std::size_t>(format.levels));
+    for (int level = format.levels - 1; level >= 0; --level) {
+        const bool coarsest = level == format.levels - 1;
+        const auto bands = bandsOf<Word>(boxesAt(levels, format, level), coarsest);
+        if (coarsest) toDifferences<Word>(bands);
+        encodeLevel<Word>(bands, level, encoder, compressor, segments[std::size_t(format.levels - 1 - level)]);
+    }
+    return segments;
+}
+
+/// All samples as one stream in segment 0, if that is shorter than the levels: constants, labels, repeated slices.
+void tryWhole(const Numbers& numbers, std::span<const std::uint8_t> present, Compressor& compressor,
+              std::vector<Bytes>& segments) {
+    std::size_t bytes = 0;
+    for (const Bytes& segment : segments) bytes += segment.size();
+    if (8.0 * double(bytes) > kTryWhole * double(numbers.codes.size()) || bytes <= segments.size()) return;
+    std::vector<std::uint32_t> symbols;
+    symbols.reserve(numbers.codes.size());
+    for (std::size_t i = 0; i < numbers.codes.size(); ++i)
+        if (present.empty() || present[i] != 0) symbols.push_back(zigzag(numbers.codes[i]));
+    Bytes whole{kWhole};
+    encodeStream(symbols, compressor, whole);
+    if (whole.size() >= bytes) return;
+    for (Bytes& segment : segments) segment.clear();
+    segments[0] = std::move(whole);
+}
+
+/// Coefficients of one level from all of `in`.
+template <class Word>
+DecodeStatus decodeLevel(std::span<const std::byte> in, std::span<const Band<Word>> bands, int level,
+                         const BandDecoder& decoder) {
+    if (bands.empty()) return in.empty() ? DecodeStatus::Ok : DecodeStatus::Trailing;
+    if (in.empty()) return DecodeStatus::Truncated;
+    if (in[0] == kBands) {
+        if (in.size() == 1) return DecodeStatus::Truncated;
+        return decoder.decode<Word>(in.subspan(1), bands, level);
+    }
+    std::size_t count = 0;
+    forCoefficients(bands, [&](Word) { ++count; });
+    if (count == 0 && in.size() == 1 && in[0] == kNothing) return DecodeStatus::Ok;
+    std::vector<std::uint32_t> symbols(count);
+    if (const DecodeStatus status = decodeStream(in, symbols); status != DecodeStatus::Ok) return status;
+    const std::uint32_t* next = symbols.data();
+    forCoefficients(bands, [&](Word& word) { word = static_cast<Word>(static_cast<std::int32_t>(unzigzag(*next++))); });
+    return in.empty() ? DecodeStatus::Ok : DecodeStatus::Trailing;
+}
+
+template <class Word>
+DecodeStatus decodeLevels(const BrickFormat& format, std::span<const std::span<const std::byte>> segments, int level,
+                          std::span<const std::uint8_t> present, const BandDecoder& decoder, DecodedBrick& out) {
+    const int step = format.sublattices();
+    const bool masked = !present.empty();
+    std::vector<LevelBox<Word>> coarse(static_cast<std::size_t>(step)), fine(static_cast<std::size_t>(step));
+    for (int l = format.levels - 1; l >= level; --l) {
+        const bool coarsest = l == format.levels - 1;
+        for (int s = 0; s < step; ++s) {
+            LevelBox<Word>& box = fine[std::size_t(s)] = LevelBox<Word>(levelSize(format.sublatticeSize(s), l), masked);
+            if (box.masked()) placeFlags<Word>(format, present, l, s, !coarsest, box);
+        }
+        std::span<const std::byte> in = segments[std::size_t(format.levels - 1 - l)];
+        if (l == 0)
+            if (const DecodeStatus status = decodeExtras(format, present, in, out); status != DecodeStatus::Ok)
+                return status;
+        const auto bands = bandsOf<Word>(fine, coarsest);
+        if (const DecodeStatus status = decodeLevel<Word>(in, bands, l, decoder); status != DecodeStatus::Ok)
+            return status;
+        if (coarsest)
+            fromDifferences<Word>(bands);
+        else
+            for (std::size_t s = 0; s < std::size_t(step); ++s) joinLevel<Word>(format, coarse[s], fine[s]);
+        std::swap(coarse, fine);
+    }
+    out.codes.resize(countOf(samplesAt(format, level)));
+    for (int s = 0; s < step; ++s) putSublattice<Word>(format, coarse[std::size_t(s)], s, out.codes);
+    return DecodeStatus::Ok;
+}
+
+/// A brick whose samples are one stream: coarse levels are made from all of them.
+template <class Word>
+DecodeStatus decodeWhole(const BrickFormat& format, std::span<const std::byte> in, int level,
+                         std::span<const std::uint8_t> present, DecodedBrick& out) {
+    const std::size_t total = countOf(format.size);
+    const auto absent = std::size_t(std::count(present.begin(), present.end(), std::uint8_t(0)));
+    std::vector<std::uint32_t> symbols(total - absent), codes(total);
+    if (const DecodeStatus status = decodeStream(in, symbols); status != DecodeStatus::Ok) return status;
+    if (!in.empty()) return DecodeStatus::Trailing;
+    const std::uint32_t* next = symbols.data();
+    for (std::size_t i = 0; i < total; ++i)
+        if (present.empty() || present[i] != 0) codes[i] = unzigzag(*next++);
+    if (level == 0) {
+        out.codes = std::move(codes);
+        return DecodeStatus::Ok;
+    }
+    const BrickLevels<Word> levels = splitBrick<Word>(format, codes, present, level + 1);
+    out.codes.resize(countOf(samplesAt(format, level)));
+    for (int s = 0; s < format.sublattices(); ++s)
+        putSublattice<Word>(format, levels[std::size_t(level * format.sublattices() + s)], s, out.codes);
+    return DecodeStatus::Ok;
 }
 
 } // namespace
 
+glm::ivec3 BrickFormat::sublatticeSize(int sublattice) const {
+    if (kind == LatticeKind::CC) return size;
+    return {size.x, size.y, (size.z + 1 - sublattice) / 2};
+}
+
+bool BrickFormat::canHaveExact() const {
+    return numbers.kind == NumberKind::Scaled || numbers.kind == NumberKind::Quantised;
+}
+
+int codeBitsOf(ScalarType type) {
+    return type == ScalarType::U8 ? 8 : type == ScalarType::I16 || type == ScalarType::U16 ? 16 : 32;
+}
+
+Arithmetic arithmeticOf(const BrickFormat& format) {
+    if (format.numbers.kind == NumberKind::Float) return Arithmetic::Float;
+    return format.codeBits > kBitsOfInt32 ? Arithmetic::Wide : Arithmetic::Narrow;
+}
+
+Wavelet effectiveWavelet(const BrickFormat& format) {
+    if (format.numbers.kind != NumberKind::Float) return format.wavelet;
+    return levelPhase(format.wavelet) == 0 && format.wavelet != Wavelet::N1 ? Wavelet::N2 : Wavelet::N1;
+}
+
 glm::ivec3 samplesAt(const BrickFormat& format, int level) {
     glm::ivec3 size = levelSize(format.size, level);
     if (format.kind == LatticeKind::BCC)
-        size.z = levelSize(sublatticeSize(format, 0), level).z + levelSize(sublatticeSize(format, 1), level).z;
+        size.z = levelSize(format.sublatticeSize(0), level).z + levelSize(format.sublatticeSize(1), level).z;
     return size;
 }
 
 std::vector<std::uint8_t> maskAt(const BrickFormat& format, std::span<const std::uint8_t> present, int level) {
     if (present.empty()) return {};
     const glm::ivec3 size = samplesAt(format, level);
-    const int perTexel = sublattices(format), stride = 1 << level;
+    const int perTexel = format.sublattices(), stride = 1 << level;
     std::vector<std::uint8_t> out;
     out.reserve(countOf(size));
     for (int z = 0; z < size.z; ++z)
@@ -138,149 +290,87 @@ std::vector<std::uint8_t> maskAt(const BrickFormat& format, std::span<const std:
     return out;
 }
 
+void countBrick(const BrickFormat& format, std::span<const std::byte> samples, std::span<const std::uint8_t> present,
+                int shift, Histogram& histogram) {
+    const Numbers numbers = numbersOf(format, samples, present, 0);
+    if (fitsInt16(format, !present.empty()))
+        countLevels<std::int16_t>(format, numbers, present, shift, histogram);
+    else
+        countLevels<std::int32_t>(format, numbers, present, shift, histogram);
+}
+
 std::vector<Bytes> encodeBrick(const BrickFormat& format, std::span<const std::byte> samples,
-                               std::span<const std::uint8_t> present, double maxError, Compressor& compressor) {
-    const std::size_t total = countOf(format.size);
-    assert(samples.size() == total * volume::byteSize(format.type));
-    assert(present.empty() || present.size() == total);
-    const std::vector<std::uint32_t> bits = sampleBits(format, samples);
-    std::vector<std::uint32_t> codes = bits;
-    std::vector<std::uint32_t> exactIndex, exactBits, absentBits;
-    for (std::size_t i = 0; i < total; ++i) {
-        if (!present.empty() && present[i] == 0) {
-            absentBits.push_back(bits[i]);
-            continue;
-        }
-        if (format.type != ScalarType::F32) continue;
-        const auto sample = std::bit_cast<float>(bits[i]);
-        codes[i] = codeOf(format.numbers, sample);
-        if (canHaveExact(format) &&
-            !close(format.numbers, maxError, sample, sampleOf<float>(format.numbers, codes[i]))) {
-            exactIndex.push_back(static_cast<std::uint32_t>(i));
-            exactBits.push_back(bits[i]);
-        }
-    }
+                               std::span<const std::uint8_t> present, double maxError, Compressor& compressor,
+                               const BandEncoder& bands) {
+    assert(samples.size() == countOf(format.size) * volume::byteSize(format.type));
+    assert(present.empty() || present.size() == countOf(format.size));
+    const Numbers numbers = numbersOf(format, samples, present, maxError);
+    std::vector<Bytes> segments = fitsInt16(format, !present.empty())
+                                      ? encodeLevels<std::int16_t>(format, numbers, present, compressor, bands)
+                                      : encodeLevels<std::int32_t>(format, numbers, present, compressor, bands);
+    tryWhole(numbers, present, compressor, segments);
 
-    const int step = sublattices(format);
-    std::vector<Plane> planes(static_cast<std::size_t>(step));
-    for (int s = 0; s < step; ++s) {
-        Plane& plane = planes[std::size_t(s)];
-        plane.size = sublatticeSize(format, s);
-        takeSlices(std::span<const std::uint32_t>(codes), format.size, s, step, plane.values);
-        if (!present.empty()) takeSlices(present, format.size, s, step, plane.present);
-        forward(plane.values, plane.present, plane.size, format.levels - 1, waveletOf(format), arithmeticOf(format));
-    }
-
-    std::vector<Bytes> segments(static_cast<std::size_t>(format.levels));
-    for (int level = format.levels - 1; level >= 0; --level) {
-        Bytes& out = segments[std::size_t(format.levels - 1 - level)];
-        std::vector<std::uint32_t> symbols = collect(format, planes, level);
-        if (level == format.levels - 1) { // differences from the one before; the first as it is
-            for (std::size_t i = symbols.size(); i-- > 1;) symbols[i] -= symbols[i - 1];
-            if (!symbols.empty()) appendU32(out, symbols[0]);
-            if (!symbols.empty()) symbols.erase(symbols.begin());
-        }
-        for (std::uint32_t& symbol : symbols) symbol = zigzag(symbol);
-        encodeStream(symbols, compressor, out);
+    Bytes extras;
+    if (format.keepsAbsent) encodeStream(numbers.absentBits, compressor, extras);
+    if (format.canHaveExact()) {
+        appendU32(extras, static_cast<std::uint32_t>(numbers.exactIndex.size()));
+        encodeStream(numbers.exactIndex, compressor, extras);
+        encodeStream(numbers.exactBits, compressor, extras);
     }
     Bytes& fine = segments.back();
-    if (format.keepsAbsent) encodeStream(absentBits, compressor, fine);
-    if (canHaveExact(format)) {
-        appendU32(fine, static_cast<std::uint32_t>(exactIndex.size()));
-        encodeStream(exactIndex, compressor, fine);
-        encodeStream(exactBits, compressor, fine);
-    }
+    fine.insert(fine.begin(), extras.begin(), extras.end());
     return segments;
 }
 
-DecodeStatus decodeBrick(const BrickFormat& format, std::span<const std::span<const std::byte>> segments, int level,
-                         std::span<const std::uint8_t> present, DecodedBrick& out) {
-    assert(level >= 0 && level < format.levels && int(segments.size()) == format.levels - level);
-    assert(present.empty() || present.size() == countOf(format.size));
-    const int step = sublattices(format), steps = format.levels - 1 - level;
-    const glm::ivec3 size = samplesAt(format, level);
-    out = {};
-    out.present = maskAt(format, present, level);
-
-    std::vector<Plane> planes(static_cast<std::size_t>(step));
-    for (int s = 0; s < step; ++s) {
-        Plane& plane = planes[std::size_t(s)];
-        plane.size = levelSize(sublatticeSize(format, s), level);
-        plane.values.resize(countOf(plane.size));
-        if (out.present.empty()) continue;
-        takeSlices(std::span<const std::uint8_t>(out.present), size, s, step, plane.present);
-        deinterleave(plane.present, plane.size, steps);
+DecodeStatus decodeExtras(const BrickFormat& format, std::span<const std::uint8_t> present,
+                          std::span<const std::byte>& in, DecodedBrick& out) {
+    if (format.keepsAbsent) {
+        out.absent.resize(std::size_t(std::count(present.begin(), present.end(), std::uint8_t(0))));
+        if (const DecodeStatus status = decodeStream(in, out.absent); status != DecodeStatus::Ok) return status;
     }
-
-    std::vector<std::uint32_t> symbols;
-    for (int i = 0; i <= steps; ++i) {
-        const bool coarsest = i == 0;
-        // The places of this level's coefficients, counted first.
-        std::size_t count = 0;
-        const auto visitPlaces = [&](auto&& visit) {
-            for (Plane& plane : planes)
-                forRows(plane.size, levelSize(plane.size, steps - i), levelSize(plane.size, steps - i + 1), coarsest,
-                        [&](std::size_t begin, std::size_t length) { visit(plane, begin, length); });
-        };
-        visitPlaces([&](const Plane& plane, std::size_t begin, std::size_t length) {
-            if (plane.present.empty())
-                count += length;
-            else
-                for (std::size_t at = begin; at < begin + length; ++at) count += plane.present[at] != 0 ? 1 : 0;
-        });
-        std::span<const std::byte> in = segments[std::size_t(i)];
-        symbols.resize(count);
-        std::span<std::uint32_t> coded = symbols;
-        if (coarsest && count > 0) {
-            if (in.size() < 4) return DecodeStatus::Truncated;
-            symbols[0] = readU32(in.data());
-            in = in.subspan(4);
-            coded = coded.subspan(1);
-        }
-        if (const DecodeStatus status = decodeStream(in, coded); status != DecodeStatus::Ok) return status;
-        for (std::uint32_t& symbol : coded) symbol = unzigzag(symbol);
-        if (coarsest)
-            for (std::size_t k = 1; k < count; ++k) symbols[k] += symbols[k - 1];
-        const std::uint32_t* next = symbols.data();
-        visitPlaces([&](Plane& plane, std::size_t begin, std::size_t length) {
-            if (plane.present.empty()) {
-                std::copy(next, next + length, plane.values.begin() + std::ptrdiff_t(begin));
-                next += length;
-            } else {
-                for (std::size_t at = begin; at < begin + length; ++at)
-                    if (plane.present[at] != 0) plane.values[at] = *next++;
-            }
-        });
-
-        if (i == format.levels - 1) {
-            if (format.keepsAbsent) {
-                out.absent.resize(std::size_t(std::count(present.begin(), present.end(), std::uint8_t(0))));
-                if (const DecodeStatus status = decodeStream(in, out.absent); status != DecodeStatus::Ok) return status;
-            }
-            if (canHaveExact(format)) {
-                if (in.size() < 4) return DecodeStatus::Truncated;
-                const std::size_t exact = readU32(in.data());
-                in = in.subspan(4);
-                if (exact > countOf(format.size)) return DecodeStatus::BadLength;
-                std::vector<std::uint32_t> index(exact), bits(exact);
-                if (const DecodeStatus status = decodeStream(in, index); status != DecodeStatus::Ok) return status;
-                if (const DecodeStatus status = decodeStream(in, bits); status != DecodeStatus::Ok) return status;
-                for (std::size_t k = 0; k < exact; ++k) {
-                    if (index[k] >= countOf(format.size)) return DecodeStatus::BadLength;
-                    out.exact.push_back({index[k], bits[k]});
-                }
-            }
-        }
-        if (!in.empty()) return DecodeStatus::Trailing;
-    }
-
-    out.codes.resize(countOf(size));
-    for (int s = 0; s < step; ++s) {
-        Plane& plane = planes[std::size_t(s)];
-        inverse(plane.values, plane.present, plane.size, steps, waveletOf(format), arithmeticOf(format));
-        putSlices(plane.values, size, s, step, out.codes);
+    if (!format.canHaveExact()) return DecodeStatus::Ok;
+    if (in.size() < 4) return DecodeStatus::Truncated;
+    const std::size_t exact = readU32(in.data());
+    in = in.subspan(4);
+    if (exact > countOf(format.size)) return DecodeStatus::BadLength;
+    std::vector<std::uint32_t> index(exact), bits(exact);
+    if (const DecodeStatus status = decodeStream(in, index); status != DecodeStatus::Ok) return status;
+    if (const DecodeStatus status = decodeStream(in, bits); status != DecodeStatus::Ok) return status;
+    for (std::size_t k = 0; k < exact; ++k) {
+        if (index[k] >= countOf(format.size)) return DecodeStatus::BadLength;
+        out.exact.push_back({index[k], bits[k]});
     }
     return DecodeStatus::Ok;
+}
+
+DecodeStatus decodeBrick(const BrickFormat& format, std::span<const std::span<const std::byte>> segments, int level,
+                         std::span<const std::uint8_t> present, const BandDecoder& bands, DecodedBrick& out) {
+    assert(level >= 0 && level < format.levels && int(segments.size()) == format.levels - level);
+    assert(present.empty() || present.size() == countOf(format.size));
+    out = {};
+    out.present = maskAt(format, present, level);
+    const bool narrow = fitsInt16(format, !present.empty());
+    // Where the extras come first, the mode of a brick of one level stands behind them.
+    std::span<const std::byte> first = segments[0];
+    if (format.levels == 1) {
+        if (const DecodeStatus status = decodeExtras(format, present, first, out); status != DecodeStatus::Ok)
+            return status;
+        out.exact.clear();
+    }
+    if (first.empty() || first[0] != kWhole)
+        return narrow ? decodeLevels<std::int16_t>(format, segments, level, present, bands, out)
+                      : decodeLevels<std::int32_t>(format, segments, level, present, bands, out);
+    if (level == 0) {
+        std::span<const std::byte> last = segments.back();
+        if (const DecodeStatus status = decodeExtras(format, present, last, out); status != DecodeStatus::Ok)
+            return status;
+        if (format.levels > 1 && !last.empty()) return DecodeStatus::Trailing;
+    }
+    for (std::size_t s = 1; s + 1 < segments.size(); ++s)
+        if (!segments[s].empty()) return DecodeStatus::Trailing;
+    if (level > 0 && segments.size() > 1 && !segments.back().empty()) return DecodeStatus::Trailing;
+    return narrow ? decodeWhole<std::int16_t>(format, first.subspan(1), level, present, out)
+                  : decodeWhole<std::int32_t>(format, first.subspan(1), level, present, out);
 }
 
 } // namespace tessera::codec

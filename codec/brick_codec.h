@@ -1,5 +1,6 @@
 #pragma once
 
+#include "codec/band_coder.h"
 #include "codec/decode_status.h"
 #include "codec/entropy.h"
 #include "codec/lifting.h"
@@ -21,20 +22,44 @@ struct BrickFormat {
     volume::ScalarType type = volume::ScalarType::F32;
     NumberCoding numbers;
     bool keepsAbsent = false; ///< the stored numbers of absent samples are coded as well
+    int codeBits = 32;        ///< every |code| is below 2^codeBits; narrow ones are faster
 
     bool operator==(const BrickFormat&) const = default;
+
+    int sublattices() const { return kind == volume::LatticeKind::BCC ? 2 : 1; }
+    /// Full-resolution samples of one sublattice of the brick.
+    glm::ivec3 sublatticeSize(int sublattice) const;
+    /// True when samples may be stored beside the codes.
+    bool canHaveExact() const;
 };
+
+/// Bits of the codes of a type whose numbers are the codes.
+int codeBitsOf(volume::ScalarType type);
+
+inline std::size_t countOf(glm::ivec3 size) {
+    return std::size_t(size.x) * std::size_t(size.y) * std::size_t(size.z);
+}
 
 /// Storage samples of the brick at a level.
 glm::ivec3 samplesAt(const BrickFormat& format, int level);
 /// Every 2^level-th flag of each sublattice: what is present at a level. Empty in, empty out.
 std::vector<std::uint8_t> maskAt(const BrickFormat& format, std::span<const std::uint8_t> present, int level);
 
+/// Arithmetic of the lifting, and its wavelet: floats are only predicted, as an update would mix exponents and
+/// overshoot by powers of two.
+Arithmetic arithmeticOf(const BrickFormat& format);
+Wavelet effectiveWavelet(const BrickFormat& format);
+
+/// Adds the tokens of a brick to the statistics a model is made of. `samples` and `present` as for encodeBrick.
+void countBrick(const BrickFormat& format, std::span<const std::byte> samples, std::span<const std::uint8_t> present,
+                int shift, Histogram& histogram);
+
 /// The coded brick: segment 0 holds the coarsest level, segment i what level `levels - 1 - i` adds. `samples` are
 /// numbers of format.type, x fastest; `present` one flag each, or empty: all. Quantised numbers off by more than
 /// `maxError` are stored exactly. Same input, same bytes.
 std::vector<Bytes> encodeBrick(const BrickFormat& format, std::span<const std::byte> samples,
-                               std::span<const std::uint8_t> present, double maxError, Compressor& compressor);
+                               std::span<const std::uint8_t> present, double maxError, Compressor& compressor,
+                               const BandEncoder& bands);
 
 /// A sample stored as its bits beside the codes.
 struct ExactSample {
@@ -51,6 +76,10 @@ struct DecodedBrick {
 /// Decodes `level` from the segments up to it (levels - level of them, coarsest first). Never throws for what the bytes
 /// say, never reads beyond them.
 DecodeStatus decodeBrick(const BrickFormat& format, std::span<const std::span<const std::byte>> segments, int level,
-                         std::span<const std::uint8_t> present, DecodedBrick& out);
+                         std::span<const std::uint8_t> present, const BandDecoder& bands, DecodedBrick& out);
+
+/// The streams of absent and exact samples of full resolution, from the front of `in`.
+DecodeStatus decodeExtras(const BrickFormat& format, std::span<const std::uint8_t> present,
+                          std::span<const std::byte>& in, DecodedBrick& out);
 
 } // namespace tessera::codec

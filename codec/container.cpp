@@ -15,8 +15,8 @@ namespace {
 // Not text, and damaged by every well-meant conversion of line ends.
 constexpr std::array<std::uint8_t, 8> kMagic{0x89, 'T', 'S', 'R', 0x0d, 0x0a, 0x1a, 0x0a};
 
-constexpr std::size_t kMaskRecordBytes = 16, kMaskBrickBytes = 16, kFrameRecordBytes = 56, kFrameBrickBytes = 8,
-                      kSegmentBytes = 12;
+constexpr std::size_t kMaskRecordBytes = 16, kMaskBrickBytes = 16, kModelRecordBytes = 24, kFrameRecordBytes = 56,
+                      kFrameBrickBytes = 8, kSegmentBytes = 12;
 
 /// Little-endian numbers, appended.
 class Out {
@@ -98,8 +98,8 @@ Header parseHeader(std::span<const std::byte> bytes, std::uint64_t fileSize, con
     header.indexChecksum = in.get<std::uint64_t>();
     if (in.get<std::uint64_t>() != checksum(bytes.first(kHeaderBytes - 8)))
         throw Error("the header is damaged (checksum)", file, "byte 0");
-    if (header.version != kFormatVersion)
-        throw Error("archive version " + std::to_string(header.version) + ", this program reads version " +
+    if (header.version < kOldestVersion || header.version > kFormatVersion)
+        throw Error("archive version " + std::to_string(header.version) + ", this program reads versions up to " +
                         std::to_string(kFormatVersion),
                     file, "byte 8");
     if (header.features != 0) throw Error("the archive needs features this program does not know", file, "byte 12");
@@ -119,6 +119,12 @@ Bytes serialise(const Index& index) {
     Out out;
     out.put(static_cast<std::uint32_t>(index.masks.size()));
     out.put(static_cast<std::uint32_t>(index.frames.size()));
+    out.put(static_cast<std::uint32_t>(index.models.size()));
+    for (const ModelRecord& model : index.models) {
+        out.put(model.offset);
+        out.put(model.length);
+        out.put(model.checksum);
+    }
     for (const MaskRecord& mask : index.masks) {
         out.put(mask.offset);
         out.put(mask.length);
@@ -134,8 +140,9 @@ Bytes serialise(const Index& index) {
         out.put(static_cast<std::uint8_t>(frame.numbers.kind));
         out.put(static_cast<std::uint8_t>(frame.wavelet));
         out.put(static_cast<std::uint8_t>(frame.keepsAbsent ? 1 : 0));
-        out.put(std::uint8_t{0});
+        out.put(static_cast<std::uint8_t>(frame.codeBits));
         out.put(frame.mask);
+        out.put(frame.model);
         out.put(frame.numbers.origin);
         out.put(frame.numbers.step);
         out.put(frame.valueOffset);
@@ -152,21 +159,26 @@ Bytes serialise(const Index& index) {
     return out.bytes;
 }
 
-Index parseIndex(std::span<const std::byte> bytes, std::uint64_t frames, std::uint64_t bricks, int levels,
-                 std::uint64_t chunksEnd, const std::string& file) {
+Index parseIndex(std::span<const std::byte> bytes, std::uint32_t version, std::uint64_t frames, std::uint64_t bricks,
+                 int levels, std::uint64_t chunksEnd, const std::string& file) {
     In in(bytes);
-    require(in.left() >= 8, "the index is truncated", file);
+    const bool hasModels = version > 1;
+    const std::uint64_t headBytes = hasModels ? 12 : 8;
+    require(in.left() >= headBytes, "the index is truncated", file);
     const std::uint64_t maskCount = in.get<std::uint32_t>(), frameCount = in.get<std::uint32_t>();
+    const std::uint64_t modelCount = hasModels ? in.get<std::uint32_t>() : 0;
     // No number here exceeds what the bytes of the index can hold, so nothing below overflows or allocates much.
     const std::uint64_t room = bytes.size();
     require(frameCount == frames, "the index and the metadata disagree on the number of frames", file);
-    require(bricks <= room && frameCount <= room && maskCount <= room, "the index is too short", file);
+    require(bricks <= room && frameCount <= room && maskCount <= room && modelCount <= room, "the index is too short",
+            file);
     const std::uint64_t maskBytes = kMaskRecordBytes + bricks * kMaskBrickBytes;
-    const std::uint64_t frameBytes =
-        kFrameRecordBytes + bricks * (kFrameBrickBytes + static_cast<std::uint64_t>(levels) * kSegmentBytes);
+    const std::uint64_t frameBytes = kFrameRecordBytes + (hasModels ? 4 : 0) +
+                                     bricks * (kFrameBrickBytes + static_cast<std::uint64_t>(levels) * kSegmentBytes);
     require(maskBytes <= room && frameBytes <= room, "the index is too short", file);
     require(maskCount <= room / maskBytes && frameCount <= room / frameBytes &&
-                8 + maskCount * maskBytes + frameCount * frameBytes == room,
+                modelCount <= room / kModelRecordBytes &&
+                headBytes + modelCount * kModelRecordBytes + maskCount * maskBytes + frameCount * frameBytes == room,
             "the index has the wrong length", file);
 
     Index index;
@@ -181,6 +193,13 @@ Index parseIndex(std::span<const std::byte> bytes, std::uint64_t frames, std::ui
                 "a chunk lies outside the file", file);
         chunks.emplace_back(offset, offset + length);
     };
+    for (std::uint64_t m = 0; m < modelCount; ++m) {
+        ModelRecord& model = index.models.emplace_back();
+        model.offset = in.get<std::uint64_t>();
+        model.length = in.get<std::uint64_t>();
+        model.checksum = in.get<std::uint64_t>();
+        startChunk(model.offset, model.length);
+    }
     for (std::uint64_t m = 0; m < maskCount; ++m) {
         MaskRecord& mask = index.masks.emplace_back();
         mask.offset = in.get<std::uint64_t>();
@@ -202,14 +221,21 @@ Index parseIndex(std::span<const std::byte> bytes, std::uint64_t frames, std::ui
         frame.length = in.get<std::uint64_t>();
         startChunk(frame.offset, frame.length);
         const auto kind = in.get<std::uint8_t>(), wavelet = in.get<std::uint8_t>(), keeps = in.get<std::uint8_t>();
+        const auto codeBits = in.get<std::uint8_t>();
+        constexpr std::size_t kWaveletsOfVersion1 = 8;
         require(kind <= static_cast<std::uint8_t>(NumberKind::Quantised), "an unknown coding of numbers", file);
-        require(wavelet < std::size(kWaveletNames), "an unknown wavelet", file);
-        require(keeps <= 1 && in.get<std::uint8_t>() == 0, "an unknown flag of a frame", file);
+        require(wavelet < (hasModels ? std::size(kWaveletNames) : kWaveletsOfVersion1), "an unknown wavelet", file);
+        require(keeps <= 1, "an unknown flag of a frame", file);
+        require(hasModels ? codeBits >= 1 && codeBits <= 32 : codeBits == 0, "an impossible width of codes", file);
         frame.numbers.kind = static_cast<NumberKind>(kind);
         frame.wavelet = static_cast<Wavelet>(wavelet);
         frame.keepsAbsent = keeps == 1;
+        frame.codeBits = hasModels ? codeBits : 32;
         frame.mask = in.get<std::int32_t>();
+        if (hasModels) frame.model = in.get<std::int32_t>();
         require(frame.mask >= -1 && frame.mask < static_cast<std::int64_t>(maskCount), "a mask is missing", file);
+        require(!hasModels || (frame.model >= 0 && frame.model < static_cast<std::int64_t>(modelCount)),
+                "a model is missing", file);
         frame.numbers.origin = in.get<double>();
         frame.numbers.step = in.get<double>();
         frame.valueOffset = in.get<double>();

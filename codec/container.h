@@ -15,7 +15,8 @@
 ///     | header | mask and frame chunks | metadata (JSON) | index          |
 namespace tessera::codec {
 
-inline constexpr std::uint32_t kFormatVersion = 1;
+/// Version 1 knew neither models nor bands; it is read, never written.
+inline constexpr std::uint32_t kFormatVersion = 2, kOldestVersion = 1;
 inline constexpr std::size_t kHeaderBytes = 80;
 
 /// xxh3, 64 bits, seed 0.
@@ -55,13 +56,20 @@ struct FrameBrick {
     float min = 0, max = -1; ///< physical values of present samples; min > max: none
 };
 
+/// The tables of the coefficient coder for a frame, or for several.
+struct ModelRecord {
+    std::uint64_t offset = 0, length = 0, checksum = 0;
+};
+
 /// One component of one parameter at one time.
 struct FrameRecord {
     std::uint64_t offset = 0, length = 0;
     NumberCoding numbers;
     Wavelet wavelet = Wavelet::W22;
     bool keepsAbsent = false;
-    std::int32_t mask = -1; ///< index of a MaskRecord, -1: all present
+    std::int32_t mask = -1;  ///< index of a MaskRecord, -1: all present
+    std::int32_t model = -1; ///< index of a ModelRecord; -1 in version 1
+    int codeBits = 32;       ///< every |code| is below 2^codeBits
     double valueOffset = 0, valueScale = 1;
     std::vector<FrameBrick> bricks;
     std::vector<Segment> segments; ///< [segment * bricks + brick], coarsest level first, as they lie in the file
@@ -69,13 +77,14 @@ struct FrameRecord {
 
 struct Index {
     std::vector<MaskRecord> masks;
+    std::vector<ModelRecord> models;
     std::vector<FrameRecord> frames; ///< [time * components + component]
 };
 
 Bytes serialise(const Index& index);
 /// Parses and checks an index whose shape follows from the metadata. Throws Error naming `file` when a length is
 /// impossible or the chunks do not fill [kHeaderBytes, chunksEnd) exactly, in any order.
-Index parseIndex(std::span<const std::byte> bytes, std::uint64_t frames, std::uint64_t bricks, int levels,
-                 std::uint64_t chunksEnd, const std::string& file);
+Index parseIndex(std::span<const std::byte> bytes, std::uint32_t version, std::uint64_t frames, std::uint64_t bricks,
+                 int levels, std::uint64_t chunksEnd, const std::string& file);
 
 } // namespace tessera::codec

@@ -1,5 +1,7 @@
 #include "codec/lifting.h"
 
+#include "codec/filter.h"
+
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -11,43 +13,6 @@
 namespace tessera::codec {
 
 namespace {
-
-/// target +- floor((centre * c + sum of weight[j] * (left_j +- right_j) + half) / 2^shift)
-struct Step {
-    int centre = 0;
-    int pairs = 0;
-    std::array<int, 3> weight{};
-    bool antisymmetric = false;
-    int shift = 0;
-};
-
-struct Filter {
-    Step predict;               ///< of an odd sample from even ones
-    std::optional<Step> update; ///< of an even sample from details
-};
-
-Filter filterOf(Wavelet wavelet) {
-    const Step mean{.pairs = 1, .weight = {1}, .shift = 1}, same{.centre = 1};
-    switch (wavelet) {
-    case Wavelet::N1:
-        return {same, {}};
-    case Wavelet::N2:
-        return {mean, {}};
-    case Wavelet::W11:
-        return {same, Step{.centre = 1, .shift = 1}};
-    case Wavelet::W13:
-        return {same, Step{.centre = 8, .pairs = 1, .weight = {-1}, .antisymmetric = true, .shift = 4}};
-    case Wavelet::W15:
-        return {same, Step{.centre = 128, .pairs = 2, .weight = {-22, 3}, .antisymmetric = true, .shift = 8}};
-    case Wavelet::W22:
-        return {mean, Step{.pairs = 1, .weight = {1}, .shift = 2}};
-    case Wavelet::W24:
-        return {mean, Step{.pairs = 2, .weight = {19, -3}, .shift = 6}};
-    case Wavelet::W26:
-        break;
-    }
-    return {mean, Step{.pairs = 3, .weight = {162, -39, 5}, .shift = 9}};
-}
 
 /// Lines side by side: `rows` samples along the line, `lanes` lines, row by row.
 struct Rows {
@@ -72,7 +37,7 @@ std::int64_t wide(std::uint32_t x) {
 
 /// The weighted sum of a step at one sample, by the rule for absent taps. Predict: pair j is (row - j, row + 1 + j);
 /// update: (row - 1 - j, row + j); antisymmetric update: (row - 1 - j, row + 1 + j).
-std::uint32_t tapSum(const Step& step, bool update, const Rows& target, const Rows& source, int row, int lane) {
+std::uint32_t tapSum(const LiftStep& step, bool update, const Rows& target, const Rows& source, int row, int lane) {
     std::int64_t sum = 0;
     if (step.centre != 0) {
         if (!source.has(row, lane)) return 0;
@@ -114,7 +79,7 @@ std::uint32_t floatMean(std::uint32_t a, std::uint32_t b) {
     return std::isfinite(mean) ? codeOfFloat(mean) : 0;
 }
 
-std::uint32_t floatPrediction(const Step& step, const Rows& source, int row, int lane) {
+std::uint32_t floatPrediction(const LiftStep& step, const Rows& source, int row, int lane) {
     if (step.centre != 0) return source.has(row, lane) ? source.at(row, lane) : 0;
     const bool left = source.has(row, lane), right = source.has(row + 1, lane);
     if (!left && !right) return 0;
@@ -122,7 +87,7 @@ std::uint32_t floatPrediction(const Step& step, const Rows& source, int row, int
 }
 
 /// target[i] += sign * prediction(i), where sign is 1 or 2^32 - 1.
-void apply(const Step& step, bool update, const Rows& target, const Rows& source, std::uint32_t sign,
+void apply(const LiftStep& step, bool update, const Rows& target, const Rows& source, std::uint32_t sign,
            Arithmetic arithmetic) {
     const int lanes = target.lanes;
     const bool masked = target.present != nullptr;
@@ -201,7 +166,7 @@ struct Scratch {
     std::vector<std::uint8_t> present;
 };
 
-void liftLines(const Lines& lines, const Filter& filter, Arithmetic arithmetic, bool isForward, Scratch& scratch) {
+void liftLines(const Lines& lines, const LiftFilter& filter, Arithmetic arithmetic, bool isForward, Scratch& scratch) {
     if (lines.count < 2 || lines.lanes < 1) return;
     const int evens = (lines.count + 1) / 2, odds = lines.count / 2;
     const std::ptrdiff_t oddStart = std::ptrdiff_t(evens) * lines.lanes;
@@ -220,9 +185,9 @@ void liftLines(const Lines& lines, const Filter& filter, Arithmetic arithmetic, 
     constexpr std::uint32_t plus = 1, minus = ~0u;
     if (isForward) {
         apply(filter.predict, false, odd, even, minus, arithmetic);
-        if (filter.update) apply(*filter.update, true, even, odd, plus, arithmetic);
+        if (filter.updates) apply(filter.update, true, even, odd, plus, arithmetic);
     } else {
-        if (filter.update) apply(*filter.update, true, even, odd, minus, arithmetic);
+        if (filter.updates) apply(filter.update, true, even, odd, minus, arithmetic);
         apply(filter.predict, false, odd, even, plus, arithmetic);
     }
     copyRows<false>(lines.values, lines, values, !isForward);
@@ -236,7 +201,7 @@ struct Block {
     glm::ivec3 full;
 };
 
-void liftAxis(const Block& block, glm::ivec3 part, int axis, const Filter& filter, Arithmetic arithmetic,
+void liftAxis(const Block& block, glm::ivec3 part, int axis, const LiftFilter& filter, Arithmetic arithmetic,
               bool isForward, Scratch& scratch) {
     if (part.x < 1 || part.y < 1 || part.z < 1) return; // the odd sublattice of a single slice
     const std::ptrdiff_t row = block.full.x, slice = row * block.full.y;
@@ -280,8 +245,8 @@ glm::ivec3 levelSize(glm::ivec3 size, int level) {
 
 void forward(std::span<std::uint32_t> values, std::span<std::uint8_t> present, glm::ivec3 size, int steps,
              Wavelet wavelet, Arithmetic arithmetic) {
-    const Filter filter = filterOf(wavelet);
-    assert(arithmetic != Arithmetic::Float || !filter.update);
+    const LiftFilter filter = filterOf(wavelet);
+    assert(arithmetic != Arithmetic::Float || !filter.updates);
     const Block block{values.data(), present.empty() ? nullptr : present.data(), size};
     Scratch scratch;
     for (int step = 0; step < steps; ++step)
@@ -291,8 +256,8 @@ void forward(std::span<std::uint32_t> values, std::span<std::uint8_t> present, g
 
 void inverse(std::span<std::uint32_t> values, std::span<std::uint8_t> present, glm::ivec3 size, int steps,
              Wavelet wavelet, Arithmetic arithmetic) {
-    const Filter filter = filterOf(wavelet);
-    assert(arithmetic != Arithmetic::Float || !filter.update);
+    const LiftFilter filter = filterOf(wavelet);
+    assert(arithmetic != Arithmetic::Float || !filter.updates);
     const Block block{values.data(), present.empty() ? nullptr : present.data(), size};
     Scratch scratch;
     for (int step = steps - 1; step >= 0; --step)

@@ -70,7 +70,7 @@ void gatherRanges(const std::vector<Field>& components, std::vector<Range>& rang
 void settleRanges(volume::DatasetInfo& info, const std::vector<std::vector<Range>>& gathered) {
     for (std::size_t p = 0; p < info.parameters.size(); ++p) {
         std::vector<Range>& ranges = info.parameters[p].ranges;
-        if (!ranges.empty()) continue;
+        if (!ranges.empty() || gathered[p].empty()) continue; // known, or not read yet
         ranges = gathered[p];
         for (Range& range : ranges)
             if (range.lo > range.hi) range = {0, 0}; // no sample is present anywhere
@@ -86,7 +86,8 @@ int defaultLevels(const volume::Lattice& lattice, int brickSize) {
 }
 
 volume::BrickGrid gridFor(const volume::Lattice& lattice, const PackOptions& options) {
-    volume::BrickGrid grid{lattice, options.brickSize, options.levels, levelPhase(options.wavelet)};
+    volume::BrickGrid grid{lattice, options.brickSize, options.levels,
+                           levelPhase(waveletOf(options.wavelet).value_or(Wavelet::W22))};
     if (options.brickSize < 4 || options.brickSize > 128 || !std::has_single_bit(unsigned(options.brickSize)))
         throw Error("the brick size must be a power of two from 4 to 128, not " + std::to_string(options.brickSize));
     if (grid.levels == 0) grid.levels = defaultLevels(lattice, grid.brickSize);
@@ -101,6 +102,37 @@ double extentOf(const volume::Parameter& parameter) {
     for (std::size_t c = 0; c < std::min(parameter.ranges.size(), std::size_t(parameter.components)); ++c)
         extent = std::max(extent, parameter.ranges[c].hi - parameter.ranges[c].lo);
     return extent;
+}
+
+/// A bound on the error of stored numbers that gives at least `psnr` dB, found by trial on the frame itself: the error
+/// of a quantised number is spread about evenly, so the first guess is rarely far off.
+double boundForPsnr(const Field& field, double extent, double psnr) {
+    const double wanted = extent * std::pow(10.0, -psnr / 20);
+    double bound = std::sqrt(3.0) * wanted;
+    const auto samples = field.as<float>();
+    for (int trial = 0; trial < 200; ++trial, bound *= 0.97) {
+        const NumberCoding numbers = chooseCoding(field, bound);
+        if (numbers.kind != NumberKind::Quantised) return bound;
+        double squares = 0, count = 0;
+        for (std::size_t i = 0; i < samples.size(); ++i) {
+            if (!field.present(i) || !std::isfinite(samples[i])) continue;
+            const double error = double(sampleOf<float>(numbers, codeOf(numbers, samples[i]))) - double(samples[i]);
+            squares += error * error, ++count;
+        }
+        if (count == 0 || std::sqrt(squares / count) <= wanted) return bound;
+    }
+    return 0;
+}
+
+/// The strictest of the bounds asked for, in stored numbers; 0: exact.
+double boundFor(const PackOptions& options, const volume::Parameter& parameter, const Field& field) {
+    if (parameter.categorical || field.type != ScalarType::F32) return 0;
+    double bound = std::numeric_limits<double>::infinity();
+    const double scale = std::abs(field.scale), extent = extentOf(parameter);
+    if (options.maxError > 0) bound = std::min(bound, options.maxError * extent / scale);
+    if (options.absError > 0) bound = std::min(bound, options.absError / scale);
+    if (options.psnr > 0) bound = std::min(bound, boundForPsnr(field, extent / scale, options.psnr));
+    return std::isfinite(bound) ? bound : 0;
 }
 
 Field loadChecked(volume::Dataset& dataset, int parameter, int component, int time) {
@@ -121,16 +153,46 @@ std::vector<Field> loadParameter(volume::Dataset& dataset, int parameter, int ti
 
 } // namespace
 
-PackSummary pack(volume::Dataset& dataset, const PackOptions& options, const std::string& path,
+PackOptions resolved(PackOptions options) {
+    const PackOptions defaults;
+    const auto set = [](auto& value, const auto& before, const auto& wanted) {
+        if (value == before) value = wanted;
+    };
+    switch (options.preset) {
+    case PackPreset::None:
+        break;
+    case PackPreset::Lossless:
+        set(options.lattice, defaults.lattice, LatticeKind::CC);
+        break;
+    case PackPreset::Visual:
+        set(options.maxError, defaults.maxError, 1e-3);
+        break;
+    case PackPreset::Small:
+        set(options.maxError, defaults.maxError, 1e-2);
+        set(options.zstdLevel, defaults.zstdLevel, 19);
+        break;
+    case PackPreset::Thesis:
+        set(options.wavelet, defaults.wavelet, WaveletChoice::W22);
+        set(options.brickSize, defaults.brickSize, 16);
+        set(options.levels, defaults.levels, 3);
+        break;
+    }
+    options.preset = PackPreset::None;
+    return options;
+}
+
+PackSummary pack(volume::Dataset& dataset, const PackOptions& asked, const std::string& path,
                  const Progress& progress) {
+    const PackOptions options = resolved(asked);
     PackSummary summary;
     volume::DatasetInfo& info = dataset.info;
     if (info.parameters.empty() || info.times.empty()) throw Error("there is nothing to pack");
     if (!(options.maxError >= 0 && options.maxError < 1)) throw Error("the error bound must be from 0 to below 1");
-    if (!options.lossless && options.maxError == 0) throw Error("without lossless an error bound is needed");
+    if (!(options.absError >= 0) || !(options.psnr >= 0)) throw Error("error bounds must not be negative");
+    const bool exact = options.maxError == 0 && options.absError == 0 && options.psnr == 0;
+    if (!options.lossless && exact) throw Error("without lossless an error bound is needed");
     if (options.lattice == LatticeKind::CC && info.lattice.kind == LatticeKind::BCC)
         throw Error("the data lies on BCC; it cannot be packed as CC");
-    const bool exact = options.maxError == 0;
     const bool resamples = options.lattice == LatticeKind::BCC && info.lattice.kind == LatticeKind::CC;
 
     Metadata metadata;
@@ -139,7 +201,6 @@ PackSummary pack(volume::Dataset& dataset, const PackOptions& options, const std
     metadata.info.lattice = resamples ? volume::bccFor(info.lattice) : info.lattice;
     metadata.grid = gridFor(metadata.info.lattice, options);
     metadata.lossless = exact;
-    metadata.maxError = options.maxError;
     metadata.program = "tessera";
 
     const std::size_t parameters = info.parameters.size(), times = info.times.size();
@@ -147,7 +208,9 @@ PackSummary pack(volume::Dataset& dataset, const PackOptions& options, const std
     Progress work = progress;
     {
         Stopwatch all(summary.seconds);
-        if (!exact) {
+        // A bound relative to the range of all times needs a pass of its own; one time is read once.
+        const bool relative = options.maxError > 0 || options.psnr > 0;
+        if (relative && times > 1) {
             const Progress first = progress.part(0, 0.3);
             work = progress.part(0.3, 1);
             for (std::size_t p = 0; p < parameters; ++p)
@@ -171,9 +234,10 @@ PackSummary pack(volume::Dataset& dataset, const PackOptions& options, const std
                     Stopwatch load(summary.loadSeconds);
                     fields = loadParameter(dataset, int(p), int(t));
                     if (parameter.ranges.empty()) gatherRanges(fields, ranges[p]);
+                    if (times == 1) settleRanges(info, ranges);
                 }
                 FrameOptions frame;
-                frame.wavelet = parameter.categorical ? Wavelet::N1 : options.wavelet;
+                frame.wavelet = parameter.categorical ? Wavelet::N1 : waveletOf(options.wavelet);
                 frame.zstdLevel = options.zstdLevel;
                 frame.keepsAbsent = exact && !resamples;
                 for (std::size_t c = 0; c < fields.size(); ++c, ++done) {
@@ -185,7 +249,11 @@ PackSummary pack(volume::Dataset& dataset, const PackOptions& options, const std
                         field = volume::toBcc(field, parameter.categorical, Progress{{}, progress.stop});
                     }
                     summary.storedSamples += field.count();
-                    if (!parameter.categorical) frame.maxError = options.maxError * extentOf(parameter) / field.scale;
+                    frame.maxError = exact ? 0 : boundFor(options, parameter, field);
+                    const double extent = extentOf(parameter);
+                    if (extent > 0)
+                        metadata.maxError =
+                            std::max(metadata.maxError, frame.maxError * std::abs(field.scale) / extent);
                     Stopwatch code(summary.codeSeconds);
                     writer.addFrame(int(p), int(c), int(t), field, frame,
                                     work.part(done / frames, (done + 1) / frames));

@@ -5,25 +5,47 @@
 #include "volume/describe.h"
 #include "volume/progress.h"
 
+#include <optional>
 #include <string>
 #include <vector>
 
 /// The pipeline from a data set to an archive.
 namespace tessera::codec {
 
+/// A wavelet, or by trial on some bricks of each frame, among those whose coarse samples lie on fine ones.
+enum class WaveletChoice : std::uint8_t { Auto, N1, N2, W11, W13, W15, W22, W24, W26, N4, W42, W44, W46 };
+inline constexpr std::string_view kWaveletChoiceNames[] = {"auto", "1,0", "2,0", "1,1", "1,3", "1,5", "2,2",
+                                                           "2,4",  "2,6", "4,0", "4,2", "4,4", "4,6"};
+constexpr std::optional<Wavelet> waveletOf(WaveletChoice choice) {
+    if (choice == WaveletChoice::Auto) return std::nullopt;
+    return static_cast<Wavelet>(static_cast<int>(choice) - 1);
+}
+
+/// Settings for a purpose; each replaces only what was left at its default.
+enum class PackPreset : std::uint8_t { None, Lossless, Visual, Small, Thesis };
+inline constexpr std::string_view kPackPresetNames[] = {"none", "lossless", "visual", "small", "thesis"};
+
 /// How to pack. Described once: widgets, JSON and command-line options come from here.
 struct PackOptions {
+    PackPreset preset = PackPreset::None;
     volume::LatticeKind lattice = volume::LatticeKind::BCC;
     bool lossless = true;
     double maxError = 0;
-    Wavelet wavelet = Wavelet::W22;
-    int brickSize = 32;
+    double absError = 0;
+    double psnr = 0;
+    WaveletChoice wavelet = WaveletChoice::Auto;
+    int brickSize = 64;
     int levels = 0;
-    int zstdLevel =
-        1; ///< higher ones find matches that residuals do not have: measured within 1.5 % of ratio, 1.5 x the time
+    int zstdLevel = 9;
 
     bool operator==(const PackOptions&) const = default;
     static void describe(auto& self, auto&& visit) {
+        visit(self.preset, FieldInfo{.key = "preset",
+                                     .unit = "",
+                                     .doc = "Settings for a purpose, which options given beside it override: lossless "
+                                            "(every sample of the source), visual (error 0.001 of range), small (0.01, "
+                                            "most effort), thesis (BCC, bricks of 16, 3 levels, (2,2))",
+                                     .names = kPackPresetNames});
         visit(self.lattice, FieldInfo{.key = "lattice",
                                       .unit = "",
                                       .doc = "Lattice of the stored samples: bcc keeps 70.7 % of them",
@@ -35,10 +57,20 @@ struct PackOptions {
                                        .doc = "Largest error of a float sample, relative to its parameter's range; "
                                               "above 0 it replaces lossless",
                                        .range = Range{0, 1}});
+        visit(self.absError, FieldInfo{.key = "absError",
+                                       .unit = "of the parameter",
+                                       .doc = "Largest error of a float sample, in the unit of its parameter; 0 = no "
+                                              "such bound. Of several bounds the strictest holds",
+                                       .range = Range{0, 1e30}});
+        visit(self.psnr, FieldInfo{.key = "psnr",
+                                   .unit = "dB",
+                                   .doc = "Least peak signal-to-noise ratio of each frame of floats, its parameter's "
+                                          "range over the RMS error; 0 = not asked for",
+                                   .range = Range{0, 200}});
         visit(self.wavelet, FieldInfo{.key = "wavelet",
                                       .unit = "",
-                                      .doc = "Vanishing moments N,N~ of the integer wavelet",
-                                      .names = kWaveletNames});
+                                      .doc = "Vanishing moments N,N~ of the integer wavelet; auto: the best by trial",
+                                      .names = kWaveletChoiceNames});
         visit(self.brickSize, FieldInfo{.key = "brickSize",
                                         .unit = "texel",
                                         .doc = "Edge of a brick, a power of two",
@@ -47,10 +79,15 @@ struct PackOptions {
                                      .unit = "",
                                      .doc = "Levels of detail; 0 = until a brick is 4 texels wide",
                                      .range = Range{0, 8}});
-        visit(self.zstdLevel,
-              FieldInfo{.key = "zstdLevel", .unit = "", .doc = "Effort of the entropy coder", .range = Range{1, 19}});
+        visit(self.zstdLevel, FieldInfo{.key = "zstdLevel",
+                                        .unit = "",
+                                        .doc = "Effort of zstd, which codes masks and what repeats itself",
+                                        .range = Range{1, 19}});
     }
 };
+
+/// The options with those left at their defaults set as the preset says; its preset is none.
+PackOptions resolved(PackOptions options);
 
 /// What was done.
 struct PackSummary {

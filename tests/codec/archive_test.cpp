@@ -47,7 +47,7 @@ std::vector<MadeParameter> everyKind() {
 TEST(Archive, GivesBackEverySampleBitForBit) {
     const TemporaryFolder folder;
     for (const glm::ivec3 size : {glm::ivec3(1, 1, 1), glm::ivec3(2, 3, 17), glm::ivec3(41, 18, 35)})
-        for (const Wavelet wavelet : {Wavelet::W11, Wavelet::W22, Wavelet::W24}) {
+        for (const WaveletChoice wavelet : {WaveletChoice::W11, WaveletChoice::W22, WaveletChoice::W46}) {
             volume::Dataset made = makeDataset(size, everyKind(), 2);
             PackOptions options;
             options.lattice = LatticeKind::CC;
@@ -134,7 +134,7 @@ TEST(Archive, CoarseLevelsHaveTheSizesOfTheGridAndApproximateTheField) {
     const TemporaryFolder folder;
     const std::vector<MadeParameter> parameters{{"T", ScalarType::F32, 1, Texture::Smooth, false, false}};
     volume::Dataset made = makeDataset({64, 50, 70}, parameters, 1);
-    for (const Wavelet wavelet : {Wavelet::W11, Wavelet::W22})
+    for (const WaveletChoice wavelet : {WaveletChoice::W11, WaveletChoice::W22})
         for (const double maxError : {0.0, 1e-4}) {
             PackOptions options;
             options.brickSize = 16;

@@ -26,8 +26,6 @@ std::size_t countOf(glm::ivec3 size) {
 
 MadeBrick randomBrick(std::mt19937& random) {
     constexpr int kSizes[] = {1, 2, 3, 8, 17};
-    constexpr Wavelet kWavelets[] = {Wavelet::N1,  Wavelet::N2,  Wavelet::W11, Wavelet::W13,
-                                     Wavelet::W15, Wavelet::W22, Wavelet::W24, Wavelet::W26};
     constexpr Texture kTextures[] = {Texture::Smooth, Texture::Noise, Texture::Constant, Texture::Decimals,
                                      Texture::Nasty};
     const auto pick = [&](const auto& list) { return list[random() % std::size(list)]; };
@@ -35,7 +33,7 @@ MadeBrick randomBrick(std::mt19937& random) {
     made.format.kind = random() % 2 == 0 ? LatticeKind::CC : LatticeKind::BCC;
     made.format.size = {pick(kSizes), pick(kSizes), pick(kSizes)};
     made.format.levels = 1 + int(random() % 4);
-    made.format.wavelet = pick(kWavelets);
+    made.format.wavelet = static_cast<Wavelet>(random() % std::size(kWaveletNames));
     made.format.type = static_cast<ScalarType>(random() % 5);
     const Texture texture = pick(kTextures);
     volume::Field field = volume::makeField({LatticeKind::CC, made.format.size, {}, {}}, made.format.type);
@@ -54,7 +52,16 @@ MadeBrick randomBrick(std::mt19937& random) {
     if (made.format.type == ScalarType::F32 && random() % 3 == 0) made.maxError = 0.01;
     made.format.numbers = chooseCoding(field, made.maxError);
     made.samples = field.samples;
+    if (made.format.type != ScalarType::F32) made.format.codeBits = codeBitsOf(made.format.type);
     return made;
+}
+
+/// The model of the brick itself, or of another one: any brick must come back with any model.
+Model modelOf(const MadeBrick& made, bool own) {
+    Histogram histogram(made.format.levels);
+    if (own) countBrick(made.format, made.samples, made.present, 3, histogram);
+    for (std::size_t t = 0; !own && t < 30; ++t) histogram.counts[5][t] = 100;
+    return makeModel(histogram, 3, 16);
 }
 
 std::vector<std::span<const std::byte>> views(const std::vector<Bytes>& segments, std::size_t count) {
@@ -66,13 +73,15 @@ TEST(BrickCodec, DecodesWhatItEncodes) {
     Compressor compressor(3);
     for (int trial = 0; trial < 1000; ++trial) {
         const MadeBrick made = randomBrick(random);
+        const Model model = modelOf(made, trial % 3 != 0);
+        const BandDecoder decoder(model);
         const std::vector<Bytes> segments =
-            encodeBrick(made.format, made.samples, made.present, made.maxError, compressor);
+            encodeBrick(made.format, made.samples, made.present, made.maxError, compressor, BandEncoder(model));
         ASSERT_EQ(int(segments.size()), made.format.levels);
         for (int level = made.format.levels - 1; level >= 0; --level) {
             DecodedBrick decoded;
             ASSERT_EQ(decodeBrick(made.format, views(segments, std::size_t(made.format.levels - level)), level,
-                                  made.present, decoded),
+                                  made.present, decoder, decoded),
                       DecodeStatus::Ok);
             ASSERT_EQ(decoded.codes.size(), countOf(samplesAt(made.format, level)));
             ASSERT_EQ(decoded.present, maskAt(made.format, made.present, level));
@@ -114,8 +123,10 @@ TEST(BrickCodec, RefusesEveryTruncationAndEveryTrailingByte) {
     Compressor compressor(3);
     for (int trial = 0; trial < 60; ++trial) {
         const MadeBrick made = randomBrick(random);
+        const Model model = modelOf(made, trial % 3 != 0);
+        const BandDecoder decoder(model);
         const std::vector<Bytes> segments =
-            encodeBrick(made.format, made.samples, made.present, made.maxError, compressor);
+            encodeBrick(made.format, made.samples, made.present, made.maxError, compressor, BandEncoder(model));
         for (std::size_t s = 0; s < segments.size(); ++s) {
             const std::size_t stride = segments[s].size() / 200 + 1;
             for (std::size_t length = 0; length <= segments[s].size() + 1;
@@ -128,7 +139,7 @@ TEST(BrickCodec, RefusesEveryTruncationAndEveryTrailingByte) {
                 auto inputs = views(segments, segments.size());
                 inputs[s] = changed;
                 DecodedBrick decoded;
-                ASSERT_NE(decodeBrick(made.format, inputs, 0, made.present, decoded), DecodeStatus::Ok)
+                ASSERT_NE(decodeBrick(made.format, inputs, 0, made.present, decoder, decoded), DecodeStatus::Ok)
                     << "segment " << s << " length " << length;
             }
         }
@@ -140,13 +151,16 @@ TEST(BrickCodec, SurvivesEveryFlippedBit) {
     Compressor compressor(3);
     for (int trial = 0; trial < 60; ++trial) {
         const MadeBrick made = randomBrick(random);
-        std::vector<Bytes> segments = encodeBrick(made.format, made.samples, made.present, made.maxError, compressor);
+        const Model model = modelOf(made, true);
+        const BandDecoder decoder(model);
+        std::vector<Bytes> segments =
+            encodeBrick(made.format, made.samples, made.present, made.maxError, compressor, BandEncoder(model));
         for (Bytes& segment : segments)
             for (std::size_t i = 0; i < segment.size(); i += i < 24 ? 1 : 1 + segment.size() / 50)
                 for (int bit = 0; bit < 8; ++bit) {
                     segment[i] ^= static_cast<std::byte>(1 << bit);
                     DecodedBrick decoded;
-                    (void)decodeBrick(made.format, views(segments, segments.size()), 0, made.present, decoded);
+                    (void)decodeBrick(made.format, views(segments, segments.size()), 0, made.present, decoder, decoded);
                     segment[i] ^= static_cast<std::byte>(1 << bit);
                 }
     }
@@ -157,8 +171,9 @@ TEST(BrickCodec, AConstantBrickCostsAFewBytes) {
     BrickFormat format{LatticeKind::BCC, {32, 32, 64}, 4, Wavelet::W22, ScalarType::U16, {}, false};
     Bytes samples(countOf(format.size) * 2);
     for (std::size_t i = 0; i < samples.size(); i += 2) samples[i] = std::byte{200};
+    const BandEncoder encoder(makeModel(Histogram(format.levels), 0, 1));
     std::size_t bytes = 0;
-    for (const Bytes& segment : encodeBrick(format, samples, {}, 0, compressor)) bytes += segment.size();
+    for (const Bytes& segment : encodeBrick(format, samples, {}, 0, compressor, encoder)) bytes += segment.size();
     EXPECT_LE(bytes, 8u);
 }
 

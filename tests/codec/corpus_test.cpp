@@ -2,6 +2,7 @@
 #include "codec/brick_codec.h"
 #include "codec/pack.h"
 #include "tests/codec/make_dataset.h"
+#include "tests/fuzz/fuzz_model.h"
 
 #include <gtest/gtest.h>
 
@@ -24,18 +25,20 @@ volume::Dataset corpusDataset() {
                        1);
 }
 
-// Archives of this version stay readable: these files were written once.
+// Archives of every version stay readable: these files were written once; those without a number by version 1.
 TEST(Corpus, StoredArchivesStillDecode) {
     const volume::Dataset made = corpusDataset();
-    const Archive archive(corpus() + "fuzz_archive/cc-exact.tsr");
-    for (int p = 0; p < 3; ++p)
-        for (int c = 0; c < made.info.parameters[std::size_t(p)].components; ++c) {
-            const volume::Field expected = made.load(p, c, 0), stored = readField(archive, p, c, 0);
-            EXPECT_EQ(expected.samples, stored.samples);
-            EXPECT_EQ(expected.mask ? *expected.mask : volume::Mask(), stored.mask ? *stored.mask : volume::Mask());
-        }
-    for (const char* name : {"bcc-exact", "bcc-bounded", "cc-bounded"})
-        EXPECT_EQ(verifyArchive(Archive(corpus() + "fuzz_archive/" + name + ".tsr")).damaged, 0u);
+    for (const char* version : {"", "-2"}) {
+        const Archive archive(corpus() + "fuzz_archive/cc-exact" + version + ".tsr");
+        for (int p = 0; p < 3; ++p)
+            for (int c = 0; c < made.info.parameters[std::size_t(p)].components; ++c) {
+                const volume::Field expected = made.load(p, c, 0), stored = readField(archive, p, c, 0);
+                EXPECT_EQ(expected.samples, stored.samples);
+                EXPECT_EQ(expected.mask ? *expected.mask : volume::Mask(), stored.mask ? *stored.mask : volume::Mask());
+            }
+        for (const char* name : {"bcc-exact", "bcc-bounded", "cc-bounded"})
+            EXPECT_EQ(verifyArchive(Archive(corpus() + "fuzz_archive/" + name + version + ".tsr")).damaged, 0u);
+    }
 }
 
 /// Not a check: writes the seeds of fuzz_brick and fuzz_archive when the format changes
@@ -50,7 +53,7 @@ TEST(Corpus, DISABLED_WriteSeeds) {
             options.maxError = maxError;
             pack(made, options,
                  corpus() + "fuzz_archive/" + std::string(volume::kLatticeNames[std::size_t(lattice)]) +
-                     (maxError > 0 ? "-bounded.tsr" : "-exact.tsr"));
+                     (maxError > 0 ? "-bounded-2.tsr" : "-exact-2.tsr"));
         }
     Compressor compressor(3);
     int number = 0;
@@ -71,10 +74,25 @@ TEST(Corpus, DISABLED_WriteSeeds) {
             std::vector<std::uint8_t> present;
             for (std::size_t i = 0; masked != 0 && i < field.count(); ++i)
                 present.push_back((0x5b >> (i * 7 % 8) & 1) != 0);
-            const Bytes body = encodeBrick(format, field.samples, present, 0, compressor)[0];
+            const Bytes body = encodeBrick(format, field.samples, present, 0, compressor, BandEncoder(fuzzModel(1)))[0];
             for (const std::byte byte : body) head.push_back(char(byte));
             writeFile(corpus() + "fuzz_brick/" + std::to_string(number++), head);
         }
+    for (int seed = 0; seed < 4; ++seed) {
+        std::mt19937 random(static_cast<unsigned>(seed));
+        std::vector<std::int32_t> values(40 * 5 * 3);
+        for (std::int32_t& value : values)
+            value = seed == 3 ? static_cast<std::int32_t>(random())
+                              : static_cast<std::int32_t>(random() % (1u << (3 + 4 * seed)));
+        const Band<const std::int32_t> band{values.data(), nullptr, {40, 5, 3}, 40, 200};
+        const BandEncoder encoder(fuzzModel(1));
+        Bytes bytes = serialise(encoder.model());
+        // The head of fuzz_bands.cpp.
+        std::vector<char> file{char(bytes.size() % 256), char(bytes.size() / 256), 39, 4, 2};
+        encoder.encode<std::int32_t>(std::span(&band, 1), 0, bytes);
+        for (const std::byte byte : bytes) file.push_back(char(byte));
+        writeFile(corpus() + "fuzz_bands/" + std::to_string(seed), file);
+    }
 }
 
 } // namespace

@@ -160,13 +160,13 @@ TEST(Hostile, OtherFilesAreRefusedWithAReason) {
     EXPECT_THROW(Archive(folder / "missing.tsr"), Error);
     EXPECT_THROW(Archive(folder / "."), Error);
     std::vector<char> newer = smallArchive(folder, 0);
-    newer[8] = 2;
+    newer[8] = 3;
     writeFile(folder / "newer.tsr", resealed(newer));
     try {
         const Archive archive(folder / "newer.tsr");
         FAIL() << "a newer version was read";
     } catch (const Error& error) {
-        EXPECT_NE(error.reason().find("version 2"), std::string::npos);
+        EXPECT_NE(error.reason().find("version 3"), std::string::npos);
     }
     std::vector<char> features = smallArchive(folder, 0);
     features[15] = 1;

@@ -111,20 +111,34 @@ std::uint32_t finish(std::int64_t sum, int shift) {
 }
 
 std::uint32_t predict(const Line& line, int i, int wavelet, bool asFloat) {
-    const bool mean = wavelet == 1 || wavelet >= 5;
+    const bool mean = wavelet == 1 || wavelet >= 5, cubic = wavelet >= 8;
     const Cell left = line.e(i);
     if (!mean) return left.value_or(0);
     const Cell right = line.e(i + 1);
     if (!left && !right) return 0;
     const std::uint32_t a = left ? *left : *right, b = right ? *right : *left;
+    if (cubic) { // 9 and -1 sixteenths; the pair further out, or the inner one again
+        const Cell farLeft = line.e(i - 1), farRight = line.e(i + 2);
+        const bool whole = farLeft && farRight;
+        const std::int64_t inner = asSigned(a) + asSigned(b);
+        return finish(9 * inner - (whole ? asSigned(*farLeft) + asSigned(*farRight) : inner), 4);
+    }
     if (!asFloat) return finish(asSigned(a) + asSigned(b), 1);
     const float half = 0.5f * floatOf(a), other = 0.5f * floatOf(b), sum = half + other;
     return std::isfinite(sum) ? codeOf(sum) : 0;
 }
 
 std::uint32_t update(const Line& line, int i, int wavelet) {
-    static const Taps kTaps[] = {{1, {}, 1, false},  {8, {-1}, 4, true},      {128, {-22, 3}, 8, true},
-                                 {0, {1}, 2, false}, {0, {19, -3}, 6, false}, {0, {162, -39, 5}, 9, false}};
+    static const Taps kTaps[] = {{1, {}, 1, false},
+                                 {8, {-1}, 4, true},
+                                 {128, {-22, 3}, 8, true},
+                                 {0, {1}, 2, false},
+                                 {0, {19, -3}, 6, false},
+                                 {0, {162, -39, 5}, 9, false},
+                                 {}, // 4,0
+                                 {0, {1}, 2, false},
+                                 {0, {9, -1}, 5, false},
+                                 {0, {306, -59, 9}, 10, false}};
     const Taps& taps = kTaps[wavelet - 2];
     // A detail, if it was predicted from all its even samples.
     const auto detail = [&](int k) {
@@ -159,12 +173,30 @@ std::uint32_t update(const Line& line, int i, int wavelet) {
     return finish(sum, taps.shift);
 }
 
+bool updates(int wavelet) {
+    return wavelet >= 2 && wavelet != 8;
+}
+
+/// The opposite of undo.
+std::vector<Cell> redo(const std::vector<Cell>& cells, int wavelet, bool asFloat) {
+    if (cells.size() == 1) return cells;
+    Line line;
+    for (std::size_t i = 0; i < cells.size(); ++i) (i % 2 == 0 ? line.even : line.odd).push_back(cells[i]);
+    for (std::size_t i = 0; i < line.odd.size(); ++i)
+        if (line.odd[i]) line.odd[i] = *line.odd[i] - predict(line, int(i), wavelet, asFloat);
+    std::vector<Cell> updated = line.even;
+    for (std::size_t i = 0; updates(wavelet) && i < updated.size(); ++i)
+        if (updated[i]) updated[i] = *updated[i] + update(line, int(i), wavelet);
+    updated.insert(updated.end(), line.odd.begin(), line.odd.end());
+    return updated;
+}
+
 std::vector<Cell> undo(const std::vector<Cell>& cells, int wavelet, bool asFloat) {
     const std::size_t n = cells.size(), evens = (n + 1) / 2;
     if (n == 1) return cells;
     Line line{{cells.begin(), cells.begin() + std::ptrdiff_t(evens)},
               {cells.begin() + std::ptrdiff_t(evens), cells.end()}};
-    if (wavelet >= 2) {
+    if (updates(wavelet)) {
         std::vector<Cell> updated = line.even;
         for (std::size_t i = 0; i < evens; ++i)
             if (updated[i]) updated[i] = *updated[i] - update(line, int(i), wavelet);
@@ -215,7 +247,134 @@ void split(Box& flags, int steps) {
     }
 }
 
+/// 4.5
+struct Band {
+    Box* box = nullptr;
+    Size lo{}, hi{};
+    std::vector<std::uint32_t> magnitudes{};
+    int size(std::size_t axis) const { return hi[axis] - lo[axis]; }
+    std::uint32_t magnitude(int x, int y, int z) const {
+        if (x < 0 || y < 0 || z < 0 || x >= size(0) || y >= size(1) || z >= size(2)) return 0;
+        return magnitudes[(std::size_t(z) * std::size_t(size(1)) + std::size_t(y)) * std::size_t(size(0)) +
+                          std::size_t(x)];
+    }
+};
+
+std::uint32_t classOf(std::uint32_t sum) {
+    std::uint32_t exponent = 0;
+    while ((sum + 1) >> (exponent + 1) != 0) ++exponent;
+    // Of sum + 1 = 2^exponent (1 + fraction): is the fraction at least a half?
+    const bool upper = exponent > 0 && ((sum + 1) >> (exponent - 1) & 1) != 0;
+    return 2 * exponent + (upper ? 1 : 0);
+}
+
+void decodeBands(const Octets& bytes, std::vector<Band>& bands, std::size_t level, const Decoder::Model& model) {
+    Reader in(bytes);
+    std::size_t rawBytes = 0;
+    for (int shift = 0;; shift += 7) {
+        const auto byte = in.number(1);
+        rawBytes |= std::size_t(byte & 127) << shift;
+        if (byte < 128) break;
+    }
+    const Octets raw = in.take(rawBytes);
+    std::size_t rawAt = 0;
+    const auto takeBits = [&](int count) {
+        std::uint32_t value = 0;
+        for (int i = 0; i < count; ++i, ++rawAt) {
+            need(rawAt < 8 * raw.size(), "raw bits");
+            value |= std::uint32_t(raw[rawAt / 8] >> (rawAt % 8) & 1) << i;
+        }
+        return value;
+    };
+    std::size_t chunks = 0, widest = 0;
+    int maxY = 0, maxZ = 0;
+    for (Band& band : bands) {
+        band.magnitudes.resize(std::size_t(band.size(0)) * std::size_t(band.size(1)) * std::size_t(band.size(2)));
+        chunks += std::size_t((band.size(0) + 15) / 16) * std::size_t(band.size(1)) * std::size_t(band.size(2));
+        widest = std::max(widest, std::size_t(band.size(0)));
+        maxY = std::max(maxY, band.size(1));
+        maxZ = std::max(maxZ, band.size(2));
+    }
+    const std::size_t groups = chunks >= 8192 ? 4 : chunks >= 1024 ? 2 : 1;
+    std::vector<std::uint32_t> states(64, 65536);
+    for (std::size_t i = 0; i < (groups > 1 ? 16 * groups : std::min<std::size_t>(16, widest)); ++i)
+        states[i] = in.u32();
+    std::size_t chunk = 0;
+    for (int z = 0; z < maxZ; ++z)
+        for (int y = 0; y < maxY; ++y)
+            for (Band& band : bands) {
+                if (y >= band.size(1) || z >= band.size(2)) continue;
+                for (int x = 0; x < band.size(0); ++x) {
+                    const std::size_t group = (chunk + std::size_t(x) / 16) % groups;
+                    Cell& cell = band.box->at(band.lo[0] + x, band.lo[1] + y, band.lo[2] + z);
+                    if (!cell) continue;
+                    const std::uint32_t sum = 2 * band.magnitude(x, y - 1, z) + band.magnitude(x - 1, y - 1, z) +
+                                              band.magnitude(x + 1, y - 1, z) + 2 * band.magnitude(x, y, z - 1) +
+                                              band.magnitude(x, y - 1, z - 1) + band.magnitude(x, y + 1, z - 1);
+                    const auto& table = model.tables[model.tableOf[level * 32 + classOf(sum)]];
+                    std::uint32_t& state = states[16 * group + std::size_t(x) % 16];
+                    std::uint32_t slot = state % 4096, token = 0;
+                    for (; slot >= table[token]; ++token) slot -= table[token];
+                    state = table[token] * (state / 4096) + slot;
+                    if (state < 65536) state = state * 65536 + std::uint32_t(in.number(2));
+                    std::uint32_t symbol = token;
+                    if (token == 140) {
+                        symbol = takeBits(32);
+                    } else if (token >= 32) {
+                        const int count = int(token - 32) / 4 + 3;
+                        symbol = (4 + (token - 32) % 4) << count;
+                        symbol |= takeBits(count);
+                    }
+                    cell = unzigzag(symbol);
+                    const std::int64_t value = asSigned(*cell);
+                    const auto magnitude = std::uint32_t(value < 0 ? -value : value) >> model.shift;
+                    band.magnitudes[(std::size_t(z) * std::size_t(band.size(1)) + std::size_t(y)) *
+                                        std::size_t(band.size(0)) +
+                                    std::size_t(x)] = std::min<std::uint32_t>(magnitude, 4095);
+                }
+                chunk += std::size_t(band.size(0) + 15) / 16;
+            }
+    need(in.at == in.end && (rawAt + 7) / 8 == raw.size(), "trailing");
+    for (const std::uint32_t state : states) need(state == 65536, "states");
+}
+
 } // namespace
+
+/// 1.5
+Decoder::Model Decoder::parseModel(const Piece& piece) const {
+    const Octets bytes = checked(piece);
+    std::size_t at = 0;
+    const auto bits = [&](int count) {
+        std::uint32_t value = 0;
+        for (int i = 0; i < count; ++i, ++at) {
+            need(at < 8 * bytes.size(), "model");
+            value |= std::uint32_t(bytes[at / 8] >> (at % 8) & 1) << i;
+        }
+        return value;
+    };
+    Model model;
+    model.shift = bits(8);
+    const std::uint32_t tables = bits(8);
+    std::uint32_t last = 0;
+    for (int c = 0; c < 32 * levels_; ++c) {
+        if (bits(1) == 1) last = bits(8);
+        model.tableOf.push_back(last);
+    }
+    for (std::uint32_t t = 0; t < tables; ++t) {
+        std::vector<std::uint32_t> table(141);
+        std::uint32_t left = 4096;
+        const std::uint32_t used = bits(8);
+        for (std::uint32_t i = 0; i < used; ++i) {
+            const int width = int(bits(4));
+            if (width > 0) table[i] = (1u << (width - 1)) + bits(width - 1);
+            left -= table[i];
+        }
+        table[140] = left;
+        model.tables.push_back(table);
+    }
+    need((at + 7) / 8 == bytes.size(), "model");
+    return model;
+}
 
 Decoder::Decoder(std::vector<char> file) : file_(file.begin(), file.end()) {
     // 1.1
@@ -224,7 +383,8 @@ Decoder::Decoder(std::vector<char> file) : file_(file.begin(), file.end()) {
     need(std::memcmp(file_.data(), magic, 8) == 0, "magic");
     Reader in(file_);
     (void)in.number(8);
-    need(in.u32() == 1 && in.u32() == 0, "version");
+    version_ = in.u32();
+    need((version_ == 1 || version_ == 2) && in.u32() == 0, "version");
     need(in.number(8) == file_.size(), "size");
     Piece parts[2];
     for (Piece& part : parts) {
@@ -257,6 +417,12 @@ Decoder::Decoder(std::vector<char> file) : file_(file.begin(), file.end()) {
     const std::size_t bricks = std::size_t(bricks_[0]) * std::size_t(bricks_[1]) * std::size_t(bricks_[2]);
     masks_.resize(table.u32());
     frames_.resize(table.u32());
+    models_.resize(version_ > 1 ? table.u32() : 0);
+    for (Piece& model : models_) {
+        model.offset = table.number(8);
+        model.length = table.number(8);
+        model.checksum = table.number(8);
+    }
     need(frames_.size() == types_.size() * metadata_["data"]["times"].size(), "frames");
     for (Mask& mask : masks_) {
         std::size_t at = table.number(8);
@@ -275,8 +441,10 @@ Decoder::Decoder(std::vector<char> file) : file_(file.begin(), file.end()) {
         frame.numbers = int(table.number(1));
         frame.wavelet = int(table.number(1));
         frame.keepsAbsent = table.number(1) == 1;
-        need(table.number(1) == 0 && frame.numbers < 4 && frame.wavelet < 8, "frame");
+        (void)table.number(1); // width of the codes: what a fast reader wants to know
+        need(frame.numbers < 4 && frame.wavelet < 12, "frame");
         frame.mask = int(table.u32());
+        if (version_ > 1) frame.model = table.u32();
         frame.origin = table.f64();
         frame.step = table.f64();
         frame.valueOffset = table.f64();
@@ -352,46 +520,87 @@ Brick Decoder::brick(std::size_t frameNumber, int number, int level) const {
 
     // 4.1: every coefficient to its place.
     std::vector<std::uint32_t> absentBits, exactIndex, exactBits;
+    const auto extras = [&](Reader& in) {
+        if (frame.keepsAbsent) {
+            std::size_t absent = 0;
+            for (const bool flag : flags) absent += flag ? 0 : 1;
+            absentBits = stream(in, absent);
+        }
+        if (frame.numbers == 1 || frame.numbers == 3) {
+            const std::size_t exact = in.u32();
+            exactIndex = stream(in, exact);
+            exactBits = stream(in, exact);
+        }
+    };
+    bool whole = false;
     for (int segment = 0; segment < levels_ - level; ++segment) {
         const Octets bytes = checked(frame.pieces[std::size_t(segment) * bricks + std::size_t(number)]);
         Reader in(bytes);
         std::vector<Cell*> order;
+        std::vector<Band> bands;
         for (Box& box : boxes) {
             Size part = box.size;
             for (int l = level; l < levels_ - 1 - segment; ++l) part = half(part);
             const Size low = half(part);
-            const auto add = [&](const Size& p) {
-                if (box.at(p)) order.push_back(&box.at(p));
-            };
-            if (segment == 0) places({0, 0, 0}, part, add);
-            for (int band = 1; band < 8 && segment > 0; ++band) {
-                Size lo{}, hi = low;
+            for (int band = segment == 0 ? 0 : 1; band < (segment == 0 ? 1 : 8); ++band) {
+                Size lo{}, hi = segment == 0 ? part : low;
                 for (std::size_t a = 0; a < 3; ++a)
                     if ((band >> a & 1) != 0) lo[a] = low[a], hi[a] = part[a];
-                places(lo, hi, add);
+                if (hi[0] > lo[0] && hi[1] > lo[1] && hi[2] > lo[2]) bands.push_back({&box, lo, hi});
+                places(lo, hi, [&](const Size& p) {
+                    if (box.at(p)) order.push_back(&box.at(p));
+                });
             }
         }
-        if (segment == 0 && !order.empty()) {
-            std::uint32_t code = in.u32();
-            *order[0] = code;
-            const auto symbols = stream(in, order.size() - 1);
-            for (std::size_t i = 1; i < order.size(); ++i) *order[i] = code += unzigzag(symbols[i - 1]);
-        } else if (segment > 0) {
+        if (version_ == 1) {
+            std::uint32_t code = segment == 0 && !order.empty() ? in.u32() : 0;
+            if (segment == 0 && !order.empty()) *order[0] = code;
+            const std::size_t first = segment == 0 && !order.empty() ? 1 : 0;
+            const auto symbols = stream(in, order.size() - first);
+            for (std::size_t i = first; i < order.size(); ++i)
+                *order[i] = segment == 0 ? code += unzigzag(symbols[i - 1]) : unzigzag(symbols[i]);
+            if (segment == levels_ - 1) extras(in);
+            need(in.at == in.end, "trailing bytes");
+            continue;
+        }
+        if (segment == levels_ - 1) extras(in);
+        if (whole) {
+            need(in.at == in.end, "trailing bytes");
+            continue;
+        }
+        if (in.at == in.end && bands.empty()) continue;
+        need(in.at < in.end, "no mode");
+        if (*in.at == 5 && segment == 0) {
+            whole = true;
+            (void)in.number(1);
+            std::size_t present = 0;
+            for (const bool flag : flags) present += flag ? 1 : 0;
+            const auto symbols = stream(in, present);
+            need(in.at == in.end, "trailing bytes");
+            std::size_t next = 0;
+            for (int s = 0; s < sublattices; ++s)
+                boxes[std::size_t(s)] = makeBox({fine[0], fine[1], (fine[2] + sublattices - 1 - s) / sublattices});
+            places({0, 0, 0}, fine, [&](const Size& p) {
+                const std::size_t at =
+                    (std::size_t(p[2]) * std::size_t(fine[1]) + std::size_t(p[1])) * std::size_t(fine[0]) +
+                    std::size_t(p[0]);
+                if (flags[at])
+                    boxes[std::size_t(p[2] % sublattices)].at(p[0], p[1], p[2] / sublattices) =
+                        unzigzag(symbols[next++]);
+            });
+        } else if (*in.at == 4) {
+            (void)in.number(1);
+            decodeBands(in.take(std::size_t(in.end - in.at)), bands, std::size_t(levels_ - 1 - segment),
+                        parseModel(models_[frame.model]));
+        } else if (order.empty()) {
+            need(in.number(1) == 0, "mode");
+        } else {
             const auto symbols = stream(in, order.size());
             for (std::size_t i = 0; i < order.size(); ++i) *order[i] = unzigzag(symbols[i]);
         }
-        if (segment == levels_ - 1) {
-            if (frame.keepsAbsent) {
-                std::size_t absent = 0;
-                for (const bool flag : flags) absent += flag ? 0 : 1;
-                absentBits = stream(in, absent);
-            }
-            if (frame.numbers == 1 || frame.numbers == 3) {
-                const std::size_t exact = in.u32();
-                exactIndex = stream(in, exact);
-                exactBits = stream(in, exact);
-            }
-        }
+        std::uint32_t code = 0;
+        if (segment == 0 && !whole)
+            for (Cell* cell : order) *cell = code += **cell;
         need(in.at == in.end, "trailing bytes");
     }
 
@@ -399,25 +608,34 @@ Brick Decoder::brick(std::size_t frameNumber, int number, int level) const {
     const bool asFloat = frame.numbers == 2;
     int wavelet = frame.wavelet;
     if (asFloat) wavelet = wavelet == 0 || (wavelet >= 2 && wavelet <= 4) ? 0 : 1;
+    const auto alongLines = [&](Box& box, const Size& part, std::size_t axis, auto&& change) {
+        const Size low = half(part);
+        Size lines = part;
+        lines[axis] = 1;
+        places({0, 0, 0}, lines, [&](const Size& start) {
+            bool samples = asFloat;
+            for (std::size_t earlier = 0; earlier < axis; ++earlier) samples = samples && start[earlier] < low[earlier];
+            std::vector<Cell> line;
+            Size p = start;
+            for (p[axis] = 0; p[axis] < part[axis]; ++p[axis]) line.push_back(box.at(p));
+            line = change(line, wavelet, samples);
+            for (p[axis] = 0; p[axis] < part[axis]; ++p[axis]) box.at(p) = line[std::size_t(p[axis])];
+        });
+    };
     for (Box& box : boxes) {
+        if (whole) { // 4.4: the coarse samples are made again
+            Size part = box.size;
+            for (int step = 0; step < level; ++step, part = half(part))
+                for (const std::size_t axis : {0u, 1u, 2u}) alongLines(box, part, axis, redo);
+            Box coarse = makeBox(part);
+            places({0, 0, 0}, part, [&](const Size& p) { coarse.at(p) = box.at(p); });
+            box = coarse;
+            continue;
+        }
         std::vector<Size> parts{box.size};
         for (int step = 0; step < levels_ - 1 - level; ++step) parts.push_back(half(parts.back()));
         for (std::size_t step = parts.size() - 1; step-- > 0;) {
-            const Size part = parts[step], low = half(part);
-            for (const std::size_t axis : {2u, 1u, 0u}) {
-                Size lines = part;
-                lines[axis] = 1;
-                places({0, 0, 0}, lines, [&](const Size& start) {
-                    bool samples = asFloat;
-                    for (std::size_t earlier = 0; earlier < axis; ++earlier)
-                        samples = samples && start[earlier] < low[earlier];
-                    std::vector<Cell> line;
-                    Size p = start;
-                    for (p[axis] = 0; p[axis] < part[axis]; ++p[axis]) line.push_back(box.at(p));
-                    line = undo(line, wavelet, samples);
-                    for (p[axis] = 0; p[axis] < part[axis]; ++p[axis]) box.at(p) = line[std::size_t(p[axis])];
-                });
-            }
+            for (const std::size_t axis : {2u, 1u, 0u}) alongLines(box, parts[step], axis, undo);
         }
     }
 

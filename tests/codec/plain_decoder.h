@@ -32,6 +32,12 @@ public:
     /// Frame = (time * components + component); brick numbers x fastest.
     Brick brick(std::size_t frame, int number, int level) const;
 
+    struct Model {
+        std::uint32_t shift = 0;
+        std::vector<std::uint32_t> tableOf;
+        std::vector<std::vector<std::uint32_t>> tables;
+    };
+
 private:
     struct Piece {
         std::size_t offset = 0, length = 0;
@@ -43,11 +49,13 @@ private:
     };
     struct Frame {
         int numbers = 0, wavelet = 0, mask = -1;
+        std::size_t model = 0;
         bool keepsAbsent = false;
         double origin = 0, step = 1, valueOffset = 0, valueScale = 1;
         std::vector<Piece> pieces; ///< [segment * bricks + brick]
     };
 
+    Model parseModel(const Piece& piece) const;
     std::vector<std::uint8_t> checked(const Piece& piece) const;
     std::vector<bool> fineFlags(const Frame& frame, int number, const Size& size) const;
     Size fineSize(int number) const;
@@ -58,6 +66,8 @@ private:
     Size size_{}, bricks_{};
     int brickSize_ = 0, levels_ = 0;
     std::vector<std::string> types_; ///< of the component of each frame within a time
+    std::uint32_t version_ = 0;
+    std::vector<Piece> models_;
     std::vector<Mask> masks_;
     std::vector<Frame> frames_;
 };

@@ -1,5 +1,6 @@
 // A coded brick of any format: the first bytes say which, the rest are its segments and mask.
 #include "codec/brick_codec.h"
+#include "tests/fuzz/fuzz_model.h"
 
 #include <cstdint>
 #include <cstdlib>
@@ -34,10 +35,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
                                                       (levels * (data[11] % 4 == 0 ? levels : 1));
         segments.emplace_back(bytes.begin() + std::ptrdiff_t(begin), bytes.begin() + std::ptrdiff_t(end));
     }
+    if (format.type != volume::ScalarType::F32) format.codeBits = codec::codeBitsOf(format.type);
+    const codec::BandDecoder decoder(codec::fuzzModel(format.levels));
     for (int level = 0; level < format.levels; ++level) {
         const std::vector<std::span<const std::byte>> parts(segments.begin(), segments.end() - level);
         codec::DecodedBrick decoded;
-        const codec::DecodeStatus status = codec::decodeBrick(format, parts, level, present, decoded);
+        const codec::DecodeStatus status = codec::decodeBrick(format, parts, level, present, decoder, decoded);
         if (status == codec::DecodeStatus::Ok && level == 0 && decoded.codes.size() != count) std::abort();
     }
     return 0;

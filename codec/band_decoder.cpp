@@ -1,0 +1,296 @@
+#include "codec/band_coder.h"
+#include "codec/band_rows.h"
+
+#if TESSERA_X86
+#ifdef __GNUC__
+#pragma GCC diagnostic ignored "-Wmaybe-uninitialized" // gcc 12 takes its own undefined vectors for a mistake
+#endif
+#include <immintrin.h>
+#endif
+
+namespace tessera::codec {
+
+namespace {
+
+constexpr std::uint32_t kSlotMask = kProbabilityOne - 1;
+
+/// The compressed bytes of a run of bands and how far they are read.
+struct Stream {
+    alignas(64) std::uint32_t states[kMostGroups][kLanes]{};
+    const std::byte *next = nullptr, *end = nullptr; ///< words
+    const std::byte* raw = nullptr;                  ///< raw bits; words follow them
+    std::uint64_t rawAt = 0, rawEnd = 0;             ///< in bits
+    const std::uint32_t* table = nullptr;
+    alignas(64) std::uint32_t tableOf[kClasses]{}; ///< table number << kProbabilityBits
+    unsigned group = 0, groupMask = 0;
+    int shift = 0;
+};
+
+/// `bits` raw bits; the caller has checked that they are there. Words follow the raw bits, so that bytes beyond them
+/// may be loaded, as long as they are of the stream.
+std::uint32_t takeRaw(Stream& in, int bits) {
+    std::uint64_t word = 0;
+    const std::byte* at = in.raw + (in.rawAt >> 3);
+    const std::ptrdiff_t left = in.end - at;
+    if (left >= 8)
+        std::memcpy(&word, at, 8);
+    else
+        std::memcpy(&word, at, static_cast<std::size_t>(left));
+    if constexpr (std::endian::native == std::endian::big) word = __builtin_bswap64(word);
+    word >>= in.rawAt & 7;
+    in.rawAt += static_cast<std::uint64_t>(bits);
+    return static_cast<std::uint32_t>(word & ((std::uint64_t(1) << bits) - 1));
+}
+
+/// Sixteen symbols, one in each lane of `active`. False: the stream ends too early.
+template <class Word>
+bool decodeChunk(Stream& in, const Neighbours& near, int x0, std::uint32_t active, Word* values, std::uint16_t* sizes) {
+    std::uint32_t* states = in.states[in.group];
+    in.group = (in.group + 1) & in.groupMask;
+    for (int lane = 0; lane < kLanes; ++lane) {
+        const int x = x0 + lane;
+        if ((active >> lane & 1u) == 0) continue;
+        const std::uint32_t state = states[lane];
+        const std::uint32_t entry = in.table[in.tableOf[classOf(near.sum(x))] | (state & kSlotMask)];
+        std::uint32_t token = entry & 255u;
+        std::uint32_t after = (entry >> 8 & 4095u) * (state >> kProbabilityBits) + (entry >> 20);
+        if (after < kLowestState) {
+            if (in.end - in.next < 2) return false;
+            after = after << 16 | static_cast<std::uint32_t>(in.next[0]) | static_cast<std::uint32_t>(in.next[1]) << 8;
+            in.next += 2;
+        }
+        states[lane] = after;
+        if (token >= kDirect) {
+            const int bits = rawBitsOf(token);
+            if (in.rawEnd - in.rawAt < static_cast<std::uint64_t>(bits)) return false;
+            token = symbolBase(token) | takeRaw(in, bits);
+        }
+        const auto value = static_cast<std::int32_t>(unzigzag(token));
+        values[x] = static_cast<Word>(value);
+        sizes[x] = magnitudeOf(value, in.shift);
+    }
+    return true;
+}
+
+/// Lanes of a chunk that hold a coefficient.
+TESSERA_INLINE std::uint32_t activeLanes(const std::uint8_t* present, int x0, int width) {
+    const int count = std::min(kLanes, width - x0);
+    const std::uint32_t inside = (1u << count) - 1;
+    if (!present) return inside;
+    std::uint32_t active = 0;
+    for (int lane = 0; lane < count; ++lane) active |= (present[x0 + lane] != 0 ? 1u : 0u) << lane;
+    return active;
+}
+
+template <class Word> bool decodeRows(Stream& in, std::span<const Band<Word>> bands) {
+    std::vector<Magnitudes> magnitudes = magnitudesFor(bands);
+    return forBandRows(bands, [&](std::size_t b, int z, int y) {
+        const Band<Word>& band = bands[b];
+        const Neighbours near(magnitudes[b], z, y);
+        const std::ptrdiff_t at = z * band.slicePitch + y * band.rowPitch;
+        std::uint16_t* sizes = magnitudes[b].row(z, y);
+        if (band.present) {
+            std::fill_n(band.values + at, band.size.x, Word(0));
+            std::fill_n(sizes, band.size.x, std::uint16_t(0));
+        }
+        for (int x0 = 0; x0 < band.size.x; x0 += kLanes) {
+            const std::uint32_t active = activeLanes(band.present ? band.present + at : nullptr, x0, band.size.x);
+            if (!decodeChunk(in, near, x0, active, band.values + at, sizes)) return false;
+        }
+        return true;
+    });
+}
+
+#if TESSERA_X86
+
+/// Raw bits of the lanes whose token is not direct, in lanes; false when the stream ends. Octaves up to 25 raw bits.
+TESSERA_AVX512 inline bool rawSymbols512(Stream& in, __mmask16 some, __m512i token, __m512i& symbol) {
+    const __m512i code = _mm512_sub_epi32(token, _mm512_set1_epi32(kDirect));
+    const __m512i bits =
+        _mm512_maskz_add_epi32(some, _mm512_srli_epi32(code, 2), _mm512_set1_epi32(3)); // 0 in other lanes
+    // Sums of the bits of all lanes before.
+    __m512i sum = bits;
+    const __m512i zero = _mm512_setzero_si512();
+    sum = _mm512_add_epi32(sum, _mm512_alignr_epi32(sum, zero, 15));
+    sum = _mm512_add_epi32(sum, _mm512_alignr_epi32(sum, zero, 14));
+    sum = _mm512_add_epi32(sum, _mm512_alignr_epi32(sum, zero, 12));
+    sum = _mm512_add_epi32(sum, _mm512_alignr_epi32(sum, zero, 8));
+    const auto total =
+        static_cast<std::uint32_t>(_mm_extract_epi32(_mm512_extracti32x4_epi32(sum, 3), 3)); // at most 16 * 25
+    if (in.rawEnd - in.rawAt < total) return false;
+    const __m512i at = _mm512_add_epi32(_mm512_sub_epi32(sum, bits), _mm512_set1_epi32(static_cast<int>(in.rawAt & 7)));
+    const __m512i words =
+        _mm512_mask_i32gather_epi32(zero, some, _mm512_srli_epi32(at, 3), in.raw + (in.rawAt >> 3), 1);
+    const __m512i shifted = _mm512_srlv_epi32(words, _mm512_and_si512(at, _mm512_set1_epi32(7)));
+    const __m512i base = _mm512_or_si512(_mm512_and_si512(code, _mm512_set1_epi32(3)), _mm512_set1_epi32(4));
+    const __m512i low = _mm512_sub_epi32(_mm512_sllv_epi32(_mm512_set1_epi32(1), bits), _mm512_set1_epi32(1));
+    const __m512i raw = _mm512_or_si512(_mm512_sllv_epi32(base, bits), _mm512_and_si512(shifted, low));
+    symbol = _mm512_mask_mov_epi32(symbol, some, raw);
+    in.rawAt += total;
+    return true;
+}
+
+TESSERA_AVX512 inline __m256i load(const std::uint16_t* from) {
+    return _mm256_loadu_si256(reinterpret_cast<const __m256i*>(from));
+}
+
+template <class Word> TESSERA_AVX512 bool decodeRows512(Stream& in, std::span<const Band<Word>> bands) {
+    std::vector<Magnitudes> magnitudes = magnitudesFor(bands);
+    const __m512i tablesLow = _mm512_load_si512(in.tableOf), tablesHigh = _mm512_load_si512(in.tableOf + 16);
+    const __m512i lowest = _mm512_set1_epi32(static_cast<int>(kLowestState));
+    const __m128i shift = _mm_cvtsi32_si128(in.shift);
+    glm::ivec3 most(0);
+    for (const Band<Word>& band : bands)
+        if (band.size.x > 0) most = glm::max(most, band.size);
+    for (int z = 0; z < most.z; ++z)
+        for (int y = 0; y < most.y; ++y)
+            for (std::size_t b = 0; b < bands.size(); ++b) {
+                const Band<Word>& band = bands[b];
+                if (band.size.x < 1 || y >= band.size.y || z >= band.size.z) continue;
+                const Neighbours near(magnitudes[b], z, y);
+                const std::ptrdiff_t place = z * band.slicePitch + y * band.rowPitch;
+                std::uint16_t* sizes = magnitudes[b].row(z, y);
+                for (int x = 0; x < band.size.x; x += kLanes) {
+                    const __mmask16 inside = static_cast<__mmask16>((1u << std::min(kLanes, band.size.x - x)) - 1u);
+                    __mmask16 active = inside;
+                    if (band.present)
+                        active = static_cast<__mmask16>(activeLanes(band.present + place, x, band.size.x));
+
+                    // Contexts.
+                    const __m256i doubled = _mm256_add_epi16(load(near.north + x), load(near.before + x));
+                    const __m256i sides =
+                        _mm256_add_epi16(_mm256_add_epi16(load(near.north + x - 1), load(near.north + x + 1)),
+                                         _mm256_add_epi16(load(near.beforeNorth + x), load(near.beforeSouth + x)));
+                    const __m256i sum16 = _mm256_add_epi16(_mm256_add_epi16(doubled, doubled), sides);
+                    const __m512i sum = _mm512_add_epi32(_mm512_cvtepu16_epi32(sum16), _mm512_set1_epi32(1));
+                    const __m512i context = _mm512_sub_epi32(
+                        _mm512_srli_epi32(_mm512_castps_si512(_mm512_cvtepi32_ps(sum)), 22), _mm512_set1_epi32(254));
+                    const __m512i tables = _mm512_permutex2var_epi32(tablesLow, context, tablesHigh);
+
+                    // Symbols.
+                    std::uint32_t* states = in.states[in.group];
+                    in.group = (in.group + 1) & in.groupMask;
+                    const __m512i state = _mm512_load_si512(states);
+                    const __m512i slot = _mm512_and_si512(state, _mm512_set1_epi32(static_cast<int>(kSlotMask)));
+                    const __m512i entry = _mm512_i32gather_epi32(_mm512_or_si512(tables, slot), in.table, 4);
+                    const __m512i token = _mm512_and_si512(entry, _mm512_set1_epi32(255));
+                    const __m512i frequency = _mm512_and_si512(_mm512_srli_epi32(entry, 8), _mm512_set1_epi32(4095));
+                    __m512i after =
+                        _mm512_add_epi32(_mm512_mullo_epi32(frequency, _mm512_srli_epi32(state, kProbabilityBits)),
+                                         _mm512_srli_epi32(entry, 20));
+                    const __mmask16 low = _mm512_mask_cmplt_epu32_mask(active, after, lowest);
+                    const int count = __builtin_popcount(low);
+                    const std::ptrdiff_t left = in.end - in.next;
+                    if (left < 2 * count) return false;
+                    __m256i words;
+                    if (left >= 32)
+                        words = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(in.next));
+                    else
+                        words = _mm256_maskz_loadu_epi16(static_cast<__mmask16>((1u << (left / 2)) - 1u), in.next);
+                    in.next += 2 * count;
+                    const __m512i refill = _mm512_maskz_expand_epi32(low, _mm512_cvtepu16_epi32(words));
+                    after = _mm512_mask_or_epi32(after, low, _mm512_slli_epi32(after, 16), refill);
+                    _mm512_store_si512(states, _mm512_mask_mov_epi32(state, active, after));
+
+                    // Raw bits.
+                    __m512i symbol = _mm512_maskz_mov_epi32(active, token);
+                    const __mmask16 some = _mm512_cmpge_epu32_mask(symbol, _mm512_set1_epi32(kDirect));
+                    if (some != 0) {
+                        // 22 octaves of up to 25 bits behind the direct tokens.
+                        const __mmask16 wide =
+                            _mm512_mask_cmpge_epu32_mask(some, symbol, _mm512_set1_epi32(kDirect + 23 * 4));
+                        if (wide == 0) {
+                            if (!rawSymbols512(in, some, token, symbol)) return false;
+                        } else {
+                            alignas(64) std::uint32_t all[kLanes];
+                            _mm512_store_si512(all, symbol);
+                            for (std::uint32_t rest = some; rest != 0; rest &= rest - 1) {
+                                std::uint32_t& one = all[__builtin_ctz(rest)];
+                                const int bits = rawBitsOf(one);
+                                if (in.rawEnd - in.rawAt < static_cast<std::uint64_t>(bits)) return false;
+                                one = symbolBase(one) | takeRaw(in, bits);
+                            }
+                            symbol = _mm512_load_si512(all);
+                        }
+                    }
+                    const __m512i sign =
+                        _mm512_sub_epi32(_mm512_setzero_si512(), _mm512_and_si512(symbol, _mm512_set1_epi32(1)));
+                    const __m512i value = _mm512_xor_si512(_mm512_srli_epi32(symbol, 1), sign);
+                    const __m512i size = _mm512_min_epu32(_mm512_srl_epi32(_mm512_abs_epi32(value), shift),
+                                                          _mm512_set1_epi32(static_cast<int>(kLargestMagnitude)));
+                    _mm256_storeu_si256(reinterpret_cast<__m256i*>(sizes + x), _mm512_cvtepi32_epi16(size));
+                    if constexpr (sizeof(Word) == 2)
+                        _mm512_mask_cvtepi32_storeu_epi16(band.values + place + x, inside, value);
+                    else
+                        _mm512_mask_storeu_epi32(band.values + place + x, inside, value);
+                }
+            }
+    return true;
+}
+
+#endif
+
+} // namespace
+
+BandDecoder::BandDecoder(Model model) : model_(std::move(model)), table_(decodeTable(model_)) {}
+
+template <class Word>
+DecodeStatus BandDecoder::decode(std::span<const std::byte> in, std::span<const Band<Word>> bands, int level,
+                                 Cpu cpu) const {
+    if (in.empty()) {
+        for (const Band<Word>& band : bands)
+            for (int z = 0; z < band.size.z; ++z)
+                for (int y = 0; y < band.size.y; ++y)
+                    std::fill_n(band.values + z * band.slicePitch + y * band.rowPitch, std::max(0, band.size.x),
+                                Word(0));
+        return DecodeStatus::Ok;
+    }
+    std::uint64_t rawBytes = 0;
+    std::size_t at = 0;
+    for (int shift = 0;; shift += 7, ++at) {
+        if (at >= in.size()) return DecodeStatus::Truncated;
+        if (shift > 28) return DecodeStatus::BadLength;
+        const auto byte = static_cast<std::uint64_t>(in[at]);
+        rawBytes |= (byte & 127u) << shift;
+        if (byte < 128) break;
+    }
+    in = in.subspan(at + 1);
+    const Lanes lanes(bands);
+    const std::size_t statesBytes = 4 * static_cast<std::size_t>(lanes.used);
+    if (in.size() < rawBytes || in.size() - rawBytes < statesBytes) return DecodeStatus::Truncated;
+    if ((in.size() - rawBytes) % 2 != 0) return DecodeStatus::Trailing;
+
+    Stream stream;
+    stream.raw = in.data();
+    stream.rawEnd = 8 * rawBytes;
+    in = in.subspan(rawBytes);
+    for (int lane = 0; lane < kMostGroups * kLanes; ++lane)
+        stream.states[lane / kLanes][lane % kLanes] = lane < lanes.used ? readU32(in.data() + 4 * lane) : kLowestState;
+    stream.next = in.data() + statesBytes;
+    stream.end = in.data() + in.size();
+    stream.table = table_.data();
+    for (std::size_t c = 0; c < kClasses; ++c)
+        stream.tableOf[c] = std::uint32_t(model_.tableOf[std::size_t(level) * kClasses + c]) << kProbabilityBits;
+    stream.groupMask = static_cast<unsigned>(lanes.groups - 1);
+    stream.shift = model_.shift;
+#if TESSERA_X86
+    const bool whole = cpu == Cpu::Avx512 ? decodeRows512(stream, bands) : decodeRows(stream, bands);
+#else
+    const bool whole = decodeRows(stream, bands);
+    (void)cpu;
+#endif
+    if (!whole) return DecodeStatus::Truncated;
+    if (stream.next != stream.end || (stream.rawAt + 7) / 8 != rawBytes) return DecodeStatus::Trailing;
+    // An encoder begins with the lowest state, so a decoder ends with it.
+    for (const auto& group : stream.states)
+        for (const std::uint32_t state : group)
+            if (state != kLowestState) return DecodeStatus::BadData;
+    return DecodeStatus::Ok;
+}
+
+template DecodeStatus BandDecoder::decode(std::span<const std::byte>, std::span<const Band<std::int16_t>>, int,
+                                          Cpu) const;
+template DecodeStatus BandDecoder::decode(std::span<const std::byte>, std::span<const Band<std::int32_t>>, int,
+                                          Cpu) const;
+
+} // namespace tessera::codec

@@ -1,0 +1,60 @@
+#pragma once
+
+#include "codec/lifting.h"
+
+#include <array>
+
+/// The lifting steps of each wavelet, for the files that carry them out.
+namespace tessera::codec {
+
+/// target +- floor((centre * c + sum of weight[j] * (left_j +- right_j) + half) / 2^shift)
+struct LiftStep {
+    int centre = 0;
+    int pairs = 0;
+    std::array<int, 3> weight{};
+    bool antisymmetric = false;
+    int shift = 0;
+};
+
+struct LiftFilter {
+    LiftStep predict; ///< of an odd sample from even ones
+    LiftStep update;  ///< of an even sample from details
+    bool updates = false;
+};
+
+/// Predictions of N = 4 are the interpolating ones of Deslauriers and Dubuc (9, -1)/16, as in Calderbank et al. 1998,
+/// with the updates that give N~ moments: 1/4; (9, -1)/32; (306, -59, 9)/1024. The factorisation of the spline
+/// wavelets of that order starts with an update and halves the coarse samples along each axis, which integers cannot
+/// afford.
+constexpr LiftFilter filterOf(Wavelet wavelet) {
+    const LiftStep same{1, 0, {}, false, 0}, mean{0, 1, {1}, false, 1}, cubic{0, 2, {9, -1}, false, 4};
+    switch (wavelet) {
+    case Wavelet::N1:
+        return {same, {}, false};
+    case Wavelet::N2:
+        return {mean, {}, false};
+    case Wavelet::W11:
+        return {same, {1, 0, {}, false, 1}, true};
+    case Wavelet::W13:
+        return {same, {8, 1, {-1}, true, 4}, true};
+    case Wavelet::W15:
+        return {same, {128, 2, {-22, 3}, true, 8}, true};
+    case Wavelet::W22:
+        return {mean, {0, 1, {1}, false, 2}, true};
+    case Wavelet::W24:
+        return {mean, {0, 2, {19, -3}, false, 6}, true};
+    case Wavelet::W26:
+        return {mean, {0, 3, {162, -39, 5}, false, 9}, true};
+    case Wavelet::N4:
+        return {cubic, {}, false};
+    case Wavelet::W42:
+        return {cubic, {0, 1, {1}, false, 2}, true};
+    case Wavelet::W44:
+        return {cubic, {0, 2, {9, -1}, false, 5}, true};
+    case Wavelet::W46:
+        break;
+    }
+    return {cubic, {0, 3, {306, -59, 9}, false, 10}, true};
+}
+
+} // namespace tessera::codec

@@ -1,0 +1,253 @@
+#include "codec/rans_model.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <numeric>
+
+namespace tessera::codec {
+
+namespace {
+
+using Counts = std::array<std::uint32_t, kTokens>;
+
+// Bits a table costs in the file: its place in the map and about this much for each token in use.
+constexpr double kTableBits = 24, kTokenBits = 8;
+
+/// Bits of the tokens of one context with their own ideal table, and of that table.
+double costOf(const Counts& counts) {
+    double total = 0, bits = 0, used = 0;
+    for (const std::uint32_t count : counts) total += count;
+    if (total == 0) return 0;
+    for (const std::uint32_t count : counts)
+        if (count > 0) bits += count * std::log2(total / count), used += 1;
+    return bits + kTableBits + used * kTokenBits;
+}
+
+/// Counts scaled to a sum of kProbabilityOne, nothing that occurs at 0, the escape always possible.
+Frequencies normalised(const Counts& counts) {
+    Frequencies out{};
+    Counts wanted = counts;
+    wanted[kEscape] = std::max<std::uint32_t>(wanted[kEscape], 1);
+    if (std::accumulate(wanted.begin(), wanted.end() - 1, 0u) == 0) wanted[0] = 1;
+    const double total = std::accumulate(wanted.begin(), wanted.end(), 0.0);
+    int sum = 0;
+    for (int t = 0; t < kTokens; ++t) {
+        const auto at = static_cast<std::size_t>(t);
+        if (wanted[at] == 0) continue;
+        const double share = wanted[at] / total * kProbabilityOne;
+        out[at] = static_cast<std::uint16_t>(std::max(1.0, std::floor(share + 0.5)));
+        sum += out[at];
+    }
+    // Settle the rest where it costs or gains most per step.
+    while (sum != int(kProbabilityOne)) {
+        const int step = sum < int(kProbabilityOne) ? 1 : -1;
+        double best = -1e300;
+        std::size_t at = 0;
+        for (std::size_t t = 0; t < kTokens; ++t) {
+            if (out[t] == 0 || (step < 0 && out[t] == 1)) continue;
+            const double gain = wanted[t] * (std::log2(double(out[t] + step)) - std::log2(double(out[t])));
+            if (gain > best) best = gain, at = t;
+        }
+        out[at] = static_cast<std::uint16_t>(out[at] + step);
+        sum += step;
+    }
+    return out;
+}
+
+/// Bits, lowest first.
+class BitWriter {
+public:
+    void put(std::uint32_t value, int bits) {
+        for (int i = 0; i < bits; ++i, ++at_) {
+            if (at_ % 8 == 0) bytes.push_back(std::byte{0});
+            if ((value >> i & 1u) != 0) bytes.back() |= static_cast<std::byte>(1u << (at_ % 8));
+        }
+    }
+    Bytes bytes;
+
+private:
+    std::size_t at_ = 0;
+};
+
+class BitReader {
+public:
+    explicit BitReader(std::span<const std::byte> bytes) : bytes_(bytes) {}
+    std::uint32_t get(int bits) {
+        std::uint32_t value = 0;
+        for (int i = 0; i < bits; ++i, ++at_) {
+            if (at_ / 8 >= bytes_.size()) {
+                failed = true;
+                return 0;
+            }
+            value |= (static_cast<std::uint32_t>(bytes_[at_ / 8]) >> (at_ % 8) & 1u) << i;
+        }
+        return value;
+    }
+    std::size_t bytesRead() const { return (at_ + 7) / 8; }
+    bool failed = false;
+
+private:
+    std::span<const std::byte> bytes_;
+    std::size_t at_ = 0;
+};
+
+} // namespace
+
+double Histogram::bits() const {
+    double sum = 0;
+    for (const Counts& context : counts) {
+        double total = 0;
+        for (const std::uint32_t count : context) total += count;
+        for (std::size_t t = 0; t < kTokens; ++t)
+            if (context[t] > 0)
+                sum += context[t] * (std::log2(total / context[t]) + rawBitsOf(static_cast<std::uint32_t>(t)));
+    }
+    return sum;
+}
+
+Model makeModel(const Histogram& histogram, int shift, int mostTables) {
+    struct Group {
+        Counts counts{};
+        std::vector<std::size_t> contexts;
+        double mean = 0, cost = 0;
+    };
+    std::vector<Group> groups;
+    for (std::size_t c = 0; c < histogram.counts.size(); ++c) {
+        double total = 0, sum = 0;
+        for (std::size_t t = 0; t < kTokens; ++t) {
+            total += histogram.counts[c][t];
+            sum += double(histogram.counts[c][t]) * double(t);
+        }
+        if (total > 0) groups.push_back({histogram.counts[c], {c}, sum / total, costOf(histogram.counts[c])});
+    }
+    // Similar contexts have similar means: only neighbours in that order are ever joined.
+    std::sort(groups.begin(), groups.end(), [](const Group& a, const Group& b) { return a.mean < b.mean; });
+    const auto joined = [](const Group& a, const Group& b) {
+        Counts counts = a.counts;
+        for (std::size_t t = 0; t < kTokens; ++t) counts[t] += b.counts[t];
+        return counts;
+    };
+    std::vector<double> loss(groups.empty() ? 0 : groups.size() - 1);
+    const auto weigh = [&](std::size_t i) {
+        loss[i] = costOf(joined(groups[i], groups[i + 1])) - groups[i].cost - groups[i + 1].cost;
+    };
+    for (std::size_t i = 0; i + 1 < groups.size(); ++i) weigh(i);
+    while (groups.size() > 1) {
+        const auto best = std::min_element(loss.begin(), loss.end());
+        if (*best >= 0 && int(groups.size()) <= mostTables) break;
+        const auto i = static_cast<std::size_t>(best - loss.begin());
+        groups[i].counts = joined(groups[i], groups[i + 1]);
+        groups[i].cost = costOf(groups[i].counts);
+        groups[i].contexts.insert(groups[i].contexts.end(), groups[i + 1].contexts.begin(),
+                                  groups[i + 1].contexts.end());
+        groups.erase(groups.begin() + std::ptrdiff_t(i) + 1);
+        loss.erase(best);
+        if (i > 0) weigh(i - 1);
+        if (i + 1 < groups.size()) weigh(i);
+    }
+
+    Model model;
+    model.levels = static_cast<int>(histogram.counts.size()) / kClasses;
+    model.shift = shift;
+    constexpr std::uint8_t kNone = 255;
+    model.tableOf.assign(histogram.counts.size(), kNone);
+    for (std::size_t g = 0; g < groups.size(); ++g) {
+        model.tables.push_back(normalised(groups[g].counts));
+        for (const std::size_t c : groups[g].contexts) model.tableOf[c] = static_cast<std::uint8_t>(g);
+    }
+    if (model.tables.empty()) model.tables.push_back(normalised(Counts{}));
+    // Contexts that were not seen take the table of the class below, which costs no bits in the map.
+    std::uint8_t last = 0;
+    for (std::uint8_t& table : model.tableOf) {
+        if (table == kNone) table = last;
+        last = table;
+    }
+    return model;
+}
+
+double bitsWith(const Model& model, const Histogram& histogram) {
+    double sum = 0;
+    for (std::size_t c = 0; c < histogram.counts.size(); ++c) {
+        const Frequencies& table = model.tables[model.tableOf[c]];
+        for (std::size_t t = 0; t < kTokens; ++t) {
+            const std::uint32_t count = histogram.counts[c][t];
+            if (count == 0) continue;
+            const auto raw = static_cast<double>(rawBitsOf(static_cast<std::uint32_t>(t)));
+            sum += table[t] > 0 ? count * (kProbabilityBits - std::log2(double(table[t])) + raw)
+                                : count * (kProbabilityBits - std::log2(double(table[kEscape])) + 32);
+        }
+    }
+    return sum;
+}
+
+Bytes serialise(const Model& model) {
+    BitWriter out;
+    out.put(static_cast<std::uint32_t>(model.shift), 8);
+    out.put(static_cast<std::uint32_t>(model.tables.size()), 8);
+    std::uint32_t last = 0;
+    for (const std::uint8_t table : model.tableOf) { // 0: as the class below
+        out.put(table == last ? 0 : 1, 1);
+        if (table != last) out.put(table, 8);
+        last = table;
+    }
+    for (const Frequencies& table : model.tables) {
+        int used = kTokens - 1; // the escape is what the others leave
+        while (used > 0 && table[std::size_t(used - 1)] == 0) --used;
+        out.put(static_cast<std::uint32_t>(used), 8);
+        for (int t = 0; t < used; ++t) {
+            const std::uint32_t frequency = table[std::size_t(t)];
+            const int width = std::bit_width(frequency);
+            out.put(static_cast<std::uint32_t>(width), 4);
+            if (width > 1) out.put(frequency & ((1u << (width - 1)) - 1), width - 1);
+        }
+    }
+    return out.bytes;
+}
+
+DecodeStatus parseModel(std::span<const std::byte> bytes, int levels, Model& model) {
+    BitReader in(bytes);
+    model = {};
+    model.levels = levels;
+    model.shift = static_cast<int>(in.get(8));
+    const std::uint32_t tables = in.get(8);
+    if (in.failed) return DecodeStatus::Truncated;
+    if (tables == 0 || model.shift > 31) return DecodeStatus::BadLength;
+    std::uint32_t last = 0;
+    for (int c = 0; c < levels * kClasses; ++c) {
+        if (in.get(1) != 0) last = in.get(8);
+        if (in.failed) return DecodeStatus::Truncated;
+        if (last >= tables) return DecodeStatus::BadLength;
+        model.tableOf.push_back(static_cast<std::uint8_t>(last));
+    }
+    for (std::uint32_t i = 0; i < tables; ++i) {
+        const std::uint32_t used = in.get(8);
+        if (used >= kTokens) return DecodeStatus::BadLength;
+        Frequencies& table = model.tables.emplace_back();
+        std::uint32_t sum = 0;
+        for (std::uint32_t t = 0; t < used; ++t) {
+            const auto width = static_cast<int>(in.get(4));
+            const std::uint32_t frequency = width == 0 ? 0 : (1u << (width - 1)) | in.get(width - 1);
+            if (in.failed) return DecodeStatus::Truncated;
+            sum += frequency;
+            if (sum >= kProbabilityOne) return DecodeStatus::BadData;
+            table[t] = static_cast<std::uint16_t>(frequency);
+        }
+        if (in.failed) return DecodeStatus::Truncated;
+        if (sum == 0) return DecodeStatus::BadData; // two tokens at least: a frequency has twelve bits
+        table[kEscape] = static_cast<std::uint16_t>(kProbabilityOne - sum);
+    }
+    return in.bytesRead() == bytes.size() ? DecodeStatus::Ok : DecodeStatus::Trailing;
+}
+
+std::vector<std::uint32_t> decodeTable(const Model& model) {
+    std::vector<std::uint32_t> out(model.tables.size() * kProbabilityOne);
+    auto to = out.begin();
+    for (const Frequencies& table : model.tables)
+        for (std::uint32_t t = 0; t < kTokens; ++t)
+            for (std::uint32_t slot = 0; slot < table[t]; ++slot)
+                *to++ = t | static_cast<std::uint32_t>(table[t]) << 8 | slot << 20;
+    return out;
+}
+
+} // namespace tessera::codec

@@ -1,0 +1,74 @@
+#pragma once
+
+#include "codec/decode_status.h"
+#include "codec/entropy.h"
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+/// The probabilities the coefficient coder uses: a few tables, shared by all bricks of a frame, and which of them each
+/// context takes. (FORMAT.md "Models".)
+namespace tessera::codec {
+
+inline constexpr int kProbabilityBits = 12;
+inline constexpr std::uint32_t kProbabilityOne = 1u << kProbabilityBits;
+/// Contexts of a level: half octaves of the neighbours' magnitude.
+inline constexpr int kClasses = 32;
+/// A token is a symbol below 32, or an octave of four parts and so many raw bits, or the escape: all 32 bits raw.
+inline constexpr int kDirect = 32, kTokens = 141, kEscape = 140;
+
+struct Token {
+    std::uint32_t token = 0;
+    int rawBits = 0; ///< low bits of the symbol that follow raw
+};
+
+constexpr Token tokenOf(std::uint32_t symbol) {
+    if (symbol < kDirect) return {symbol, 0};
+    int octave = 5;
+    while (octave < 31 && (symbol >> (octave + 1)) != 0) ++octave;
+    return {kDirect + 4u * static_cast<std::uint32_t>(octave - 5) + ((symbol >> (octave - 2)) & 3u), octave - 2};
+}
+constexpr int rawBitsOf(std::uint32_t token) {
+    if (token < kDirect) return 0;
+    return token == kEscape ? 32 : static_cast<int>((token - kDirect) / 4) + 3;
+}
+/// The symbol of a token without its raw bits.
+constexpr std::uint32_t symbolBase(std::uint32_t token) {
+    if (token < kDirect) return token;
+    return token == kEscape ? 0 : (4u + (token - kDirect) % 4u) << rawBitsOf(token);
+}
+
+/// How often each token came in each context of each level: what a model is made of.
+struct Histogram {
+    explicit Histogram(int levels) : counts(static_cast<std::size_t>(levels * kClasses)) {}
+    std::vector<std::array<std::uint32_t, kTokens>> counts; ///< [level * kClasses + class]
+    /// Bits the tokens and their raw bits take with ideal tables of this histogram, without the model itself.
+    double bits() const;
+};
+
+using Frequencies = std::array<std::uint16_t, kTokens>; ///< sum is kProbabilityOne; the escape's is above 0
+
+struct Model {
+    int levels = 0;
+    int shift = 0;                     ///< contexts see magnitudes divided by 2^shift
+    std::vector<std::uint8_t> tableOf; ///< [level * kClasses + class]
+    std::vector<Frequencies> tables;
+    bool operator==(const Model&) const = default;
+};
+
+/// A model of few tables: contexts of similar statistics share one, as long as that saves more than a table costs.
+Model makeModel(const Histogram& histogram, int shift, int mostTables);
+/// Bits the histogram's tokens take with a model, raw bits included.
+double bitsWith(const Model& model, const Histogram& histogram);
+
+Bytes serialise(const Model& model);
+/// Reads a model for `levels` levels; the bytes must end with it.
+DecodeStatus parseModel(std::span<const std::byte> bytes, int levels, Model& model);
+
+/// The model laid out for decoding: entry [table << kProbabilityBits | slot] holds the token in bits 0..7, its
+/// frequency in 8..19 and the slot's place within it in 20..31.
+std::vector<std::uint32_t> decodeTable(const Model& model);
+
+} // namespace tessera::codec
