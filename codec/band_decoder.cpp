@@ -2,7 +2,7 @@
 #include "codec/band_rows.h"
 
 #if TESSERA_X86
-#ifdef __GNUC__
+#if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC diagnostic ignored "-Wmaybe-uninitialized" // gcc 12 takes its own undefined vectors for a mistake
 #endif
 #include <immintrin.h>
