@@ -1,3 +1,5 @@
+#include "app/ui/file_dialog.h"
+#include "app/views/ticks.h"
 #include "app/workbench.h"
 
 #include <cmath>
@@ -132,6 +134,11 @@ void Workbench::drawStatusBar(float height) {
         text += "   " + std::to_string(info.parameters.size()) +
                 (info.parameters.size() == 1 ? " parameter" : " parameters");
         if (info.times.size() > 1) text += ", " + std::to_string(info.times.size()) + " times";
+        if (const vis::ResidencyInfo use = renderer_->residency(); !options_.headless && use.textureBytes > 0) {
+            text += "   textures " + textOfBytes(double(use.textureBytes)) + " of " +
+                    textOfBytes(double(use.textureBudget)) + ", " + formatCount(use.bricksResident) + " bricks";
+            if (use.bricksWanted > 0) text += ", " + formatCount(use.bricksWanted) + " to come";
+        }
         ImGui::TextUnformatted(text.c_str());
     } else {
         ImGui::TextUnformatted("No data");

@@ -47,9 +47,11 @@ ViewTargetPtr Renderer::makeTarget() {
     return ViewTargetPtr(new ViewTarget);
 }
 
-FrameStatus Renderer::render(ViewTarget& target, const Scene& scene, const FrameRequest& request) {
+FrameStatus Renderer::render(ViewTarget& target, const Scene& scene, const FrameRequest& wanted) {
     const Clock::time_point start = Clock::now();
     FrameStatus status;
+    FrameRequest request = wanted;
+    if (request.budgetMs <= 0) request.budgetMs = scene.render.limits.frameTime;
     if (request.size.x <= 0 || request.size.y <= 0) {
         status.complete = true;
         return status;
@@ -62,6 +64,9 @@ FrameStatus Renderer::render(ViewTarget& target, const Scene& scene, const Frame
     RayPlan plan;
     bool any = false;
     if (impl_->source) {
+        const RenderLimits& limits = scene.render.limits;
+        impl_->residency.setBudgets(std::min(impl_->options.textureBudget, std::size_t(limits.textureMemory) << 20),
+                                    std::min(impl_->options.memoryBudget, std::size_t(limits.brickMemory) << 20));
         impl_->residency.beginFrame();
         impl_->residency.update(request.wait ? ~std::size_t(0) : kUploadPerFrame);
         plan = planRays(scene, impl_->source->info());

@@ -14,8 +14,8 @@
 namespace tessera::vis {
 
 struct RendererOptions {
-    std::size_t textureBudget = std::size_t(1) << 30; ///< bytes of brick textures
-    std::size_t memoryBudget = std::size_t(2) << 30;  ///< bytes of decoded bricks kept in RAM
+    /// Bytes of textures, and of decoded bricks kept in RAM, if that is less than the scene's limits.
+    std::size_t textureBudget = ~std::size_t(0), memoryBudget = ~std::size_t(0);
     int decodeThreads = 2;
     /// Largest channel, in texels, kept as one texture: cheapest to sample. Larger ones are cut into bricks.
     std::size_t denseTexels = std::size_t(32) << 20;
@@ -25,9 +25,10 @@ struct RendererOptions {
 /// How a picture is wanted now.
 struct FrameRequest {
     glm::ivec2 size{512, 512};
-    bool moving = false;  ///< something is being dragged: reduced size and step within the budget
-    double budgetMs = 60; ///< GUI time this call may take (roughly); unfinished work goes on in the next call
-    bool wait = false;    ///< headless: decode and refine until complete before returning
+    bool moving = false; ///< something is being dragged: reduced size and step within the budget
+    /// GUI time this call may take (roughly); unfinished work goes on in the next call. 0: the scene's frame time.
+    double budgetMs = 0;
+    bool wait = false; ///< headless: decode and refine until complete before returning
 };
 
 /// What came of it. The texture stays the property of the target and is valid until its next frame.
@@ -38,9 +39,10 @@ struct FrameStatus {
     double milliseconds = 0; ///< of the last full pass
 };
 
+/// Bytes in use and allowed; bricks in textures, bricks that a view wants and that are not there yet, jobs under way.
 struct ResidencyInfo {
     std::size_t textureBytes = 0, textureBudget = 0, memoryBytes = 0, memoryBudget = 0;
-    int bricksResident = 0, bricksQueued = 0;
+    int bricksResident = 0, bricksWanted = 0, bricksQueued = 0;
 };
 
 /// What lies under a pixel: the first sample along the ray with noticeable opacity.

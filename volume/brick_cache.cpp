@@ -43,6 +43,10 @@ bool BrickCache::has(const BrickKey& key) const {
     return impl_->bricks.has(key);
 }
 
+void BrickCache::setBudget(std::size_t bytes) {
+    impl_->bricks.setBudget(bytes);
+}
+
 std::size_t BrickCache::bytes() const {
     return impl_->bricks.used();
 }

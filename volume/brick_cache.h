@@ -23,6 +23,8 @@ public:
     /// True when the brick is here already, so that get() is quick.
     bool has(const BrickKey& key) const;
     std::size_t bytes() const;
+    /// Another byte budget; what is beyond it leaves.
+    void setBudget(std::size_t bytes);
 
 private:
     struct Impl;

@@ -66,6 +66,12 @@ public:
         return used_;
     }
 
+    void setBudget(std::size_t bytes) {
+        const std::lock_guard lock(mutex_);
+        budget_ = bytes;
+        trim(nullptr);
+    }
+
 private:
     struct Entry {
         std::shared_future<Pointer> value;
@@ -80,10 +86,15 @@ private:
         own.bytes = bytes;
         own.loaded = true;
         used_ += bytes;
+        trim(&key);
+    }
+
+    /// Under the mutex.
+    void trim(const Key* kept) {
         for (auto place = recent_.end(); used_ > budget_ && place != recent_.begin();) {
             --place;
             const auto entry = entries_.find(*place);
-            if (!entry->second.loaded || entry->first == key) continue;
+            if (!entry->second.loaded || (kept && entry->first == *kept)) continue;
             used_ -= entry->second.bytes;
             entries_.erase(entry);
             place = recent_.erase(place);

@@ -139,7 +139,7 @@ void drawPlane(ViewContext& context, SlicesCache& cache, const SlicesView& view,
     if (!target) target = context.renderer.makeTarget();
     vis::FrameRequest request;
     request.size = pixels;
-    request.budgetMs = 20; // three pictures share a frame
+    request.budgetMs = scene.render.limits.frameTime / 3.0; // three pictures share a frame
     request.moving = !context.headless && (context.interacting || session.animation.playing);
     request.wait = context.headless;
     const vis::FrameStatus status = context.renderer.render(*target, scene, request);

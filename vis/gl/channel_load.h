@@ -41,7 +41,7 @@ struct LoadedTexels {
 /// What threads and the renderer share; outlives the renderer while a job still runs.
 struct LoadExchange {
     std::shared_ptr<const volume::BrickSource> source;
-    std::unique_ptr<const volume::BrickCache> bricks;
+    std::unique_ptr<volume::BrickCache> bricks;
     std::mutex mutex;
     std::vector<LoadedTexels> loaded;
     std::vector<std::string> messages;

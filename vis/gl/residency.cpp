@@ -31,13 +31,34 @@ void Residency::setSource(std::shared_ptr<const volume::BrickSource> source) {
     entries_.clear();
     uploads_.clear();
     atlases_.clear();
+    guests_.clear();
+    guestsOf_ = nullptr;
     exchange_.reset();
     ++revision_;
     if (!source) return;
     exchange_ = std::make_shared<LoadExchange>();
     exchange_->source = source;
-    exchange_->bricks = std::make_unique<const volume::BrickCache>(source, options_.memoryBudget);
+    exchange_->bricks = std::make_unique<volume::BrickCache>(source, options_.memoryBudget);
     makeNothing();
+}
+
+void Residency::setBudgets(std::size_t texture, std::size_t memory) {
+    if (exchange_ && memory != options_.memoryBudget) exchange_->bricks->setBudget(memory);
+    options_.memoryBudget = memory;
+    if (texture == options_.textureBudget) return;
+    const bool larger = texture > options_.textureBudget;
+    options_.textureBudget = texture;
+    std::size_t bytes = 0;
+    bool outOfRoom = false;
+    for (const auto& [components, list] : atlases_)
+        for (const auto& atlas : list) bytes += atlas->bytes();
+    for (const auto& [key, entry] : entries_) outOfRoom = outOfRoom || (entry.shown && entry.shown->outOfRoom);
+    if (larger ? !outOfRoom : bytes <= texture) return;
+    std::erase_if(entries_, [](const auto& each) { return each.second.shown && each.second.shown->bricks; });
+    atlases_.clear();
+    guests_.clear();
+    guestsOf_ = nullptr;
+    ++revision_;
 }
 
 int Residency::componentsOf(bool coverage) const {
@@ -305,6 +326,7 @@ ResidencyInfo Residency::info() const {
     for (const auto& [key, entry] : entries_)
         if (entry.shown) {
             info.textureBytes += entry.shown->bytes;
+            if (entry.used + kFramesInUse >= frame_) info.bricksWanted += missing(key);
             info.bricksResident += entry.shown->bricks ? entry.shown->bricks->resident() : bricks - missing(key);
         }
     return info;

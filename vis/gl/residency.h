@@ -37,6 +37,9 @@ public:
     ~Residency();
 
     void setSource(std::shared_ptr<const volume::BrickSource> source);
+    /// Bytes of textures and of decoded bricks. A smaller atlas, or a larger one where bricks had no room, is filled
+    /// anew, coarse first.
+    void setBudgets(std::size_t texture, std::size_t memory);
 
     /// A new frame begins: textures not wanted in one of the last few frames may leave if the budget asks for it.
     void beginFrame() { ++frame_; }

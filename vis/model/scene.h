@@ -3,6 +3,7 @@
 #include "vis/model/camera.h"
 #include "vis/model/geometry.h"
 #include "vis/model/layers.h"
+#include "vis/model/limits.h"
 #include "vis/model/selection.h"
 #include "vis/model/transfer_function.h"
 
@@ -24,7 +25,8 @@ struct RenderParams {
     Filter filter =
         Filter::AverageQuasi; ///< reconstruction; on CC "quasi" is prefiltered trilinear, the others trilinear
     float detail = 1;         ///< pixels; voxels of bricked data finer than this are shown at a coarser level
-    float stepVoxels = 0.5f;  ///< distance between samples, in cells of the finest direction on screen at rest
+    RenderLimits limits;
+    float stepVoxels = 0.5f; ///< distance between samples, in cells of the finest direction on screen at rest
     float ambient = 0.25f, diffuse = 0.65f, specular = 0.25f, shininess = 30;
     float azimuth = -30, elevation = 40; ///< of the light, degrees from the viewer
 
@@ -45,6 +47,7 @@ struct RenderParams {
                                      .doc = "Voxels smaller than this are shown at a coarser level, in data too large "
                                             "for one texture; 0 = full resolution",
                                      .range = Range{0, 8}});
+        visit(self.limits, FieldInfo{.key = "limits", .unit = "", .doc = "Memory and time to use"});
         visit(self.ambient, FieldInfo{.key = "ambient", .unit = "", .doc = "Ambient light", .range = Range{0, 1}});
         visit(self.diffuse, FieldInfo{.key = "diffuse", .unit = "", .doc = "Diffuse reflection", .range = Range{0, 1}});
         visit(self.specular,
