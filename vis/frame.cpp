@@ -224,9 +224,10 @@ void Renderer::Impl::refine(ViewTarget& target, const Scene& scene, const FrameR
     // Tiles as large as a third of the budget allows; the same grid until the picture is done.
     if (target.tilesDone == 0) {
         target.passMilliseconds = 0;
-        target.tileEdge = 1024;
+        // Never the whole: what a coarse picture cost says little of the fine one.
+        target.tileEdge = request.wait ? 1024 : 128;
         const double perTile = request.wait ? 1e9 : std::max(request.budgetMs / 3, 2.0);
-        while (target.tileEdge > 64 && target.msPerPixel * target.tileEdge * target.tileEdge > perTile)
+        while (target.tileEdge > 32 && target.msPerPixel * target.tileEdge * target.tileEdge > perTile)
             target.tileEdge /= 2;
     }
     const std::vector<Tile> tiles = tilesOf(target.size, target.tileEdge);

@@ -56,7 +56,7 @@ vis::Scene heavyScene() {
     scene.layers.push_back({"volume", true, volume});
     scene.layers.push_back({"iso", true, vis::IsoLayer{.channel = "w", .value = 0.4, .opacity = 0.5f}});
     scene.layers.push_back({"iso 2", true, vis::IsoLayer{.channel = "v", .value = 0.6, .opacity = 0.5f}});
-    scene.selection.brushes = {{.intervals = {{"w", 0.2, 0.9, 0.1}}}};
+    scene.selection.brushes = {vis::rangeBrush({{"w", 0.2, 0.9, 0.1}})};
     return scene;
 }
 

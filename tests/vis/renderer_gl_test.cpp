@@ -98,7 +98,7 @@ Scene richScene() {
     std::get<vis::VolumeLayer>(scene.layers[0].technique).shaded = true;
     scene.layers.push_back({"iso", true, vis::IsoLayer{.channel = "w", .value = 0.35, .opacity = 0.5f}});
     scene.layers.push_back({"slice", true, vis::SliceLayer{.channel = "label", .atCursor = false, .position = 0.3}});
-    scene.selection.brushes = {rangeBrush({{"w", 0.2, 0.9, 0.1}})};
+    scene.selection.brushes = {vis::rangeBrush({{"w", 0.2, 0.9, 0.1}})};
     return scene;
 }
 
