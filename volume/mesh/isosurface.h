@@ -18,7 +18,7 @@ namespace tessera::volume {
 /// Vertices lie on the edges of the lattice and are shared; every edge of the mesh belongs to two triangles that run
 /// along it in opposite directions, or to one where the surface ends: at the border of the grid or at absent samples.
 /// Triangles face lower values. Normals come from differences of the samples (on BCC of the eight nearest neighbours),
-/// one-sided beside absent ones, interpolated along the edge. A cell with an absent corner stays empty.
+/// one-sided beside absent ones, interpolated along the edge. A cell or tetrahedron with an absent corner stays empty.
 ///
 /// `box`: the surface is continued, with the outermost samples repeated, and cut at this box. Same input, same output
 /// on any number of threads. Throws Error when there are more vertices than 32 bits count; Cancelled.

@@ -102,18 +102,20 @@ CellTriangles tetrahedronTriangles(const CrossedEdges& edges, int slab) {
                 return y + step.y < inside.size.y && z + step.z < inside.size.z;
             });
             for (std::size_t w = 0; exists && w < inside.words; ++w) {
-                std::uint64_t corners[6], any = 0, all = ~std::uint64_t(0), there = all;
+                std::uint64_t corners[6], there[6], any = 0, all = ~std::uint64_t(0);
                 for (std::size_t c = 0; c < 6; ++c) {
                     const glm::ivec3 step = octahedron.points[c];
                     corners[c] = inside.word(y + step.y, z + step.z, w, step.x);
                     any |= corners[c];
                     all &= corners[c];
-                    there &= present.word(y + step.y, z + step.z, w, step.x);
+                    there[c] = present.word(y + step.y, z + step.z, w, step.x);
                 }
-                for (std::uint64_t active = any & ~all & there; active != 0; active &= active - 1) {
+                for (std::uint64_t active = any & ~all & there[0] & there[1]; active != 0; active &= active - 1) {
                     const int bit = std::countr_zero(active), x = int(w) * 64 + bit;
                     for (const Tetrahedron& t : octahedron.parts) {
                         int mask = 0;
+                        const auto isThere = [&](int point) { return (there[point] >> bit & 1) != 0; };
+                        if (!isThere(t.points[2]) || !isThere(t.points[3])) continue;
                         for (int i = 0; i < 4; ++i) mask |= int(corners[t.points[std::size_t(i)]] >> bit & 1) << i;
                         const TetrahedronCase& found = cases[std::size_t(mask)];
                         for (int n = 0; n < found.count; ++n) {
