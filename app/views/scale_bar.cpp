@@ -26,7 +26,7 @@ ScaleBar scaleBar(const vis::Camera& camera, const vis::WorldFrame& world, glm::
     bar.text = (camera.projection == vis::Projection::Perspective ? "~" : "") + formatQuantity(round, unit.name);
     const bool even = stretch.x == stretch.y && stretch.y == stretch.z;
     if (!even) bar.text += std::string(" along ") + "xyz"[axis];
-    if (stretch[axis] != 1) bar.text += ", stretched " + formatNumber(stretch[axis], 0.01) + " times";
+    if (stretch[axis] != 1) bar.text += ", stretched " + formatQuantity(stretch[axis], "times");
     return bar;
 }
 
