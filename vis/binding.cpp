@@ -54,7 +54,7 @@ bool Renderer::Impl::bind(ViewTarget& target, const Scene& scene, const FrameReq
     const auto keysAt = [&](int time) {
         std::vector<ChannelKey> keys;
         for (const BoundField& field : plan.fields)
-            keys.push_back({field.channel, time, prefiltered && !field.categorical});
+            keys.push_back({field.channel, time, prefiltered && !field.categorical && !field.raw});
         return keys;
     };
     const std::vector<ChannelKey> wanted = keysAt(wantedTime);

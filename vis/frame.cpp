@@ -43,6 +43,13 @@ ProgramRecipe Renderer::Impl::prepare(ViewTarget& target, const Scene& scene, co
         target.tableRows = rows;
     }
     if (rows > 0) glTextureSubImage2D(target.table.name(), 0, 0, 0, kTableSize, rows, GL_RGBA, GL_FLOAT, table.data());
+    if (plan.pages > 0) {
+        const std::vector<glm::vec4> planes = planeTables(plan, scene, source->info());
+        const glm::ivec2 size(kPlaneSize, kPlaneSize * plan.pages);
+        if (plan.pages != target.planePages) target.planes = makeTexture2D(size, GL_RGBA32F, GL_LINEAR, "plane tables");
+        target.planePages = plan.pages;
+        glTextureSubImage2D(target.planes.name(), 0, 0, 0, size.x, size.y, GL_RGBA, GL_FLOAT, planes.data());
+    }
     if (target.skip) {
         if (target.blockCount != blocks->count || !target.blocks)
             target.blocks = makeTexture3D(blocks->count, GL_R8UI, GL_NEAREST, "block distances");
@@ -173,6 +180,7 @@ void Renderer::Impl::refine(ViewTarget& target, const Scene& scene, const FrameR
     }
     glBindTextureUnit(GLuint(units.table), target.table.name());
     glBindTextureUnit(GLuint(units.blocks), target.blocks.name());
+    glBindTextureUnit(GLuint(units.planes), target.planes.name());
     const volume::DatasetInfo& info = source->info();
     glBindTextureUnit(GLuint(units.lassos), brushes.update(brushTests(plan, scene, info)));
     const double pixels = double(target.size.x) * target.size.y;

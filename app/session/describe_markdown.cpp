@@ -46,6 +46,9 @@ std::string parameterReference() {
     out += markdownSection<vis::IsoLayer>("Layer of type `iso`", "A surface of equal value.");
     out += markdownSection<vis::SliceLayer>("Layer of type `slice`", "A coloured plane with contour lines.");
     out += markdownSection<vis::TransferFunction>("transfer", "Colour and opacity of one parameter, by its name.");
+    out += markdownSection<vis::ColorStop>("transfer.colors", "A colour of a colour map of one's own.");
+    out += markdownSection<vis::TransferRegion>("transfer.regions",
+                                                "A part of the plane of value and gradient magnitude with opacity.");
     out += markdownSection<vis::Brush>("selection.brushes", "A brush: a region and how it meets the others.");
     out += markdownSection<vis::BrushInterval>("selection.brushes.region.intervals", "One interval of a range.");
     out += markdownSection<vis::EllipseRegion>("Region of type `ellipse`", "An ellipse in two parameters.");

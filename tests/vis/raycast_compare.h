@@ -71,13 +71,20 @@ inline Scene baseScene(bool perspective) {
     return scene;
 }
 
+inline RendererOptions optionsFor(bool exact, bool bricked) {
+    RendererOptions options;
+    options.exactTextures = exact;
+    if (bricked) options.denseTexels = 0;
+    return options;
+}
+
 /// One renderer for a data set and its pictures.
 struct Drawing {
     std::shared_ptr<FunctionSource> data;
     Renderer renderer;
 
-    Drawing(LatticeKind kind, bool masked, bool exact)
-        : data(source(kind, masked)), renderer(RendererOptions{.exactTextures = exact}) {
+    Drawing(LatticeKind kind, bool masked, bool exact, bool bricked = false)
+        : data(source(kind, masked)), renderer(optionsFor(exact, bricked)) {
         renderer.setSource(data);
     }
     Linear draw(const Scene& scene) {

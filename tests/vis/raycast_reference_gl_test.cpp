@@ -37,9 +37,9 @@ const Mode kModes[] = {
      [](Scene& s) {
          s.layers = {{"", true, VolumeLayer{.channel = "b", .style = VolumeStyle::Maximum}}};
      }},
-    {"xray",
+    {"average",
      [](Scene& s) {
-         s.layers = {{"", true, VolumeLayer{.channel = "b", .style = VolumeStyle::XRay}}};
+         s.layers = {{"", true, VolumeLayer{.channel = "b", .style = VolumeStyle::Average}}};
      }},
     {"slices",
      [](Scene& s) {

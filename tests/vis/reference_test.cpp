@@ -101,7 +101,7 @@ TEST(Reference, LayersCompositeFrontToBack) {
     }
 }
 
-TEST(Reference, MaximumAndXRayLookAtTheWholeRay) {
+TEST(Reference, MaximumAndAverageLookAtTheWholeRay) {
     for (LatticeKind kind : kKinds) {
         Scene scene = frontal(VolumeLayer{.channel = "c", .style = VolumeStyle::Maximum, .density = 20});
         scene.render.stepVoxels = 0.25f;
@@ -109,7 +109,7 @@ TEST(Reference, MaximumAndXRayLookAtTheWholeRay) {
         const double alpha = 20 * 0.01f;
         EXPECT_NEAR(image.pixels[4].a, alpha, 1e-6);
         EXPECT_NEAR(srgbFromLinear(image.pixels[4].r / alpha), 1, 0.02);
-        scene.layers[0].technique = VolumeLayer{.channel = "c", .style = VolumeStyle::XRay, .density = 20};
+        scene.layers[0].technique = VolumeLayer{.channel = "c", .style = VolumeStyle::Average, .density = 20};
         image = reference::render(scene, ramp(kind), {3, 3});
         EXPECT_NEAR(srgbFromLinear(image.pixels[4].r / alpha), 0.5, 2e-3);
     }

@@ -145,5 +145,50 @@ TEST(TransferFunction, RangeReversalAndDegenerateRange) {
     EXPECT_EQ(evaluate(function, {4, 4}, 5), evaluate(function, {0, 1}, 1));
 }
 
+TEST(TransferFunction, OwnColoursReplaceTheMap) {
+    TransferFunction function;
+    function.colors = {{0.25f, {1, 0, 0}}, {0.75f, {0, 0, 1}}};
+    EXPECT_EQ(glm::dvec3(evaluate(function, {0, 1}, 0)), glm::dvec3(1, 0, 0));
+    EXPECT_LT(gap(glm::dvec3(evaluate(function, {0, 1}, 0.5)), {0.5, 0, 0.5}), 1e-9);
+    EXPECT_EQ(glm::dvec3(evaluate(function, {0, 1}, 1)), glm::dvec3(0, 0, 1));
+    function.reversed = true;
+    EXPECT_EQ(glm::dvec3(evaluate(function, {0, 1}, 0)), glm::dvec3(0, 0, 1));
+}
+
+TEST(TransferFunction, RegionsHaveTheirShapes) {
+    TransferRegion region{.shape = RegionShape::Rectangle, .centre = {0.5f, 0.5f}, .size = {0.4f, 0.2f}, .soft = 0};
+    region.opacity = 0.5f;
+    EXPECT_EQ(regionOpacity(region, {0.69, 0.59}), 0.5);
+    EXPECT_EQ(regionOpacity(region, {0.71, 0.5}), 0);
+    EXPECT_EQ(regionOpacity(region, {0.5, 0.61}), 0);
+    region.soft = 1;
+    EXPECT_NEAR(regionOpacity(region, {0.6, 0.5}), 0.25, 1e-6);
+    region.shape = RegionShape::Triangle; // on its tip at (0.5, 0.4)
+    region.soft = 0;
+    EXPECT_EQ(regionOpacity(region, {0.65, 0.41}), 0);
+    EXPECT_EQ(regionOpacity(region, {0.65, 0.59}), 0.5);
+    region.shape = RegionShape::Gaussian;
+    EXPECT_EQ(regionOpacity(region, {0.5, 0.5}), 0.5);
+    EXPECT_LT(regionOpacity(region, {0.6999, 0.5}), 1e-3);
+    EXPECT_EQ(regionOpacity(region, {0.7, 0.6}), 0);
+}
+
+TEST(TransferFunction, RegionsAreSeenTogether) {
+    TransferFunction function;
+    EXPECT_EQ(evaluate(function, {0, 1}, 0.3, 0.05), evaluate(function, {0, 1}, 0.3)) << "the curve knows no gradient";
+    function.kind = TransferKind::Regions;
+    EXPECT_EQ(evaluate(function, {0, 1}, 0.3, 0.05).a, 0);
+    function.gradientTop = 0.1f;
+    TransferRegion region{.centre = {0.5f, 0.5f}, .size = {1, 1}, .soft = 0, .opacity = 0.5f, .color = {1, 0, 0}};
+    function.regions = {region, region};
+    function.regions[1].color = {0, 0, 1};
+    const glm::dvec4 both = evaluate(function, {0, 1}, 0.3, 0.05);
+    EXPECT_NEAR(both.a, 0.75, 1e-9);
+    EXPECT_LT(gap(glm::dvec3(both), {0.5, 0, 0.5}), 1e-9);
+    function.regions.resize(1);
+    function.regions[0].ownColor = false;
+    EXPECT_LT(gap(glm::dvec3(evaluate(function, {0, 1}, 0.3, 0.05)), colormapColor("viridis", 0.3)), 1e-9);
+}
+
 } // namespace
 } // namespace tessera::vis

@@ -194,6 +194,10 @@ void Program::set(const char* uniform, std::span<const float> values) const {
 void Program::set(const char* uniform, std::span<const glm::ivec4> values) const {
     if (!values.empty()) glProgramUniform4iv(name(), location(uniform), GLsizei(values.size()), &values[0].x);
 }
+void Program::set(const char* uniform, std::span<const glm::vec2> values) const {
+    if (values.empty()) return;
+    glProgramUniform2fv(name(), location(uniform), GLsizei(values.size()), &values[0].x);
+}
 void Program::set(const char* uniform, std::span<const glm::vec3> values) const {
     if (!values.empty()) glProgramUniform3fv(name(), location(uniform), GLsizei(values.size()), &values[0].x);
 }

@@ -69,6 +69,7 @@ public:
     void set(const char* uniform, std::span<const int> values) const;
     void set(const char* uniform, std::span<const float> values) const;
     void set(const char* uniform, std::span<const glm::ivec4> values) const;
+    void set(const char* uniform, std::span<const glm::vec2> values) const;
     void set(const char* uniform, std::span<const glm::vec3> values) const;
     void set(const char* uniform, std::span<const glm::vec4> values) const;
 

@@ -50,10 +50,10 @@ public:
     int wantedTime = -1, timeStep = 0; ///< which way the time runs
 
     // Transfer tables and block distances, and what they were made for.
-    Texture table, blocks;
+    Texture table, planes, blocks;
     std::optional<Scene> tablesFor;
     std::uint64_t tablesRevision = 0;
-    int tablesTime = -1, tableRows = 0;
+    int tablesTime = -1, tableRows = 0, planePages = 0;
     glm::ivec3 blockCount{0};
     bool skip = false; ///< leap over empty blocks
 

@@ -9,16 +9,28 @@
 
 namespace tessera::vis {
 
-enum class VolumeStyle { Composite, Maximum, XRay };
-inline constexpr std::string_view kVolumeStyleNames[] = {"composite", "maximum", "xray"};
+enum class VolumeStyle { Composite, Maximum, Minimum, Average, XRay, LocalMaximum };
+inline constexpr std::string_view kVolumeStyleNames[] = {"composite", "maximum", "minimum",
+                                                         "average",   "xray",    "localmaximum"};
+
+/// What a volume layer shows of its channel.
+enum class Quantity { Value, Gradient };
+inline constexpr std::string_view kQuantityNames[] = {"value", "gradient"};
+
+/// Where between samples and picture a transfer function is applied; for composite layers.
+enum class Classification { Post, Pre, PreIntegrated };
+inline constexpr std::string_view kClassificationNames[] = {"post", "pre", "preintegrated"};
 
 /// A scalar drawn through its transfer function by the ray caster.
 struct VolumeLayer {
     static constexpr std::string_view kType = "volume";
     std::string channel;
     VolumeStyle style = VolumeStyle::Composite;
-    bool shaded = true; ///< Phong by the gradient; composite only
-    float density = 1;  ///< factor on optical depth
+    Quantity quantity = Quantity::Value;
+    Classification classification = Classification::Post; ///< of values; composite only
+    double threshold = 0;                                 ///< physical; local maximum only
+    bool shaded = true;                                   ///< Phong by the gradient; composite only
+    float density = 1;                                    ///< factor on optical depth
     bool operator==(const VolumeLayer&) const = default;
     static void describe(auto& self, auto&& visit) {
         visit(self.channel, FieldInfo{.key = "channel", .unit = "", .doc = "Parameter shown", .refersTo = "channel"});
@@ -26,6 +38,19 @@ struct VolumeLayer {
                                     .unit = "",
                                     .doc = "How samples along a ray become one colour",
                                     .names = kVolumeStyleNames});
+        visit(self.quantity, FieldInfo{.key = "quantity",
+                                       .unit = "",
+                                       .doc = "What is shown: the value, or how steeply it changes",
+                                       .names = kQuantityNames});
+        visit(self.classification,
+              FieldInfo{.key = "classification",
+                        .unit = "",
+                        .doc = "Composite: colour of interpolated values (post), interpolated colours of samples "
+                               "(pre), or the mean colour of all values between two samples (preintegrated)",
+                        .names = kClassificationNames});
+        visit(
+            self.threshold,
+            FieldInfo{.key = "threshold", .unit = "", .doc = "Local maximum: value that the first maximum must reach"});
         visit(self.shaded, FieldInfo{.key = "shaded", .unit = "", .doc = "Phong shading by the gradient"});
         visit(self.density, FieldInfo{.key = "density",
                                       .unit = "",

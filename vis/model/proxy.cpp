@@ -10,9 +10,12 @@ namespace tessera::vis {
 
 bool drawnByProxy(const Scene& scene) {
     if (scene.render.proxy == Proxy::Rays || peelsOf(scene.geometry) > 0) return false;
-    return std::all_of(scene.layers.begin(), scene.layers.end(), [](const Layer& layer) {
+    return std::all_of(scene.layers.begin(), scene.layers.end(), [&](const Layer& layer) {
         const auto* volume = std::get_if<VolumeLayer>(&layer.technique);
-        return !layer.visible || (volume && volume->style == VolumeStyle::Composite);
+        return !layer.visible ||
+               (volume && volume->style == VolumeStyle::Composite && volume->quantity == Quantity::Value &&
+                volume->classification == Classification::Post &&
+                transferFor(scene, volume->channel).kind == TransferKind::Curve);
     });
 }
 

@@ -49,6 +49,19 @@ double gradientDelta(volume::LatticeKind kind) {
     return kind == volume::LatticeKind::BCC ? 1 / volume::kBccSpacing : 1;
 }
 
+glm::dvec3 quantizedDirection(glm::dvec3 v, int bits) {
+    const double sum = std::abs(v.x) + std::abs(v.y) + std::abs(v.z);
+    if (!(sum > 0)) return glm::dvec3(0);
+    v /= sum;
+    const auto fold = [](double x, double y) { return (1 - std::abs(y)) * (x < 0 ? -1 : 1); };
+    glm::dvec2 at = v.z < 0 ? glm::dvec2(fold(v.x, v.y), fold(v.y, v.x)) : glm::dvec2(v);
+    const double steps = std::exp2(bits) - 1;
+    at = glm::floor((0.5 * at + 0.5) * steps + 0.5) / steps * 2.0 - 1.0;
+    glm::dvec3 n(at, 1 - std::abs(at.x) - std::abs(at.y));
+    if (n.z < 0) n = {fold(n.x, n.y), fold(n.y, n.x), n.z};
+    return glm::normalize(n);
+}
+
 glm::dvec3 lightDirection(const RenderParams& params, const Camera& camera) {
     const double azimuth = glm::radians(double(params.azimuth)), elevation = glm::radians(double(params.elevation));
     const glm::dvec3 eye(std::sin(azimuth) * std::cos(elevation), std::sin(elevation),

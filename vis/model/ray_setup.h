@@ -11,22 +11,44 @@
 /// and shaded in linear light, and the picture is encoded to sRGB at the very end, over the background.
 ///
 /// Along a ray, front to back, for sample k = 0 .. count - 1 at t_k = enter + (k + 1/2) step:
-///   1. every slice whose plane is met at t in (t_{k-1}, t_k] (t_{-1} = enter), nearest first, equal ones in layer
-///      order; at the end those between the last sample and the exit;
-///   2. every iso layer, in order: where the values at t_{k-1} and t_k are both present and lie on different sides
-///      (v >= value against v < value), the place is refined by kBisections halvings of [t_{k-1}, t_k], the middle of
-///      the last interval is shaded and composited with the layer's opacity;
-///   3. every composite layer, in order: colour and opacity from the transfer function at the sample's value
-///      (correctedOpacity), Phong shaded where wanted.
-/// It ends when the accumulated opacity reaches kOpaque. An absent sample contributes nothing. Then maximum and x-ray
-/// layers, which look at all samples of the ray up to there, go behind what was accumulated, in layer order:
-///   maximum: the first sample with the largest x * f (x = place in the transfer function's range, clamped to 0..1; f =
-///            DOI opacity factor), colour of that value, opacity min(1, density * opacity of the curve) * f;
-///   x-ray:   the mean of the values weighted by f, colour of that value, opacity as above with f its plain mean.
+///   1. every slice whose plane is met at t in (t_{k-1}, t_k] (t_{-1} = enter) and every iso-surface crossed between
+///      t_{k-1} and t_k, nearest first; of equal ones slices first, then in layer order. An iso-surface is crossed
+///      where the values at t_{k-1} and t_k are both present and lie on different sides (v >= value against v < value);
+///      the place is refined by kBisections halvings of [t_{k-1}, t_k], the middle of the last interval is shaded and
+///      composited with the layer's opacity;
+///   2. every composite layer, in order: colour and opacity (below), correctedOpacity, Phong shaded where wanted.
+/// At the end come the slices between the last sample and the exit. A ray ends when the accumulated opacity reaches
+/// kOpaque. An absent sample contributes nothing. Then the projections, which look at all samples of the ray up to
+/// there, go behind what was accumulated, in layer order; x = place of a sample, clamped to 0..1, f = DOI opacity
+/// factor:
+///   maximum: the first sample with the largest x * f, colour of its place, opacity min(1, density * opacity of the
+///            curve) * f;
+///   minimum: the same of the largest (1 - x) * f;
+///   local maximum: the same of the first x * f which is at least that of the threshold and is followed by a smaller
+///            or an absent one; where there is none, as maximum (Y. Sato et al.: Local maximum intensity projection,
+///            1998);
+///   average: the mean of the unclamped places weighted by f, colour of that place, opacity as of maximum with f its
+///            plain mean;
+///   x-ray:   absorption A = 1 - prod(1 - a) of all samples' a = correctedOpacity(opacity of the curve * f) (Beer and
+///            Lambert), colour of the place A, opacity A.
+///
+/// The place of a sample is that of its value in the transfer function's range or, for layers that show the gradient,
+/// its magnitude over gradientTop: the change over one worldCell edge per axis (length of that vector), in ranges.
+///
+/// A composite layer's colour and opacity come
+///   post:           from evaluate() at the sample's value (and gradient, if regions decide);
+///   pre:            from the mean of the premultiplied colours of the samples (unfiltered) around it, weighted as in
+///                   trilinear interpolation, on BCC over both sublattices, of present ones; where these carry less
+///                   than half of the weight there is nothing;
+///   pre-integrated: from preintegrated() (vis/model/preintegration.h) between the values at t_k - step / 2 and
+///                   t_k + step / 2; where one of the two is absent the other stands for both, over half the length.
+/// Pre-classification and pre-integration are of values by the curve: layers that show the gradient, functions of
+/// regions and categorical channels are classified after interpolation.
 ///
 /// The degree of interest d of a place multiplies the opacity (of the curve before correctedOpacity, of an iso-surface
 /// or a slice) by f = mix(contextOpacity, 1, d) and pulls the colour towards its luminance: mix(luminance, colour,
-/// mix(contextSaturation, 1, d)), in linear light before shading. An x-ray layer's colour keeps its saturation.
+/// mix(contextSaturation, 1, d)), in linear light before shading. The colours of averages and x-rays keep their
+/// saturation.
 namespace tessera::vis {
 
 inline constexpr double kOpaque = 0.995; ///< accumulated opacity at which a ray ends
@@ -62,6 +84,10 @@ double correctedOpacity(double opacity, double step, double density);
 /// 1 / sqrt 2 on BCC. Where one end is absent, the difference to the centre is taken over half the distance; where both
 /// are, that component is 0. Categorical channels have no gradient.
 double gradientDelta(volume::LatticeKind kind);
+
+/// A direction (length 1) stored in two coordinates of `bits` each on the unfolded octahedron (Q. Meyer et al.: On
+/// floating-point normal vectors, 2010): what shading by quantised gradients sees. Zero stays zero.
+glm::dvec3 quantizedDirection(glm::dvec3 v, int bits);
 
 /// Direction towards the light, in world axes.
 glm::dvec3 lightDirection(const RenderParams& params, const Camera& camera);

@@ -28,6 +28,7 @@ struct RenderParams {
     RenderLimits limits;
     float stepVoxels = 0.5f; ///< distance between samples, in cells of the finest direction on screen at rest
     float ambient = 0.25f, diffuse = 0.65f, specular = 0.25f, shininess = 30;
+    int normalBits = 0;                  ///< of either coordinate of a gradient's direction, 0: as they are
     float azimuth = -30, elevation = 40; ///< of the light, degrees from the viewer
 
     Proxy proxy = Proxy::Rays;
@@ -55,6 +56,11 @@ struct RenderParams {
         visit(self.shininess,
               FieldInfo{
                   .key = "shininess", .unit = "", .doc = "Phong exponent", .range = Range{1, 200}, .logScale = true});
+        visit(self.normalBits,
+              FieldInfo{.key = "normalBits",
+                        .unit = "bit",
+                        .doc = "Bits of either coordinate of a gradient's direction when shading, 0 = exact",
+                        .range = Range{0, 16}});
         visit(self.azimuth, FieldInfo{.key = "azimuth",
                                       .unit = "deg",
                                       .doc = "Light to the right of the viewer",

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <glm/common.hpp>
+#include <glm/geometric.hpp>
 
 namespace tessera::vis {
 
@@ -63,16 +64,6 @@ double clamp01(double x) {
     return x >= 0 ? std::min(x, 1.0) : 0.0; // NaN gives 0
 }
 
-/// Opacity of the curve at x; beyond its ends the end values, at a jump (two points at one x) the later one.
-double opacityAt(const std::vector<glm::vec2>& curve, double x) {
-    if (curve.empty()) return 0;
-    const auto next = std::find_if(curve.begin(), curve.end(), [&](glm::vec2 point) { return point.x > x; });
-    if (next == curve.begin()) return curve.front().y;
-    if (next == curve.end()) return curve.back().y;
-    const glm::dvec2 a(*(next - 1)), b(*next);
-    return glm::mix(a.y, b.y, (x - a.x) / (b.x - a.x));
-}
-
 /// Colour of a label: those of the map in turn, so that it does not depend on which other labels there are.
 glm::dvec3 labelColor(const Colormap& map, bool reversed, double label) {
     const auto count = static_cast<double>(map.colors.size());
@@ -81,11 +72,28 @@ glm::dvec3 labelColor(const Colormap& map, bool reversed, double label) {
     return unpack(map.colors[reversed ? map.colors.size() - 1 - i : i]);
 }
 
+/// Colour of a list of stops at x; beyond its ends the end colours.
+glm::dvec3 stopColor(const std::vector<ColorStop>& stops, double x) {
+    const auto next = std::find_if(stops.begin(), stops.end(), [&](const ColorStop& s) { return s.position > x; });
+    if (next == stops.begin()) return stops.front().color;
+    if (next == stops.end()) return stops.back().color;
+    const ColorStop &a = *(next - 1), &b = *next;
+    return glm::mix(glm::dvec3(a.color), glm::dvec3(b.color), (x - a.position) / (double(b.position) - a.position));
+}
+
 /// evaluate() at x = 0..1 along the range, where `value` is.
 glm::dvec4 evaluateAt(const TransferFunction& function, const Colormap& map, double x, double value) {
-    const glm::dvec3 shown = map.info.kind == "categorical" ? labelColor(map, function.reversed, value)
-                                                            : color(map, function.reversed ? 1 - x : x);
-    return {shown, clamp01(opacityAt(function.opacity, x))};
+    const double along = function.reversed ? 1 - x : x;
+    const glm::dvec3 shown = !function.colors.empty()         ? stopColor(function.colors, along)
+                             : map.info.kind == "categorical" ? labelColor(map, function.reversed, value)
+                                                              : color(map, along);
+    return {shown, clamp01(curveAt(function.opacity, x))};
+}
+
+/// Place of a value in a range, 0..1. A range without width still tells below from above.
+double placeIn(Range range, double value) {
+    const double width = range.hi - range.lo;
+    return clamp01(width != 0 ? (value - range.lo) / width : value > range.lo ? 1.0 : value < range.lo ? 0.0 : 0.5);
 }
 
 } // namespace
@@ -103,10 +111,51 @@ Range effectiveRange(const TransferFunction& function, Range channelRange) {
 }
 
 glm::dvec4 evaluate(const TransferFunction& function, Range range, double value) {
-    const double width = range.hi - range.lo;
-    // A range without width still tells below from above.
-    const double x = width != 0 ? (value - range.lo) / width : value > range.lo ? 1.0 : value < range.lo ? 0.0 : 0.5;
-    return evaluateAt(function, find(function.colormap), clamp01(x), value);
+    return evaluateAt(function, find(function.colormap), placeIn(range, value), value);
+}
+
+glm::dvec4 evaluate(const TransferFunction& function, Range range, double value, double gradient) {
+    const glm::dvec4 curve = evaluate(function, range, value);
+    if (function.kind == TransferKind::Curve) return curve;
+    const glm::dvec2 place(placeIn(range, value), clamp01(gradient / double(function.gradientTop)));
+    double through = 1, weights = 0;
+    glm::dvec3 colors{0};
+    for (const TransferRegion& region : function.regions) {
+        const double opacity = regionOpacity(region, place);
+        through *= 1 - opacity;
+        weights += opacity;
+        colors += opacity * (region.ownColor ? glm::dvec3(region.color) : glm::dvec3(curve));
+    }
+    return weights > 0 ? glm::dvec4(colors / weights, 1 - through) : glm::dvec4(glm::dvec3(curve), 0);
+}
+
+double regionOpacity(const TransferRegion& region, glm::dvec2 place) {
+    // -1..1 inside the box around the region
+    const glm::dvec2 at = (place - glm::dvec2(region.centre)) / (0.5 * glm::dvec2(region.size));
+    const double opacity = clamp01(double(region.opacity)), soft = std::max(double(region.soft), 1e-6);
+    if (!(std::abs(at.x) <= 1 && std::abs(at.y) <= 1)) return 0;
+    switch (region.shape) {
+    case RegionShape::Rectangle:
+        return opacity * std::min(1.0, (1 - std::max(std::abs(at.x), std::abs(at.y))) / soft);
+    case RegionShape::Triangle: {
+        const double half = 0.5 * (at.y + 1); // of the triangle's width at this height
+        return half > 0 ? opacity * clamp01((1 - std::abs(at.x) / half) / soft) : 0;
+    }
+    case RegionShape::Gaussian: {
+        const double edge = std::exp(-4.5); // three standard deviations out
+        return opacity * clamp01((std::exp(-4.5 * glm::dot(at, at)) - edge) / (1 - edge));
+    }
+    }
+    return 0;
+}
+
+double curveAt(std::span<const glm::vec2> curve, double x) {
+    if (curve.empty()) return 0;
+    const auto next = std::find_if(curve.begin(), curve.end(), [&](glm::vec2 point) { return point.x > x; });
+    if (next == curve.begin()) return curve.front().y;
+    if (next == curve.end()) return curve.back().y;
+    const glm::dvec2 a(*(next - 1)), b(*next);
+    return glm::mix(a.y, b.y, (x - a.x) / (b.x - a.x));
 }
 
 std::vector<glm::vec4> makeTable(const TransferFunction& function, int size, Range range) {

@@ -1,10 +1,12 @@
 #pragma once
 
+#include "vis/model/preintegration.h"
 #include "vis/model/ray_setup.h"
 #include "vis/reference/raycast.h"
 
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,12 +18,18 @@ struct DrawnLayer {
     const Samples* samples = nullptr;
     Range range;
     const TransferFunction* function = nullptr;
-    Plane plane; ///< of a slice
+    Plane plane;                                ///< of a slice
+    std::optional<IntegralFunctions> integrals; ///< of a pre-integrated layer
+    Classification classification = Classification::Post;
 
+    /// Place in the range of the transfer function, before it is clamped to 0..1; the middle where that has no width.
+    double unclamped(double value) const;
     /// Place in the range of the transfer function, 0..1.
     double place(double value) const;
-    /// Colour (linear light) and opacity of a value.
+    /// Colour (linear light) and opacity of a value by the curve.
     glm::dvec4 classify(double value) const;
+    /// The same of a place in the range, 0..1.
+    glm::dvec4 classifyPlace(double place) const;
 };
 
 /// A scene made ready for its rays.
@@ -31,7 +39,8 @@ struct Prepared {
     volume::Lattice lattice;
     WorldFrame frame;
     glm::dvec3 cell{1}, toLight{0};
-    std::map<std::string, std::unique_ptr<Samples>> samples; ///< by channel name
+    std::map<std::string, std::unique_ptr<Samples>> samples;    ///< by channel name
+    std::map<std::string, std::unique_ptr<Samples>> rawSamples; ///< without prefilter, for pre-classification
     std::vector<DrawnLayer> layers;
     DoiFunction interestOf;
     std::vector<const Samples*> brushed; ///< of interestOf.channels(); null: unknown
@@ -42,6 +51,8 @@ struct Prepared {
     glm::dvec3 cells(glm::dvec3 world) const { return lattice.toCells(frame.toPhysical(world)); }
     /// Degree of interest of a world point.
     double interest(glm::dvec3 world) const;
+    /// Length of the change over one worldCell edge per axis, in ranges of the layer's transfer function.
+    double steepness(const DrawnLayer& layer, glm::dvec3 world) const;
     /// Gradient of a channel, per cell of the sublattice and axis.
     glm::dvec3 gradient(const Samples& of, glm::dvec3 world) const {
         return volume::gradient([&](glm::dvec3 at) { return of.value(at); }, cells(world), gradientDelta(lattice.kind));

@@ -33,25 +33,35 @@ template <class Number> struct Caster {
         out += Vec4<Number>(Vec3<Number>(color) * weight, weight);
     }
 
-    /// Slices met in (from, to], nearest first, equal ones in layer order.
-    void drawSlices(Number from, Number to) {
-        std::vector<std::pair<Number, const DrawnLayer*>> met;
+    /// A surface on the ray.
+    struct Event {
+        Number t;
+        glm::dvec3 color;
+        double opacity;
+    };
+
+    /// Adds the slices met in (from, to].
+    void findSlices(std::vector<Event>& events, Number from, Number to) const {
         for (const DrawnLayer& layer : scene.layers) {
             if (!std::holds_alternative<SliceLayer>(*layer.technique)) continue;
             const double slope = glm::dot(layer.plane.normal, ray.direction);
             if (slope == 0) continue;
             const auto t = Number((layer.plane.offset - glm::dot(layer.plane.normal, ray.origin)) / slope);
-            if (t > from && t <= to) met.emplace_back(t, &layer);
-        }
-        std::stable_sort(met.begin(), met.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
-        for (const auto& [t, layer] : met) {
+            if (!(t > from && t <= to)) continue;
             const glm::dvec3 place = glm::clamp(glm::dvec3(at(t)), -scene.frame.halfSize, scene.frame.halfSize);
-            const std::optional<double> value = layer->samples->value(scene.cells(place));
+            const std::optional<double> value = layer.samples->value(scene.cells(place));
             if (!value) continue;
             const double doi = scene.interest(place);
-            blend(scene.saturated(glm::dvec3(layer->classify(*value)), doi),
-                  double(std::get<SliceLayer>(*layer->technique).opacity) * scene.opacityFactor(doi));
+            events.push_back({t, scene.saturated(glm::dvec3(layer.classify(*value)), doi),
+                              double(std::get<SliceLayer>(*layer.technique).opacity) * scene.opacityFactor(doi)});
         }
+    }
+
+    /// Nearest first, equal ones in the order found.
+    void drawEvents(std::vector<Event>& events) {
+        std::stable_sort(events.begin(), events.end(), [](const Event& a, const Event& b) { return a.t < b.t; });
+        for (const Event& event : events) blend(event.color, event.opacity);
+        events.clear();
     }
 
     glm::dvec3 shade(const DrawnLayer& layer, glm::dvec3 place, glm::dvec3 albedo, bool surface) const {
@@ -64,10 +74,15 @@ template <class Number> struct Caster {
             const double width = std::abs(layer.range.hi - layer.range.lo);
             weight = width > 0 ? std::min(1.0, change / width / kFlatGradient) : 1;
         }
-        return phong(albedo, perCell / edges, weight, -ray.direction, scene.toLight, scene.scene.render);
+        glm::dvec3 gradient = perCell / edges;
+        const int bits = scene.scene.render.normalBits;
+        if (bits > 0) gradient = quantizedDirection(gradient, bits) * glm::length(gradient);
+        return phong(albedo, gradient, weight, -ray.direction, scene.toLight, scene.scene.render);
     }
 
-    void drawIso(const DrawnLayer& layer, std::optional<double> before, std::optional<double> now, Number t) {
+    /// Adds the crossing of an iso-surface between the last sample and the one at t.
+    void findIso(std::vector<Event>& events, const DrawnLayer& layer, std::optional<double> before,
+                 std::optional<double> now, Number t) const {
         const auto& iso = std::get<IsoLayer>(*layer.technique);
         if (!before || !now || (*before >= iso.value) == (*now >= iso.value)) return;
         Number lo = t - step, hi = t;
@@ -81,75 +96,139 @@ template <class Number> struct Caster {
         const glm::dvec3 place(at((lo + hi) / 2));
         const double doi = scene.interest(place);
         const glm::dvec3 albedo = scene.saturated(linearFromSrgb(glm::dvec3(iso.color)), doi);
-        blend(shade(layer, place, albedo, true), double(iso.opacity) * scene.opacityFactor(doi));
+        events.push_back(
+            {(lo + hi) / 2, shade(layer, place, albedo, true), double(iso.opacity) * scene.opacityFactor(doi)});
     }
 
-    void drawSample(const DrawnLayer& layer, double value, glm::dvec3 place) {
+    /// Colour and opacity of a composite layer's sample, and the share of its length that they fill.
+    struct Classified {
+        glm::dvec4 color{0};
+        double share = 0;
+    };
+    Classified classify(const DrawnLayer& layer, Number t) const {
+        const glm::dvec3 place(at(t)), cells = scene.cells(place);
+        if (layer.classification == Classification::PreIntegrated) {
+            const auto valueAt = [&](Number where) { return layer.samples->value(scene.cells(glm::dvec3(at(where)))); };
+            const std::optional<double> front = valueAt(t - step / 2), back = valueAt(t + step / 2);
+            if (!front && !back) return {};
+            const double a = layer.place(front.value_or(*(back ? back : front)));
+            const double b = layer.place(back.value_or(*(front ? front : back)));
+            return {preintegrated(*layer.integrals, a, b), front && back ? 1.0 : 0.5};
+        }
+        if (layer.classification == Classification::Pre) {
+            const auto premultiplied = [&](double value) {
+                const glm::dvec4 color = layer.classify(value);
+                return glm::dvec4(glm::dvec3(color) * color.a, color.a);
+            };
+            const std::optional<glm::dvec4> color = layer.samples->blended(cells, premultiplied);
+            if (!color || !(color->a > 0)) return {};
+            return {glm::dvec4(glm::dvec3(*color) / color->a, color->a), 1};
+        }
+        const std::optional<double> value = layer.samples->value(cells);
+        if (!value) return {};
+        if (std::get<VolumeLayer>(*layer.technique).quantity == Quantity::Gradient)
+            return {layer.classifyPlace(std::min(1.0, steepPlace(layer, place))), 1};
+        if (layer.function->kind == TransferKind::Curve) return {layer.classify(*value), 1};
+        const glm::dvec4 srgb = evaluate(*layer.function, layer.range, *value, scene.steepness(layer, place));
+        return {glm::dvec4(linearFromSrgb(glm::dvec3(srgb)), srgb.a), 1};
+    }
+
+    /// Place of a gradient's magnitude, 0..1 and beyond.
+    double steepPlace(const DrawnLayer& layer, glm::dvec3 place) const {
+        return scene.steepness(layer, place) / double(layer.function->gradientTop);
+    }
+
+    void drawSample(const DrawnLayer& layer, Number t) {
         const auto& volume = std::get<VolumeLayer>(*layer.technique);
-        const glm::dvec4 classified = layer.classify(value);
+        const Classified classified = classify(layer, t);
+        const glm::dvec3 place(at(t));
         const double doi = scene.interest(place);
-        const double opacity =
-            correctedOpacity(classified.a * scene.opacityFactor(doi), double(step), double(volume.density));
+        const double opacity = correctedOpacity(classified.color.a * scene.opacityFactor(doi), double(step),
+                                                double(volume.density) * classified.share);
         if (opacity <= 0) return;
-        glm::dvec3 color = scene.saturated(glm::dvec3(classified), doi);
+        glm::dvec3 color = scene.saturated(glm::dvec3(classified.color), doi);
         if (volume.shaded) color = shade(layer, place, color, false);
         blend(color, opacity);
     }
 
-    /// What a maximum or x-ray layer has seen.
+    /// What a projection has seen.
     struct Seen {
-        double best = -1, bestValue = 0, bestInterest = 0;
-        double factors = 0, weighted = 0;
+        double best = -1, bestPlace = 0, bestInterest = 0;
+        bool found = false; ///< a local maximum
+        double factors = 0, weighted = 0, absorbed = 0;
         int count = 0;
     };
 
-    void look(const DrawnLayer& layer, Seen& seen, double value, glm::dvec3 place) const {
+    /// A sample of a projection; absent ones end the rise to a local maximum.
+    void look(const DrawnLayer& layer, Seen& seen, std::optional<double> value, glm::dvec3 place) const {
+        const auto& volume = std::get<VolumeLayer>(*layer.technique);
+        const double threshold = std::max(0.0, layer.unclamped(volume.threshold));
+        if (!value) {
+            if (volume.style == VolumeStyle::LocalMaximum) seen.found = seen.found || seen.best >= threshold;
+            return;
+        }
         const double doi = scene.interest(place), factor = scene.opacityFactor(doi);
-        const double score = layer.place(value) * factor;
-        if (score > seen.best) seen.best = score, seen.bestValue = value, seen.bestInterest = doi;
+        const double along = volume.quantity == Quantity::Gradient ? steepPlace(layer, place) : layer.unclamped(*value);
+        const double x = std::clamp(along, 0.0, 1.0);
         seen.factors += factor;
-        seen.weighted += factor * value;
+        seen.weighted += factor * along;
+        const double absorbed =
+            correctedOpacity(layer.classifyPlace(x).a * factor, double(step), double(volume.density));
+        seen.absorbed += (1 - seen.absorbed) * absorbed;
         ++seen.count;
+        const double score = (volume.style == VolumeStyle::Minimum ? 1 - x : x) * factor;
+        if (volume.style == VolumeStyle::LocalMaximum)
+            seen.found = seen.found || (seen.best >= threshold && score < seen.best);
+        if (score > seen.best && !seen.found) seen.best = score, seen.bestPlace = x, seen.bestInterest = doi;
     }
 
     void drawSeen(const DrawnLayer& layer, const Seen& seen) {
         const auto& volume = std::get<VolumeLayer>(*layer.technique);
         if (seen.count == 0 || !(seen.factors > 0)) return;
-        const bool maximum = volume.style == VolumeStyle::Maximum;
-        const double value = maximum ? seen.bestValue : seen.weighted / seen.factors;
-        // The mean belongs to no place: brushes act on it through its weights alone.
-        const double doi = maximum ? seen.bestInterest : 1;
-        const double factor = maximum ? scene.opacityFactor(doi) : seen.factors / seen.count;
-        const glm::dvec4 classified = layer.classify(value);
-        blend(scene.saturated(glm::dvec3(classified), doi),
-              std::min(1.0, double(volume.density) * classified.a) * factor);
+        const auto opacity = [&](glm::dvec4 color) { return std::min(1.0, double(volume.density) * color.a); };
+        if (volume.style == VolumeStyle::XRay) {
+            blend(glm::dvec3(layer.classifyPlace(seen.absorbed)), seen.absorbed);
+        } else if (volume.style == VolumeStyle::Average) {
+            // The mean belongs to no place: brushes act on it through its weights alone.
+            const glm::dvec4 color = layer.classifyPlace(std::clamp(seen.weighted / seen.factors, 0.0, 1.0));
+            blend(glm::dvec3(color), opacity(color) * seen.factors / seen.count);
+        } else {
+            const glm::dvec4 color = layer.classifyPlace(seen.bestPlace);
+            blend(scene.saturated(glm::dvec3(color), seen.bestInterest),
+                  opacity(color) * scene.opacityFactor(seen.bestInterest));
+        }
     }
 
     void cast() {
         step = Number(samples.step);
+        const auto isVolume = [](const DrawnLayer& layer, bool composite) {
+            const auto* volume = std::get_if<VolumeLayer>(layer.technique);
+            return volume != nullptr && (volume->style == VolumeStyle::Composite) == composite;
+        };
         std::vector<std::optional<double>> before(scene.layers.size()), now(scene.layers.size());
         std::vector<Seen> seen(scene.layers.size());
+        std::vector<Event> events;
         Number last = Number(samples.enter - kFaceTolerance);
         for (int k = 0; k < samples.count && !opaque(); ++k) {
             const Number t = Number(samples.at(k));
             const glm::dvec3 place(at(t)), cells = scene.cells(place);
-            drawSlices(last, t);
             for (std::size_t i = 0; i < now.size(); ++i) now[i] = scene.layers[i].samples->value(cells);
+            findSlices(events, last, t);
             for (std::size_t i = 0; i < now.size(); ++i)
                 if (k > 0 && std::holds_alternative<IsoLayer>(*scene.layers[i].technique))
-                    drawIso(scene.layers[i], before[i], now[i], t);
+                    findIso(events, scene.layers[i], before[i], now[i], t);
+            drawEvents(events);
             for (std::size_t i = 0; i < now.size(); ++i) {
-                const auto* volume = std::get_if<VolumeLayer>(scene.layers[i].technique);
-                if (volume == nullptr || !now[i]) continue;
-                if (volume->style == VolumeStyle::Composite)
-                    drawSample(scene.layers[i], *now[i], place);
-                else
-                    look(scene.layers[i], seen[i], *now[i], place);
+                if (isVolume(scene.layers[i], true)) drawSample(scene.layers[i], t);
+                if (isVolume(scene.layers[i], false)) look(scene.layers[i], seen[i], now[i], place);
             }
             std::swap(before, now);
             last = t;
         }
-        if (!opaque()) drawSlices(last, Number(segment.exit + kFaceTolerance));
+        if (!opaque()) {
+            findSlices(events, last, Number(segment.exit + kFaceTolerance));
+            drawEvents(events);
+        }
         for (std::size_t i = 0; i < seen.size(); ++i)
             if (seen[i].count > 0) drawSeen(scene.layers[i], seen[i]);
     }

@@ -113,4 +113,20 @@ std::optional<double> Samples::value(glm::dvec3 cells) const {
         .value();
 }
 
+std::optional<glm::dvec4> Samples::blended(glm::dvec3 cells, const std::function<glm::dvec4(double)>& of) const {
+    const int slices = geometry_.kind == volume::LatticeKind::BCC ? 2 : 1;
+    const View view{*this, first_, first_ + size_ - 1, slices};
+    glm::dvec4 out(0);
+    for (int c = 0; c < 4; ++c) {
+        const auto component = [&](glm::ivec3 at) {
+            const volume::Sample sample = view(at);
+            return volume::Sample{sample.present ? of(sample.value)[c] : 0, sample.present};
+        };
+        const std::optional<double> value = volume::linear(geometry_, component, cells).value();
+        if (!value) return std::nullopt;
+        out[c] = *value;
+    }
+    return out;
+}
+
 } // namespace tessera::vis::reference

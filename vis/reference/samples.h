@@ -4,6 +4,8 @@
 #include "volume/brick_source.h"
 #include "volume/reconstruct.h"
 
+#include <functional>
+#include <glm/vec4.hpp>
 #include <optional>
 #include <vector>
 
@@ -27,6 +29,9 @@ public:
 
     /// The value at a continuous cell position (Lattice::toCells); nullopt where absent.
     std::optional<double> value(glm::dvec3 cells) const;
+    /// What trilinear interpolation (on BCC the mean over both sublattices) makes of `of` the samples around a
+    /// position; nullopt where the value would be absent.
+    std::optional<glm::dvec4> blended(glm::dvec3 cells, const std::function<glm::dvec4(double)>& of) const;
     bool categorical() const { return categorical_; }
 
 private:

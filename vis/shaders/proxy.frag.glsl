@@ -46,7 +46,7 @@ void main() {
         if (LAYER_SHADED(i) == 1) {
             vec3 g = cellGradient(LAYER_FIELD(i), p, s.x, alpha > 0.0);
             float fade = min(1.0, length(g) * abs(layerMap[i].x) / kFlatGradient);
-            c.rgb = phong(c.rgb, g / worldCell, fade, -direction, toLight, light);
+            c.rgb = phong(c.rgb, shadingGradient(g), fade, -direction, toLight, light);
         }
         color = under(color, vec4(c.rgb * alpha, alpha));
     }

@@ -21,7 +21,11 @@ layout(location = 1) out float outPick; // distance along the ray of what a pixe
 #define EVENTS (SLICES + GEOMETRY)
 
 const float kOpaque = 0.995, kPickOpacity = 0.1, kFlatGradient = 0.005;
-const float kNoPick = -2.0, kUnknown = -1e9;
+const float kNoPick = -2.0;
+
+#if LAYERS > 0
+#include "lib/classify.glsl"
+#endif
 
 void main() {
     vec2 ndc = gl_FragCoord.xy * ndcScale + ndcOffset;
@@ -90,27 +94,46 @@ void main() {
 #endif
 
 #if LAYERS > 0
+    // What the projections have seen: best score and where, sums; a local maximum that is found has weight 1.
     float best[LAYERS], bestAt[LAYERS], sum[LAYERS], weight[LAYERS], factor[LAYERS];
     for (int i = 0; i < LAYERS; ++i) {
         best[i] = -1.0; bestAt[i] = 0.0; sum[i] = 0.0; weight[i] = 0.0; factor[i] = 0.0;
     }
-    float before[LAYERS]; // values of iso layers at sample k - 1
+    float before[LAYERS]; // iso: value at sample k - 1; slab: place at the front of sample k's part
     for (int i = 0; i < LAYERS; ++i) before[i] = kUnknown;
+#if HAS_SLABS
+    for (int i = 0; i < LAYERS; ++i)
+        if (LAYER_LOOKUP(i) == LOOKUP_SLAB) {
+            vec2 s = reconstruct(LAYER_FIELD(i), first - 0.5 * cellsPerSample);
+            before[i] = present(s) ? s.x * layerMap[i].x + layerMap[i].y : kUnknown;
+        }
+#endif
     int k = 0;
     while (k < count && color.a < kOpaque) {
         bool hit = false;
-        float previous[LAYERS]; // values of iso layers at the former sample; far below: absent or not known
+        float previous[LAYERS]; // `before` at this sample; far below: absent or not known
         for (int i = 0; i < LAYERS; ++i) previous[i] = before[i];
         vec2 here[LAYERS];
+#if HAS_SLABS
+        float front[LAYERS]; // of slabs
+#endif
 #if !FLAT
         while (k < count) {
 #endif
             vec3 p = first + float(k) * cellsPerSample;
 #if SKIPPING
+#if HAS_SLABS
+            // From the front of this sample's part; the last empty one gives the next its front.
+            int leap = emptySamples(p - 0.5 * cellsPerSample, cellsPerSample) - 1;
+#else
             int leap = emptySamples(p, cellsPerSample);
+#endif
             if (leap > 0) {
                 k += leap;
                 for (int i = 0; i < LAYERS; ++i) previous[i] = kUnknown;
+#if FLAT
+                for (int i = 0; i < LAYERS; ++i) before[i] = kUnknown;
+#endif
                 continue;
             }
 #endif
@@ -118,25 +141,46 @@ void main() {
             hit = float(k) >= nextEvent;
 #endif
             for (int i = 0; i < LAYERS; ++i) {
-                vec2 s = reconstruct(LAYER_FIELD(i), p);
+                vec2 s = reconstruct(LAYER_FIELD(i), LAYER_LOOKUP(i) == LOOKUP_SLAB ? p + 0.5 * cellsPerSample : p);
                 bool is = present(s);
                 here[i] = s;
-                if (LAYER_STYLE(i) == 0) {
-                    hit = hit || (is && opaqueAt(i, s.x * layerMap[i].x + layerMap[i].y));
-                } else if (LAYER_STYLE(i) == 3) {
+                float x = s.x * layerMap[i].x + layerMap[i].y;
+                if (LAYER_GRADIENT(i) == 1 && (FLAT == 0 || LAYER_STYLE(i) != COMPOSITE))
+                    x = gradientPlace(i, cellGradient(LAYER_FIELD(i), p, s.x, is));
+                if (LAYER_STYLE(i) == COMPOSITE) {
+                    float share = 1.0, opacity = is && opaqueAt(i, x) ? 1.0 : 0.0;
+#if HAS_SLABS
+                    if (LAYER_LOOKUP(i) == LOOKUP_SLAB) {
+                        front[i] = previous[i];
+                        previous[i] = is ? x : kUnknown;
+                        opacity = slabColor(i, front[i], previous[i], share).a;
+                    }
+#endif
+#if HAS_LATTICE && !FLAT
+                    if (LAYER_LOOKUP(i) == LOOKUP_LATTICE) opacity = latticeColor(i, p, share).a;
+#endif
+                    hit = hit || opacity * share > 0.0;
+                } else if (LAYER_STYLE(i) == ISO) {
                     hit = hit || (is && previous[i] > kUnknown && (s.x >= layerMap[i].z) != (previous[i] >= layerMap[i].z));
                     previous[i] = is ? s.x : kUnknown;
                 } else {
                     float f = is ? focusOpacity(degreeOfInterest(p)) : 0.0;
-                    float x = clamp(s.x * layerMap[i].x + layerMap[i].y, 0.0, 1.0);
-                    if (LAYER_STYLE(i) == 1) {
-                        bool better = is && x * f > best[i];
-                        bestAt[i] = better ? float(k) : bestAt[i];
-                        best[i] = better ? x * f : best[i];
-                    } else {
-                        sum[i] += is ? f * s.x : 0.0;
+                    float place = clamp(x, 0.0, 1.0);
+                    if (LAYER_STYLE(i) == AVERAGE) {
+                        sum[i] += is ? f * x : 0.0;
                         weight[i] += f;
                         factor[i] += is ? 1.0 : 0.0;
+                    } else if (LAYER_STYLE(i) == XRAY) {
+                        float a = is ? correctedOpacity(transfer(i, x).a * f, lengths * layerMap[i].z) : 0.0;
+                        sum[i] += (1.0 - sum[i]) * a;
+                    } else {
+                        float score = (LAYER_STYLE(i) == MINIMUM ? 1.0 - place : place) * f;
+                        // A local maximum stands when the values fall again above the threshold.
+                        if (LAYER_STYLE(i) == LOCAL_MAXIMUM)
+                            weight[i] = best[i] >= layerMore[i].y && (!is || score < best[i]) ? 1.0 : weight[i];
+                        bool better = is && score > best[i] && weight[i] == 0.0;
+                        bestAt[i] = better ? float(k) : bestAt[i];
+                        best[i] = better ? score : best[i];
                     }
                 }
             }
@@ -151,7 +195,67 @@ void main() {
 #if !FLAT
             vec3 p = first + float(k) * cellsPerSample;
             for (int i = 0; i < LAYERS; ++i)
-                if (LAYER_STYLE(i) == 0) here[i] = reconstruct(LAYER_FIELD(i), p);
+                if (LAYER_STYLE(i) == COMPOSITE) here[i] = reconstruct(LAYER_FIELD(i), p);
+#if HAS_SLABS
+            for (int i = 0; i < LAYERS; ++i)
+                if (LAYER_LOOKUP(i) == LOOKUP_SLAB) {
+                    vec2 a = reconstruct(LAYER_FIELD(i), p - 0.5 * cellsPerSample);
+                    vec2 b = reconstruct(LAYER_FIELD(i), p + 0.5 * cellsPerSample);
+                    front[i] = present(a) ? a.x * layerMap[i].x + layerMap[i].y : kUnknown;
+                    before[i] = present(b) ? b.x * layerMap[i].x + layerMap[i].y : kUnknown;
+                }
+#endif
+#elif HAS_SLABS
+            for (int i = 0; i < LAYERS; ++i)
+                if (LAYER_LOOKUP(i) == LOOKUP_SLAB) before[i] = previous[i];
+#endif
+#if ISOS > 0
+            // Where the surfaces are met after the last sample (in samples), and what is seen there; nearest first.
+            float isoAt[ISOS];
+            vec4 isoColor[ISOS];
+            for (int n = 0; n < ISOS; ++n) {
+                int i = ISO_LAYER(n), field = LAYER_FIELD(i);
+                float value = layerMap[i].z;
+                vec2 a = reconstruct(field, p - cellsPerSample), b = reconstruct(field, p);
+                bool crossed = k > 0 && present(a) && present(b) && (a.x >= value) != (b.x >= value);
+                bool above = a.x >= value;
+                before[i] = present(b) ? b.x : kUnknown;
+                float lo = -1.0, hi = 0.0;
+                for (int m = 0; m < (crossed ? bisections : 0); ++m) {
+                    float middle = 0.5 * (lo + hi);
+                    bool same = (reconstruct(field, p + middle * cellsPerSample).x >= value) == above;
+                    lo = same ? middle : lo;
+                    hi = same ? hi : middle;
+                }
+                float at = 0.5 * (lo + hi);
+                vec3 q = p + at * cellsPerSample;
+                float doi = degreeOfInterest(q);
+                float alpha = crossed ? layerMap[i].w * focusOpacity(doi) : 0.0;
+                float centre = FIELD_COVERAGE(field) == 1 ? reconstruct(field, q).x : 0.0;
+                vec3 g = shadingGradient(cellGradient(field, q, centre, crossed));
+                vec3 c = phong(focusColor(layerColor[i], doi), g, 1.0, -direction, toLight, light);
+                isoAt[n] = crossed ? float(k) + at : 1e9;
+                isoColor[n] = vec4(c * alpha, alpha);
+            }
+            for (int n = 0; n < ISOS; ++n)
+                for (int m = ISOS - 1; m > n; --m)
+                    if (isoAt[m] < isoAt[m - 1]) {
+                        float at = isoAt[m]; isoAt[m] = isoAt[m - 1]; isoAt[m - 1] = at;
+                        vec4 c = isoColor[m]; isoColor[m] = isoColor[m - 1]; isoColor[m - 1] = c;
+                    }
+            for (int n = 0; n < ISOS; ++n) {
+#if EVENTS > 0
+                float until = min(isoAt[n], float(k));
+                for (int j = 0; j < EVENTS; ++j)
+                    if (eventAt[j] > passed && eventAt[j] <= until) {
+                        color = under(color, eventColor[j]);
+                        if (pick <= kNoPick && color.a > kPickOpacity) pick = eventAt[j];
+                    }
+                passed = max(passed, until);
+#endif
+                color = under(color, isoColor[n]);
+                if (pick <= kNoPick && color.a > kPickOpacity) pick = min(isoAt[n], float(k));
+            }
 #endif
 #if EVENTS > 0
             for (int i = 0; i < EVENTS; ++i)
@@ -164,45 +268,34 @@ void main() {
             for (int i = EVENTS - 1; i >= 0; --i)
                 if (eventAt[i] > passed) nextEvent = eventAt[i];
 #endif
-#if HAS_ISO
-            for (int i = 0; i < LAYERS; ++i) {
-                if (LAYER_STYLE(i) != 3) continue;
-                int field = LAYER_FIELD(i);
-                float value = layerMap[i].z;
-                vec2 a = reconstruct(field, p - cellsPerSample), b = reconstruct(field, p);
-                bool crossed = k > 0 && present(a) && present(b) && (a.x >= value) != (b.x >= value);
-                bool above = a.x >= value;
-                before[i] = present(b) ? b.x : kUnknown;
-                float lo = -1.0, hi = 0.0;
-                for (int n = 0; n < (crossed ? bisections : 0); ++n) {
-                    float middle = 0.5 * (lo + hi);
-                    bool same = (reconstruct(field, p + middle * cellsPerSample).x >= value) == above;
-                    lo = same ? middle : lo;
-                    hi = same ? hi : middle;
-                }
-                float at = 0.5 * (lo + hi);
-                vec3 q = p + at * cellsPerSample;
-                float doi = degreeOfInterest(q);
-                float alpha = crossed ? layerMap[i].w * focusOpacity(doi) : 0.0;
-                float centre = FIELD_COVERAGE(field) == 1 ? reconstruct(field, q).x : 0.0;
-                vec3 g = cellGradient(field, q, centre, crossed) / worldCell;
-                vec3 c = phong(focusColor(layerColor[i], doi), g, 1.0, -direction, toLight, light);
-                color = under(color, vec4(c * alpha, alpha));
-                if (pick <= kNoPick && color.a > kPickOpacity) pick = float(k) + at;
-            }
-#endif
 #if HAS_COMPOSITE
             for (int i = 0; i < LAYERS; ++i) {
-                if (LAYER_STYLE(i) != 0) continue;
+                if (LAYER_STYLE(i) != COMPOSITE) continue;
                 vec2 s = here[i];
-                vec4 c = transfer(i, s.x * layerMap[i].x + layerMap[i].y);
+                float share = present(s) ? 1.0 : 0.0;
+                bool byGradient = LAYER_GRADIENT(i) == 1 || LAYER_LOOKUP(i) == LOOKUP_PLANE;
+                float x = s.x * layerMap[i].x + layerMap[i].y;
+                vec3 g = vec3(0.0);
+                if (byGradient) g = cellGradient(LAYER_FIELD(i), p, s.x, share > 0.0 && (LAYER_GRADIENT(i) == 1 || opaqueAt(i, x)));
+                if (LAYER_GRADIENT(i) == 1) x = gradientPlace(i, g);
+                vec4 c;
+#if HAS_PLANES
+                if (LAYER_LOOKUP(i) == LOOKUP_PLANE) c = planeAt(LAYER_PLANE(i), vec2(x, gradientPlace(i, g))); else
+#endif
+#if HAS_SLABS
+                if (LAYER_LOOKUP(i) == LOOKUP_SLAB) c = slabColor(i, front[i], before[i], share); else
+#endif
+#if HAS_LATTICE
+                if (LAYER_LOOKUP(i) == LOOKUP_LATTICE) c = latticeColor(i, p, share); else
+#endif
+                c = transfer(i, x);
                 float doi = degreeOfInterest(p);
                 c.rgb = focusColor(c.rgb, doi);
-                float alpha = present(s) ? correctedOpacity(c.a * focusOpacity(doi), lengths * layerMap[i].z) : 0.0;
+                float alpha = correctedOpacity(c.a * focusOpacity(doi), lengths * layerMap[i].z * share);
                 if (LAYER_SHADED(i) == 1) {
-                    vec3 g = cellGradient(LAYER_FIELD(i), p, s.x, alpha > 0.0);
+                    if (!byGradient) g = cellGradient(LAYER_FIELD(i), p, present(s) ? s.x : kUnknown, alpha > 0.0);
                     float fade = min(1.0, length(g) * abs(layerMap[i].x) / kFlatGradient);
-                    c.rgb = phong(c.rgb, g / worldCell, fade, -direction, toLight, light);
+                    c.rgb = phong(c.rgb, shadingGradient(g), fade, -direction, toLight, light);
                 }
                 color = under(color, vec4(c.rgb * alpha, alpha));
             }
@@ -223,17 +316,28 @@ void main() {
 #endif
 #if HAS_PROJECTION
     for (int i = 0; i < LAYERS; ++i) {
-        if (LAYER_STYLE(i) != 1 && LAYER_STYLE(i) != 2) continue;
-        vec3 p = first + bestAt[i] * cellsPerSample;
-        bool maximum = LAYER_STYLE(i) == 1;
-        float value = maximum ? reconstruct(LAYER_FIELD(i), p).x : sum[i] / max(weight[i], 1e-6);
-        float doi = maximum ? degreeOfInterest(p) : 1.0;
-        vec4 c = transfer(i, value * layerMap[i].x + layerMap[i].y);
-        bool any = maximum ? best[i] >= 0.0 : weight[i] > 0.0;
-        float f = maximum ? focusOpacity(doi) : weight[i] / max(factor[i], 1.0);
-        float alpha = any ? min(1.0, layerMap[i].z * c.a) * f : 0.0;
-        color = under(color, vec4(focusColor(c.rgb, doi) * alpha, alpha));
-        if (pick <= kNoPick && color.a > kPickOpacity) pick = maximum ? bestAt[i] : 0.5 * float(count);
+        if (LAYER_STYLE(i) == COMPOSITE || LAYER_STYLE(i) == ISO) continue;
+        vec4 c;
+        float alpha, at = 0.5 * float(count);
+        if (LAYER_STYLE(i) == XRAY) {
+            alpha = sum[i];
+            c = transfer(i, alpha);
+        } else if (LAYER_STYLE(i) == AVERAGE) {
+            c = transfer(i, sum[i] / max(weight[i], 1e-6));
+            alpha = weight[i] > 0.0 ? min(1.0, layerMap[i].z * c.a) * (weight[i] / max(factor[i], 1.0)) : 0.0;
+        } else {
+            at = bestAt[i];
+            vec3 p = first + at * cellsPerSample;
+            vec2 s = reconstruct(LAYER_FIELD(i), p);
+            float x = s.x * layerMap[i].x + layerMap[i].y;
+            if (LAYER_GRADIENT(i) == 1) x = gradientPlace(i, cellGradient(LAYER_FIELD(i), p, s.x, best[i] >= 0.0));
+            float doi = degreeOfInterest(p);
+            c = transfer(i, x);
+            c.rgb = focusColor(c.rgb, doi);
+            alpha = best[i] >= 0.0 ? min(1.0, layerMap[i].z * c.a) * focusOpacity(doi) : 0.0;
+        }
+        color = under(color, vec4(c.rgb * alpha, alpha));
+        if (pick <= kNoPick && color.a > kPickOpacity) pick = at;
     }
 #endif
     outColor = meets ? color : vec4(0.0);

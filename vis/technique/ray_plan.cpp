@@ -11,11 +11,12 @@ namespace tessera::vis {
 
 namespace {
 
-int fieldOf(RayPlan& plan, const volume::DatasetInfo& info, int channel) {
+int fieldOf(RayPlan& plan, const volume::DatasetInfo& info, int channel, bool raw = false) {
     for (std::size_t i = 0; i < plan.fields.size(); ++i)
-        if (plan.fields[i].channel == channel) return int(i);
+        if (plan.fields[i].channel == channel && plan.fields[i].raw == raw) return int(i);
     BoundField field;
     field.channel = channel;
+    field.raw = raw;
     const volume::Channel known = info.channels()[std::size_t(channel)];
     field.categorical = info.parameters[std::size_t(known.parameter)].categorical;
     plan.fields.push_back(field);
@@ -35,6 +36,31 @@ const std::string& channelOf(const Layer& layer) {
     return std::visit([](const auto& technique) -> const std::string& { return technique.channel; }, layer.technique);
 }
 
+/// A volume layer of a plan; its field and the page of its table are added.
+RayLayer volumeUse(RayPlan& plan, int layer, const VolumeLayer& volume, int channel, const Scene& scene,
+                   const volume::DatasetInfo& info) {
+    const volume::Channel known = info.channels()[std::size_t(channel)];
+    RayLayer use;
+    use.layer = layer;
+    use.style = RayStyle(int(volume.style));
+    use.gradient = volume.quantity == Quantity::Gradient;
+    if (volume.style == VolumeStyle::Composite) {
+        const bool categorical = info.parameters[std::size_t(known.parameter)].categorical;
+        const Classification asked = use.gradient || categorical ? Classification::Post : volume.classification;
+        use.shaded = volume.shaded && !categorical;
+        if (!use.gradient && transferFor(scene, known.name).kind == TransferKind::Regions)
+            use.lookup = RayLookup::Plane;
+        else if (asked == Classification::Pre)
+            use.lookup = RayLookup::Lattice;
+        else if (asked == Classification::PreIntegrated)
+            use.lookup = RayLookup::Slab;
+    }
+    if (use.lookup == RayLookup::Plane || use.lookup == RayLookup::Slab) use.page = plan.pages++;
+    const bool raw = use.lookup == RayLookup::Lattice && scene.render.filter == Filter::AverageQuasi;
+    use.field = fieldOf(plan, info, channel, raw);
+    return use;
+}
+
 } // namespace
 
 RayPlan planRays(const Scene& scene, const volume::DatasetInfo& info) {
@@ -45,14 +71,12 @@ RayPlan planRays(const Scene& scene, const volume::DatasetInfo& info) {
         if (!layer.visible || !channel) continue;
         const auto* surface = std::get_if<IsoLayer>(&layer.technique);
         if (surface && surface->method == SurfaceMethod::Polygons) continue; // comes as Scene::geometry
-        const int field = fieldOf(plan, info, *channel);
         if (const auto* volume = std::get_if<VolumeLayer>(&layer.technique))
-            plan.layers.push_back({int(i), RayStyle(int(volume->style)), field,
-                                   volume->shaded && volume->style == VolumeStyle::Composite});
+            plan.layers.push_back(volumeUse(plan, int(i), *volume, *channel, scene, info));
         else if (surface)
-            plan.layers.push_back({int(i), RayStyle::Iso, field, true});
+            plan.layers.push_back({int(i), RayStyle::Iso, fieldOf(plan, info, *channel), true});
         else
-            plan.slices.push_back({int(i), field});
+            plan.slices.push_back({int(i), fieldOf(plan, info, *channel)});
     }
     plan.brushDefines = brushDefines({});
     plan.peels = peelsOf(scene.geometry);
@@ -74,10 +98,15 @@ RayPlan planRays(const Scene& scene, const volume::DatasetInfo& info) {
 
 ProgramRecipe rayRecipe(const RayPlan& plan, const Scene& scene, const volume::BrickGrid& grid, bool skip) {
     const bool bcc = grid.lattice.kind == volume::LatticeKind::BCC;
-    const auto uses = [&](RayStyle style) {
-        return std::any_of(plan.layers.begin(), plan.layers.end(),
-                           [&](const RayLayer& layer) { return layer.style == style; });
+    const auto any = [&](const auto& holds) {
+        return std::any_of(plan.layers.begin(), plan.layers.end(), holds) ? "1" : "0";
     };
+    const auto looks = [&](RayLookup lookup) {
+        return any([=](const RayLayer& layer) { return layer.lookup == lookup; });
+    };
+    std::vector<int> isos;
+    for (std::size_t i = 0; i < plan.layers.size(); ++i)
+        if (plan.layers[i].style == RayStyle::Iso) isos.push_back(int(i));
     ProgramRecipe recipe;
     const bool proxy = drawnByProxy(scene);
     recipe.vertex = proxy ? "proxy.vert.glsl" : "screen.vert.glsl";
@@ -106,13 +135,29 @@ ProgramRecipe rayRecipe(const RayPlan& plan, const Scene& scene, const volume::B
     define("BRUSH_FIELDS", std::to_string(plan.brushFields.size()));
     define("BRUSH_FIELD(i)", choice(plan.brushFields, [](int field) { return field; }));
     recipe.defines.insert(recipe.defines.end(), plan.brushDefines.begin(), plan.brushDefines.end());
-    define("HAS_ISO", uses(RayStyle::Iso) ? "1" : "0");
-    define("HAS_COMPOSITE", uses(RayStyle::Composite) ? "1" : "0");
-    define("HAS_PROJECTION", uses(RayStyle::Maximum) || uses(RayStyle::XRay) ? "1" : "0");
-    define("FLAT",
-           std::none_of(plan.layers.begin(), plan.layers.end(), [](const RayLayer& layer) { return layer.shaded; })
-               ? "1"
-               : "0");
+    define("LAYER_LOOKUP(i)", choice(plan.layers, [](const RayLayer& layer) { return int(layer.lookup); }));
+    define("LAYER_GRADIENT(i)", choice(plan.layers, [](const RayLayer& layer) { return layer.gradient; }));
+    define("LAYER_PLANE(i)", choice(plan.layers, [](const RayLayer& layer) { return layer.page; }));
+    define("ISOS", std::to_string(isos.size()));
+    define("ISO_LAYER(i)", choice(isos, [](int layer) { return layer; }));
+    define("PLANES", std::to_string(plan.pages));
+    define("PLANE_SIZE", std::to_string(kPlaneSize));
+    define("HAS_PLANES", looks(RayLookup::Plane));
+    define("HAS_LATTICE", looks(RayLookup::Lattice));
+    define("HAS_SLABS", looks(RayLookup::Slab));
+    define("HAS_COMPOSITE", any([](const RayLayer& layer) { return layer.style == RayStyle::Composite; }));
+    define("HAS_PROJECTION", any([](const RayLayer& layer) {
+               return layer.style != RayStyle::Composite && layer.style != RayStyle::Iso;
+           }));
+    define("FLAT", std::none_of(plan.layers.begin(), plan.layers.end(),
+                                [](const RayLayer& layer) {
+                                    return layer.shaded || layer.lookup == RayLookup::Plane ||
+                                           layer.lookup == RayLookup::Lattice;
+                                })
+                       ? "1"
+                       : "0");
+    define("BCC", bcc ? "1" : "0");
+    define("NORMAL_BITS", std::to_string(scene.render.normalBits));
     define("TABLE_SIZE", std::to_string(kTableSize));
     define("HALO", std::to_string(kHalo));
     define("PRESENT_COVERAGE", std::to_string(volume::kPresentCoverage));

@@ -16,6 +16,7 @@ namespace tessera::vis {
 struct BoundField {
     int channel = 0;
     bool categorical = false;
+    bool raw = false; ///< the samples themselves, whatever the filter: for pre-classification
     // Filled from what is resident:
     GLuint texture = 0;
     int level = 0;
@@ -26,13 +27,21 @@ struct BoundField {
     glm::ivec3 atlasSize{1};
 };
 
-enum class RayStyle { Composite, Maximum, XRay, Iso }; ///< numbers known to raycast.frag.glsl
+/// Numbers known to lib/bindings.glsl; those of volume layers are VolumeStyle's.
+enum class RayStyle { Composite, Maximum, Minimum, Average, XRay, LocalMaximum, Iso };
+
+/// How a composite layer comes to colour and opacity: by the curve at its value, by a table over value and gradient, by
+/// the curve at the samples around it, by the pre-integration table. Numbers known to lib/bindings.glsl.
+enum class RayLookup { Curve, Plane, Lattice, Slab };
 
 struct RayLayer {
     int layer = 0; ///< index into Scene::layers
     RayStyle style = RayStyle::Composite;
     int field = 0; ///< index into RayPlan::fields
     bool shaded = false;
+    RayLookup lookup = RayLookup::Curve;
+    bool gradient = false; ///< shows the gradient's magnitude
+    int page = -1;         ///< of the plane tables, for Plane and Slab
 };
 
 struct SliceUse {
@@ -47,6 +56,7 @@ struct RayPlan {
     std::vector<int> brushFields;
     std::vector<std::pair<std::string, std::string>> brushDefines; ///< which tests of brushes the program needs
     int peels = 0; ///< layers of rasterised geometry that lie among the samples
+    int pages = 0; ///< of the plane tables
     bool empty() const { return layers.empty() && slices.empty() && peels == 0; }
 };
 

@@ -1,11 +1,59 @@
 #include "vis/technique/ray_tables.h"
 
+#include "vis/model/preintegration.h"
 #include "vis/technique/ray_field.h"
 
 #include <algorithm>
 #include <cmath>
 
 namespace tessera::vis {
+
+namespace {
+
+/// Page of a function of regions.
+void addRegions(std::vector<glm::vec4>& table, const TransferFunction& function, Range range) {
+    for (int y = 0; y < kPlaneSize; ++y)
+        for (int x = 0; x < kPlaneSize; ++x) {
+            const double value = glm::mix(range.lo, range.hi, double(x) / (kPlaneSize - 1));
+            const double gradient = double(function.gradientTop) * y / (kPlaneSize - 1);
+            const glm::dvec4 at = evaluate(function, range, value, gradient);
+            table.emplace_back(glm::vec3(linearFromSrgb(glm::dvec3(at)) * at.a), float(at.a));
+        }
+}
+
+/// Greatest opacity of a function of regions at each of the kTableSize places, over all gradients and what the page's
+/// interpolation can make of them.
+std::vector<float> mostOpaque(const TransferFunction& function) {
+    std::vector<float> columns(kPlaneSize, 0), out;
+    for (int x = 0; x < kPlaneSize; ++x)
+        for (int y = 0; y < kPlaneSize; ++y)
+            columns[std::size_t(x)] =
+                std::max(columns[std::size_t(x)], float(evaluate(function, {0, 1}, double(x) / (kPlaneSize - 1),
+                                                                 double(function.gradientTop) * y / (kPlaneSize - 1))
+                                                            .a));
+    for (int i = 0; i < kTableSize; ++i) {
+        const double at = double(i) / (kTableSize - 1) * (kPlaneSize - 1);
+        out.push_back(std::max(columns[std::size_t(std::floor(at))], columns[std::size_t(std::ceil(at))]));
+    }
+    return out;
+}
+
+} // namespace
+
+std::vector<glm::vec4> planeTables(const RayPlan& plan, const Scene& scene, const volume::DatasetInfo& info) {
+    std::vector<glm::vec4> table;
+    for (const RayLayer& layer : plan.layers) {
+        if (layer.page < 0) continue;
+        const auto [function, range] = transferOf(scene, info, plan.fields[std::size_t(layer.field)].channel);
+        if (layer.lookup == RayLookup::Plane) {
+            addRegions(table, function, range);
+        } else {
+            const std::vector<glm::vec4> page = preintegrationTable(integralFunctions(function, range), kPlaneSize);
+            table.insert(table.end(), page.begin(), page.end());
+        }
+    }
+    return table;
+}
 
 std::vector<glm::vec4> transferTables(const RayPlan& plan, const Scene& scene, const volume::DatasetInfo& info) {
     std::vector<glm::vec4> table;
@@ -19,11 +67,18 @@ std::vector<glm::vec4> transferTables(const RayPlan& plan, const Scene& scene, c
     };
     for (const RayLayer& layer : plan.layers) add(layer.field);
     for (const SliceUse& slice : plan.slices) add(slice.field);
-    for (std::size_t row = 0; row < plan.layers.size(); ++row)
+    for (std::size_t row = 0; row < plan.layers.size(); ++row) {
+        const RayLayer& layer = plan.layers[row];
+        std::vector<float> regions;
+        if (layer.lookup == RayLookup::Plane)
+            regions = mostOpaque(transferOf(scene, info, plan.fields[std::size_t(layer.field)].channel).function);
         for (int i = 0; i < kTableSize; ++i) {
-            const std::size_t at = row * kTableSize + std::size_t(i);
-            table.emplace_back(glm::vec3(0), std::max(table[at].a, table[at + (i + 1 < kTableSize)].a));
+            const std::size_t at = row * kTableSize + std::size_t(i), next = at + (i + 1 < kTableSize);
+            const float own = regions.empty() ? table[at].a : regions[at - row * kTableSize];
+            const float other = regions.empty() ? table[next].a : regions[next - row * kTableSize];
+            table.emplace_back(glm::vec3(0), std::max(own, other));
         }
+    }
     return table;
 }
 
@@ -87,8 +142,9 @@ std::optional<BlockDistances> blockDistances(const RayPlan& plan, const Scene& s
             value = toTexel(field, std::get<IsoLayer>(layer.technique).value);
         } else {
             map = transferMap(field, scene, info);
-            const TransferFunction function = transferOf(scene, info, field.channel).function;
-            for (int i = 0; i < kTableSize; ++i)
+            const TransferFunction& function = transferOf(scene, info, field.channel).function;
+            if (use.lookup == RayLookup::Plane) opacity = mostOpaque(function);
+            for (int i = 0; use.lookup != RayLookup::Plane && i < kTableSize; ++i)
                 opacity.push_back(float(evaluate(function, {0, 1}, double(i) / (kTableSize - 1)).a));
         }
         for (std::size_t i = 0; i < total; ++i) {
@@ -97,7 +153,8 @@ std::optional<BlockDistances> blockDistances(const RayPlan& plan, const Scene& s
             const float slack = 1e-4f, lo = blocks.min[i] - slack, hi = blocks.max[i] + slack;
             bool shows = true;
             if (use.style == RayStyle::Iso) shows = lo <= value && value <= hi;
-            if (use.style == RayStyle::Composite) shows = anyOpacity(opacity, map, lo, hi);
+            // The gradient reaches beyond the block.
+            if (use.style == RayStyle::Composite && !use.gradient) shows = anyOpacity(opacity, map, lo, hi);
             if (shows) out.distance[i] = 0;
         }
     }

@@ -7,8 +7,13 @@ namespace tessera::vis {
 
 inline constexpr int kTableSize = 2048;
 /// Transfer tables of layers, then slices: kTableSize x rows, linear light, not premultiplied; then one row per layer
-/// whose opacity at i is the greater one of entries i and i + 1.
+/// whose opacity at i is the greater one of entries i and i + 1 (of regions: of any gradient).
 std::vector<glm::vec4> transferTables(const RayPlan& plan, const Scene& scene, const volume::DatasetInfo& info);
+
+inline constexpr int kPlaneSize = 256;
+/// The plane tables of a plan, page by page: kPlaneSize x kPlaneSize, linear light, premultiplied. Of regions: value
+/// (x) and gradient magnitude up to gradientTop (y) from 0 to 1; of pre-integration: front (x) and back (y).
+std::vector<glm::vec4> planeTables(const RayPlan& plan, const Scene& scene, const volume::DatasetInfo& info);
 
 /// Which blocks a layer of the plan can show something in, as Chebyshev distances (in blocks, at most 255) to the
 /// nearest such block; nullopt when the layers' fields have no common block grid.

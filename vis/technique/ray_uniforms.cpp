@@ -4,6 +4,7 @@
 #include "vis/technique/ray_field.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace tessera::vis {
 
@@ -27,16 +28,22 @@ void setLayers(const Program& program, const RayPlan& plan, const Scene& scene, 
                const WorldFrame& frame) {
     std::vector<glm::vec4> maps, slices, planes;
     std::vector<glm::vec3> colors;
+    std::vector<glm::vec2> more;
     for (const RayLayer& use : plan.layers) {
         const Layer& layer = scene.layers[std::size_t(use.layer)];
         const BoundField& field = plan.fields[std::size_t(use.field)];
         if (const auto* iso = std::get_if<IsoLayer>(&layer.technique)) {
             maps.emplace_back(1, 0, toTexel(field, iso->value), iso->opacity);
             colors.emplace_back(linearFromSrgb(glm::dvec3(iso->color)));
+            more.emplace_back(0);
         } else {
             const auto& volume = std::get<VolumeLayer>(layer.technique);
-            maps.emplace_back(transferMap(field, scene, info), volume.density, 1);
+            const glm::dvec2 map = transferMap(field, scene, info);
+            const double top = double(transferOf(scene, info, field.channel).function.gradientTop);
+            maps.emplace_back(map, volume.density, 1);
             colors.emplace_back(1);
+            // Nothing is below a threshold under the range.
+            more.emplace_back(std::abs(map.x) / top, std::max(toTexel(field, volume.threshold) * map.x + map.y, 0.0));
         }
     }
     for (const SliceUse& use : plan.slices) {
@@ -48,6 +55,7 @@ void setLayers(const Program& program, const RayPlan& plan, const Scene& scene, 
     }
     program.set("layerMap", maps);
     program.set("layerColor", colors);
+    program.set("layerMore", more);
     program.set("slicePlane", planes);
     program.set("sliceMap", slices);
 }
@@ -85,6 +93,7 @@ void setFields(const Program& program, const RayPlan& plan, const volume::BrickG
     program.set("lassoTables", first.lassos);
     program.set("geometryColor", RayUnits::kGeometry);
     program.set("geometryDistance", RayUnits::kGeometry + 1);
+    program.set("planeTable", first.planes);
 }
 
 } // namespace
@@ -99,6 +108,7 @@ RayUnits rayUnits(const RayPlan& plan) {
     units.table = bricked ? 3 * n : n;
     units.blocks = units.table + 1;
     units.lassos = units.blocks + 1;
+    units.planes = units.blocks + 2;
     return units;
 }
 
@@ -120,6 +130,7 @@ void setRayUniforms(const Program& program, const RayPlan& plan, const Scene& sc
     program.set("gradientDelta", float(gradientDelta(grid.lattice.kind)));
     program.set("axisCount", 3);
     program.set("bisections", kBisections);
+    program.set("latticeCorners", grid.lattice.kind == volume::LatticeKind::BCC ? 16 : 8);
     program.set("toLight", glm::vec3(lightDirection(render, scene.camera)));
     program.set("light", glm::vec4(render.ambient, render.diffuse, render.specular, render.shininess));
     if (const BlockRanges* blocks = commonBlocks(plan)) {

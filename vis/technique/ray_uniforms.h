@@ -5,10 +5,10 @@
 /// Everything a program of the ray caster is told before it draws.
 namespace tessera::vis {
 
-/// Texture units: channels from 0, then page tables, atlases, the transfer tables, the block distances and the tables
-/// of lassos; then, beyond those of any plan, the colours and distances of rasterised layers.
+/// Texture units: channels from 0, then page tables, atlases, the transfer tables, the block distances, the tables of
+/// lassos and the plane tables; then, beyond those of any plan, the colours and distances of rasterised layers.
 struct RayUnits {
-    int pages = 0, atlases = 0, table = 0, blocks = 0, lassos = 0;
+    int pages = 0, atlases = 0, table = 0, blocks = 0, lassos = 0, planes = 0;
     static constexpr int kGeometry = 40;
 };
 RayUnits rayUnits(const RayPlan& plan);

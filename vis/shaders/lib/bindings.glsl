@@ -1,13 +1,16 @@
 // What the ray caster knows of the scene. Compiled-in (generated #defines):
 //   FIELDS    number of channels bound; FIELD_COVERAGE(i), FIELD_NEAREST(i): 0 or 1
-//   LAYERS    ray layers; LAYER_STYLE(i) (0 composite, 1 maximum, 2 x-ray, 3 iso), LAYER_FIELD(i), LAYER_SHADED(i)
+//   LAYERS    ray layers; LAYER_STYLE(i) (below), LAYER_FIELD(i), LAYER_SHADED(i); LAYER_LOOKUP(i): how a composite
+//             layer is classified (below); LAYER_GRADIENT(i): 1 where the gradient's magnitude is shown;
+//             LAYER_PLANE(i): page of planeTable of LOOKUP_PLANE and LOOKUP_SLAB
+//   ISOS      iso layers; ISO_LAYER(n)
 //   SLICES    slice planes; SLICE_FIELD(i)
 //   GEOMETRY  layers of rasterised surfaces
 //   BRUSH_TESTS    room for tests of brushes, 0 = no brush is active; BRUSH_RANGES, BRUSH_ELLIPSES, BRUSH_LASSOS,
 //                  BRUSH_SPACE: 0 or 1; BRUSH_FIELDS channels they look at, BRUSH_FIELD(i)
 // These are chains of ?: and not constant arrays, since Mesa turns such arrays into uniforms before it unrolls loops
 // and then runs every style for every layer.
-//   BCC       lattice; PRESENT_COVERAGE   kPresentCoverage of volume/reconstruct.h
+//   BCC       1 on that lattice; PRESENT_COVERAGE   kPresentCoverage of volume/reconstruct.h
 // Positions `p` are cells of the even sublattice at level 0 (Lattice::toCells); values are texel units.
 
 // Dense texture of a channel: texture coordinate = p * fieldScale + fieldOffset (even sublattice), fieldOdd added for
@@ -28,10 +31,24 @@ uniform vec3 worldCell;           // world edges of the cell that steps are meas
 uniform float stepVoxels;
 uniform vec3 cellsPerWorld, cellsOffset; // p = world * cellsPerWorld + cellsOffset
 uniform float gradientDelta;
-// 3 and kBisections: no constants, so that no compiler unrolls these loops (seconds of it on software GL).
-uniform int axisCount, bisections;
+// 3, kBisections and 8 or (BCC) 16: no constants, so that no compiler unrolls these loops (seconds of it on software GL).
+uniform int axisCount, bisections, latticeCorners;
 uniform vec3 toLight;
 uniform vec4 light; // ambient, diffuse, specular, shininess
+
+// RayStyle of vis/technique/ray_plan.h
+#define COMPOSITE 0
+#define MAXIMUM 1
+#define MINIMUM 2
+#define AVERAGE 3
+#define XRAY 4
+#define LOCAL_MAXIMUM 5
+#define ISO 6
+// RayLookup of vis/technique/ray_plan.h
+#define LOOKUP_CURVE 0
+#define LOOKUP_PLANE 1
+#define LOOKUP_LATTICE 2
+#define LOOKUP_SLAB 3
 
 // Layers. layerMap: transfer coordinate = value * x + y; z = density, or the iso value; w = opacity of an iso-surface.
 // Rows of the transfer table: layers, then slices; then for each layer whether it has opacity (opaqueAt).
@@ -39,6 +56,10 @@ uniform sampler2D transferTable;
 #if LAYERS > 0
 uniform vec4 layerMap[LAYERS];
 uniform vec3 layerColor[LAYERS];
+uniform vec2 layerMore[LAYERS]; // factor from gradient magnitude (texels per cell) to its place; place of the threshold
+#endif
+#if PLANES > 0
+uniform sampler2D planeTable; // pages of PLANE_SIZE x PLANE_SIZE one above the other, premultiplied
 #endif
 
 #if SLICES > 0
@@ -69,6 +90,15 @@ vec4 transfer(int row, float x) {
     return mix(texelFetch(transferTable, ivec2(i, row), 0),
                texelFetch(transferTable, ivec2(min(i + 1, kTableSize - 1), row), 0), u - float(i));
 }
+
+#if PLANES > 0
+// Colour (linear) and opacity of a page of planeTable at 0..1 x 0..1, linear between its entries.
+vec4 planeAt(int page, vec2 at) {
+    vec2 place = clamp(at, 0.0, 1.0) * float(PLANE_SIZE - 1) + vec2(0.5, float(page * PLANE_SIZE) + 0.5);
+    vec4 c = textureLod(planeTable, place / vec2(PLANE_SIZE, PLANE_SIZE * PLANES), 0.0);
+    return vec4(c.rgb / max(c.a, 1e-12), c.a);
+}
+#endif
 
 // Whether transfer(row, x) can have opacity: entry i says it for both ends of what lies between i and i + 1.
 bool opaqueAt(int row, float x) {

@@ -1,0 +1,47 @@
+// From samples to colour (linear, not premultiplied) and opacity of a layer kReferenceLength thick, for the composite
+// layers. Twin: classification in vis/reference/raycast.cpp; what the lookups mean stands in vis/model/ray_setup.h.
+// Another look (styles of drawing, say) that changes colour or opacity by value and gradient belongs behind these.
+
+// Place of the gradient's magnitude, 0..1 and beyond.
+float gradientPlace(int layer, vec3 gradient) {
+    return length(gradient) * layerMore[layer].x;
+}
+
+#if HAS_LATTICE
+// Pre-classification: the samples around p are classified, their premultiplied colours interpolated as values are by
+// trilinear interpolation (on BCC the mean of both sublattices). `share`: 1 where enough of them are present, else 0.
+vec4 latticeColor(int layer, vec3 p, out float share) {
+    int field = LAYER_FIELD(layer);
+    vec4 sum = vec4(0.0);
+    float coverage = 0.0;
+    for (int corner = 0; corner < latticeCorners; ++corner) { // 8, on BCC 16
+        int sublattice = corner >> 3;
+        vec3 at = sublatticeIndex(field, p, sublattice), base = floor(at);
+        ivec3 offset = ivec3(corner & 1, (corner >> 1) & 1, (corner >> 2) & 1);
+        vec3 part = mix(1.0 - (at - base), at - base, equal(offset, ivec3(1)));
+        vec4 texel = fetchTexel(field, ivec3(base) + offset, p);
+#if BCC
+        vec2 s = sublattice == 1 ? texel.ga : texel.rb;
+#else
+        vec2 s = texel.rg;
+#endif
+        float weight = part.x * part.y * part.z * (FIELD_COVERAGE(field) == 1 ? s.y : 1.0);
+        vec4 c = transfer(layer, s.x * layerMap[layer].x + layerMap[layer].y);
+        sum += weight * vec4(c.rgb * c.a, c.a);
+        coverage += weight;
+    }
+    sum /= max(coverage, 1e-6);
+    share = coverage * 8.0 / float(latticeCorners) >= PRESENT_COVERAGE ? 1.0 : 0.0;
+    return vec4(sum.rgb / max(sum.a, 1e-12), sum.a);
+}
+#endif
+
+#if PLANES > 0
+// Pre-integration between the places of the values at the two ends of a sample's part of the ray, kUnknown where
+// absent. `share`: of that part, what is present.
+vec4 slabColor(int layer, float front, float back, out float share) {
+    bool hasFront = front > kUnknown, hasBack = back > kUnknown;
+    share = (hasFront ? 0.5 : 0.0) + (hasBack ? 0.5 : 0.0);
+    return planeAt(LAYER_PLANE(layer), vec2(hasFront ? front : back, hasBack ? back : front));
+}
+#endif

@@ -1,0 +1,127 @@
+#include "volume/boundary.h"
+
+#include "volume/boundary_derivatives.h"
+#include "volume/parallel.h"
+
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <limits>
+#include <map>
+
+namespace tessera::volume {
+
+namespace {
+
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+/// An empty histogram of a query.
+DerivativeHistogram emptyHistogram(const BrickSource& source, const DerivativeQuery& query) {
+    DerivativeHistogram out;
+    out.valueBins = query.valueBins;
+    out.gradientBins = query.gradientBins;
+    const DatasetInfo& info = source.info();
+    out.range = query.range.hi != query.range.lo
+                    ? query.range
+                    : info.channelRange(info.channels()[static_cast<std::size_t>(query.channel)]);
+    out.gradientTop = query.gradientTop > 0 ? query.gradientTop : std::abs(out.range.hi - out.range.lo) / 4;
+    const auto values = static_cast<std::size_t>(query.valueBins);
+    out.count.resize(values * static_cast<std::size_t>(query.gradientBins));
+    out.second.resize(out.count.size());
+    out.first.resize(values);
+    return out;
+}
+
+/// Counts one sample; values outside the range do not count.
+void add(DerivativeHistogram& to, const Derivatives& at) {
+    const double x = (at.value - to.range.lo) / (to.range.hi - to.range.lo);
+    if (!(x >= 0 && x <= 1)) return;
+    const auto v = static_cast<std::size_t>(std::min(x * to.valueBins, to.valueBins - 1.0));
+    const auto g =
+        static_cast<std::size_t>(std::min(at.first / to.gradientTop * to.gradientBins, to.gradientBins - 1.0));
+    const std::size_t bin = g * static_cast<std::size_t>(to.valueBins) + v;
+    ++to.count[bin];
+    to.second[bin] += at.second;
+    to.first[v] += at.first;
+    ++to.samples;
+}
+
+/// The samples of one brick that have all their neighbours.
+void addBrick(DerivativeHistogram& to, const BrickGrid& grid, const BrickKey& key, const BrickSamples& withHalo) {
+    const LatticeKind kind = grid.lattice.kind;
+    const glm::ivec3 halo(1, 1, kind == LatticeKind::BCC ? 2 : 1);
+    const glm::ivec3 begin = grid.begin(key.index);
+    const BrickView view{withHalo, kind, begin - halo};
+    const glm::ivec3 lo = glm::max(begin, halo), hi = glm::min(grid.end(key.index), grid.lattice.size - halo);
+    Derivatives at;
+    for (int z = lo.z; z < hi.z; ++z)
+        for (int y = lo.y; y < hi.y; ++y)
+            for (int x = lo.x; x < hi.x; ++x)
+                if (derivativesAt(kind, view, {x, y, z}, at)) add(to, at);
+}
+
+} // namespace
+
+DerivativeHistogram derivativeHistogram(const BrickSource& source, const DerivativeQuery& query,
+                                        const Progress& progress) {
+    const BrickGrid& grid = source.grid();
+    const glm::ivec3 bricks = grid.count();
+    DerivativeHistogram out = emptyHistogram(source, query);
+    std::vector<DerivativeHistogram> slabs(static_cast<std::size_t>(bricks.z), out);
+    std::atomic<int> done = 0;
+    parallelFor(slabs.size(), [&](std::size_t z) {
+        // A slab looks at the bricks of its neighbours too: each is decoded once per slab.
+        std::map<std::array<int, 3>, BrickSamples> read;
+        const auto once = [&](const BrickKey& key) {
+            const auto [entry, added] = read.try_emplace({key.index.x, key.index.y, key.index.z});
+            if (added) entry->second = source.read(key);
+            return entry->second;
+        };
+        for (int y = 0; y < bricks.y; ++y) {
+            for (int x = 0; x < bricks.x; ++x) {
+                const BrickKey key{query.channel, query.time, 0, {x, y, static_cast<int>(z)}};
+                if (source.stats(key).presentFraction > 0) addBrick(slabs[z], grid, key, gather(grid, key, 1, once));
+            }
+            std::erase_if(read, [&](const auto& entry) { return entry.first[1] < y; });
+        }
+        progress.advance(double(++done) / double(slabs.size()), "derivatives");
+    });
+    for (const DerivativeHistogram& slab : slabs) { // in order, so that sums come out the same every time
+        for (std::size_t i = 0; i < out.count.size(); ++i) {
+            out.count[i] += slab.count[i];
+            out.second[i] += slab.second[i];
+        }
+        for (std::size_t i = 0; i < out.first.size(); ++i) out.first[i] += slab.first[i];
+        out.samples += slab.samples;
+    }
+    return out;
+}
+
+BoundaryCurves boundaryCurves(const DerivativeHistogram& histogram, double threshold) {
+    BoundaryCurves out;
+    out.range = histogram.range;
+    const auto values = static_cast<std::size_t>(histogram.valueBins);
+    double mostFirst = 0, mostSecond = 0;
+    for (std::size_t v = 0; v < values; ++v) {
+        double count = 0, second = 0;
+        for (std::size_t bin = v; bin < histogram.count.size(); bin += values) {
+            count += double(histogram.count[bin]);
+            second += histogram.second[bin];
+        }
+        out.first.push_back(count > 0 ? histogram.first[v] / count : kNone);
+        out.second.push_back(count > 0 ? second / count : kNone);
+        if (count > 0) {
+            mostFirst = std::max(mostFirst, out.first[v]);
+            mostSecond = std::max(mostSecond, out.second[v]);
+        }
+    }
+    if (mostSecond > 0) out.thickness = mostFirst / (std::exp(0.5) * mostSecond);
+    const double least = threshold * mostFirst, squared = out.thickness * out.thickness;
+    for (std::size_t v = 0; v < values; ++v) {
+        const double above = out.first[v] - least;
+        out.distance.push_back(above > 0 ? -squared * out.second[v] / above : kNone);
+    }
+    return out;
+}
+
+} // namespace tessera::volume
