@@ -143,8 +143,10 @@ void Workbench::frame() {
     }
     followDerived();
     std::erase_if(caches_, [&](const auto& entry) { return !session_.views.contains(entry.first); });
-    if (!options_.headless && !files_.shown() && !ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopupId))
-        runShortcuts(commands_);
+    // Also not in the frame whose Esc has just closed a menu: it would clear the brushes as well.
+    const bool popup = ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopupId);
+    if (!options_.headless && !files_.shown() && !popup && !popupShown_) runShortcuts(commands_);
+    popupShown_ = popup;
 
     busy_ = false;
     drawn_.clear();

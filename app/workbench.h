@@ -161,6 +161,7 @@ private:
     PictureRequest picture_;
     bool askPicture_ = false, askQuit_ = false, askHelp_ = false, askAbout_ = false;
     bool quit_ = false, busy_ = true, quitAfterSave_ = false, interacting_ = false;
+    bool popupShown_ = false; ///< at the start of the last frame
     double lastAutosave_ = 0, lastFrame_ = 0;
     bool unsavedEdits_ = false;
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
