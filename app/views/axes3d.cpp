@@ -148,11 +148,25 @@ void drawAxes3d(ImDrawList& draw, const SpaceFrame& frame, const vis::Camera& ca
         std::string title = titleWithUnit(kAxisNames[edge.axis], unit.name);
         if (!ticks.note.empty()) title += "  " + ticks.note;
         const ImVec2 size = ImGui::CalcTextSize(title.c_str());
+        bool placed = false;
         for (float along : {0.5f, 0.35f, 0.65f, 0.2f, 0.8f, 0.05f, 0.95f}) {
             const float out = tick + em() * 0.6f + furthest;
             const ImVec2 at{edge.a.x + (edge.b.x - edge.a.x) * along + edge.outward.x * out,
                             edge.a.y + (edge.b.y - edge.a.y) * along + edge.outward.y * out};
-            if (place(besides(at, edge.outward, size), color, title)) break;
+            placed = place(besides(at, edge.outward, size), color, title);
+            if (placed) break;
+        }
+        // No room beside the edge: beyond one of its ends.
+        for (const float sign : {1.0f, -1.0f}) {
+            if (placed) break;
+            const ImVec2 end = sign > 0 ? edge.b : edge.a;
+            const ImVec2 on{sign * (edge.b.x - edge.a.x) / pixels, sign * (edge.b.y - edge.a.y) / pixels};
+            auto box = besides({end.x + on.x * em() * 0.6f, end.y + on.y * em() * 0.6f}, on, size);
+            const float shift = std::max(0.0f, frame.min.x + em() * 0.5f - box.first.x) +
+                                std::min(0.0f, frame.max.x - em() * 0.5f - box.second.x);
+            box.first.x += shift;
+            box.second.x += shift;
+            placed = place(box, color, title);
         }
     }
 }

@@ -82,6 +82,23 @@ float drawLegendBar(ImDrawList& draw, ImVec2 min, float width, const LegendEntry
     return legendBarHeight();
 }
 
+void drawLegendColumn(ImDrawList& draw, ImVec2 min, float height, const LegendEntry& entry) {
+    const float width = em() * 0.6f, line = ImGui::GetFontSize();
+    const int steps = std::max(1, static_cast<int>(height));
+    for (int i = 0; i < steps; ++i) {
+        const glm::dvec4 c = vis::evaluate(entry.function, {0, 1}, 1 - (i + 0.5) / steps);
+        const float y = min.y + height * static_cast<float>(i) / static_cast<float>(steps);
+        draw.AddRectFilled({min.x, y}, {min.x + width, y + height / static_cast<float>(steps)},
+                           toColor({c.r, c.g, c.b}));
+    }
+    if (height < 2 * line) return; // no room for both values
+    const PlotColors colors = plotColors();
+    const double digits = (entry.range.hi - entry.range.lo) / 100;
+    const float x = min.x + width + em() * 0.3f;
+    draw.AddText({x, min.y}, colors.text, formatNumber(entry.range.hi, digits).c_str());
+    draw.AddText({x, min.y + height - line}, colors.text, formatNumber(entry.range.lo, digits).c_str());
+}
+
 LegendArea drawLegends(ImDrawList& draw, const std::vector<LegendEntry>& entries, ImVec2 min, ImVec2 max) {
     const float pad = em() * 0.5f;
     const float width = std::min(em() * 15, (max.x - min.x) * 0.45f);

@@ -39,4 +39,7 @@ LegendArea drawLegends(ImDrawList& draw, const std::vector<LegendEntry>& entries
 float drawLegendBar(ImDrawList& draw, ImVec2 min, float width, const LegendEntry& entry);
 float legendBarHeight();
 
+/// One narrow upright bar, highest value on top, with the values of its ends at its right; about five em wide.
+void drawLegendColumn(ImDrawList& draw, ImVec2 min, float height, const LegendEntry& entry);
+
 } // namespace tessera::app

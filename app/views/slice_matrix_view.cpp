@@ -162,6 +162,9 @@ std::string sliceSvg(const volume::BrickSource& source, const Session& session, 
 
 void drawToolbar(ViewContext& context, SliceMatrixView& view, const std::vector<int>& shown, const PlaneAxes& axes) {
     const volume::DatasetInfo& info = context.source->info();
+    const std::string directions =
+        std::string(1, "xyz"[axes.right]) + " to the right, " + std::string(1, "xyz"[axes.up]) + " up";
+    const float right = ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x;
     chooseChannels(info, view.channels, shown);
     ImGui::SameLine();
     ImGui::SetNextItemWidth(em() * 3.4f);
@@ -171,7 +174,7 @@ void drawToolbar(ViewContext& context, SliceMatrixView& view, const std::vector<
                 view.axis = static_cast<SliceAxis>(i);
         ImGui::EndCombo();
     }
-    if (ImGui::IsItemHovered()) tooltip("Axis the planes stand on");
+    if (ImGui::IsItemHovered()) tooltip(("Axis the planes stand on; " + directions).c_str());
     ImGui::SameLine();
     ImGui::SetNextItemWidth(em() * 6);
     ImGui::SliderInt("##planes", &view.planes, 1, 12, view.planes == 1 ? "%d plane" : "%d planes");
@@ -184,6 +187,9 @@ void drawToolbar(ViewContext& context, SliceMatrixView& view, const std::vector<
         [source = context.source, shown, axes, planes = view.planes, time](const Progress& progress) {
             return sliceCsv(*source, shown, axes, planes, time, progress);
         });
+    if (ImGui::GetItemRectMax().x + em() + ImGui::CalcTextSize(directions.c_str()).x > right) return;
+    ImGui::SameLine();
+    ImGui::TextDisabled("%s", directions.c_str());
 }
 
 } // namespace
@@ -206,8 +212,8 @@ void drawSliceMatrixView(ViewContext& context, const std::string& pane, SliceMat
 
     const ImVec2 origin = ImGui::GetCursorScreenPos(), room = ImGui::GetContentRegionAvail();
     const std::vector<volume::Channel> channels = info.channels();
-    const float title = em() * 1.5f, gap = em() * 0.4f, head = em() * 1.3f;
-    const float cellX = (room.x - title) / static_cast<float>(view.planes) - gap;
+    const float title = em() * 1.5f, gap = em() * 0.4f, head = em() * 1.3f, legend = em() * 5;
+    const float cellX = (room.x - title - legend) / static_cast<float>(view.planes) - gap;
     const float cellY = (room.y - head) / static_cast<float>(shown.size()) - gap;
     if (cellX < em() * 2 || cellY < em() * 1.2f)
         return drawHint("Not enough room", "Enlarge the pane, or show fewer parameters or planes.");
@@ -216,14 +222,16 @@ void drawSliceMatrixView(ViewContext& context, const std::string& pane, SliceMat
     ImDrawList& draw = *ImGui::GetWindowDrawList();
     const PlotColors colors = plotColors();
     const LengthUnit unit = suitableLength(info.lengthUnit, info.bounds.size()[axes.normal]);
+    // Narrow slices stand close together, but not closer than their titles.
+    const float pitch = std::min(cellX, std::max(static_cast<float>(pixels.x), em() * 6.5f)) + gap;
     cache.targets.resize(shown.size() * static_cast<std::size_t>(view.planes));
     for (int plane = 0; plane < view.planes; ++plane) {
         const double position = planePosition(info.bounds, axes.normal, plane, view.planes);
-        const float x = std::round(origin.x + title + (cellX + gap) * static_cast<float>(plane));
+        const float x = std::round(origin.x + title + pitch * static_cast<float>(plane));
         const std::string place =
             std::string(1, "xyz"[axes.normal]) + " = " +
             formatQuantity(position * unit.perUnit, unit.name, info.bounds.size()[axes.normal] * unit.perUnit / 100);
-        draw.AddText({x, origin.y}, colors.text, fitText(place, cellX).c_str());
+        draw.AddText({x, origin.y}, colors.text, fitText(place, pitch - gap).c_str());
         for (std::size_t row = 0; row < shown.size(); ++row) {
             const float y = std::round(origin.y + head + (cellY + gap) * static_cast<float>(row));
             const volume::Channel& channel = channels[static_cast<std::size_t>(shown[row])];
@@ -231,6 +239,8 @@ void drawSliceMatrixView(ViewContext& context, const std::string& pane, SliceMat
                       cache.targets[row * static_cast<std::size_t>(view.planes) + static_cast<std::size_t>(plane)],
                       channel.name, axes, position, {x, y}, pixels, 40.0 / static_cast<double>(cache.targets.size()));
             if (plane > 0) continue;
+            drawLegendColumn(draw, {origin.x + title + pitch * static_cast<float>(view.planes), y},
+                             static_cast<float>(pixels.y), legendOf(context.session, info, shown[row]));
             addTextUpwards(
                 draw, {origin.x + em() * 0.6f, y + static_cast<float>(pixels.y) / 2}, colors.text,
                 fitText(titleWithUnit(channel.name, channel.unit), static_cast<float>(pixels.y) + gap).c_str());
@@ -239,9 +249,9 @@ void drawSliceMatrixView(ViewContext& context, const std::string& pane, SliceMat
     // A click moves the linked cursor there.
     const ImVec2 mouse = ImGui::GetIO().MousePos;
     if (!ImGui::IsWindowHovered() || !ImGui::IsMouseClicked(ImGuiMouseButton_Left)) return;
-    const float inX = (mouse.x - origin.x - title) / (cellX + gap), inY = (mouse.y - origin.y - head) / (cellY + gap);
+    const float inX = (mouse.x - origin.x - title) / pitch, inY = (mouse.y - origin.y - head) / (cellY + gap);
     if (inX < 0 || inY < 0 || inX >= static_cast<float>(view.planes) || inY >= static_cast<float>(shown.size())) return;
-    const float u = (inX - std::floor(inX)) * (cellX + gap) / static_cast<float>(pixels.x),
+    const float u = (inX - std::floor(inX)) * pitch / static_cast<float>(pixels.x),
                 v = 1 - (inY - std::floor(inY)) * (cellY + gap) / static_cast<float>(pixels.y);
     if (u > 1 || v < 0) return;
     glm::dvec3& cursor = context.session.cursor;
