@@ -17,10 +17,6 @@ constexpr int kParts = 48; ///< of a circle
 
 /// One line that says what a region holds.
 std::string regionText(const volume::DatasetInfo& info, const vis::Region& region) {
-    const auto length = [&](double value, double size) {
-        const LengthUnit unit = suitableLength(info.lengthUnit, size);
-        return formatQuantity(value * unit.perUnit, unit.name, size * unit.perUnit / 1000);
-    };
     if (const auto* range = std::get_if<vis::RangeRegion>(&region)) {
         std::string text;
         for (const vis::BrushInterval& interval : range->intervals) {
@@ -47,8 +43,12 @@ std::string regionText(const volume::DatasetInfo& info, const vis::Region& regio
     const glm::dvec3 radius =
         box ? std::get<vis::BoxRegion>(region).radius : std::get<vis::SphereRegion>(region).radius;
     std::string text = box ? "box" : "sphere";
-    for (int axis = 0; axis < 3; ++axis) text += (axis ? " \u00d7 " : "  ") + length(2 * radius[axis], radius[axis]);
-    return text;
+    const LengthUnit unit = suitableLength(info.lengthUnit, 2 * std::max({radius.x, radius.y, radius.z}));
+    for (int axis = 0; axis < 3; ++axis) {
+        const double size = 2 * radius[axis] * unit.perUnit;
+        text += (axis ? " \u00d7 " : "  ") + formatNumber(size, size / 50); // two or three digits
+    }
+    return text + " " + prettyUnit(unit.name);
 }
 
 /// How a brush meets the ones before it, as a letter-wide choice.
@@ -182,13 +182,16 @@ void drawBrushList(ViewContext& context) {
     }
     if (removed >= 0) selection.brushes.erase(selection.brushes.begin() + removed);
     if (selection.brushes.empty()) ImGui::TextDisabled("No brushes: drag in a plot to select.");
-    if (ImGui::SmallButton("Sphere at cursor")) addAtCursor(context, false);
-    ImGui::SameLine();
-    if (ImGui::SmallButton("Box at cursor")) addAtCursor(context, true);
-    if (!selection.brushes.empty()) {
-        ImGui::SameLine();
-        if (ImGui::SmallButton("Clear all")) selection.brushes.clear();
-    }
+    const auto button = [](const char* text, bool first = false) { // beside the last one, or below where it is narrow
+        const float right = ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x;
+        const ImGuiStyle& style = ImGui::GetStyle();
+        const float width = ImGui::CalcTextSize(text).x + 2 * style.FramePadding.x;
+        if (!first && ImGui::GetItemRectMax().x + style.ItemSpacing.x + width <= right) ImGui::SameLine();
+        return ImGui::SmallButton(text);
+    };
+    if (button("Sphere at cursor", true)) addAtCursor(context, false);
+    if (button("Box at cursor")) addAtCursor(context, true);
+    if (!selection.brushes.empty() && button("Clear all")) selection.brushes.clear();
 }
 
 vis::Brush spaceBrush(const Session& session, const volume::DatasetInfo& info, bool box) {

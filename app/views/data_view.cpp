@@ -108,7 +108,9 @@ std::string rangeText(const volume::Summary& summary, double digits) {
 void drawSelection(ViewContext& context, const StatisticsResult* result) {
     const volume::DatasetInfo& info = context.source->info();
     if (!context.session.selection.active()) {
+        ImGui::PushTextWrapPos(0);
         ImGui::TextDisabled("Nothing is brushed: drag in a plot of the scatterplot matrix.");
+        ImGui::PopTextWrapPos();
         if (!result) return;
     } else if (!result) {
         ImGui::TextDisabled("Counting...");
@@ -192,9 +194,10 @@ void drawDataView(ViewContext& context, const std::string& pane, DataView&) {
     }
     ImGui::BeginChild("data");
     if (ImGui::CollapsingHeader("Data set", ImGuiTreeNodeFlags_DefaultOpen)) drawSummary(info);
-    if (ImGui::CollapsingHeader("Selection", ImGuiTreeNodeFlags_DefaultOpen)) drawSelection(context, result.get());
+    // Above what is computed from them, which comes and goes while a formula is edited.
     if (ImGui::CollapsingHeader("Derived parameters", ImGuiTreeNodeFlags_DefaultOpen))
         drawDerivedList(context, cache.derived);
+    if (ImGui::CollapsingHeader("Selection", ImGuiTreeNodeFlags_DefaultOpen)) drawSelection(context, result.get());
     if (ImGui::CollapsingHeader("Parameters over all times", ImGuiTreeNodeFlags_DefaultOpen)) drawParameters(info);
     if (!cache.feed.failure().empty()) ImGui::TextWrapped("%s", cache.feed.failure().c_str());
     ImGui::EndChild();

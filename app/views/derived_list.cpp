@@ -59,7 +59,9 @@ void drawOne(ViewContext& context, DerivedDraft& draft, std::size_t index, int& 
     drawLabel(widgets, "Unit", "Unit of its values");
     draft.edited |= ImGui::InputText("##unit", &own.unit);
     draft.edited |= std::visit([&](auto& recipe) { return drawDescribed(recipe, widgets); }, own.recipe);
-    if (std::holds_alternative<volume::ExpressionRecipe>(own.recipe) && ImGui::IsItemHovered())
+    // Not while typing: it would lie over what is wrong with the formula.
+    if (std::holds_alternative<volume::ExpressionRecipe>(own.recipe) && ImGui::IsItemHovered() &&
+        !ImGui::IsItemActive())
         tooltip(
             "Parameters by name (others in `back quotes`), x y z t, + - * / ^, comparisons, a ? b : c, abs sqrt exp "
             "ln log10 sin cos min max");

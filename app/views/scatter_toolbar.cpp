@@ -16,7 +16,7 @@ namespace {
 
 void chooseTool(BrushTool& tool) {
     static constexpr const char* kTools[] = {"rectangle", "ellipse", "lasso"};
-    ImGui::SetNextItemWidth(em() * 5.4f);
+    ImGui::SetNextItemWidth(em() * 6.6f);
     if (ImGui::BeginCombo("##tool", kTools[static_cast<std::size_t>(tool)])) {
         for (int i = 0; i < 3; ++i)
             if (ImGui::Selectable(kTools[i], static_cast<int>(tool) == i)) tool = static_cast<BrushTool>(i);
