@@ -67,6 +67,33 @@ TEST_F(SessionFileTest, SavesAndLoads) {
     EXPECT_EQ(std::distance(fs::directory_iterator(folder), {}), 1) << "a temporary file was left";
 }
 
+TEST_F(SessionFileTest, KeepsBrushesOfEveryShape) {
+    SessionDocument document = edited();
+    std::vector<vis::Brush>& brushes = document.session.selection.brushes;
+    const std::vector<vis::Region> regions{
+        vis::RangeRegion{{{"T", 1, 2, 0.25}, {"O2", -1e-9, 1e9, 0}}},
+        vis::EllipseRegion{"T", "O2", {1, 2}, {3, 4}, -0.5, 0.125},
+        vis::LassoRegion{"O2", "T", {{0, 0}, {1, 0.1}, {0.3, 1e-7}}, 0.5},
+        vis::SphereRegion{{1, 2, 3}, {4, 5, 6}, 1},
+        vis::BoxRegion{{-1, -2, -3}, {1e-3, 2e-3, 3e-3}, 0},
+    };
+    ASSERT_EQ(regions.size(), std::variant_size_v<vis::Region>);
+    brushes.clear();
+    for (const vis::Region& region : regions)
+        for (const auto combine : {vis::BrushCombine::And, vis::BrushCombine::Or, vis::BrushCombine::Minus})
+            brushes.push_back({.name = "brush " + std::to_string(brushes.size()),
+                               .color = {0.5f, 0.25f, 1},
+                               .enabled = brushes.size() % 2 == 0,
+                               .inverted = brushes.size() % 3 == 0,
+                               .combine = combine,
+                               .region = region});
+    document.history.observe(document.session, false, 20);
+    saveSession(document, in("brushes.tessera.json"));
+    const SessionDocument back = loadSession(in("brushes.tessera.json"));
+    EXPECT_TRUE(back.messages.empty());
+    EXPECT_TRUE(back.session.selection == document.session.selection);
+}
+
 TEST_F(SessionFileTest, KeepsUnknownKeysAndReportsThem) {
     const SessionDocument document = edited();
     Json json = Json::parse(printSession(document, in("a.tessera.json")));

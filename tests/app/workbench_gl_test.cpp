@@ -121,6 +121,57 @@ TEST(WorkbenchGl, UndoBringsBackTheSameSession) {
     EXPECT_TRUE(workbench.session() == end);
 }
 
+TEST(WorkbenchGl, DerivedParametersComeAndGo) {
+    const vis::HeadlessContext gl;
+    const Gui gui;
+    Workbench workbench({.renderer = nullptr, .render = {}, .headless = false, .onlyPane = {}, .stateFolder = {}});
+    workbench.install(smallData());
+    const auto settle = [&] { return drawUntilDone(workbench, {400, 300}, 1); };
+    const auto known = [&](const std::string& name) {
+        return workbench.source()->info().findChannel(name).has_value();
+    };
+    const auto run = [&](const std::string& name) {
+        for (const Command& command : workbench.commands())
+            if (command.title() == name && command.available()) {
+                command.run();
+                settle();
+                return true;
+            }
+        return false;
+    };
+    settle();
+    const Session start = workbench.session();
+    ASSERT_FALSE(known("twice"));
+
+    // Added: the data have it, and a layer can show it.
+    workbench.session().data.derived = {{"twice", "kg", volume::ExpressionRecipe{"2*rho"}},
+                                        {"slope", "", volume::GradientRecipe{"twice"}}};
+    settle();
+    ASSERT_TRUE(known("twice"));
+    EXPECT_TRUE(known("|slope|"));
+    workbench.session().layers = {{"twice", true, vis::VolumeLayer{.channel = "twice"}}};
+    settle();
+    EXPECT_EQ(std::get<vis::VolumeLayer>(workbench.session().layers[0].technique).channel, "twice");
+    const Session derived = workbench.session();
+
+    // A formula that cannot be computed takes the parameter away, and what showed it shows another.
+    workbench.session().data.derived[0].recipe = volume::ExpressionRecipe{"2*nothing"};
+    settle();
+    EXPECT_FALSE(known("twice"));
+    EXPECT_FALSE(known("|slope|"));
+    EXPECT_EQ(std::get<vis::VolumeLayer>(workbench.session().layers[0].technique).channel, "rho");
+
+    // Back and forth again.
+    while (!(workbench.session() == derived)) ASSERT_TRUE(run("Undo"));
+    EXPECT_TRUE(known("twice"));
+    while (run("Undo")) {
+    }
+    EXPECT_TRUE(workbench.session() == start);
+    EXPECT_FALSE(known("twice"));
+    while (!(workbench.session() == derived)) ASSERT_TRUE(run("Redo"));
+    EXPECT_TRUE(known("twice"));
+}
+
 TEST(WorkbenchGl, CommandNamesAndKeysAreUnique) {
     const vis::HeadlessContext gl;
     const Gui gui;
