@@ -82,7 +82,19 @@ struct ArchiveWriter::Impl {
     std::vector<bool> written;
     std::uint64_t at = 0;
     std::map<std::array<std::uint64_t, 2>, int> maskByHash;
-    std::map<std::size_t, std::pair<std::int32_t, Model>> lastModel; ///< of each component
+    /// The latest frame of a component: frames to come whose codes are as wide are like it.
+    struct Last {
+        std::int32_t number = -1; ///< of the model
+        Model model;
+        Wavelet wavelet{};
+        NumberKind kind{};
+        int codeBits = 0;
+
+        bool resembles(const FrameRecord& frame) const {
+            return kind == frame.numbers.kind && std::abs(codeBits - frame.codeBits) <= 1;
+        }
+    };
+    std::map<std::size_t, Last> lastModel;
 
     ~Impl() {
         if (file) std::fclose(file);
@@ -94,6 +106,7 @@ struct ArchiveWriter::Impl {
         at += bytes.size();
     }
     int maskFor(const volume::Field& field, int zstdLevel);
+    Wavelet waveletFor(const volume::Field& field, FrameRecord frame) const;
     BandEncoder modelFor(const volume::Field& field, std::size_t component, FrameRecord& frame,
                          const FrameOptions& options);
 };
@@ -201,46 +214,58 @@ int codeBitsOf(const volume::Field& field, const NumberCoding& numbers) {
     return std::max(1, int(std::bit_width(all)) + 1);
 }
 
-constexpr std::size_t kTrialBricks = 6, kModelBricks = 32;
+constexpr std::size_t kTrialBricks = 4, kModelBricks = 32;
 constexpr int kMostTables = 24;
 
 } // namespace
 
-/// The model of a frame: that of the component's frame before where its tables serve as well as new ones would.
+/// The filter by trial on some bricks. Predictions alone alias in coarse levels: they have to be clearly better.
+Wavelet ArchiveWriter::Impl::waveletFor(const volume::Field& field, FrameRecord frame) const {
+    constexpr Wavelet kTried[] = {Wavelet::W22, Wavelet::W42, Wavelet::W44, Wavelet::N2, Wavelet::N4};
+    constexpr double kPredictionHandicap = 1.015;
+    if (frame.numbers.kind == NumberKind::Float) return Wavelet::W22; // only predicted anyway
+    double best = std::numeric_limits<double>::infinity();
+    Wavelet chosen = Wavelet::W22;
+    for (const Wavelet wavelet : kTried) {
+        frame.wavelet = wavelet;
+        double bits = sampleTokens(metadata.grid, field, frame, kTrialBricks, 0).bits();
+        if (!filterOf(wavelet).updates) bits *= kPredictionHandicap;
+        if (bits < best) best = bits, chosen = wavelet;
+    }
+    return chosen;
+}
+
+/// The model of a frame: that of the component's frame before where its tables serve as well as new ones would. The
+/// filter is tried again only where they do not fit at all.
 BandEncoder ArchiveWriter::Impl::modelFor(const volume::Field& field, std::size_t component, FrameRecord& frame,
                                           const FrameOptions& options) {
+    constexpr double kStillAlike = 1.05;
     const volume::BrickGrid& grid = metadata.grid;
+    std::optional<Model> fresh;
     const auto last = lastModel.find(component);
-    if (!options.wavelet) {
-        // By trial. Predictions alone alias in coarse levels: they have to be clearly better.
-        constexpr Wavelet kTried[] = {Wavelet::W22, Wavelet::W42, Wavelet::W44, Wavelet::N2, Wavelet::N4};
-        constexpr double kPredictionHandicap = 1.015;
-        double best = std::numeric_limits<double>::infinity();
-        Wavelet chosen = Wavelet::W22;
-        for (const Wavelet wavelet : kTried) {
-            if (frame.numbers.kind == NumberKind::Float) break; // only predicted anyway
-            frame.wavelet = wavelet;
-            double bits = sampleTokens(grid, field, frame, kTrialBricks, 0).bits();
-            if (!filterOf(wavelet).updates) bits *= kPredictionHandicap;
-            if (bits < best) best = bits, chosen = wavelet;
+    if (last != lastModel.end() && last->second.resembles(frame)) {
+        const Model& model = last->second.model;
+        frame.wavelet = options.wavelet.value_or(last->second.wavelet);
+        const Histogram histogram = sampleTokens(grid, field, frame, kModelBricks, model.shift);
+        fresh = makeModel(histogram, model.shift, kMostTables);
+        const double before = bitsWith(model, histogram), now = bitsWith(*fresh, histogram);
+        if (before <= now + 8.0 * double(serialise(*fresh).size())) {
+            frame.model = last->second.number;
+            return BandEncoder(model);
         }
-        frame.wavelet = chosen;
+        if (before > kStillAlike * now) fresh.reset();
     }
-    int shift = 0;
-    if (frame.codeBits > 16) shift = shiftFor(sampleTokens(grid, field, frame, kTrialBricks, 0));
-    const Histogram histogram = sampleTokens(grid, field, frame, kModelBricks, shift);
-    const Model fresh = makeModel(histogram, shift, kMostTables);
-    const Bytes bytes = serialise(fresh);
-    if (last != lastModel.end() && last->second.second.shift == shift &&
-        bitsWith(last->second.second, histogram) <= bitsWith(fresh, histogram) + 8.0 * double(bytes.size())) {
-        frame.model = last->second.first;
-        return BandEncoder(last->second.second);
+    if (!fresh) {
+        if (!options.wavelet) frame.wavelet = waveletFor(field, frame);
+        const int shift = frame.codeBits > 16 ? shiftFor(sampleTokens(grid, field, frame, kTrialBricks, 0)) : 0;
+        fresh = makeModel(sampleTokens(grid, field, frame, kModelBricks, shift), shift, kMostTables);
     }
+    const Bytes bytes = serialise(*fresh);
     frame.model = static_cast<std::int32_t>(index.models.size());
     index.models.push_back({at, bytes.size(), checksum(bytes)});
     write(bytes);
-    lastModel[component] = {frame.model, fresh};
-    return BandEncoder(fresh);
+    lastModel[component] = {frame.model, *fresh, frame.wavelet, frame.numbers.kind, frame.codeBits};
+    return BandEncoder(*fresh);
 }
 
 ArchiveWriter::ArchiveWriter(const std::string& path, const Metadata& metadata) : impl_(std::make_unique<Impl>()) {

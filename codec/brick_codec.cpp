@@ -1,6 +1,7 @@
 #include "codec/brick_codec.h"
 
 #include "codec/brick_levels.h"
+#include "codec/whole_brick.h"
 
 #include <algorithm>
 #include <bit>
@@ -15,12 +16,14 @@ namespace {
 using volume::LatticeKind;
 using volume::ScalarType;
 
-/// How the coefficients of a segment are coded; below kBands the modes of streams.
-constexpr std::byte kBands{4}, kWhole{5};
+/// How the coefficients of a segment are coded; below kBands the modes of streams, above those of whole bricks.
+constexpr std::byte kBands{4};
 constexpr std::byte kNothing{0};
 
 // Below these bits a coefficient, or a sample, the matches that zstd finds are worth a try.
 constexpr double kTryStream = 1.0, kTryWhole = 0.8;
+constexpr double kNearlyAsShort = 1.5;
+constexpr int kMostEffort = 19;
 
 /// Codes of the samples, and what is stored beside them.
 struct Numbers {
@@ -158,12 +161,17 @@ void tryWhole(const Numbers& numbers, std::span<const std::uint8_t> present, Com
     std::size_t bytes = 0;
     for (const Bytes& segment : segments) bytes += segment.size();
     if (8.0 * double(bytes) > kTryWhole * double(numbers.codes.size()) || bytes <= segments.size()) return;
-    std::vector<std::uint32_t> symbols;
-    symbols.reserve(numbers.codes.size());
+    std::vector<std::uint32_t> codes;
+    codes.reserve(numbers.codes.size());
     for (std::size_t i = 0; i < numbers.codes.size(); ++i)
-        if (present.empty() || present[i] != 0) symbols.push_back(zigzag(numbers.codes[i]));
-    Bytes whole{kWhole};
-    encodeStream(symbols, compressor, whole);
+        if (present.empty() || present[i] != 0) codes.push_back(numbers.codes[i]);
+    Bytes whole = encodeWhole(codes, compressor);
+    // Where matches do about as well as bands, a longer search for them is worth its time.
+    if (double(whole.size()) < kNearlyAsShort * double(bytes)) {
+        Compressor thorough(kMostEffort);
+        Bytes again = encodeWhole(codes, thorough);
+        if (again.size() < whole.size()) whole = std::move(again);
+    }
     if (whole.size() >= bytes) return;
     for (Bytes& segment : segments) segment.clear();
     segments[0] = std::move(whole);
@@ -225,12 +233,15 @@ DecodeStatus decodeWhole(const BrickFormat& format, std::span<const std::byte> i
                          std::span<const std::uint8_t> present, DecodedBrick& out) {
     const std::size_t total = countOf(format.size);
     const auto absent = std::size_t(std::count(present.begin(), present.end(), std::uint8_t(0)));
-    std::vector<std::uint32_t> symbols(total - absent), codes(total);
-    if (const DecodeStatus status = decodeStream(in, symbols); status != DecodeStatus::Ok) return status;
-    if (!in.empty()) return DecodeStatus::Trailing;
-    const std::uint32_t* next = symbols.data();
-    for (std::size_t i = 0; i < total; ++i)
-        if (present.empty() || present[i] != 0) codes[i] = unzigzag(*next++);
+    std::vector<std::uint32_t> codes(total - absent);
+    if (const DecodeStatus status = codec::decodeWhole(in, codes); status != DecodeStatus::Ok) return status;
+    if (absent > 0) {
+        std::vector<std::uint32_t> placed(total);
+        const std::uint32_t* next = codes.data();
+        for (std::size_t i = 0; i < total; ++i)
+            if (present[i] != 0) placed[i] = *next++;
+        codes = std::move(placed);
+    }
     if (level == 0) {
         out.codes = std::move(codes);
         return DecodeStatus::Ok;
@@ -357,7 +368,7 @@ DecodeStatus decodeBrick(const BrickFormat& format, std::span<const std::span<co
             return status;
         out.exact.clear();
     }
-    if (first.empty() || first[0] != kWhole)
+    if (first.empty() || !isWhole(first[0]))
         return narrow ? decodeLevels<std::int16_t>(format, segments, level, present, bands, out)
                       : decodeLevels<std::int32_t>(format, segments, level, present, bands, out);
     if (level == 0) {
@@ -369,8 +380,8 @@ DecodeStatus decodeBrick(const BrickFormat& format, std::span<const std::span<co
     for (std::size_t s = 1; s + 1 < segments.size(); ++s)
         if (!segments[s].empty()) return DecodeStatus::Trailing;
     if (level > 0 && segments.size() > 1 && !segments.back().empty()) return DecodeStatus::Trailing;
-    return narrow ? decodeWhole<std::int16_t>(format, first.subspan(1), level, present, out)
-                  : decodeWhole<std::int32_t>(format, first.subspan(1), level, present, out);
+    return narrow ? decodeWhole<std::int16_t>(format, first, level, present, out)
+                  : decodeWhole<std::int32_t>(format, first, level, present, out);
 }
 
 } // namespace tessera::codec

@@ -3,6 +3,8 @@
 #include "codec/brick_codec.h"
 #include "codec/lift_box.h"
 
+#include <memory>
+
 /// A brick taken apart into levels: for each sublattice and level a box whose low corner the next coarser level gives.
 namespace tessera::codec {
 
@@ -10,18 +12,22 @@ namespace tessera::codec {
 template <class Word> class LevelBox {
 public:
     LevelBox() = default;
-    LevelBox(glm::ivec3 size, bool masked)
-        : size_(size), values_(std::size_t(pitchFor(size.x)) * std::size_t(size.y) * std::size_t(size.z)),
-          present_(masked ? values_.size() : 0) {}
-    Box<Word> box() { return {values_.data(), size_, pitchFor(size_.x)}; }
-    Box<const Word> box() const { return {values_.data(), size_, pitchFor(size_.x)}; }
+    /// What no sample will be written to is zero: between the rows, and where absent.
+    LevelBox(glm::ivec3 size, bool masked) : size_(size) {
+        const std::size_t words = std::size_t(pitchFor(size.x)) * std::size_t(size.y) * std::size_t(size.z);
+        const bool gaps = masked || pitchFor(size.x) != size.x;
+        values_ = gaps ? std::make_unique<Word[]>(words) : std::make_unique_for_overwrite<Word[]>(words);
+        present_.resize(masked ? words : 0);
+    }
+    Box<Word> box() { return {values_.get(), size_, pitchFor(size_.x)}; }
+    Box<const Word> box() const { return {values_.get(), size_, pitchFor(size_.x)}; }
     Box<std::uint8_t> flags() { return {masked() ? present_.data() : nullptr, size_, pitchFor(size_.x)}; }
     bool masked() const { return !present_.empty(); }
     glm::ivec3 size() const { return size_; }
 
 private:
     glm::ivec3 size_{0};
-    std::vector<Word> values_;
+    std::unique_ptr<Word[]> values_;
     std::vector<std::uint8_t> present_;
 };
 

@@ -26,8 +26,8 @@ std::size_t countOf(glm::ivec3 size) {
 
 MadeBrick randomBrick(std::mt19937& random) {
     constexpr int kSizes[] = {1, 2, 3, 8, 17};
-    constexpr Texture kTextures[] = {Texture::Smooth, Texture::Noise, Texture::Constant, Texture::Decimals,
-                                     Texture::Nasty};
+    constexpr Texture kTextures[] = {Texture::Smooth,   Texture::Noise, Texture::Constant,
+                                     Texture::Decimals, Texture::Nasty, Texture::Sparse};
     const auto pick = [&](const auto& list) { return list[random() % std::size(list)]; };
     MadeBrick made;
     made.format.kind = random() % 2 == 0 ? LatticeKind::CC : LatticeKind::BCC;

@@ -17,7 +17,7 @@
 namespace tessera::codec::testing {
 
 /// How the samples of a made parameter look.
-enum class Texture { Smooth, Noise, Constant, Decimals, Nasty };
+enum class Texture { Smooth, Noise, Constant, Decimals, Nasty, Sparse };
 
 struct MadeParameter {
     std::string name;
@@ -32,6 +32,7 @@ struct MadeParameter {
 template <class T> T madeSample(Texture texture, glm::ivec3 at, int component, int time, std::mt19937& random) {
     const auto noise = static_cast<std::uint32_t>(random());
     const double smooth = std::sin(at.x * 0.21 + component) + std::cos(at.y * 0.17 + time * 0.3) + at.z * 0.02;
+    const int sparse = (at.x + 3 * at.y + 5 * at.z) % 29 == 0 ? 1 + (at.x + at.z) % 2 : 0;
     if constexpr (std::is_same_v<T, float>) {
         switch (texture) {
         case Texture::Smooth:
@@ -42,6 +43,8 @@ template <class T> T madeSample(Texture texture, glm::ivec3 at, int component, i
             return 434.25f;
         case Texture::Decimals:
             return static_cast<float>(std::rint(2731.5 + 400 * smooth) / 10.0);
+        case Texture::Sparse:
+            return static_cast<float>(sparse) * 0.3333f;
         case Texture::Nasty:
             break;
         }
@@ -58,6 +61,8 @@ template <class T> T madeSample(Texture texture, glm::ivec3 at, int component, i
             return static_cast<T>(noise % 100);
         case Texture::Constant:
             return T(7);
+        case Texture::Sparse:
+            return static_cast<T>(50 * sparse);
         case Texture::Nasty:
             break;
         }

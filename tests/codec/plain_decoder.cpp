@@ -570,13 +570,21 @@ Brick Decoder::brick(std::size_t frameNumber, int number, int level) const {
         }
         if (in.at == in.end && bands.empty()) continue;
         need(in.at < in.end, "no mode");
-        if (*in.at == 5 && segment == 0) {
+        if ((*in.at == 5 || *in.at == 6) && segment == 0) {
             whole = true;
-            (void)in.number(1);
+            const bool indexed = in.number(1) == 6;
+            std::vector<std::uint32_t> colours;
+            if (indexed)
+                for (const auto step : stream(in, std::size_t(in.number(1)) + 1))
+                    colours.push_back(colours.empty() ? unzigzag(step) : colours.back() + step);
             std::size_t present = 0;
             for (const bool flag : flags) present += flag ? 1 : 0;
             const auto symbols = stream(in, present);
             need(in.at == in.end, "trailing bytes");
+            const auto codeOf = [&](auto symbol) {
+                need(!indexed || symbol < colours.size(), "index");
+                return indexed ? colours[symbol] : unzigzag(symbol);
+            };
             std::size_t next = 0;
             for (int s = 0; s < sublattices; ++s)
                 boxes[std::size_t(s)] = makeBox({fine[0], fine[1], (fine[2] + sublattices - 1 - s) / sublattices});
@@ -585,8 +593,7 @@ Brick Decoder::brick(std::size_t frameNumber, int number, int level) const {
                     (std::size_t(p[2]) * std::size_t(fine[1]) + std::size_t(p[1])) * std::size_t(fine[0]) +
                     std::size_t(p[0]);
                 if (flags[at])
-                    boxes[std::size_t(p[2] % sublattices)].at(p[0], p[1], p[2] / sublattices) =
-                        unzigzag(symbols[next++]);
+                    boxes[std::size_t(p[2] % sublattices)].at(p[0], p[1], p[2] / sublattices) = codeOf(symbols[next++]);
             });
         } else if (*in.at == 4) {
             (void)in.number(1);

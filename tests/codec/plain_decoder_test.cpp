@@ -23,6 +23,8 @@ TEST(PlainDecoder, AgreesOnEveryBrickAtEveryLevel) {
                                                 {"e", ScalarType::F32, 1, Texture::Decimals, true, false},
                                                 {"f", ScalarType::F32, 1, Texture::Nasty, false, false},
                                                 {"g", ScalarType::I16, 1, Texture::Nasty, true, false},
+                                                {"h", ScalarType::U8, 1, Texture::Sparse, true, false},
+                                                {"i", ScalarType::F32, 1, Texture::Sparse, false, false},
                                                 {"region", ScalarType::U8, 1, Texture::Noise, false, true}};
     int trial = 0;
     for (std::size_t choice = 0; choice < std::size(kWaveletChoiceNames); ++choice) {

@@ -1,0 +1,154 @@
+#include "codec/archive.h"
+#include "codec/pack.h"
+#include "tests/codec/make_dataset.h"
+
+#include <cmath>
+#include <gtest/gtest.h>
+
+namespace tessera::codec {
+namespace {
+
+using namespace testing;
+using volume::LatticeKind;
+using volume::ScalarType;
+
+struct Errors {
+    double largest = 0, psnr = 0;
+};
+
+/// Errors of one time of a parameter of one component; the peak is its range over all times.
+Errors errorsOf(volume::Dataset& made, const Archive& archive, int time) {
+    const volume::Field a = made.load(0, 0, time), b = readField(archive, 0, 0, time);
+    const Range range = archive.info().parameters[0].ranges[0];
+    Errors errors;
+    double squares = 0;
+    for (std::size_t i = 0; i < a.count(); ++i) {
+        const double error = std::abs(a.value(i) - b.value(i));
+        errors.largest = std::max(errors.largest, error);
+        squares += error * error;
+    }
+    errors.psnr = 20 * std::log10((range.hi - range.lo) / std::sqrt(squares / double(a.count())));
+    return errors;
+}
+
+volume::Dataset twoTimes(Texture texture) {
+    return makeDataset({33, 20, 18}, {{"T", ScalarType::F32, 1, texture, false, false}}, 2);
+}
+
+PackOptions gridOptions() {
+    PackOptions options;
+    options.lattice = LatticeKind::CC;
+    options.brickSize = 16;
+    return options;
+}
+
+TEST(PackBounds, AbsoluteErrorIsKept) {
+    const TemporaryFolder folder;
+    std::uint64_t before = ~std::uint64_t(0);
+    for (const double bound : {1e-4, 0.01, 0.5}) {
+        volume::Dataset made = twoTimes(Texture::Smooth);
+        PackOptions options = gridOptions();
+        options.absError = bound;
+        const PackSummary summary = pack(made, options, folder / "a.tsr");
+        const Archive archive(folder / "a.tsr");
+        for (int t = 0; t < 2; ++t) EXPECT_LE(errorsOf(made, archive, t).largest, bound);
+        EXPECT_LT(summary.archiveBytes, before) << bound;
+        EXPECT_FALSE(archive.metadata().lossless);
+        before = summary.archiveBytes;
+    }
+}
+
+TEST(PackBounds, SignalToNoiseIsReachedAndNotWasted) {
+    const TemporaryFolder folder;
+    for (const Texture texture : {Texture::Smooth, Texture::Noise})
+        for (const double wanted : {30.0, 60.0, 90.0}) {
+            volume::Dataset made = twoTimes(texture);
+            PackOptions options = gridOptions();
+            options.psnr = wanted;
+            pack(made, options, folder / "a.tsr");
+            const Archive archive(folder / "a.tsr");
+            for (int t = 0; t < 2; ++t) {
+                const double reached = errorsOf(made, archive, t).psnr;
+                EXPECT_GE(reached, wanted);
+                EXPECT_LE(reached, wanted + 3);
+            }
+        }
+}
+
+TEST(PackBounds, TheStrictestOfSeveralHolds) {
+    const TemporaryFolder folder;
+    volume::Dataset made = twoTimes(Texture::Smooth);
+    PackOptions options = gridOptions();
+    options.maxError = 0.1;
+    options.absError = 0.02;
+    pack(made, options, folder / "a.tsr");
+    EXPECT_LE(errorsOf(made, Archive(folder / "a.tsr"), 0).largest, 0.02);
+    options.maxError = 1e-4;
+    options.absError = 50;
+    pack(made, options, folder / "a.tsr");
+    const Archive archive(folder / "a.tsr");
+    const Range range = archive.info().parameters[0].ranges[0];
+    EXPECT_LE(errorsOf(made, archive, 0).largest, 1e-4 * (range.hi - range.lo));
+}
+
+TEST(PackPresets, SetWhatWasLeftAlone) {
+    const auto with = [](PackPreset preset) {
+        PackOptions options;
+        options.preset = preset;
+        return options;
+    };
+    EXPECT_EQ(resolved(with(PackPreset::None)), PackOptions());
+    EXPECT_EQ(resolved(with(PackPreset::Lossless)).lattice, LatticeKind::CC);
+    EXPECT_EQ(resolved(with(PackPreset::Visual)).maxError, 1e-3);
+    EXPECT_EQ(resolved(with(PackPreset::Small)).maxError, 1e-2);
+    EXPECT_EQ(resolved(with(PackPreset::Thesis)).brickSize, 16);
+    PackOptions own = with(PackPreset::Visual);
+    own.maxError = 0.05;
+    EXPECT_EQ(resolved(own).maxError, 0.05);
+    own = with(PackPreset::Thesis);
+    own.levels = 2;
+    EXPECT_EQ(resolved(own).levels, 2);
+    EXPECT_EQ(resolved(own).wavelet, WaveletChoice::W22);
+}
+
+TEST(PackPresets, EachPacksWhatItPromises) {
+    const TemporaryFolder folder;
+    for (int preset = 1; preset < int(std::size(kPackPresetNames)); ++preset) {
+        SCOPED_TRACE(kPackPresetNames[std::size_t(preset)]);
+        volume::Dataset made = twoTimes(Texture::Smooth);
+        PackOptions options;
+        options.preset = static_cast<PackPreset>(preset);
+        pack(made, options, folder / "a.tsr");
+        const Archive archive(folder / "a.tsr");
+        const bool grid = options.preset == PackPreset::Lossless;
+        EXPECT_EQ(archive.info().lattice.kind, grid ? LatticeKind::CC : LatticeKind::BCC);
+        if (grid) {
+            EXPECT_EQ(errorsOf(made, archive, 1).largest, 0);
+        }
+        EXPECT_EQ(verifyArchive(archive).damaged, 0u);
+    }
+}
+
+// A field at rest says nothing about the filter of what follows.
+TEST(PackSeries, AFlatBeginningDoesNotSettleTheFilter) {
+    const TemporaryFolder folder;
+    const auto series = [](int flat) {
+        volume::Dataset made =
+            makeDataset({48, 48, 32}, {{"u", ScalarType::U8, 1, Texture::Smooth, false, false}}, 1 + flat);
+        made.load = [inner = made.load, flat](int p, int c, int t) {
+            volume::Field field = inner(p, c, 0);
+            if (t < flat) std::fill(field.samples.begin(), field.samples.end(), std::byte{7});
+            return field;
+        };
+        return made;
+    };
+    volume::Dataset alone = series(0), after = series(1);
+    pack(alone, gridOptions(), folder / "alone.tsr");
+    pack(after, gridOptions(), folder / "after.tsr");
+    const Archive a(folder / "alone.tsr"), b(folder / "after.tsr");
+    for (int level = 0; level < a.grid().levels; ++level)
+        EXPECT_LE(double(b.levelBytes(level)), 1.02 * double(a.levelBytes(level)) + 200) << level;
+}
+
+} // namespace
+} // namespace tessera::codec
