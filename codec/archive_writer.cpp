@@ -2,6 +2,7 @@
 
 #include "codec/brick_access.h"
 #include "codec/filter.h"
+#include "codec/whole_brick.h"
 #include "volume/parallel.h"
 
 #include <algorithm>
@@ -107,8 +108,8 @@ struct ArchiveWriter::Impl {
     }
     int maskFor(const volume::Field& field, int zstdLevel);
     Wavelet waveletFor(const volume::Field& field, FrameRecord frame) const;
-    BandEncoder modelFor(const volume::Field& field, std::size_t component, FrameRecord& frame,
-                         const FrameOptions& options);
+    Model modelFor(const volume::Field& field, std::size_t component, FrameRecord& frame, const FrameOptions& options);
+    void writeModel(const Model& model, std::size_t component, FrameRecord& frame);
 };
 
 /// Index of the record of a field's mask, written when it is new; -1 where everything is present.
@@ -235,10 +236,10 @@ Wavelet ArchiveWriter::Impl::waveletFor(const volume::Field& field, FrameRecord 
     return chosen;
 }
 
-/// The model of a frame: that of the component's frame before where its tables serve as well as new ones would. The
-/// filter is tried again only where they do not fit at all.
-BandEncoder ArchiveWriter::Impl::modelFor(const volume::Field& field, std::size_t component, FrameRecord& frame,
-                                          const FrameOptions& options) {
+/// The model of a frame: that of the component's frame before where its tables serve as well as new ones would, else a
+/// new one, not written yet (frame.model is -1). The filter is tried again only where the tables do not fit at all.
+Model ArchiveWriter::Impl::modelFor(const volume::Field& field, std::size_t component, FrameRecord& frame,
+                                    const FrameOptions& options) {
     constexpr double kStillAlike = 1.05;
     const volume::BrickGrid& grid = metadata.grid;
     std::optional<Model> fresh;
@@ -251,7 +252,7 @@ BandEncoder ArchiveWriter::Impl::modelFor(const volume::Field& field, std::size_
         const double before = bitsWith(model, histogram), now = bitsWith(*fresh, histogram);
         if (before <= now + 8.0 * double(serialise(*fresh).size())) {
             frame.model = last->second.number;
-            return BandEncoder(model);
+            return model;
         }
         if (before > kStillAlike * now) fresh.reset();
     }
@@ -260,12 +261,15 @@ BandEncoder ArchiveWriter::Impl::modelFor(const volume::Field& field, std::size_
         const int shift = frame.codeBits > 16 ? shiftFor(sampleTokens(grid, field, frame, kTrialBricks, 0)) : 0;
         fresh = makeModel(sampleTokens(grid, field, frame, kModelBricks, shift), shift, kMostTables);
     }
-    const Bytes bytes = serialise(*fresh);
+    return *fresh;
+}
+
+void ArchiveWriter::Impl::writeModel(const Model& model, std::size_t component, FrameRecord& frame) {
+    const Bytes bytes = serialise(model);
     frame.model = static_cast<std::int32_t>(index.models.size());
     index.models.push_back({at, bytes.size(), checksum(bytes)});
     write(bytes);
-    lastModel[component] = {frame.model, *fresh, frame.wavelet, frame.numbers.kind, frame.codeBits};
-    return BandEncoder(*fresh);
+    lastModel[component] = {frame.model, model, frame.wavelet, frame.numbers.kind, frame.codeBits};
 }
 
 ArchiveWriter::ArchiveWriter(const std::string& path, const Metadata& metadata) : impl_(std::make_unique<Impl>()) {
@@ -302,8 +306,9 @@ void ArchiveWriter::addFrame(int parameter, int component, int time, const volum
     frame.valueOffset = field.offset;
     frame.valueScale = field.scale;
     frame.codeBits = codeBitsOf(field, frame.numbers);
-    const BandEncoder encoder = impl_->modelFor(field, number % componentCount(info), frame, options);
-    frame.offset = impl_->at;
+    const std::size_t ofTime = number % componentCount(info);
+    const Model model = impl_->modelFor(field, ofTime, frame, options);
+    const BandEncoder encoder(model);
     const double maxError = frame.numbers.kind == NumberKind::Quantised ? options.maxError : 0;
 
     const std::size_t bricks = brickCount(grid), levels = std::size_t(grid.levels);
@@ -327,6 +332,12 @@ void ArchiveWriter::addFrame(int parameter, int component, int time, const volum
         });
         progress.advance(double(first + count) / double(bricks));
     }
+    const bool allWhole = levels > 1 && std::all_of(coded.begin(), coded.end(), [](const std::vector<Bytes>& brick) {
+                              return !brick[0].empty() && isWhole(brick[0][0]);
+                          });
+    // Nobody will look into the tables where there are no bands.
+    if (frame.model < 0) impl_->writeModel(allWhole ? makeModel(Histogram(grid.levels), 0, 1) : model, ofTime, frame);
+    frame.offset = impl_->at;
     for (std::size_t s = 0; s < levels; ++s)
         for (std::size_t b = 0; b < bricks; ++b) {
             const Bytes& bytes = coded[b][s];

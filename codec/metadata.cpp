@@ -148,7 +148,7 @@ std::string toJson(const Metadata& metadata) {
         {"source", latticeJson(metadata.source)},
         {"lossless", metadata.lossless},
         {"maxError", metadata.maxError}};
-    return document.dump(1, '\t', false, json::error_handler_t::replace);
+    return document.dump(-1, ' ', false, json::error_handler_t::replace);
 }
 
 Metadata metadataFromJson(std::string_view text, const std::string& file) {

@@ -150,5 +150,18 @@ TEST(PackSeries, AFlatBeginningDoesNotSettleTheFilter) {
         EXPECT_LE(double(b.levelBytes(level)), 1.02 * double(a.levelBytes(level)) + 200) << level;
 }
 
+// What is not used is not stored: header, shape and a few bytes a brick.
+TEST(PackSeries, AnEmptyVolumeIsAlmostNothing) {
+    const TemporaryFolder folder;
+    volume::Dataset made = makeDataset({64, 64, 64}, {{"u", ScalarType::U8, 1, Texture::Sparse, false, false}}, 1);
+    const PackSummary summary = pack(made, gridOptions(), folder / "a.tsr");
+    const Archive archive(folder / "a.tsr");
+    std::uint64_t bricks = 0;
+    for (int level = 0; level < archive.grid().levels; ++level) bricks += archive.levelBytes(level);
+    const std::uint64_t index = 64 * (8 + 12 * std::uint64_t(archive.grid().levels)) + 200;
+    EXPECT_LE(summary.archiveBytes, bricks + index + 1000);
+    EXPECT_EQ(readField(archive, 0, 0, 0).samples, made.load(0, 0, 0).samples);
+}
+
 } // namespace
 } // namespace tessera::codec

@@ -70,6 +70,38 @@ check "pack what came back" 0 "$tessera" pack gaps-back.json -o again.tsr --latt
 [ "$("$tessera" info gaps.tsr --json | grep -A3 ranges)" = "$("$tessera" info again.tsr --json | grep -A3 ranges)" ] ||
     { echo "FAILED: other ranges"; failures=$((failures + 1)); }
 
+# Presets, and bounds in each unit.
+python3 - <<'EOF'
+import json, math, struct
+wave = [300 + 40 * math.sin(x * .3) * math.cos(y * .2) + z * .7 for z in range(16) for y in range(17) for x in range(18)]
+open("wave.raw", "wb").write(struct.pack("<%df" % len(wave), *wave))
+json.dump({"dims": [18, 17, 16], "dtype": "float32", "components": [{"name": "T", "unit": "K"}]}, open("wave.json", "w"))
+EOF
+for preset in lossless visual small thesis; do
+    check "preset $preset" 0 "$tessera" pack wave.json -o "$preset.tsr" --preset $preset --json
+    check "verify preset $preset" 0 "$tessera" verify "$preset.tsr"
+done
+check "no such preset" 1 "$tessera" pack wave.json -o x.tsr --preset best
+check "unpack the lossless preset" 0 "$tessera" unpack lossless.tsr -o wave-back.raw
+cmp wave.raw wave-back.raw || { echo "FAILED: the preset lossless is not"; failures=$((failures + 1)); }
+[ "$(stat -c %s small.tsr)" -lt "$(stat -c %s visual.tsr)" ] || { echo "FAILED: small is not"; failures=$((failures + 1)); }
+for bound in "--abs-error 0.25" "--psnr 60" "--max-error 0.001"; do
+    # shellcheck disable=SC2086
+    check "pack $bound" 0 "$tessera" pack wave.json -o bound.tsr --lattice cc $bound
+    check "unpack $bound" 0 "$tessera" unpack bound.tsr -o bound.raw
+    python3 - "$bound" <<'EOF' || { echo "FAILED: $bound is not kept"; failures=$((failures + 1)); }
+import math, struct, sys
+read = lambda name: struct.unpack("<%df" % (16 * 17 * 18), open(name, "rb").read())
+a, b = read("wave.raw"), read("bound.raw")
+errors = [abs(x - y) for x, y in zip(a, b)]
+extent, rms = max(a) - min(a), math.sqrt(sum(e * e for e in errors) / len(errors))
+option, bound = sys.argv[1].split()
+measured = {"--abs-error": max(errors), "--max-error": max(errors) / extent, "--psnr": rms / extent * 10 ** 3 * 60}[option]
+sys.exit(not 0 < measured <= float(bound))
+EOF
+done
+check "a negative bound" 1 "$tessera" pack wave.json -o x.tsr --psnr -3
+
 # Wrong usage 1, bad input 2 with one line, and nothing left behind.
 check "no output" 1 "$tessera" pack ramp.json
 check "no such wavelet" 1 "$tessera" pack ramp.json -o x.tsr --wavelet 9,9
