@@ -82,12 +82,29 @@ grep -q '"intervals": \[' session.tessera.json || fail "the saved session holds 
 grep -q '"history"' session.tessera.json || fail "the saved session holds no history"
 cp session.tessera.json brushed.tessera.json
 
-# Undo, save again, quit: no question is asked.
+# Undo, then a lasso chosen in the toolbar, saving each; quit: no question is asked.
 xdotool key ctrl+z
 sleep 1
 xdotool key ctrl+s
 cleared() { grep -q '"brushes": \[\]' session.tessera.json; }
 await 30 cleared || fail "undo did not take the brush back"
+mark
+xdotool mousemove 970 406 click 1
+await 30 fresh || fail "the list of tools does not open"
+mark
+xdotool mousemove 970 468 click 1
+await 30 fresh || fail "no tool is chosen"
+mark
+xdotool mousemove 720 620 mousedown 1
+for at in "740 616" "760 620" "772 632" "765 648" "745 656" "725 648"; do
+    xdotool mousemove $at
+    sleep 0.1
+done
+xdotool mouseup 1
+await 60 fresh || fail "a lasso draws nothing"
+xdotool key ctrl+s
+lassoed() { grep -q '"type": "lasso"' session.tessera.json; }
+await 30 lassoed || fail "the saved session holds no lasso"
 xdotool key ctrl+q
 for ((i = 0; i < 100; ++i)); do kill -0 "$app" 2>/dev/null || break; sleep 0.2; done
 kill -0 "$app" 2>/dev/null && fail "Ctrl+Q does not end the program"
