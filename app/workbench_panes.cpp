@@ -135,8 +135,11 @@ void Workbench::drawStatusBar(float height) {
                 (info.parameters.size() == 1 ? " parameter" : " parameters");
         if (info.times.size() > 1) text += ", " + std::to_string(info.times.size()) + " times";
         if (const vis::ResidencyInfo use = renderer_->residency(); !options_.headless && use.textureBytes > 0) {
-            text += "   textures " + textOfBytes(double(use.textureBytes)) + " of " +
-                    textOfBytes(double(use.textureBudget)) + ", " + formatCount(use.bricksResident) + " bricks";
+            // In the unit in which the limit is set.
+            constexpr double kMebibyte = 1 << 20;
+            text += "   textures " + formatNumber(double(use.textureBytes) / kMebibyte, 0.1) + " of " +
+                    formatNumber(double(use.textureBudget) / kMebibyte, 1) + " MiB, " +
+                    formatCount(use.bricksResident) + " bricks";
             if (use.bricksWanted > 0) text += ", " + formatCount(use.bricksWanted) + " to come";
         }
         ImGui::TextUnformatted(text.c_str());

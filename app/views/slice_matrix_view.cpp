@@ -112,13 +112,15 @@ std::string sliceCsv(const volume::BrickSource& source, const std::vector<int>& 
     return csv;
 }
 
-/// The slices as vector graphics, coloured by their transfer functions.
+/// The slices as vector graphics, coloured by their transfer functions; titles say which values the colours span.
 std::string sliceSvg(const volume::BrickSource& source, const Session& session, const std::vector<int>& channels,
                      const PlaneAxes& axes, int planes, const Progress& progress) {
     const volume::DatasetInfo& info = source.info();
     const std::vector<volume::Channel> all = info.channels();
     const LengthUnit unitX = suitableLength(info.lengthUnit, info.bounds.size()[axes.right]),
-                     unitY = suitableLength(info.lengthUnit, info.bounds.size()[axes.up]);
+                     unitY = suitableLength(info.lengthUnit, info.bounds.size()[axes.up]),
+                     unit = suitableLength(info.lengthUnit, info.bounds.size()[axes.normal]);
+    const double depth = info.bounds.size()[axes.normal] * unit.perUnit;
     std::vector<FigurePanel> panels;
     for (const int channel : channels)
         for (int plane = 0; plane < planes; ++plane) {
@@ -128,8 +130,11 @@ std::string sliceSvg(const volume::BrickSource& source, const Session& session, 
             const vis::TransferFunction& function = transferOf(session, own.name);
             const Range range = vis::effectiveRange(function, info.channelRange(own));
             FigurePanel panel;
+            const double digits = (range.hi - range.lo) / 100;
             const double position = planePosition(info.bounds, axes.normal, plane, planes);
-            panel.title = own.name + ", " + "xyz"[axes.normal] + " = " + formatNumber(position) + " " + info.lengthUnit;
+            panel.title = "xyz"[axes.normal] +
+                          (" = " + formatQuantity(position * unit.perUnit, unit.name, depth / 100)) + ", " + own.name +
+                          " " + formatNumber(range.lo, digits) + " .. " + formatQuantity(range.hi, own.unit, digits);
             panel.x = {std::string(1, "xyz"[axes.right]) + " [" + unitX.name + "]",
                        {info.bounds.lo[axes.right] * unitX.perUnit, info.bounds.hi[axes.right] * unitX.perUnit}};
             panel.y = {std::string(1, "xyz"[axes.up]) + " [" + unitY.name + "]",
