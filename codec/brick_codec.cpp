@@ -21,9 +21,9 @@ constexpr std::byte kBands{4};
 constexpr std::byte kNothing{0};
 
 // Below these bits a coefficient, or a sample, the matches that zstd finds are worth a try.
-constexpr double kTryStream = 1.0, kTryWhole = 0.8;
-constexpr double kNearlyAsShort = 1.5;
-constexpr int kMostEffort = 19;
+constexpr double kTryStream = 1.0, kTryWhole = 3.0;
+constexpr double kNearlyAsShort = 1.15;
+constexpr int kLeastEffort = 3, kMostEffort = 19;
 
 /// Codes of the samples, and what is stored beside them.
 struct Numbers {
@@ -156,8 +156,7 @@ std::vector<Bytes> encodeLevels(const BrickFormat& format, const Numbers& number
 }
 
 /// All samples as one stream in segment 0, if that is shorter than the levels: constants, labels, repeated slices.
-void tryWhole(const Numbers& numbers, std::span<const std::uint8_t> present, Compressor& compressor,
-              std::vector<Bytes>& segments) {
+void tryWhole(const Numbers& numbers, std::span<const std::uint8_t> present, std::vector<Bytes>& segments) {
     std::size_t bytes = 0;
     for (const Bytes& segment : segments) bytes += segment.size();
     if (8.0 * double(bytes) > kTryWhole * double(numbers.codes.size()) || bytes <= segments.size()) return;
@@ -165,13 +164,10 @@ void tryWhole(const Numbers& numbers, std::span<const std::uint8_t> present, Com
     codes.reserve(numbers.codes.size());
     for (std::size_t i = 0; i < numbers.codes.size(); ++i)
         if (present.empty() || present[i] != 0) codes.push_back(numbers.codes[i]);
-    Bytes whole = encodeWhole(codes, compressor);
-    // Where matches do about as well as bands, a longer search for them is worth its time.
-    if (double(whole.size()) < kNearlyAsShort * double(bytes)) {
-        Compressor thorough(kMostEffort);
-        Bytes again = encodeWhole(codes, thorough);
-        if (again.size() < whole.size()) whole = std::move(again);
-    }
+    // Where a glance finds matches that do about as well as bands, a long search for them is worth its time.
+    Compressor quick(kLeastEffort), thorough(kMostEffort);
+    if (double(encodeWhole(codes, quick).size()) > kNearlyAsShort * double(bytes)) return;
+    Bytes whole = encodeWhole(codes, thorough);
     if (whole.size() >= bytes) return;
     for (Bytes& segment : segments) segment.clear();
     segments[0] = std::move(whole);
@@ -319,7 +315,7 @@ std::vector<Bytes> encodeBrick(const BrickFormat& format, std::span<const std::b
     std::vector<Bytes> segments = fitsInt16(format, !present.empty())
                                       ? encodeLevels<std::int16_t>(format, numbers, present, compressor, bands)
                                       : encodeLevels<std::int32_t>(format, numbers, present, compressor, bands);
-    tryWhole(numbers, present, compressor, segments);
+    tryWhole(numbers, present, segments);
 
     Bytes extras;
     if (format.keepsAbsent) encodeStream(numbers.absentBits, compressor, extras);
