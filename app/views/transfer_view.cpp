@@ -3,6 +3,7 @@
 #include "app/views/readout.h"
 #include "app/views/statistics_feed.h"
 #include "app/views/ticks.h"
+#include "app/views/transfer_pages.h"
 #include "app/views/view_parts.h"
 
 #include <algorithm>
@@ -16,8 +17,13 @@ struct TransferCache : ViewCache {
     StatisticsFeed feed;
     Readout readout;
     OpacityDrag drag;
-    int rangeEnd = 0; ///< end of the range that is dragged: -1 low, 1 high
-    double grab = 0;  ///< from the mouse to that end, in values
+    DerivativeFeed derivatives;
+    RegionPage regions;
+    BoundaryPage boundaries;
+    bool boundary = false; ///< the curve is made from boundaries: the page that edits their emphasis
+    int channel = -1;      ///< that the pages were last drawn for
+    int rangeEnd = 0;      ///< end of the range that is dragged: -1 low, 1 high
+    double grab = 0;       ///< from the mouse to that end, in values
 };
 
 /// A button with a small picture of the curve it sets.
@@ -60,7 +66,44 @@ void drawRange(vis::TransferFunction& function, Range data, float width) {
     ImGui::EndDisabled();
 }
 
-void drawControls(ViewContext& context, TransferView& view, const volume::DatasetInfo& info, std::string channel) {
+/// What is edited: the curve over values, regions, or the emphasis of boundaries that makes the curve.
+void drawPages(TransferCache& cache, vis::TransferFunction& function) {
+    const auto page = [&](const char* name, bool chosen, const char* help) {
+        if (chosen) ImGui::PushStyleColor(ImGuiCol_Button, ImGui::GetStyleColorVec4(ImGuiCol_ButtonActive));
+        const bool pressed = ImGui::Button(name);
+        if (chosen) ImGui::PopStyleColor();
+        if (ImGui::IsItemHovered()) tooltip(help);
+        return pressed && !chosen;
+    };
+    const bool curve = function.kind == vis::TransferKind::Curve;
+    if (page("curve", curve && !cache.boundary, "Opacity from the value, by a curve drawn by hand")) {
+        function.kind = vis::TransferKind::Curve;
+        cache.boundary = false;
+    }
+    ImGui::SameLine(0, em() * 0.2f);
+    if (page("regions", !curve, "Opacity from value and gradient magnitude, by regions of their plane")) {
+        function.kind = vis::TransferKind::Regions;
+        cache.boundary = false;
+    }
+    ImGui::SameLine(0, em() * 0.2f);
+    if (page("boundary", curve && cache.boundary,
+             "Opacity from the distance to a boundary between materials; makes a new curve")) {
+        function.kind = vis::TransferKind::Curve;
+        cache.boundary = cache.boundaries.apply = true;
+        cache.boundaries.from.reset();
+    }
+}
+
+/// Gradient magnitude at the top of the plane.
+void drawGradientTop(vis::TransferFunction& function) {
+    ImGui::SetNextItemWidth(em() * 9);
+    ImGui::SliderFloat("top", &function.gradientTop, 1e-3f, 2, "%.3g ranges/cell",
+                       ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp);
+    if (ImGui::IsItemHovered()) tooltip("Gradient magnitude at the top of the plane, in ranges of the values per cell");
+}
+
+void drawControls(ViewContext& context, TransferCache& cache, TransferView& view, const volume::DatasetInfo& info,
+                  std::string channel) {
     const float room = ImGui::GetContentRegionAvail().x, gap = ImGui::GetStyle().ItemSpacing.x;
     const float reverse = ImGui::GetFrameHeight() + em() * 0.4f;
     const float combo = std::min(em() * 11, (room - reverse - 2 * gap) / 2);
@@ -81,6 +124,14 @@ void drawControls(ViewContext& context, TransferView& view, const volume::Datase
     if (wide) ImGui::SameLine(0, em());
     drawRange(function, data, std::min(em() * 16, room));
     if (room > em() * 30) ImGui::SameLine(0, em());
+    drawPages(cache, function);
+    if (function.kind == vis::TransferKind::Regions) {
+        if (room > em() * 30) ImGui::SameLine(0, em());
+        drawGradientTop(function);
+        return;
+    }
+    if (cache.boundary) return;
+    if (room > em() * 70) ImGui::SameLine(0, em());
     for (std::size_t i = 0; i < std::size(kOpacityPresetNames); ++i) {
         if (i > 0) ImGui::SameLine(0, em() * 0.2f);
         const auto preset = static_cast<OpacityPreset>(i);
@@ -222,9 +273,34 @@ void drawTransferView(ViewContext& context, const std::string& pane, TransferVie
     }
     TransferCache& cache = cacheOf<TransferCache>(context, pane);
     updateReadout(context, cache.readout);
-    drawControls(context, view, info, info.channels()[static_cast<std::size_t>(*channel)].name);
-    const auto now = resolveChannel(info, context.session, view.channel);
-    drawPlot(context, cache, view, info, now.value_or(*channel), pane);
+    drawControls(context, cache, view, info, info.channels()[static_cast<std::size_t>(*channel)].name);
+    const int now = resolveChannel(info, context.session, view.channel).value_or(*channel);
+    const volume::Channel shown = info.channels()[static_cast<std::size_t>(now)];
+    const vis::TransferFunction& function = transferOf(context.session, shown.name);
+    const bool regions = function.kind == vis::TransferKind::Regions;
+    if (!regions && !cache.boundary) {
+        drawPlot(context, cache, view, info, now, pane);
+        return;
+    }
+    if (cache.channel != now) { // what was held or made belongs to the other parameter
+        cache.channel = now;
+        cache.regions.drag = {};
+        cache.boundaries.from.reset();
+    }
+    const Range range = vis::effectiveRange(function, info.channelRange(shown));
+    if (!(range.hi > range.lo)) { // NaN where all samples are absent
+        drawHint("One value only", "There are no gradients to tell apart.");
+        return;
+    }
+    volume::DerivativeQuery query{.channel = now, .time = timeIndex(context.session, info)};
+    query.gradientTop = double(function.gradientTop) * (range.hi - range.lo);
+    const auto result = cache.derivatives.get(context, "gradients " + pane, query);
+    if (cache.derivatives.failed() && !result)
+        drawHint("No gradients", "The data could not be read; the log says where.");
+    else if (regions)
+        drawRegionPage(context, cache.regions, info, now, result);
+    else
+        drawBoundaryPage(context, cache.boundaries, info, now, result);
 }
 
 } // namespace tessera::app

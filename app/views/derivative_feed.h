@@ -1,0 +1,42 @@
+#pragma once
+
+#include "app/views/view_context.h"
+#include "vis/gl/plot_texture.h"
+#include "volume/boundary.h"
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+/// Values against gradients for the transfer function's views, counted in the background.
+namespace tessera::app {
+
+/// What a channel's derivatives tell.
+struct DerivativeResult {
+    volume::DerivativeQuery query;
+    volume::DerivativeHistogram histogram;
+    volume::BoundaryCurves curves;
+};
+
+/// Keeps the last answer and asks for a new one when the wish changes. One per view, in its cache.
+class DerivativeFeed {
+public:
+    DerivativeFeed();
+    /// The answer to this query, else the last one of the same channel while it is being computed, else null. Sets
+    /// context.busy while a better one is on its way; headless, computes to the end.
+    std::shared_ptr<const DerivativeResult> get(ViewContext& context, const std::string& jobKey,
+                                                const volume::DerivativeQuery& query);
+    /// Whether the data could not be read; the log has the message.
+    bool failed() const;
+
+private:
+    struct State;
+    std::shared_ptr<State> state_;
+};
+
+/// The joint histogram as a picture, row 0 = the largest gradient: transparent where no sample is, else a grey whose
+/// lightness (CIE L*) grows with the logarithm of the count, away from the theme's background.
+std::vector<std::uint8_t> derivativeImage(const volume::DerivativeHistogram& histogram, bool dark);
+
+} // namespace tessera::app

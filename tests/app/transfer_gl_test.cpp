@@ -1,0 +1,201 @@
+#include "app/ui/theme.h"
+#include "app/views/derivative_feed.h"
+#include "app/views/transfer_pages.h"
+#include "app/views/view_parts.h"
+#include "vis/gl/headless.h"
+#include "vis/model/boundary_opacity.h"
+#include "volume/memory_source.h"
+#include "volume/synthetic/models.h"
+
+#include <gtest/gtest.h>
+#include <imgui.h>
+
+namespace tessera::app {
+namespace {
+
+TEST(RegionEdit, TheSelectedThenTheLastMadeLiesOnTop) {
+    std::vector<vis::TransferRegion> regions(2);
+    regions[0].centre = regions[1].centre = {0.5f, 0.5f};
+    regions[0].size = regions[1].size = {0.4f, 0.4f};
+    const glm::vec2 reach{0.02f, 0.02f};
+    EXPECT_EQ(hitRegion(regions, {0.5f, 0.5f}, reach, -1), (RegionHit{1, 0}));
+    EXPECT_EQ(hitRegion(regions, {0.5f, 0.5f}, reach, 0), (RegionHit{0, 0}));
+    EXPECT_EQ(hitRegion(regions, {0.301f, 0.5f}, reach, -1), (RegionHit{1, kRegionLeft}));
+    EXPECT_EQ(hitRegion(regions, {0.701f, 0.699f}, reach, -1), (RegionHit{1, kRegionRight | kRegionHigh}));
+    EXPECT_EQ(hitRegion(regions, {0.75f, 0.5f}, reach, 0), RegionHit{});
+}
+
+TEST(RegionEdit, AHeldEdgeMovesAndTheOtherStays) {
+    vis::TransferRegion region;
+    region.centre = {0.5f, 0.5f};
+    region.size = {0.4f, 0.2f};
+    const vis::TransferRegion wider = draggedRegion(region, kRegionRight, {0.1f, 0.3f});
+    EXPECT_NEAR(wider.centre.x - wider.size.x / 2, 0.3f, 1e-6f);
+    EXPECT_NEAR(wider.centre.x + wider.size.x / 2, 0.8f, 1e-6f);
+    EXPECT_EQ(wider.centre.y, region.centre.y);
+    EXPECT_NEAR(wider.size.y, region.size.y, 1e-6f);
+    const vis::TransferRegion thin = draggedRegion(region, kRegionLow, {0, 5});
+    EXPECT_NEAR(thin.size.y, 0.01f, 1e-6f);
+    EXPECT_NEAR(thin.centre.y + thin.size.y / 2, 0.6f, 1e-6f) << "an edge does not pass the other one";
+    const vis::TransferRegion moved = draggedRegion(region, 0, {9, -9});
+    EXPECT_EQ(moved.centre, glm::vec2(1, 0));
+    EXPECT_EQ(moved.size, region.size);
+}
+
+TEST(DerivativeImage, RowsRunDownAndMoreSamplesStandOutMore) {
+    volume::DerivativeHistogram histogram;
+    histogram.valueBins = 2;
+    histogram.gradientBins = 2;
+    histogram.count = {1000, 0, 0, 1}; // many of low value and gradient, one of high value and gradient
+    for (const bool dark : {true, false}) {
+        const std::vector<std::uint8_t> rgba = derivativeImage(histogram, dark);
+        ASSERT_EQ(rgba.size(), 16u);
+        EXPECT_EQ(rgba[3], 0) << "top left: no sample";
+        EXPECT_EQ(rgba[7], 255) << "top right: the large gradient";
+        EXPECT_EQ(rgba[11], 255) << "bottom left";
+        const int many = rgba[8], one = rgba[4], ground = dark ? 0 : 255;
+        EXPECT_GT(std::abs(many - ground), std::abs(one - ground));
+    }
+}
+
+/// The transfer function view in a window of its own, without a window system.
+class TransferPages : public testing::Test {
+protected:
+    void SetUp() override {
+        ImGui::CreateContext();
+        ImGuiIO& io = ImGui::GetIO();
+        io.DisplaySize = {1280, 800};
+        io.IniFilename = nullptr;
+        loadFonts(1);
+        unsigned char* pixels;
+        int width, height;
+        io.Fonts->GetTexDataAsRGBA32(&pixels, &width, &height);
+        applyTheme(Theme::Dark, 1);
+        volume::Dataset model = volume::makeModel("fuel-cell", {{"nx", 9}, {"ny", 9}, {"nz", 21}, {"times", 2}});
+        source = volume::makeMemorySource(std::move(model), {});
+        renderer.setSource(source);
+        session = defaultSession(source->info(), {});
+        channel = source->info().channels()[std::size_t(resolveChannel(source->info(), session, "").value())].name;
+    }
+    void TearDown() override {
+        caches.clear();
+        ImGui::DestroyContext();
+    }
+    void frame(ImVec2 size = {900, 500}) {
+        ImGui::GetIO().DeltaTime = 1.0f / 60;
+        ImGui::GetIO().MousePos = mouse;
+        ImGui::NewFrame();
+        ViewContext context{session, source, renderer, jobs, caches};
+        context.headless = true;
+        ImGui::SetNextWindowPos({0, 0});
+        ImGui::SetNextWindowSize(size);
+        ImGui::Begin("transfer", nullptr, ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove);
+        drawTransferView(context, "transfer", view);
+        ImGui::End();
+        ImGui::Render();
+        EXPECT_TRUE(jobs.collect().empty());
+    }
+
+    vis::HeadlessContext gl;
+    vis::Renderer renderer;
+    Jobs jobs;
+    std::map<std::string, std::unique_ptr<ViewCache>> caches;
+    std::shared_ptr<const volume::BrickSource> source;
+    Session session;
+    TransferView view;
+    std::string channel;
+    ImVec2 mouse{-1000, -1000};
+};
+
+TEST_F(TransferPages, ADragMakesARegionAndARightClickRemovesIt) {
+    session.transfer[channel].kind = vis::TransferKind::Regions;
+    frame();
+    frame();
+    mouse = {250, 200};
+    frame();
+    ImGui::GetIO().MouseDown[0] = true;
+    frame();
+    for (float step : {20.0f, 60.0f, 100.0f}) {
+        mouse = {250 + step, 200 + step};
+        frame();
+    }
+    ImGui::GetIO().MouseDown[0] = false;
+    frame();
+    ASSERT_EQ(session.transfer[channel].regions.size(), 1u);
+    const vis::TransferRegion made = session.transfer[channel].regions[0];
+    EXPECT_GT(made.size.x, 0.05f);
+    EXPECT_GT(made.size.y, 0.05f);
+    mouse = {300, 250}; // inside of it: a drag moves it
+    frame();
+    ImGui::GetIO().MouseDown[0] = true;
+    frame();
+    mouse = {340, 250};
+    frame();
+    frame();
+    ImGui::GetIO().MouseDown[0] = false;
+    frame();
+    const vis::TransferRegion moved = session.transfer[channel].regions.at(0);
+    EXPECT_GT(moved.centre.x, made.centre.x);
+    EXPECT_NEAR(moved.centre.y, made.centre.y, 1e-5f);
+    EXPECT_EQ(moved.size, made.size);
+    ImGui::GetIO().MouseDown[1] = true;
+    frame();
+    ImGui::GetIO().MouseDown[1] = false;
+    frame();
+    EXPECT_TRUE(session.transfer[channel].regions.empty());
+}
+
+TEST_F(TransferPages, TheCurveFollowsTheEmphasisOfBoundaries) {
+    BoundaryPage page;
+    page.apply = true;
+    DerivativeFeed feed;
+    const volume::DatasetInfo& info = source->info();
+    const int index = *info.findChannel(channel);
+    const Range range = info.channelRange(info.channels()[std::size_t(index)]);
+    vis::TransferFunction& function = session.transfer[channel];
+    std::shared_ptr<const DerivativeResult> result;
+    const auto draw = [&] {
+        ImGui::NewFrame();
+        ViewContext context{session, source, renderer, jobs, caches};
+        context.headless = true;
+        ImGui::SetNextWindowPos({0, 0});
+        ImGui::SetNextWindowSize({900, 500});
+        ImGui::Begin("boundary", nullptr, ImGuiWindowFlags_NoDecoration);
+        result = feed.get(context, "gradients", {.channel = index});
+        drawBoundaryPage(context, page, info, index, result);
+        ImGui::End();
+        ImGui::Render();
+    };
+    draw();
+    ASSERT_NE(result, nullptr);
+    EXPECT_EQ(function.opacity, vis::boundaryOpacity(result->curves, function, range));
+    function.emphasis = {{0, 0.2f}, {1, 0.9f}};
+    draw();
+    const std::vector<glm::vec2> made = vis::boundaryOpacity(result->curves, function, range);
+    EXPECT_EQ(function.opacity, made);
+    EXPECT_GT(made.size(), 2u);
+    function.opacity = {{0, 0}, {1, 1}}; // undone, or edited elsewhere: stays
+    draw();
+    EXPECT_EQ(function.opacity.size(), 2u);
+}
+
+TEST_F(TransferPages, DrawingAloneEditsNothing) {
+    session.transfer[channel].kind = vis::TransferKind::Regions;
+    session.transfer[channel].regions.emplace_back();
+    const vis::TransferFunction before = session.transfer[channel];
+    for (const ImVec2 size : {ImVec2{900, 500}, ImVec2{200, 120}, ImVec2{40, 30}})
+        for (int i = 0; i < 2; ++i) frame(size);
+    EXPECT_EQ(session.transfer[channel], before);
+}
+
+TEST_F(TransferPages, ARangeWithoutWidthHasNoGradients) {
+    vis::TransferFunction& function = session.transfer[channel];
+    function.kind = vis::TransferKind::Regions;
+    function.autoRange = false;
+    function.range = {5, 5};
+    frame();
+    EXPECT_EQ(session.transfer[channel].range, (Range{5, 5}));
+}
+
+} // namespace
+} // namespace tessera::app
