@@ -1,5 +1,6 @@
 #include "vis/renderer_impl.h"
 
+#include "vis/model/jitter.h"
 #include "vis/model/proxy.h"
 #include "vis/technique/box_lines.h"
 #include "vis/technique/ray_tables.h"
@@ -7,6 +8,7 @@
 #include "volume/error.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace tessera::vis {
 
@@ -63,13 +65,14 @@ ProgramRecipe Renderer::Impl::prepare(ViewTarget& target, const Scene& scene, co
 }
 
 /// Rasterises the geometry for a picture of this size, unless that is what the target has.
-void Renderer::Impl::geometry(ViewTarget& target, const Scene& scene, glm::ivec2 size) {
+void Renderer::Impl::geometry(ViewTarget& target, const Scene& scene, const RayPlan& plan, glm::ivec2 size, int pass) {
     const int peels = peelsOf(scene.geometry);
     if (peels == 0) return;
-    if (target.geometrySize != size) {
+    if (target.geometrySize != size || target.geometryPass != pass) {
         target.geometry.resize(target.size, peels);
-        geometryPass.draw(target.geometry, scene, source->info(), size);
+        geometryPass.draw(target.geometry, scene, source->info(), size, rayUnits(plan).light, pixelJitter(pass));
         target.geometrySize = size;
+        target.geometryPass = pass;
     }
     glBindTextureUnit(GLuint(RayUnits::kGeometry), target.geometry.color.name());
     glBindTextureUnit(GLuint(RayUnits::kGeometry) + 1, target.geometry.distance.name());
@@ -94,8 +97,9 @@ void Renderer::Impl::proxies(const Program& program, const Scene& scene, const R
     glDisable(GL_BLEND);
 }
 
+/// Draws a tile with the rays of a pass.
 void Renderer::Impl::rays(const Program& rayProgram, const Scene& scene, const RayBuffer& buffer, glm::ivec2 size,
-                          const Tile& tile, double stepFactor) {
+                          const Tile& tile, double stepFactor, int pass) {
     const float nothing[] = {0, 0, 0, 0}, nowhere[] = {-1e9f, 0, 0, 0};
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, buffer.framebuffer.name());
     glViewport(0, 0, size.x, size.y);
@@ -109,11 +113,34 @@ void Renderer::Impl::rays(const Program& rayProgram, const Scene& scene, const R
     if (begin.x >= end.x || begin.y >= end.y) return;
     glScissor(begin.x, begin.y, end.x - begin.x, end.y - begin.y);
     rayProgram.set("ndcScale", 2.0f / glm::vec2(size));
-    rayProgram.set("ndcOffset", glm::vec2(-1));
+    rayProgram.set("ndcOffset", glm::vec2(pixelJitter(pass) * 2.0 / glm::dvec2(size) - 1.0));
+    rayProgram.set("passNumber", pass);
     glBindVertexArray(vertices.name());
     if (drawnByProxy(scene)) return proxies(rayProgram, scene, buffer, stepFactor);
     glUseProgram(rayProgram.name());
     glDrawArrays(GL_TRIANGLES, 0, 3);
+}
+
+/// Draws pass n > 0 of a supersampled still, beside, and makes it one n + 1-th of the picture. (Not by blending the
+/// rays themselves: software GL would compile their program anew. What a pixel picks stays that of its middle.)
+void Renderer::Impl::accumulate(const Program& rayProgram, ViewTarget& target, const Scene& scene, const Tile& tile,
+                                int pass) {
+    const Program* average = programs.find({"screen.vert.glsl", "accumulate.frag.glsl", {}, {}});
+    if (!average) throw Error("the program that averages passes does not compile");
+    target.reducedValid = false;
+    rays(rayProgram, scene, target.reduced, target.size, tile, 1, pass);
+    average->set("source", 0);
+    glBindTextureUnit(0, target.reduced.color.name());
+    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, target.full.framebuffer.name());
+    glScissor(tile.begin.x, tile.begin.y, tile.end.x - tile.begin.x, tile.end.y - tile.begin.y);
+    glUseProgram(average->name());
+    glEnablei(GL_BLEND, 0);
+    glBlendColor(0, 0, 0, 1 / float(pass + 1));
+    glBlendFunc(GL_CONSTANT_ALPHA, GL_ONE_MINUS_CONSTANT_ALPHA);
+    glColorMaski(1, GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+    glDisablei(GL_BLEND, 0);
+    glColorMaski(1, GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
 }
 
 void Renderer::Impl::present(ViewTarget& target, const Scene& scene, bool reduced, const Tile& tile) {
@@ -128,6 +155,8 @@ void Renderer::Impl::present(ViewTarget& target, const Scene& scene, bool reduce
     resolve.set("background", glm::vec3(linearFromSrgb(glm::dvec3(scene.background))));
     resolve.set("boxColor", glm::vec3(linearFromSrgb(glm::dvec3(scene.boxColor))));
     resolve.set("lineWidth", 1.3f);
+    resolve.set("toneCurve", int(scene.tone.curve));
+    resolve.set("tone", glm::vec2(std::exp2(scene.tone.exposure), scene.tone.white));
     BoxLines lines;
     if (scene.showBox && source)
         lines = boxLines(scene.camera, worldFrame(source->info().bounds, scene.stretch).halfSize, target.size);
@@ -145,6 +174,46 @@ void Renderer::Impl::present(ViewTarget& target, const Scene& scene, bool reduce
     target.shows = true;
 }
 
+/// Brings cube maps and light volume up to date and binds them; false while a light volume is still being made.
+bool Renderer::Impl::bindLight(ViewTarget& target, const Scene& scene, const FrameRequest& request,
+                               const RayPlan& plan) {
+    const GLuint first = GLuint(rayUnits(plan).light);
+    if (usesMaps(scene.lighting)) {
+        target.lightMaps.update(scene.lighting, scene.camera);
+        glBindTextureUnit(first, target.lightMaps.diffuse());
+        glBindTextureUnit(first + 1, target.lightMaps.specular());
+        glEnable(GL_TEXTURE_CUBE_MAP_SEAMLESS);
+    }
+    if (!scene.lighting.shadows.any()) return true;
+    if (plan.layers.empty()) { // slices alone: nothing casts a shadow
+        glBindTextureUnit(first + 2, noShadow.name());
+        glBindTextureUnit(first + 3, noLight.name());
+        return true;
+    }
+    ProgramRecipe recipe = rayRecipe(plan, scene, source->grid(), false);
+    recipe.vertex = "screen.vert.glsl";
+    recipe.fragment = "light_matter.frag.glsl";
+    const ProgramAnswer answer = request.wait ? ProgramAnswer{programs.find(recipe), ProgramStage::Ready}
+                                              : programs.request(recipe, request.budgetMs / 4);
+    glBindTextureUnit(first + 2, target.light.version() > 0 ? target.light.visible() : noShadow.name());
+    glBindTextureUnit(first + 3, target.light.scattered() != 0 ? target.light.scattered() : noLight.name());
+    if (!answer.program) return request.wait || answer.stage == ProgramStage::Failed;
+    const auto setUniforms = [&](const Program& program) {
+        setRayUniforms(program, plan, scene, source->info(), source->grid(), 1, 1);
+    };
+    target.light.update(scene, worldFrame(source->info().bounds, scene.stretch),
+                        {residency.revision(), target.lastTime}, *answer.program, setUniforms, vertices.name(),
+                        request.budgetMs / 3, request.wait);
+    if (target.lightVersion != target.light.version()) {
+        target.lightVersion = target.light.version();
+        target.reducedValid = target.fullValid = target.stillDone = false;
+        target.tilesDone = 0;
+    }
+    glBindTextureUnit(first + 2, target.light.version() > 0 ? target.light.visible() : noShadow.name());
+    glBindTextureUnit(first + 3, target.light.scattered() != 0 ? target.light.scattered() : noLight.name());
+    return target.light.ready();
+}
+
 /// The background alone: nothing is loaded, or the program does not compile.
 void Renderer::Impl::nothing(ViewTarget& target, const Scene& scene) {
     const float empty[] = {0, 0, 0, 0}, nowhere[] = {-1e9f, 0, 0, 0};
@@ -152,20 +221,20 @@ void Renderer::Impl::nothing(ViewTarget& target, const Scene& scene) {
     glClearNamedFramebufferfv(target.full.framebuffer.name(), GL_COLOR, 0, empty);
     glClearNamedFramebufferfv(target.full.framebuffer.name(), GL_COLOR, 1, nowhere);
     present(target, scene, false, {{0, 0}, target.size});
-    target.fullValid = true;
+    target.fullValid = target.stillDone = true;
 }
 
 /// Draws as much of the bound plan as the budget allows.
 void Renderer::Impl::refine(ViewTarget& target, const Scene& scene, const FrameRequest& request, const RayPlan& plan,
                             Clock::time_point start) {
-    if (target.fullValid) return;
+    if (target.fullValid && (target.stillDone || request.moving)) return;
     const ProgramRecipe recipe = prepare(target, scene, plan);
     const ProgramAnswer answer = request.wait ? ProgramAnswer{programs.find(recipe), ProgramStage::Ready}
                                               : programs.request(recipe, request.budgetMs / 4);
     // A variant that is being compiled, or does not compile, leaves the former picture as it is.
     if (!answer.program) {
         if (!target.shows || request.wait) nothing(target, scene);
-        target.fullValid = answer.stage == ProgramStage::Failed || request.wait;
+        target.fullValid = target.stillDone = answer.stage == ProgramStage::Failed || request.wait;
         return;
     }
     const Program* rayProgram = answer.program;
@@ -183,6 +252,7 @@ void Renderer::Impl::refine(ViewTarget& target, const Scene& scene, const FrameR
     glBindTextureUnit(GLuint(units.planes), target.planes.name());
     const volume::DatasetInfo& info = source->info();
     glBindTextureUnit(GLuint(units.lassos), brushes.update(brushTests(plan, scene, info)));
+    const bool lit = bindLight(target, scene, request, plan);
     const double pixels = double(target.size.x) * target.size.y;
     const Tile everything{{0, 0}, target.size};
 
@@ -194,7 +264,7 @@ void Renderer::Impl::refine(ViewTarget& target, const Scene& scene, const FrameR
     // Software GL compiles at the first draw: do that before any clock runs.
     if (programs.firstUse(*rayProgram)) {
         setRayUniforms(*rayProgram, plan, scene, info, source->grid(), aspect, 1);
-        geometry(target, scene, target.size);
+        geometry(target, scene, plan, target.size);
         rays(*rayProgram, scene, target.reduced, target.size, {target.size / 2, target.size / 2 + 1});
         glFinish();
         target.reducedValid = false;
@@ -204,7 +274,7 @@ void Renderer::Impl::refine(ViewTarget& target, const Scene& scene, const FrameR
         const Clock::time_point begin = Clock::now();
         target.reducedSize = glm::max(glm::ivec2(glm::vec2(target.size) / float(shrink)), glm::ivec2(1));
         setRayUniforms(*rayProgram, plan, scene, info, source->grid(), aspect, stepFactor);
-        geometry(target, scene, target.reducedSize);
+        geometry(target, scene, plan, target.reducedSize);
         rays(*rayProgram, scene, target.reduced, target.reducedSize, {{0, 0}, target.reducedSize}, stepFactor);
         glFinish();
         const double cost =
@@ -217,7 +287,7 @@ void Renderer::Impl::refine(ViewTarget& target, const Scene& scene, const FrameR
     const auto left = [&] { return request.budgetMs - millisecondsSince(start); };
     const double expected = target.msPerPixel * pixels;
     const bool fast = target.msPerPixel > 0 && expected < std::max(left(), 1.0);
-    if (!request.wait && !fast && (request.moving || !target.reducedValid)) {
+    if (!request.wait && !fast && (request.moving || !(target.reducedValid || target.fullValid))) {
         double shrink = 4, stepFactor = 2;
         if (target.msPerPixel > 0)
             for (double candidate : {1.5, 2.0, 3.0, 4.0, 6.0}) {
@@ -240,23 +310,31 @@ void Renderer::Impl::refine(ViewTarget& target, const Scene& scene, const FrameR
     }
     const std::vector<Tile> tiles = tilesOf(target.size, target.tileEdge);
     setRayUniforms(*rayProgram, plan, scene, info, source->grid(), aspect, 1);
-    geometry(target, scene, target.size);
     bool first = true;
-    while (target.tilesDone < int(tiles.size()) && (request.wait || first || left() > 0)) {
-        const Tile& tile = tiles[std::size_t(target.tilesDone)];
+    // The whole picture once, then again with rays elsewhere in the pixels for a supersampled still.
+    const int perPass = int(tiles.size()), wanted = perPass * std::max(scene.render.samples, 1);
+    while (target.tilesDone < wanted && (request.wait || first || left() > 0)) {
+        const Tile& tile = tiles[std::size_t(target.tilesDone % perPass)];
+        const int pass = target.tilesDone / perPass;
+        geometry(target, scene, plan, target.size, pass);
         const Clock::time_point begin = Clock::now();
-        rays(*rayProgram, scene, target.full, target.size, tile);
+        if (pass == 0)
+            rays(*rayProgram, scene, target.full, target.size, tile);
+        else
+            accumulate(*rayProgram, target, scene, tile, pass);
         glFinish();
-        target.passMilliseconds += millisecondsSince(begin);
+        if (pass == 0) target.passMilliseconds += millisecondsSince(begin);
         present(target, scene, false, tile);
         glBindTextureUnit(0, plan.fields[0].texture);
         ++target.tilesDone;
         first = false;
+        if (target.tilesDone == perPass) {
+            target.fullValid = true;
+            target.msPerPixel = target.passMilliseconds / pixels;
+            if (request.moving) break;
+        }
     }
-    if (target.tilesDone == int(tiles.size())) {
-        target.fullValid = true;
-        target.msPerPixel = target.passMilliseconds / pixels;
-    }
+    target.stillDone = target.tilesDone >= wanted && lit;
 }
 
 } // namespace tessera::vis

@@ -80,7 +80,7 @@ FrameStatus Renderer::render(ViewTarget& target, const Scene& scene, const Frame
         target.shows = target.shows && target.source == impl_->source.get();
         target.source = impl_->source.get();
         target.started = true;
-        target.reducedValid = target.fullValid = false;
+        target.reducedValid = target.fullValid = target.stillDone = false;
         target.tilesDone = 0;
         target.geometrySize = {0, 0};
     }
@@ -89,7 +89,7 @@ FrameStatus Renderer::render(ViewTarget& target, const Scene& scene, const Frame
     } else if (!target.fullValid && (plan.empty() || status.complete || !target.shows)) {
         impl_->nothing(target, scene);
     }
-    status.complete = status.complete && target.fullValid;
+    status.complete = status.complete && target.fullValid && target.stillDone;
     status.milliseconds = target.passMilliseconds;
     return status;
 }

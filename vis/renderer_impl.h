@@ -29,6 +29,7 @@ struct Renderer::Impl {
     ProgramCache programs;
     BrushTables brushes;
     GeometryPass geometryPass;
+    Texture noShadow = makeUniform3D(glm::vec4(1), "no shadow"), noLight = makeUniform3D(glm::vec4(0), "no light");
 
     explicit Impl(const RendererOptions& given) : options(given), residency(given) {}
 
@@ -40,11 +41,13 @@ struct Renderer::Impl {
 
     // frame.cpp
     ProgramRecipe prepare(ViewTarget& target, const Scene& scene, const RayPlan& plan);
-    void geometry(ViewTarget& target, const Scene& scene, glm::ivec2 size);
+    void geometry(ViewTarget& target, const Scene& scene, const RayPlan& plan, glm::ivec2 size, int pass = 0);
     void rays(const Program& program, const Scene& scene, const RayBuffer& buffer, glm::ivec2 size, const Tile& tile,
-              double stepFactor = 1);
+              double stepFactor = 1, int pass = 0);
     void proxies(const Program& program, const Scene& scene, const RayBuffer& buffer, double stepFactor);
     void present(ViewTarget& target, const Scene& scene, bool reduced, const Tile& tile);
+    void accumulate(const Program& program, ViewTarget& target, const Scene& scene, const Tile& tile, int pass);
+    bool bindLight(ViewTarget& target, const Scene& scene, const FrameRequest& request, const RayPlan& plan);
     void nothing(ViewTarget& target, const Scene& scene);
     void refine(ViewTarget& target, const Scene& scene, const FrameRequest& request, const RayPlan& plan,
                 Clock::time_point start);

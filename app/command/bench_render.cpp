@@ -102,6 +102,7 @@ vis::Scene sceneFor(const Style& style) {
     scene.layers = {{.name = style.name, .visible = true, .technique = style.technique}};
     scene.transfer["v"].opacity = style.opacity;
     scene.render.stepVoxels = 1;
+    scene.render.samples = 1;
     scene.camera.distance = 2.6f;
     scene.showBox = false;
     return scene;

@@ -45,11 +45,11 @@ std::string jobText(glm::ivec3 size, const vis::Scene& scene, PeerSizes sizes) {
         out << "iso " << iso->value;
     else
         out << (volume != nullptr && volume->style == vis::VolumeStyle::Maximum ? "maximum" : "composite");
-    const vis::RenderParams& p = scene.render;
+    const vis::Lighting& p = scene.lighting;
     const bool shaded =
         iso != nullptr || (volume != nullptr && volume->shaded && volume->style == vis::VolumeStyle::Composite);
     out << "\nshaded " << shaded << ' ' << p.ambient << ' ' << p.diffuse << ' ' << p.specular << ' ' << p.shininess;
-    put(vis::lightDirection(p, scene.camera));
+    put(vis::lightDirection(p.lights.front(), scene.camera));
     const double cell = 1.0 / (std::max({size.x, size.y, size.z}) - 1);
     out << "\nstep " << scene.render.stepVoxels * cell << "\nunit " << vis::kReferenceLength << "\ncamera";
     const glm::dquat toWorld = glm::conjugate(glm::dquat(scene.camera.orientation));

@@ -64,6 +64,9 @@ vis::Scene sceneOf(const Session& session) {
     scene.transfer = session.transfer;
     scene.selection = session.selection;
     scene.render = session.render;
+    scene.lighting = session.lighting;
+    scene.clips = session.clips;
+    scene.tone = session.tone;
     scene.stretch = session.stretch;
     scene.cursor = session.cursor;
     scene.time = session.time;

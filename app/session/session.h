@@ -99,6 +99,9 @@ struct Session {
     std::map<std::string, vis::TransferFunction> transfer; ///< by channel name
     std::vector<vis::Layer> layers;
     vis::RenderParams render;
+    vis::Lighting lighting;
+    std::vector<vis::Clip> clips;
+    vis::Tone tone;
     Animation animation;
     Appearance appearance;
     // What is open, and where.
@@ -122,6 +125,9 @@ struct Session {
         visit(self.transfer, FieldInfo{.key = "transfer", .unit = "", .doc = "Transfer functions by parameter"});
         visit(self.layers, FieldInfo{.key = "layers", .unit = "", .doc = "Techniques shown in the 3D views"});
         visit(self.render, FieldInfo{.key = "render", .unit = "", .doc = "Settings of the ray caster"});
+        visit(self.lighting, FieldInfo{.key = "lighting", .unit = "", .doc = "Lights and surfaces"});
+        visit(self.clips, FieldInfo{.key = "clips", .unit = "", .doc = "Planes and bodies that cut the picture"});
+        visit(self.tone, FieldInfo{.key = "tone", .unit = "", .doc = "Bright light brought into range"});
         visit(self.animation, FieldInfo{.key = "animation", .unit = "", .doc = "Playing through time"});
         visit(self.appearance, FieldInfo{.key = "appearance", .unit = "", .doc = "Looks of the window"});
         visit(self.views, FieldInfo{.key = "views", .unit = "", .doc = "Open views by name"});

@@ -39,6 +39,38 @@ void restoreUnknown(Json& document, const std::vector<JsonIssue>& unknown) {
     }
 }
 
+/// Until schema 1 the ray caster's settings held one Phong light.
+constexpr std::pair<const char*, const char*> kMovedLight[] = {
+    {"/render/ambient", "/lighting/ambient"},          {"/render/diffuse", "/lighting/diffuse"},
+    {"/render/specular", "/lighting/specular"},        {"/render/shininess", "/lighting/shininess"},
+    {"/render/azimuth", "/lighting/lights/0/azimuth"}, {"/render/elevation", "/lighting/lights/0/elevation"}};
+
+void moveLight(Json& document) {
+    Json light = Json::object();
+    for (const auto& [from, to] : kMovedLight) {
+        const Json::json_pointer old(from), now(to);
+        if (!document.contains(old)) continue;
+        if (now.back() == "azimuth" || now.back() == "elevation") {
+            if (!light.contains("lights")) light["lights"] = Json::array({Json::object()});
+            light["lights"][0][now.back()] = document[old];
+        } else {
+            light[now.back()] = document[old];
+        }
+        document["render"].erase(old.back());
+    }
+    if (!light.empty()) document["lighting"] = std::move(light);
+    const auto history = document.find("history");
+    if (history == document.end() || !history->is_object() || !history->contains("steps")) return;
+    for (Json& step : (*history)["steps"])
+        for (const char* direction : {"forward", "inverse"}) {
+            if (!step.is_object() || !step.contains(direction) || !step[direction].is_array()) continue;
+            for (Json& operation : step[direction])
+                for (const auto& [from, to] : kMovedLight)
+                    if (operation.is_object() && operation.contains("path") && operation["path"] == from)
+                        operation["path"] = to;
+        }
+}
+
 } // namespace
 
 std::string readText(const std::string& path) {
@@ -128,6 +160,7 @@ void migrate(Json& document, const std::string& file) {
             *stretch = Json::array({1, 1, stretch->get<double>()});
     }
     if (schema < 2) migrateBrushes(document);
+    if (schema < 2) moveLight(document);
     document["schema"] = kSessionSchema;
 }
 

@@ -266,6 +266,10 @@ bool beginSection(const char* id, std::string_view label, std::string_view help)
     return open;
 }
 
+bool drawListButton(const char* label) {
+    return ImGui::SmallButton(label);
+}
+
 void endSection() {
     ImGui::TreePop();
 }

@@ -41,8 +41,30 @@ bool chooseVector(const char* id, const volume::DatasetInfo* info, std::string& 
 bool chooseColormap(const char* id, std::string& value, bool reversed = false);
 bool beginSection(const char* id, std::string_view label, std::string_view help);
 void endSection();
+/// A small button that adds to a list or takes from it.
+bool drawListButton(const char* label);
 
 template <class T> bool drawDescribed(T& value, const WidgetContext& context);
+
+/// A section per element, with buttons to add and to remove.
+template <class T> bool drawDescribedList(const WidgetContext& context, const FieldInfo& info, std::vector<T>& values) {
+    bool changed = false;
+    std::size_t removed = values.size();
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        const std::string id = std::string(info.key) + std::to_string(i);
+        if (!beginSection(id.c_str(), labelOf(info.key) + " " + std::to_string(i + 1), info.doc)) continue;
+        changed |= drawDescribed(values[i], context);
+        if (drawListButton("Remove")) removed = i;
+        endSection();
+    }
+    if (removed < values.size()) {
+        values.erase(values.begin() + static_cast<std::ptrdiff_t>(removed));
+        changed = true;
+    }
+    if (!drawListButton(("Add to " + std::string(info.key)).c_str())) return changed;
+    values.emplace_back();
+    return true;
+}
 
 namespace detail {
 
@@ -122,13 +144,7 @@ struct MemberToWidget {
             if (value) (*this)(*value, info);
         } else if constexpr (IsVector<T>::value) {
             if constexpr (Described<typename T::value_type>) {
-                for (std::size_t i = 0; i < value.size(); ++i) {
-                    const std::string id = std::string(info.key) + std::to_string(i);
-                    if (beginSection(id.c_str(), labelOf(info.key) + " " + std::to_string(i + 1), info.doc)) {
-                        changed |= drawDescribed(value[i], context);
-                        endSection();
-                    }
-                }
+                changed |= drawDescribedList(context, info, value);
             }
         }
         // Maps and quaternions are edited in the views that know what they mean.

@@ -173,7 +173,12 @@ void drawLayersView(ViewContext& context, const std::string&, LayersView& view) 
         drawBrushList(context);
         drawDescribed(session.selection, widgets);
     }
-    if (ImGui::CollapsingHeader("Light and quality")) drawDescribed(session.render, widgets);
+    if (ImGui::CollapsingHeader("Light")) drawDescribed(session.lighting, widgets);
+    if (ImGui::CollapsingHeader("Clipping"))
+        drawDescribedList(widgets, {.key = "clips", .unit = "", .doc = "Planes and bodies that cut the picture"},
+                          session.clips);
+    if (ImGui::CollapsingHeader("Tone curve")) drawDescribed(session.tone, widgets);
+    if (ImGui::CollapsingHeader("Quality")) drawDescribed(session.render, widgets);
     if (ImGui::CollapsingHeader("Proportions")) {
         double stretch[] = {session.stretch.x, session.stretch.y, session.stretch.z};
         const FieldInfo field{.key = "stretch",

@@ -11,6 +11,7 @@ namespace {
 /// Every described struct of the program.
 using Structs =
     ::testing::Types<vis::Camera, vis::VolumeLayer, vis::IsoLayer, vis::SliceLayer, vis::Layer, vis::RenderParams,
+                     vis::Light, vis::EnvironmentLight, vis::Shadows, vis::Lighting, vis::Clip, vis::Tone,
                      vis::BrushInterval, vis::RangeRegion, vis::EllipseRegion, vis::LassoRegion, vis::SphereRegion,
                      vis::BoxRegion, vis::Brush, vis::Selection, vis::TransferFunction, DockNode, FloatingPane,
                      DockTree, DataFile, DataRef, Animation, Appearance, VolumeView, SlicesView, ScatterMatrixView,

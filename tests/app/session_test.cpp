@@ -153,6 +153,24 @@ TEST_F(SessionFileTest, MigratesSchemaZero) {
     EXPECT_EQ(document.session.schema, kSessionSchema);
 }
 
+TEST_F(SessionFileTest, TheOneLightOfSchemaOneBecomesTheFirst) {
+    const SessionDocument document = parseSession(
+        R"({"schema": 1, "render": {"azimuth": 12, "ambient": 0.5, "step": 0.25}, "history": {"position": 1, "steps": [
+            {"name": "x", "forward": [{"op": "replace", "path": "/render/azimuth", "value": 12}],
+             "inverse": [{"op": "replace", "path": "/render/azimuth", "value": 50}]}]}})",
+        "x");
+    EXPECT_TRUE(document.messages.empty()) << document.messages.front();
+    EXPECT_EQ(document.session.render.stepVoxels, 0.25f);
+    ASSERT_EQ(document.session.lighting.lights.size(), 1u);
+    EXPECT_EQ(document.session.lighting.lights[0].azimuth, 12);
+    EXPECT_EQ(document.session.lighting.lights[0].elevation, 40);
+    EXPECT_EQ(document.session.lighting.ambient, 0.5f);
+    History history = document.history;
+    EXPECT_EQ(history.undo().lighting.lights[0].azimuth, 50);
+    EXPECT_NO_THROW(parseSession(R"({"schema": 1, "render": {"azimuth": 1}, "lighting": {"lights": [5]}})", "x"));
+    EXPECT_THROW(parseSession(R"({"schema": 1, "render": 3})", "x"), Error);
+}
+
 TEST_F(SessionFileTest, FindsDataAfterTheFolderMoved) {
     write("one/data/cell.tsr", "12345");
     SessionDocument document = edited();

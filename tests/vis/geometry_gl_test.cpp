@@ -26,8 +26,9 @@ protected:
         Scene scene;
         scene.camera = test::frontCamera(1.2);
         scene.showBox = false;
-        scene.render.ambient = 1;
-        scene.render.diffuse = scene.render.specular = 0;
+        scene.render.samples = 1;
+        scene.lighting.ambient = 1;
+        scene.lighting.diffuse = scene.lighting.specular = 0;
         return scene;
     }
     std::vector<glm::vec4> picture(const Scene& scene) {

@@ -30,6 +30,7 @@ protected:
         out.camera.projection = projection;
         out.camera.distance = 1.9f;
         out.showBox = false;
+        out.render.samples = 1;
         out.render.proxy = proxy;
         out.render.stepVoxels = 0.25f;
         TransferFunction function;

@@ -62,6 +62,7 @@ inline Scene baseScene(bool perspective) {
     scene.camera.distance = perspective ? 1.7f : 2.1f;
     scene.camera.target = {0.04f, -0.03f, 0.02f};
     scene.showBox = false;
+    scene.render.samples = 1;
     scene.transfer["a"].opacity = {{0, 0}, {0.3f, 0}, {1, 0.06f}};
     scene.transfer["b"].colormap = "inferno";
     scene.transfer["b"].opacity = {{0, 0.3f}, {1, 1}};

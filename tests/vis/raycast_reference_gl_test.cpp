@@ -18,7 +18,11 @@ using volume::LatticeKind;
 struct Mode {
     const char* name;
     std::function<void(Scene&)> apply;
+    std::size_t outliers = kOutliers;
+    double rmse = kRmse;
 };
+/// Cube maps: what the driver does where three texels meet, at the corners of the cube, is its own business.
+constexpr std::size_t kCornerOutliers = 24;
 
 const Mode kModes[] = {
     {"composite",
@@ -32,6 +36,88 @@ const Mode kModes[] = {
     {"iso",
      [](Scene& s) {
          s.layers = {{"", true, IsoLayer{.channel = "a", .value = 317, .opacity = 0.7f}}};
+     }},
+    {"physical",
+     [](Scene& s) {
+         s.layers = {{"", true, IsoLayer{.channel = "a", .value = 317, .opacity = 0.7f}},
+                     {"", true, VolumeLayer{.channel = "a", .density = 3}}};
+         s.lighting.model = LightModel::Physical;
+         s.lighting.lights = {
+             Light{.color = {1, 0.9f, 0.7f}, .intensity = 1.5f},
+             Light{.kind = LightKind::Point, .color = {0.4f, 0.6f, 1}, .position = {0.6f, 0.2f, -0.4f}}};
+     }},
+    {"many lights",
+     [](Scene& s) {
+         s.layers = {{"", true, IsoLayer{.channel = "a", .value = 317}}};
+         for (int i = 0; i < 20; ++i)
+             s.lighting.lights.push_back({.enabled = i != 3,
+                                          .kind = i % 3 == 0 ? LightKind::World : LightKind::Point,
+                                          .intensity = 0.1f,
+                                          .azimuth = 40.0f * float(i % 9) - 160,
+                                          .position = {0.3f * float(i % 4), 0.8f, -0.2f * float(i)}});
+     }},
+    {"cube maps",
+     [](Scene& s) {
+         s.layers = {{"", true, IsoLayer{.channel = "a", .value = 317, .opacity = 0.7f}},
+                     {"", true, VolumeLayer{.channel = "a", .density = 3}}};
+         s.lighting.lights.assign(30, Light{.color = {1, 0.8f, 0.6f}, .intensity = 0.04f, .elevation = 20});
+         s.lighting.inMaps = true;
+         s.lighting.environment = {.kind = Environment::Studio, .turn = 35};
+     },
+     kCornerOutliers, 2 * kRmse},
+    {"physical sky",
+     [](Scene& s) {
+         s.layers = {{"", true, IsoLayer{.channel = "a", .value = 317}}};
+         s.lighting.model = LightModel::Physical;
+         s.lighting.roughness = 0.5f;
+         s.lighting.metalness = 0.4f;
+         s.lighting.environment = {.kind = Environment::Sky, .strength = 0.8f, .follows = true};
+     },
+     kCornerOutliers, 2 * kRmse},
+    {"shadows",
+     [](Scene& s) {
+         s.layers = {{"", true, VolumeLayer{.channel = "a", .density = 3}},
+                     {"", true, IsoLayer{.channel = "b", .value = 0.9, .opacity = 0.6f}}};
+         s.lighting.lights.push_back({.kind = LightKind::Point, .intensity = 0.5f, .position = {0.5f, 0.7f, 0.1f}});
+         s.lighting.shadows = {.strength = 0.9f, .occlusion = 0.8f, .resolution = 24};
+         s.clips = {{.keep = ClipKeep::Outside, .center = {0.2f, 0.5f, 0.5f}, .axis = {-1, 0.2f, 0}}};
+     }},
+    {"translucent",
+     [](Scene& s) {
+         s.layers = {{"", true, VolumeLayer{.channel = "a", .shaded = false, .density = 4}}};
+         s.lighting.shadows = {.strength = 1, .translucency = 0.8f, .resolution = 20};
+         s.selection.brushes = {rangeBrush({{"b", 0.1, 0.9, 0.2}})};
+     }},
+    {"clipped",
+     [](Scene& s) {
+         s.layers = {{"", true, VolumeLayer{.channel = "a", .density = 3}},
+                     {"", true, IsoLayer{.channel = "b", .value = 0.55, .opacity = 0.6f}},
+                     {"", true, SliceLayer{.channel = "a", .orientation = SliceOrientation::Y, .opacity = 0.8f}},
+                     {"", true, VolumeLayer{.channel = "b", .style = VolumeStyle::XRay, .density = 0.3f}}};
+         s.clips = {{.axis = {0.6f, 0.7f, 0.2f}},
+                    {.kind = ClipKind::Sphere, .keep = ClipKeep::Outside, .center = {0.4f, 0.3f, 0.6f}, .radius = 0.2f},
+                    {.enabled = false, .kind = ClipKind::Sphere, .radius = 0},
+                    {.kind = ClipKind::Cylinder,
+                     .keep = ClipKeep::Outside,
+                     .center = {0.3f, 0.6f, 0.2f},
+                     .axis = {1, 0, 0.3f},
+                     .radius = 0.12f,
+                     .length = 0.5f},
+                    {.kind = ClipKind::Box, .size = {0.6f, 0.5f, 0.85f}}};
+     }},
+    {"clipped plain",
+     [](Scene& s) {
+         s.layers = {{"", true, VolumeLayer{.channel = "a", .shaded = false}},
+                     {"", true, VolumeLayer{.channel = "b", .style = VolumeStyle::Maximum}}};
+         s.clips = {{.kind = ClipKind::Box, .keep = ClipKeep::Outside, .size = {0.3f, 0.4f, 0.5f}},
+                    {.kind = ClipKind::Cylinder, .axis = {0.1f, 0.2f, 1}, .radius = 0.35f, .length = 0.9f}};
+     }},
+    {"jittered still",
+     [](Scene& s) {
+         s.layers = {{"", true, VolumeLayer{.channel = "a", .density = 3}},
+                     {"", true, SliceLayer{.channel = "b", .opacity = 0.5f}}};
+         s.render.jitter = true;
+         s.render.samples = 3;
      }},
     {"maximum",
      [](Scene& s) {
@@ -101,7 +187,8 @@ TEST_P(RaycastReference, ExactTexturesAgree) {
             double most = 0;
             for (const glm::dvec4& pixel : wanted.pixels) most = std::max(most, pixel.a);
             EXPECT_GT(most, 0.2) << name << " shows next to nothing";
-            EXPECT_TRUE(agrees(difference)) << name << ": " << words(difference) << "; " << evidence(name, got, wanted);
+            EXPECT_TRUE(difference.rmseWithin <= mode.rmse && difference.beyond <= mode.outliers)
+                << name << ": " << words(difference) << "; " << evidence(name, got, wanted);
         }
 }
 

@@ -27,6 +27,7 @@ Scene frontal(Technique technique) {
     scene.camera.distance = float(0.5 / std::tan(glm::radians(30.0)));
     scene.layers = {{.name = "", .visible = true, .technique = std::move(technique)}};
     scene.showBox = false;
+    scene.render.samples = 1;
     TransferFunction gray;
     gray.colormap = "gray";
     gray.opacity = {{0, 0.01f}, {1, 0.01f}};
@@ -75,10 +76,10 @@ TEST(Reference, IsoSurfaceOfARampIsLitByPhong) {
         for (Filter filter : kFilters) {
             Scene scene = frontal(IsoLayer{.channel = "c", .value = 0.37, .color = {1, 1, 1}, .opacity = 0.5f});
             scene.render.filter = filter;
-            scene.render.azimuth = 0;
-            scene.render.elevation = 60;
+            scene.lighting.lights[0].azimuth = 0;
+            scene.lighting.lights[0].elevation = 60;
             const Image image = reference::render(scene, ramp(kind), {5, 5});
-            const RenderParams& p = scene.render;
+            const Lighting& p = scene.lighting;
             const double shine = std::pow(std::cos(glm::radians(30.0)), double(p.shininess));
             const double light = p.ambient + p.diffuse * std::cos(glm::radians(60.0)) + p.specular * shine;
             expectPixel(image, {2, 2}, {0.5 * light, 0.5 * light, 0.5 * light, 0.5}, 1e-6);
@@ -91,9 +92,9 @@ TEST(Reference, LayersCompositeFrontToBack) {
         Scene scene = frontal(IsoLayer{.channel = "c", .value = 0.8, .color = {1, 0, 0}, .opacity = 0.6f});
         scene.layers.push_back({"", true, IsoLayer{.channel = "c", .value = 0.2, .color = {0, 1, 0}, .opacity = 0.5f}});
         if (swapped) std::swap(scene.layers[0], scene.layers[1]);
-        scene.render.specular = 0;
-        scene.render.ambient = 1;
-        scene.render.diffuse = 0;
+        scene.lighting.specular = 0;
+        scene.lighting.ambient = 1;
+        scene.lighting.diffuse = 0;
         const Image image = reference::render(scene, ramp(LatticeKind::BCC), {3, 3});
         expectPixel(image, {1, 1}, {0.6, 0.4 * 0.5, 0, 0.8}, 1e-6);
         scene.layers[0].visible = false;
@@ -181,6 +182,7 @@ TEST(Reference, LatticesAgreeOnASmoothField) {
     const FunctionSource bcc(LatticeKind::BCC, {17, 17, 17}, glm::dvec3(1), {{"c", wave}});
     Scene scene;
     scene.showBox = false;
+    scene.render.samples = 1;
     scene.transfer["c"].opacity = {{0, 0}, {1, 0.1f}};
     scene.layers = {{"", true, VolumeLayer{.channel = "c"}}};
     const Image a = reference::render(scene, cc, {24, 24}), b = reference::render(scene, bcc, {24, 24});

@@ -35,6 +35,7 @@ Scene flatScene(float opacity) {
     function.opacity = {{0, opacity}, {1, opacity}};
     scene.transfer["v"] = function;
     scene.showBox = false;
+    scene.render.samples = 1;
     return scene;
 }
 

@@ -1,5 +1,9 @@
 #include "tests/vis/shader_probe.h"
+#include "vis/model/clipping.h"
+#include "vis/model/jitter.h"
+#include "vis/model/lighting.h"
 #include "vis/model/ray_setup.h"
+#include "vis/model/tone.h"
 
 #include <algorithm>
 #include <cmath>
@@ -47,18 +51,111 @@ TEST_F(ShaderLib, RaysMeetTheBoxAlike) {
     EXPECT_LT(hits, kCases);
 }
 
-TEST_F(ShaderLib, PhongShadesAlike) {
-    const vis::RenderParams params;
-    const auto got =
-        evaluate("#include \"lib/phong.glsl\"\n",
-                 "vec4(phong(abs(a[i].rgb), i == 0 ? vec3(0.0) : b[i].xyz, abs(a[i].w), normalize(c[i].xyz), "
-                 "normalize(c[i].zwy), vec4(0.25, 0.65, 0.25, 30.0)), 1.0)");
+TEST_F(ShaderLib, BodiesCutRaysAlike) {
+    for (int kind = 0; kind < 4; ++kind) {
+        const auto got = evaluate("#include \"lib/clip.glsl\"\n",
+                                  "vec4(clipInside(" + std::to_string(kind) +
+                                      ", a[i].xyz, normalize(b[i].xyz), abs(c[i].xyz) + 0.1, 2.0 * b[i].wxy, "
+                                      "normalize(c[i].wzy)), 0.0, 0.0)");
+        int hits = 0;
+        for (int i = 0; i < kCases; ++i) {
+            const vis::PlacedClip clip{vis::ClipKind(kind), false, glm::dvec3(a[i]), glm::normalize(glm::dvec3(b[i])),
+                                       glm::abs(glm::dvec3(c[i])) + 0.1};
+            const vis::Ray ray{2.0 * glm::dvec3(b[i].w, b[i].x, b[i].y),
+                               glm::normalize(glm::dvec3(c[i].w, c[i].z, c[i].y))};
+            const vis::RaySegment expected = clip.inside(ray);
+            EXPECT_EQ(expected.enter < expected.exit, got[i].x < got[i].y) << kind << ' ' << i;
+            if (expected.enter >= expected.exit) continue;
+            ++hits;
+            EXPECT_NEAR(got[i].x, expected.enter, 2e-4 * (1 + std::abs(expected.enter)));
+            EXPECT_NEAR(got[i].y, expected.exit, 2e-4 * (1 + std::abs(expected.exit)));
+            // What is inside by the interval is inside by the point's test.
+            if (expected.enter > -1e5 && expected.exit < 1e5) {
+                EXPECT_TRUE(clip.contains(ray.origin + ray.direction * (0.5 * (expected.enter + expected.exit))));
+                EXPECT_FALSE(clip.contains(ray.origin + ray.direction * (expected.exit + 1e-6)));
+            }
+        }
+        EXPECT_GT(hits, 5) << kind;
+    }
+}
+
+TEST_F(ShaderLib, StartsAreShiftedAlikeAndSpread) {
+    const auto got = evaluate("#include \"lib/jitter.glsl\"\n",
+                              "vec4(startJitter(uvec2(i % 8, i / 8), 0u), startJitter(uvec2(i * 977, 5), 3u), 0, 0)");
+    double sum = 0, worst = 1;
     for (int i = 0; i < kCases; ++i) {
-        const glm::dvec3 gradient = i == 0 ? glm::dvec3(0) : glm::dvec3(b[i]);
-        const glm::dvec3 expected =
-            vis::phong(glm::abs(glm::dvec3(a[i])), gradient, std::abs(a[i].w), glm::normalize(glm::dvec3(c[i])),
-                       glm::normalize(glm::dvec3(c[i].z, c[i].w, c[i].y)), params);
-        for (int k = 0; k < 3; ++k) EXPECT_NEAR(got[i][k], expected[k], 2e-5) << i;
+        EXPECT_EQ(got[i].x, float(vis::startJitter(std::uint32_t(i % 8), std::uint32_t(i / 8), 0)));
+        EXPECT_EQ(got[i].y, float(vis::startJitter(std::uint32_t(i * 977), 5, 3)));
+        EXPECT_LE(std::abs(got[i].x), 0.5);
+        sum += double(got[i].x);
+        if (i % 8 > 0) worst = std::min(worst, std::abs(double(got[i].x) - double(got[i - 1].x)));
+    }
+    EXPECT_NEAR(sum / kCases, 0, 0.05);
+    EXPECT_GT(worst, 0.15) << "neighbours start alike";
+}
+
+TEST_F(ShaderLib, TonesAreMappedAlike) {
+    for (int curve = 0; curve < 3; ++curve) {
+        const vis::Tone tone{vis::ToneCurve(curve), 1.5f, 3};
+        const auto got =
+            evaluate("#include \"lib/tone.glsl\"\n",
+                     "vec4(toneMap(3.0 * abs(a[i].rgb), " + std::to_string(curve) + ", exp2(1.5), 3.0), 1.0)");
+        for (int i = 0; i < kCases; ++i) {
+            const glm::dvec3 expected = vis::toneMap(3.0 * glm::abs(glm::dvec3(a[i])), tone);
+            for (int k = 0; k < 3; ++k) EXPECT_NEAR(got[i][k], expected[k], 1e-5);
+        }
+    }
+    const vis::Tone reinhard{vis::ToneCurve::Reinhard, 0, 4};
+    EXPECT_NEAR(vis::toneMap(glm::dvec3(4), reinhard).x, 1, 1e-12);
+    for (double light = 0; light < 4; light += 0.1)
+        EXPECT_LT(vis::toneMap(glm::dvec3(light), reinhard).x, vis::toneMap(glm::dvec3(light + 0.1), reinhard).x);
+}
+
+/// The same place for both languages: gradient b, viewer c.xyz, light c.zwy, surface of default parameters.
+TEST_F(ShaderLib, SurfacesAreLitAlike) {
+    for (const vis::LightModel model : {vis::LightModel::Phong, vis::LightModel::Physical})
+        for (const float metalness : {0.0f, 0.6f}) {
+            vis::Lighting surface;
+            surface.model = model;
+            surface.metalness = metalness;
+            const bool phong = model == vis::LightModel::Phong;
+            const std::string values = phong              ? "vec4(0.25, 0.65, 0.25, 30.0)"
+                                       : metalness > 0.0f ? "vec4(0.25, 0.4, 0.6, 0.04)"
+                                                          : "vec4(0.25, 0.4, 0.0, 0.04)";
+            const auto got =
+                evaluate("#include \"lib/lighting.glsl\"\n"
+                         "vec3 lit(Facing at, vec3 albedo, vec3 toLight) { const vec4 surface = " +
+                             values + "; vec3 d, s; " +
+                             (phong ? "return phongLight(at, albedo, toLight, surface); }\n"
+                                    : "physicalEvenLight(at, albedo, surface, d, s); "
+                                      "return physicalLight(at, albedo, d, toLight, surface); }\n"),
+                         "vec4(lit(facing(b[i].xyz, normalize(c[i].xyz)), abs(a[i].rgb), normalize(c[i].zwy)), "
+                         "facing(b[i].xyz, normalize(c[i].xyz)).front)");
+            for (int i = 0; i < kCases; ++i) {
+                const vis::Facing at = vis::facing(glm::dvec3(b[i]), glm::normalize(glm::dvec3(c[i])));
+                const glm::dvec3 toLight = glm::normalize(glm::dvec3(c[i].z, c[i].w, c[i].y));
+                const glm::dvec3 albedo = glm::abs(glm::dvec3(a[i]));
+                const glm::dvec3 expected =
+                    phong ? vis::phongLight(at, albedo, toLight, surface)
+                          : vis::physicalLight(at, albedo, vis::evenLight(at, albedo, surface), toLight, surface);
+                for (int k = 0; k < 3; ++k) EXPECT_NEAR(got[i][k], expected[k], 2e-5) << i;
+                EXPECT_NEAR(got[i].w, at.front, 2e-5);
+            }
+        }
+}
+
+TEST_F(ShaderLib, EvenLightIsReflectedAlike) {
+    vis::Lighting surface;
+    surface.model = vis::LightModel::Physical;
+    surface.metalness = 0.3f;
+    const auto got = evaluate("#include \"lib/lighting.glsl\"\n"
+                              "vec3 both(vec3 albedo, vec3 g, vec3 v) { vec3 d, s; physicalEvenLight(facing(g, v), "
+                              "albedo, vec4(0.25, 0.4, 0.3, 0.04), d, s); return d + 2.0 * s; }\n",
+                              "vec4(both(abs(a[i].rgb), b[i].xyz, normalize(c[i].xyz)), 0.0)");
+    for (int i = 0; i < kCases; ++i) {
+        const vis::Facing at = vis::facing(glm::dvec3(b[i]), glm::normalize(glm::dvec3(c[i])));
+        const vis::Reflected expected = vis::evenLight(at, glm::abs(glm::dvec3(a[i])), surface);
+        for (int k = 0; k < 3; ++k) EXPECT_NEAR(got[i][k], expected.diffuse[k] + 2 * expected.specular[k], 2e-5) << i;
     }
 }
 

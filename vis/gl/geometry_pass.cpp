@@ -1,6 +1,8 @@
 #include "vis/gl/geometry_pass.h"
 
 #include "vis/model/ray_setup.h"
+#include "vis/technique/clip_uniforms.h"
+#include "vis/technique/light_uniforms.h"
 
 #include <algorithm>
 #include <glm/gtc/matrix_transform.hpp>
@@ -150,12 +152,23 @@ void GeometryPass::table(const Scene& scene, const volume::DatasetInfo& info) {
     glTextureSubImage2D(table_.name(), 0, 0, 0, kColors, rows, GL_RGBA, GL_FLOAT, colors.data());
 }
 
+const Program& GeometryPass::program(const Scene& scene, bool lines) {
+    ProgramRecipe recipe{lines ? "geometry_lines.vert.glsl" : "geometry_mesh.vert.glsl",
+                         "geometry.frag.glsl",
+                         {},
+                         {{"LINES", lines ? "1" : "0"}}};
+    addLighting(recipe, scene);
+    addClipping(recipe, scene);
+    Program& made = programs_[recipe.key()];
+    if (!made) made = makeProgram(recipe);
+    return made;
+}
+
 void GeometryPass::draw(GeometryBuffer& buffer, const Scene& scene, const volume::DatasetInfo& info, glm::ivec2 size,
-                        glm::dvec2 jitter) {
+                        int lightUnit, glm::dvec2 jitter) {
     const int peels = peelsOf(scene.geometry);
     if (peels == 0) return;
-    if (!mesh_) mesh_ = makeProgram({"geometry_mesh.vert.glsl", "geometry.frag.glsl", {}, {{"LINES", "0"}}});
-    if (!lines_) lines_ = makeProgram({"geometry_lines.vert.glsl", "geometry.frag.glsl", {}, {{"LINES", "1"}}});
+    const Program *const mesh = &program(scene, false), *const lineProgram = &program(scene, true);
     table(scene, info);
     const double aspect = double(size.x) / size.y;
     const WorldFrame frame = worldFrame(info.bounds, scene.stretch);
@@ -163,7 +176,7 @@ void GeometryPass::draw(GeometryBuffer& buffer, const Scene& scene, const volume
     // A ray's ndc is its pixel's plus 2 jitter / size, so what is drawn moves the other way.
     const glm::dmat4 moved = glm::translate(glm::dmat4(1), glm::dvec3(-2.0 * jitter / glm::dvec2(size), 0));
     const glm::mat4 worldToClip(moved * projectionMatrix(scene.camera, aspect) * viewMatrix(scene.camera));
-    for (const Program* program : {&mesh_, &lines_}) {
+    for (const Program* program : {mesh, lineProgram}) {
         program->set("worldScale", glm::vec3(frame.scale));
         program->set("worldOffset", glm::vec3(frame.offset));
         glProgramUniformMatrix4fv(program->name(), glGetUniformLocation(program->name(), "worldToClip"), 1, GL_FALSE,
@@ -171,9 +184,9 @@ void GeometryPass::draw(GeometryBuffer& buffer, const Scene& scene, const volume
         program->set("rayOrigin", glm::vec3(middle.origin));
         program->set("forward", glm::vec3(middle.direction));
         program->set("perspective", scene.camera.projection == Projection::Perspective ? 1 : 0);
-        program->set("toLight", glm::vec3(lightDirection(scene.render, scene.camera)));
-        program->set("light", glm::vec4(scene.render.ambient, scene.render.diffuse, scene.render.specular,
-                                        scene.render.shininess));
+        program->set("halfSize", glm::vec3(glm::max(frame.halfSize, glm::dvec3(1e-5))));
+        setLightUniforms(*program, scene, frame, lightUnit);
+        setClipUniforms(*program, scene, frame);
         program->set("pixels", glm::vec2(size));
         program->set("colors", kTableUnit);
         program->set("former", kFormerUnit);
@@ -197,8 +210,8 @@ void GeometryPass::draw(GeometryBuffer& buffer, const Scene& scene, const volume
             const GeometryLayer& layer = scene.geometry[i];
             if (!layer.geometry || layer.opacity <= 0) continue;
             const Uploaded& up = upload(layer.geometry);
-            for (const Program* program : {&mesh_, &lines_}) {
-                const bool lines = program == &lines_;
+            for (const Program* program : {mesh, lineProgram}) {
+                const bool lines = program == lineProgram;
                 if ((lines ? up.segmentCount : up.indexCount) == 0) continue;
                 program->set("peel", peel);
                 program->set("row", (float(i) + 0.5f) / float(tableRows_));

@@ -26,9 +26,10 @@ inline constexpr float kNoGeometry = 1e9f;
 class GeometryPass {
 public:
     /// Fills the buffer's lower left `size` pixels with what a picture of that size shows; every pixel's centre is
-    /// moved by `jitter` pixels. Nothing is drawn, and no layer made, when the scene has no geometry.
+    /// moved by `jitter` pixels. Light is looked up in the texture units from `lightUnit` on (light_uniforms.h).
+    /// Nothing is drawn, and no layer made, when the scene has no geometry.
     void draw(GeometryBuffer& buffer, const Scene& scene, const volume::DatasetInfo& info, glm::ivec2 size,
-              glm::dvec2 jitter = glm::dvec2(0));
+              int lightUnit, glm::dvec2 jitter = glm::dvec2(0));
 
 private:
     struct Uploaded {
@@ -40,7 +41,9 @@ private:
     const Uploaded& upload(const std::shared_ptr<const Geometry>& geometry);
     void table(const Scene& scene, const volume::DatasetInfo& info);
 
-    Program mesh_, lines_;
+    const Program& program(const Scene& scene, bool lines);
+
+    std::map<std::string, Program> programs_; ///< by recipe: variants of light and clips
     std::map<const Geometry*, Uploaded> uploaded_;
     Texture table_;
     int tableRows_ = 0;

@@ -57,6 +57,23 @@ Texture makeTexture3D(glm::ivec3 size, GLenum format, GLenum filter, const std::
     return texture;
 }
 
+Texture makeUniform3D(glm::vec4 value, const std::string& label) {
+    Texture texture = makeTexture3D({1, 1, 1}, GL_RGBA16F, GL_LINEAR, label);
+    glTextureSubImage3D(texture.name(), 0, 0, 0, 0, 1, 1, 1, GL_RGBA, GL_FLOAT, &value.x);
+    return texture;
+}
+
+Texture makeTextureCube(int edge, GLenum format, const std::string& label) {
+    GLuint name = 0;
+    glCreateTextures(GL_TEXTURE_CUBE_MAP, 1, &name);
+    Texture texture(name);
+    glTextureStorage2D(name, 1, format, edge, edge);
+    glTextureParameteri(name, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+    glTextureParameteri(name, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+    glObjectLabel(GL_TEXTURE, name, -1, label.c_str());
+    return texture;
+}
+
 Framebuffer makeFramebuffer(std::initializer_list<GLuint> colorTextures, const std::string& label) {
     GLuint name = 0;
     glCreateFramebuffers(1, &name);

@@ -3,6 +3,7 @@
 #include <epoxy/gl.h>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
 #include <string>
 #include <utility>
 
@@ -42,6 +43,10 @@ using ProgramObject = Handle<ObjectKind::Program>;
 Texture makeTexture2D(glm::ivec2 size, GLenum format, GLenum filter, const std::string& label);
 /// A 3D texture of one level, likewise. Throws MachineError when the driver refuses the size.
 Texture makeTexture3D(glm::ivec3 size, GLenum format, GLenum filter, const std::string& label);
+/// A 3D texture of one texel.
+Texture makeUniform3D(glm::vec4 value, const std::string& label);
+/// A cube map of one level, filtered linearly across its edges too (where GL_TEXTURE_CUBE_MAP_SEAMLESS is on).
+Texture makeTextureCube(int edge, GLenum format, const std::string& label);
 /// A framebuffer with the given colour attachments, all written to. Throws MachineError when it is incomplete.
 Framebuffer makeFramebuffer(std::initializer_list<GLuint> colorTextures, const std::string& label);
 VertexArray makeVertexArray(const std::string& label);

@@ -185,6 +185,9 @@ void Program::set(const char* uniform, glm::vec3 value) const {
 void Program::set(const char* uniform, glm::vec4 value) const {
     glProgramUniform4f(name(), location(uniform), value.x, value.y, value.z, value.w);
 }
+void Program::set(const char* uniform, const glm::mat3& value) const {
+    glProgramUniformMatrix3fv(name(), location(uniform), 1, GL_FALSE, &value[0].x);
+}
 void Program::set(const char* uniform, std::span<const int> values) const {
     if (!values.empty()) glProgramUniform1iv(name(), location(uniform), GLsizei(values.size()), values.data());
 }

@@ -2,6 +2,7 @@
 
 #include "vis/gl/handles.h"
 
+#include <glm/mat3x3.hpp>
 #include <glm/mat4x4.hpp>
 #include <glm/vec4.hpp>
 #include <map>
@@ -66,6 +67,7 @@ public:
     void set(const char* uniform, glm::vec2 value) const;
     void set(const char* uniform, glm::vec3 value) const;
     void set(const char* uniform, glm::vec4 value) const;
+    void set(const char* uniform, const glm::mat3& value) const;
     void set(const char* uniform, std::span<const int> values) const;
     void set(const char* uniform, std::span<const float> values) const;
     void set(const char* uniform, std::span<const glm::ivec4> values) const;

@@ -17,7 +17,7 @@ void ViewTarget::resize(glm::ivec2 wanted, bool exact) {
     reduced.resize(wanted, exact, "reduced picture");
     output = makeTexture2D(wanted, GL_RGBA8, GL_LINEAR, "presented picture");
     outputFramebuffer = makeFramebuffer({output.name()}, "presented picture");
-    started = shows = reducedValid = fullValid = false;
+    started = shows = reducedValid = fullValid = stillDone = false;
     tilesDone = 0;
 }
 

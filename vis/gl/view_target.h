@@ -4,6 +4,8 @@
 #include "vis/gl/geometry_pass.h"
 #include "vis/renderer.h"
 #include "vis/technique/brick_demand.h"
+#include "vis/technique/light_baker.h"
+#include "vis/technique/light_uniforms.h"
 
 #include <vector>
 
@@ -28,6 +30,7 @@ public:
 
     GeometryBuffer geometry;
     glm::ivec2 geometrySize{0}; ///< of the picture it shows; 0: none of `scene`
+    int geometryPass = 0;       ///< of a supersampled still
 
     // What the buffers show.
     Scene scene;
@@ -35,9 +38,11 @@ public:
     bool started = false;       ///< the buffers hold something of `scene`
     bool shows = false;         ///< `output` holds a picture, of whatever scene
     bool reducedValid = false;
-    int tilesDone = 0, tileEdge = 256;
+    int tilesDone = 0, ///< of all passes
+        tileEdge = 256;
     const volume::BrickSource* source = nullptr;
     bool fullValid = false; ///< every tile of `full` is done
+    bool stillDone = false; ///< and every pass of a supersampled still
     double passMilliseconds = 0;
     int lastTime = -1;
     double msPerPixel = 0; ///< of a full pass; 0 = not measured
@@ -56,6 +61,10 @@ public:
     int tablesTime = -1, tableRows = 0, planePages = 0;
     glm::ivec3 blockCount{0};
     bool skip = false; ///< leap over empty blocks
+
+    LightMapTextures lightMaps;
+    LightBaker light;
+    std::uint64_t lightVersion = 0; ///< that the buffers show
 
     void resize(glm::ivec2 wanted, bool exact);
 };

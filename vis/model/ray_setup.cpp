@@ -4,7 +4,6 @@
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
-#include <glm/trigonometric.hpp>
 #include <limits>
 
 namespace tessera::vis {
@@ -60,26 +59,6 @@ glm::dvec3 quantizedDirection(glm::dvec3 v, int bits) {
     glm::dvec3 n(at, 1 - std::abs(at.x) - std::abs(at.y));
     if (n.z < 0) n = {fold(n.x, n.y), fold(n.y, n.x), n.z};
     return glm::normalize(n);
-}
-
-glm::dvec3 lightDirection(const RenderParams& params, const Camera& camera) {
-    const double azimuth = glm::radians(double(params.azimuth)), elevation = glm::radians(double(params.elevation));
-    const glm::dvec3 eye(std::sin(azimuth) * std::cos(elevation), std::sin(elevation),
-                         std::cos(azimuth) * std::cos(elevation));
-    return glm::conjugate(glm::normalize(glm::dquat(camera.orientation))) * eye;
-}
-
-glm::dvec3 phong(glm::dvec3 albedo, glm::dvec3 gradient, double weight, glm::dvec3 toViewer, glm::dvec3 toLight,
-                 const RenderParams& params) {
-    const double magnitude = glm::length(gradient);
-    if (!(magnitude > 0)) return albedo;
-    const glm::dvec3 normal = gradient / magnitude, half = glm::normalize(toViewer + toLight);
-    const double front = std::clamp(0.5 + 0.5 * glm::dot(normal, toViewer) / kEdgeOn, 0.0, 1.0);
-    const double towards = glm::dot(normal, toLight), glance = glm::dot(normal, half);
-    const double diffuse = std::abs(towards) * (towards > 0 ? front : 1 - front);
-    const double specular = std::pow(std::abs(glance), double(params.shininess)) * (glance > 0 ? front : 1 - front);
-    const glm::dvec3 lit = albedo * (params.ambient + params.diffuse * diffuse) + params.specular * specular;
-    return glm::mix(albedo, lit, weight);
 }
 
 Plane slicePlane(const SliceLayer& layer, const WorldFrame& frame, glm::dvec3 cursor) {

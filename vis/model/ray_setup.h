@@ -1,5 +1,6 @@
 #pragma once
 
+#include "vis/model/ray_segment.h"
 #include "vis/model/scene.h"
 #include "volume/lattice.h"
 
@@ -16,7 +17,8 @@
 ///      where the values at t_{k-1} and t_k are both present and lie on different sides (v >= value against v < value);
 ///      the place is refined by kBisections halvings of [t_{k-1}, t_k], the middle of the last interval is shaded and
 ///      composited with the layer's opacity;
-///   2. every composite layer, in order: colour and opacity (below), correctedOpacity, Phong shaded where wanted.
+///   2. every composite layer, in order: colour and opacity (below), correctedOpacity, shaded where wanted
+///   (vis/model/shade.h).
 /// At the end come the slices between the last sample and the exit. A ray ends when the accumulated opacity reaches
 /// kOpaque. An absent sample contributes nothing. Then the projections, which look at all samples of the ray up to
 /// there, go behind what was accumulated, in layer order; x = place of a sample, clamped to 0..1, f = DOI opacity
@@ -56,11 +58,8 @@ inline constexpr int kBisections = 6;    ///< halvings of a step to find an iso-
 inline constexpr double kFlatGradient =
     0.005; ///< gradient, in transfer-function ranges per cell, from which shading is full
 
-/// Part of a ray inside the box |p| <= halfSize, as distances from its origin. A perspective ray starts at the eye at
-/// the earliest; a parallel one may begin behind it.
-struct RaySegment {
-    double enter = 0, exit = 0;
-};
+/// The part of a ray inside the box |p| <= halfSize, as distances from its origin. A perspective ray starts at the eye
+/// at the earliest; a parallel one may begin behind it.
 std::optional<RaySegment> clipToBox(const Ray& ray, glm::dvec3 halfSize, bool perspective);
 
 /// World edges of the cell that steps and gradients are measured in: of the CC grid, or of the CC grid that a BCC
@@ -68,12 +67,14 @@ std::optional<RaySegment> clipToBox(const Ray& ray, glm::dvec3 halfSize, bool pe
 glm::dvec3 worldCell(const volume::Lattice& lattice, const WorldFrame& frame);
 
 /// Sample positions of a ray: the wanted step advances stepVoxels cells, h = stepVoxels / |direction / cell|; the
-/// segment is cut into count = max(1, ceil(length / h - 1e-4)) equal parts and sampled in the middle of each.
+/// segment is cut into count = max(1, ceil(length / h - 1e-4)) equal parts and sampled in the middle of each, or moved
+/// by startJitter(). Clips to be kept inside shorten the segment first; holes of the others hide what lies in them.
 struct RaySamples {
     int count = 0;
     double step = 0; ///< world units
     double enter = 0;
-    double at(int k) const { return enter + (k + 0.5) * step; }
+    double phase = 0.5; ///< moved by startJitter() where rays start at random
+    double at(int k) const { return enter + (k + phase) * step; }
 };
 RaySamples raySamples(const RaySegment& segment, glm::dvec3 direction, glm::dvec3 cell, double stepVoxels);
 
@@ -88,20 +89,6 @@ double gradientDelta(volume::LatticeKind kind);
 /// A direction (length 1) stored in two coordinates of `bits` each on the unfolded octahedron (Q. Meyer et al.: On
 /// floating-point normal vectors, 2010): what shading by quantised gradients sees. Zero stays zero.
 glm::dvec3 quantizedDirection(glm::dvec3 v, int bits);
-
-/// Direction towards the light, in world axes.
-glm::dvec3 lightDirection(const RenderParams& params, const Camera& camera);
-
-inline constexpr double kEdgeOn = 0.25; ///< cosine to the viewer below which both sides of a gradient are lit
-
-/// Phong: albedo (ambient + diffuse n.l) + specular (n.h)^shininess, all in linear light, of the side that faces the
-/// viewer. Seen edge-on, |n.v| < kEdgeOn, the sides are mixed, so that a gradient across the view, as at the border of
-/// absent samples, does not make light and dark patches. `gradient` in world axes (any length, zero gives the albedo),
-/// `toViewer` and `toLight` of length 1. `weight` 0..1 fades from the albedo to the shaded colour: 1 on iso-surfaces;
-/// in composite layers min(1, g / kFlatGradient), g the change over one worldCell edge per axis (length of that
-/// vector), in transfer-function ranges.
-glm::dvec3 phong(glm::dvec3 albedo, glm::dvec3 gradient, double weight, glm::dvec3 toViewer, glm::dvec3 toLight,
-                 const RenderParams& params);
 
 /// The plane of a slice layer in world space: dot(normal, p) = offset, normal of length 1. `position` 0..1 runs
 /// between the two supporting planes of the box. Colour: of the transfer function; opacity: the layer's alone.

@@ -1,10 +1,13 @@
 #pragma once
 
 #include "vis/model/camera.h"
+#include "vis/model/clipping.h"
 #include "vis/model/geometry.h"
 #include "vis/model/layers.h"
+#include "vis/model/lighting.h"
 #include "vis/model/limits.h"
 #include "vis/model/selection.h"
+#include "vis/model/tone.h"
 #include "vis/model/transfer_function.h"
 
 #include <map>
@@ -27,9 +30,9 @@ struct RenderParams {
     float detail = 1;         ///< pixels; voxels of bricked data finer than this are shown at a coarser level
     RenderLimits limits;
     float stepVoxels = 0.5f; ///< distance between samples, in cells of the finest direction on screen at rest
-    float ambient = 0.25f, diffuse = 0.65f, specular = 0.25f, shininess = 30;
-    int normalBits = 0;                  ///< of either coordinate of a gradient's direction, 0: as they are
-    float azimuth = -30, elevation = 40; ///< of the light, degrees from the viewer
+    int normalBits = 0;      ///< of either coordinate of a gradient's direction, 0: as they are
+    bool jitter = false;     ///< vis/model/jitter.h
+    int samples = 4;         ///< rays per pixel of a still
 
     Proxy proxy = Proxy::Rays;
 
@@ -49,30 +52,24 @@ struct RenderParams {
                                             "for one texture; 0 = full resolution",
                                      .range = Range{0, 8}});
         visit(self.limits, FieldInfo{.key = "limits", .unit = "", .doc = "Memory and time to use"});
-        visit(self.ambient, FieldInfo{.key = "ambient", .unit = "", .doc = "Ambient light", .range = Range{0, 1}});
-        visit(self.diffuse, FieldInfo{.key = "diffuse", .unit = "", .doc = "Diffuse reflection", .range = Range{0, 1}});
-        visit(self.specular,
-              FieldInfo{.key = "specular", .unit = "", .doc = "Specular reflection", .range = Range{0, 1}});
-        visit(self.shininess,
-              FieldInfo{
-                  .key = "shininess", .unit = "", .doc = "Phong exponent", .range = Range{1, 200}, .logScale = true});
         visit(self.normalBits,
               FieldInfo{.key = "normalBits",
                         .unit = "bit",
                         .doc = "Bits of either coordinate of a gradient's direction when shading, 0 = exact",
                         .range = Range{0, 16}});
-        visit(self.azimuth, FieldInfo{.key = "azimuth",
-                                      .unit = "deg",
-                                      .doc = "Light to the right of the viewer",
-                                      .range = Range{-180, 180}});
-        visit(self.elevation,
-              FieldInfo{.key = "elevation", .unit = "deg", .doc = "Light above the viewer", .range = Range{-90, 90}});
         visit(self.proxy, FieldInfo{.key = "proxy",
                                     .unit = "",
                                     .doc = "What samples composite volumes: rays, or for comparison planes across the "
                                            "view, spheres around the eye, the lattice's own planes; other layers "
                                            "always use rays",
                                     .names = kProxyNames});
+        visit(self.jitter, FieldInfo{.key = "jitter",
+                                     .unit = "",
+                                     .doc = "Shift each ray's samples: fine noise in place of wood-grain bands"});
+        visit(self.samples, FieldInfo{.key = "samples",
+                                      .unit = "",
+                                      .doc = "Rays per pixel once the picture is at rest",
+                                      .range = Range{1, 64}});
     }
 };
 
@@ -84,6 +81,9 @@ struct Scene {
     Selection selection;
     RenderParams render;
     std::vector<GeometryLayer> geometry; ///< meshes and lines, made outside of the renderer
+    Lighting lighting;
+    std::vector<Clip> clips; ///< what is drawn lies on the kept side of all
+    Tone tone;
     glm::dvec3 stretch{1};
     glm::dvec3 cursor{0}; ///< physical
     double time = 0;

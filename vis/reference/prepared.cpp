@@ -1,5 +1,7 @@
 #include "vis/reference/prepared.h"
 
+#include "volume/parallel.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -31,7 +33,8 @@ Prepared::Prepared(const Scene& drawn, const volume::BrickSource& source, const 
     const volume::DatasetInfo& info = source.info();
     frame = worldFrame(info.bounds, scene.stretch);
     cell = worldCell(lattice, frame);
-    toLight = lightDirection(scene.render, scene.camera);
+    clips = placeClips(scene.clips, frame);
+    light = illuminate(scene.lighting, scene.camera);
     const int time = info.nearestTime(scene.time);
     const auto load = [&](const std::string& name, bool raw = false) -> const Samples* {
         const std::optional<int> channel = info.findChannel(name);
@@ -64,6 +67,61 @@ Prepared::Prepared(const Scene& drawn, const volume::BrickSource& source, const 
         layers.push_back(std::move(one));
     }
     for (const std::string& channel : interestOf.channels()) brushed.push_back(load(channel));
+    if (!scene.lighting.shadows.any()) return;
+    const LightGrid grid = lightGrid(frame, scene.lighting.shadows);
+    const std::vector<PlacedLight> lights = placeLights(scene.lighting, scene.camera);
+    light.volume = std::make_shared<const LightVolume<double>>(
+        spreadLight<double>(grid, matter(grid), lights, scene.lighting.shadows));
+}
+
+namespace {
+
+glm::dvec4 matterAt(const Prepared& scene, const LightGrid& grid, glm::dvec3 center) {
+    constexpr int kPoints = kMatterSamples * kMatterSamples * kMatterSamples;
+    const glm::dvec3 edges = grid.cell();
+    const double longest = std::max({edges.x, edges.y, edges.z});
+    glm::dvec4 sum(0);
+    for (const DrawnLayer& layer : scene.layers) {
+        double mean = 0;
+        int present = 0;
+        glm::dvec3 slope(0);
+        const auto* volume = std::get_if<VolumeLayer>(layer.technique);
+        const auto* iso = std::get_if<IsoLayer>(layer.technique);
+        if (!iso && (!volume || volume->style != VolumeStyle::Composite)) continue;
+        for (int n = 0; n < kPoints; ++n) {
+            const glm::dvec3 way = glm::dvec3(n & 1, n >> 1 & 1, n >> 2) - 0.5, world = center + 0.5 * way * edges;
+            const std::optional<double> value = layer.samples->value(scene.cells(world));
+            if (!value) continue;
+            ++present;
+            mean += *value / kPoints;
+            slope += way * *value / edges; // kPoints (1/2) / 4 (upper mean - lower mean) / (edge / 2)
+            if (!volume || !kept(scene.clips, world)) continue;
+            const double doi = scene.interest(world);
+            const glm::dvec4 color = scene.colorAt(layer, *value, world);
+            const double own = -std::log(1 - std::min(color.a * scene.opacityFactor(doi), kThickest)) *
+                               double(volume->density) / kReferenceLength / kPoints;
+            sum += glm::dvec4(scene.saturated(glm::dvec3(color), doi), 1) * own;
+        }
+        if (!iso || present < kPoints || !kept(scene.clips, center)) continue;
+        const double doi = scene.interest(center);
+        const double away = std::abs(mean - iso->value) / std::max(glm::length(slope), 1e-20);
+        const double alpha = std::min(double(iso->opacity) * scene.opacityFactor(doi), kThickest);
+        const double own = -std::log(1 - alpha) * std::max(0.0, 1 - away / longest) / longest;
+        sum += glm::dvec4(scene.saturated(linearFromSrgb(glm::dvec3(iso->color)), doi), 1) * own;
+    }
+    return sum;
+}
+
+} // namespace
+
+Matter<double> Prepared::matter(const LightGrid& grid) const {
+    Matter<double> out(grid.count());
+    parallelFor(std::size_t(grid.size.z), [&](std::size_t z) {
+        for (int y = 0; y < grid.size.y; ++y)
+            for (int x = 0; x < grid.size.x; ++x)
+                out[grid.index({x, y, int(z)})] = matterAt(*this, grid, grid.center({x, y, int(z)}));
+    });
+    return out;
 }
 
 double Prepared::interest(glm::dvec3 world) const {
@@ -73,6 +131,14 @@ double Prepared::interest(glm::dvec3 world) const {
         values.push_back(
             (of ? of->value(cells(world)) : std::nullopt).value_or(std::numeric_limits<double>::quiet_NaN()));
     return interestOf(values, frame.toPhysical(world));
+}
+
+glm::dvec4 Prepared::colorAt(const DrawnLayer& layer, double value, glm::dvec3 world) const {
+    if (std::get<VolumeLayer>(*layer.technique).quantity == Quantity::Gradient)
+        return layer.classifyPlace(std::min(1.0, steepPlace(layer, world)));
+    if (layer.function->kind == TransferKind::Curve) return layer.classify(value);
+    const glm::dvec4 srgb = evaluate(*layer.function, layer.range, value, steepness(layer, world));
+    return {linearFromSrgb(glm::dvec3(srgb)), srgb.a};
 }
 
 double Prepared::steepness(const DrawnLayer& layer, glm::dvec3 world) const {

@@ -2,6 +2,7 @@
 
 #include "vis/model/preintegration.h"
 #include "vis/model/ray_setup.h"
+#include "vis/model/shade.h"
 #include "vis/reference/raycast.h"
 
 #include <map>
@@ -38,7 +39,9 @@ struct Prepared {
     Options options;
     volume::Lattice lattice;
     WorldFrame frame;
-    glm::dvec3 cell{1}, toLight{0};
+    glm::dvec3 cell{1};
+    Illumination light;
+    std::vector<PlacedClip> clips;
     std::map<std::string, std::unique_ptr<Samples>> samples;    ///< by channel name
     std::map<std::string, std::unique_ptr<Samples>> rawSamples; ///< without prefilter, for pre-classification
     std::vector<DrawnLayer> layers;
@@ -49,10 +52,18 @@ struct Prepared {
     Prepared(const Scene& drawn, const volume::BrickSource& source, const Options& wanted);
 
     glm::dvec3 cells(glm::dvec3 world) const { return lattice.toCells(frame.toPhysical(world)); }
+    /// Matter of every cell of a light grid, as vis/model/light_volume.h says.
+    Matter<double> matter(const LightGrid& grid) const;
     /// Degree of interest of a world point.
     double interest(glm::dvec3 world) const;
     /// Length of the change over one worldCell edge per axis, in ranges of the layer's transfer function.
     double steepness(const DrawnLayer& layer, glm::dvec3 world) const;
+    /// Place of a gradient's magnitude, 0..1 and beyond.
+    double steepPlace(const DrawnLayer& layer, glm::dvec3 world) const {
+        return steepness(layer, world) / double(layer.function->gradientTop);
+    }
+    /// Colour (linear light) and opacity of a volume layer at a place, classified after interpolation.
+    glm::dvec4 colorAt(const DrawnLayer& layer, double value, glm::dvec3 world) const;
     /// Gradient of a channel, per cell of the sublattice and axis.
     glm::dvec3 gradient(const Samples& of, glm::dvec3 world) const {
         return volume::gradient([&](glm::dvec3 at) { return of.value(at); }, cells(world), gradientDelta(lattice.kind));

@@ -1,5 +1,6 @@
 #include "vis/reference/raycast.h"
 
+#include "vis/model/jitter.h"
 #include "vis/reference/prepared.h"
 #include "volume/parallel.h"
 
@@ -21,11 +22,19 @@ template <class Number> struct Caster {
     Ray ray;
     RaySegment segment;
     RaySamples samples;
+    std::vector<RaySegment> holes = {}; ///< in samples
     Vec4<Number> out{0};
     Number step = 0;
 
     Vec3<Number> at(Number t) const { return Vec3<Number>(ray.origin) + t * Vec3<Number>(ray.direction); }
     bool opaque() const { return out.a >= Number(kOpaque); }
+
+    /// Place on the ray in samples: sample k lies at k.
+    double inSamples(double t) const { return (t - samples.enter) / samples.step - samples.phase; }
+    bool shows(double k) const {
+        return std::none_of(holes.begin(), holes.end(),
+                            [&](const RaySegment& hole) { return k > hole.enter && k < hole.exit; });
+    }
 
     void blend(glm::dvec3 color, double opacity) {
         const Number remaining = scene.options.flaws.additiveBlend ? Number(1) : 1 - out.a;
@@ -47,7 +56,7 @@ template <class Number> struct Caster {
             const double slope = glm::dot(layer.plane.normal, ray.direction);
             if (slope == 0) continue;
             const auto t = Number((layer.plane.offset - glm::dot(layer.plane.normal, ray.origin)) / slope);
-            if (!(t > from && t <= to)) continue;
+            if (!(t > from && t <= to) || !shows(inSamples(double(t)))) continue;
             const glm::dvec3 place = glm::clamp(glm::dvec3(at(t)), -scene.frame.halfSize, scene.frame.halfSize);
             const std::optional<double> value = layer.samples->value(scene.cells(place));
             if (!value) continue;
@@ -65,7 +74,8 @@ template <class Number> struct Caster {
     }
 
     glm::dvec3 shade(const DrawnLayer& layer, glm::dvec3 place, glm::dvec3 albedo, bool surface) const {
-        if (layer.samples->categorical()) return albedo;
+        if (layer.samples->categorical())
+            return vis::shade(scene.light, albedo, glm::dvec3(0), 0, place, -ray.direction);
         const glm::dvec3 perCell = scene.gradient(*layer.samples, place);
         const glm::dvec3 edges = scene.lattice.spacing * scene.frame.scale; // of a sublattice cell, with sign
         double weight = 1;
@@ -77,7 +87,7 @@ template <class Number> struct Caster {
         glm::dvec3 gradient = perCell / edges;
         const int bits = scene.scene.render.normalBits;
         if (bits > 0) gradient = quantizedDirection(gradient, bits) * glm::length(gradient);
-        return phong(albedo, gradient, weight, -ray.direction, scene.toLight, scene.scene.render);
+        return vis::shade(scene.light, albedo, gradient, weight, place, -ray.direction);
     }
 
     /// Adds the crossing of an iso-surface between the last sample and the one at t.
@@ -93,6 +103,7 @@ template <class Number> struct Caster {
             const bool above = value && *value >= iso.value;
             (above == (*before >= iso.value) ? lo : hi) = middle;
         }
+        if (!shows(inSamples(double(lo + hi) / 2))) return;
         const glm::dvec3 place(at((lo + hi) / 2));
         const double doi = scene.interest(place);
         const glm::dvec3 albedo = scene.saturated(linearFromSrgb(glm::dvec3(iso.color)), doi);
@@ -126,28 +137,20 @@ template <class Number> struct Caster {
         }
         const std::optional<double> value = layer.samples->value(cells);
         if (!value) return {};
-        if (std::get<VolumeLayer>(*layer.technique).quantity == Quantity::Gradient)
-            return {layer.classifyPlace(std::min(1.0, steepPlace(layer, place))), 1};
-        if (layer.function->kind == TransferKind::Curve) return {layer.classify(*value), 1};
-        const glm::dvec4 srgb = evaluate(*layer.function, layer.range, *value, scene.steepness(layer, place));
-        return {glm::dvec4(linearFromSrgb(glm::dvec3(srgb)), srgb.a), 1};
+        return {scene.colorAt(layer, *value, place), 1};
     }
 
-    /// Place of a gradient's magnitude, 0..1 and beyond.
-    double steepPlace(const DrawnLayer& layer, glm::dvec3 place) const {
-        return scene.steepness(layer, place) / double(layer.function->gradientTop);
-    }
-
-    void drawSample(const DrawnLayer& layer, Number t) {
+    void drawSample(const DrawnLayer& layer, Number t, int k) {
         const auto& volume = std::get<VolumeLayer>(*layer.technique);
         const Classified classified = classify(layer, t);
         const glm::dvec3 place(at(t));
         const double doi = scene.interest(place);
         const double opacity = correctedOpacity(classified.color.a * scene.opacityFactor(doi), double(step),
-                                                double(volume.density) * classified.share);
+                                                double(volume.density) * classified.share * coverage(holes, k));
         if (opacity <= 0) return;
         glm::dvec3 color = scene.saturated(glm::dvec3(classified.color), doi);
-        if (volume.shaded) color = shade(layer, place, color, false);
+        color = volume.shaded ? shade(layer, place, color, false)
+                              : vis::shade(scene.light, color, glm::dvec3(0), 0, place, -ray.direction);
         blend(color, opacity);
     }
 
@@ -168,7 +171,8 @@ template <class Number> struct Caster {
             return;
         }
         const double doi = scene.interest(place), factor = scene.opacityFactor(doi);
-        const double along = volume.quantity == Quantity::Gradient ? steepPlace(layer, place) : layer.unclamped(*value);
+        const double along =
+            volume.quantity == Quantity::Gradient ? scene.steepPlace(layer, place) : layer.unclamped(*value);
         const double x = std::clamp(along, 0.0, 1.0);
         seen.factors += factor;
         seen.weighted += factor * along;
@@ -199,6 +203,27 @@ template <class Number> struct Caster {
         }
     }
 
+    /// Where samples lie; false where the ray meets nothing.
+    bool begin(bool perspective, glm::ivec2 pixel, int pass) {
+        const std::optional<RaySegment> met = clipToBox(ray, scene.frame.halfSize, perspective);
+        if (!met) return false;
+        segment = *met;
+        for (const PlacedClip& clip : scene.clips) {
+            if (clip.hole) continue;
+            const RaySegment own = clip.inside(ray);
+            segment = {std::max(segment.enter, own.enter), std::min(segment.exit, own.exit)};
+        }
+        if (segment.enter >= segment.exit) return false;
+        samples = raySamples(segment, ray.direction, scene.cell, double(scene.scene.render.stepVoxels));
+        if (scene.scene.render.jitter)
+            samples.phase += startJitter(std::uint32_t(pixel.x), std::uint32_t(pixel.y), std::uint32_t(pass));
+        for (const PlacedClip& clip : scene.clips) {
+            const RaySegment own = clip.inside(ray);
+            if (clip.hole && own.enter < own.exit) holes.push_back({inSamples(own.enter), inSamples(own.exit)});
+        }
+        return true;
+    }
+
     void cast() {
         step = Number(samples.step);
         const auto isVolume = [](const DrawnLayer& layer, bool composite) {
@@ -219,8 +244,9 @@ template <class Number> struct Caster {
                     findIso(events, scene.layers[i], before[i], now[i], t);
             drawEvents(events);
             for (std::size_t i = 0; i < now.size(); ++i) {
-                if (isVolume(scene.layers[i], true)) drawSample(scene.layers[i], t);
-                if (isVolume(scene.layers[i], false)) look(scene.layers[i], seen[i], now[i], place);
+                if (isVolume(scene.layers[i], true)) drawSample(scene.layers[i], t, k);
+                if (isVolume(scene.layers[i], false))
+                    look(scene.layers[i], seen[i], shows(k) ? now[i] : std::nullopt, place);
             }
             std::swap(before, now);
             last = t;
@@ -240,16 +266,17 @@ Image renderWith(const Scene& scene, const volume::BrickSource& source, glm::ive
     const bool perspective = scene.camera.projection == Projection::Perspective;
     Image image{size, std::vector<glm::dvec4>(std::size_t(size.x) * std::size_t(size.y))};
     parallelFor(std::size_t(size.y), [&](std::size_t y) {
-        for (int x = 0; x < size.x; ++x) {
-            const glm::dvec2 ndc((x + 0.5) / size.x * 2 - 1, 1 - (double(y) + 0.5) / size.y * 2);
-            Caster<Number> caster{prepared, cameraRay(scene.camera, double(size.x) / size.y, ndc), {}, {}};
-            const std::optional<RaySegment> segment = clipToBox(caster.ray, prepared.frame.halfSize, perspective);
-            if (!segment) continue;
-            caster.segment = *segment;
-            caster.samples = raySamples(*segment, caster.ray.direction, prepared.cell, double(scene.render.stepVoxels));
-            caster.cast();
-            image.pixels[y * std::size_t(size.x) + std::size_t(x)] = glm::dvec4(caster.out);
-        }
+        for (int x = 0; x < size.x; ++x)
+            for (int pass = 0; pass < std::max(scene.render.samples, 1); ++pass) {
+                // Pixels count from below, as the shader's do.
+                const glm::ivec2 pixel(x, size.y - 1 - int(y));
+                const glm::dvec2 ndc = (glm::dvec2(pixel) + 0.5 + pixelJitter(pass)) / glm::dvec2(size) * 2.0 - 1.0;
+                Caster<Number> caster{prepared, cameraRay(scene.camera, double(size.x) / size.y, ndc), {}, {}};
+                if (!caster.begin(perspective, pixel, pass)) continue;
+                caster.cast();
+                glm::dvec4& out = image.pixels[y * std::size_t(size.x) + std::size_t(x)];
+                out += glm::dvec4(caster.out) / double(std::max(scene.render.samples, 1));
+            }
     });
     return image;
 }

@@ -1,13 +1,14 @@
 // Meshes and lines (LINES) into a layer of surfaces by distance; each layer keeps what lies behind the former one.
-#include "lib/phong.glsl"
+#include "lib/light_bindings.glsl"
+#include "lib/clipping.glsl"
+#include <slot:shade>
+#include "lib/shade.glsl"
 
 in vec3 world, direction;
 in float value, side;
 
 uniform vec3 rayOrigin, forward; // of the ray through the middle of the picture
 uniform int perspective;
-uniform vec3 toLight;
-uniform vec4 light;      // ambient, diffuse, specular, shininess
 uniform sampler2D colors; // linear light
 uniform float row;
 uniform vec2 map; // place in the row = value * x + y
@@ -20,6 +21,7 @@ layout(location = 0) out vec4 outColor;     // linear, premultiplied
 layout(location = 1) out float outDistance; // along the ray
 
 void main() {
+    if (!clipKept(world)) discard;
     float along = perspective == 1 ? distance(world, rayOrigin) : dot(world - rayOrigin, forward);
     if (peel > 0 && along <= texelFetch(former, ivec3(gl_FragCoord.xy, peel - 1), 0).r) discard;
     vec3 toViewer = perspective == 1 ? normalize(rayOrigin - world) : -forward;
@@ -34,6 +36,6 @@ void main() {
 #endif
     float entries = float(textureSize(colors, 0).x), place = clamp(value * map.x + map.y, 0.0, 1.0);
     vec3 color = isnan(value) ? plain : textureLod(colors, vec2((place * (entries - 1.0) + 0.5) / entries, row), 0.0).rgb;
-    outColor = vec4(phong(color, normal, 1.0, toViewer, toLight, light) * opacity, opacity);
+    outColor = vec4(shade(color, normal, 1.0, world, toViewer) * opacity, opacity);
     outDistance = along;
 }

@@ -2,8 +2,10 @@
 // the surfaces front to back. What a surface stands for is written down in vis/model/proxy.h.
 #include "lib/bindings.glsl"
 #include "lib/color.glsl"
-#include "lib/phong.glsl"
+#include "lib/clipping.glsl"
 #include "lib/ray.glsl"
+#include <slot:shade>
+#include "lib/shade.glsl"
 #include <slot:fetch>
 #include <slot:reconstruct>
 #include "lib/gradient.glsl"
@@ -35,7 +37,8 @@ void main() {
     float from = t - between < inside.x ? inside.x : t - 0.5 * between;
     float to = t + between > inside.y ? inside.y : t + 0.5 * between;
     float lengths = (to - from) * REFERENCE_LENGTHS;
-    vec3 p = toCells(origin + direction * t);
+    vec3 world = origin + direction * t, p = toCells(world);
+    if (!clipKept(world)) discard;
     vec4 color = vec4(0.0);
     for (int i = 0; i < LAYERS; ++i) {
         vec2 s = reconstruct(LAYER_FIELD(i), p);
@@ -46,7 +49,9 @@ void main() {
         if (LAYER_SHADED(i) == 1) {
             vec3 g = cellGradient(LAYER_FIELD(i), p, s.x, alpha > 0.0);
             float fade = min(1.0, length(g) * abs(layerMap[i].x) / kFlatGradient);
-            c.rgb = phong(c.rgb, shadingGradient(g), fade, -direction, toLight, light);
+            c.rgb = shade(c.rgb, shadingGradient(g), fade, world, -direction);
+        } else {
+            c.rgb = shadeFlat(c.rgb, world);
         }
         color = under(color, vec4(c.rgb * alpha, alpha));
     }

@@ -7,8 +7,11 @@
 // there is no inner loop.
 #include "lib/bindings.glsl"
 #include "lib/color.glsl"
-#include "lib/phong.glsl"
+#include "lib/clipping.glsl"
+#include "lib/jitter.glsl"
 #include "lib/ray.glsl"
+#include <slot:shade>
+#include "lib/shade.glsl"
 #include <slot:fetch>
 #include <slot:reconstruct>
 #include "lib/gradient.glsl"
@@ -33,12 +36,16 @@ void main() {
     vec3 direction = normalize(rayDirection + ndc.x * rayDirectionX + ndc.y * rayDirectionY);
     vec2 inside = clipToBox(origin, direction, halfSize);
     inside.x = max(inside.x, rayBegin);
+    inside = clipRay(inside, origin, direction);
     bool meets = inside.x < inside.y;
     float along = meets ? inside.y - inside.x : 0.0;
     int count = meets ? max(1, int(ceil(along * length(direction / worldCell) / stepVoxels - 1e-4))) : 0;
     float stepLength = along / float(max(count, 1));
     vec3 cellsPerSample = direction * stepLength * cellsPerWorld;
-    vec3 first = toCells(origin + direction * inside.x) + 0.5 * cellsPerSample; // of sample 0
+    // Sample k lies at inside.x + (k + phase) * stepLength.
+    float phase = JITTER == 1 ? 0.5 + startJitter(uvec2(gl_FragCoord.xy), uint(passNumber)) : 0.5;
+    vec3 first = toCells(origin + direction * inside.x) + phase * cellsPerSample;
+    findHoles(origin, direction, inside.x, stepLength, phase);
     float lengths = stepLength * REFERENCE_LENGTHS;
 
     vec4 color = vec4(0.0);
@@ -66,7 +73,8 @@ void main() {
         }
         float tolerance = 1e-5;
         bool seen = meets && abs(slope) > 1e-6 && t > inside.x - tolerance && t < inside.y + tolerance && present(s);
-        eventAt[i] = seen ? (t - inside.x) / stepLength - 0.5 : 1e9;
+        float at = (t - inside.x) / stepLength - phase;
+        eventAt[i] = seen && clipShows(at) ? at : 1e9;
         float alpha = sliceMap[i].w * focusOpacity(doi);
         eventColor[i] = vec4(focusColor(c, doi) * alpha, alpha);
     }
@@ -76,7 +84,7 @@ void main() {
         ivec3 texel = ivec3(gl_FragCoord.xy, i);
         float t = texelFetch(geometryDistance, texel, 0).r;
         bool seen = meets && t < 1e8;
-        eventAt[SLICES + i] = seen ? (t - inside.x) / stepLength - 0.5 : 1e9;
+        eventAt[SLICES + i] = seen ? (t - inside.x) / stepLength - phase : 1e9;
         eventColor[SLICES + i] = seen ? texelFetch(geometryColor, texel, 0) : vec4(0.0);
         // Nothing behind what is opaque: the ray ends there.
         if (eventColor[SLICES + i].a >= kOpaque)
@@ -137,6 +145,17 @@ void main() {
                 continue;
             }
 #endif
+#if CLIP_HOLES
+            int hidden = clipLeap(float(k));
+            if (hidden > 0) {
+                k += hidden;
+                for (int i = 0; i < LAYERS; ++i) previous[i] = kUnknown;
+#if FLAT
+                for (int i = 0; i < LAYERS; ++i) before[i] = kUnknown;
+#endif
+                continue;
+            }
+#endif
 #if EVENTS > 0
             hit = float(k) >= nextEvent;
 #endif
@@ -164,6 +183,7 @@ void main() {
                     hit = hit || (is && previous[i] > kUnknown && (s.x >= layerMap[i].z) != (previous[i] >= layerMap[i].z));
                     previous[i] = is ? s.x : kUnknown;
                 } else {
+                    is = is && clipShows(float(k));
                     float f = is ? focusOpacity(degreeOfInterest(p)) : 0.0;
                     float place = clamp(x, 0.0, 1.0);
                     if (LAYER_STYLE(i) == AVERAGE) {
@@ -230,10 +250,12 @@ void main() {
                 float at = 0.5 * (lo + hi);
                 vec3 q = p + at * cellsPerSample;
                 float doi = degreeOfInterest(q);
+                crossed = crossed && clipShows(float(k) + at);
                 float alpha = crossed ? layerMap[i].w * focusOpacity(doi) : 0.0;
                 float centre = FIELD_COVERAGE(field) == 1 ? reconstruct(field, q).x : 0.0;
                 vec3 g = shadingGradient(cellGradient(field, q, centre, crossed));
-                vec3 c = phong(focusColor(layerColor[i], doi), g, 1.0, -direction, toLight, light);
+                vec3 world = origin + direction * (inside.x + (float(k) + phase + at) * stepLength);
+                vec3 c = shade(focusColor(layerColor[i], doi), g, 1.0, world, -direction);
                 isoAt[n] = crossed ? float(k) + at : 1e9;
                 isoColor[n] = vec4(c * alpha, alpha);
             }
@@ -291,11 +313,14 @@ void main() {
                 c = transfer(i, x);
                 float doi = degreeOfInterest(p);
                 c.rgb = focusColor(c.rgb, doi);
-                float alpha = correctedOpacity(c.a * focusOpacity(doi), lengths * layerMap[i].z * share);
+                float alpha = correctedOpacity(c.a * focusOpacity(doi), lengths * layerMap[i].z * share * clipCoverage(float(k)));
+                vec3 world = origin + direction * (inside.x + (float(k) + phase) * stepLength);
                 if (LAYER_SHADED(i) == 1) {
                     if (!byGradient) g = cellGradient(LAYER_FIELD(i), p, present(s) ? s.x : kUnknown, alpha > 0.0);
                     float fade = min(1.0, length(g) * abs(layerMap[i].x) / kFlatGradient);
-                    c.rgb = phong(c.rgb, shadingGradient(g), fade, -direction, toLight, light);
+                    c.rgb = shade(c.rgb, shadingGradient(g), fade, world, -direction);
+                } else {
+                    c.rgb = shadeFlat(c.rgb, world);
                 }
                 color = under(color, vec4(c.rgb * alpha, alpha));
             }
@@ -341,5 +366,5 @@ void main() {
     }
 #endif
     outColor = meets ? color : vec4(0.0);
-    outPick = pick <= kNoPick ? -1e9 : inside.x + (pick + 0.5) * stepLength;
+    outPick = pick <= kNoPick ? -1e9 : inside.x + (pick + phase) * stepLength;
 }

@@ -1,6 +1,7 @@
 // The picture as shown: background, wire box behind, the ray caster's colour, wire box in front; linear light encoded
 // to sRGB at the end.
 #include "lib/color.glsl"
+#include "lib/tone.glsl"
 
 uniform sampler2D source;      // linear, premultiplied
 uniform vec2 sourceScale;      // texture coordinate = gl_FragCoord * sourceScale, at most sourceLimit
@@ -11,6 +12,8 @@ uniform int edgeCount;
 uniform vec4 edges[12];        // ends in pixels; the last `frontCount` of them lie in front of the volume
 uniform int frontCount;
 uniform float lineWidth;       // pixels
+uniform int toneCurve;
+uniform vec2 tone;              // gain, white
 
 out vec4 outColor;
 
@@ -30,7 +33,8 @@ void main() {
     float behind = edgeCount > 0 ? lines(0, edgeCount - frontCount) : 0.0;
     float before = edgeCount > 0 ? lines(edgeCount - frontCount, edgeCount) : 0.0;
     vec3 color = mix(background, boxColor, behind);
-    color = volume.rgb + (1.0 - volume.a) * color;
+    vec3 shown = toneMap(volume.rgb / max(volume.a, 1e-6), toneCurve, tone.x, tone.y) * volume.a;
+    color = (toneCurve == 0 ? volume.rgb : shown) + (1.0 - volume.a) * color;
     color = mix(color, boxColor, before);
     outColor = vec4(srgbFromLinear(color), 1.0);
 }

@@ -2,6 +2,8 @@
 
 #include "vis/model/proxy.h"
 #include "vis/technique/brush_uniforms.h"
+#include "vis/technique/clip_uniforms.h"
+#include "vis/technique/light_uniforms.h"
 #include "vis/technique/ray_tables.h"
 #include "volume/reconstruct.h"
 
@@ -158,6 +160,9 @@ ProgramRecipe rayRecipe(const RayPlan& plan, const Scene& scene, const volume::B
                        : "0");
     define("BCC", bcc ? "1" : "0");
     define("NORMAL_BITS", std::to_string(scene.render.normalBits));
+    addLighting(recipe, scene);
+    addClipping(recipe, scene);
+    define("JITTER", scene.render.jitter ? "1" : "0");
     define("TABLE_SIZE", std::to_string(kTableSize));
     define("HALO", std::to_string(kHalo));
     define("PRESENT_COVERAGE", std::to_string(volume::kPresentCoverage));

@@ -1,6 +1,8 @@
 #include "vis/technique/ray_uniforms.h"
 
 #include "vis/technique/brush_uniforms.h"
+#include "vis/technique/clip_uniforms.h"
+#include "vis/technique/light_uniforms.h"
 #include "vis/technique/ray_field.h"
 
 #include <algorithm>
@@ -109,6 +111,7 @@ RayUnits rayUnits(const RayPlan& plan) {
     units.blocks = units.table + 1;
     units.lassos = units.blocks + 1;
     units.planes = units.blocks + 2;
+    units.light = units.planes + 1;
     return units;
 }
 
@@ -131,8 +134,8 @@ void setRayUniforms(const Program& program, const RayPlan& plan, const Scene& sc
     program.set("axisCount", 3);
     program.set("bisections", kBisections);
     program.set("latticeCorners", grid.lattice.kind == volume::LatticeKind::BCC ? 16 : 8);
-    program.set("toLight", glm::vec3(lightDirection(render, scene.camera)));
-    program.set("light", glm::vec4(render.ambient, render.diffuse, render.specular, render.shininess));
+    setLightUniforms(program, scene, frame, rayUnits(plan).light);
+    setClipUniforms(program, scene, frame);
     if (const BlockRanges* blocks = commonBlocks(plan)) {
         const double edge = double(1 << blocks->level) * blocks->edge;
         program.set("blockScale", glm::vec3(float(1 / edge)));

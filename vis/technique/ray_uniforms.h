@@ -6,9 +6,10 @@
 namespace tessera::vis {
 
 /// Texture units: channels from 0, then page tables, atlases, the transfer tables, the block distances, the tables of
-/// lassos and the plane tables; then, beyond those of any plan, the colours and distances of rasterised layers.
+/// lassos, the plane tables and four of light (light_uniforms.h); then, beyond those of any plan, the colours and
+/// distances of rasterised layers.
 struct RayUnits {
-    int pages = 0, atlases = 0, table = 0, blocks = 0, lassos = 0, planes = 0;
+    int pages = 0, atlases = 0, table = 0, blocks = 0, lassos = 0, planes = 0, light = 0;
     static constexpr int kGeometry = 40;
 };
 RayUnits rayUnits(const RayPlan& plan);

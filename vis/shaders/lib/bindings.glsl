@@ -13,6 +13,8 @@
 //   BCC       1 on that lattice; PRESENT_COVERAGE   kPresentCoverage of volume/reconstruct.h
 // Positions `p` are cells of the even sublattice at level 0 (Lattice::toCells); values are texel units.
 
+#include "lib/light_bindings.glsl"
+
 // Dense texture of a channel: texture coordinate = p * fieldScale + fieldOffset (even sublattice), fieldOdd added for
 // the moved one.
 uniform sampler3D fieldTexture[FIELDS];
@@ -26,15 +28,15 @@ uniform vec3 rayOrigin, rayOriginX, rayOriginY;
 uniform vec3 rayDirection, rayDirectionX, rayDirectionY;
 uniform vec2 ndcScale, ndcOffset; // ndc = gl_FragCoord * scale + offset
 uniform float rayBegin;           // 0 in perspective, very negative in parallel projection
-uniform vec3 halfSize;            // of the box, world
 uniform vec3 worldCell;           // world edges of the cell that steps are measured in
 uniform float stepVoxels;
 uniform vec3 cellsPerWorld, cellsOffset; // p = world * cellsPerWorld + cellsOffset
 uniform float gradientDelta;
 // 3, kBisections and 8 or (BCC) 16: no constants, so that no compiler unrolls these loops (seconds of it on software GL).
 uniform int axisCount, bisections, latticeCorners;
-uniform vec3 toLight;
-uniform vec4 light; // ambient, diffuse, specular, shininess
+
+// JITTER: 1 if rays start at random; the number of the pass of a supersampled still.
+uniform int passNumber;
 
 // RayStyle of vis/technique/ray_plan.h
 #define COMPOSITE 0

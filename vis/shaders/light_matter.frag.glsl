@@ -1,0 +1,79 @@
+// Matter of the cells of the light grid: extinction per world unit (a), and times colour (rgb). The formula is written
+// down in vis/model/light_volume.h. Pixel (x, y + gridSize.y * z) is cell (x, y, z).
+#include "lib/bindings.glsl"
+#include "lib/color.glsl"
+#include "lib/ray.glsl"
+#include "lib/clipping.glsl"
+#include <slot:fetch>
+#include <slot:reconstruct>
+#include "lib/gradient.glsl"
+#include "lib/doi.glsl"
+
+#if LAYERS > 0
+#include "lib/classify.glsl"
+#endif
+
+layout(location = 0) out vec4 outMatter;
+
+uniform ivec3 gridSize;
+uniform int matterSamples; // 8, no constant: not unrolled
+
+const float kThickest = 0.999;
+
+#if LAYERS > 0
+// Colour and opacity of a composite layer's sample, classified after interpolation.
+vec4 colorAt(int i, vec3 p, vec2 s) {
+    float x = s.x * layerMap[i].x + layerMap[i].y;
+    vec3 g = vec3(0.0);
+    if (LAYER_GRADIENT(i) == 1 || LAYER_LOOKUP(i) == LOOKUP_PLANE)
+        g = cellGradient(LAYER_FIELD(i), p, s.x, s.y >= PRESENT_COVERAGE);
+    if (LAYER_GRADIENT(i) == 1) x = gradientPlace(i, g);
+#if HAS_PLANES
+    if (LAYER_LOOKUP(i) == LOOKUP_PLANE) return planeAt(LAYER_PLANE(i), vec2(x, gradientPlace(i, g)));
+#endif
+    return transfer(i, x);
+}
+#endif
+
+void main() {
+    ivec2 pixel = ivec2(gl_FragCoord.xy);
+    ivec3 cell = ivec3(pixel.x, pixel.y % gridSize.y, pixel.y / gridSize.y);
+    vec3 edges = 2.0 * halfSize / vec3(gridSize);
+    vec3 center = (vec3(cell) + 0.5) * edges - halfSize;
+    vec4 sum = vec4(0.0);
+#if LAYERS > 0
+    float mean[LAYERS], points[LAYERS];
+    vec3 slope[LAYERS];
+    for (int i = 0; i < LAYERS; ++i) {
+        mean[i] = 0.0; points[i] = 0.0; slope[i] = vec3(0.0);
+    }
+    for (int n = 0; n < matterSamples; ++n) {
+        vec3 way = vec3(n & 1, n >> 1 & 1, n >> 2) - 0.5;
+        vec3 world = center + 0.5 * way * edges, p = toCells(world);
+        float doi = degreeOfInterest(p), factor = clipKept(world) ? focusOpacity(doi) : 0.0;
+        for (int i = 0; i < LAYERS; ++i) {
+            vec2 s = reconstruct(LAYER_FIELD(i), p);
+            bool is = present(s);
+            if (LAYER_STYLE(i) == COMPOSITE) {
+                vec4 c = colorAt(i, p, s);
+                float own = -log(1.0 - min(c.a * factor, kThickest)) * layerMap[i].z * REFERENCE_LENGTHS;
+                sum += is ? vec4(focusColor(c.rgb, doi), 1.0) * (own / 8.0) : vec4(0.0);
+            } else if (LAYER_STYLE(i) == ISO) {
+                mean[i] += s.x / 8.0;
+                points[i] += is ? 1.0 : 0.0;
+                slope[i] += way * s.x / edges; // 8 * (1/2) / 4 * (upper - lower mean) / (edge / 2)
+            }
+        }
+    }
+    float longest = max(max(edges.x, edges.y), edges.z), middle = degreeOfInterest(toCells(center));
+    for (int i = 0; i < LAYERS; ++i) {
+        if (LAYER_STYLE(i) != ISO) continue;
+        float away = abs(mean[i] - layerMap[i].z) / max(length(slope[i]), 1e-20);
+        float alpha = min(layerMap[i].w * focusOpacity(middle), kThickest);
+        float own = -log(1.0 - alpha) * max(0.0, 1.0 - away / longest) / longest;
+        bool is = points[i] > 7.5 && clipKept(center);
+        sum += is ? vec4(focusColor(layerColor[i], middle), 1.0) * own : vec4(0.0);
+    }
+#endif
+    outMatter = sum;
+}
