@@ -1,0 +1,61 @@
+#!/usr/bin/env bash
+# Renders the pictures of docs/gallery.md from the built-in models: gallery.sh [TESSERA] [FOLDER] [WIDTHxHEIGHT].
+set -euo pipefail
+here=$(cd "$(dirname "$0")/.." && pwd)
+tessera="${1:-$here/build/release/tessera}"
+out="${2:-$here/docs/pictures/gallery}"
+size="${3:-480x320}"
+mkdir -p "$out"
+
+# picture NAME ARGUMENTS...: the volume view of the overview layout with changes
+picture() {
+    local name=$1
+    shift
+    "$tessera" render overview -o "$out/$name.png" --view volume --size "$size" --set /views/volume/cursor=false "$@"
+}
+volume() { # volume CHANNEL [MORE]: a volume layer as JSON
+    echo "{\"name\":\"$1\",\"technique\":{\"type\":\"volume\",\"channel\":\"$1\"${2:+,$2}}}"
+}
+surface() { # surface CHANNEL VALUE COLOUR OPACITY [MORE]
+    echo "{\"name\":\"$1 $2\",\"technique\":{\"type\":\"iso\",\"channel\":\"$1\",\"value\":$2,\"color\":[$3],\"opacity\":$4${5:+,$5}}}"
+}
+signal() { # signal NAME ARGUMENTS...: the Marschner-Lobb signal instead of the cell; ends on the given layers
+    local name=$1
+    shift
+    picture "$name" --set '/data={"model":"marschner-lobb","settings":{"nx":48,"ny":48,"nz":48,"times":1}}' \
+        --set '/stretch=[1,1,1]' --set /time=0 --set /camera/distance=3.2 --set '/selection/brushes=[]' "$@"
+}
+
+# How samples along a ray become one colour
+for style in composite maximum minimum average xray; do
+    picture "style-$style" --set "/layers=[$(volume T "\"style\":\"$style\"")]"
+done
+signal style-localmaximum --set "/layers=[$(volume rho '"style":"localmaximum","threshold":0.6')]"
+picture quantity-gradient --set "/layers=[$(volume T '"quantity":"gradient","density":4')]"
+# Classification
+for kind in post pre preintegrated; do
+    signal "classification-$kind" --set "/layers=[$(volume rho "\"classification\":\"$kind\",\"shaded\":false")]" \
+        --set '/transfer/rho={"opacity":[[0,0],[0.46,0],[0.48,0.9],[0.52,0.9],[0.54,0],[1,0]]}' --set /render/step=1.5
+done
+# Surfaces
+picture surfaces --set "/layers=[$(surface O2 2 0.35,0.55,0.95 0.5),$(surface O2 4 0.2,0.75,0.85 0.45),$(surface H2 26.5 0.95,0.6,0.25 0.55)]"
+signal surface-rays --set "/layers=[$(surface rho 0.5 0.85,0.6,0.3 1)]"
+signal surface-polygons --set "/layers=[$(surface rho 0.5 0.85,0.6,0.3 1 '"method":"polygons"')]"
+# Proxy geometry
+for proxy in rays slices shells stacks; do
+    picture "proxy-$proxy" --set "/layers=[$(volume T '"shaded":false')]" --set "/render/proxy=\"$proxy\""
+done
+# Lattices and filters
+signal lattice-cc --set /data/bcc=false --set "/layers=[$(surface rho 0.5 0.85,0.6,0.3 1)]" --set '/render/filter="average"'
+signal lattice-bcc-average --set "/layers=[$(surface rho 0.5 0.85,0.6,0.3 1)]" --set '/render/filter="average"'
+signal lattice-bcc-tetrahedral --set "/layers=[$(surface rho 0.5 0.85,0.6,0.3 1)]" --set '/render/filter="tetrahedral"'
+signal lattice-bcc --set "/layers=[$(surface rho 0.5 0.85,0.6,0.3 1)]" --set '/render/filter="quasi"'
+# Light
+shape="$(surface rho 0.5 0.85,0.6,0.3 1)"
+signal light-phong --set "/layers=[$shape]"
+signal light-physical --set "/layers=[$shape]" --set '/lighting/model="physical"' --set /lighting/roughness=0.25
+signal light-studio --set "/layers=[$shape]" --set '/lighting/model="physical"' --set '/lighting/environment/kind="studio"' \
+    --set /lighting/roughness=0.2
+signal light-shadows --set "/layers=[$shape]" --set /lighting/shadows/strength=0.8 --set /lighting/shadows/occlusion=0.8
+signal clip-sphere --set "/layers=[$shape,$(volume rho '"density":0.5')]" \
+    --set '/clips=[{"kind":"sphere","keep":"outside","center":[0.6,0.6,0.6],"radius":0.7}]'

@@ -1,0 +1,20 @@
+#!/bin/bash
+# The gallery's script renders every picture that the page shows: arguments TESSERA SOURCE_DIR.
+set -u
+tessera=$1
+source=$2
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+bash "$source/docs/gallery.sh" "$tessera" "$work" 96x64 >"$work/out.txt" 2>&1 || {
+    echo "FAILED: gallery.sh"
+    cat "$work/out.txt"
+    exit 1
+}
+failures=0
+for name in $(grep -o 'pictures/gallery/[a-z0-9-]*\.png' "$source/docs/gallery.md" | xargs -n1 basename); do
+    [ -s "$work/$name" ] || {
+        echo "FAILED: the page shows $name, which the script does not make"
+        failures=$((failures + 1))
+    }
+done
+exit $((failures > 0))
