@@ -174,9 +174,24 @@ void Renderer::Impl::present(ViewTarget& target, const Scene& scene, bool reduce
     target.shows = true;
 }
 
+/// Says once when lights or clips are left out.
+void Renderer::Impl::sayLimits(const Scene& scene) {
+    const auto enabled = [](const auto& all) {
+        return std::count_if(all.begin(), all.end(), [](const auto& each) { return each.enabled; });
+    };
+    std::string now;
+    if (!scene.lighting.inMaps && enabled(scene.lighting.lights) > kMaxLights)
+        now = "the first " + std::to_string(kMaxLights) + " lights are used; light through maps takes any number";
+    if (enabled(scene.clips) > kMaxClips)
+        now += (now.empty() ? "" : "; ") + ("the first " + std::to_string(kMaxClips)) + " clips are used";
+    if (now != limits && !now.empty()) messages.push_back(now);
+    limits = now;
+}
+
 /// Brings cube maps and light volume up to date and binds them; false while a light volume is still being made.
 bool Renderer::Impl::bindLight(ViewTarget& target, const Scene& scene, const FrameRequest& request,
                                const RayPlan& plan) {
+    sayLimits(scene);
     const GLuint first = GLuint(rayUnits(plan).light);
     if (usesMaps(scene.lighting)) {
         target.lightMaps.update(scene.lighting, scene.camera);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace tessera::vis {
 
@@ -146,6 +147,7 @@ ResidencyInfo Renderer::residency() const {
 std::vector<std::string> Renderer::takeMessages() {
     std::vector<std::string> all = impl_->programs.takeMessages();
     for (std::string& message : impl_->residency.takeMessages()) all.push_back(std::move(message));
+    for (std::string& message : std::exchange(impl_->messages, {})) all.push_back(std::move(message));
     for (std::string& message : impl_->brushes.takeMessages()) all.push_back(std::move(message));
     return all;
 }

@@ -29,6 +29,8 @@ struct Renderer::Impl {
     ProgramCache programs;
     BrushTables brushes;
     GeometryPass geometryPass;
+    std::string limits; ///< said last about lights and clips that are left out
+    std::vector<std::string> messages;
     Texture noShadow = makeUniform3D(glm::vec4(1), "no shadow"), noLight = makeUniform3D(glm::vec4(0), "no light");
 
     explicit Impl(const RendererOptions& given) : options(given), residency(given) {}
@@ -47,6 +49,7 @@ struct Renderer::Impl {
     void proxies(const Program& program, const Scene& scene, const RayBuffer& buffer, double stepFactor);
     void present(ViewTarget& target, const Scene& scene, bool reduced, const Tile& tile);
     void accumulate(const Program& program, ViewTarget& target, const Scene& scene, const Tile& tile, int pass);
+    void sayLimits(const Scene& scene);
     bool bindLight(ViewTarget& target, const Scene& scene, const FrameRequest& request, const RayPlan& plan);
     void nothing(ViewTarget& target, const Scene& scene);
     void refine(ViewTarget& target, const Scene& scene, const FrameRequest& request, const RayPlan& plan,

@@ -49,7 +49,7 @@ const Mode kModes[] = {
     {"many lights",
      [](Scene& s) {
          s.layers = {{"", true, IsoLayer{.channel = "a", .value = 317}}};
-         for (int i = 0; i < 20; ++i)
+         for (int i = 0; i < 15; ++i)
              s.lighting.lights.push_back({.enabled = i != 3,
                                           .kind = i % 3 == 0 ? LightKind::World : LightKind::Point,
                                           .intensity = 0.1f,

@@ -404,5 +404,24 @@ TEST_F(RendererTest, EmptySizesAndUnknownChannels) {
     EXPECT_EQ(renderer.readLinear(*target)[36].a, 0);
 }
 
+TEST_F(RendererTest, SaysWhichLightsAndClipsAreLeftOut) {
+    vis::Renderer renderer;
+    renderer.setSource(std::make_shared<vis::FunctionSource>(
+        volume::LatticeKind::CC, glm::ivec3(9), glm::dvec3(1),
+        std::vector<vis::FunctionSource::Channel>{{"v", [](glm::dvec3) { return 0.5; }}}));
+    const vis::ViewTargetPtr target = renderer.makeTarget();
+    Scene scene = flatScene(0.1f);
+    scene.lighting.lights.resize(20);
+    scene.clips.resize(9);
+    test::renderAll(renderer, *target, scene, {8, 8});
+    const std::vector<std::string> said = renderer.takeMessages();
+    ASSERT_EQ(said.size(), 1u);
+    EXPECT_NE(said[0].find("first 16 lights"), std::string::npos) << said[0];
+    EXPECT_NE(said[0].find("first 8 clips"), std::string::npos) << said[0];
+    scene.time = 1;
+    test::renderAll(renderer, *target, scene, {8, 8});
+    EXPECT_TRUE(renderer.takeMessages().empty()) << "said once";
+}
+
 } // namespace
 } // namespace tessera

@@ -122,16 +122,17 @@ glm::dvec3 surroundings(Environment environment, glm::dvec3 d) {
         const glm::dvec3 zenith(0.30, 0.52, 1.0), horizon(0.92, 0.95, 1.0), ground(0.24, 0.21, 0.18);
         const glm::dvec3 sky = glm::mix(horizon, zenith, std::pow(std::max(d.y, 0.0), 0.6));
         const double sun = std::max(glm::dot(d, glm::normalize(glm::dvec3(-0.5, 0.7, 0.5))), 0.0);
-        return glm::mix(ground, sky, smooth(-0.08, 0.08, d.y)) + glm::dvec3(1, 0.93, 0.8) * (8 * std::pow(sun, 60));
+        return 0.85 * glm::mix(ground, sky, smooth(-0.08, 0.08, d.y)) +
+               glm::dvec3(1, 0.93, 0.8) * (7 * std::pow(sun, 60));
     }
     case Environment::Studio:
         // Warm key from the upper left, cool fill from the right, a rim from behind.
-        return glm::dvec3(0.10) + 0.08 * smooth(-0.2, 1, d.y) +
-               glm::dvec3(1, 0.95, 0.88) * (5.5 * panel(d, {-0.8, 0.7, 0.8}, {0.55, 0.55})) +
-               glm::dvec3(0.75, 0.85, 1) * (1.6 * panel(d, {1, 0.2, 0.5}, {0.5, 0.9})) +
-               glm::dvec3(1) * (4.0 * panel(d, {0.3, 0.6, -1}, {0.8, 0.25}));
+        return glm::dvec3(0.06) + 0.06 * smooth(-0.2, 1, d.y) +
+               glm::dvec3(1, 0.95, 0.88) * (2.6 * panel(d, {-0.8, 0.7, 0.8}, {0.55, 0.55})) +
+               glm::dvec3(0.75, 0.85, 1) * (0.8 * panel(d, {1, 0.2, 0.5}, {0.5, 0.9})) +
+               glm::dvec3(1) * (2.0 * panel(d, {0.3, 0.6, -1}, {0.8, 0.25}));
     case Environment::SoftBox:
-        return glm::dvec3(0.35) + glm::dvec3(0.95) * smooth(-0.3, 0.9, d.y);
+        return glm::dvec3(0.24) + glm::dvec3(0.68) * smooth(-0.3, 0.9, d.y);
     }
     return glm::dvec3(0);
 }

@@ -61,7 +61,7 @@ glm::dvec3 shade(const Illumination& light, glm::dvec3 albedo, glm::dvec3 gradie
     glm::dvec3 looked = place;
     if (surface && light.volume) {
         const glm::dvec3 cell = light.volume->grid.cell();
-        looked += at.normal * ((2 * at.front - 1) * weight * std::max({cell.x, cell.y, cell.z}));
+        looked += at.normal * (1.5 * (2 * at.front - 1) * weight * std::max({cell.x, cell.y, cell.z}));
     }
     const Reaching reach = reaching(light, looked);
     glm::dvec3 flat = albedo;

@@ -32,7 +32,7 @@ FlatShares flatShares(const Illumination& light);
 /// worldCell edge per axis (length of that vector), in transfer-function ranges. `place` in world space.
 ///
 /// V_i, V_a = mix(1, light volume's share, strength or occlusion), S its scattered light; 1, 1 and 0 without a volume.
-/// Looked up one light cell (its longest edge) off the surface towards the viewer, weight (2 front - 1) times the
+/// Looked up 1.5 light cells (of their longest edge) off the surface towards the viewer, weight (2 front - 1) times the
 /// normal, so that a surface does not lie in its own shadow.
 ///   without surface: albedo (sum shares.lights_i V_i + shares.everywhere V_a + shares.rest + S)
 ///   shaded: V_a (ambient (even.diffuse + even.specular) + even.diffuse' D + even.specular' P) + albedo S + sum over

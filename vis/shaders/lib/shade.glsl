@@ -43,7 +43,7 @@ vec3 shade(vec3 albedo, vec3 gradient, float weight, vec3 place, vec3 toViewer) 
 #if LIGHT_VOLUME
     vec4 shares;
     vec3 scattered;
-    reachingLight(place + at.normal * ((2.0 * at.front - 1.0) * weight * lightCell), shares, scattered);
+    reachingLight(place + at.normal * (1.5 * (2.0 * at.front - 1.0) * weight * lightCell), shares, scattered);
     vec3 without = flatColor(albedo, shares, scattered);
     vec3 lit = shares.w * around + albedo * scattered;
 #else
