@@ -40,11 +40,12 @@ std::string parameterReference() {
         "(`tessera render overview --set /render/step=0.25 -o out.png`).\n\n";
     out += markdownSection<Session>("Session", "What is shown, and what all views share.");
     out += markdownSection<DataFile>("data.files", "A file of the data set.");
-    out += markdownSection<vis::Layer>(
-        "layers", "An entry of the list of techniques; `technique` is one of the three that follow.");
+    out += markdownSection<vis::Layer>("layers",
+                                       "An entry of the list of techniques; `technique` is one of those that follow.");
     out += markdownSection<vis::VolumeLayer>("Layer of type `volume`", "A scalar through its transfer function.");
     out += markdownSection<vis::IsoLayer>("Layer of type `iso`", "A surface of equal value.");
     out += markdownSection<vis::SliceLayer>("Layer of type `slice`", "A coloured plane with contour lines.");
+    out += markdownSection<vis::FlowLayer>("Layer of type `flow`", "Lines, tubes and glyphs of a vector.");
     out += markdownSection<vis::TransferFunction>("transfer", "Colour and opacity of one parameter, by its name.");
     out += markdownSection<vis::ColorStop>("transfer.colors", "A colour of a colour map of one's own.");
     out += markdownSection<vis::TransferRegion>("transfer.regions",

@@ -107,6 +107,12 @@ std::string addView(Session& session, const ViewState& view) {
     return key;
 }
 
+std::string firstVector(const volume::DatasetInfo& info) {
+    for (const volume::Parameter& parameter : info.parameters)
+        if (parameter.components == 3) return parameter.name;
+    return {};
+}
+
 void fitSession(Session& session, const volume::DatasetInfo& info, std::vector<std::string>& messages) {
     repair(session.dock, paneKeys(session));
     const auto channels = info.channels();
@@ -135,6 +141,15 @@ void fitSession(Session& session, const volume::DatasetInfo& info, std::vector<s
     for (vis::Layer& layer : session.layers) {
         std::visit(
             [&](auto& technique) {
+                if constexpr (requires { technique.vector; }) {
+                    const auto isVector = [&](const volume::Parameter& parameter) {
+                        return parameter.components == 3 && parameter.name == technique.vector;
+                    };
+                    if (std::none_of(info.parameters.begin(), info.parameters.end(), isVector))
+                        technique.vector = firstVector(info);
+                }
+                if constexpr (requires { technique.weight; })
+                    if (!known(technique.weight)) technique.weight.clear();
                 const bool replaced = replace(technique.channel);
                 if (replaced) layer.name = technique.channel;
                 if (technique.channel.empty()) technique.channel = fallback;

@@ -138,6 +138,9 @@ struct Session {
 /// The scene the session's 3D views show (a volume view's own settings are applied on top by the view).
 vis::Scene sceneOf(const Session& session);
 
+/// The name of the first parameter with three components, "" if there is none.
+std::string firstVector(const volume::DatasetInfo& info);
+
 /// The pane keys of a session, and the name a reader sees for one: "Volume", "Volume 2", ...
 std::vector<std::string> paneKeys(const Session& session);
 std::string paneTitle(const Session& session, const std::string& pane);

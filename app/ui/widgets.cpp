@@ -217,6 +217,7 @@ bool drawText(const WidgetContext& context, const FieldInfo& info, std::string& 
     if (info.refersTo == "vector") return chooseVector(idOf(info).c_str(), context.info, value);
     if (info.refersTo == "colorChannel")
         return chooseChannel(idOf(info).c_str(), context.info, value, "its own colour");
+    if (info.refersTo == "optionalChannel") return chooseChannel(idOf(info).c_str(), context.info, value, "none");
     if (info.refersTo == "colormap") return chooseColormap(idOf(info).c_str(), value);
     return ImGui::InputText(idOf(info).c_str(), &value);
 }

@@ -11,9 +11,7 @@ namespace tessera::app {
 namespace {
 
 volume::DerivedRecipe recipeOf(const volume::DatasetInfo& info, std::size_t kind, const std::string& channel) {
-    std::string vector;
-    for (const volume::Parameter& parameter : info.parameters)
-        if (parameter.components == 3 && vector.empty()) vector = parameter.name;
+    const std::string vector = firstVector(info);
     switch (kind) {
     case 1:
         return volume::MagnitudeRecipe{channel, channel, channel};

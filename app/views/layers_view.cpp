@@ -14,12 +14,12 @@ namespace {
 constexpr const char* kLayerPayload = "tessera-layer";
 
 Icon iconOf(const vis::Technique& technique) {
-    static constexpr Icon kIcons[] = {icons::kCube, icons::kIso, icons::kSlice};
+    static constexpr Icon kIcons[] = {icons::kCube, icons::kIso, icons::kSlice, icons::kFlow};
     return kIcons[technique.index()];
 }
 
 const char* kindName(const vis::Technique& technique) {
-    static constexpr const char* kNames[] = {"Volume", "Iso-surface", "Slice"};
+    static constexpr const char* kNames[] = {"Volume", "Iso-surface", "Slice", "Flow"};
     return kNames[technique.index()];
 }
 
@@ -42,6 +42,10 @@ vis::Layer newLayer(const Session& session, const volume::DatasetInfo& info, std
         layer.technique = iso;
     }
     if (kind == 2) layer.technique = vis::SliceLayer{.channel = name};
+    if (kind == 3) {
+        const std::string vector = firstVector(info);
+        layer.technique = vis::FlowLayer{.vector = vector, .channel = vector.empty() ? name : "|" + vector + "|"};
+    }
     layer.name = std::string(kindName(layer.technique)) + " of " + name;
     return layer;
 }
@@ -116,9 +120,9 @@ void drawListButtons(ViewContext& context, const volume::DatasetInfo& info, int&
     const bool any = selected >= 0 && selected < static_cast<int>(layers.size());
     if (iconButton(context, "add", icons::kPlus, "Add a layer")) ImGui::OpenPopup("add layer");
     if (ImGui::BeginPopup("add layer")) {
-        static constexpr const char* kNames[] = {"Volume", "Iso-surface", "Slice"};
+        static constexpr const char* kNames[] = {"Volume", "Iso-surface", "Slice", "Flow"};
         for (std::size_t kind = 0; kind < std::size(kNames); ++kind)
-            if (ImGui::MenuItem(kNames[kind])) {
+            if (ImGui::MenuItem(kNames[kind], nullptr, false, kind != 3 || !firstVector(info).empty())) {
                 layers.push_back(newLayer(context.session, info, kind));
                 selected = static_cast<int>(layers.size()) - 1;
             }

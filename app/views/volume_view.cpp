@@ -1,6 +1,7 @@
 #include "app/ui/keys.h"
 #include "app/views/axes3d.h"
 #include "app/views/brush_list.h"
+#include "app/views/flow_feed.h"
 #include "app/views/profile_line.h"
 #include "app/views/scale_bar.h"
 #include "app/views/surface_feed.h"
@@ -20,6 +21,7 @@ enum class Drag { None, Orbit, Pan, Zoom, Roll };
 struct VolumeCache : ViewCache {
     vis::ViewTargetPtr target;
     SurfaceFeed surfaces;
+    FlowFeed flows;
     Drag drag = Drag::None;
     ImVec2 last{0, 0}; ///< mouse of the former frame
     bool inTriad = false;
@@ -276,6 +278,7 @@ void drawVolumeView(ViewContext& context, const std::string& pane, VolumeView& v
     request.moving = (moving || context.interacting || session.animation.playing) && !context.headless;
     request.wait = context.headless;
     scene.geometry = cache.surfaces.get(context, pane, request.moving);
+    for (vis::GeometryLayer& flow : cache.flows.get(context, pane)) scene.geometry.push_back(std::move(flow));
     const vis::FrameStatus status = context.renderer.render(*cache.target, scene, request);
     if (!status.complete) context.busy = true;
 

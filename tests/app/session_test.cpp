@@ -310,6 +310,22 @@ TEST(SessionTest, FitReplacesWhatIsNotThere) {
     EXPECT_EQ(messages.size(), 3u);
 }
 
+TEST(SessionTest, FitGivesFlowAVectorOfTheData) {
+    volume::DatasetInfo info = cellInfo();
+    Session session = defaultSession(info, {});
+    session.layers = {{"flow", true, vis::FlowLayer{.vector = "wind", .channel = "T", .weight = "salt"}}};
+    std::vector<std::string> messages;
+    info.parameters.push_back({});
+    info.parameters.back().name = "V";
+    info.parameters.back().components = 3;
+    fitSession(session, info, messages);
+    const auto& flow = std::get<vis::FlowLayer>(session.layers[0].technique);
+    EXPECT_EQ(flow.vector, firstVector(info));
+    EXPECT_NE(flow.vector, "");
+    EXPECT_EQ(flow.channel, "T");
+    EXPECT_EQ(flow.weight, "");
+}
+
 TEST(SessionTest, DefaultStretchesThinCells) {
     const Session session = defaultSession(cellInfo(), {});
     EXPECT_GT(session.stretch.x, 5);

@@ -1,4 +1,5 @@
 #include "app/ui/theme.h"
+#include "app/views/flow_feed.h"
 #include "app/views/scatter_layout.h"
 #include "app/views/statistics_feed.h"
 #include "app/views/view_context.h"
@@ -196,6 +197,41 @@ TEST_F(Views, EditingWhileTheBackgroundWorks) {
         std::this_thread::sleep_for(std::chrono::milliseconds(2));
     }
     EXPECT_FALSE(busy) << "comes to rest";
+}
+
+TEST_F(Views, FlowComesAtOnceOrFromTheBackground) {
+    show(fuelCell(volume::LatticeKind::BCC));
+    vis::FlowLayer flow{.vector = "U", .channel = "O2"};
+    flow.count = 10;
+    session.layers = {{"flow", true, flow}};
+    ViewContext context{session, source, renderer, jobs, caches};
+    context.headless = true;
+    FlowFeed atOnce, later;
+    const std::vector<vis::GeometryLayer> whole = atOnce.get(context, "a");
+    ASSERT_EQ(whole.size(), 1u);
+    EXPECT_FALSE(whole[0].geometry->mesh.triangles.empty());
+    EXPECT_EQ(whole[0].channel, "O2");
+    EXPECT_EQ(atOnce.get(context, "a"), whole) << "kept";
+    std::get<vis::FlowLayer>(session.layers[0].technique).opacity = 0.5f;
+    EXPECT_EQ(atOnce.get(context, "a")[0].geometry, whole[0].geometry) << "only drawn otherwise";
+
+    context.headless = false;
+    EXPECT_TRUE(later.get(context, "b").empty());
+    EXPECT_TRUE(context.busy);
+    jobs.wait();
+    jobs.collect();
+    const std::vector<vis::GeometryLayer> made = later.get(context, "b");
+    ASSERT_EQ(made.size(), 1u);
+    EXPECT_EQ(made[0].geometry->mesh, whole[0].geometry->mesh);
+    // While another is made the last one stays, with the colours it was made for.
+    std::get<vis::FlowLayer>(session.layers[0].technique).channel = "T";
+    ASSERT_EQ(later.get(context, "b").size(), 1u);
+    EXPECT_EQ(later.get(context, "b")[0].channel, "O2");
+    jobs.wait();
+    jobs.collect();
+    EXPECT_EQ(later.get(context, "b")[0].channel, "T");
+    session.layers[0].visible = false;
+    EXPECT_TRUE(later.get(context, "b").empty());
 }
 
 /// Values of two channels at every sample, straight from the bricks.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "vis/model/flow_layer.h"
 #include "volume/describe.h"
 
 #include <glm/vec3.hpp>
@@ -128,7 +129,7 @@ struct SliceLayer {
     }
 };
 
-using Technique = std::variant<VolumeLayer, IsoLayer, SliceLayer>;
+using Technique = std::variant<VolumeLayer, IsoLayer, SliceLayer, FlowLayer>;
 
 struct Layer {
     std::string name;

@@ -50,7 +50,7 @@ Prepared::Prepared(const Scene& drawn, const volume::BrickSource& source, const 
             std::visit([](const auto& t) -> const std::string& { return t.channel; }, layer.technique);
         DrawnLayer one;
         one.technique = &layer.technique;
-        one.samples = layer.visible ? load(name) : nullptr;
+        one.samples = layer.visible && !std::holds_alternative<FlowLayer>(layer.technique) ? load(name) : nullptr;
         if (one.samples == nullptr) continue;
         const volume::Channel channel = info.channels()[std::size_t(*info.findChannel(name))];
         one.function = &transferFor(scene, channel.name);

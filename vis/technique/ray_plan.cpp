@@ -73,6 +73,7 @@ RayPlan planRays(const Scene& scene, const volume::DatasetInfo& info) {
         if (!layer.visible || !channel) continue;
         const auto* surface = std::get_if<IsoLayer>(&layer.technique);
         if (surface && surface->method == SurfaceMethod::Polygons) continue; // comes as Scene::geometry
+        if (std::holds_alternative<FlowLayer>(layer.technique)) continue;    // so does this
         if (const auto* volume = std::get_if<VolumeLayer>(&layer.technique))
             plan.layers.push_back(volumeUse(plan, int(i), *volume, *channel, scene, info));
         else if (surface)

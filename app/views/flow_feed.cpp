@@ -1,0 +1,126 @@
+#include "app/views/flow_feed.h"
+
+#include "app/views/view_parts.h"
+#include "vis/model/flow_geometry.h"
+#include "volume/error.h"
+
+#include <algorithm>
+#include <list>
+
+namespace tessera::app {
+
+namespace {
+
+constexpr std::size_t kKept = 48, kKeptVertices = 10'000'000; ///< about 300 MB
+
+/// What decides the geometry; how it is drawn is left out.
+struct Wish {
+    vis::FlowLayer layer;
+    int time = 0;
+    glm::dvec3 stretch{1};
+    bool operator==(const Wish&) const = default;
+};
+
+Wish wishOf(const vis::FlowLayer& layer, int time, glm::dvec3 stretch) {
+    const vis::FlowLayer drawn;
+    Wish wish{layer, time, stretch};
+    wish.layer.lineWidth = drawn.lineWidth;
+    wish.layer.color = drawn.color;
+    wish.layer.opacity = drawn.opacity;
+    return wish;
+}
+
+struct Made {
+    Wish wish;
+    std::shared_ptr<const vis::Geometry> geometry; ///< null: there is nothing to show, or it failed
+};
+
+} // namespace
+
+struct FlowFeed::State {
+    std::list<Made> kept;              ///< most recent first
+    std::map<std::size_t, Made> shown; ///< by layer: the last one made for it
+    std::map<std::size_t, Wish> running;
+    const volume::BrickSource* source = nullptr;
+
+    const Made* find(const Wish& wish) const {
+        const auto found = std::find_if(kept.begin(), kept.end(), [&](const Made& made) { return made.wish == wish; });
+        return found == kept.end() ? nullptr : &*found;
+    }
+    void keep(Made made) {
+        kept.push_front(std::move(made));
+        std::size_t vertices = 0, count = 0;
+        std::erase_if(kept, [&](const Made& old) {
+            if (old.geometry) vertices += old.geometry->mesh.positions.size() + old.geometry->lines.positions.size();
+            return count++ >= 2 && (vertices > kKeptVertices || count > kKept);
+        });
+    }
+};
+
+FlowFeed::FlowFeed() : state_(std::make_shared<State>()) {}
+
+std::vector<vis::GeometryLayer> FlowFeed::get(ViewContext& context, const std::string& pane) {
+    State& state = *state_;
+    if (state.source != context.source.get()) {
+        state = {};
+        state.source = context.source.get();
+    }
+    const Session& session = context.session;
+    const int time = timeIndex(session, context.source->info());
+    std::vector<vis::GeometryLayer> out;
+    for (std::size_t i = 0; i < session.layers.size(); ++i) {
+        const auto* flow = std::get_if<vis::FlowLayer>(&session.layers[i].technique);
+        if (!flow || !session.layers[i].visible) continue;
+        const Wish wish = wishOf(*flow, time, session.stretch);
+        const std::string job = pane + ":flow" + std::to_string(i);
+        const Made* here = state.find(wish);
+        if (!here && context.headless) {
+            Made made{wish, nullptr};
+            try {
+                made.geometry = vis::makeFlow(*context.source, wish.layer, time, wish.stretch);
+            } catch (const Error&) { // shown without it
+            }
+            state.keep(made);
+            here = state.find(wish);
+        } else if (!here) {
+            context.busy = true;
+            // One that is under way is waited for though the wish moved on: else a drag would show none.
+            if (!state.running.contains(i) || !context.jobs.running(job)) {
+                state.running.insert_or_assign(i, wish);
+                context.jobs.start(
+                    job, "Flow of " + flow->vector,
+                    [weak = std::weak_ptr(state_), source = context.source, wish,
+                     i](const Progress& progress) -> Jobs::Finish {
+                        std::shared_ptr<const vis::Geometry> made;
+                        std::string failure;
+                        try {
+                            made = vis::makeFlow(*source, wish.layer, wish.time, wish.stretch, progress);
+                        } catch (const Error& error) {
+                            failure = error.what();
+                        }
+                        return [weak, source, made, failure, wish, i] {
+                            const auto owner = weak.lock();
+                            if (!owner || owner->source != source.get()) return;
+                            owner->running.erase(i);
+                            owner->shown.insert_or_assign(i, Made{wish, made});
+                            // A failure too is remembered, so that it is not tried again every frame.
+                            owner->keep({wish, made});
+                            if (!failure.empty()) throw Error(failure);
+                        };
+                    },
+                    true);
+            }
+            if (const auto last = state.shown.find(i); last != state.shown.end()) here = &last->second;
+        }
+        if (!here || !here->geometry) continue;
+        if (here != &state.shown[i]) state.shown[i] = *here;
+        out.push_back({.geometry = here->geometry,
+                       .color = flow->color,
+                       .channel = here->wish.layer.channel,
+                       .opacity = flow->opacity,
+                       .lineWidth = flow->lineWidth});
+    }
+    return out;
+}
+
+} // namespace tessera::app

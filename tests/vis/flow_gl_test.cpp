@@ -1,0 +1,118 @@
+#include "tests/vis/gl_fixture.h"
+#include "vis/model/flow_geometry.h"
+#include "vis/model/ray_setup.h"
+#include "volume/memory_source.h"
+
+#include <cmath>
+
+namespace tessera::vis {
+namespace {
+
+class FlowLayerTest : public test::GlTest {
+protected:
+    static constexpr glm::ivec2 kSize{96, 96};
+    static constexpr int kSamples = 17;
+
+    /// U = (1, 0, 0) and f = x / 16 in a cube of edge 16; nothing where x > wall.
+    static std::shared_ptr<const volume::BrickSource> wind(float wall = 100) {
+        volume::Dataset data;
+        data.info.lattice.size = glm::ivec3(kSamples);
+        data.info.bounds = {glm::dvec3(0), glm::dvec3(kSamples - 1)};
+        data.info.parameters.resize(2);
+        data.info.parameters[0].name = "U";
+        data.info.parameters[0].components = 3;
+        data.info.parameters[0].ranges = {{1, 1}, {0, 0}, {0, 0}, {1, 1}};
+        data.info.parameters[1].name = "f";
+        data.info.parameters[1].ranges = {{0, 1}};
+        data.load = [lattice = data.info.lattice, wall](int parameter, int component, int) {
+            volume::Field field = volume::makeField(lattice, volume::ScalarType::F32);
+            auto mask = std::make_shared<volume::Mask>(field.count(), std::uint8_t(1));
+            for (std::size_t i = 0; i < field.count(); ++i) {
+                const float x = float(i % kSamples);
+                field.as<float>()[i] = parameter == 1 ? x / 16 : component == 0 ? 1.0f : 0.0f;
+                (*mask)[i] = x <= wall;
+            }
+            field.mask = mask;
+            return field;
+        };
+        return volume::makeMemorySource(std::move(data), {});
+    }
+    std::vector<glm::vec4> picture(const std::shared_ptr<const volume::BrickSource>& source, const FlowLayer& layer) {
+        Renderer renderer;
+        renderer.setSource(source);
+        Scene scene;
+        scene.camera = test::frontCamera(1.2);
+        scene.showBox = false;
+        scene.render.ambient = 1;
+        scene.render.diffuse = scene.render.specular = 0;
+        scene.layers.push_back({"", true, layer}); // draws nothing by itself
+        scene.geometry.push_back({.geometry = makeFlow(*source, layer, 0, scene.stretch),
+                                  .color = layer.color,
+                                  .channel = layer.channel,
+                                  .opacity = layer.opacity,
+                                  .lineWidth = layer.lineWidth});
+        const ViewTargetPtr target = renderer.makeTarget();
+        test::renderAll(renderer, *target, scene, kSize);
+        return renderer.readLinear(*target);
+    }
+    /// The pixel over a place, x and y in 0..1 through the data.
+    static glm::vec4 over(const std::vector<glm::vec4>& pixels, double x, double y) {
+        const auto at = [](double share) { return int(((share - 0.5) / 1.2 + 0.5) * 96); };
+        return pixels[std::size_t(at(y)) * 96 + std::size_t(at(x))];
+    }
+    static FlowLayer oneLine(FlowKind kind) {
+        FlowLayer layer{.vector = "U", .channel = "f"};
+        layer.kind = kind;
+        layer.seeds = volume::SeedShape::Line;
+        layer.from = layer.to = glm::vec3(0.5f);
+        layer.count = 1;
+        layer.radius = 0.05f;
+        layer.lineWidth = 9;
+        layer.size = 0.4f;
+        return layer;
+    }
+};
+
+TEST_F(FlowLayerTest, DrawsEveryKindInTheColoursOfItsParameter) {
+    const auto source = wind();
+    const auto expectColor = [](glm::vec4 pixel, double value) {
+        const glm::dvec3 wanted = linearFromSrgb(glm::dvec3(evaluate(TransferFunction{}, {0, 1}, value)));
+        EXPECT_LT(glm::length(glm::dvec3(pixel) - wanted), 0.03) << value;
+    };
+    for (const FlowKind kind : {FlowKind::Streamlines, FlowKind::Tubes}) {
+        const auto pixels = picture(source, oneLine(kind));
+        for (const double x : {0.1, 0.3, 0.5, 0.7, 0.9}) expectColor(over(pixels, x, 0.5), x);
+        EXPECT_EQ(over(pixels, 0.5, 0.7).a, 0);
+    }
+    for (const FlowKind kind : {FlowKind::Hedgehogs, FlowKind::Arrows, FlowKind::Cones}) {
+        const auto pixels = picture(source, oneLine(kind));
+        expectColor(over(pixels, 0.55, 0.5), 0.5); // of the place where it begins
+        EXPECT_EQ(over(pixels, 0.2, 0.5).a, 0);
+        EXPECT_EQ(over(pixels, 0.95, 0.5).a, 0);
+    }
+}
+
+TEST_F(FlowLayerTest, EndsAtAWall) {
+    const auto pixels = picture(wind(10), oneLine(FlowKind::Tubes));
+    EXPECT_GT(over(pixels, 0.62, 0.5).a, 0.9f);
+    EXPECT_EQ(over(pixels, 0.68, 0.5).a, 0);
+}
+
+TEST_F(FlowLayerTest, SeedsFollowTheWeight) {
+    FlowLayer layer{.vector = "U", .channel = "f"};
+    layer.kind = FlowKind::Hedgehogs;
+    layer.count = 500;
+    layer.weight = "f";
+    const auto geometry = makeFlow(*wind(), layer, 0, glm::dvec3(1));
+    ASSERT_EQ(geometry->lines.ends.size(), 500u);
+    double mean = 0;
+    for (std::size_t i = 0; i < 1000; i += 2) mean += double(geometry->lines.positions[i].x) / 16 / 500;
+    EXPECT_NEAR(mean, 2.0 / 3, 0.03);
+}
+
+TEST_F(FlowLayerTest, NothingWithoutTheVector) {
+    EXPECT_EQ(makeFlow(*wind(), {.vector = "f", .channel = "f"}, 0, glm::dvec3(1)), nullptr);
+}
+
+} // namespace
+} // namespace tessera::vis

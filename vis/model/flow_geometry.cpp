@@ -1,0 +1,243 @@
+#include "vis/model/flow_geometry.h"
+
+#include "volume/mesh/isosurface.h"
+
+#include <array>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <numbers>
+
+namespace tessera::vis {
+
+namespace {
+
+constexpr int kSides = 12;
+constexpr double kMostSamples = 3e7; ///< of one component: 120 MB
+
+struct Frame {
+    glm::dvec3 along, u, v; ///< right-handed, length 1
+};
+
+Frame frameAlong(glm::dvec3 direction) {
+    const glm::dvec3 along = glm::normalize(direction);
+    const glm::dvec3 other = std::abs(along.z) < 0.9 ? glm::dvec3(0, 0, 1) : glm::dvec3(1, 0, 0);
+    const glm::dvec3 u = glm::normalize(glm::cross(other, along));
+    return {along, u, glm::cross(along, u)};
+}
+
+/// Builds meshes from rings of vertices around axes, in stretched space.
+class Rings {
+public:
+    explicit Rings(glm::dvec3 stretch) : stretch_(stretch) {}
+    /// A ring; `lean`: how much its normals point along the axis, for each unit outwards.
+    void add(glm::dvec3 centre, const Frame& frame, double radius, double lean, double outwards, float scalar) {
+        for (int i = 0; i < kSides; ++i) {
+            const double angle = 2 * std::numbers::pi * i / kSides;
+            const glm::dvec3 out = frame.u * std::cos(angle) + frame.v * std::sin(angle);
+            mesh.positions.emplace_back((centre + out * radius) / stretch_);
+            // Normals turn the other way: their products with directions stay.
+            mesh.normals.emplace_back(glm::normalize((out * outwards + frame.along * lean) * stretch_));
+            mesh.scalars.push_back(scalar);
+        }
+    }
+    /// Triangles between the last ring and the one before it.
+    void connect() {
+        const auto first = std::uint32_t(mesh.positions.size()) - 2 * kSides;
+        for (std::uint32_t i = 0; i < kSides; ++i) {
+            const std::uint32_t next = (i + 1) % kSides;
+            const std::uint32_t a = first + i, b = first + next, c = a + kSides, d = b + kSides;
+            mesh.triangles.push_back({a, b, d});
+            mesh.triangles.push_back({a, d, c});
+        }
+    }
+    /// A truncated cone between two places of an axis, its face alone.
+    void face(glm::dvec3 from, glm::dvec3 to, const Frame& frame, double radiusFrom, double radiusTo, float scalar) {
+        const double rise = glm::dot(to - from, frame.along), fall = radiusFrom - radiusTo;
+        add(from, frame, radiusFrom, fall, rise, scalar);
+        add(to, frame, radiusTo, fall, rise, scalar);
+        connect();
+    }
+    volume::SurfaceMesh mesh;
+
+private:
+    glm::dvec3 stretch_;
+};
+
+/// The vertices of a line as drawn, without those that fall on the one before.
+struct Course {
+    std::vector<glm::dvec3> places;
+    std::vector<float> scalars;
+};
+Course courseOf(const LineSet& lines, std::uint32_t begin, std::uint32_t end, double apart, glm::dvec3 stretch) {
+    Course out;
+    for (std::uint32_t i = begin; i < end; ++i) {
+        const glm::dvec3 place = glm::dvec3(lines.positions[i]) * stretch;
+        if (!out.places.empty() && glm::distance(place, out.places.back()) <= apart) continue;
+        out.places.push_back(place);
+        out.scalars.push_back(lines.scalars.empty() ? 0 : lines.scalars[i]);
+    }
+    return out;
+}
+
+volume::SurfaceMesh glyphMesh(std::span<const Glyph> glyphs, glm::dvec3 stretch, bool shafts) {
+    Rings rings(stretch);
+    for (const Glyph& glyph : glyphs) {
+        const double length = glm::length(glyph.vector);
+        if (!(length > 0)) continue;
+        const Frame frame = frameAlong(glyph.vector);
+        const double neck = shafts ? 0.62 : 0, head = length * (shafts ? 0.14 : 0.22);
+        const glm::dvec3 foot = glyph.place * stretch - glyph.vector * (shafts ? 0.0 : 0.5);
+        const glm::dvec3 at = foot + glyph.vector * neck, tip = foot + glyph.vector;
+        const double shaft = shafts ? length * 0.045 : 0;
+        if (shafts) {
+            rings.face(foot, foot, frame, 0, shaft, glyph.scalar);
+            rings.face(foot, at, frame, shaft, shaft, glyph.scalar);
+        }
+        rings.face(at, at, frame, shaft, head, glyph.scalar);
+        rings.face(at, tip, frame, head, 0, glyph.scalar);
+    }
+    return std::move(rings.mesh);
+}
+
+/// Values of the layer's channel at places; NaN where there is none.
+std::vector<float> valuesAt(const volume::BrickSource& source, const std::string& channel, int time, int level,
+                            std::vector<glm::vec3> places, const Progress& progress) {
+    volume::SurfaceMesh points;
+    points.positions = std::move(places);
+    const std::optional<int> index = source.info().findChannel(channel);
+    if (!index) return std::vector<float>(points.positions.size(), std::numeric_limits<float>::quiet_NaN());
+    volume::sampleAtVertices(points, source, *index, time, level, progress);
+    return std::move(points.scalars);
+}
+
+/// How likely a place is a beginning: where the flow can be seen, by the weighting parameter's share of its range.
+std::function<double(glm::dvec3)> weightOf(const volume::BrickSource& source, const FlowLayer& layer, int time,
+                                           int level, const volume::VectorField& field, double slowest,
+                                           const Progress& progress) {
+    const int channel = layer.weight.empty() ? -1 : source.info().findChannel(layer.weight).value_or(-1);
+    const auto flows = [field, slowest](glm::dvec3 place) {
+        const auto vector = field(place);
+        return vector && glm::length(*vector) > slowest;
+    };
+    if (channel < 0) return [flows](glm::dvec3 place) { return flows(place) ? 1.0 : 0.0; };
+    const Range range = source.info().channelRange(source.info().channels()[std::size_t(channel)]);
+    const auto samples =
+        std::make_shared<const volume::SampleGrid>(volume::readSamples(source, channel, time, level, progress));
+    return [flows, samples, range](glm::dvec3 place) {
+        const std::optional<double> value = flows(place) ? volume::valueAt(*samples, place) : std::nullopt;
+        return value ? std::clamp((*value - range.lo) / (range.hi - range.lo), 0.0, 1.0) : 0.0;
+    };
+}
+
+} // namespace
+
+volume::SurfaceMesh tubes(const LineSet& lines, double radius, glm::dvec3 stretch) {
+    Rings rings(stretch);
+    std::uint32_t begin = 0;
+    for (const std::uint32_t end : lines.ends) {
+        const Course course = courseOf(lines, begin, end, radius * 0.05, stretch);
+        begin = end;
+        const std::size_t n = course.places.size();
+        if (n < 2) continue;
+        Frame frame = frameAlong(course.places[1] - course.places[0]);
+        rings.face(course.places[0], course.places[0], frame, 0, radius, course.scalars[0]);
+        for (std::size_t i = 0; i < n; ++i) {
+            // The frame of the former ring, turned as little as the new direction asks for.
+            const glm::dvec3 way = course.places[std::min(i + 1, n - 1)] - course.places[i > 0 ? i - 1 : 0];
+            if (glm::length(way) > 0) frame.along = glm::normalize(way);
+            const glm::dvec3 u = frame.u - frame.along * glm::dot(frame.u, frame.along);
+            frame.u = glm::length(u) > 1e-6 ? glm::normalize(u) : frameAlong(frame.along).u;
+            frame.v = glm::cross(frame.along, frame.u);
+            rings.add(course.places[i], frame, radius, 0, 1, course.scalars[i]);
+            if (i > 0) rings.connect();
+        }
+        rings.face(course.places[n - 1], course.places[n - 1], frame, radius, 0, course.scalars[n - 1]);
+    }
+    return std::move(rings.mesh);
+}
+
+volume::SurfaceMesh arrows(std::span<const Glyph> glyphs, glm::dvec3 stretch) {
+    return glyphMesh(glyphs, stretch, true);
+}
+
+volume::SurfaceMesh cones(std::span<const Glyph> glyphs, glm::dvec3 stretch) {
+    return glyphMesh(glyphs, stretch, false);
+}
+
+int flowLevel(const volume::BrickGrid& grid) {
+    int level = 0;
+    for (; level + 1 < grid.levels; ++level) {
+        const glm::ivec3 size = grid.levelSamples(level);
+        if (double(size.x) * size.y * size.z <= kMostSamples) break;
+    }
+    return level;
+}
+
+std::shared_ptr<const Geometry> makeFlow(const volume::BrickSource& source, const FlowLayer& layer, int time,
+                                         glm::dvec3 stretch, const Progress& progress) {
+    const volume::DatasetInfo& info = source.info();
+    const auto parameter = std::find_if(info.parameters.begin(), info.parameters.end(),
+                                        [&](const auto& p) { return p.components == 3 && p.name == layer.vector; });
+    if (parameter == info.parameters.end()) return nullptr;
+    const int level = flowLevel(source.grid());
+    const auto grid =
+        volume::readVector(source, int(parameter - info.parameters.begin()), time, level, progress.part(0, 0.3));
+    const volume::VectorField field = [&](glm::dvec3 place) { return grid.at(place); };
+    const auto magnitude = info.findChannel(layer.vector);
+    const double fastest = magnitude ? info.channelRange(info.channels()[std::size_t(*magnitude)]).hi : 0;
+    const double slowest = fastest * double(layer.minimumSpeed);
+    const glm::dvec3 size = info.bounds.size();
+    const double longest = std::max({size.x, size.y, size.z});
+    const glm::dvec3 drawn = size * stretch;
+    const double longestDrawn = std::max({drawn.x, drawn.y, drawn.z});
+
+    const std::vector<glm::dvec3> seeds =
+        volume::placeSeeds({.shape = layer.seeds,
+                            .from = info.bounds.lo + size * glm::dvec3(layer.from),
+                            .to = info.bounds.lo + size * glm::dvec3(layer.to),
+                            .proportions = stretch,
+                            .count = layer.count,
+                            .random = std::uint32_t(layer.random)},
+                           weightOf(source, layer, time, level, field, slowest, progress.part(0.3, 0.4)));
+    auto out = std::make_shared<Geometry>();
+    if (followsFlow(layer.kind)) {
+        LineSet lines;
+        const volume::StreamlineSettings settings{
+            .cell = glm::abs(grid.x.lattice.spacing), .longest = double(layer.length) * longest, .slowest = slowest};
+        for (const auto& line : volume::streamlines(field, seeds, settings, progress.part(0.4, 0.8))) {
+            if (line.size() < 2) continue;
+            lines.positions.insert(lines.positions.end(), line.begin(), line.end());
+            lines.ends.push_back(std::uint32_t(lines.positions.size()));
+        }
+        lines.scalars = valuesAt(source, layer.channel, time, level, lines.positions, progress.part(0.8, 1));
+        if (layer.kind == FlowKind::Tubes)
+            out->mesh = tubes(lines, double(layer.radius) * longestDrawn, stretch);
+        else
+            out->lines = std::move(lines);
+        return out;
+    }
+    const std::vector<float> scalars =
+        valuesAt(source, layer.channel, time, level, {seeds.begin(), seeds.end()}, progress.part(0.4, 1));
+    double greatest = 0; // of those drawn, so that the longest is as long as wanted
+    for (const glm::dvec3& seed : seeds) greatest = std::max(greatest, glm::length(*field(seed)));
+    std::vector<Glyph> glyphs;
+    for (std::size_t i = 0; i < seeds.size(); ++i) {
+        const glm::dvec3 vector = *field(seeds[i]), direction = vector * stretch;
+        if (!(glm::length(direction) > 0)) continue;
+        const double share = layer.scaled ? glm::length(vector) / greatest : 1;
+        glyphs.push_back(
+            {seeds[i], glm::normalize(direction) * (share * double(layer.size) * longestDrawn), scalars[i]});
+    }
+    if (layer.kind == FlowKind::Arrows) out->mesh = arrows(glyphs, stretch);
+    if (layer.kind == FlowKind::Cones) out->mesh = cones(glyphs, stretch);
+    if (layer.kind == FlowKind::Hedgehogs)
+        for (const Glyph& glyph : glyphs) {
+            out->lines.positions.emplace_back(glyph.place);
+            out->lines.positions.emplace_back(glyph.place + glyph.vector / stretch);
+            out->lines.scalars.insert(out->lines.scalars.end(), 2, glyph.scalar);
+            out->lines.ends.push_back(std::uint32_t(out->lines.positions.size()));
+        }
+    return out;
+}
+
+} // namespace tessera::vis

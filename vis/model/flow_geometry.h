@@ -1,0 +1,35 @@
+#pragma once
+
+#include "vis/model/flow_layer.h"
+#include "vis/model/geometry.h"
+#include "volume/flow.h"
+
+#include <span>
+
+/// What a flow layer draws.
+namespace tessera::vis {
+
+/// An arrow or cone at a place.
+struct Glyph {
+    glm::dvec3 place{0};  ///< physical; where an arrow begins, the middle of a cone
+    glm::dvec3 vector{0}; ///< direction and length as drawn: physical times stretch
+    float scalar = 0;
+};
+
+/// Round tubes around polylines, closed at both ends, with the vertices' scalars. They are round as drawn, with the
+/// axes stretched: `radius` is measured there.
+volume::SurfaceMesh tubes(const LineSet& lines, double radius, glm::dvec3 stretch);
+
+/// Arrows with a shaft, or cones, round as drawn.
+volume::SurfaceMesh arrows(std::span<const Glyph> glyphs, glm::dvec3 stretch);
+volume::SurfaceMesh cones(std::span<const Glyph> glyphs, glm::dvec3 stretch);
+
+/// The finest level of detail with few enough samples to follow a vector in.
+int flowLevel(const volume::BrickGrid& grid);
+
+/// A flow layer of a data set, coloured by the values of its channel. Nothing where the data has no such vector.
+/// Throws Error, Cancelled.
+std::shared_ptr<const Geometry> makeFlow(const volume::BrickSource& source, const FlowLayer& layer, int time,
+                                         glm::dvec3 stretch, const Progress& progress = {});
+
+} // namespace tessera::vis

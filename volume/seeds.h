@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <glm/vec3.hpp>
+#include <string_view>
+#include <vector>
+
+namespace tessera::volume {
+
+/// How points are spread in a box from corner to corner.
+enum class SeedShape {
+    Line,   ///< even distances along its diagonal
+    Plane,  ///< a grid on the middle plane across its thinnest direction
+    Sphere, ///< at random in the ellipsoid that fills it
+    Random, ///< at random everywhere in it
+};
+inline constexpr std::string_view kSeedShapeNames[] = {"line", "plane", "sphere", "random"};
+
+struct SeedSettings {
+    SeedShape shape = SeedShape::Random;
+    glm::dvec3 from{0}, to{1}; ///< corners, physical
+    glm::dvec3 proportions{1}; ///< lengths along the axes are multiplied by this to judge what is thin or even
+    int count = 50;            ///< of a plane: about so many
+    std::uint32_t random = 1;  ///< the same points for the same number, on every machine
+};
+
+/// Points where lines or glyphs begin. `weight`, 0..1, decides how likely a random point is kept, and 0 drops a point
+/// of a line or plane. Fewer than wanted where the weight leaves no room.
+std::vector<glm::dvec3> placeSeeds(const SeedSettings& settings, const std::function<double(glm::dvec3)>& weight);
+
+} // namespace tessera::volume
