@@ -43,8 +43,8 @@ protected:
         Scene scene;
         scene.camera = test::frontCamera(1.2);
         scene.showBox = false;
-        scene.render.ambient = 1;
-        scene.render.diffuse = scene.render.specular = 0;
+        scene.lighting.ambient = 1;
+        scene.lighting.diffuse = scene.lighting.specular = 0;
         scene.layers.push_back({"", true, layer}); // draws nothing by itself
         scene.geometry.push_back({.geometry = makeFlow(*source, layer, 0, scene.stretch),
                                   .color = layer.color,
