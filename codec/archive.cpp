@@ -3,6 +3,7 @@
 #include "codec/brick_access.h"
 #include "codec/brick_codec_v1.h"
 #include "codec/mapped_file.h"
+#include "volume/alternating_source.h"
 #include "volume/memory_source.h"
 #include "volume/parallel.h"
 
@@ -275,13 +276,16 @@ volume::BrickSamples Archive::read(const volume::BrickKey& key) const {
 }
 
 std::shared_ptr<const volume::BrickSource> openArchive(const std::string& path) {
-    return std::make_shared<const Archive>(path);
+    auto archive = std::make_shared<const Archive>(path);
+    if (archive->metadata().alternating) return volume::makeAlternatingSource(std::move(archive));
+    return archive;
 }
 
 volume::Field readField(const Archive& archive, int parameter, int component, int time) {
     const Archive::Impl& impl = *archive.impl_;
     const FrameRecord& frame = impl.frame(parameter, component, time);
     volume::Field field = volume::makeField(impl.metadata.info.lattice, impl.parameter(parameter).type);
+    if (impl.metadata.alternating && time % 2 != 0) field.lattice.origin += 0.5 * field.lattice.spacing;
     field.offset = frame.valueOffset;
     field.scale = frame.valueScale;
     volume::Mask mask(frame.mask < 0 ? 0 : field.count(), 1);

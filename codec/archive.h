@@ -50,11 +50,12 @@ private:
     std::unique_ptr<Impl> impl_;
 };
 
-/// Opens an archive as a source of bricks. Throws Error.
+/// Opens an archive as a source of bricks; one of D4* frames shows BCC fields (volume/alternating_source.h). Throws
+/// Error.
 std::shared_ptr<const volume::BrickSource> openArchive(const std::string& path);
 
 /// The stored samples of one component of a parameter at a time index, in their type: bit for bit what was packed when
-/// the archive is lossless. Throws Error when the data is damaged.
+/// the archive is lossless. An odd frame of D4* lies on its moved grid. Throws Error when the data is damaged.
 volume::Field readField(const Archive& archive, int parameter, int component, int time);
 
 /// Computes every checksum and decodes every brick at every level, on all cores. Throws Cancelled.

@@ -17,8 +17,10 @@ template <class Vector> json vectorJson(const Vector& v) {
     return {v.x, v.y, v.z};
 }
 
-json latticeJson(const volume::Lattice& lattice) {
-    return {{"kind", volume::kLatticeNames[std::size_t(lattice.kind)]},
+constexpr const char* kD4Name = "d4";
+
+json latticeJson(const volume::Lattice& lattice, bool alternating = false) {
+    return {{"kind", alternating ? kD4Name : volume::kLatticeNames[std::size_t(lattice.kind)]},
             {"size", vectorJson(lattice.size)},
             {"spacing", vectorJson(lattice.spacing)},
             {"origin", vectorJson(lattice.origin)}};
@@ -86,13 +88,16 @@ private:
     const std::string& file_;
 };
 
-volume::Lattice readLattice(const Node& node) {
+/// `alternating`: where to note that the frames form a D4* lattice; null: that is no lattice here.
+volume::Lattice readLattice(const Node& node, bool* alternating = nullptr) {
     volume::Lattice lattice;
     const std::string kind = node["kind"].text();
     if (kind == volume::kLatticeNames[0])
         lattice.kind = LatticeKind::CC;
     else if (kind == volume::kLatticeNames[1])
         lattice.kind = LatticeKind::BCC;
+    else if (alternating != nullptr && kind == kD4Name)
+        *alternating = true;
     else
         node["kind"].fail("unknown lattice '" + kind + "'");
     const auto size = node["size"].items(3);
@@ -104,6 +109,16 @@ volume::Lattice readLattice(const Node& node) {
     for (int axis = 0; axis < 3; ++axis)
         if (!(lattice.spacing[axis] > 0)) node["spacing"].fail("not above 0");
     return lattice;
+}
+
+std::vector<double> readTimes(const Node& node) {
+    std::vector<double> times;
+    for (const Node& time : node.items(1 << 20)) {
+        if (!times.empty() && !(time.number() > times.back())) time.fail("times do not increase");
+        times.push_back(time.number());
+    }
+    if (times.empty()) node.fail("no times");
+    return times;
 }
 
 volume::Parameter readParameter(const Node& node) {
@@ -132,11 +147,11 @@ std::string toJson(const Metadata& metadata) {
     const volume::DatasetInfo& info = metadata.info;
     json parameters = json::array();
     for (const volume::Parameter& parameter : info.parameters) parameters.push_back(parameterJson(parameter));
-    const json document = {
+    json document = {
         {"program", metadata.program},
         {"data",
          {{"name", info.name},
-          {"lattice", latticeJson(info.lattice)},
+          {"lattice", latticeJson(info.lattice, metadata.alternating)},
           {"bounds", {{"lo", vectorJson(info.bounds.lo)}, {"hi", vectorJson(info.bounds.hi)}}},
           {"lengthUnit", info.lengthUnit},
           {"parameters", std::move(parameters)},
@@ -148,6 +163,7 @@ std::string toJson(const Metadata& metadata) {
         {"source", latticeJson(metadata.source)},
         {"lossless", metadata.lossless},
         {"maxError", metadata.maxError}};
+    if (metadata.alternating) document["sourceTimes"] = metadata.sourceTimes;
     return document.dump(-1, ' ', false, json::error_handler_t::replace);
 }
 
@@ -164,17 +180,16 @@ Metadata metadataFromJson(std::string_view text, const std::string& file) {
     const Node data = root["data"];
     volume::DatasetInfo& info = metadata.info;
     info.name = data["name"].text();
-    info.lattice = readLattice(data["lattice"]);
+    info.lattice = readLattice(data["lattice"], &metadata.alternating);
     info.bounds = {data["bounds"]["lo"].vector(), data["bounds"]["hi"].vector()};
     info.lengthUnit = data["lengthUnit"].text();
     for (const Node& parameter : data["parameters"].items(4096)) info.parameters.push_back(readParameter(parameter));
     if (info.parameters.empty()) data["parameters"].fail("no parameters");
-    info.times.clear();
-    for (const Node& time : data["times"].items(1 << 20)) {
-        if (!info.times.empty() && !(time.number() > info.times.back())) time.fail("times do not increase");
-        info.times.push_back(time.number());
+    info.times = readTimes(data["times"]);
+    if (metadata.alternating) {
+        if (info.times.size() < 2) data["times"].fail("d4 needs two times");
+        metadata.sourceTimes = readTimes(root["sourceTimes"]);
     }
-    if (info.times.empty()) data["times"].fail("no times");
     info.timeUnit = data["timeUnit"].text();
     info.provenance = data["provenance"].text();
 

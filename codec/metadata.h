@@ -11,9 +11,13 @@ struct Metadata {
     volume::DatasetInfo info;
     volume::BrickGrid grid; ///< grid.lattice == info.lattice
     volume::Lattice source; ///< the grid the samples came from
-    bool lossless = true;   ///< every stored sample is exact
-    double maxError = 0;    ///< otherwise: bound on |error|, relative to a parameter's range
-    std::string program;    ///< that wrote it, with its version
+    /// Frames of a D4* lattice: those of odd time index are moved by half a cell in x, y and z; info.lattice is the
+    /// grid of the even ones.
+    bool alternating = false;
+    std::vector<double> sourceTimes; ///< of an alternating archive: the times the samples came from
+    bool lossless = true;            ///< every stored sample is exact
+    double maxError = 0;             ///< otherwise: bound on |error|, relative to a parameter's range
+    std::string program;             ///< that wrote it, with its version
     bool operator==(const Metadata&) const = default;
 };
 

@@ -3,6 +3,7 @@
 #include "codec/archive_writer.h"
 #include "codec/brick_access.h"
 #include "volume/resample.h"
+#include "volume/series_dataset.h"
 
 #include <algorithm>
 #include <bit>
@@ -162,7 +163,7 @@ PackOptions resolved(PackOptions options) {
     case PackPreset::None:
         break;
     case PackPreset::Lossless:
-        set(options.lattice, defaults.lattice, LatticeKind::CC);
+        set(options.lattice, defaults.lattice, StoredLattice::CC);
         break;
     case PackPreset::Visual:
         set(options.maxError, defaults.maxError, 1e-3);
@@ -181,24 +182,27 @@ PackOptions resolved(PackOptions options) {
     return options;
 }
 
-PackSummary pack(volume::Dataset& dataset, const PackOptions& asked, const std::string& path,
-                 const Progress& progress) {
+PackSummary pack(volume::Dataset& source, const PackOptions& asked, const std::string& path, const Progress& progress) {
     const PackOptions options = resolved(asked);
     PackSummary summary;
-    volume::DatasetInfo& info = dataset.info;
-    if (info.parameters.empty() || info.times.empty()) throw Error("there is nothing to pack");
+    if (source.info.parameters.empty() || source.info.times.empty()) throw Error("there is nothing to pack");
     if (!(options.maxError >= 0 && options.maxError < 1)) throw Error("the error bound must be from 0 to below 1");
     if (!(options.absError >= 0) || !(options.psnr >= 0)) throw Error("error bounds must not be negative");
     const bool exact = options.maxError == 0 && options.absError == 0 && options.psnr == 0;
     if (!options.lossless && exact) throw Error("without lossless an error bound is needed");
-    if (options.lattice == LatticeKind::CC && info.lattice.kind == LatticeKind::BCC)
+    if (options.lattice == StoredLattice::CC && source.info.lattice.kind == LatticeKind::BCC)
         throw Error("the data lies on BCC; it cannot be packed as CC");
-    const bool resamples = options.lattice == LatticeKind::BCC && info.lattice.kind == LatticeKind::CC;
 
     Metadata metadata;
+    metadata.source = source.info.lattice;
+    metadata.alternating = options.lattice == StoredLattice::D4;
+    if (metadata.alternating) metadata.sourceTimes = source.info.times;
+    volume::Dataset dataset = metadata.alternating ? volume::toD4(source, options.resample) : source;
+    volume::DatasetInfo& info = dataset.info;
+    const bool toBcc = options.lattice == StoredLattice::BCC && info.lattice.kind == LatticeKind::CC;
+    const bool resamples = toBcc || metadata.alternating;
     metadata.info = info;
-    metadata.source = info.lattice;
-    metadata.info.lattice = resamples ? volume::bccFor(info.lattice) : info.lattice;
+    metadata.info.lattice = toBcc ? volume::bccFor(info.lattice) : info.lattice;
     metadata.grid = gridFor(metadata.info.lattice, options);
     metadata.lossless = exact;
     metadata.program = "tessera";
@@ -242,11 +246,17 @@ PackSummary pack(volume::Dataset& dataset, const PackOptions& asked, const std::
                 frame.keepsAbsent = exact && !resamples;
                 for (std::size_t c = 0; c < fields.size(); ++c, ++done) {
                     Field field = std::move(fields[c]);
-                    summary.sourceSamples += field.count();
-                    summary.sourceBytes += field.samples.size();
-                    if (resamples) {
+                    if (!metadata.alternating) {
+                        summary.sourceSamples += field.count();
+                        summary.sourceBytes += field.samples.size();
+                    } else if (t < source.info.times.size()) { // as many times as the source has
+                        summary.sourceSamples += source.info.lattice.count();
+                        summary.sourceBytes += source.info.lattice.count() * volume::byteSize(field.type);
+                    }
+                    if (toBcc) {
                         Stopwatch resample(summary.resampleSeconds);
-                        field = volume::toBcc(field, parameter.categorical, Progress{{}, progress.stop});
+                        field =
+                            volume::toBcc(field, parameter.categorical, options.resample, Progress{{}, progress.stop});
                     }
                     summary.storedSamples += field.count();
                     frame.maxError = exact ? 0 : boundFor(options, parameter, field);
@@ -260,7 +270,7 @@ PackSummary pack(volume::Dataset& dataset, const PackOptions& asked, const std::
                 }
             }
         settleRanges(info, ranges);
-        metadata.info.parameters = info.parameters;
+        metadata.info.parameters = source.info.parameters = info.parameters;
         summary.archiveBytes = writer.finish(metadata);
     }
     progress.advance(1);

@@ -4,6 +4,7 @@
 #include "volume/dataset.h"
 #include "volume/describe.h"
 #include "volume/progress.h"
+#include "volume/resample.h"
 
 #include <optional>
 #include <string>
@@ -25,10 +26,15 @@ constexpr std::optional<Wavelet> waveletOf(WaveletChoice choice) {
 enum class PackPreset : std::uint8_t { None, Lossless, Visual, Small, Thesis };
 inline constexpr std::string_view kPackPresetNames[] = {"none", "lossless", "visual", "small", "thesis"};
 
+/// Where the stored samples lie.
+enum class StoredLattice : std::uint8_t { CC, BCC, D4 };
+inline constexpr std::string_view kStoredLatticeNames[] = {"cc", "bcc", "d4"};
+
 /// How to pack. Described once: widgets, JSON and command-line options come from here.
 struct PackOptions {
     PackPreset preset = PackPreset::None;
-    volume::LatticeKind lattice = volume::LatticeKind::BCC;
+    StoredLattice lattice = StoredLattice::BCC;
+    volume::ResampleOptions resample;
     bool lossless = true;
     double maxError = 0;
     double absError = 0;
@@ -48,8 +54,11 @@ struct PackOptions {
                                      .names = kPackPresetNames});
         visit(self.lattice, FieldInfo{.key = "lattice",
                                       .unit = "",
-                                      .doc = "Lattice of the stored samples: bcc keeps 70.7 % of them",
-                                      .names = volume::kLatticeNames});
+                                      .doc = "Lattice of the stored samples: bcc keeps 70.7 % of them, d4 (in space "
+                                             "and time, for two times or more) 50 %",
+                                      .names = kStoredLatticeNames});
+        visit(self.resample,
+              FieldInfo{.key = "resample", .unit = "", .doc = "How samples of another lattice are made"});
         visit(self.lossless,
               FieldInfo{.key = "lossless", .unit = "", .doc = "Store every sample of the lattice bit for bit"});
         visit(self.maxError, FieldInfo{.key = "maxError",
@@ -98,7 +107,8 @@ struct PackSummary {
     std::vector<std::string> notes; ///< what the user should know, one line each
 };
 
-/// Packs a data set into `path`. Streams: one time of one parameter and its working copies are in memory. Ranges, where
+/// Packs a data set into `path`. Streams: one time of one parameter and its working copies are in memory; with d4, as
+/// many times of every parameter as the filter spans. Ranges, where
 /// unknown, are gathered on the way (with `maxError`, in a pass before). Categorical parameters are resampled to the
 /// nearest and only predicted, so that every level holds labels. Nothing is left behind when it throws: Error for bad
 /// input or options, MachineError when the file cannot be written, Cancelled.

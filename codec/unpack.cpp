@@ -1,10 +1,13 @@
 #include "codec/unpack.h"
 
 #include "codec/brick_access.h"
+#include "volume/alternating_source.h"
 #include "volume/parallel.h"
 #include "volume/resample.h"
+#include "volume/series_dataset.h"
 
 #include <cmath>
+#include <map>
 
 namespace tessera::codec {
 
@@ -24,8 +27,8 @@ int channelOf(const volume::DatasetInfo& info, int parameter, int component) {
 
 /// A level of one sublattice as a field on a CC lattice of its own: coarse samples of a BCC lattice lie where fine ones
 /// of their sublattice lie, so the two sublattices of a level no longer form a BCC lattice.
-Field levelField(const Archive& archive, int channel, int time, int level, int sublattice) {
-    const volume::BrickGrid& grid = archive.grid();
+Field levelField(const volume::BrickSource& source, int channel, int time, int level, int sublattice) {
+    const volume::BrickGrid& grid = source.grid();
     const bool bcc = grid.lattice.kind == LatticeKind::BCC;
     const int step = bcc ? 2 : 1, scale = 1 << level;
     const glm::ivec3 whole = grid.levelSamples(level);
@@ -38,7 +41,7 @@ Field levelField(const Archive& archive, int channel, int time, int level, int s
     const auto values = field.as<float>();
     parallelFor(brickCount(grid), [&](std::size_t number) {
         const glm::ivec3 brick = brickIndex(grid, number);
-        const volume::BrickSamples samples = archive.read({channel, time, level, brick});
+        const volume::BrickSamples samples = source.read({channel, time, level, brick});
         const glm::ivec3 begin = grid.levelBegin(brick, level);
         for (int z = sublattice; z < samples.size.z; z += step)
             for (int y = 0; y < samples.size.y; ++y)
@@ -84,35 +87,77 @@ volume::Dataset storedDataset(std::shared_ptr<const Archive> archive) {
     return dataset;
 }
 
-volume::Dataset gridDataset(std::shared_ptr<const Archive> archive, int level) {
+volume::Series storedSeries(std::shared_ptr<const Archive> archive, int parameter, int component) {
+    if (archive->metadata().alternating)
+        return volume::d4SeriesOf(storedDataset(std::move(archive)), parameter, component);
+    return volume::seriesOf(gridDataset(std::move(archive), 0), parameter, component);
+}
+
+namespace {
+
+/// Level 0 of D4* frames at the times they came from.
+volume::Dataset steadyDataset(std::shared_ptr<const Archive> archive, const Lattice& target,
+                              volume::TimeFilter filter) {
+    volume::Dataset dataset;
+    dataset.info = archive->info();
+    dataset.info.lattice = target;
+    dataset.info.times = archive->metadata().sourceTimes;
+    constexpr std::size_t kFrames = 6; // cubic: four of one parity, and two of the other for a linear step
+    const auto series = std::make_shared<std::map<std::pair<int, int>, volume::Series>>();
+    for (int p = 0; p < int(dataset.info.parameters.size()); ++p)
+        for (int c = 0; c < dataset.info.parameters[std::size_t(p)].components; ++c)
+            (*series)[{p, c}] = volume::remembering(storedSeries(archive, p, c), kFrames);
+    dataset.load = [archive, series, target, filter](int parameter, int component, int time) {
+        const Metadata& metadata = archive->metadata();
+        const double frame = volume::frameAt(metadata.info.times, metadata.sourceTimes[std::size_t(time)]);
+        const volume::Parameter& about = metadata.info.parameters[std::size_t(parameter)];
+        const Field field = volume::atTime(series->at({parameter, component}), frame, filter);
+        const auto kernel = about.categorical ? volume::ResampleFilter::Nearest : volume::ResampleFilter::Cubic;
+        return volume::converted(volume::resample(field, target, kernel), about.type);
+    };
+    return dataset;
+}
+
+} // namespace
+
+volume::Dataset gridDataset(std::shared_ptr<const Archive> archive, int level, volume::TimeFilter filter) {
+    const Metadata& metadata = archive->metadata();
     const volume::BrickGrid& grid = archive->grid();
     if (level < 0 || level >= grid.levels)
         throw Error("there is no level " + std::to_string(level) + "; the coarsest is " +
                         std::to_string(grid.levels - 1),
                     archive->path());
-    const bool bcc = grid.lattice.kind == LatticeKind::BCC;
+    const bool bcc = grid.lattice.kind == LatticeKind::BCC || metadata.alternating;
     if (level == 0 && !bcc) return storedDataset(std::move(archive));
 
-    Lattice target = archive->metadata().source;
+    Lattice target = metadata.source;
     target.kind = LatticeKind::CC;
     target.size = levelSize(target.size, level);
     target.spacing *= double(1 << level);
+    if (level == 0 && metadata.alternating) return steadyDataset(std::move(archive), target, filter);
+    std::shared_ptr<const volume::BrickSource> source = archive;
+    if (metadata.alternating) source = volume::makeAlternatingSource(archive, filter);
     volume::Dataset dataset;
     dataset.info = archive->info();
     dataset.info.lattice = target;
+    if (metadata.alternating) dataset.info.times = metadata.sourceTimes;
     if (level > 0)
         for (volume::Parameter& parameter : dataset.info.parameters)
             if (!parameter.categorical) parameter.type = ScalarType::F32;
-    dataset.load = [archive, target, level, bcc](int parameter, int component, int time) {
+    dataset.load = [archive, source, target, level, bcc](int parameter, int component, int wanted) {
         const volume::DatasetInfo& info = archive->info();
+        // Coarse levels of D4* show the frame nearest in time.
+        const int time = archive->metadata().alternating
+                             ? info.nearestTime(archive->metadata().sourceTimes[std::size_t(wanted)])
+                             : wanted;
         const bool categorical = info.parameters[std::size_t(parameter)].categorical;
-        const auto filter = categorical ? volume::ResampleFilter::Nearest : volume::ResampleFilter::Cubic;
-        if (level == 0) return volume::resample(readField(*archive, parameter, component, time), target, filter);
+        const auto cubic = categorical ? volume::ResampleFilter::Nearest : volume::ResampleFilter::Cubic;
+        if (level == 0) return volume::resample(readField(*archive, parameter, component, time), target, cubic);
         const auto linear = categorical ? volume::ResampleFilter::Nearest : volume::ResampleFilter::Linear;
         const int channel = channelOf(info, parameter, component);
-        Field coarse = volume::resample(levelField(*archive, channel, time, level, 0), target, linear);
+        Field coarse = volume::resample(levelField(*source, channel, time, level, 0), target, linear);
         if (bcc && !categorical)
-            coarse = meanOf(coarse, volume::resample(levelField(*archive, channel, time, level, 1), target, linear));
+            coarse = meanOf(coarse, volume::resample(levelField(*source, channel, time, level, 1), target, linear));
         if (!categorical) return coarse;
         Field labels = volume::makeField(target, info.parameters[std::size_t(parameter)].type);
         labels.mask = coarse.mask;

@@ -2,6 +2,7 @@
 
 #include "codec/archive.h"
 #include "volume/dataset.h"
+#include "volume/series.h"
 
 #include <memory>
 
@@ -11,8 +12,14 @@ namespace tessera::codec {
 volume::Dataset storedDataset(std::shared_ptr<const Archive> archive);
 
 /// An archive as a data set on a CC grid, for other programs. Level 0 of a CC archive: the stored samples. Of a BCC
-/// archive: resampled to the grid it came from (labels nearest). Coarser levels: that grid with every 2^level-th
+/// archive: resampled to the grid it came from (labels nearest). Of a D4* archive: the same at the times it came from,
+/// between frames by `filter`. Coarser levels: that grid with every 2^level-th
 /// sample, as floats; values of coarse levels are those a reader draws. `absent` masks are kept.
-volume::Dataset gridDataset(std::shared_ptr<const Archive> archive, int level);
+volume::Dataset gridDataset(std::shared_ptr<const Archive> archive, int level,
+                            volume::TimeFilter filter = volume::TimeFilter::Cubic);
+
+/// One component of a parameter as a series on the lattice it is stored on (of a BCC archive: on gridDataset's), time
+/// counted in frames.
+volume::Series storedSeries(std::shared_ptr<const Archive> archive, int parameter, int component);
 
 } // namespace tessera::codec

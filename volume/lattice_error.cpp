@@ -2,6 +2,7 @@
 
 #include "volume/parallel.h"
 #include "volume/reconstruct.h"
+#include "volume/series.h"
 
 #include <algorithm>
 #include <cmath>
@@ -78,6 +79,49 @@ LatticeError latticeError(const std::function<double(glm::dvec3)>& signal, Latti
     out.rms = std::sqrt(out.rms / double(points));
     const glm::dvec3 size = box.size();
     out.samples = size.x * size.y * size.z / (spacing * spacing * spacing) * slices;
+    return out;
+}
+
+LatticeError latticeError4(const std::function<double(glm::dvec4)>& signal, LatticeKind4 kind, double spacing,
+                           bool prefilter, std::size_t points, unsigned seed) {
+    Series series;
+    series.lattice.kind = kind;
+    series.lattice.spacing = glm::dvec4(spacing);
+    series.lattice.size = glm::ivec4(int(std::ceil(1 / spacing)) + 1);
+    if (kind == LatticeKind4::D4) series.lattice.size.w = 2 * series.lattice.size.w;
+    series.frame = [&signal, lattice = series.lattice](int frame) {
+        Field field = makeField(lattice.grid(frame), ScalarType::F32);
+        const double time = lattice.time(frame);
+        const std::vector<double> values = everySample(
+            field.lattice, [&](glm::ivec3 at) { return signal(glm::dvec4(field.lattice.position(at), time)); });
+        std::copy(values.begin(), values.end(), field.as<float>().begin());
+        return std::make_shared<const Field>(std::move(field));
+    };
+    if (prefilter) series = prefiltered(series);
+    series = remembering(series, 4);
+
+    constexpr std::size_t kTimes = 64; // points share times, so that frames are blended once
+    std::mt19937_64 random(seed);
+    const auto uniform = [&] { return 0.25 + 0.5 * double(random() >> 11) * 0x1p-53; };
+    std::vector<double> times(kTimes);
+    for (double& time : times) time = uniform();
+    std::sort(times.begin(), times.end());
+    LatticeError out;
+    const std::size_t each = points / kTimes;
+    for (const double time : times) {
+        const Field field = atTime(series, time, TimeFilter::Linear);
+        const FieldSamples samples{field};
+        for (std::size_t i = 0; i < each; ++i) {
+            const glm::dvec3 p(uniform(), uniform(), uniform());
+            const LevelGeometry geometry{field.lattice.kind, 1, 0};
+            const Blend blend = linear(geometry, samples, field.lattice.toCells(p));
+            const double error = std::abs(blend.sum / blend.coverage - signal(glm::dvec4(p, time)));
+            out.rms += error * error;
+            out.max = std::max(out.max, error);
+        }
+    }
+    out.rms = std::sqrt(out.rms / double(each * kTimes));
+    out.samples = (kind == LatticeKind4::D4 ? 2 : 1) / std::pow(spacing, 4);
     return out;
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "volume/lattice.h"
+#include "volume/lattice4.h"
 
 #include <cstddef>
 #include <functional>
@@ -22,5 +22,11 @@ struct LatticeError {
 /// goes on beyond the box, so borders play no part. `spacing` is the cell edge (of one sublattice on BCC).
 LatticeError latticeError(const std::function<double(glm::dvec3)>& signal, LatticeKind kind, double spacing,
                           LatticeFilter filter, const Box& box, std::size_t points = 60000, unsigned seed = 1);
+
+/// The same in space and time, for a signal on the unit cube of space and time: reconstructed linearly between frames
+/// and samples, on D4* as the mean of both grids (volume/series.h), as they are or prefiltered. `spacing` is the cell
+/// edge of one grid along all four axes. Points lie a quarter inside the cube.
+LatticeError latticeError4(const std::function<double(glm::dvec4)>& signal, LatticeKind4 kind, double spacing,
+                           bool prefilter, std::size_t points = 60000, unsigned seed = 1);
 
 } // namespace tessera::volume

@@ -2,7 +2,8 @@
 
 #include "volume/parallel.h"
 #include "volume/reconstruct.h"
-#include "volume/resample_taps.h"
+#include "volume/slice_filter.h"
+#include "volume/spline_prefilter.h"
 
 #include <algorithm>
 #include <array>
@@ -17,118 +18,6 @@ namespace tessera::volume {
 
 namespace {
 
-/// Range of the present samples of a source, as stored. Results are clamped to it: kernels with negative weights
-/// overshoot at steps, and a concentration below 0 or a value outside the known range helps nobody.
-template <class T> struct StoredRange {
-    double lo = 0, hi = 0;
-
-    explicit StoredRange(const Field& source) {
-        const auto stored = source.as<T>();
-        T least = std::numeric_limits<T>::max(), most = std::numeric_limits<T>::lowest();
-        for (std::size_t i = 0; i < stored.size(); ++i) {
-            if (!source.present(i)) continue;
-            least = std::min(least, stored[i]);
-            most = std::max(most, stored[i]);
-        }
-        lo = double(least);
-        hi = std::max(lo, double(most)); // nothing present: never used
-    }
-    T store(double value) const {
-        if constexpr (std::is_floating_point_v<T>)
-            return static_cast<T>(std::clamp(value, lo, hi));
-        else
-            return static_cast<T>(std::nearbyint(std::clamp(value, lo, hi)));
-    }
-};
-
-/// One target slice of a CC source, filtered axis by axis. `absent` counts absent samples under non-zero weights.
-template <class T> class SliceFilter {
-public:
-    SliceFilter(const Field& source, const AxisTaps& taps, const StoredRange<T>& range)
-        : source_(source), taps_(taps), range_(range), stored_(source.as<T>()) {}
-
-    /// out, present: taps.x.size() * taps.y.size(), x fastest; present is null for a source without mask.
-    void run(const Tap& z, T* out, std::uint8_t* present) {
-        const auto nx = std::size_t(source_.lattice.size.x), ny = std::size_t(source_.lattice.size.y);
-        plane_.assign(nx * ny, 0.0);
-        if (present != nullptr) absent_.assign(nx * ny, 0);
-        for (std::size_t k = 0; k < 4; ++k) {
-            const double w = z.weight[k];
-            if (w == 0) continue;
-            const std::size_t first = std::size_t(z.index[k]) * nx * ny;
-            const T* from = &stored_[first];
-            if (present == nullptr) {
-                for (std::size_t i = 0; i < nx * ny; ++i) plane_[i] += w * double(from[i]);
-                continue;
-            }
-            const std::uint8_t* mask = &(*source_.mask)[first];
-            for (std::size_t i = 0; i < nx * ny; ++i) {
-                plane_[i] += mask[i] != 0 ? w * double(from[i]) : 0.0;
-                absent_[i] = std::uint8_t(absent_[i] | (mask[i] ^ 1));
-            }
-        }
-        row_.resize(nx);
-        rowAbsent_.resize(nx);
-        for (const Tap& y : taps_.y) {
-            filterRow(y, present != nullptr);
-            for (std::size_t i = 0; i < taps_.x.size(); ++i) {
-                const Tap& x = taps_.x[i];
-                double sum = 0;
-                std::uint8_t absent = 0;
-                for (std::size_t k = 0; k < 4; ++k) {
-                    const auto at = std::size_t(x.index[k]);
-                    sum += x.weight[k] * row_[at];
-                    if (present != nullptr && x.weight[k] != 0) absent |= rowAbsent_[at];
-                }
-                if (present == nullptr || absent == 0) {
-                    *out = range_.store(sum);
-                } else {
-                    *present = source_.present(source_.lattice.index({x.nearest, y.nearest, z.nearest})) ? 1 : 0;
-                    *out = *present != 0 ? range_.store(presentOnly(x, y, z)) : T{};
-                }
-                ++out;
-                if (present != nullptr) ++present;
-            }
-        }
-    }
-
-private:
-    void filterRow(const Tap& y, bool masked) {
-        const std::size_t nx = row_.size();
-        std::fill(row_.begin(), row_.end(), 0.0);
-        if (masked) std::fill(rowAbsent_.begin(), rowAbsent_.end(), std::uint8_t(0));
-        for (std::size_t k = 0; k < 4; ++k) {
-            const double w = y.weight[k];
-            if (w == 0) continue;
-            const double* from = &plane_[std::size_t(y.index[k]) * nx];
-            for (std::size_t i = 0; i < nx; ++i) row_[i] += w * from[i];
-            if (!masked) continue;
-            const std::uint8_t* absent = &absent_[std::size_t(y.index[k]) * nx];
-            for (std::size_t i = 0; i < nx; ++i) rowAbsent_[i] |= absent[i];
-        }
-    }
-
-    /// Trilinear over the present samples; the nearest one is present, so the weights do not vanish.
-    double presentOnly(const Tap& x, const Tap& y, const Tap& z) const {
-        Blend blend;
-        for (std::size_t corner = 0; corner < 8; ++corner) {
-            const std::size_t a = corner & 1, b = corner >> 1 & 1, c = corner >> 2;
-            const double w = (a ? x.fraction : 1 - x.fraction) * (b ? y.fraction : 1 - y.fraction) *
-                             (c ? z.fraction : 1 - z.fraction);
-            const std::size_t at = source_.lattice.index({x.cell[a], y.cell[b], z.cell[c]});
-            blend.add(w, {double(stored_[at]), source_.present(at)});
-        }
-        return blend.sum / blend.coverage;
-    }
-
-    const Field& source_;
-    const AxisTaps& taps_;
-    const StoredRange<T>& range_;
-    std::span<const T> stored_;
-    std::vector<double> plane_, row_;
-    std::vector<std::uint8_t> absent_, rowAbsent_;
-};
-
 /// Runs `slice(k)` for every slice of the target in parallel, with progress between groups of them.
 template <class Body> void forSlices(const Lattice& target, const Progress& progress, const Body& slice) {
     constexpr int kGroup = 32; // slices between two looks at the stop token
@@ -140,22 +29,34 @@ template <class Body> void forSlices(const Lattice& target, const Progress& prog
     progress.advance(1, "resample");
 }
 
-template <class T>
-void fromCc(const Field& source, Field& out, Mask* mask, ResampleFilter filter, const Progress& progress) {
+template <class T, class Value>
+void fromCc(const Field& source, std::span<const Value> values, Field& out, Mask* mask, const ResampleOptions& options,
+            const Progress& progress) {
     const Lattice& target = out.lattice;
     const int sublattices = target.kind == LatticeKind::BCC ? 2 : 1;
     std::vector<AxisTaps> taps;
-    for (int s = 0; s < sublattices; ++s) taps.push_back(tapsFor(source.lattice, target, s, filter));
+    for (int s = 0; s < sublattices; ++s) taps.push_back(tapsFor(source.lattice, target, s, options));
     const StoredRange<T> range(source);
     const std::size_t sliceSize = std::size_t(target.size.x) * std::size_t(target.size.y);
     T* const samples = out.as<T>().data();
     forSlices(target, progress, [&](int k) {
         const AxisTaps& own = taps[std::size_t(k % sublattices)];
         const std::size_t first = std::size_t(k) * sliceSize;
-        SliceFilter<T>(source, own, range)
+        SliceFilter<T, Value>(source, values, own, range)
             .run(own.z[std::size_t(k / sublattices)], samples + first,
                  mask != nullptr ? mask->data() + first : nullptr);
     });
+}
+
+template <class T>
+void fromCc(const Field& source, Field& out, Mask* mask, const ResampleOptions& options, const Progress& progress) {
+    const bool cubic = options.filter == ResampleFilter::BSpline3;
+    if (cubic || options.filter == ResampleFilter::BSpline5) {
+        const auto coefficients = splineCoefficients<SumOf<T>>(source, cubic ? 3 : 5);
+        fromCc<T>(source, std::span<const SumOf<T>>(coefficients), out, mask, options, progress);
+    } else {
+        fromCc<T>(source, source.as<T>(), out, mask, options, progress);
+    }
 }
 
 /// A gap of one absent CC sample can lie between two samples of a BCC sublattice, whose cells are sqrt 2 wide: both
@@ -167,7 +68,7 @@ template <class T> void keepGaps(const Field& source, Field& out, Mask& mask, co
     const glm::ivec3 steps[] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 2}}; // to the next sample of the same sublattice
     std::array<std::vector<Tap>, 3> taps[2];
     for (int s = 0; s < 2; ++s) {
-        AxisTaps all = tapsFor(source.lattice, target, s, ResampleFilter::Nearest);
+        AxisTaps all = tapsFor(source.lattice, target, s, {.filter = ResampleFilter::Nearest});
         taps[s] = {std::move(all.x), std::move(all.y), std::move(all.z)};
     }
     const auto removed = [&](glm::ivec3 at, int axis, int side) {
@@ -198,7 +99,7 @@ template <class T> void keepGaps(const Field& source, Field& out, Mask& mask, co
     });
 }
 
-/// Nearest sample of any source, copied.
+/// Nearest sample of a BCC source, copied.
 template <class T> void fromNearest(const Field& source, Field& out, Mask* mask, const Progress& progress) {
     const Lattice& target = out.lattice;
     T* const samples = out.as<T>().data();
@@ -306,7 +207,55 @@ template <class T> void fromBcc(const Field& source, Field& out, Mask* mask, con
 
 } // namespace
 
-Field resample(const Field& source, const Lattice& target, ResampleFilter filter, const Progress& progress) {
+Field sharpened(const Field& source, double amount) {
+    const Lattice& lattice = source.lattice;
+    Field out = source;
+    dispatch(source.type, [&]<class T>(T) {
+        const auto stored = source.as<T>();
+        const auto to = out.as<T>();
+        const StoredRange<T> range(source);
+        forSlices(lattice, {}, [&](int k) {
+            std::size_t index = lattice.index({0, 0, k});
+            for (int j = 0; j < lattice.size.y; ++j)
+                for (int i = 0; i < lattice.size.x; ++i, ++index) {
+                    if (!source.present(index)) continue;
+                    double difference = 0, count = 0;
+                    const auto add = [&](glm::ivec3 neighbour) {
+                        const std::size_t at = lattice.index(clampToLattice(lattice.kind, lattice.size, neighbour));
+                        if (!source.present(at)) return;
+                        difference += double(stored[at]) - double(stored[index]);
+                        count += 1;
+                    };
+                    if (lattice.kind == LatticeKind::BCC) {
+                        const int lo = (k & 1) - 1;
+                        for (const int z : {-1, 1})
+                            for (const int y : {lo, lo + 1})
+                                for (const int x : {lo, lo + 1}) add({i + x, j + y, k + z});
+                    } else {
+                        for (const int side : {-1, 1}) {
+                            add({i + side, j, k});
+                            add({i, j + side, k});
+                            add({i, j, k + side});
+                        }
+                    }
+                    if (count > 0) to[index] = range.store(double(stored[index]) - amount * difference / count);
+                }
+        });
+    });
+    return out;
+}
+
+Field resample(const Field& source, const Lattice& target, const ResampleOptions& options, const Progress& progress) {
+    if (options.order < kLeastOrder || options.order > kMostOrder)
+        throw Error("the order of a filter must be from " + std::to_string(kLeastOrder) + " to " +
+                    std::to_string(kMostOrder));
+    if (options.sharpen > 0) {
+        ResampleOptions plain = options;
+        plain.sharpen = 0;
+        if (options.sharpenWhen == SharpenWhen::Before)
+            return resample(sharpened(source, options.sharpen), target, plain, progress);
+        return sharpened(resample(source, target, plain, progress), options.sharpen);
+    }
     if (source.lattice == target) {
         progress.advance(1, "resample");
         return source;
@@ -317,10 +266,10 @@ Field resample(const Field& source, const Lattice& target, ResampleFilter filter
     std::shared_ptr<Mask> mask;
     if (source.mask) mask = std::make_shared<Mask>(target.count(), std::uint8_t(1));
     dispatch(source.type, [&]<class T>(T) {
-        if (filter == ResampleFilter::Nearest)
+        if (source.lattice.kind == LatticeKind::CC)
+            fromCc<T>(source, out, mask.get(), options, progress);
+        else if (options.filter == ResampleFilter::Nearest)
             fromNearest<T>(source, out, mask.get(), progress);
-        else if (source.lattice.kind == LatticeKind::CC)
-            fromCc<T>(source, out, mask.get(), filter, progress);
         else
             fromBcc<T>(source, out, mask.get(), progress);
         if (mask && source.lattice.kind == LatticeKind::CC && target.kind == LatticeKind::BCC)
@@ -331,10 +280,10 @@ Field resample(const Field& source, const Lattice& target, ResampleFilter filter
     return out;
 }
 
-Field toBcc(const Field& source, bool categorical, const Progress& progress) {
+Field toBcc(const Field& source, bool categorical, const ResampleOptions& options, const Progress& progress) {
     if (source.lattice.kind == LatticeKind::BCC) return source;
-    return resample(source, bccFor(source.lattice), categorical ? ResampleFilter::Nearest : ResampleFilter::Cubic,
-                    progress);
+    const ResampleOptions labels{.filter = ResampleFilter::Nearest};
+    return resample(source, bccFor(source.lattice), categorical ? labels : options, progress);
 }
 
 } // namespace tessera::volume

@@ -1,29 +1,84 @@
 #pragma once
 
+#include "volume/describe.h"
 #include "volume/field.h"
 #include "volume/progress.h"
 
+#include <cstdint>
+
 namespace tessera::volume {
 
-enum class ResampleFilter { Nearest, Linear, Cubic };
-inline constexpr std::string_view kResampleFilterNames[] = {"nearest", "linear", "cubic"};
+/// Kernels between samples of a CC grid. Cubic: Catmull-Rom. BSpline3, BSpline5: interpolating splines of degree 3 and
+/// 5, the samples prefiltered (volume/spline_prefilter.h). Lagrange: the polynomial through `order` + 1 samples around.
+/// Sinc: Lanczos-windowed over `order` samples on either side, weights normalised.
+enum class ResampleFilter : std::uint8_t { Nearest, Linear, Cubic, BSpline3, BSpline5, Lagrange, Sinc };
+inline constexpr std::string_view kResampleFilterNames[] = {"nearest",  "linear",   "cubic", "bspline3",
+                                                            "bspline5", "lagrange", "sinc"};
 
-/// Samples a field on another lattice. CC sources use nearest, trilinear or Catmull-Rom kernels; BCC sources nearest or
-/// the prefiltered average (both other filters; volume/reconstruct.h). Positions outside the box of the source samples
-/// take the value of its nearest face; inside, Catmull-Rom continues the data linearly over a face, so that linear
-/// functions are reproduced up to the last sample.
+/// When edges are enhanced: the source, or the result.
+enum class SharpenWhen : std::uint8_t { Before, After };
+inline constexpr std::string_view kSharpenWhenNames[] = {"before", "after"};
+
+/// Bounds of ResampleOptions::order.
+inline constexpr int kLeastOrder = 1, kMostOrder = 8;
+
+struct ResampleOptions {
+    ResampleFilter filter = ResampleFilter::Cubic;
+    int order = 5;
+    double sharpen = 0;
+    SharpenWhen sharpenWhen = SharpenWhen::Before;
+
+    bool operator==(const ResampleOptions&) const = default;
+    static void describe(auto& self, auto&& visit) {
+        visit(self.filter, FieldInfo{.key = "filter",
+                                     .unit = "",
+                                     .doc = "Kernel between the samples of a regular grid; labels take the nearest",
+                                     .names = kResampleFilterNames});
+        visit(self.order, FieldInfo{.key = "order",
+                                    .unit = "",
+                                    .doc = "Of lagrange: degree of the polynomial; of sinc: samples on either side",
+                                    .range = Range{kLeastOrder, kMostOrder}});
+        visit(self.sharpen, FieldInfo{.key = "sharpen",
+                                      .unit = "",
+                                      .doc = "Edge enhancement: share of the difference to the mean of the nearest "
+                                             "neighbours that is added; 0 = none",
+                                      .range = Range{0, 4}});
+        visit(self.sharpenWhen, FieldInfo{.key = "sharpenWhen",
+                                          .unit = "",
+                                          .doc = "Enhance edges of the source or of the result",
+                                          .names = kSharpenWhenNames});
+    }
+};
+
+/// Samples a field on another lattice. CC sources use the kernels above; BCC sources nearest or the prefiltered average
+/// (all other filters; volume/reconstruct.h). Positions outside the box of the source samples take the value of its
+/// nearest face; inside, kernels continue the data beyond a face by point reflection (sample -i is 2 * sample 0 -
+/// sample i), so that all but nearest and sinc reproduce linear functions up to the last sample; Lagrange moves its
+/// samples inside and reproduces its degree everywhere.
 ///
 /// Absent samples take no part: a target sample is absent where the nearest source sample is, and where the kernel
-/// meets an absent sample the weights of the present ones are normalised, for Catmull-Rom those of the trilinear kernel
-/// (a sum of its own, partly negative weights could vanish). From CC to BCC a gap of one absent sample along an axis
+/// meets an absent sample the weights of the present ones are normalised, for kernels wider than the trilinear one
+/// those of the trilinear kernel (a sum of its own, partly negative weights could vanish). B-splines treat every run of
+/// present samples along an axis as a signal of its own. From CC to BCC a gap of one absent sample along an axis
 /// stays a gap: where a sublattice would step over it, its sample nearer to the gap is absent too.
 ///
-/// Results stay within the range of the source's present samples, integer types round; a same-lattice target is the
-/// identity. Deterministic on any number of
-/// threads. Throws Cancelled.
-Field resample(const Field& source, const Lattice& target, ResampleFilter filter, const Progress& progress = {});
+/// Results stay within the range of the source's present samples, integer types round; a same-lattice target without
+/// edge enhancement is the identity. Deterministic on any number of threads. Throws Cancelled.
+Field resample(const Field& source, const Lattice& target, const ResampleOptions& options,
+               const Progress& progress = {});
+inline Field resample(const Field& source, const Lattice& target, ResampleFilter filter,
+                      const Progress& progress = {}) {
+    return resample(source, target, ResampleOptions{.filter = filter}, progress);
+}
 
-/// The field on bccFor(its lattice); nearest for categorical parameters, cubic for others.
-Field toBcc(const Field& source, bool categorical, const Progress& progress = {});
+/// Edge enhancement: adds `amount` times the difference of every present sample to the mean of its present nearest
+/// neighbours (6 on CC, 8 on BCC), within the range of the field.
+Field sharpened(const Field& source, double amount);
+
+/// The field on bccFor(its lattice); nearest for categorical parameters.
+Field toBcc(const Field& source, bool categorical, const ResampleOptions& options, const Progress& progress = {});
+inline Field toBcc(const Field& source, bool categorical, const Progress& progress = {}) {
+    return toBcc(source, categorical, ResampleOptions{}, progress);
+}
 
 } // namespace tessera::volume

@@ -59,7 +59,7 @@ void measure(const std::string& name, volume::Dataset dataset, BenchTable& table
     codec::Bytes unpacked(raw.size());
     const double zstdDecode = cpuSeconds([&] { (void)codec::decompress(packed, unpacked); });
 
-    for (const volume::LatticeKind lattice : {volume::LatticeKind::CC, volume::LatticeKind::BCC}) {
+    for (const codec::StoredLattice lattice : {codec::StoredLattice::CC, codec::StoredLattice::BCC}) {
         const Scratch file;
         codec::PackOptions options;
         options.lattice = lattice;
@@ -75,7 +75,7 @@ void measure(const std::string& name, volume::Dataset dataset, BenchTable& table
         });
         const double size = double(summary.archiveBytes);
         const double decode = stored / 1e6 / decodeSeconds, peer = bytes / 1e6 / zstdDecode;
-        table.rows.push_back({name, lattice == volume::LatticeKind::CC ? "CC" : "BCC", decimal(bytes / 1e6, 2),
+        table.rows.push_back({name, lattice == codec::StoredLattice::CC ? "CC" : "BCC", decimal(bytes / 1e6, 2),
                               decimal(size / 1e6, 3), decimal(bytes / size, 2),
                               decimal(bytes / double(packed.size()), 2), decimal(double(packed.size()) / size, 2),
                               decimal(bytes / 1e6 / packSeconds, 1), decimal(decode, 0), decimal(peer, 0),

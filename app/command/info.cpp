@@ -47,7 +47,7 @@ json archiveJson(const codec::Archive& archive) {
             {"bytes", archive.fileBytes()},
             {"storedBytes", stored},
             {"name", info.name},
-            {"lattice", volume::kLatticeNames[std::size_t(info.lattice.kind)]},
+            {"lattice", archive.metadata().alternating ? "d4" : volume::kLatticeNames[std::size_t(info.lattice.kind)]},
             {"size", vectorJson(info.lattice.size)},
             {"spacing", vectorJson(info.lattice.spacing)},
             {"origin", vectorJson(info.lattice.origin)},
@@ -79,7 +79,9 @@ void printArchive(const codec::Archive& archive) {
                     ? "lossless"
                     : ("error within " + numberText(archive.metadata().maxError) + " of range").c_str());
     std::printf("  samples    %s on %s, from a grid of %s\n", triple(info.lattice.size).c_str(),
-                info.lattice.kind == volume::LatticeKind::BCC ? "BCC" : "CC",
+                archive.metadata().alternating                  ? "D4* (each time)"
+                : info.lattice.kind == volume::LatticeKind::BCC ? "BCC"
+                                                                : "CC",
                 triple(archive.metadata().source.size).c_str());
     std::printf("  extent     %s x %s x %s %s\n", numberText(extent.x).c_str(), numberText(extent.y).c_str(),
                 numberText(extent.z).c_str(), info.lengthUnit.c_str());

@@ -40,7 +40,7 @@ Progress jsonProgress(const Progress& terminal) {
 volume::Dataset open(const Request& request, const Progress& progress) {
     if (request.inputs.size() == 1 && hasEnding(request.inputs[0], ".tsr")) {
         const auto archive = std::make_shared<const codec::Archive>(request.inputs[0]);
-        const bool asGrid = request.options.lattice == volume::LatticeKind::CC;
+        const bool asGrid = request.options.lattice != codec::StoredLattice::BCC || archive->metadata().alternating;
         return asGrid ? codec::gridDataset(archive, 0) : codec::storedDataset(archive);
     }
     const volume::ImportOptions options = recallOptions(request.inputs, request.import, progress);

@@ -2,6 +2,7 @@
 #include "app/command/command.h"
 #include "app/command/format.h"
 #include "volume/export.h"
+#include "volume/hyperplane.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -15,7 +16,9 @@ struct Request {
     std::string input, output;
     std::vector<std::string> parameters;
     std::vector<double> times;
+    std::vector<double> plane;
     int level = 0;
+    volume::TimeFilter timeFilter = volume::TimeFilter::Cubic;
 };
 
 volume::ExportSelection select(const Request& request, const volume::DatasetInfo& info) {
@@ -35,9 +38,43 @@ volume::ExportSelection select(const Request& request, const volume::DatasetInfo
     return selection;
 }
 
+/// Every scalar of the archive on the plane a x + b y + c z + d t + e = 0, t in the archive's times (evenly spaced).
+volume::Dataset planeDataset(const std::shared_ptr<const codec::Archive>& archive, const std::vector<double>& plane) {
+    const volume::DatasetInfo& stored = archive->info();
+    if (stored.times.size() < 2) throw Error("a plane through space and time needs two times or more", archive->path());
+    // A series counts frames: t = first + frame * step.
+    const double first = stored.times.front(), step = (stored.times.back() - first) / double(stored.times.size() - 1);
+    const volume::Hyperplane inFrames{{plane[0], plane[1], plane[2], plane[3] * step}, plane[4] + plane[3] * first};
+    const auto slice = [archive, inFrames](int parameter, int component) {
+        volume::Series series = codec::storedSeries(archive, parameter, component);
+        if (series.lattice.kind == volume::LatticeKind4::D4 && !series.categorical)
+            series = volume::prefiltered(series);
+        return volume::sliceBy(series, inFrames);
+    };
+    const volume::HyperplaneSlice shape = slice(0, 0);
+    volume::Dataset dataset;
+    dataset.info = stored;
+    dataset.info.lattice = shape.field.lattice;
+    dataset.info.times = {0};
+    for (int i = 0; i < 3; ++i) // frames become times again
+        if (shape.axes[std::size_t(i)] == 3) {
+            dataset.info.lattice.origin[i] = first + step * shape.field.lattice.origin[i];
+            dataset.info.lattice.spacing[i] *= step;
+        }
+    for (volume::Parameter& parameter : dataset.info.parameters) parameter.type = volume::ScalarType::F32;
+    dataset.load = [slice, lattice = dataset.info.lattice](int parameter, int component, int) {
+        volume::Field field = slice(parameter, component).field;
+        field.lattice = lattice;
+        return field;
+    };
+    return dataset;
+}
+
 void run(const Request& request) {
     const auto archive = std::make_shared<const codec::Archive>(request.input);
-    const volume::Dataset dataset = codec::gridDataset(archive, request.level);
+    const volume::Dataset dataset = request.plane.empty()
+                                        ? codec::gridDataset(archive, request.level, request.timeFilter)
+                                        : planeDataset(archive, request.plane);
     const Progress progress = terminalProgress("unpack");
     for (const std::string& written :
          volume::exportDataset(dataset, select(request, dataset.info), request.output, progress))
@@ -57,6 +94,22 @@ void addUnpackCommand(CLI::App& app) {
         ->delimiter(',');
     command->add_option("-l,--level", request->level, "Level of detail: 0 is full resolution")
         ->check(CLI::NonNegativeNumber);
+    command
+        ->add_option(
+            "--plane", request->plane,
+            "A,B,C,D,E: the slice a x + b y + c z + d t + e = 0 through space and time instead, as a grid over "
+            "the other three axes than the steepest")
+        ->delimiter(',')
+        ->expected(5);
+    command
+        ->add_option_function<std::string>(
+            "--time-filter",
+            [request](const std::string& name) {
+                request->timeFilter = name == "linear" ? volume::TimeFilter::Linear : volume::TimeFilter::Cubic;
+            },
+            "Between the frames of a d4 archive: linear or cubic")
+        ->check(CLI::IsMember({"linear", "cubic"}))
+        ->default_str("cubic");
     command->callback([request] { run(*request); });
 }
 

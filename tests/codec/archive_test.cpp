@@ -50,7 +50,7 @@ TEST(Archive, GivesBackEverySampleBitForBit) {
         for (const WaveletChoice wavelet : {WaveletChoice::W11, WaveletChoice::W22, WaveletChoice::W46}) {
             volume::Dataset made = makeDataset(size, everyKind(), 2);
             PackOptions options;
-            options.lattice = LatticeKind::CC;
+            options.lattice = StoredLattice::CC;
             options.brickSize = 16;
             options.wavelet = wavelet;
             const std::string path = folder / "a.tsr";
@@ -179,7 +179,7 @@ TEST(Archive, ErrorBoundHoldsInFloatForEveryPresentSample) {
     volume::Dataset made = makeDataset({33, 20, 21}, parameters, 2);
     for (const double bound : {1e-1, 1e-3, 1e-5, 1e-7, 1e-9}) {
         PackOptions options;
-        options.lattice = LatticeKind::CC;
+        options.lattice = StoredLattice::CC;
         options.maxError = bound;
         pack(made, options, folder / "a.tsr");
         const Archive archive(folder / "a.tsr");

@@ -44,7 +44,7 @@ TEST(Corpus, StoredArchivesStillDecode) {
 /// Not a check: writes the seeds of fuzz_brick and fuzz_archive when the format changes
 /// (--gtest_also_run_disabled_tests).
 TEST(Corpus, DISABLED_WriteSeeds) {
-    for (const LatticeKind lattice : {LatticeKind::CC, LatticeKind::BCC})
+    for (const StoredLattice lattice : {StoredLattice::CC, StoredLattice::BCC})
         for (const double maxError : {0.0, 1e-2}) {
             volume::Dataset made = corpusDataset();
             PackOptions options;
@@ -52,7 +52,7 @@ TEST(Corpus, DISABLED_WriteSeeds) {
             options.lattice = lattice;
             options.maxError = maxError;
             pack(made, options,
-                 corpus() + "fuzz_archive/" + std::string(volume::kLatticeNames[std::size_t(lattice)]) +
+                 corpus() + "fuzz_archive/" + std::string(kStoredLatticeNames[std::size_t(lattice)]) +
                      (maxError > 0 ? "-bounded-2.tsr" : "-exact-2.tsr"));
         }
     Compressor compressor(3);

@@ -37,7 +37,7 @@ volume::Dataset twoTimes(Texture texture) {
 
 PackOptions gridOptions() {
     PackOptions options;
-    options.lattice = LatticeKind::CC;
+    options.lattice = StoredLattice::CC;
     options.brickSize = 16;
     return options;
 }
@@ -98,7 +98,7 @@ TEST(PackPresets, SetWhatWasLeftAlone) {
         return options;
     };
     EXPECT_EQ(resolved(with(PackPreset::None)), PackOptions());
-    EXPECT_EQ(resolved(with(PackPreset::Lossless)).lattice, LatticeKind::CC);
+    EXPECT_EQ(resolved(with(PackPreset::Lossless)).lattice, StoredLattice::CC);
     EXPECT_EQ(resolved(with(PackPreset::Visual)).maxError, 1e-3);
     EXPECT_EQ(resolved(with(PackPreset::Small)).maxError, 1e-2);
     EXPECT_EQ(resolved(with(PackPreset::Thesis)).brickSize, 16);

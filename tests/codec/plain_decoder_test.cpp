@@ -32,7 +32,7 @@ TEST(PlainDecoder, AgreesOnEveryBrickAtEveryLevel) {
         PackOptions options;
         options.wavelet = static_cast<WaveletChoice>(choice);
         options.brickSize = trial % 3 == 0 ? 16 : 8;
-        options.lattice = trial % 2 == 0 ? volume::LatticeKind::CC : volume::LatticeKind::BCC;
+        options.lattice = trial % 2 == 0 ? StoredLattice::CC : StoredLattice::BCC;
         options.maxError = trial % 4 >= 2 ? 1e-3 : 0;
         ++trial;
         const std::string path = folder / "a.tsr";
@@ -74,7 +74,7 @@ TEST(PlainDecoder, GivesBackStoredNumbersOfAbsentSamplesToo) {
     const TemporaryFolder folder;
     volume::Dataset made = makeDataset({9, 8, 7}, {{"a", ScalarType::F32, 1, Texture::Nasty, true, false}}, 1);
     PackOptions options;
-    options.lattice = volume::LatticeKind::CC;
+    options.lattice = StoredLattice::CC;
     options.brickSize = 16;
     pack(made, options, folder / "a.tsr");
     const volume::Field field = made.load(0, 0, 0);

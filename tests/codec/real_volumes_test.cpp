@@ -40,7 +40,7 @@ TEST(RealVolumes, ComeBackBitForBitAndWithinTheBound) {
         SCOPED_TRACE(file);
         volume::Dataset dataset = volume::openFiles({file}, {});
         PackOptions options;
-        options.lattice = volume::LatticeKind::CC;
+        options.lattice = StoredLattice::CC;
         pack(dataset, options, folder / "exact.tsr");
         const Archive exact(folder / "exact.tsr");
         forFrames(dataset.info, [&](int p, int c, int t) {
