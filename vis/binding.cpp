@@ -53,8 +53,11 @@ bool Renderer::Impl::bind(ViewTarget& target, const Scene& scene, const FrameReq
     const int wantedTime = info.nearestTime(scene.time);
     const auto keysAt = [&](int time) {
         std::vector<ChannelKey> keys;
-        for (const BoundField& field : plan.fields)
-            keys.push_back({field.channel, time, prefiltered && !field.categorical && !field.raw});
+        for (const BoundField& field : plan.fields) {
+            const bool shifted = field.timeShift != 0 && !info.times.empty();
+            const int own = shifted ? info.nearestTime(info.times[std::size_t(time)] + field.timeShift) : time;
+            keys.push_back({field.channel, own, prefiltered && !field.categorical && !field.raw});
+        }
         return keys;
     };
     const std::vector<ChannelKey> wanted = keysAt(wantedTime);

@@ -3,6 +3,7 @@
 #include "vis/model/jitter.h"
 #include "vis/model/proxy.h"
 #include "vis/technique/box_lines.h"
+#include "vis/technique/lens_uniforms.h"
 #include "vis/technique/ray_tables.h"
 #include "vis/technique/ray_uniforms.h"
 #include "volume/error.h"
@@ -31,7 +32,7 @@ ProgramRecipe Renderer::Impl::prepare(ViewTarget& target, const Scene& scene, co
     if (target.tablesFor && target.tablesRevision == residency.revision() && target.tablesFor->layers == scene.layers &&
         target.tablesFor->transfer == scene.transfer && target.tablesFor->render.filter == scene.render.filter &&
         target.tablesTime == target.lastTime)
-        return rayRecipe(plan, scene, source->grid(), target.skip);
+        return rayRecipe(plan, scene, source->grid(), target.skip && !lensesBend(scene));
     target.tablesFor = scene;
     target.tablesRevision = residency.revision();
     target.tablesTime = target.lastTime;
@@ -61,7 +62,7 @@ ProgramRecipe Renderer::Impl::prepare(ViewTarget& target, const Scene& scene, co
                             GL_RED_INTEGER, GL_UNSIGNED_BYTE, blocks->distance.data());
         glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
     }
-    return rayRecipe(plan, scene, source->grid(), target.skip);
+    return rayRecipe(plan, scene, source->grid(), target.skip && !lensesBend(scene));
 }
 
 /// Rasterises the geometry for a picture of this size, unless that is what the target has.
@@ -184,6 +185,8 @@ void Renderer::Impl::sayLimits(const Scene& scene) {
         now = "the first " + std::to_string(kMaxLights) + " lights are used; light through maps takes any number";
     if (enabled(scene.clips) > kMaxClips)
         now += (now.empty() ? "" : "; ") + ("the first " + std::to_string(kMaxClips)) + " clips are used";
+    if (enabled(scene.lenses) > kMaxLenses)
+        now += (now.empty() ? "" : "; ") + ("the first " + std::to_string(kMaxLenses)) + " lenses are used";
     if (now != limits && !now.empty()) messages.push_back(now);
     limits = now;
 }

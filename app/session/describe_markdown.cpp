@@ -56,8 +56,10 @@ std::string parameterReference() {
     out += markdownSection<vis::LassoRegion>("Region of type `lasso`", "A polygon in two parameters.");
     out += markdownSection<vis::SphereRegion>("Region of type `sphere`", "A ball in space.");
     out += markdownSection<vis::BoxRegion>("Region of type `box`", "A box in space.");
+    out += markdownSection<vis::LensRegion>("Region of type `lens`", "What lies in a magic lens.");
     out += markdownSection<vis::Light>("lighting.lights", "One light.");
     out += markdownSection<vis::Clip>("clips", "One plane or body that cuts the picture.");
+    out += markdownSection<vis::Lens>("lenses", "One magic lens; layers belong to it by its name.");
     out += markdownSection<VolumeView>("View of type `volume`", "The 3D view.");
     out += markdownSection<SlicesView>("View of type `slices`", "Three orthogonal slices.");
     out += markdownSection<ScatterMatrixView>("View of type `scatterMatrix`", "Every pair of parameters.");

@@ -66,6 +66,7 @@ vis::Scene sceneOf(const Session& session) {
     scene.render = session.render;
     scene.lighting = session.lighting;
     scene.clips = session.clips;
+    scene.lenses = session.lenses;
     scene.tone = session.tone;
     scene.stretch = session.stretch;
     scene.cursor = session.cursor;
@@ -78,6 +79,11 @@ vis::Scene sceneOf(const Session& session) {
         scene.boxColor = glm::vec3(0.5f);
     }
     return scene;
+}
+
+vis::LensSpace lensSpace(const Session& session, const volume::DatasetInfo& info) {
+    const vis::WorldFrame frame = vis::worldFrame(info.bounds, session.stretch);
+    return {vis::placeLenses(session.lenses, frame, session.camera, session.cursor), frame};
 }
 
 std::vector<std::string> paneKeys(const Session& session) {

@@ -101,6 +101,7 @@ struct Session {
     vis::RenderParams render;
     vis::Lighting lighting;
     std::vector<vis::Clip> clips;
+    std::vector<vis::Lens> lenses; ///< a later one lies over those before it
     vis::Tone tone;
     Animation animation;
     Appearance appearance;
@@ -127,6 +128,7 @@ struct Session {
         visit(self.render, FieldInfo{.key = "render", .unit = "", .doc = "Settings of the ray caster"});
         visit(self.lighting, FieldInfo{.key = "lighting", .unit = "", .doc = "Lights and surfaces"});
         visit(self.clips, FieldInfo{.key = "clips", .unit = "", .doc = "Planes and bodies that cut the picture"});
+        visit(self.lenses, FieldInfo{.key = "lenses", .unit = "", .doc = "Magic lenses, the last one on top"});
         visit(self.tone, FieldInfo{.key = "tone", .unit = "", .doc = "Bright light brought into range"});
         visit(self.animation, FieldInfo{.key = "animation", .unit = "", .doc = "Playing through time"});
         visit(self.appearance, FieldInfo{.key = "appearance", .unit = "", .doc = "Looks of the window"});
@@ -140,6 +142,9 @@ vis::Scene sceneOf(const Session& session);
 
 /// The name of the first parameter with three components, "" if there is none.
 std::string firstVector(const volume::DatasetInfo& info);
+
+/// The session's lenses in the space of its data.
+vis::LensSpace lensSpace(const Session& session, const volume::DatasetInfo& info);
 
 /// The pane keys of a session, and the name a reader sees for one: "Volume", "Volume 2", ...
 std::vector<std::string> paneKeys(const Session& session);

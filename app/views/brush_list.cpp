@@ -39,6 +39,8 @@ std::string regionText(const volume::DatasetInfo& info, const vis::Region& regio
     if (const auto* lasso = std::get_if<vis::LassoRegion>(&region))
         return "lasso in " + lasso->x + " \u00d7 " + lasso->y + ", " + std::to_string(lasso->points.size()) +
                " corners";
+    if (const auto* lens = std::get_if<vis::LensRegion>(&region))
+        return lens->lens.empty() ? "all lenses that mark" : "inside the lens " + lens->lens;
     const bool box = std::holds_alternative<vis::BoxRegion>(region);
     const glm::dvec3 radius =
         box ? std::get<vis::BoxRegion>(region).radius : std::get<vis::SphereRegion>(region).radius;

@@ -58,6 +58,7 @@ void drawSlice(ViewContext& context, vis::ViewTargetPtr& target, const std::stri
     layer.channel = channel;
     layer.orientation = static_cast<vis::SliceOrientation>(axes.normal);
     scene.layers = {vis::Layer{"slice", true, layer}};
+    scene.lenses.clear();
     scene.cursor = info.bounds.center();
     scene.cursor[axes.normal] = position;
     if (!target) target = context.renderer.makeTarget();

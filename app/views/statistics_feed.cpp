@@ -73,6 +73,10 @@ StatisticsWish makeWish(const Session& session, const volume::DatasetInfo& info,
         }
         wish.selection.brushes.push_back(std::move(brush));
     }
+    const bool marked = std::any_of(session.lenses.begin(), session.lenses.end(),
+                                    [](const vis::Lens& lens) { return lens.enabled && lens.marks; });
+    if (marked) wish.selection.brushes.push_back({.name = "", .color = {}, .region = vis::LensRegion{}});
+    if (vis::selectsLens(wish.selection)) wish.lenses = lensSpace(session, info);
     return wish;
 }
 
@@ -86,7 +90,7 @@ volume::StatisticsQuery makeQuery(const StatisticsWish& wish, const volume::Data
     query.meanOf = wish.meanOf;
     query.level = level;
     if (!wish.selection.active()) return query;
-    const vis::DoiFunction doi(wish.selection);
+    const vis::DoiFunction doi(wish.selection, wish.lenses);
     std::vector<int> positions; // of its channels in the values, -1: unknown, absent everywhere
     for (const std::string& name : doi.channels()) {
         const auto channel = info.findChannel(name);

@@ -19,10 +19,11 @@ struct StatisticsWish {
     int time = 0, bins = 96;
     int meanOf = -1;          ///< position in `channels`: see StatisticsQuery
     vis::Selection selection; ///< brushes and how they combine; the rest plays no part
+    vis::LensSpace lenses;    ///< of the brushes that are lenses; empty if none is
     bool operator==(const StatisticsWish&) const = default;
 };
 
-/// A wish for these channels and their pairs under the session's time and brushes. Channels that only the brushes name
+/// A wish for these channels and their pairs under the session's time, brushes and lenses that mark. Channels that only the brushes name
 /// are added after the shown ones.
 StatisticsWish makeWish(const Session& session, const volume::DatasetInfo& info, const std::vector<int>& channels,
                         const std::vector<Range>& ranges, int bins, bool pairs);

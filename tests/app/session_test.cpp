@@ -76,6 +76,7 @@ TEST_F(SessionFileTest, KeepsBrushesOfEveryShape) {
         vis::LassoRegion{"O2", "T", {{0, 0}, {1, 0.1}, {0.3, 1e-7}}, 0.5},
         vis::SphereRegion{{1, 2, 3}, {4, 5, 6}, 1},
         vis::BoxRegion{{-1, -2, -3}, {1e-3, 2e-3, 3e-3}, 0},
+        vis::LensRegion{"lens 2"},
     };
     ASSERT_EQ(regions.size(), std::variant_size_v<vis::Region>);
     brushes.clear();

@@ -2,6 +2,7 @@
 
 #include "vis/model/ray_setup.h"
 #include "vis/technique/clip_uniforms.h"
+#include "vis/technique/lens_uniforms.h"
 #include "vis/technique/light_uniforms.h"
 
 #include <algorithm>
@@ -159,6 +160,7 @@ const Program& GeometryPass::program(const Scene& scene, bool lines) {
                          {{"LINES", lines ? "1" : "0"}}};
     addLighting(recipe, scene);
     addClipping(recipe, scene);
+    addLenses(recipe, scene);
     Program& made = programs_[recipe.key()];
     if (!made) made = makeProgram(recipe);
     return made;
@@ -187,10 +189,12 @@ void GeometryPass::draw(GeometryBuffer& buffer, const Scene& scene, const volume
         program->set("halfSize", glm::vec3(glm::max(frame.halfSize, glm::dvec3(1e-5))));
         setLightUniforms(*program, scene, frame, lightUnit);
         setClipUniforms(*program, scene, frame);
+        setLensUniforms(*program, scene, frame);
         program->set("pixels", glm::vec2(size));
         program->set("colors", kTableUnit);
         program->set("former", kFormerUnit);
     }
+    const std::vector<PlacedLens> lenses = placeLenses(scene, frame);
     glBindTextureUnit(kTableUnit, table_.name());
     glBindTextureUnit(kFormerUnit, buffer.distance.name());
     glDisable(GL_BLEND);
@@ -208,7 +212,8 @@ void GeometryPass::draw(GeometryBuffer& buffer, const Scene& scene, const volume
         glClearNamedFramebufferfv(framebuffer, GL_DEPTH, 0, &far);
         for (std::size_t i = 0; i < scene.geometry.size(); ++i) {
             const GeometryLayer& layer = scene.geometry[i];
-            if (!layer.geometry || layer.opacity <= 0) continue;
+            const std::optional<int> lens = lensOf(lenses, layer.lens);
+            if (!layer.geometry || layer.opacity <= 0 || !lens) continue;
             const Uploaded& up = upload(layer.geometry);
             for (const Program* program : {mesh, lineProgram}) {
                 const bool lines = program == lineProgram;
@@ -218,6 +223,7 @@ void GeometryPass::draw(GeometryBuffer& buffer, const Scene& scene, const volume
                 program->set("map", maps_[i]);
                 program->set("plain", glm::vec3(linearFromSrgb(glm::dvec3(layer.color))));
                 program->set("opacity", layer.opacity);
+                program->set("lens", *lens);
                 program->set("lineWidth", layer.lineWidth);
                 glUseProgram(program->name());
                 glBindVertexArray(lines ? up.lines.name() : up.mesh.name());

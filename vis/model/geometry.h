@@ -41,6 +41,7 @@ struct GeometryLayer {
     std::string channel = {}; ///< its transfer function colours the scalars; "" = `color`
     float opacity = 1;
     float lineWidth = 2; ///< pixels
+    std::string lens = {}; ///< name of the lens that it is drawn in alone; "" = everywhere
     bool operator==(const GeometryLayer&) const = default;
 };
 
@@ -50,7 +51,8 @@ inline constexpr int kPeels = 4;
 inline int peelsOf(const std::vector<GeometryLayer>& layers) {
     int peels = 0;
     for (const GeometryLayer& layer : layers)
-        if (layer.geometry && layer.opacity > 0) peels = std::max(peels, layer.opacity < 1 ? kPeels : 1);
+        if (layer.geometry && layer.opacity > 0)
+            peels = std::max(peels, layer.opacity < 1 || !layer.lens.empty() ? kPeels : 1);
     return peels;
 }
 

@@ -135,11 +135,21 @@ struct Layer {
     std::string name;
     bool visible = true;
     Technique technique;
+    std::string lens = {};     ///< name of the lens that it is drawn in alone; "" = everywhere
+    std::string transfer = {}; ///< name of a transfer function of its own, "" = that of its channel
+    double timeShift = 0;      ///< seconds, from the time of the scene to the one it shows
     bool operator==(const Layer&) const = default;
     static void describe(auto& self, auto&& visit) {
         visit(self.name, FieldInfo{.key = "name", .unit = "", .doc = "Name of the layer"});
         visit(self.visible, FieldInfo{.key = "visible", .unit = "", .doc = "Show the layer"});
         visit(self.technique, FieldInfo{.key = "technique", .unit = "", .doc = "What the layer draws"});
+        visit(self.lens,
+              FieldInfo{.key = "lens", .unit = "", .doc = "Lens inside which alone it is drawn", .refersTo = "lens"});
+        visit(self.transfer, FieldInfo{.key = "transfer",
+                                       .unit = "",
+                                       .doc = "Name of its own transfer function; none: that of its parameter"});
+        visit(self.timeShift,
+              FieldInfo{.key = "timeShift", .unit = "s", .doc = "How much later than the others the layer is shown"});
     }
 };
 

@@ -4,6 +4,7 @@
 #include "vis/model/clipping.h"
 #include "vis/model/geometry.h"
 #include "vis/model/layers.h"
+#include "vis/model/lens.h"
 #include "vis/model/lighting.h"
 #include "vis/model/limits.h"
 #include "vis/model/selection.h"
@@ -77,12 +78,13 @@ struct RenderParams {
 struct Scene {
     Camera camera;
     std::vector<Layer> layers;                        ///< drawn first to last; volume-like ones share one ray loop
-    std::map<std::string, TransferFunction> transfer; ///< by channel name; a channel without one uses the default
+    std::map<std::string, TransferFunction> transfer; ///< by channel, or Layer::transfer; others use the default
     Selection selection;
     RenderParams render;
     std::vector<GeometryLayer> geometry; ///< meshes and lines, made outside of the renderer
     Lighting lighting;
     std::vector<Clip> clips; ///< what is drawn lies on the kept side of all
+    std::vector<Lens> lenses;
     Tone tone;
     glm::dvec3 stretch{1};
     glm::dvec3 cursor{0}; ///< physical
@@ -93,7 +95,10 @@ struct Scene {
     bool operator==(const Scene&) const = default;
 };
 
-/// The transfer function of a channel in a scene, the default one if it has none.
-const TransferFunction& transferFor(const Scene& scene, const std::string& channel);
+/// The transfer function of a channel (or of a layer with one of its own) in a scene, the default one if it has none.
+const TransferFunction& transferFor(const Scene& scene, const std::string& name);
+
+/// The lenses of a scene.
+std::vector<PlacedLens> placeLenses(const Scene& scene, const WorldFrame& frame);
 
 } // namespace tessera::vis

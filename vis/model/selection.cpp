@@ -66,7 +66,14 @@ std::vector<std::string> selectedChannels(const Selection& selection) {
 bool selectsSpace(const Selection& selection) {
     return std::any_of(selection.brushes.begin(), selection.brushes.end(), [](const Brush& brush) {
         return brush.enabled &&
-               (std::holds_alternative<SphereRegion>(brush.region) || std::holds_alternative<BoxRegion>(brush.region));
+               (std::holds_alternative<SphereRegion>(brush.region) || std::holds_alternative<BoxRegion>(brush.region) ||
+                std::holds_alternative<LensRegion>(brush.region));
+    });
+}
+
+bool selectsLens(const Selection& selection) {
+    return std::any_of(selection.brushes.begin(), selection.brushes.end(), [](const Brush& brush) {
+        return brush.enabled && std::holds_alternative<LensRegion>(brush.region);
     });
 }
 
@@ -131,7 +138,8 @@ double LassoTable::at(double x, double y) const {
                     glm::mix(double(entry[kLassoTable]), double(entry[kLassoTable + 1]), fx), fy);
 }
 
-DoiFunction::DoiFunction(const Selection& selection) : channels_(selectedChannels(selection)) {
+DoiFunction::DoiFunction(const Selection& selection, LensSpace space)
+    : channels_(selectedChannels(selection)), space_(std::move(space)) {
     const auto place = [&](const std::string& name) {
         return int(std::find(channels_.begin(), channels_.end(), name) - channels_.begin());
     };
@@ -165,6 +173,13 @@ double DoiFunction::regionDoi(const Part& part, std::span<const double> values, 
     if (std::holds_alternative<LassoRegion>(part.brush.region)) return part.lasso.at(value(0), value(1));
     if (const auto* sphere = std::get_if<SphereRegion>(&part.brush.region))
         return radialDoi(glm::length((position - sphere->center) / sphere->radius), sphere->soft);
+    if (const auto* lens = std::get_if<LensRegion>(&part.brush.region)) {
+        double most = 0;
+        for (const PlacedLens& one : space_.lenses)
+            if (lens->lens.empty() ? one.marks : one.name == lens->lens)
+                most = std::max(most, one.weight(space_.frame.toWorld(position)));
+        return most;
+    }
     const auto& box = std::get<BoxRegion>(part.brush.region);
     const glm::dvec3 away = glm::abs((position - box.center) / box.radius);
     return radialDoi(std::max({away.x, away.y, away.z}), box.soft);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "vis/model/lens.h"
 #include "volume/describe.h"
 
 #include <functional>
@@ -107,7 +108,20 @@ struct BoxRegion {
     }
 };
 
-using Region = std::variant<RangeRegion, EllipseRegion, LassoRegion, SphereRegion, BoxRegion>;
+/// What lies in a lens, wherever that is now.
+struct LensRegion {
+    static constexpr std::string_view kType = "lens";
+    std::string lens; ///< name; "" = in any lens that marks
+    bool operator==(const LensRegion&) const = default;
+    static void describe(auto& self, auto&& visit) {
+        visit(self.lens, FieldInfo{.key = "lens",
+                                   .unit = "",
+                                   .doc = "Lens whose inside is brushed; none: all that mark",
+                                   .refersTo = "lens"});
+    }
+};
+
+using Region = std::variant<RangeRegion, EllipseRegion, LassoRegion, SphereRegion, BoxRegion, LensRegion>;
 
 enum class BrushCombine { And, Or, Minus };
 inline constexpr std::string_view kBrushCombineNames[] = {"and", "or", "minus"};
@@ -134,6 +148,11 @@ struct Brush {
     }
 };
 
+/// How composite layers and iso-surfaces draw what is not brushed: as it is, its rim seen from the viewer, its faint
+/// boundaries in grey, lines of a grid on these, or its shape from cool to warm. vis/model/context.h has the formulas.
+enum class ContextStyle { Plain, Silhouette, Hull, Wireframe, Tone };
+inline constexpr std::string_view kContextStyleNames[] = {"plain", "silhouette", "hull", "wireframe", "tone"};
+
 /// The one selection that every view shares. The degree of interest (DOI) of a sample is 1 when no brush is enabled.
 /// Else the enabled brushes meet in their order: and = min, or = max, minus = min with 1 - d; the first meets 1, or 0
 /// if it says "or".
@@ -141,6 +160,9 @@ struct Selection {
     std::vector<Brush> brushes;
     float contextOpacity = 0.04f;   ///< opacity factor of samples with DOI 0
     float contextSaturation = 0.1f; ///< colour saturation of samples with DOI 0
+    float contextLightness = 1;     ///< of samples with DOI 0: 0 black, 1 as they are, 2 white
+    ContextStyle contextStyle = ContextStyle::Plain;
+    float contextBlur = 0; ///< share of the picture's height: radius over which DOI 0 is out of focus
 
     bool operator==(const Selection&) const = default;
     static void describe(auto& self, auto&& visit) {
@@ -153,6 +175,18 @@ struct Selection {
                                                 .unit = "",
                                                 .doc = "Colour saturation of what is not brushed",
                                                 .range = Range{0, 1}});
+        visit(self.contextLightness, FieldInfo{.key = "contextLightness",
+                                               .unit = "",
+                                               .doc = "Lightness of what is not brushed: 0 black, 1 as it is, 2 white",
+                                               .range = Range{0, 2}});
+        visit(self.contextStyle, FieldInfo{.key = "contextStyle",
+                                           .unit = "",
+                                           .doc = "How volumes and iso-surfaces draw what is not brushed",
+                                           .names = kContextStyleNames});
+        visit(self.contextBlur, FieldInfo{.key = "contextBlur",
+                                          .unit = "",
+                                          .doc = "How far out of focus what is not brushed is, share of the height",
+                                          .range = Range{0, 0.05}});
     }
     /// True when at least one brush is enabled.
     bool active() const;
@@ -167,6 +201,8 @@ std::vector<std::string> regionChannels(const Region& region);
 std::vector<std::string> selectedChannels(const Selection& selection);
 /// Whether an enabled brush lies in space.
 bool selectsSpace(const Selection& selection);
+/// Whether an enabled brush is a lens.
+bool selectsLens(const Selection& selection);
 
 /// 1 inside [lo, hi], 0 beyond the soft edge, linear between.
 double intervalDoi(const BrushInterval& interval, double value);
@@ -191,10 +227,10 @@ struct LassoTable {
 };
 LassoTable lassoTable(const LassoRegion& lasso);
 
-/// A selection made ready for many points.
+/// A selection made ready for many points. Brushes that are lenses hold nothing if `space` lacks the lens.
 class DoiFunction {
 public:
-    explicit DoiFunction(const Selection& selection);
+    explicit DoiFunction(const Selection& selection, LensSpace space = {});
     /// The values to give, in this order.
     const std::vector<std::string>& channels() const { return channels_; }
     /// Degree of interest of a point: values of channels() (NaN = absent) and its physical position. Thread-safe.
@@ -209,6 +245,7 @@ private:
     double regionDoi(const Part& part, std::span<const double> values, glm::dvec3 position) const;
     std::vector<std::string> channels_;
     std::vector<Part> parts_;
+    LensSpace space_;
 };
 
 /// Degree of interest of one point whose channels `valueOf` gives (NaN = absent).

@@ -29,20 +29,23 @@ glm::dvec4 DrawnLayer::classifyPlace(double at) const {
 }
 
 Prepared::Prepared(const Scene& drawn, const volume::BrickSource& source, const Options& wanted)
-    : scene(drawn), options(wanted), lattice(source.grid().lattice), interestOf(drawn.selection) {
+    : scene(drawn), options(wanted), lattice(source.grid().lattice), interestOf({}) {
     const volume::DatasetInfo& info = source.info();
     frame = worldFrame(info.bounds, scene.stretch);
     cell = worldCell(lattice, frame);
     clips = placeClips(scene.clips, frame);
+    lenses = placeLenses(scene, frame);
+    interestOf = DoiFunction(scene.selection, {lenses, frame});
     light = illuminate(scene.lighting, scene.camera);
     const int time = info.nearestTime(scene.time);
-    const auto load = [&](const std::string& name, bool raw = false) -> const Samples* {
+    const auto load = [&](const std::string& name, bool raw = false, double shift = 0) -> const Samples* {
         const std::optional<int> channel = info.findChannel(name);
         if (!channel) return nullptr;
-        std::unique_ptr<Samples>& entry = (raw ? rawSamples : samples)[name];
+        const int own = shift != 0 ? info.nearestTime(info.times[std::size_t(time)] + shift) : time;
+        std::unique_ptr<Samples>& entry = samples[{name, own, raw}];
         const Filter filter =
             raw && scene.render.filter == Filter::AverageQuasi ? Filter::Average : scene.render.filter;
-        if (!entry) entry = std::make_unique<Samples>(source, *channel, time, filter, options.flaws);
+        if (!entry) entry = std::make_unique<Samples>(source, *channel, own, filter, options.flaws);
         return entry.get();
     };
     for (const Layer& layer : scene.layers) {
@@ -50,16 +53,20 @@ Prepared::Prepared(const Scene& drawn, const volume::BrickSource& source, const 
             std::visit([](const auto& t) -> const std::string& { return t.channel; }, layer.technique);
         DrawnLayer one;
         one.technique = &layer.technique;
-        one.samples = layer.visible && !std::holds_alternative<FlowLayer>(layer.technique) ? load(name) : nullptr;
+        one.lens = findLens(lenses, layer.lens);
+        const bool seen = layer.visible && !std::holds_alternative<FlowLayer>(layer.technique) &&
+                          (layer.lens.empty() || one.lens >= 0);
+        one.samples = seen ? load(name, false, layer.timeShift) : nullptr;
         if (one.samples == nullptr) continue;
+        if (layer.lens.empty()) one.lens = -1;
         const volume::Channel channel = info.channels()[std::size_t(*info.findChannel(name))];
-        one.function = &transferFor(scene, channel.name);
+        one.function = &transferFor(scene, layer.transfer.empty() ? channel.name : layer.transfer);
         one.range = effectiveRange(*one.function, info.channelRange(channel));
         const auto* volume = std::get_if<VolumeLayer>(one.technique);
         if (volume != nullptr && volume->style == VolumeStyle::Composite && volume->quantity == Quantity::Value &&
             !one.samples->categorical() && one.function->kind == TransferKind::Curve)
             one.classification = volume->classification;
-        if (one.classification == Classification::Pre) one.samples = load(name, true);
+        if (one.classification == Classification::Pre) one.samples = load(name, true, layer.timeShift);
         if (one.classification == Classification::PreIntegrated)
             one.integrals = integralFunctions(*one.function, one.range);
         if (const auto* slice = std::get_if<SliceLayer>(one.technique))
@@ -98,16 +105,18 @@ glm::dvec4 matterAt(const Prepared& scene, const LightGrid& grid, glm::dvec3 cen
             if (!volume || !kept(scene.clips, world)) continue;
             const double doi = scene.interest(world);
             const glm::dvec4 color = scene.colorAt(layer, *value, world);
-            const double own = -std::log(1 - std::min(color.a * scene.opacityFactor(doi), kThickest)) *
+            const LensAction lens = scene.lensAction(layer, world);
+            const double own = -std::log(1 - std::min(color.a * scene.opacityFactor(doi) * lens.opacity, kThickest)) *
                                double(volume->density) / kReferenceLength / kPoints;
-            sum += glm::dvec4(scene.saturated(glm::dvec3(color), doi), 1) * own;
+            sum += glm::dvec4(scene.focused(glm::dvec3(color), doi, lens.saturation), 1) * own;
         }
         if (!iso || present < kPoints || !kept(scene.clips, center)) continue;
         const double doi = scene.interest(center);
         const double away = std::abs(mean - iso->value) / std::max(glm::length(slope), 1e-20);
-        const double alpha = std::min(double(iso->opacity) * scene.opacityFactor(doi), kThickest);
+        const LensAction lens = scene.lensAction(layer, center);
+        const double alpha = std::min(double(iso->opacity) * scene.opacityFactor(doi) * lens.opacity, kThickest);
         const double own = -std::log(1 - alpha) * std::max(0.0, 1 - away / longest) / longest;
-        sum += glm::dvec4(scene.saturated(linearFromSrgb(glm::dvec3(iso->color)), doi), 1) * own;
+        sum += glm::dvec4(scene.focused(linearFromSrgb(glm::dvec3(iso->color)), doi, lens.saturation), 1) * own;
     }
     return sum;
 }
@@ -130,7 +139,7 @@ double Prepared::interest(glm::dvec3 world) const {
     for (const Samples* of : brushed)
         values.push_back(
             (of ? of->value(cells(world)) : std::nullopt).value_or(std::numeric_limits<double>::quiet_NaN()));
-    return interestOf(values, frame.toPhysical(world));
+    return confine(lenses, interestOf(values, physical(world)), world);
 }
 
 glm::dvec4 Prepared::colorAt(const DrawnLayer& layer, double value, glm::dvec3 world) const {

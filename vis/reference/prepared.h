@@ -9,6 +9,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <vector>
 
 namespace tessera::vis::reference {
@@ -19,6 +20,7 @@ struct DrawnLayer {
     const Samples* samples = nullptr;
     Range range;
     const TransferFunction* function = nullptr;
+    int lens = -1;                              ///< of Prepared::lenses that it is drawn in, -1: everywhere
     Plane plane;                                ///< of a slice
     std::optional<IntegralFunctions> integrals; ///< of a pre-integrated layer
     Classification classification = Classification::Post;
@@ -42,8 +44,9 @@ struct Prepared {
     glm::dvec3 cell{1};
     Illumination light;
     std::vector<PlacedClip> clips;
-    std::map<std::string, std::unique_ptr<Samples>> samples;    ///< by channel name
-    std::map<std::string, std::unique_ptr<Samples>> rawSamples; ///< without prefilter, for pre-classification
+    std::vector<PlacedLens> lenses;
+    /// By channel name, time, and 1 without prefilter, for pre-classification.
+    std::map<std::tuple<std::string, int, bool>, std::unique_ptr<Samples>> samples;
     std::vector<DrawnLayer> layers;
     DoiFunction interestOf;
     std::vector<const Samples*> brushed; ///< of interestOf.channels(); null: unknown
@@ -51,7 +54,9 @@ struct Prepared {
     /// Throws Error when the source does.
     Prepared(const Scene& drawn, const volume::BrickSource& source, const Options& wanted);
 
-    glm::dvec3 cells(glm::dvec3 world) const { return lattice.toCells(frame.toPhysical(world)); }
+    /// Where the data lie that are seen at a world point: physical, and in cells.
+    glm::dvec3 physical(glm::dvec3 world) const { return frame.toPhysical(bend(lenses, world, frame.halfSize)); }
+    glm::dvec3 cells(glm::dvec3 world) const { return lattice.toCells(physical(world)); }
     /// Matter of every cell of a light grid, as vis/model/light_volume.h says.
     Matter<double> matter(const LightGrid& grid) const;
     /// Degree of interest of a world point.
@@ -64,14 +69,22 @@ struct Prepared {
     }
     /// Colour (linear light) and opacity of a volume layer at a place, classified after interpolation.
     glm::dvec4 colorAt(const DrawnLayer& layer, double value, glm::dvec3 world) const;
-    /// Gradient of a channel, per cell of the sublattice and axis.
+    /// Gradient of a channel as it is seen, per cell of the sublattice and axis.
     glm::dvec3 gradient(const Samples& of, glm::dvec3 world) const {
-        return volume::gradient([&](glm::dvec3 at) { return of.value(at); }, cells(world), gradientDelta(lattice.kind));
+        const auto seen = [&](glm::dvec3 at) { return of.value(cells(frame.toWorld(lattice.origin + at * lattice.spacing))); };
+        return volume::gradient(seen, lattice.toCells(frame.toPhysical(world)), gradientDelta(lattice.kind));
+    }
+    LensAction lensAction(const DrawnLayer& layer, glm::dvec3 world) const {
+        return vis::lensAction(lenses, layer.lens, world);
     }
     double opacityFactor(double doi) const { return glm::mix(double(scene.selection.contextOpacity), 1.0, doi); }
-    glm::dvec3 saturated(glm::dvec3 color, double doi) const {
-        return glm::mix(glm::dvec3(luminance(color)), color,
-                        glm::mix(double(scene.selection.contextSaturation), 1.0, doi));
+    /// A colour as degree of interest and lenses leave it.
+    glm::dvec3 focused(glm::dvec3 color, double doi, double saturation) const {
+        const Selection& selection = scene.selection;
+        color = glm::mix(glm::dvec3(luminance(color)), color,
+                         glm::mix(double(selection.contextSaturation), 1.0, doi) * saturation);
+        const double lightness = glm::mix(double(selection.contextLightness), 1.0, doi);
+        return glm::mix(color * std::min(lightness, 1.0), glm::dvec3(1), std::max(lightness - 1, 0.0));
     }
 };
 

@@ -61,8 +61,11 @@ template <class Number> struct Caster {
             const std::optional<double> value = layer.samples->value(scene.cells(place));
             if (!value) continue;
             const double doi = scene.interest(place);
-            events.push_back({t, scene.saturated(glm::dvec3(layer.classify(*value)), doi),
-                              double(std::get<SliceLayer>(*layer.technique).opacity) * scene.opacityFactor(doi)});
+            const LensAction lens = scene.lensAction(layer, glm::dvec3(at(t)));
+            events.push_back({t, scene.focused(glm::dvec3(layer.classify(*value)), doi, lens.saturation),
+                              std::min(double(std::get<SliceLayer>(*layer.technique).opacity) *
+                                           scene.opacityFactor(doi) * lens.opacity,
+                                       1.0)});
         }
     }
 
@@ -106,9 +109,10 @@ template <class Number> struct Caster {
         if (!shows(inSamples(double(lo + hi) / 2))) return;
         const glm::dvec3 place(at((lo + hi) / 2));
         const double doi = scene.interest(place);
-        const glm::dvec3 albedo = scene.saturated(linearFromSrgb(glm::dvec3(iso.color)), doi);
-        events.push_back(
-            {(lo + hi) / 2, shade(layer, place, albedo, true), double(iso.opacity) * scene.opacityFactor(doi)});
+        const LensAction lens = scene.lensAction(layer, place);
+        const glm::dvec3 albedo = scene.focused(linearFromSrgb(glm::dvec3(iso.color)), doi, lens.saturation);
+        const double opacity = std::min(double(iso.opacity) * scene.opacityFactor(doi) * lens.opacity, 1.0);
+        events.push_back({(lo + hi) / 2, shade(layer, place, albedo, true), opacity});
     }
 
     /// Colour and opacity of a composite layer's sample, and the share of its length that they fill.
@@ -145,10 +149,12 @@ template <class Number> struct Caster {
         const Classified classified = classify(layer, t);
         const glm::dvec3 place(at(t));
         const double doi = scene.interest(place);
-        const double opacity = correctedOpacity(classified.color.a * scene.opacityFactor(doi), double(step),
-                                                double(volume.density) * classified.share * coverage(holes, k));
+        const LensAction lens = scene.lensAction(layer, place);
+        const double opacity =
+            correctedOpacity(classified.color.a * scene.opacityFactor(doi) * lens.opacity, double(step),
+                             double(volume.density) * classified.share * coverage(holes, k));
         if (opacity <= 0) return;
-        glm::dvec3 color = scene.saturated(glm::dvec3(classified.color), doi);
+        glm::dvec3 color = scene.focused(glm::dvec3(classified.color), doi, lens.saturation);
         color = volume.shaded ? shade(layer, place, color, false)
                               : vis::shade(scene.light, color, glm::dvec3(0), 0, place, -ray.direction);
         blend(color, opacity);
@@ -157,6 +163,7 @@ template <class Number> struct Caster {
     /// What a projection has seen.
     struct Seen {
         double best = -1, bestPlace = 0, bestInterest = 0;
+        LensAction bestLens = {};
         bool found = false; ///< a local maximum
         double factors = 0, weighted = 0, absorbed = 0;
         int count = 0;
@@ -170,7 +177,8 @@ template <class Number> struct Caster {
             if (volume.style == VolumeStyle::LocalMaximum) seen.found = seen.found || seen.best >= threshold;
             return;
         }
-        const double doi = scene.interest(place), factor = scene.opacityFactor(doi);
+        const LensAction lens = scene.lensAction(layer, place);
+        const double doi = scene.interest(place), factor = scene.opacityFactor(doi) * lens.opacity;
         const double along =
             volume.quantity == Quantity::Gradient ? scene.steepPlace(layer, place) : layer.unclamped(*value);
         const double x = std::clamp(along, 0.0, 1.0);
@@ -183,7 +191,8 @@ template <class Number> struct Caster {
         const double score = (volume.style == VolumeStyle::Minimum ? 1 - x : x) * factor;
         if (volume.style == VolumeStyle::LocalMaximum)
             seen.found = seen.found || (seen.best >= threshold && score < seen.best);
-        if (score > seen.best && !seen.found) seen.best = score, seen.bestPlace = x, seen.bestInterest = doi;
+        if (score > seen.best && !seen.found)
+            seen.best = score, seen.bestPlace = x, seen.bestInterest = doi, seen.bestLens = lens;
     }
 
     void drawSeen(const DrawnLayer& layer, const Seen& seen) {
@@ -195,11 +204,12 @@ template <class Number> struct Caster {
         } else if (volume.style == VolumeStyle::Average) {
             // The mean belongs to no place: brushes act on it through its weights alone.
             const glm::dvec4 color = layer.classifyPlace(std::clamp(seen.weighted / seen.factors, 0.0, 1.0));
-            blend(glm::dvec3(color), opacity(color) * seen.factors / seen.count);
+            blend(glm::dvec3(color), std::min(opacity(color) * seen.factors / seen.count, 1.0));
         } else {
             const glm::dvec4 color = layer.classifyPlace(seen.bestPlace);
-            blend(scene.saturated(glm::dvec3(color), seen.bestInterest),
-                  opacity(color) * scene.opacityFactor(seen.bestInterest));
+            const double factor = scene.opacityFactor(seen.bestInterest) * seen.bestLens.opacity;
+            blend(scene.focused(glm::dvec3(color), seen.bestInterest, seen.bestLens.saturation),
+                  std::min(opacity(color) * factor, 1.0));
         }
     }
 

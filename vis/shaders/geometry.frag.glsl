@@ -1,6 +1,8 @@
 // Meshes and lines (LINES) into a layer of surfaces by distance; each layer keeps what lies behind the former one.
 #include "lib/light_bindings.glsl"
+#include "lib/color.glsl"
 #include "lib/clipping.glsl"
+#include "lib/lenses.glsl"
 #include <slot:shade>
 #include "lib/shade.glsl"
 
@@ -14,6 +16,7 @@ uniform float row;
 uniform vec2 map; // place in the row = value * x + y
 uniform vec3 plain;
 uniform float opacity;
+uniform int lens; // that it is drawn in, -1: everywhere
 uniform sampler2DArray former;
 uniform int peel;
 
@@ -22,6 +25,9 @@ layout(location = 1) out float outDistance; // along the ray
 
 void main() {
     if (!clipKept(world)) discard;
+    vec2 action = lensAction(lens, world);
+    float alpha = min(opacity * action.x, 1.0);
+    if (alpha <= 0.0) discard;
     float along = perspective == 1 ? distance(world, rayOrigin) : dot(world - rayOrigin, forward);
     if (peel > 0 && along <= texelFetch(former, ivec3(gl_FragCoord.xy, peel - 1), 0).r) discard;
     vec3 toViewer = perspective == 1 ? normalize(rayOrigin - world) : -forward;
@@ -36,6 +42,7 @@ void main() {
 #endif
     float entries = float(textureSize(colors, 0).x), place = clamp(value * map.x + map.y, 0.0, 1.0);
     vec3 color = isnan(value) ? plain : textureLod(colors, vec2((place * (entries - 1.0) + 0.5) / entries, row), 0.0).rgb;
-    outColor = vec4(shade(color, normal, 1.0, world, toViewer) * opacity, opacity);
+    color = mix(vec3(luminance(color)), color, action.y);
+    outColor = vec4(shade(color, normal, 1.0, world, toViewer) * alpha, alpha);
     outDistance = along;
 }

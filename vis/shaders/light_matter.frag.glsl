@@ -56,8 +56,9 @@ void main() {
             bool is = present(s);
             if (LAYER_STYLE(i) == COMPOSITE) {
                 vec4 c = colorAt(i, p, s);
-                float own = -log(1.0 - min(c.a * factor, kThickest)) * layerMap[i].z * REFERENCE_LENGTHS;
-                sum += is ? vec4(focusColor(c.rgb, doi), 1.0) * (own / 8.0) : vec4(0.0);
+                vec2 lens = lensAction(LAYER_LENS(i), world);
+                float own = -log(1.0 - min(c.a * factor * lens.x, kThickest)) * layerMap[i].z * REFERENCE_LENGTHS;
+                sum += is ? vec4(focusColor(c.rgb, doi, lens.y), 1.0) * (own / 8.0) : vec4(0.0);
             } else if (LAYER_STYLE(i) == ISO) {
                 mean[i] += s.x / 8.0;
                 points[i] += is ? 1.0 : 0.0;
@@ -69,10 +70,11 @@ void main() {
     for (int i = 0; i < LAYERS; ++i) {
         if (LAYER_STYLE(i) != ISO) continue;
         float away = abs(mean[i] - layerMap[i].z) / max(length(slope[i]), 1e-20);
-        float alpha = min(layerMap[i].w * focusOpacity(middle), kThickest);
+        vec2 lens = lensAction(LAYER_LENS(i), center);
+        float alpha = min(layerMap[i].w * focusOpacity(middle) * lens.x, kThickest);
         float own = -log(1.0 - alpha) * max(0.0, 1.0 - away / longest) / longest;
         bool is = points[i] > 7.5 && clipKept(center);
-        sum += is ? vec4(focusColor(layerColor[i], middle), 1.0) * own : vec4(0.0);
+        sum += is ? vec4(focusColor(layerColor[i], middle, lens.y), 1.0) * own : vec4(0.0);
     }
 #endif
     outMatter = sum;

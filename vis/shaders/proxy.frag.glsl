@@ -44,8 +44,9 @@ void main() {
         vec2 s = reconstruct(LAYER_FIELD(i), p);
         vec4 c = transfer(i, s.x * layerMap[i].x + layerMap[i].y);
         float doi = degreeOfInterest(p);
-        c.rgb = focusColor(c.rgb, doi);
-        float alpha = present(s) ? correctedOpacity(c.a * focusOpacity(doi), lengths * layerMap[i].z) : 0.0;
+        vec2 lens = lensAction(LAYER_LENS(i), world);
+        c.rgb = focusColor(c.rgb, doi, lens.y);
+        float alpha = present(s) ? correctedOpacity(c.a * focusOpacity(doi) * lens.x, lengths * layerMap[i].z) : 0.0;
         if (LAYER_SHADED(i) == 1) {
             vec3 g = cellGradient(LAYER_FIELD(i), p, s.x, alpha > 0.0);
             float fade = min(1.0, length(g) * abs(layerMap[i].x) / kFlatGradient);

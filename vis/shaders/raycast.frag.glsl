@@ -75,8 +75,9 @@ void main() {
         bool seen = meets && abs(slope) > 1e-6 && t > inside.x - tolerance && t < inside.y + tolerance && present(s);
         float at = (t - inside.x) / stepLength - phase;
         eventAt[i] = seen && clipShows(at) ? at : 1e9;
-        float alpha = sliceMap[i].w * focusOpacity(doi);
-        eventColor[i] = vec4(focusColor(c, doi) * alpha, alpha);
+        vec2 lens = lensAction(SLICE_LENS(i), world);
+        float alpha = min(sliceMap[i].w * focusOpacity(doi) * lens.x, 1.0);
+        eventColor[i] = vec4(focusColor(c, doi, lens.y) * alpha, alpha);
     }
 #endif
 #if GEOMETRY > 0
@@ -159,8 +160,10 @@ void main() {
 #if EVENTS > 0
             hit = float(k) >= nextEvent;
 #endif
+            vec3 seen = origin + direction * (inside.x + (float(k) + phase) * stepLength);
             for (int i = 0; i < LAYERS; ++i) {
                 vec2 s = reconstruct(LAYER_FIELD(i), LAYER_LOOKUP(i) == LOOKUP_SLAB ? p + 0.5 * cellsPerSample : p);
+                vec2 lens = lensAction(LAYER_LENS(i), seen);
                 bool is = present(s);
                 here[i] = s;
                 float x = s.x * layerMap[i].x + layerMap[i].y;
@@ -178,13 +181,13 @@ void main() {
 #if HAS_LATTICE && !FLAT
                     if (LAYER_LOOKUP(i) == LOOKUP_LATTICE) opacity = latticeColor(i, p, share).a;
 #endif
-                    hit = hit || opacity * share > 0.0;
+                    hit = hit || opacity * share * lens.x > 0.0;
                 } else if (LAYER_STYLE(i) == ISO) {
                     hit = hit || (is && previous[i] > kUnknown && (s.x >= layerMap[i].z) != (previous[i] >= layerMap[i].z));
                     previous[i] = is ? s.x : kUnknown;
                 } else {
                     is = is && clipShows(float(k));
-                    float f = is ? focusOpacity(degreeOfInterest(p)) : 0.0;
+                    float f = is ? focusOpacity(degreeOfInterest(p)) * lens.x : 0.0;
                     float place = clamp(x, 0.0, 1.0);
                     if (LAYER_STYLE(i) == AVERAGE) {
                         sum[i] += is ? f * x : 0.0;
@@ -251,11 +254,12 @@ void main() {
                 vec3 q = p + at * cellsPerSample;
                 float doi = degreeOfInterest(q);
                 crossed = crossed && clipShows(float(k) + at);
-                float alpha = crossed ? layerMap[i].w * focusOpacity(doi) : 0.0;
+                vec3 world = origin + direction * (inside.x + (float(k) + phase + at) * stepLength);
+                vec2 lens = lensAction(LAYER_LENS(i), world);
+                float alpha = crossed ? min(layerMap[i].w * focusOpacity(doi) * lens.x, 1.0) : 0.0;
                 float centre = FIELD_COVERAGE(field) == 1 ? reconstruct(field, q).x : 0.0;
                 vec3 g = shadingGradient(cellGradient(field, q, centre, crossed));
-                vec3 world = origin + direction * (inside.x + (float(k) + phase + at) * stepLength);
-                vec3 c = shade(focusColor(layerColor[i], doi), g, 1.0, world, -direction);
+                vec3 c = shade(focusColor(layerColor[i], doi, lens.y), g, 1.0, world, -direction);
                 isoAt[n] = crossed ? float(k) + at : 1e9;
                 isoColor[n] = vec4(c * alpha, alpha);
             }
@@ -312,9 +316,10 @@ void main() {
 #endif
                 c = transfer(i, x);
                 float doi = degreeOfInterest(p);
-                c.rgb = focusColor(c.rgb, doi);
-                float alpha = correctedOpacity(c.a * focusOpacity(doi), lengths * layerMap[i].z * share * clipCoverage(float(k)));
                 vec3 world = origin + direction * (inside.x + (float(k) + phase) * stepLength);
+                vec2 lens = lensAction(LAYER_LENS(i), world);
+                c.rgb = focusColor(c.rgb, doi, lens.y);
+                float alpha = correctedOpacity(c.a * focusOpacity(doi) * lens.x, lengths * layerMap[i].z * share * clipCoverage(float(k)));
                 if (LAYER_SHADED(i) == 1) {
                     if (!byGradient) g = cellGradient(LAYER_FIELD(i), p, present(s) ? s.x : kUnknown, alpha > 0.0);
                     float fade = min(1.0, length(g) * abs(layerMap[i].x) / kFlatGradient);
@@ -349,7 +354,7 @@ void main() {
             c = transfer(i, alpha);
         } else if (LAYER_STYLE(i) == AVERAGE) {
             c = transfer(i, sum[i] / max(weight[i], 1e-6));
-            alpha = weight[i] > 0.0 ? min(1.0, layerMap[i].z * c.a) * (weight[i] / max(factor[i], 1.0)) : 0.0;
+            alpha = weight[i] > 0.0 ? min(min(1.0, layerMap[i].z * c.a) * (weight[i] / max(factor[i], 1.0)), 1.0) : 0.0;
         } else {
             at = bestAt[i];
             vec3 p = first + at * cellsPerSample;
@@ -358,8 +363,9 @@ void main() {
             if (LAYER_GRADIENT(i) == 1) x = gradientPlace(i, cellGradient(LAYER_FIELD(i), p, s.x, best[i] >= 0.0));
             float doi = degreeOfInterest(p);
             c = transfer(i, x);
-            c.rgb = focusColor(c.rgb, doi);
-            alpha = best[i] >= 0.0 ? min(1.0, layerMap[i].z * c.a) * focusOpacity(doi) : 0.0;
+            vec2 lens = lensAction(LAYER_LENS(i), origin + direction * (inside.x + (at + phase) * stepLength));
+            c.rgb = focusColor(c.rgb, doi, lens.y);
+            alpha = best[i] >= 0.0 ? min(min(1.0, layerMap[i].z * c.a) * focusOpacity(doi) * lens.x, 1.0) : 0.0;
         }
         color = under(color, vec4(c.rgb * alpha, alpha));
         if (pick <= kNoPick && color.a > kPickOpacity) pick = at;

@@ -81,6 +81,12 @@ void markShown(std::vector<std::uint8_t>& shown, const RayPlan& plan, int field,
         if (!blocks || i >= blocks->distance.size() || blocks->distance[i] == 0) shown[i] = 1;
 }
 
+/// Whether a box may reach into a lens: its radius changes by at most 1 over the shortest of its radii.
+bool meets(const PlacedLens& lens, const WorldBox& box) {
+    const double steepest = glm::length(lens.toUnit[0]) + glm::length(lens.toUnit[1]) + glm::length(lens.toUnit[2]);
+    return lens.radius(box.centre) - steepest * glm::length(box.half) < 1;
+}
+
 } // namespace
 
 std::vector<std::shared_ptr<const BrickDemand>>
@@ -105,6 +111,7 @@ brickDemands(RayPlan plan, const Scene& scene, const volume::DatasetInfo& info, 
         planes.push_back(
             slicePlane(std::get<SliceLayer>(scene.layers[std::size_t(use.layer)].technique), frame, scene.cursor));
 
+    const std::vector<PlacedLens> lenses = placeLenses(scene, frame);
     BrickDemand none;
     none.level.assign(total, BrickDemand::kNotWanted);
     none.priority.assign(total, 0);
@@ -123,7 +130,10 @@ brickDemands(RayPlan plan, const Scene& scene, const volume::DatasetInfo& info, 
                 if (!sight.sees(box)) continue;
                 const double depth = sight.depth(box), pixels = voxel / sight.pixel(depth);
                 int level = 0;
-                while (level + 1 < grid.levels && pixels * double(2 << level) <= settings.detail) ++level;
+                double detail = settings.detail;
+                for (std::size_t l = 0; l < lenses.size(); ++l)
+                    if (lenses[l].detail != 1 && meets(lenses[l], box)) detail = settings.detail * lenses[l].detail;
+                while (level + 1 < grid.levels && pixels * double(2 << level) <= detail) ++level;
                 const double toCursor = glm::length(glm::max(glm::abs(cursor - box.centre) - box.half, 0.0));
                 const double priority = depth + 0.5 * sight.aside(box.centre) + 0.25 * toCursor;
                 bool any = false;
@@ -141,6 +151,17 @@ brickDemands(RayPlan plan, const Scene& scene, const volume::DatasetInfo& info, 
                         demands[f].priority[i] = float(priority);
                     }
             }
+    // Fields of the same samples (drawn by functions of their own) want them together.
+    for (std::size_t f = 0; f < fields; ++f)
+        for (std::size_t g = 0; g < fields; ++g) {
+            const BoundField &a = plan.fields[f], &b = plan.fields[g];
+            if (f == g || a.channel != b.channel || a.raw != b.raw || a.timeShift != b.timeShift) continue;
+            for (std::size_t k = 0; k < total; ++k)
+                if (shown[g][k]) {
+                    demands[f].level[k] = demands[g].level[k];
+                    demands[f].priority[k] = demands[g].priority[k];
+                }
+        }
     std::vector<std::shared_ptr<const BrickDemand>> out;
     for (std::size_t f = 0; f < fields; ++f)
         out.push_back(ranges[f] ? std::make_shared<const BrickDemand>(std::move(demands[f])) : nullptr);

@@ -6,7 +6,7 @@ namespace tessera::vis {
 
 namespace {
 
-enum Kind { kAlways, kRange, kEllipse, kLasso, kSphere, kBox };
+enum Kind { kAlways, kRange, kEllipse, kLasso, kSphere, kBox, kLens };
 
 /// 1 / soft, or a hard edge.
 double inverse(double soft) {
@@ -15,7 +15,8 @@ double inverse(double soft) {
 
 class Encoder {
 public:
-    Encoder(const RayPlan& plan, const volume::DatasetInfo& info) : plan_(plan), info_(info) {}
+    Encoder(const RayPlan& plan, const Scene& scene, const volume::DatasetInfo& info)
+        : plan_(plan), info_(info), lenses_(placeLenses(scene, {})) {}
 
     BrushTests tests;
 
@@ -101,9 +102,17 @@ private:
     }
     void encode(const SphereRegion& region) { space(kSphere, region); }
     void encode(const BoxRegion& region) { space(kBox, region); }
+    // Lens: bits of the lenses meant.
+    void encode(const LensRegion& region) {
+        int bits = 0;
+        for (std::size_t i = 0; i < lenses_.size(); ++i)
+            if (region.lens.empty() ? lenses_[i].marks : lenses_[i].name == region.lens) bits |= 1 << i;
+        test(kLens, bits, 0, glm::vec4(0), glm::vec4(0));
+    }
 
     const RayPlan& plan_;
     const volume::DatasetInfo& info_;
+    std::vector<PlacedLens> lenses_;
 };
 
 bool has(const BrushTests& tests, std::initializer_list<int> kinds) {
@@ -115,7 +124,7 @@ bool has(const BrushTests& tests, std::initializer_list<int> kinds) {
 } // namespace
 
 BrushTests brushTests(const RayPlan& plan, const Scene& scene, const volume::DatasetInfo& info) {
-    Encoder encoder(plan, info);
+    Encoder encoder(plan, scene, info);
     for (const Brush& brush : scene.selection.brushes)
         if (brush.enabled) encoder.add(brush);
     return std::move(encoder.tests);
@@ -131,6 +140,7 @@ std::vector<std::pair<std::string, std::string>> brushDefines(const BrushTests& 
     define("BRUSH_ELLIPSES", has(tests, {kEllipse}));
     define("BRUSH_LASSOS", has(tests, {kLasso}));
     define("BRUSH_SPACE", has(tests, {kSphere, kBox}));
+    define("BRUSH_LENSES", has(tests, {kLens}));
     define("LASSO_TABLE", kLassoTable);
     return defines;
 }
@@ -140,7 +150,8 @@ void setBrushUniforms(const Program& program, const BrushTests& tests, const Sce
     program.set("brushMeaning", std::span<const glm::ivec4>(tests.meanings));
     program.set("brushShape", tests.shapes);
     program.set("brushStart", tests.start);
-    program.set("context", glm::vec2(scene.selection.contextOpacity, scene.selection.contextSaturation));
+    program.set("context", glm::vec3(scene.selection.contextOpacity, scene.selection.contextSaturation,
+                                     scene.selection.contextLightness));
 }
 
 GLuint BrushTables::update(const BrushTests& tests) {

@@ -10,8 +10,8 @@ namespace tessera::vis {
 inline constexpr int kMaxBrushTests = 128;
 
 struct BrushTests {
-    std::vector<glm::ivec4> meanings; ///< kind (0 always, 1 range, 2 ellipse, 3 lasso, 4 sphere, 5 box), first and
-                                      ///< second brush field (-1: unknown), flags (1 first of its brush, 2 last, 4
+    std::vector<glm::ivec4> meanings; ///< kind (0 always, 1 range, 2 ellipse, 3 lasso, 4 sphere, 5 box, 6 lens), first
+                                      ///< (of a lens: bits of the lenses) and second brush field (-1: unknown), flags (1 first of its brush, 2 last, 4
                                       ///< inverted, 8 or)
     std::vector<glm::vec4> shapes;    ///< two each; see brush_uniforms.cpp
     std::vector<LassoRegion> lassos;  ///< whose tables the tests look up, in order

@@ -7,10 +7,15 @@ namespace tessera::vis {
 
 namespace {
 
+/// Lenses that face the viewer turn with the camera, others may lie at the cursor.
+bool sameLenses(const Scene& a, const Scene& b) {
+    return placeLenses(a, {}) == placeLenses(b, {});
+}
+
 /// Equal matter: everything that opacity and colour of a place depend on.
 bool sameMatter(const Scene& a, const Scene& b) {
     return a.layers == b.layers && a.transfer == b.transfer && a.selection == b.selection && a.clips == b.clips &&
-           a.render.filter == b.render.filter && a.stretch == b.stretch;
+           sameLenses(a, b) && a.render.filter == b.render.filter && a.stretch == b.stretch;
 }
 
 bool sameSpread(const Shadows& a, const Shadows& b) {

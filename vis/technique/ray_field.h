@@ -5,12 +5,13 @@
 /// Physical values of a channel in the terms of its texture and of its transfer function.
 namespace tessera::vis {
 
-/// The transfer function of a channel, whatever word a layer names it by, and the range it runs over.
+/// The transfer function of a field: of its channel, whatever word a layer names it by, or its layer's own; and the
+/// range it runs over.
 struct ChannelTransfer {
     const TransferFunction& function;
     Range range;
 };
-ChannelTransfer transferOf(const Scene& scene, const volume::DatasetInfo& info, int channel);
+ChannelTransfer transferOf(const Scene& scene, const volume::DatasetInfo& info, const BoundField& field);
 
 /// x = texel * first + second is the place of a texel value in a channel's transfer function: the middle of it where
 /// the range has no width.

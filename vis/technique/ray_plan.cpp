@@ -3,6 +3,7 @@
 #include "vis/model/proxy.h"
 #include "vis/technique/brush_uniforms.h"
 #include "vis/technique/clip_uniforms.h"
+#include "vis/technique/lens_uniforms.h"
 #include "vis/technique/light_uniforms.h"
 #include "vis/technique/ray_tables.h"
 #include "volume/reconstruct.h"
@@ -13,12 +14,18 @@ namespace tessera::vis {
 
 namespace {
 
-int fieldOf(RayPlan& plan, const volume::DatasetInfo& info, int channel, bool raw = false) {
-    for (std::size_t i = 0; i < plan.fields.size(); ++i)
-        if (plan.fields[i].channel == channel && plan.fields[i].raw == raw) return int(i);
+int fieldOf(RayPlan& plan, const volume::DatasetInfo& info, int channel, bool raw = false, const Layer& layer = {}) {
+    for (std::size_t i = 0; i < plan.fields.size(); ++i) {
+        const BoundField& field = plan.fields[i];
+        if (field.channel == channel && field.raw == raw && field.transfer == layer.transfer &&
+            field.timeShift == layer.timeShift)
+            return int(i);
+    }
     BoundField field;
     field.channel = channel;
     field.raw = raw;
+    field.transfer = layer.transfer;
+    field.timeShift = layer.timeShift;
     const volume::Channel known = info.channels()[std::size_t(channel)];
     field.categorical = info.parameters[std::size_t(known.parameter)].categorical;
     plan.fields.push_back(field);
@@ -42,6 +49,7 @@ const std::string& channelOf(const Layer& layer) {
 RayLayer volumeUse(RayPlan& plan, int layer, const VolumeLayer& volume, int channel, const Scene& scene,
                    const volume::DatasetInfo& info) {
     const volume::Channel known = info.channels()[std::size_t(channel)];
+    const Layer& own = scene.layers[std::size_t(layer)];
     RayLayer use;
     use.layer = layer;
     use.style = RayStyle(int(volume.style));
@@ -50,7 +58,8 @@ RayLayer volumeUse(RayPlan& plan, int layer, const VolumeLayer& volume, int chan
         const bool categorical = info.parameters[std::size_t(known.parameter)].categorical;
         const Classification asked = use.gradient || categorical ? Classification::Post : volume.classification;
         use.shaded = volume.shaded && !categorical;
-        if (!use.gradient && transferFor(scene, known.name).kind == TransferKind::Regions)
+        if (!use.gradient &&
+            transferFor(scene, own.transfer.empty() ? known.name : own.transfer).kind == TransferKind::Regions)
             use.lookup = RayLookup::Plane;
         else if (asked == Classification::Pre)
             use.lookup = RayLookup::Lattice;
@@ -59,7 +68,7 @@ RayLayer volumeUse(RayPlan& plan, int layer, const VolumeLayer& volume, int chan
     }
     if (use.lookup == RayLookup::Plane || use.lookup == RayLookup::Slab) use.page = plan.pages++;
     const bool raw = use.lookup == RayLookup::Lattice && scene.render.filter == Filter::AverageQuasi;
-    use.field = fieldOf(plan, info, channel, raw);
+    use.field = fieldOf(plan, info, channel, raw, own);
     return use;
 }
 
@@ -67,19 +76,22 @@ RayLayer volumeUse(RayPlan& plan, int layer, const VolumeLayer& volume, int chan
 
 RayPlan planRays(const Scene& scene, const volume::DatasetInfo& info) {
     RayPlan plan;
+    const std::vector<PlacedLens> lenses = placeLenses(scene, {});
     for (std::size_t i = 0; i < scene.layers.size(); ++i) {
         const Layer& layer = scene.layers[i];
         const std::optional<int> channel = info.findChannel(channelOf(layer));
-        if (!layer.visible || !channel) continue;
+        const std::optional<int> lens = lensOf(lenses, layer.lens);
+        if (!layer.visible || !channel || !lens) continue;
         const auto* surface = std::get_if<IsoLayer>(&layer.technique);
         if (surface && surface->method == SurfaceMethod::Polygons) continue; // comes as Scene::geometry
         if (std::holds_alternative<FlowLayer>(layer.technique)) continue;    // so does this
         if (const auto* volume = std::get_if<VolumeLayer>(&layer.technique))
             plan.layers.push_back(volumeUse(plan, int(i), *volume, *channel, scene, info));
         else if (surface)
-            plan.layers.push_back({int(i), RayStyle::Iso, fieldOf(plan, info, *channel), true});
+            plan.layers.push_back({int(i), RayStyle::Iso, fieldOf(plan, info, *channel, false, layer), true});
         else
-            plan.slices.push_back({int(i), fieldOf(plan, info, *channel)});
+            plan.slices.push_back({int(i), fieldOf(plan, info, *channel, false, layer), *lens});
+        if (!std::holds_alternative<SliceLayer>(layer.technique)) plan.layers.back().lens = *lens;
     }
     plan.brushDefines = brushDefines({});
     plan.peels = peelsOf(scene.geometry);
@@ -133,6 +145,8 @@ ProgramRecipe rayRecipe(const RayPlan& plan, const Scene& scene, const volume::B
     define("LAYER_STYLE(i)", choice(plan.layers, [](const RayLayer& layer) { return int(layer.style); }));
     define("LAYER_FIELD(i)", choice(plan.layers, [](const RayLayer& layer) { return layer.field; }));
     define("LAYER_SHADED(i)", choice(plan.layers, [](const RayLayer& layer) { return layer.shaded; }));
+    define("LAYER_LENS(i)", choice(plan.layers, [](const RayLayer& layer) { return layer.lens; }));
+    define("SLICE_LENS(i)", choice(plan.slices, [](const SliceUse& slice) { return slice.lens; }));
     define("SLICES", std::to_string(plan.slices.size()));
     define("SLICE_FIELD(i)", choice(plan.slices, [](const SliceUse& slice) { return slice.field; }));
     define("BRUSH_FIELDS", std::to_string(plan.brushFields.size()));
@@ -163,6 +177,7 @@ ProgramRecipe rayRecipe(const RayPlan& plan, const Scene& scene, const volume::B
     define("NORMAL_BITS", std::to_string(scene.render.normalBits));
     addLighting(recipe, scene);
     addClipping(recipe, scene);
+    addLenses(recipe, scene);
     define("JITTER", scene.render.jitter ? "1" : "0");
     define("TABLE_SIZE", std::to_string(kTableSize));
     define("HALO", std::to_string(kHalo));

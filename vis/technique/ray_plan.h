@@ -17,6 +17,8 @@ struct BoundField {
     int channel = 0;
     bool categorical = false;
     bool raw = false; ///< the samples themselves, whatever the filter: for pre-classification
+    std::string transfer = {}; ///< Layer::transfer
+    double timeShift = 0;      ///< Layer::timeShift
     // Filled from what is resident:
     GLuint texture = 0;
     int level = 0;
@@ -42,10 +44,11 @@ struct RayLayer {
     RayLookup lookup = RayLookup::Curve;
     bool gradient = false; ///< shows the gradient's magnitude
     int page = -1;         ///< of the plane tables, for Plane and Slab
+    int lens = -1;         ///< of placeLenses() that it is drawn in, -1: everywhere
 };
 
 struct SliceUse {
-    int layer = 0, field = 0;
+    int layer = 0, field = 0, lens = -1;
 };
 
 /// What a scene needs, independent of what is resident.

@@ -44,7 +44,7 @@ std::vector<glm::vec4> planeTables(const RayPlan& plan, const Scene& scene, cons
     std::vector<glm::vec4> table;
     for (const RayLayer& layer : plan.layers) {
         if (layer.page < 0) continue;
-        const auto [function, range] = transferOf(scene, info, plan.fields[std::size_t(layer.field)].channel);
+        const auto [function, range] = transferOf(scene, info, plan.fields[std::size_t(layer.field)]);
         if (layer.lookup == RayLookup::Plane) {
             addRegions(table, function, range);
         } else {
@@ -58,7 +58,7 @@ std::vector<glm::vec4> planeTables(const RayPlan& plan, const Scene& scene, cons
 std::vector<glm::vec4> transferTables(const RayPlan& plan, const Scene& scene, const volume::DatasetInfo& info) {
     std::vector<glm::vec4> table;
     const auto add = [&](int field) {
-        const auto [function, range] = transferOf(scene, info, plan.fields[std::size_t(field)].channel);
+        const auto [function, range] = transferOf(scene, info, plan.fields[std::size_t(field)]);
         for (int i = 0; i < kTableSize; ++i) {
             const double value = glm::mix(range.lo, range.hi, double(i) / (kTableSize - 1));
             const glm::dvec4 at = evaluate(function, range, value);
@@ -71,7 +71,7 @@ std::vector<glm::vec4> transferTables(const RayPlan& plan, const Scene& scene, c
         const RayLayer& layer = plan.layers[row];
         std::vector<float> regions;
         if (layer.lookup == RayLookup::Plane)
-            regions = mostOpaque(transferOf(scene, info, plan.fields[std::size_t(layer.field)].channel).function);
+            regions = mostOpaque(transferOf(scene, info, plan.fields[std::size_t(layer.field)]).function);
         for (int i = 0; i < kTableSize; ++i) {
             const std::size_t at = row * kTableSize + std::size_t(i), next = at + (i + 1 < kTableSize);
             const float own = regions.empty() ? table[at].a : regions[at - row * kTableSize];
@@ -142,7 +142,7 @@ std::optional<BlockDistances> blockDistances(const RayPlan& plan, const Scene& s
             value = toTexel(field, std::get<IsoLayer>(layer.technique).value);
         } else {
             map = transferMap(field, scene, info);
-            const TransferFunction& function = transferOf(scene, info, field.channel).function;
+            const TransferFunction& function = transferOf(scene, info, field).function;
             if (use.lookup == RayLookup::Plane) opacity = mostOpaque(function);
             for (int i = 0; use.lookup != RayLookup::Plane && i < kTableSize; ++i)
                 opacity.push_back(float(evaluate(function, {0, 1}, double(i) / (kTableSize - 1)).a));

@@ -2,6 +2,7 @@
 
 #include "vis/technique/brush_uniforms.h"
 #include "vis/technique/clip_uniforms.h"
+#include "vis/technique/lens_uniforms.h"
 #include "vis/technique/light_uniforms.h"
 #include "vis/technique/ray_field.h"
 
@@ -41,7 +42,7 @@ void setLayers(const Program& program, const RayPlan& plan, const Scene& scene, 
         } else {
             const auto& volume = std::get<VolumeLayer>(layer.technique);
             const glm::dvec2 map = transferMap(field, scene, info);
-            const double top = double(transferOf(scene, info, field.channel).function.gradientTop);
+            const double top = double(transferOf(scene, info, field).function.gradientTop);
             maps.emplace_back(map, volume.density, 1);
             colors.emplace_back(1);
             // Nothing is below a threshold under the range.
@@ -136,6 +137,7 @@ void setRayUniforms(const Program& program, const RayPlan& plan, const Scene& sc
     program.set("latticeCorners", grid.lattice.kind == volume::LatticeKind::BCC ? 16 : 8);
     setLightUniforms(program, scene, frame, rayUnits(plan).light);
     setClipUniforms(program, scene, frame);
+    setLensUniforms(program, scene, frame);
     if (const BlockRanges* blocks = commonBlocks(plan)) {
         const double edge = double(1 << blocks->level) * blocks->edge;
         program.set("blockScale", glm::vec3(float(1 / edge)));

@@ -6,8 +6,9 @@
 //   ISOS      iso layers; ISO_LAYER(n)
 //   SLICES    slice planes; SLICE_FIELD(i)
 //   GEOMETRY  layers of rasterised surfaces
+//   LAYER_LENS(i), SLICE_LENS(i)  lens that it is drawn in, -1 everywhere
 //   BRUSH_TESTS    room for tests of brushes, 0 = no brush is active; BRUSH_RANGES, BRUSH_ELLIPSES, BRUSH_LASSOS,
-//                  BRUSH_SPACE: 0 or 1; BRUSH_FIELDS channels they look at, BRUSH_FIELD(i)
+//                  BRUSH_SPACE, BRUSH_LENSES: 0 or 1; BRUSH_FIELDS channels they look at, BRUSH_FIELD(i)
 // These are chains of ?: and not constant arrays, since Mesa turns such arrays into uniforms before it unrolls loops
 // and then runs every style for every layer.
 //   BCC       1 on that lattice; PRESENT_COVERAGE   kPresentCoverage of volume/reconstruct.h
@@ -81,7 +82,7 @@ uniform vec4 brushShape[2 * BRUSH_TESTS];
 uniform float brushStart;
 uniform sampler2D lassoTables;
 #endif
-uniform vec2 context; // opacity, saturation of what is not brushed
+uniform vec3 context; // opacity, saturation, lightness of what is not brushed
 
 const int kTableSize = TABLE_SIZE;
 

@@ -12,6 +12,7 @@ float gradientPlace(int layer, vec3 gradient) {
 // trilinear interpolation (on BCC the mean of both sublattices). `share`: 1 where enough of them are present, else 0.
 vec4 latticeColor(int layer, vec3 p, out float share) {
     int field = LAYER_FIELD(layer);
+    p = dataCells(p);
     vec4 sum = vec4(0.0);
     float coverage = 0.0;
     for (int corner = 0; corner < latticeCorners; ++corner) { // 8, on BCC 16

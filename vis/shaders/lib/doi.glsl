@@ -61,9 +61,16 @@ float degreeOfInterest(vec3 p) {
 #endif
 #endif
 #if BRUSH_SPACE
-        vec3 from = abs((p - a.xyz) * b.xyz);
+        vec3 from = abs((dataCells(p) - a.xyz) * b.xyz);
         if (meaning.x == 4) test = radialDoi(length(from), a.w);
         if (meaning.x == 5) test = radialDoi(max(from.x, max(from.y, from.z)), a.w);
+#endif
+#if BRUSH_LENSES
+        if (meaning.x == 6) {
+            vec3 world = fromCells(dataCells(p));
+            for (int j = 0; j < LENSES; ++j)
+                if ((meaning.y >> j & 1) != 0) test = max(test, lensWeightAt(j, world));
+        }
 #endif
         own = min(own, test);
         if ((meaning.w & 2) != 0) {
@@ -71,7 +78,7 @@ float degreeOfInterest(vec3 p) {
             doi = (meaning.w & 8) != 0 ? max(doi, own) : min(doi, own);
         }
     }
-    return doi;
+    return lensConfine(doi, fromCells(p));
 #else
     return 1.0;
 #endif
@@ -82,7 +89,9 @@ float focusOpacity(float doi) {
     return mix(context.x, 1.0, doi);
 }
 
-// Colour pulled towards its luminance.
-vec3 focusColor(vec3 color, float doi) {
-    return mix(vec3(luminance(color)), color, mix(context.y, 1.0, doi));
+// Colour pulled towards its luminance, further by the factor `saturation`, and made darker or lighter.
+vec3 focusColor(vec3 color, float doi, float saturation) {
+    vec3 c = mix(vec3(luminance(color)), color, mix(context.y, 1.0, doi) * saturation);
+    float lightness = mix(context.z, 1.0, doi);
+    return mix(c * min(lightness, 1.0), vec3(1.0), max(lightness - 1.0, 0.0));
 }

@@ -1,11 +1,8 @@
 // Places and changes of a channel, on top of the slot reconstruct.
 #include "lib/octahedral.glsl"
+#include "lib/place.glsl"
 
 const float kUnknown = -1e9; // in place of a value: absent, or not known
-
-vec3 toCells(vec3 world) {
-    return world * cellsPerWorld + cellsOffset;
-}
 
 bool present(vec2 s) {
     return s.y >= PRESENT_COVERAGE;

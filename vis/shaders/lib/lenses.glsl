@@ -1,0 +1,56 @@
+// What the scene's lenses do at a world point; twins: lensAction, bend and confine in vis/model/lens.h.
+#include "lib/lens.glsl"
+#include "lib/lens_bindings.glsl"
+
+#if LENSES > 0
+vec3 lensPlace(int i, vec3 world) {
+    vec3 d = world - lensCenter[i];
+    return vec3(dot(lensToUnit[3 * i], d), dot(lensToUnit[3 * i + 1], d), dot(lensToUnit[3 * i + 2], d));
+}
+
+float lensWeightAt(int i, vec3 world) {
+    float own = lensWeight(lensRadius(LENS_KIND(i), lensPlace(i, world)), lensEdge[i].x);
+    return lensEdge[i].y > 0.5 ? 1.0 - own : own;
+}
+#endif
+
+// Factors on opacity and saturation of a layer of lens `own` (-1: of none).
+vec2 lensAction(int own, vec3 world) {
+    vec2 action = vec2(1.0);
+#if LENS_ACTS
+    for (int i = 0; i < LENSES; ++i) {
+        float weight = lensWeightAt(i, world);
+        if (i == own) action = vec2(weight, 1.0);
+        if (i > own) action *= vec2(mix(lensAct[i].y, lensAct[i].x, weight), mix(1.0, lensAct[i].z, weight));
+    }
+#endif
+    return action;
+}
+
+// Where the data that are shown at a place come from.
+vec3 lensBend(vec3 world) {
+#if LENS_BENDS
+    vec3 most = max(halfSize, abs(world));
+    for (int i = LENSES - 1; i >= 0; --i) {
+        if (LENS_BENDING(i) == 0) continue;
+        vec3 u = lensPlace(i, world);
+        float share = lensShare(lensRadius(LENS_KIND(i), u), lensEdge[i].z);
+        world -= (1.0 - share) * (lensFromUnit[3 * i] * u.x + lensFromUnit[3 * i + 1] * u.y + lensFromUnit[3 * i + 2] * u.z);
+    }
+    world = clamp(world, -most, most);
+#endif
+    return world;
+}
+
+// A degree of interest as the lenses that confine the brushes leave it.
+float lensConfine(float doi, vec3 world) {
+#if LENS_FOCUS
+    float most = 0.0, share = 0.0;
+    for (int i = 0; i < LENSES; ++i) {
+        share = max(share, lensEdge[i].w);
+        most = max(most, lensEdge[i].w > 0.0 ? lensWeightAt(i, world) : 0.0);
+    }
+    doi = mix(doi, 1.0, share * (1.0 - most));
+#endif
+    return doi;
+}
