@@ -14,7 +14,8 @@ namespace tessera::app {
 
 struct VolumeView {
     static constexpr std::string_view kType = "volume";
-    bool showBox = true, showAxes = true, showLegend = true, showCursor = true, showGizmo = true, showScaleBar = true;
+    bool showBox = true, showAxes = true, showLegend = true, showCursor = true, showGizmo = true, showScaleBar = true,
+         showLenses = true;
     bool operator==(const VolumeView&) const = default;
     static void describe(auto& self, auto&& visit) {
         visit(self.showBox, FieldInfo{.key = "box", .unit = "", .doc = "Draw the box around the data"});
@@ -24,6 +25,8 @@ struct VolumeView {
         visit(self.showGizmo,
               FieldInfo{.key = "gizmo", .unit = "", .doc = "Draw the axis triad; a click on an end looks along it"});
         visit(self.showScaleBar, FieldInfo{.key = "scaleBar", .unit = "", .doc = "Draw a bar of a round length"});
+        visit(self.showLenses,
+              FieldInfo{.key = "lenses", .unit = "", .doc = "Draw outlines of lenses, and handles under the mouse"});
     }
 };
 

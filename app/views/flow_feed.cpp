@@ -118,7 +118,8 @@ std::vector<vis::GeometryLayer> FlowFeed::get(ViewContext& context, const std::s
                        .color = flow->color,
                        .channel = here->wish.layer.channel,
                        .opacity = flow->opacity,
-                       .lineWidth = flow->lineWidth});
+                       .lineWidth = flow->lineWidth,
+                       .lens = session.layers[i].lens});
     }
     return out;
 }

@@ -1,5 +1,6 @@
 #include "app/ui/widgets.h"
 #include "app/views/brush_list.h"
+#include "app/views/lens_list.h"
 #include "app/views/ticks.h"
 #include "app/views/view_parts.h"
 
@@ -12,6 +13,10 @@ namespace tessera::app {
 namespace {
 
 constexpr const char* kLayerPayload = "tessera-layer";
+
+struct LayersCache : ViewCache {
+    LensStatistics lenses;
+};
 
 Icon iconOf(const vis::Technique& technique) {
     static constexpr Icon kIcons[] = {icons::kCube, icons::kIso, icons::kSlice, icons::kFlow};
@@ -115,6 +120,32 @@ void drawList(ViewContext& context, int& selected) {
     if (layers.empty()) ImGui::TextDisabled("No layers: the volume view is empty.");
 }
 
+/// The lens, transfer function and time that a layer has of its own.
+void drawPlace(const WidgetContext& widgets, Session& session, vis::Layer& layer) {
+    if (!session.lenses.empty()) {
+        drawLabel(widgets, "Drawn", "Everywhere, or inside a lens alone");
+        chooseLens("##lens", session, layer.lens);
+    }
+    if (!std::holds_alternative<vis::IsoLayer>(layer.technique)) {
+        bool own = !layer.transfer.empty();
+        const FieldInfo field{
+            .key = "ownTransfer", .unit = "", .doc = "Colours and opacity of its own, beside those of its parameter"};
+        if (drawBool(widgets, field, own)) {
+            const std::string channel = channelOf(layer.technique);
+            const vis::TransferFunction now = transferOf(session, layer.transfer.empty() ? channel : layer.transfer);
+            std::string name = channel + " in " + layer.name;
+            while (own && session.transfer.contains(name)) name += "'";
+            if (own) session.transfer[name] = now;
+            if (!own) session.transfer.erase(layer.transfer);
+            layer.transfer = own ? name : "";
+        }
+    }
+    double shift = layer.timeShift;
+    const FieldInfo field{
+        .key = "timeShift", .unit = "s", .doc = "How much later than the time of the session the layer is shown"};
+    if (drawNumber(widgets, field, {}, &shift, 1, false)) layer.timeShift = shift;
+}
+
 void drawListButtons(ViewContext& context, const volume::DatasetInfo& info, int& selected) {
     std::vector<vis::Layer>& layers = context.session.layers;
     const bool any = selected >= 0 && selected < static_cast<int>(layers.size());
@@ -146,7 +177,7 @@ void drawListButtons(ViewContext& context, const volume::DatasetInfo& info, int&
 
 } // namespace
 
-void drawLayersView(ViewContext& context, const std::string&, LayersView& view) {
+void drawLayersView(ViewContext& context, const std::string& pane, LayersView& view) {
     if (!context.source) {
         drawHint("No data", "What the 3D views draw is put together here.");
         return;
@@ -170,9 +201,12 @@ void drawLayersView(ViewContext& context, const std::string&, LayersView& view) 
             const std::string before = channelOf(layer.technique);
             std::visit([&](auto& technique) { drawDescribed(technique, widgets); }, layer.technique);
             followChannel(layer.name, before, channelOf(layer.technique));
+            drawPlace(widgets, session, layer);
             ImGui::PopID();
         }
     }
+    if (ImGui::CollapsingHeader("Lenses", ImGuiTreeNodeFlags_DefaultOpen))
+        drawLensList(context, pane, cacheOf<LayersCache>(context, pane).lenses);
     if (ImGui::CollapsingHeader("Focus and context", ImGuiTreeNodeFlags_DefaultOpen)) {
         drawBrushList(context);
         drawDescribed(session.selection, widgets);

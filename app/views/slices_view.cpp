@@ -1,6 +1,7 @@
 #include "app/ui/widgets.h"
 #include "app/views/axes3d.h"
 #include "app/views/brush_list.h"
+#include "app/views/lens_outline.h"
 #include "app/views/profile_line.h"
 #include "app/views/readout.h"
 #include "app/views/ticks.h"
@@ -57,6 +58,22 @@ void stepCursor(Session& session, const volume::DatasetInfo& info, int axis, flo
     const double cell = info.lattice.spacing[axis] * (info.lattice.kind == volume::LatticeKind::BCC ? 0.5 : 1);
     session.cursor[axis] = std::clamp(session.cursor[axis] + cell * static_cast<double>(steps), info.bounds.lo[axis],
                                       info.bounds.hi[axis]);
+}
+
+/// Lenses with layers of their own show these layers' parameters in their section, others nothing.
+void addInnerSlices(vis::Scene& scene, const Session& session, const vis::SliceLayer& like) {
+    std::erase_if(scene.lenses, [&](const vis::Lens& lens) {
+        return lens.effect != vis::LensEffect::Replace || lens.shape == vis::LensShape::Disc ||
+               std::none_of(session.layers.begin(), session.layers.end(),
+                            [&](const vis::Layer& layer) { return layer.visible && layer.lens == lens.name; });
+    });
+    for (const vis::Lens& lens : scene.lenses)
+        for (const vis::Layer& layer : session.layers) {
+            if (!layer.visible || layer.lens != lens.name) continue;
+            vis::SliceLayer inner = like;
+            inner.channel = std::visit([](const auto& own) { return own.channel; }, layer.technique);
+            scene.layers.push_back({layer.name, true, inner, layer.lens, layer.transfer, layer.timeShift});
+        }
 }
 
 void drawPlane(ViewContext& context, SlicesCache& cache, const SlicesView& view, const std::string& channel, int index,
@@ -133,6 +150,7 @@ void drawPlane(ViewContext& context, SlicesCache& cache, const SlicesView& view,
     layer.orientation = plane.orientation;
     layer.contours = view.contours;
     scene.layers = {vis::Layer{"slice", true, layer}};
+    addInnerSlices(scene, session, layer);
     // Only the place along the normal matters: dragging within a slice leaves its picture as it is.
     for (int axis : {plane.right, plane.up}) scene.cursor[axis] = info.bounds.center()[axis];
     vis::ViewTargetPtr& target = cache.targets[static_cast<std::size_t>(index)];
@@ -153,6 +171,8 @@ void drawPlane(ViewContext& context, SlicesCache& cache, const SlicesView& view,
     draw.PushClipRect(frame.min, frame.max, true);
     drawBrushSections(draw, frame, session.selection, plane.right, plane.up, plane.normal, session.cursor[plane.normal],
                       {unitX.perUnit, unitY.perUnit});
+    drawLensSections(draw, frame, session, info, plane.right, plane.up, plane.normal, session.cursor[plane.normal],
+                     {unitX.perUnit, unitY.perUnit});
     drawProfileLines(draw, frame, session, plane.right, plane.up, {unitX.perUnit, unitY.perUnit});
     drawCrosshair(draw, frame, session.cursor[plane.right] * unitX.perUnit, session.cursor[plane.up] * unitY.perUnit);
     draw.PopClipRect();

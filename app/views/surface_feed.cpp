@@ -162,7 +162,8 @@ std::vector<vis::GeometryLayer> SurfaceFeed::get(ViewContext& context, const std
         out.push_back({.geometry = here->geometry,
                        .color = iso->color,
                        .channel = here->wish.colorBy >= 0 ? iso->colorBy : std::string(),
-                       .opacity = iso->opacity});
+                       .opacity = iso->opacity,
+                       .lens = layer.lens});
     }
     return out;
 }

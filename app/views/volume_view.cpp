@@ -2,6 +2,9 @@
 #include "app/views/axes3d.h"
 #include "app/views/brush_list.h"
 #include "app/views/flow_feed.h"
+#include "app/views/lens_edit.h"
+#include "app/views/lens_list.h"
+#include "app/views/lens_outline.h"
 #include "app/views/profile_line.h"
 #include "app/views/scale_bar.h"
 #include "app/views/surface_feed.h"
@@ -23,6 +26,7 @@ struct VolumeCache : ViewCache {
     SurfaceFeed surfaces;
     FlowFeed flows;
     Drag drag = Drag::None;
+    LensDrag lens;
     ImVec2 last{0, 0}; ///< mouse of the former frame
     bool inTriad = false;
 };
@@ -184,12 +188,15 @@ void drawMenu(ViewContext& context, const char* id, VolumeView& view, const vis:
     ImGui::Separator();
     drawBrushMenu(context);
     ImGui::Separator();
+    drawLensMenu(context);
+    ImGui::Separator();
     ImGui::MenuItem("Box", "", &view.showBox);
     ImGui::MenuItem("Axes", "", &view.showAxes);
     ImGui::MenuItem("Legends", "", &view.showLegend);
     ImGui::MenuItem("Linked cursor", "", &view.showCursor);
     ImGui::MenuItem("Direction gizmo", "", &view.showGizmo);
     ImGui::MenuItem("Scale bar", "", &view.showScaleBar);
+    ImGui::MenuItem("Outlines of lenses", "", &view.showLenses);
     if (context.runCommand) {
         ImGui::Separator();
         if (ImGui::MenuItem("Save picture...", "F12")) context.runCommand("Save picture...");
@@ -266,9 +273,12 @@ void drawVolumeView(ViewContext& context, const std::string& pane, VolumeView& v
     const bool showTriad = view.showGizmo && picture.size.x > em() * 14 && picture.size.y > em() * 12;
     const ImVec2 mouse = ImGui::GetIO().MousePos;
     cache.inTriad = showTriad && hovered && std::hypot(mouse.x - triadAt.x, mouse.y - triadAt.y) < triad + em() * 0.5f;
-    const bool moving = handleMouse(context, cache, picture, world, "menu");
+    const SpaceFrame before = spaceFrame(picture.min, max, session.camera, info.bounds, session.stretch);
+    const bool free = hovered && cache.drag == Drag::None && !cache.inTriad;
+    const bool onLens = view.showLenses && editLenses(cache.lens, session, before, free);
+    const bool moving = onLens || handleMouse(context, cache, picture, world, "menu");
     drawMenu(context, "menu", view, world, picture.aspect());
-    if (cache.drag != Drag::None) context.interacting = true;
+    if (cache.drag != Drag::None || cache.lens.active) context.interacting = true;
 
     vis::Scene scene = themedScene(session);
     scene.showBox = view.showBox;
@@ -289,6 +299,10 @@ void drawVolumeView(ViewContext& context, const std::string& pane, VolumeView& v
     if (view.showCursor) drawCursor(draw, space, session.cursor);
     drawSpaceBrushes(draw, space, session.selection);
     drawProfileLines(draw, space, session);
+    if (view.showLenses) {
+        drawLenses(draw, space, session, cache.lens.lens);
+        drawLensHandles(draw, cache.lens, space, session);
+    }
 
     std::vector<std::pair<ImVec2, ImVec2>> taken;
     if (view.showLegend) {
