@@ -148,11 +148,6 @@ struct Brush {
     }
 };
 
-/// How composite layers and iso-surfaces draw what is not brushed: as it is, its rim seen from the viewer, its faint
-/// boundaries in grey, lines of a grid on these, or its shape from cool to warm. vis/model/context.h has the formulas.
-enum class ContextStyle { Plain, Silhouette, Hull, Wireframe, Tone };
-inline constexpr std::string_view kContextStyleNames[] = {"plain", "silhouette", "hull", "wireframe", "tone"};
-
 /// The one selection that every view shares. The degree of interest (DOI) of a sample is 1 when no brush is enabled.
 /// Else the enabled brushes meet in their order: and = min, or = max, minus = min with 1 - d; the first meets 1, or 0
 /// if it says "or".
@@ -161,7 +156,6 @@ struct Selection {
     float contextOpacity = 0.04f;   ///< opacity factor of samples with DOI 0
     float contextSaturation = 0.1f; ///< colour saturation of samples with DOI 0
     float contextLightness = 1;     ///< of samples with DOI 0: 0 black, 1 as they are, 2 white
-    ContextStyle contextStyle = ContextStyle::Plain;
     float contextBlur = 0; ///< share of the picture's height: radius over which DOI 0 is out of focus
 
     bool operator==(const Selection&) const = default;
@@ -179,10 +173,6 @@ struct Selection {
                                                .unit = "",
                                                .doc = "Lightness of what is not brushed: 0 black, 1 as it is, 2 white",
                                                .range = Range{0, 2}});
-        visit(self.contextStyle, FieldInfo{.key = "contextStyle",
-                                           .unit = "",
-                                           .doc = "How volumes and iso-surfaces draw what is not brushed",
-                                           .names = kContextStyleNames});
         visit(self.contextBlur, FieldInfo{.key = "contextBlur",
                                           .unit = "",
                                           .doc = "How far out of focus what is not brushed is, share of the height",

@@ -1,0 +1,208 @@
+#include "app/views/lens_edit.h"
+#include "app/views/lens_list.h"
+#include "app/views/lens_outline.h"
+
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <gtest/gtest.h>
+
+namespace tessera::app {
+namespace {
+
+/// A picture of 400 x 300 pixels of a box of 2 x 1 x 1 with a lens in its middle, driven by a fed mouse.
+class LensEdit : public testing::Test {
+protected:
+    void SetUp() override {
+        ImGui::CreateContext();
+        ImGuiIO& io = ImGui::GetIO();
+        io.DisplaySize = {500, 400};
+        io.IniFilename = nullptr;
+        io.KeyMap[ImGuiKey_Escape] = 256;
+        unsigned char* pixels;
+        int width, height;
+        io.Fonts->GetTexDataAsRGBA32(&pixels, &width, &height);
+        session.camera.orientation = glm::quat(1, 0, 0, 0); // along -z, x to the right
+        session.camera.projection = vis::Projection::Orthographic;
+        session.cursor = {0.5, 0.5, 0.5};
+        session.lenses = {{.name = "a", .center = {1, 0.5, 0.5}, .size = {0.2f, 0.1f, 0.15f}}};
+        frame();
+        frame();
+    }
+    void TearDown() override { ImGui::DestroyContext(); }
+
+    SpaceFrame space() const {
+        return spaceFrame({50, 50}, {450, 350}, session.camera, {glm::dvec3(0), {2, 1, 1}}, session.stretch);
+    }
+    vis::PlacedLens placed() const {
+        return vis::placeLenses(session.lenses, space().world, session.camera, session.cursor).back();
+    }
+    LensHandles handles() const { return lensHandles(space(), placed()); }
+    void frame() {
+        ImGuiIO& io = ImGui::GetIO();
+        io.DeltaTime = 1.0f / 60;
+        io.MousePos = mouse;
+        ImGui::NewFrame();
+        ImGui::SetNextWindowPos({0, 0});
+        ImGui::SetNextWindowSize({500, 400});
+        ImGui::Begin("test", nullptr, ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove);
+        ImGui::SetCursorScreenPos({50, 50});
+        ImGui::InvisibleButton("picture", {400, 300},
+                               ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight);
+        taken = editLenses(drag, session, space(), ImGui::IsItemHovered());
+        drawLenses(*ImGui::GetWindowDrawList(), space(), session, drag.lens);
+        drawLensHandles(*ImGui::GetWindowDrawList(), drag, space(), session);
+        ImGui::End();
+        ImGui::Render();
+        io.MouseWheel = 0;
+    }
+    void moveTo(ImVec2 at) {
+        mouse = at;
+        frame();
+    }
+    void button(int which, bool down) {
+        ImGui::GetIO().MouseDown[which] = down;
+        frame();
+    }
+    void dragBy(ImVec2 from, ImVec2 by, int which = 0) {
+        moveTo(from);
+        button(which, true);
+        moveTo({from.x + by.x / 2, from.y + by.y / 2});
+        moveTo({from.x + by.x, from.y + by.y});
+        button(which, false);
+    }
+    void hold(bool alt, bool shift = false) {
+        ImGuiIO& io = ImGui::GetIO();
+        io.KeyAlt = alt;
+        io.KeyShift = shift;
+        io.KeyMods = (alt ? ImGuiKeyModFlags_Alt : 0) | (shift ? ImGuiKeyModFlags_Shift : 0);
+    }
+    const vis::Lens& lens() const { return session.lenses.back(); }
+
+    Session session;
+    LensDrag drag;
+    ImVec2 mouse{0, 0};
+    bool taken = false;
+};
+
+TEST_F(LensEdit, TheMiddleMovesUnderTheMouse) {
+    const ImVec2 from = *handles().middle;
+    dragBy(from, {40, -20});
+    const ImVec2 to = *handles().middle;
+    EXPECT_NEAR(to.x, from.x + 40, 0.1);
+    EXPECT_NEAR(to.y, from.y - 20, 0.1);
+    EXPECT_EQ(lens().center.z, 0.5) << "in the plane that faces the viewer";
+    EXPECT_FALSE(drag.active);
+    hold(false, true);
+    dragBy(to, {0, -10}); // pushed away
+    hold(false);
+    EXPECT_LT(lens().center.z, 0.45);
+    dragBy(*handles().middle, {-2000, 0});
+    EXPECT_EQ(lens().center.x, 0) << "stays in the box";
+}
+
+TEST_F(LensEdit, SquaresResizeAndKeepTheShape) {
+    dragBy(*handles().axes[0], {0.5f * (handles().axes[0]->x - handles().middle->x), 0});
+    EXPECT_NEAR(lens().size.x, 0.3f, 0.005f);
+    EXPECT_NEAR(lens().size.y, 0.15f, 0.003f) << "round lenses grow in all directions";
+    session.lenses[0].shape = vis::LensShape::Box;
+    const glm::vec3 before = lens().size;
+    dragBy(*handles().axes[1], {0, 0.25f * (handles().axes[1]->y - handles().middle->y)});
+    EXPECT_NEAR(lens().size.y, before.y * 1.25f, 0.005f);
+    EXPECT_EQ(lens().size.x, before.x);
+    EXPECT_FALSE(handles().axes[2]) << "points at the viewer";
+}
+
+TEST_F(LensEdit, TheRingTurnsLikeABall) {
+    const ImVec2 at = *handles().turn;
+    moveTo(*handles().middle);
+    dragBy({std::floor(at.x), std::floor(at.y)}, {45, 0});
+    const glm::dvec3 x = glm::normalize(placed().fromUnit[0]);
+    EXPECT_NEAR(x.x, std::cos(45 * 4 / 300.0), 1e-4);
+    EXPECT_NEAR(std::abs(x.z), std::sin(45 * 4 / 300.0), 1e-4);
+    EXPECT_NEAR(glm::length(placed().fromUnit[1]), 0.1, 1e-6);
+    EXPECT_EQ(lens().center, glm::dvec3(1, 0.5, 0.5));
+}
+
+TEST_F(LensEdit, AltWorksAnywhereInsideAndElsewhereTheMouseIsFree) {
+    const ImVec2 inside{handles().middle->x + 20, handles().middle->y + 5};
+    dragBy(inside, {30, 0});
+    EXPECT_EQ(lens().center.x, 1) << "without Alt the picture is turned";
+    hold(true);
+    dragBy(inside, {30, 0});
+    EXPECT_GT(lens().center.x, 1.05);
+    moveTo(*handles().middle);
+    ImGui::GetIO().MouseWheel = 1;
+    frame();
+    EXPECT_TRUE(taken);
+    EXPECT_NEAR(lens().size.x, 0.22f, 1e-4f);
+    dragBy(*handles().middle, {0, 37.5f}, 1);
+    EXPECT_GT(std::abs(lens().rotation.x), 5) << "the right button turns";
+    hold(false);
+    moveTo({60, 60});
+    EXPECT_FALSE(taken);
+    EXPECT_EQ(drag.lens, -1);
+}
+
+TEST_F(LensEdit, EscapeTakesTheDragBackAndFollowersTakeTheCursorAlong) {
+    moveTo(*handles().middle);
+    button(0, true);
+    moveTo({mouse.x + 50, mouse.y});
+    EXPECT_GT(lens().center.x, 1.1);
+    ImGui::GetIO().KeysDown[256] = true;
+    frame();
+    ImGui::GetIO().KeysDown[256] = false;
+    button(0, false);
+    EXPECT_EQ(lens().center.x, 1);
+    session.lenses[0].followsCursor = true;
+    dragBy(*handles().middle, {30, 0});
+    EXPECT_GT(session.cursor.x, 0.55);
+    EXPECT_EQ(lens().center.x, 1);
+}
+
+TEST_F(LensEdit, TheTopmostLensIsTaken) {
+    session.lenses.push_back(lens());
+    session.lenses.back().name = "b";
+    EXPECT_EQ(lensUnder(space(), session, *handles().middle), 1);
+    session.lenses.back().enabled = false;
+    EXPECT_EQ(lensUnder(space(), session, {250, 200}), 0);
+    EXPECT_EQ(lensUnder(space(), session, {60, 60}), -1);
+}
+
+TEST(LensSection, LiesOnTheLensAndInThePlane) {
+    for (const vis::LensShape shape : {vis::LensShape::Sphere, vis::LensShape::Box, vis::LensShape::Cylinder}) {
+        const vis::Lens lens{.shape = shape, .size = {0.2f, 0.1f, 0.15f}, .rotation = {30, 40, 50}};
+        const vis::PlacedLens placed = vis::placeLenses({lens}, {}, {}, {}).front();
+        const auto points = lensSection(placed, 0, 1, 2, 0.05);
+        EXPECT_GE(points.size(), 32u);
+        for (const glm::dvec3& point : points) {
+            EXPECT_EQ(point.z, 0.05);
+            EXPECT_NEAR(placed.radius(point), 1, 1e-6);
+        }
+        EXPECT_TRUE(lensSection(placed, 0, 1, 2, 0.4).empty());
+    }
+}
+
+TEST(LensList, NamesAreHeldTogether) {
+    volume::DatasetInfo info;
+    info.bounds = {glm::dvec3(0), {2, 1, 1}};
+    Session session;
+    addLensWith(session, info, vis::VolumeLayer{.channel = "O2"});
+    addLensWith(session, info, vis::IsoLayer{.channel = "T"});
+    ASSERT_EQ(session.lenses.size(), 2u);
+    EXPECT_NE(session.lenses[0].name, session.lenses[1].name);
+    EXPECT_NE(session.lenses[0].color, session.lenses[1].color);
+    session.selection.brushes = {{.region = vis::LensRegion{session.lenses[1].name}}};
+    renameLens(session, 1, session.lenses[0].name);
+    EXPECT_NE(session.lenses[0].name, session.lenses[1].name);
+    renameLens(session, 1, "hot");
+    EXPECT_EQ(session.layers[1].lens, "hot");
+    EXPECT_EQ(std::get<vis::LensRegion>(session.selection.brushes[0].region).lens, "hot");
+    removeLens(session, 1);
+    EXPECT_FALSE(session.layers[1].visible) << "nothing that was inside fills the picture";
+    EXPECT_TRUE(session.layers[1].lens.empty());
+    EXPECT_TRUE(session.selection.brushes.empty());
+    EXPECT_TRUE(session.layers[0].visible);
+}
+
+} // namespace
+} // namespace tessera::app
