@@ -23,8 +23,8 @@ struct StatisticsWish {
     bool operator==(const StatisticsWish&) const = default;
 };
 
-/// A wish for these channels and their pairs under the session's time, brushes and lenses that mark. Channels that only the brushes name
-/// are added after the shown ones.
+/// A wish for these channels and their pairs under the session's time, brushes and lenses that mark. Channels that only
+/// the brushes name are added after the shown ones.
 StatisticsWish makeWish(const Session& session, const volume::DatasetInfo& info, const std::vector<int>& channels,
                         const std::vector<Range>& ranges, int bins, bool pairs);
 

@@ -40,7 +40,7 @@ struct GeometryLayer {
     glm::vec3 color{0.8f};    ///< sRGB; of everything, or where a scalar is NaN
     std::string channel = {}; ///< its transfer function colours the scalars; "" = `color`
     float opacity = 1;
-    float lineWidth = 2; ///< pixels
+    float lineWidth = 2;   ///< pixels
     std::string lens = {}; ///< name of the lens that it is drawn in alone; "" = everywhere
     bool operator==(const GeometryLayer&) const = default;
 };

@@ -156,7 +156,7 @@ struct Selection {
     float contextOpacity = 0.04f;   ///< opacity factor of samples with DOI 0
     float contextSaturation = 0.1f; ///< colour saturation of samples with DOI 0
     float contextLightness = 1;     ///< of samples with DOI 0: 0 black, 1 as they are, 2 white
-    float contextBlur = 0; ///< share of the picture's height: radius over which DOI 0 is out of focus
+    float contextBlur = 0;          ///< share of the picture's height: radius over which DOI 0 is out of focus
 
     bool operator==(const Selection&) const = default;
     static void describe(auto& self, auto&& visit) {

@@ -71,7 +71,9 @@ struct Prepared {
     glm::dvec4 colorAt(const DrawnLayer& layer, double value, glm::dvec3 world) const;
     /// Gradient of a channel as it is seen, per cell of the sublattice and axis.
     glm::dvec3 gradient(const Samples& of, glm::dvec3 world) const {
-        const auto seen = [&](glm::dvec3 at) { return of.value(cells(frame.toWorld(lattice.origin + at * lattice.spacing))); };
+        const auto seen = [&](glm::dvec3 at) {
+            return of.value(cells(frame.toWorld(lattice.origin + at * lattice.spacing)));
+        };
         return volume::gradient(seen, lattice.toCells(frame.toPhysical(world)), gradientDelta(lattice.kind));
     }
     LensAction lensAction(const DrawnLayer& layer, glm::dvec3 world) const {

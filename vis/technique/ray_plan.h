@@ -16,7 +16,7 @@ namespace tessera::vis {
 struct BoundField {
     int channel = 0;
     bool categorical = false;
-    bool raw = false; ///< the samples themselves, whatever the filter: for pre-classification
+    bool raw = false;          ///< the samples themselves, whatever the filter: for pre-classification
     std::string transfer = {}; ///< Layer::transfer
     double timeShift = 0;      ///< Layer::timeShift
     // Filled from what is resident:
