@@ -13,10 +13,10 @@ struct BrushTests {
     std::vector<glm::ivec4> meanings; ///< kind (0 always, 1 range, 2 ellipse, 3 lasso, 4 sphere, 5 box, 6 lens), first
                                       ///< (of a lens: bits of the lenses) and second brush field (-1: unknown), flags
                                       ///< (1 first of its brush, 2 last, 4 inverted, 8 or)
-    std::vector<glm::vec4> shapes;   ///< two each; see brush_uniforms.cpp
-    std::vector<LassoRegion> lassos; ///< whose tables the tests look up, in order
-    float start = 1;                 ///< what the first brush meets
-    int dropped = 0;                 ///< brushes beyond kMaxBrushTests, from the last one on
+    std::vector<glm::vec4> shapes;    ///< two each; see brush_uniforms.cpp
+    std::vector<LassoRegion> lassos;  ///< whose tables the tests look up, in order
+    float start = 1;                  ///< what the first brush meets
+    int dropped = 0;                  ///< brushes beyond kMaxBrushTests, from the last one on
 };
 BrushTests brushTests(const RayPlan& plan, const Scene& scene, const volume::DatasetInfo& info);
 
