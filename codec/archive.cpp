@@ -1,5 +1,6 @@
 #include "codec/archive.h"
 
+#include "codec/archive_state.h"
 #include "codec/brick_access.h"
 #include "codec/brick_codec_v1.h"
 #include "codec/mapped_file.h"
@@ -13,6 +14,7 @@
 #include <cassert>
 #include <cmath>
 #include <cstring>
+#include <filesystem>
 #include <list>
 #include <mutex>
 
@@ -21,6 +23,7 @@ namespace tessera::codec {
 struct Archive::Impl {
     std::string path;
     MappedFile file;
+    HeaderState header;
     Metadata metadata;
     Index index;
     std::vector<volume::Channel> channels;
@@ -29,7 +32,9 @@ struct Archive::Impl {
     mutable std::list<std::pair<std::int32_t, std::shared_ptr<const BandDecoder>>> decoders;
     mutable std::mutex decodersMutex;
 
-    explicit Impl(const std::string& name) : path(name), file(name) {}
+    explicit Impl(const std::string& name) : path(name), file(name) {
+        header = parseHeaders(file.bytes(), file.bytes().size(), path);
+    }
 
     const FrameRecord& frame(int parameter, int component, int time) const {
         return index
@@ -125,7 +130,7 @@ std::shared_ptr<const BandDecoder> Archive::Impl::decoder(std::int32_t model) co
             decoders.splice(decoders.begin(), decoders, at);
             return at->second;
         }
-    const ModelRecord& record = index.models[std::size_t(model)];
+    const Block& record = index.models[std::size_t(model)];
     const auto bytes = checkedPart(file.bytes(), record.offset, record.length, record.checksum, path, "a model");
     Model parsed;
     if (const DecodeStatus status = parseModel(bytes, metadata.grid.levels, parsed); status != DecodeStatus::Ok)
@@ -191,20 +196,32 @@ volume::BrickStats Archive::Impl::statsOf(int number, int component, const volum
     return stats;
 }
 
-Archive::Archive(const std::string& path) : impl_(std::make_unique<Impl>(path)) {
+Archive::Archive(const std::string& path) {
+    // A file that grows may name an end behind what was mapped a moment before.
+    for (int attempt = 0; !impl_; ++attempt) {
+        std::error_code failed;
+        const std::uint64_t before = std::filesystem::file_size(path, failed);
+        try {
+            impl_ = std::make_unique<Impl>(path);
+        } catch (const Error&) {
+            constexpr int kAttempts = 8;
+            if (failed || attempt == kAttempts || std::filesystem::file_size(path, failed) == before) throw;
+        }
+    }
     Impl& impl = *impl_;
     const auto bytes = impl.file.bytes();
-    const Header header = parseHeader(bytes, bytes.size(), path);
-    const auto json =
-        checkedPart(bytes, header.metadataOffset, header.metadataLength, header.metadataChecksum, path, "the metadata");
-    impl.metadata = metadataFromJson({reinterpret_cast<const char*>(json.data()), json.size()}, path);
+    const Header& header = impl.header.header;
+    const auto block = checkedPart(bytes, header.metadata.offset, header.metadata.length, header.metadata.checksum,
+                                   path, "the metadata");
+    impl.metadata = parseMetadata(block, header.version, path);
     impl.channels = impl.metadata.info.channels();
     impl.components = componentCount(impl.metadata.info);
-    const auto index =
-        checkedPart(bytes, header.indexOffset, header.indexLength, header.indexChecksum, path, "the index");
     const std::uint64_t bricks = checkedBrickCount(impl.metadata.grid, path);
-    impl.index = parseIndex(index, header.version, impl.metadata.info.times.size() * impl.components, bricks,
-                            impl.metadata.grid.levels, header.metadataOffset, path);
+    impl.index = readIndex(bytes, header,
+                           {impl.components, bricks, impl.metadata.grid.levels, impl.metadata.info.times.size()}, path);
+    if (header.version >= kGrowingVersion) impl.metadata.info.times = impl.index.times;
+    if (impl.metadata.alternating && impl.metadata.info.times.size() < 2)
+        throw Error("d4 needs two times", path, "index");
     impl.bricks = bricks;
     for (std::size_t f = 0; f < impl.index.frames.size(); ++f) {
         const FrameRecord& frame = impl.index.frames[f];
@@ -233,8 +250,22 @@ const Metadata& Archive::metadata() const {
 const std::string& Archive::path() const {
     return impl_->path;
 }
+std::uint32_t Archive::version() const {
+    return impl_->header.header.version;
+}
 std::uint64_t Archive::fileBytes() const {
-    return impl_->file.bytes().size();
+    return impl_->header.header.fileSize;
+}
+int Archive::commits() const {
+    return static_cast<int>(impl_->index.pages.size());
+}
+bool Archive::outdated() const {
+    try {
+        const MappedFile now(impl_->path);
+        return parseHeaders(now.bytes(), now.bytes().size(), impl_->path).header != impl_->header.header;
+    } catch (const Error&) {
+        return false; // gone or in the middle of a change: what is open stays good
+    }
 }
 int Archive::maskCount() const {
     return static_cast<int>(impl_->index.masks.size());
@@ -321,6 +352,44 @@ volume::Field readField(const Archive& archive, int parameter, int component, in
     return field;
 }
 
+ArchiveState stateOf(const Archive& archive) {
+    const Archive::Impl& impl = *archive.impl_;
+    ArchiveState state{impl.header.header,
+                       impl.metadata.info.times.size(),
+                       impl.components,
+                       impl.index.models.size(),
+                       impl.index.masks.size(),
+                       {},
+                       {}};
+    for (std::size_t c = 0; c < impl.components; ++c) {
+        const std::int32_t number = impl.index.frames[(state.times - 1) * impl.components + c].model;
+        std::size_t t = 0;
+        while (impl.index.frames[t * impl.components + c].model != number) ++t;
+        const FrameRecord& frame = impl.index.frames[t * impl.components + c];
+        const Block& block = impl.index.models[std::size_t(number)];
+        KnownModel known{number, {}, frame.wavelet, frame.numbers.kind, frame.codeBits};
+        const auto bytes =
+            checkedPart(impl.file.bytes(), block.offset, block.length, block.checksum, impl.path, "a model");
+        if (const auto status = parseModel(bytes, impl.metadata.grid.levels, known.model); status != DecodeStatus::Ok)
+            damaged(impl.path, block.offset, std::string("a model cannot be read: ") + reason(status));
+        state.lastModels.push_back(std::move(known));
+        const FrameRecord& last = impl.index.frames[(state.times - 1) * impl.components + c];
+        const auto sameMask = [&](const auto& entry) { return entry.first == last.mask; };
+        if (last.mask < 0 || std::any_of(state.lastMasks.begin(), state.lastMasks.end(), sameMask)) continue;
+        volume::Mask mask(impl.metadata.info.lattice.count(), 1);
+        parallelFor(impl.bricks, [&](std::size_t brick) {
+            const std::vector<std::uint8_t> fine = impl.flags(last, brick);
+            if (fine.empty()) return;
+            forBrickRows(impl.metadata.grid, brickIndex(impl.metadata.grid, brick),
+                         [&](std::size_t to, std::size_t from, std::size_t count) {
+                             std::copy_n(fine.begin() + std::ptrdiff_t(from), count, mask.begin() + std::ptrdiff_t(to));
+                         });
+        });
+        state.lastMasks.emplace_back(last.mask, std::move(mask));
+    }
+    return state;
+}
+
 /// The work of verifyArchive, with access to the parts of an archive.
 struct Verifier {
     const Archive::Impl& impl;
@@ -370,6 +439,19 @@ struct Verifier {
         report.bytes += bytes;
     }
 
+    void headers() {
+        if (impl.header.damaged) note("header: byte 0: one of its two copies is damaged");
+    }
+
+    void formerMetadata() {
+        for (const Block& block : impl.index.retired) {
+            guarded("former metadata", [&] {
+                (void)checkedPart(impl.file.bytes(), block.offset, block.length, block.checksum, impl.path, "it");
+            });
+            report.bytes += block.length;
+        }
+    }
+
     void models() {
         for (std::size_t m = 0; m < impl.index.models.size(); ++m) {
             guarded("model " + std::to_string(m), [&] { (void)impl.decoder(static_cast<std::int32_t>(m)); });
@@ -390,9 +472,11 @@ struct Verifier {
 };
 
 VerifyReport verifyArchive(const Archive& archive, const Progress& progress) {
-    // Header, metadata and index were checked when the archive was opened.
+    // One header, metadata and index were checked when the archive was opened.
     const Archive::Impl& impl = *archive.impl_;
     Verifier verifier{impl, {}, {}};
+    verifier.headers();
+    verifier.formerMetadata();
     verifier.models();
     verifier.masks();
     const std::size_t frames = impl.index.frames.size();

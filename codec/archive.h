@@ -22,6 +22,8 @@ struct VerifyReport {
 
 /// An open .tsr archive: a source of bricks that reads a memory map, from any thread. Nothing in the file is trusted:
 /// header, metadata and index are checked when it is opened, each piece of a brick before it is decoded.
+///
+/// It shows what was in the file when it was opened, even while the file grows; to see more, open it again.
 class Archive final : public volume::BrickSource {
 public:
     /// Throws Error with file, place and reason when it is not an archive, of a newer version, truncated or damaged.
@@ -36,7 +38,14 @@ public:
 
     const Metadata& metadata() const;
     const std::string& path() const;
+    /// Of the format.
+    std::uint32_t version() const;
+    /// Of the archive; the file may be longer, by an append that is under way or was not finished.
     std::uint64_t fileBytes() const;
+    /// Times it was brought to a whole state; of versions 1 and 2 always 1.
+    int commits() const;
+    /// True when the file has been appended to, or replaced, since it was opened.
+    bool outdated() const;
     /// Bytes a level adds, of all bricks, parameters and times.
     std::uint64_t levelBytes(int level) const;
     std::uint64_t maskBytes() const;
@@ -46,6 +55,7 @@ private:
     friend volume::Field readField(const Archive&, int, int, int);
     friend VerifyReport verifyArchive(const Archive&, const Progress&);
     friend struct Verifier;
+    friend struct ArchiveState stateOf(const Archive&);
     struct Impl;
     std::unique_ptr<Impl> impl_;
 };

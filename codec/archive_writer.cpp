@@ -1,7 +1,9 @@
 #include "codec/archive_writer.h"
 
+#include "codec/archive_state.h"
 #include "codec/brick_access.h"
 #include "codec/filter.h"
+#include "codec/growing_file.h"
 #include "codec/whole_brick.h"
 #include "volume/parallel.h"
 
@@ -9,15 +11,11 @@
 #include <array>
 #include <bit>
 #include <cassert>
-#include <cerrno>
 #include <cmath>
-#include <cstdio>
 #include <cstring>
-#include <filesystem>
 #include <limits>
 #include <map>
 #include <optional>
-#include <unistd.h>
 #include <xxhash.h>
 
 namespace tessera::codec {
@@ -76,49 +74,40 @@ FrameBrick rangeOf(const BrickFormat& format, const volume::Field& field, std::s
 } // namespace
 
 struct ArchiveWriter::Impl {
-    std::string path, temporary;
-    std::FILE* file = nullptr;
+    GrowingFile file;
     Metadata metadata;
-    Index index;
-    std::vector<bool> written;
-    std::uint64_t at = 0;
+    Header header;                                ///< of the last commit
+    Bytes block;                                  ///< the metadata of the last commit
+    std::size_t times = 0, models = 0, masks = 0; ///< written so far; times: committed
+    IndexPage page;                               ///< what the next commit adds
     std::map<std::array<std::uint64_t, 2>, int> maskByHash;
-    /// The latest frame of a component: frames to come whose codes are as wide are like it.
-    struct Last {
-        std::int32_t number = -1; ///< of the model
-        Model model;
-        Wavelet wavelet{};
-        NumberKind kind{};
-        int codeBits = 0;
+    std::map<std::size_t, KnownModel> lastModel; ///< by component
 
-        bool resembles(const FrameRecord& frame) const {
-            return kind == frame.numbers.kind && std::abs(codeBits - frame.codeBits) <= 1;
-        }
-    };
-    std::map<std::size_t, Last> lastModel;
+    explicit Impl(const std::string& path) : file(path) {}
+    Impl(const std::string& path, const Header& last) : file(path, last), header(last) {}
 
-    ~Impl() {
-        if (file) std::fclose(file);
-        if (!temporary.empty()) std::remove(temporary.c_str());
-    }
-    void write(std::span<const std::byte> bytes) {
-        if (!bytes.empty() && std::fwrite(bytes.data(), 1, bytes.size(), file) != bytes.size())
-            throw MachineError(std::string("cannot write: ") + std::strerror(errno), path);
-        at += bytes.size();
-    }
     int maskFor(const volume::Field& field, int zstdLevel);
     Wavelet waveletFor(const volume::Field& field, FrameRecord frame) const;
     Model modelFor(const volume::Field& field, std::size_t component, FrameRecord& frame, const FrameOptions& options);
     void writeModel(const Model& model, std::size_t component, FrameRecord& frame);
+    void commit(const Metadata& now, std::size_t wholeTimes, bool always);
 };
+
+namespace {
+
+std::array<std::uint64_t, 2> hashOf(const volume::Mask& mask) {
+    const auto bytes = bytesOf(mask);
+    const XXH128_hash_t hash = XXH3_128bits(bytes.data(), bytes.size());
+    return {hash.low64, hash.high64};
+}
+
+} // namespace
 
 /// Index of the record of a field's mask, written when it is new; -1 where everything is present.
 int ArchiveWriter::Impl::maskFor(const volume::Field& field, int zstdLevel) {
     if (!field.mask || std::find(field.mask->begin(), field.mask->end(), std::uint8_t(0)) == field.mask->end())
         return -1;
-    const auto bytes = bytesOf(*field.mask);
-    const XXH128_hash_t hash = XXH3_128bits(bytes.data(), bytes.size());
-    const auto [found, isNew] = maskByHash.try_emplace({hash.low64, hash.high64}, int(index.masks.size()));
+    const auto [found, isNew] = maskByHash.try_emplace(hashOf(*field.mask), int(masks));
     if (!isNew) return found->second;
 
     const std::size_t bricks = brickCount(metadata.grid);
@@ -136,14 +125,15 @@ int ArchiveWriter::Impl::maskFor(const volume::Field& field, int zstdLevel) {
             coded[b] = encodeMask(flags, compressor);
         }
     });
-    MaskRecord& record = index.masks.emplace_back();
-    record.offset = at;
+    ++masks;
+    MaskRecord& record = page.masks.emplace_back();
+    record.offset = file.position();
     for (const CodedMaskBrick& brick : coded) {
         record.bricks.push_back(
-            {{at, static_cast<std::uint32_t>(brick.bytes.size()), checksum(brick.bytes)}, brick.present});
-        write(brick.bytes);
+            {{file.position(), static_cast<std::uint32_t>(brick.bytes.size()), checksum(brick.bytes)}, brick.present});
+        file.append(brick.bytes);
     }
-    record.length = at - record.offset;
+    record.length = file.position() - record.offset;
     return found->second;
 }
 
@@ -266,23 +256,30 @@ Model ArchiveWriter::Impl::modelFor(const volume::Field& field, std::size_t comp
 
 void ArchiveWriter::Impl::writeModel(const Model& model, std::size_t component, FrameRecord& frame) {
     const Bytes bytes = serialise(model);
-    frame.model = static_cast<std::int32_t>(index.models.size());
-    index.models.push_back({at, bytes.size(), checksum(bytes)});
-    write(bytes);
+    frame.model = static_cast<std::int32_t>(models++);
+    page.models.push_back({file.position(), bytes.size(), checksum(bytes)});
+    file.append(bytes);
     lastModel[component] = {frame.model, model, frame.wavelet, frame.numbers.kind, frame.codeBits};
 }
 
-ArchiveWriter::ArchiveWriter(const std::string& path, const Metadata& metadata) : impl_(std::make_unique<Impl>()) {
-    impl_->path = path;
+ArchiveWriter::ArchiveWriter(const std::string& path, const Metadata& metadata) : impl_(std::make_unique<Impl>(path)) {
     impl_->metadata = metadata;
-    const std::size_t frames = metadata.info.times.size() * componentCount(metadata.info);
-    impl_->index.frames.resize(frames);
-    impl_->written.resize(frames);
-    const std::string temporary = path + ".part-" + std::to_string(::getpid());
-    impl_->file = std::fopen(temporary.c_str(), "wb");
-    if (!impl_->file) throw MachineError(std::string("cannot write: ") + std::strerror(errno), path);
-    impl_->temporary = temporary;
-    impl_->write(Bytes(kHeaderBytes)); // filled in by finish()
+}
+
+ArchiveWriter::ArchiveWriter(const Archive& archive, const Metadata& metadata) {
+    if (archive.version() < kGrowingVersion)
+        throw Error("an archive of version " + std::to_string(archive.version()) + " does not grow; pack it again",
+                    archive.path());
+    ArchiveState state = stateOf(archive);
+    impl_ = std::make_unique<Impl>(archive.path(), state.header);
+    impl_->metadata = metadata;
+    impl_->block = serialise(archive.metadata());
+    impl_->times = state.times;
+    impl_->models = state.models;
+    impl_->masks = state.masks;
+    for (const auto& [number, mask] : state.lastMasks) impl_->maskByHash.emplace(hashOf(mask), number);
+    for (std::size_t c = 0; c < state.lastModels.size(); ++c)
+        impl_->lastModel.emplace(c, std::move(state.lastModels[c]));
 }
 
 ArchiveWriter::~ArchiveWriter() = default;
@@ -291,14 +288,14 @@ void ArchiveWriter::addFrame(int parameter, int component, int time, const volum
                              const FrameOptions& options, const Progress& progress) {
     const volume::BrickGrid& grid = impl_->metadata.grid;
     const volume::DatasetInfo& info = impl_->metadata.info;
-    const std::size_t number =
-        std::size_t(time) * componentCount(info) + firstComponent(info, parameter) + std::size_t(component);
+    const std::size_t ofTime = firstComponent(info, parameter) + std::size_t(component);
     assert(field.lattice.size == grid.lattice.size && field.lattice.kind == grid.lattice.kind);
-    assert(field.type == info.parameters[std::size_t(parameter)].type && !impl_->written[number]);
-    impl_->written[number] = true;
+    assert(field.type == info.parameters[std::size_t(parameter)].type);
     progress.advance(0);
 
-    FrameRecord& frame = impl_->index.frames[number];
+    FrameRecord frame;
+    frame.time = static_cast<std::uint32_t>(time);
+    frame.component = static_cast<std::uint32_t>(ofTime);
     frame.mask = impl_->maskFor(field, options.zstdLevel);
     frame.numbers = chooseCoding(field, options.maxError);
     frame.wavelet = options.wavelet.value_or(Wavelet::W22);
@@ -306,7 +303,6 @@ void ArchiveWriter::addFrame(int parameter, int component, int time, const volum
     frame.valueOffset = field.offset;
     frame.valueScale = field.scale;
     frame.codeBits = codeBitsOf(field, frame.numbers);
-    const std::size_t ofTime = number % componentCount(info);
     const Model model = impl_->modelFor(field, ofTime, frame, options);
     const BandEncoder encoder(model);
     const double maxError = frame.numbers.kind == NumberKind::Quantised ? options.maxError : 0;
@@ -337,40 +333,52 @@ void ArchiveWriter::addFrame(int parameter, int component, int time, const volum
                           });
     // Nobody will look into the tables where there are no bands.
     if (frame.model < 0) impl_->writeModel(allWhole ? makeModel(Histogram(grid.levels), 0, 1) : model, ofTime, frame);
-    frame.offset = impl_->at;
+    GrowingFile& file = impl_->file;
+    frame.offset = file.position();
     for (std::size_t s = 0; s < levels; ++s)
         for (std::size_t b = 0; b < bricks; ++b) {
             const Bytes& bytes = coded[b][s];
-            frame.segments[s * bricks + b] = {impl_->at, static_cast<std::uint32_t>(bytes.size()), checksum(bytes)};
-            impl_->write(bytes);
+            frame.segments[s * bricks + b] = {file.position(), static_cast<std::uint32_t>(bytes.size()),
+                                              checksum(bytes)};
+            file.append(bytes);
         }
-    frame.length = impl_->at - frame.offset;
+    frame.length = file.position() - frame.offset;
+    impl_->page.frames.push_back(std::move(frame));
+}
+
+void ArchiveWriter::Impl::commit(const Metadata& now, std::size_t wholeTimes, bool always) {
+    constexpr std::size_t kWorthwhile = 64; // times the bytes a commit costs
+    Bytes text = serialise(now);
+    const std::uint64_t last = std::max(header.fileSize, firstChunk(kFormatVersion));
+    if (!always && file.position() - last < kWorthwhile * text.size()) return;
+    if (page.frames.empty() && text == block) return;
+    const std::vector<double>& all = now.info.times;
+    page.times.assign(all.begin() + std::ptrdiff_t(times), all.begin() + std::ptrdiff_t(wholeTimes));
+    page.previousPage = header.index;
+    page.previousMetadata = {};
+    if (text != block) {
+        page.previousMetadata = header.metadata;
+        header.metadata = {file.position(), text.size(), checksum(text)};
+        file.append(text);
+        block = std::move(text);
+    }
+    const Bytes index = serialise(page);
+    header.index = {file.position(), index.size(), checksum(index)};
+    file.append(index);
+    header.fileSize = file.position();
+    file.commit(header);
+    times = wholeTimes;
+    page = {};
+}
+
+void ArchiveWriter::commit(const Metadata& metadata, std::size_t times) {
+    impl_->commit(metadata, times, false);
 }
 
 std::uint64_t ArchiveWriter::finish(const Metadata& metadata) {
-    Impl& impl = *impl_;
-    assert(std::find(impl.written.begin(), impl.written.end(), false) == impl.written.end());
-    const std::string json = toJson(metadata);
-    const Bytes index = serialise(impl.index);
-    Header header;
-    header.metadataOffset = impl.at;
-    header.metadataLength = json.size();
-    header.metadataChecksum = checksum(std::as_bytes(std::span(json)));
-    header.indexOffset = header.metadataOffset + header.metadataLength;
-    header.indexLength = index.size();
-    header.indexChecksum = checksum(index);
-    header.fileSize = header.indexOffset + header.indexLength;
-    impl.write(std::as_bytes(std::span(json)));
-    impl.write(index);
-    if (std::fseek(impl.file, 0, SEEK_SET) != 0) throw MachineError("cannot seek", impl.path);
-    impl.write(serialise(header));
-    const bool flushed = std::fflush(impl.file) == 0 && ::fsync(::fileno(impl.file)) == 0;
-    const bool closed = std::fclose(impl.file) == 0;
-    impl.file = nullptr;
-    if (!flushed || !closed || std::rename(impl.temporary.c_str(), impl.path.c_str()) != 0)
-        throw MachineError(std::string("cannot write: ") + std::strerror(errno), impl.path);
-    impl.temporary.clear();
-    return header.fileSize;
+    impl_->commit(metadata, metadata.info.times.size(), true);
+    impl_->file.finish();
+    return impl_->header.fileSize;
 }
 
 } // namespace tessera::codec

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "codec/archive.h"
 #include "codec/lifting.h"
 #include "codec/metadata.h"
 #include "codec/numbers.h"
@@ -19,12 +20,21 @@ struct FrameOptions {
     int zstdLevel = 3;
 };
 
-/// Writes an archive frame by frame into a temporary file beside `path`, which takes its name in finish() and
-/// disappears if that is not reached. One frame and its coded bytes are in memory at a time.
+/// Writes an archive frame by frame, whole times at a time: what is committed stays readable whatever happens later.
+/// One frame and its coded bytes are in memory at a time.
+///
+/// A new archive is made under a temporary name beside `path`; with its first commit it takes its name, where readers
+/// see it grow, and disappears if finish() is not reached. A file that is there already is replaced by finish() only.
+/// An archive that is appended to keeps every commit.
 class ArchiveWriter {
 public:
-    /// `metadata` gives the shape (lattice, grid, parameters, times); throws MachineError when the file cannot be made.
+    /// A new archive. `metadata` gives the shape (lattice, grid, parameters, times); throws MachineError when the file
+    /// cannot be made.
     ArchiveWriter(const std::string& path, const Metadata& metadata);
+    /// Appends to an archive: `metadata` is that of the archive with times behind its last or parameters behind its
+    /// last. Throws Error when the archive is of an older version, has changed since it was opened, or another program
+    /// is writing it. Bytes of an append that was not finished are cut off.
+    ArchiveWriter(const Archive& archive, const Metadata& metadata);
     ~ArchiveWriter();
     ArchiveWriter(const ArchiveWriter&) = delete;
     ArchiveWriter& operator=(const ArchiveWriter&) = delete;
@@ -35,7 +45,12 @@ public:
     void addFrame(int parameter, int component, int time, const volume::Field& field, const FrameOptions& options,
                   const Progress& progress = {});
 
-    /// Writes metadata (now with ranges) and index and gives the file its name. Returns its bytes.
+    /// Makes all that was added readable, in a new archive and an appended one: the first `times` times of the
+    /// metadata, which must have all their frames. A commit writes the metadata (with the ranges so far) again, so
+    /// little is left to wait for the next one: less than 64 times that much.
+    void commit(const Metadata& metadata, std::size_t times);
+
+    /// Commits everything and closes the file. Returns its bytes.
     std::uint64_t finish(const Metadata& metadata);
 
 private:

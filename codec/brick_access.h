@@ -1,7 +1,7 @@
 #pragma once
 
 #include "codec/brick_codec.h"
-#include "codec/container.h"
+#include "codec/index.h"
 #include "volume/brick_source.h"
 
 #include <cstring>

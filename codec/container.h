@@ -1,90 +1,101 @@
 #pragma once
 
 #include "codec/entropy.h"
-#include "codec/lifting.h"
-#include "codec/numbers.h"
 
+#include <bit>
+#include <concepts>
 #include <cstdint>
 #include <span>
 #include <string>
-#include <vector>
 
-/// The byte layout of a .tsr file: header, chunks, metadata, index, without gaps. (FORMAT.md "File".)
+/// The outermost bytes of a .tsr file. (FORMAT.md "File".)
 ///
-///     0        80                     metadataOffset     indexOffset      fileSize
-///     | header | mask and frame chunks | metadata (JSON) | index          |
+///     0        80             160                                                              fileSize
+///     | header | header again | chunks, metadata, page | chunks, metadata, page | ... | last page | unfinished ...
+///
+/// A file only ever grows behind fileSize; then both headers, one after the other, name the new end. So at every
+/// moment one of them describes a whole archive.
 namespace tessera::codec {
 
-/// Version 1 knew neither models nor bands; it is read, never written.
-inline constexpr std::uint32_t kFormatVersion = 2, kOldestVersion = 1;
+/// Version 1 knew neither models nor bands, version 2 did not grow; both are read, never written.
+inline constexpr std::uint32_t kFormatVersion = 3, kOldestVersion = 1, kGrowingVersion = 3;
 inline constexpr std::size_t kHeaderBytes = 80;
+
+/// Where the chunks of a version begin.
+constexpr std::uint64_t firstChunk(std::uint32_t version) {
+    return version >= kGrowingVersion ? 2 * kHeaderBytes : kHeaderBytes;
+}
 
 /// xxh3, 64 bits, seed 0.
 std::uint64_t checksum(std::span<const std::byte> bytes);
 
+/// Bytes of the file under one checksum.
+struct Block {
+    std::uint64_t offset = 0, length = 0, checksum = 0;
+    bool operator==(const Block&) const = default;
+};
+
 struct Header {
     std::uint32_t version = kFormatVersion;
     std::uint32_t features = 0; ///< bits a reader must know; none yet
-    std::uint64_t fileSize = 0;
-    std::uint64_t metadataOffset = 0, metadataLength = 0, metadataChecksum = 0;
-    std::uint64_t indexOffset = 0, indexLength = 0, indexChecksum = 0;
+    std::uint64_t fileSize = 0; ///< bytes behind belong to an append that was not finished
+    Block metadata, index;      ///< index: the last page of it (versions 1, 2: all of it)
+    bool operator==(const Header&) const = default;
+};
+
+struct HeaderState {
+    Header header;
+    bool damaged = false; ///< one of the two copies cannot be read
 };
 
 Bytes serialise(const Header& header);
-/// Checks magic, version, features, checksum and that the parts fill `fileSize` bytes; throws Error naming `file`.
-Header parseHeader(std::span<const std::byte> bytes, std::uint64_t fileSize, const std::string& file);
+/// The header that holds of the first bytes of a file that has `fileBytes`: of two, the one whose archive is larger and
+/// whole. Checks magic, version, features, checksum and where the parts lie; throws Error naming `file`.
+HeaderState parseHeaders(std::span<const std::byte> bytes, std::uint64_t fileBytes, const std::string& file);
 
-/// A coded piece of a brick; where it lies follows from the lengths before it.
-struct Segment {
-    std::uint64_t offset = 0; ///< in the file; not stored
-    std::uint32_t length = 0;
-    std::uint64_t checksum = 0;
+/// Little-endian numbers, appended.
+class ByteWriter {
+public:
+    template <class T> void put(T value) {
+        if constexpr (std::same_as<T, double>)
+            put(std::bit_cast<std::uint64_t>(value));
+        else if constexpr (std::same_as<T, float>)
+            put(std::bit_cast<std::uint32_t>(value));
+        else
+            for (std::size_t i = 0; i < sizeof(T); ++i)
+                bytes.push_back(static_cast<std::byte>(static_cast<std::uint64_t>(value) >> (8 * i)));
+    }
+    void put(const Block& block) {
+        put(block.offset);
+        put(block.length);
+        put(block.checksum);
+    }
+    Bytes bytes;
 };
 
-/// The flags of one brick; no bytes when all or none are present.
-struct MaskBrick {
-    Segment segment;
-    std::uint32_t present = 0; ///< how many samples are
-};
+/// The same, read from the front; the caller has checked that there are enough bytes.
+class ByteReader {
+public:
+    explicit ByteReader(std::span<const std::byte> bytes) : bytes_(bytes) {}
+    std::size_t left() const { return bytes_.size(); }
+    template <class T> T get() {
+        if constexpr (std::same_as<T, double>)
+            return std::bit_cast<double>(get<std::uint64_t>());
+        else if constexpr (std::same_as<T, float>)
+            return std::bit_cast<float>(get<std::uint32_t>());
+        else if constexpr (std::same_as<T, Block>) {
+            const auto offset = get<std::uint64_t>(), length = get<std::uint64_t>();
+            return {offset, length, get<std::uint64_t>()};
+        } else {
+            std::uint64_t value = 0;
+            for (std::size_t i = 0; i < sizeof(T); ++i) value |= static_cast<std::uint64_t>(bytes_[i]) << (8 * i);
+            bytes_ = bytes_.subspan(sizeof(T));
+            return static_cast<T>(value);
+        }
+    }
 
-struct MaskRecord {
-    std::uint64_t offset = 0, length = 0;
-    std::vector<MaskBrick> bricks;
+private:
+    std::span<const std::byte> bytes_;
 };
-
-struct FrameBrick {
-    float min = 0, max = -1; ///< physical values of present samples; min > max: none
-};
-
-/// The tables of the coefficient coder for a frame, or for several.
-struct ModelRecord {
-    std::uint64_t offset = 0, length = 0, checksum = 0;
-};
-
-/// One component of one parameter at one time.
-struct FrameRecord {
-    std::uint64_t offset = 0, length = 0;
-    NumberCoding numbers;
-    Wavelet wavelet = Wavelet::W22;
-    bool keepsAbsent = false;
-    std::int32_t mask = -1;  ///< index of a MaskRecord, -1: all present
-    std::int32_t model = -1; ///< index of a ModelRecord; -1 in version 1
-    int codeBits = 32;       ///< every |code| is below 2^codeBits
-    double valueOffset = 0, valueScale = 1;
-    std::vector<FrameBrick> bricks;
-    std::vector<Segment> segments; ///< [segment * bricks + brick], coarsest level first, as they lie in the file
-};
-
-struct Index {
-    std::vector<MaskRecord> masks;
-    std::vector<ModelRecord> models;
-    std::vector<FrameRecord> frames; ///< [time * components + component]
-};
-
-Bytes serialise(const Index& index);
-/// Parses and checks an index whose shape follows from the metadata. Throws Error naming `file` when a length is
-/// impossible or the chunks do not fill [kHeaderBytes, chunksEnd) exactly, in any order.
-Index parseIndex(std::span<const std::byte> bytes, std::uint32_t version, std::uint64_t frames, std::uint64_t bricks,
-                 int levels, std::uint64_t chunksEnd, const std::string& file);
 
 } // namespace tessera::codec

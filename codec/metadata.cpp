@@ -1,5 +1,7 @@
 #include "codec/metadata.h"
 
+#include "codec/container.h"
+#include "codec/options_json.h"
 #include "volume/error.h"
 
 #include <bit>
@@ -141,8 +143,7 @@ volume::Parameter readParameter(const Node& node) {
     return parameter;
 }
 
-} // namespace
-
+/// Of all but the times, which the index has.
 std::string toJson(const Metadata& metadata) {
     const volume::DatasetInfo& info = metadata.info;
     json parameters = json::array();
@@ -155,19 +156,19 @@ std::string toJson(const Metadata& metadata) {
           {"bounds", {{"lo", vectorJson(info.bounds.lo)}, {"hi", vectorJson(info.bounds.hi)}}},
           {"lengthUnit", info.lengthUnit},
           {"parameters", std::move(parameters)},
-          {"times", info.times},
           {"timeUnit", info.timeUnit},
           {"provenance", info.provenance}}},
         {"grid",
          {{"brickSize", metadata.grid.brickSize}, {"levels", metadata.grid.levels}, {"phase", metadata.grid.phase}}},
         {"source", latticeJson(metadata.source)},
         {"lossless", metadata.lossless},
-        {"maxError", metadata.maxError}};
+        {"maxError", metadata.maxError},
+        {"options", toJson(metadata.options)}};
     if (metadata.alternating) document["sourceTimes"] = metadata.sourceTimes;
     return document.dump(-1, ' ', false, json::error_handler_t::replace);
 }
 
-Metadata metadataFromJson(std::string_view text, const std::string& file) {
+Metadata metadataFromJson(std::string_view text, bool hasTimes, const std::string& file) {
     const json document = json::parse(text, nullptr, false);
     if (document.is_discarded()) throw Error("not JSON", file, "metadata");
     const Node root(document, "", file);
@@ -185,11 +186,9 @@ Metadata metadataFromJson(std::string_view text, const std::string& file) {
     info.lengthUnit = data["lengthUnit"].text();
     for (const Node& parameter : data["parameters"].items(4096)) info.parameters.push_back(readParameter(parameter));
     if (info.parameters.empty()) data["parameters"].fail("no parameters");
-    info.times = readTimes(data["times"]);
-    if (metadata.alternating) {
-        if (info.times.size() < 2) data["times"].fail("d4 needs two times");
-        metadata.sourceTimes = readTimes(root["sourceTimes"]);
-    }
+    info.times.clear();
+    if (hasTimes) info.times = readTimes(data["times"]);
+    if (metadata.alternating) metadata.sourceTimes = readTimes(root["sourceTimes"]);
     info.timeUnit = data["timeUnit"].text();
     info.provenance = data["provenance"].text();
 
@@ -200,7 +199,41 @@ Metadata metadataFromJson(std::string_view text, const std::string& file) {
         grid["brickSize"].fail("not a power of two");
     metadata.grid.levels = grid["levels"].integer(1, std::bit_width(static_cast<unsigned>(metadata.grid.brickSize)));
     metadata.grid.phase = grid["phase"].number();
+    if (document.contains("options")) metadata.options = optionsFromJson(document["options"]);
     return metadata;
+}
+
+} // namespace
+
+Bytes serialise(const Metadata& metadata) {
+    constexpr int kEffort = 19;
+    const std::string text = toJson(metadata);
+    const auto plain = std::as_bytes(std::span(text));
+    const Bytes packed = Compressor(kEffort).compress(plain);
+    Bytes out;
+    appendU32(out, static_cast<std::uint32_t>(text.size()));
+    if (packed.empty())
+        out.insert(out.end(), plain.begin(), plain.end());
+    else
+        out.insert(out.end(), packed.begin(), packed.end());
+    return out;
+}
+
+Metadata parseMetadata(std::span<const std::byte> block, std::uint32_t version, const std::string& file) {
+    const auto textOf = [](std::span<const std::byte> bytes) {
+        return std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    };
+    if (version < kGrowingVersion) return metadataFromJson(textOf(block), true, file);
+    constexpr std::size_t kMost = std::size_t(1) << 26, kLeastRatio = 4096; // no text shrinks more than that
+    if (block.size() < 4) throw Error("the metadata is truncated", file, "metadata");
+    const std::size_t length = readU32(block.data());
+    const auto body = block.subspan(4);
+    if (length == body.size()) return metadataFromJson(textOf(body), false, file);
+    if (length > kMost || length / kLeastRatio > body.size())
+        throw Error("the metadata has an impossible length", file, "metadata");
+    Bytes text(length);
+    if (decompress(body, text) != DecodeStatus::Ok) throw Error("the metadata cannot be decoded", file, "metadata");
+    return metadataFromJson(textOf(text), false, file);
 }
 
 } // namespace tessera::codec

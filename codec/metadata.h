@@ -1,5 +1,7 @@
 #pragma once
 
+#include "codec/entropy.h"
+#include "codec/pack.h"
 #include "volume/brick_source.h"
 
 #include <string>
@@ -18,11 +20,14 @@ struct Metadata {
     bool lossless = true;            ///< every stored sample is exact
     double maxError = 0;             ///< otherwise: bound on |error|, relative to a parameter's range
     std::string program;             ///< that wrote it, with its version
+    PackOptions options;             ///< what it was packed with, and is when it grows
     bool operator==(const Metadata&) const = default;
 };
 
-std::string toJson(const Metadata& metadata);
-/// Throws Error naming `file` and the JSON path when a key is missing, has the wrong type or an impossible value.
-Metadata metadataFromJson(std::string_view text, const std::string& file);
+/// A block of the file: the JSON of all but the times, through zstd.
+Bytes serialise(const Metadata& metadata);
+/// Reads that; of versions 1 and 2 plain JSON, times and all. Throws Error naming `file` and the JSON path when a key
+/// is missing, has the wrong type or an impossible value.
+Metadata parseMetadata(std::span<const std::byte> block, std::uint32_t version, const std::string& file);
 
 } // namespace tessera::codec

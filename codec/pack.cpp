@@ -2,6 +2,7 @@
 
 #include "codec/archive_writer.h"
 #include "codec/brick_access.h"
+#include "codec/continuation.h"
 #include "volume/resample.h"
 #include "volume/series_dataset.h"
 
@@ -144,6 +145,15 @@ Field loadChecked(volume::Dataset& dataset, int parameter, int component, int ti
     return field;
 }
 
+/// The parameters with the ranges known so far.
+std::vector<volume::Parameter> withRanges(std::vector<volume::Parameter> parameters,
+                                          const std::vector<std::vector<Range>>& gathered) {
+    volume::DatasetInfo info;
+    info.parameters = std::move(parameters);
+    settleRanges(info, gathered);
+    return std::move(info.parameters);
+}
+
 /// One time of every component of a parameter.
 std::vector<Field> loadParameter(volume::Dataset& dataset, int parameter, int time) {
     std::vector<Field> fields;
@@ -182,7 +192,11 @@ PackOptions resolved(PackOptions options) {
     return options;
 }
 
-PackSummary pack(volume::Dataset& source, const PackOptions& asked, const std::string& path, const Progress& progress) {
+namespace {
+
+/// Packs into a new archive, or behind what is in `grown`, whose options `asked` are then.
+PackSummary packInto(volume::Dataset& source, const PackOptions& asked, const std::string& path, const Archive* grown,
+                     const Progress& progress) {
     const PackOptions options = resolved(asked);
     PackSummary summary;
     if (source.info.parameters.empty() || source.info.times.empty()) throw Error("there is nothing to pack");
@@ -206,6 +220,8 @@ PackSummary pack(volume::Dataset& source, const PackOptions& asked, const std::s
     metadata.grid = gridFor(metadata.info.lattice, options);
     metadata.lossless = exact;
     metadata.program = "tessera";
+    metadata.options = options;
+    const Continuation place = grown ? continuationOf(*grown, metadata) : Continuation(info);
 
     const std::size_t parameters = info.parameters.size(), times = info.times.size();
     std::vector<std::vector<Range>> ranges(parameters);
@@ -214,7 +230,7 @@ PackSummary pack(volume::Dataset& source, const PackOptions& asked, const std::s
         Stopwatch all(summary.seconds);
         // A bound relative to the range of all times needs a pass of its own; one time is read once.
         const bool relative = options.maxError > 0 || options.psnr > 0;
-        if (relative && times > 1) {
+        if (relative && (times > 1 || grown)) {
             const Progress first = progress.part(0, 0.3);
             work = progress.part(0.3, 1);
             for (std::size_t p = 0; p < parameters; ++p)
@@ -224,12 +240,23 @@ PackSummary pack(volume::Dataset& source, const PackOptions& asked, const std::s
                     gatherRanges(loadParameter(dataset, int(p), int(t)), ranges[p]);
                 }
             settleRanges(info, ranges);
+            if (grown) place.widen(info, metadata.info);
         }
 
-        ArchiveWriter writer(path, metadata);
+        const auto opened =
+            grown ? std::make_unique<ArchiveWriter>(*grown, metadata) : std::make_unique<ArchiveWriter>(path, metadata);
+        ArchiveWriter& writer = *opened;
         const double frames = double(times) * double(componentCount(info));
         double done = 0;
-        for (std::size_t t = 0; t < times; ++t)
+        // With the ranges known so far; a reader may come at any time.
+        const auto soFar = [&] {
+            volume::DatasetInfo read = info;
+            read.parameters = withRanges(info.parameters, ranges);
+            Metadata now = metadata;
+            place.widen(read, now.info);
+            return now;
+        };
+        for (std::size_t t = 0; t < times; ++t) {
             for (std::size_t p = 0; p < parameters; ++p) {
                 const volume::Parameter& parameter = info.parameters[p];
                 std::vector<Field> fields;
@@ -259,22 +286,42 @@ PackSummary pack(volume::Dataset& source, const PackOptions& asked, const std::s
                             volume::toBcc(field, parameter.categorical, options.resample, Progress{{}, progress.stop});
                     }
                     summary.storedSamples += field.count();
-                    frame.maxError = exact ? 0 : boundFor(options, parameter, field);
-                    const double extent = extentOf(parameter);
+                    // Bounds refer to the range of the whole archive, where that is known by now.
+                    const volume::Parameter& whole =
+                        grown && relative ? metadata.info.parameters[std::size_t(place.parameterOf[p])] : parameter;
+                    frame.maxError = exact ? 0 : boundFor(options, whole, field);
+                    const double extent = extentOf(whole);
                     if (extent > 0)
                         metadata.maxError =
                             std::max(metadata.maxError, frame.maxError * std::abs(field.scale) / extent);
                     Stopwatch code(summary.codeSeconds);
-                    writer.addFrame(int(p), int(c), int(t), field, frame,
+                    writer.addFrame(place.parameterOf[p], int(c), int(place.firstTime + t), field, frame,
                                     work.part(done / frames, (done + 1) / frames));
                 }
             }
+            if (place.wholeTimes && !metadata.alternating) writer.commit(soFar(), place.firstTime + t + 1);
+        }
         settleRanges(info, ranges);
-        metadata.info.parameters = source.info.parameters = info.parameters;
-        summary.archiveBytes = writer.finish(metadata);
+        source.info.parameters = info.parameters;
+        summary.archiveBytes = writer.finish(soFar());
+        summary.addedBytes = summary.archiveBytes - (grown ? grown->fileBytes() : 0);
     }
     progress.advance(1);
     return summary;
+}
+
+} // namespace
+
+PackSummary pack(volume::Dataset& source, const PackOptions& options, const std::string& path,
+                 const Progress& progress) {
+    return packInto(source, options, path, nullptr, progress);
+}
+
+PackSummary append(volume::Dataset& source, const std::string& path, const Progress& progress) {
+    const Archive grown(path);
+    if (grown.metadata().alternating)
+        throw Error("an archive of D4* frames does not grow: its last frames are made of all times to their end", path);
+    return packInto(source, grown.metadata().options, path, &grown, progress);
 }
 
 } // namespace tessera::codec

@@ -102,17 +102,24 @@ PackOptions resolved(PackOptions options);
 struct PackSummary {
     std::uint64_t sourceBytes = 0; ///< of all samples read
     std::uint64_t sourceSamples = 0, storedSamples = 0;
-    std::uint64_t archiveBytes = 0;
+    std::uint64_t archiveBytes = 0; ///< of the whole file
+    std::uint64_t addedBytes = 0;   ///< of those, by this run
     double seconds = 0, loadSeconds = 0, resampleSeconds = 0, codeSeconds = 0;
     std::vector<std::string> notes; ///< what the user should know, one line each
 };
 
-/// Packs a data set into `path`. Streams: one time of one parameter and its working copies are in memory; with d4, as
-/// many times of every parameter as the filter spans. Ranges, where
+/// Packs a data set into `path`, where it can be read from the first whole time on (with d4, at the end). Streams: one
+/// time of one parameter and its working copies are in memory; with d4, as many times of every parameter as the filter
+/// spans. Ranges, where
 /// unknown, are gathered on the way (with `maxError`, in a pass before). Categorical parameters are resampled to the
 /// nearest and only predicted, so that every level holds labels. Nothing is left behind when it throws: Error for bad
 /// input or options, MachineError when the file cannot be written, Cancelled.
-PackSummary pack(volume::Dataset& dataset, const PackOptions& options, const std::string& path,
+PackSummary pack(volume::Dataset& source, const PackOptions& options, const std::string& path,
                  const Progress& progress = {});
+
+/// Appends a data set to an archive, with the options that was packed with: times later than its last of the same
+/// parameters, or further parameters at the same times. Every whole time that was appended stays when it throws; of
+/// parameters all or none. Error when the data does not continue the archive.
+PackSummary append(volume::Dataset& source, const std::string& path, const Progress& progress = {});
 
 } // namespace tessera::codec

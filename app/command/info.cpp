@@ -45,6 +45,8 @@ json archiveJson(const codec::Archive& archive) {
     return {{"kind", "archive"},
             {"file", archive.path()},
             {"bytes", archive.fileBytes()},
+            {"version", archive.version()},
+            {"commits", archive.commits()},
             {"storedBytes", stored},
             {"name", info.name},
             {"lattice", archive.metadata().alternating ? "d4" : volume::kLatticeNames[std::size_t(info.lattice.kind)]},
@@ -87,6 +89,7 @@ void printArchive(const codec::Archive& archive) {
                 numberText(extent.z).c_str(), info.lengthUnit.c_str());
     std::printf("  times      %zu, %s .. %s %s\n", info.times.size(), numberText(info.times.front()).c_str(),
                 numberText(info.times.back()).c_str(), info.timeUnit.c_str());
+    if (archive.commits() > 1) std::printf("  grown      in %d steps\n", archive.commits());
     std::printf("  bricks     %s of %d, %d levels:", triple(grid.count()).c_str(), grid.brickSize, grid.levels);
     for (int level = 0; level < grid.levels; ++level)
         std::printf(" %s", bytesText(double(archive.levelBytes(level))).c_str());

@@ -21,7 +21,7 @@ struct Request {
     std::string output;
     volume::ImportOptions import;
     codec::PackOptions options;
-    bool json = false, progressJson = false;
+    bool append = false, json = false, progressJson = false;
 };
 
 /// One JSON object per line on stdout, for a window that runs this command.
@@ -37,10 +37,15 @@ Progress jsonProgress(const Progress& terminal) {
     return progress;
 }
 
+/// The lattice an archive is to have, or has.
+codec::StoredLattice latticeOf(const Request& request) {
+    return request.append ? codec::Archive(request.output).metadata().options.lattice : request.options.lattice;
+}
+
 volume::Dataset open(const Request& request, const Progress& progress) {
     if (request.inputs.size() == 1 && hasEnding(request.inputs[0], ".tsr")) {
         const auto archive = std::make_shared<const codec::Archive>(request.inputs[0]);
-        const bool asGrid = request.options.lattice != codec::StoredLattice::BCC || archive->metadata().alternating;
+        const bool asGrid = latticeOf(request) != codec::StoredLattice::BCC || archive->metadata().alternating;
         return asGrid ? codec::gridDataset(archive, 0) : codec::storedDataset(archive);
     }
     const volume::ImportOptions options = recallOptions(request.inputs, request.import, progress);
@@ -60,6 +65,12 @@ void checkOutput(const Request& request) {
     for (const std::string& input : request.inputs)
         if (std::filesystem::equivalent(input, request.output, ignored))
             throw Error("the output would replace an input", request.output);
+    if (!request.append) return;
+    if (request.options != codec::PackOptions())
+        throw Error("with --append the options are those the archive was packed with; none can be given",
+                    request.output);
+    if (!std::filesystem::exists(request.output, ignored))
+        throw Error("there is no archive to append to", request.output);
 }
 
 nlohmann::json toJson(const codec::PackSummary& summary, const std::string& path) {
@@ -68,6 +79,7 @@ nlohmann::json toJson(const codec::PackSummary& summary, const std::string& path
             {"sourceSamples", summary.sourceSamples},
             {"storedSamples", summary.storedSamples},
             {"archiveBytes", summary.archiveBytes},
+            {"addedBytes", summary.addedBytes},
             {"seconds", summary.seconds},
             {"loadSeconds", summary.loadSeconds},
             {"resampleSeconds", summary.resampleSeconds},
@@ -79,12 +91,20 @@ void run(const Request& request) {
     const Progress terminal = terminalProgress("pack");
     const Progress progress = request.progressJson ? jsonProgress(terminal) : terminal;
     volume::Dataset dataset = open(request, progress.part(0, 0.02));
-    const codec::PackSummary summary = codec::pack(dataset, request.options, request.output, progress.part(0.02, 1));
+    const Progress rest = progress.part(0.02, 1);
+    const codec::PackSummary summary = request.append ? codec::append(dataset, request.output, rest)
+                                                      : codec::pack(dataset, request.options, request.output, rest);
     if (request.json || request.progressJson) {
         std::printf("%s\n", toJson(summary, request.output).dump(request.progressJson ? -1 : 1).c_str());
         return;
     }
     const double source = double(summary.sourceBytes), stored = double(summary.archiveBytes);
+    if (request.append) {
+        std::printf("%s: now %s, %s of it from %s, %.2f s (%s/s)\n", request.output.c_str(), bytesText(stored).c_str(),
+                    bytesText(double(summary.addedBytes)).c_str(), bytesText(source).c_str(), summary.seconds,
+                    bytesText(source / summary.seconds).c_str());
+        return;
+    }
     std::printf("%s: %s from %s (%.2f : 1), %.1f %% of the samples, %.2f s (%s/s)\n", request.output.c_str(),
                 bytesText(stored).c_str(), bytesText(source).c_str(), source / stored,
                 100.0 * double(summary.storedSamples) / double(summary.sourceSamples), summary.seconds,
@@ -98,6 +118,10 @@ void addPackCommand(CLI::App& app) {
     const auto request = std::make_shared<Request>();
     command->add_option("IN", request->inputs, "Data files that belong together: parameters, times")->required();
     command->add_option("-o,--output", request->output, "Archive to write (.tsr)")->required();
+    command->add_flag(
+        "--append", request->append,
+        "Append to the archive: times later than its last, or parameters at all its times, packed as those "
+        "in it; what it holds stays readable meanwhile and whatever happens");
     command->add_flag("--json", request->json, "Print the summary as JSON");
     command->add_flag("--progress-json", request->progressJson, "Print progress and summary as JSON lines");
     addDescribed(*command, request->options);

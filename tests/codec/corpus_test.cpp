@@ -28,7 +28,7 @@ volume::Dataset corpusDataset() {
 // Archives of every version stay readable: these files were written once; those without a number by version 1.
 TEST(Corpus, StoredArchivesStillDecode) {
     const volume::Dataset made = corpusDataset();
-    for (const char* version : {"", "-2"}) {
+    for (const char* version : {"", "-2", "-3"}) {
         const Archive archive(corpus() + "fuzz_archive/cc-exact" + version + ".tsr");
         for (int p = 0; p < 3; ++p)
             for (int c = 0; c < made.info.parameters[std::size_t(p)].components; ++c) {
@@ -39,6 +39,10 @@ TEST(Corpus, StoredArchivesStillDecode) {
         for (const char* name : {"bcc-exact", "bcc-bounded", "cc-bounded"})
             EXPECT_EQ(verifyArchive(Archive(corpus() + "fuzz_archive/" + name + version + ".tsr")).damaged, 0u);
     }
+    const Archive grown(corpus() + "fuzz_archive/grown-3.tsr");
+    EXPECT_EQ(grown.commits(), 3);
+    EXPECT_EQ(grown.info().times, (std::vector<double>{0, 1.5}));
+    EXPECT_EQ(verifyArchive(grown).damaged, 0u);
 }
 
 /// Not a check: writes the seeds of fuzz_brick and fuzz_archive when the format changes
@@ -53,8 +57,27 @@ TEST(Corpus, DISABLED_WriteSeeds) {
             options.maxError = maxError;
             pack(made, options,
                  corpus() + "fuzz_archive/" + std::string(kStoredLatticeNames[std::size_t(lattice)]) +
-                     (maxError > 0 ? "-bounded-2.tsr" : "-exact-2.tsr"));
+                     (maxError > 0 ? "-bounded-3.tsr" : "-exact-3.tsr"));
         }
+    // One that has grown twice.
+    const std::string grown = corpus() + "fuzz_archive/grown-3.tsr";
+    for (int step = 0; step < 3; ++step) {
+        const char* const name = step == 1 ? "p" : "T";
+        volume::Dataset made = makeDataset({5, 4, 6}, {{name, ScalarType::F32, 1, Texture::Smooth, true, false}}, 1);
+        PackOptions options;
+        options.brickSize = 4;
+        if (step == 2) {
+            made = makeDataset({5, 4, 6},
+                               {{"T", ScalarType::F32, 1, Texture::Smooth, true, false},
+                                {"p", ScalarType::F32, 1, Texture::Noise, false, false}},
+                               1);
+            made.info.times = {1.5};
+        }
+        if (step == 0)
+            pack(made, options, grown);
+        else
+            append(made, grown);
+    }
     Compressor compressor(3);
     int number = 0;
     for (int type = 0; type < 5; ++type)

@@ -51,7 +51,8 @@ TEST(Hostile, EveryFlippedByteIsNoticed) {
             writeFile(path, bytes);
             const Outcome found = outcome(path);
             EXPECT_NE(found, Outcome::Unnoticed) << "byte " << i << " of " << bytes.size();
-            EXPECT_TRUE(i >= kHeaderBytes || found == Outcome::RefusedAtOpen) << "byte " << i;
+            // One of the two headers is enough to read by.
+            EXPECT_TRUE(i >= 2 * kHeaderBytes || found == Outcome::DamageReported) << "byte " << i;
             bytes[i] = char(bytes[i] ^ flip);
             if (i >= 400 && i + 400 <= bytes.size()) break;
         }
@@ -70,8 +71,8 @@ TEST(Hostile, EveryTruncationIsRefused) {
     }
     std::vector<char> longer = bytes;
     longer.push_back(0);
-    writeFile(path, longer);
-    EXPECT_EQ(outcome(path), Outcome::RefusedAtOpen);
+    writeFile(path, longer); // an append that was not finished
+    EXPECT_EQ(outcome(path), Outcome::Unnoticed);
 }
 
 TEST(Hostile, DamagedBricksAreErrorsAndTheOthersStayReadable) {
@@ -114,12 +115,12 @@ std::vector<char> resealed(std::vector<char> bytes) {
     seal(48, 64);
     const std::uint64_t sum = checksum(std::as_bytes(std::span(bytes)).first(kHeaderBytes - 8));
     std::memcpy(bytes.data() + kHeaderBytes - 8, &sum, 8);
+    if (bytes[8] >= 3) std::copy_n(bytes.begin(), kHeaderBytes, bytes.begin() + kHeaderBytes);
     return bytes;
 }
 
-TEST(Hostile, ForgedHeadersAndIndexesNeverCrash) {
-    const TemporaryFolder folder;
-    const std::vector<char> bytes = smallArchive(folder, 1e-3);
+/// Tries forgeries of an archive.
+void forge(const TemporaryFolder& folder, const std::vector<char>& bytes) {
     const std::string path = folder / "forged.tsr";
     std::uint64_t metadataAt = 0, indexAt = 0;
     std::memcpy(&metadataAt, bytes.data() + 24, 8);
@@ -151,6 +152,17 @@ TEST(Hostile, ForgedHeadersAndIndexesNeverCrash) {
     }
 }
 
+TEST(Hostile, ForgedHeadersAndIndexesNeverCrash) {
+    const TemporaryFolder folder;
+    const std::vector<char> bytes = smallArchive(folder, 1e-3);
+    forge(folder, bytes);
+    // One that has grown, and one of a version whose metadata is plain text.
+    volume::Dataset more = makeDataset({7, 5, 9}, {{"p", ScalarType::F32, 1, Texture::Smooth, true, false}}, 2);
+    append(more, folder / "small.tsr");
+    forge(folder, readFile(folder / "small.tsr"));
+    forge(folder, readFile(std::string(TESSERA_SOURCE_DIR) + "/tests/fuzz/corpus/fuzz_archive/bcc-bounded-2.tsr"));
+}
+
 TEST(Hostile, OtherFilesAreRefusedWithAReason) {
     const TemporaryFolder folder;
     writeFile(folder / "empty.tsr", {});
@@ -160,16 +172,16 @@ TEST(Hostile, OtherFilesAreRefusedWithAReason) {
     EXPECT_THROW(Archive(folder / "missing.tsr"), Error);
     EXPECT_THROW(Archive(folder / "."), Error);
     std::vector<char> newer = smallArchive(folder, 0);
-    newer[8] = 3;
+    newer[8] = 4;
     writeFile(folder / "newer.tsr", resealed(newer));
     try {
         const Archive archive(folder / "newer.tsr");
         FAIL() << "a newer version was read";
     } catch (const Error& error) {
-        EXPECT_NE(error.reason().find("version 3"), std::string::npos);
+        EXPECT_NE(error.reason().find("version 4"), std::string::npos);
     }
     std::vector<char> features = smallArchive(folder, 0);
-    features[15] = 1;
+    features[15] = 1; // of both copies
     writeFile(folder / "features.tsr", resealed(features));
     EXPECT_THROW(Archive(folder / "features.tsr"), Error);
 }

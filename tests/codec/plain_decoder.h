@@ -21,6 +21,8 @@ struct Brick {
     std::vector<std::uint32_t> bits; ///< level 0: the stored numbers, sign-extended or bits of a float; kept absent too
 };
 
+struct Reader;
+
 class Decoder {
 public:
     explicit Decoder(std::vector<char> file);
@@ -55,6 +57,10 @@ private:
         std::vector<Piece> pieces; ///< [segment * bricks + brick]
     };
 
+    static Piece readPiece(Reader& in);
+    /// 1.4
+    void readPage(const std::vector<std::uint8_t>& page, std::vector<double>& times,
+                  std::vector<std::pair<std::size_t, Frame>>& frames, std::vector<Piece>& covered);
     Model parseModel(const Piece& piece) const;
     std::vector<std::uint8_t> checked(const Piece& piece) const;
     std::vector<bool> fineFlags(const Frame& frame, int number, const Size& size) const;
@@ -67,6 +73,7 @@ private:
     int brickSize_ = 0, levels_ = 0;
     std::vector<std::string> types_; ///< of the component of each frame within a time
     std::uint32_t version_ = 0;
+    std::size_t end_ = 0; ///< of the archive in the file
     std::vector<Piece> models_;
     std::vector<Mask> masks_;
     std::vector<Frame> frames_;

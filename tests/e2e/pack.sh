@@ -102,6 +102,42 @@ EOF
 done
 check "a negative bound" 1 "$tessera" pack wave.json -o x.tsr --psnr -3
 
+# An archive that grows: later times, then another parameter, come to the same as everything at once.
+python3 - <<'EOF'
+import json, math, struct
+def frame(t, p): return [300 + 40 * math.sin(i * .03 + t) + p * (i % 50) for i in range(12 * 11 * 10)]
+def series(name, times, parameters):
+    open(name + ".raw", "wb").write(b"".join(struct.pack("<1320f", *frame(t, p)) for t in times for p in parameters))
+    json.dump({"dims": [12, 11, 10], "dtype": "float32", "times": times,
+               "components": [{"name": "Tp"[p], "unit": "K"} for p in parameters]}, open(name + ".json", "w"))
+series("all", [0, 1, 2, 3], [0, 1])
+series("early", [0, 1], [0])
+series("late", [2, 3], [0])
+series("other", [0, 1, 2, 3], [1])
+EOF
+check "pack all at once" 0 "$tessera" pack all.json -o all.tsr --abs-error 0.01
+check "pack the early times" 0 "$tessera" pack early.json -o grown.tsr --abs-error 0.01
+check "append later times" 0 "$tessera" pack late.json --append -o grown.tsr
+say "of it from" out.txt
+check "append a parameter" 0 "$tessera" pack other.json --append -o grown.tsr --json
+say '"addedBytes"' out.txt
+check "verify what has grown" 0 "$tessera" verify grown.tsr
+check "info of what has grown" 0 "$tessera" info grown.tsr --json
+python3 -c 'import json; d=json.load(open("out.txt")); assert d["version"]==3 and d["commits"]>=3 and d["times"]==[0,1,2,3] and [p["name"] for p in d["parameters"]]==["T","p"], d' || failures=$((failures + 1))
+check "unpack all" 0 "$tessera" unpack all.tsr -o all-back.raw
+check "unpack what has grown" 0 "$tessera" unpack grown.tsr -o grown-back.raw
+cmp all-back.raw grown-back.raw || { echo "FAILED: growing gives other samples"; failures=$((failures + 1)); }
+cp grown.tsr kept.tsr
+check "times that are there" 2 "$tessera" pack early.json --append -o all.tsr
+check "times before the last" 2 "$tessera" pack all.json --append -o grown.tsr
+say "not after the last" err.txt
+check "another grid" 2 "$tessera" pack wave.json --append -o grown.tsr
+check "options of one's own" 2 "$tessera" pack late.json --append -o grown.tsr --psnr 40
+check "nothing to append to" 2 "$tessera" pack late.json --append -o nothing.tsr
+cmp grown.tsr kept.tsr || { echo "FAILED: a refused append has written"; failures=$((failures + 1)); }
+printf unfinished >>grown.tsr
+check "an unfinished append is ignored" 0 "$tessera" verify grown.tsr
+
 # Wrong usage 1, bad input 2 with one line, and nothing left behind.
 check "no output" 1 "$tessera" pack ramp.json
 check "no such wavelet" 1 "$tessera" pack ramp.json -o x.tsr --wavelet 9,9

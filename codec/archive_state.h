@@ -1,0 +1,36 @@
+#pragma once
+
+#include "codec/archive.h"
+#include "codec/index.h"
+#include "codec/rans_model.h"
+
+#include <utility>
+#include <vector>
+
+/// What a writer has to know of an archive to go on with it as if it had never stopped.
+namespace tessera::codec {
+
+/// The frame a model was made for: frames to come whose codes are as wide are like it.
+struct KnownModel {
+    std::int32_t number = -1;
+    Model model;
+    Wavelet wavelet{};
+    NumberKind kind{};
+    int codeBits = 0;
+
+    bool resembles(const FrameRecord& frame) const {
+        return kind == frame.numbers.kind && codeBits - frame.codeBits <= 1 && frame.codeBits - codeBits <= 1;
+    }
+};
+
+struct ArchiveState {
+    Header header;
+    std::size_t times = 0, components = 0, models = 0, masks = 0;
+    std::vector<KnownModel> lastModels;                  ///< by component
+    std::vector<std::pair<int, volume::Mask>> lastMasks; ///< those of the last time
+};
+
+/// Throws Error when a model or mask is damaged.
+ArchiveState stateOf(const Archive& archive);
+
+} // namespace tessera::codec

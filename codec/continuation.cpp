@@ -1,0 +1,115 @@
+#include "codec/continuation.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tessera::codec {
+
+namespace {
+
+using volume::DatasetInfo;
+using volume::Parameter;
+
+std::string sizeText(const volume::Lattice& lattice) {
+    return std::to_string(lattice.size.x) + " x " + std::to_string(lattice.size.y) + " x " +
+           std::to_string(lattice.size.z);
+}
+
+/// The same samples in space, up to the rounding of numbers in files.
+bool sameLattice(const volume::Lattice& a, const volume::Lattice& b) {
+    constexpr double kRounding = 1e-5; // of a cell
+    bool same = a.kind == b.kind && a.size == b.size;
+    for (int axis = 0; axis < 3; ++axis)
+        same = same && std::abs(a.spacing[axis] - b.spacing[axis]) * a.size[axis] <= kRounding * a.spacing[axis] &&
+               std::abs(a.origin[axis] - b.origin[axis]) <= kRounding * a.spacing[axis];
+    return same;
+}
+
+const Parameter* find(const DatasetInfo& info, const std::string& name) {
+    const auto at = std::find_if(info.parameters.begin(), info.parameters.end(),
+                                 [&](const Parameter& parameter) { return parameter.name == name; });
+    return at == info.parameters.end() ? nullptr : &*at;
+}
+
+void requireSame(const Parameter& old, const Parameter& added, const std::string& path) {
+    const auto refuse = [&](const std::string& what, const std::string& is, const std::string& was) {
+        throw Error(added.name + " has " + what + " " + is + ", in the archive " + was, path);
+    };
+    if (old.type != added.type)
+        refuse("the type", std::string(volume::name(added.type)), std::string(volume::name(old.type)));
+    if (old.components != added.components)
+        refuse("components:", std::to_string(added.components), std::to_string(old.components));
+    if (old.unit != added.unit) refuse("the unit", "\"" + added.unit + "\"", "\"" + old.unit + "\"");
+    if (old.categorical != added.categorical)
+        throw Error(added.name + " holds labels in one of archive and data, numbers in the other", path);
+}
+
+} // namespace
+
+Continuation::Continuation(const DatasetInfo& info) {
+    for (std::size_t p = 0; p < info.parameters.size(); ++p) parameterOf.push_back(int(p));
+}
+
+void Continuation::widen(const DatasetInfo& from, DatasetInfo& to) const {
+    for (std::size_t p = 0; p < from.parameters.size(); ++p) {
+        const std::vector<Range>& ranges = from.parameters[p].ranges;
+        std::vector<Range>& wide = to.parameters[std::size_t(parameterOf[p])].ranges;
+        if (wide.size() != ranges.size()) {
+            if (wide.empty()) wide = ranges;
+            continue;
+        }
+        for (std::size_t c = 0; c < ranges.size(); ++c)
+            wide[c] = {std::min(wide[c].lo, ranges[c].lo), std::max(wide[c].hi, ranges[c].hi)};
+    }
+}
+
+Continuation continuationOf(const Archive& archive, Metadata& metadata) {
+    const std::string& path = archive.path();
+    const Metadata& old = archive.metadata();
+    const DatasetInfo added = metadata.info;
+    if (!sameLattice(old.source, metadata.source) || !sameLattice(old.info.lattice, added.lattice))
+        throw Error("the samples lie on another grid (" + sizeText(metadata.source) + ") than those of the archive (" +
+                        sizeText(old.source) + ")",
+                    path);
+    if (old.grid.brickSize != metadata.grid.brickSize || old.grid.levels != metadata.grid.levels ||
+        old.grid.phase != metadata.grid.phase)
+        throw Error("the archive has other bricks than its options say", path);
+
+    std::size_t known = 0;
+    for (const Parameter& parameter : added.parameters) known += find(old.info, parameter.name) != nullptr ? 1 : 0;
+    Continuation place;
+    metadata.info = old.info;
+    metadata.grid = old.grid;
+    metadata.source = old.source;
+    metadata.lossless = old.lossless && metadata.lossless;
+    metadata.maxError = std::max(metadata.maxError, old.maxError);
+    if (known == 0) {
+        if (added.times != old.info.times)
+            throw Error("parameters can only be added at all times of the archive, " +
+                            std::to_string(old.info.times.size()) + " of them",
+                        path);
+        place.wholeTimes = false;
+        for (const Parameter& parameter : added.parameters) {
+            place.parameterOf.push_back(int(metadata.info.parameters.size()));
+            metadata.info.parameters.push_back(parameter);
+        }
+        return place;
+    }
+    for (const Parameter& parameter : added.parameters) {
+        const Parameter* const before = find(old.info, parameter.name);
+        if (!before) throw Error("the archive has no parameter " + parameter.name + " at its times so far", path);
+        requireSame(*before, parameter, path);
+        place.parameterOf.push_back(int(before - old.info.parameters.data()));
+    }
+    for (const Parameter& parameter : old.info.parameters)
+        if (!find(added, parameter.name)) throw Error("the data has no parameter " + parameter.name, path);
+    if (!(added.times.front() > old.info.times.back()))
+        throw Error("the times to append begin at " + std::to_string(added.times.front()) +
+                        ", not after the last of the archive, " + std::to_string(old.info.times.back()),
+                    path);
+    place.firstTime = old.info.times.size();
+    metadata.info.times.insert(metadata.info.times.end(), added.times.begin(), added.times.end());
+    return place;
+}
+
+} // namespace tessera::codec

@@ -1,0 +1,26 @@
+#pragma once
+
+#include "codec/archive.h"
+
+#include <vector>
+
+namespace tessera::codec {
+
+/// Where the frames of a data set go in an archive that it begins or continues.
+struct Continuation {
+    std::size_t firstTime = 0;
+    std::vector<int> parameterOf; ///< number in the archive of each parameter of the data set
+    bool wholeTimes = true;       ///< with each of its times one of the archive is whole
+
+    /// The beginning of an archive of its own.
+    explicit Continuation(const volume::DatasetInfo& info);
+    Continuation() = default;
+    /// Widens the ranges of the archive's parameters by those that are known of the data set's.
+    void widen(const volume::DatasetInfo& from, volume::DatasetInfo& to) const;
+};
+
+/// How the data set of `metadata`, made as for an archive of its own, continues an archive; `metadata` becomes that of
+/// both together. Throws Error when lattice, bricks, parameters or times do not fit.
+Continuation continuationOf(const Archive& archive, Metadata& metadata);
+
+} // namespace tessera::codec

@@ -1,0 +1,265 @@
+#include "codec/index.h"
+
+#include "volume/error.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+namespace tessera::codec {
+
+namespace {
+
+constexpr std::uint64_t kMaskRecordBytes = 16, kMaskBrickBytes = 16, kModelBytes = 24, kFrameRecordBytes = 56,
+                        kFrameModelBytes = 4, kFrameKeyBytes = 8, kFrameBrickBytes = 8, kSegmentBytes = 12;
+
+void require(bool condition, const char* what, const std::string& file) {
+    if (!condition) throw Error(what, file, "index");
+}
+
+/// Reads the records of a page, or of the index of an older version.
+class RecordReader {
+public:
+    RecordReader(std::span<const std::byte> bytes, const Header& header, const IndexShape& shape,
+                 const std::string& file)
+        : in_(bytes), version_(header.version), begin_(firstChunk(header.version)), end_(header.index.offset),
+          shape_(shape), file_(file) {}
+
+    IndexPage page() {
+        IndexPage page;
+        const bool grows = version_ >= kGrowingVersion, hasModels = version_ > 1;
+        const std::uint64_t room = in_.left(), headBytes = grows ? 64 : hasModels ? 12 : 8;
+        require(room >= headBytes, "the index is truncated", file_);
+        if (grows) page.previousPage = in_.get<Block>(), page.previousMetadata = in_.get<Block>();
+        const std::uint64_t times = grows ? in_.get<std::uint32_t>() : 0;
+        const std::uint64_t masks = in_.get<std::uint32_t>(), frames = in_.get<std::uint32_t>();
+        const std::uint64_t models = hasModels ? in_.get<std::uint32_t>() : 0, bricks = shape_.bricks;
+        // No number here exceeds what the bytes of the index can hold, so nothing below overflows or allocates much.
+        require(bricks <= room, "the index is too short", file_);
+        const std::uint64_t maskBytes = kMaskRecordBytes + bricks * kMaskBrickBytes;
+        const std::uint64_t frameBytes =
+            kFrameRecordBytes + (hasModels ? kFrameModelBytes : 0) + (grows ? kFrameKeyBytes : 0) +
+            bricks * (kFrameBrickBytes + static_cast<std::uint64_t>(shape_.levels) * kSegmentBytes);
+        require(times <= room / 8 && masks <= room / maskBytes && frames <= room / frameBytes &&
+                    models <= room / kModelBytes &&
+                    headBytes + 8 * times + models * kModelBytes + masks * maskBytes + frames * frameBytes == room,
+                "the index has the wrong length", file_);
+        for (std::uint64_t t = 0; t < times; ++t) page.times.push_back(in_.get<double>());
+        for (std::uint64_t m = 0; m < models; ++m) {
+            page.models.push_back(in_.get<Block>());
+            requireInside(page.models.back().offset, page.models.back().length);
+        }
+        for (std::uint64_t m = 0; m < masks; ++m) page.masks.push_back(mask());
+        for (std::uint64_t f = 0; f < frames; ++f) page.frames.push_back(frame());
+        return page;
+    }
+
+private:
+    void requireInside(std::uint64_t offset, std::uint64_t length) const {
+        require(offset >= begin_ && offset <= end_ && length <= end_ - offset, "a chunk lies outside the file", file_);
+    }
+    void place(Segment& segment, std::uint64_t& at, std::uint64_t end) const {
+        require(segment.length <= end - at, "a brick does not fit its chunk", file_);
+        segment.offset = at;
+        at += segment.length;
+    }
+
+    MaskRecord mask() {
+        MaskRecord mask;
+        mask.offset = in_.get<std::uint64_t>();
+        mask.length = in_.get<std::uint64_t>();
+        requireInside(mask.offset, mask.length);
+        std::uint64_t at = mask.offset;
+        mask.bricks.resize(shape_.bricks);
+        for (MaskBrick& brick : mask.bricks) {
+            brick.segment.length = in_.get<std::uint32_t>();
+            brick.present = in_.get<std::uint32_t>();
+            brick.segment.checksum = in_.get<std::uint64_t>();
+            place(brick.segment, at, mask.offset + mask.length);
+        }
+        require(at == mask.offset + mask.length, "the bricks of a mask do not fill its chunk", file_);
+        return mask;
+    }
+
+    FrameRecord frame() {
+        const bool grows = version_ >= kGrowingVersion, hasModels = version_ > 1;
+        FrameRecord frame;
+        if (grows) frame.time = in_.get<std::uint32_t>(), frame.component = in_.get<std::uint32_t>();
+        frame.offset = in_.get<std::uint64_t>();
+        frame.length = in_.get<std::uint64_t>();
+        requireInside(frame.offset, frame.length);
+        const auto kind = in_.get<std::uint8_t>(), wavelet = in_.get<std::uint8_t>(), keeps = in_.get<std::uint8_t>();
+        const auto codeBits = in_.get<std::uint8_t>();
+        constexpr std::size_t kWaveletsOfVersion1 = 8;
+        require(kind <= static_cast<std::uint8_t>(NumberKind::Quantised), "an unknown coding of numbers", file_);
+        require(wavelet < (hasModels ? std::size(kWaveletNames) : kWaveletsOfVersion1), "an unknown wavelet", file_);
+        require(keeps <= 1, "an unknown flag of a frame", file_);
+        require(hasModels ? codeBits >= 1 && codeBits <= 32 : codeBits == 0, "an impossible width of codes", file_);
+        frame.numbers.kind = static_cast<NumberKind>(kind);
+        frame.wavelet = static_cast<Wavelet>(wavelet);
+        frame.keepsAbsent = keeps == 1;
+        frame.codeBits = hasModels ? codeBits : 32;
+        frame.mask = in_.get<std::int32_t>();
+        if (hasModels) frame.model = in_.get<std::int32_t>();
+        frame.numbers.origin = in_.get<double>();
+        frame.numbers.step = in_.get<double>();
+        frame.valueOffset = in_.get<double>();
+        frame.valueScale = in_.get<double>();
+        frame.bricks.resize(shape_.bricks);
+        for (FrameBrick& brick : frame.bricks) {
+            brick.min = in_.get<float>();
+            brick.max = in_.get<float>();
+        }
+        std::uint64_t at = frame.offset;
+        frame.segments.resize(shape_.bricks * static_cast<std::uint64_t>(shape_.levels));
+        for (Segment& segment : frame.segments) {
+            segment.length = in_.get<std::uint32_t>();
+            segment.checksum = in_.get<std::uint64_t>();
+            place(segment, at, frame.offset + frame.length);
+        }
+        require(at == frame.offset + frame.length, "the bricks of a frame do not fill its chunk", file_);
+        return frame;
+    }
+
+    ByteReader in_;
+    std::uint32_t version_;
+    std::uint64_t begin_, end_; ///< where chunks may lie
+    const IndexShape& shape_;
+    const std::string& file_;
+};
+
+/// The pages from the last, which the header names, to the first; here the first comes first.
+std::vector<IndexPage> readPages(std::span<const std::byte> bytes, const Header& header, const IndexShape& shape,
+                                 const std::string& file, std::vector<Block>& places) {
+    std::vector<IndexPage> pages;
+    Header upTo = header;
+    for (Block at = header.index;;) {
+        const auto part = bytes.subspan(at.offset, at.length);
+        require(checksum(part) == at.checksum, "the index is damaged (checksum)", file);
+        upTo.index = at; // what a page names lies before it
+        pages.push_back(RecordReader(part, upTo, shape, file).page());
+        places.push_back(at);
+        const Block before = pages.back().previousPage;
+        if (before == Block{}) break;
+        require(header.version >= kGrowingVersion && before.offset >= firstChunk(header.version) &&
+                    before.offset < at.offset && before.length <= at.offset - before.offset,
+                "a page of the index lies outside the file", file);
+        at = before;
+    }
+    std::reverse(pages.begin(), pages.end());
+    std::reverse(places.begin(), places.end());
+    return pages;
+}
+
+/// Chunks, pages and metadata, former ones too, touch each other from the first chunk to the end of the file.
+void requireFilled(const Index& index, const Header& header, const std::string& file) {
+    std::vector<std::pair<std::uint64_t, std::uint64_t>> parts;
+    const auto add = [&](const auto& part) {
+        const std::uint64_t end = header.fileSize;
+        require(part.offset <= end && part.length <= end - part.offset, "a part lies outside the file", file);
+        parts.emplace_back(part.offset, part.offset + part.length);
+    };
+    for (const auto* blocks : {&index.models, &index.pages, &index.retired})
+        for (const Block& block : *blocks) add(block);
+    for (const MaskRecord& mask : index.masks) add(mask);
+    for (const FrameRecord& frame : index.frames) add(frame);
+    add(header.metadata);
+    std::sort(parts.begin(), parts.end());
+    std::uint64_t at = firstChunk(header.version);
+    for (const auto& [begin, end] : parts) {
+        require(begin == at, "the chunks do not fill the file", file);
+        at = end;
+    }
+    require(at == header.fileSize, "the chunks do not fill the file", file);
+}
+
+} // namespace
+
+Bytes serialise(const IndexPage& page) {
+    ByteWriter out;
+    out.put(page.previousPage);
+    out.put(page.previousMetadata);
+    out.put(static_cast<std::uint32_t>(page.times.size()));
+    out.put(static_cast<std::uint32_t>(page.masks.size()));
+    out.put(static_cast<std::uint32_t>(page.frames.size()));
+    out.put(static_cast<std::uint32_t>(page.models.size()));
+    for (const double time : page.times) out.put(time);
+    for (const Block& model : page.models) out.put(model);
+    for (const MaskRecord& mask : page.masks) {
+        out.put(mask.offset);
+        out.put(mask.length);
+        for (const MaskBrick& brick : mask.bricks) {
+            out.put(brick.segment.length);
+            out.put(brick.present);
+            out.put(brick.segment.checksum);
+        }
+    }
+    for (const FrameRecord& frame : page.frames) {
+        out.put(frame.time);
+        out.put(frame.component);
+        out.put(frame.offset);
+        out.put(frame.length);
+        out.put(static_cast<std::uint8_t>(frame.numbers.kind));
+        out.put(static_cast<std::uint8_t>(frame.wavelet));
+        out.put(static_cast<std::uint8_t>(frame.keepsAbsent ? 1 : 0));
+        out.put(static_cast<std::uint8_t>(frame.codeBits));
+        out.put(frame.mask);
+        out.put(frame.model);
+        out.put(frame.numbers.origin);
+        out.put(frame.numbers.step);
+        out.put(frame.valueOffset);
+        out.put(frame.valueScale);
+        for (const FrameBrick& brick : frame.bricks) {
+            out.put(brick.min);
+            out.put(brick.max);
+        }
+        for (const Segment& segment : frame.segments) {
+            out.put(segment.length);
+            out.put(segment.checksum);
+        }
+    }
+    return out.bytes;
+}
+
+Index readIndex(std::span<const std::byte> bytes, const Header& header, const IndexShape& shape,
+                const std::string& file) {
+    Index index;
+    const bool grows = header.version >= kGrowingVersion;
+    std::vector<FrameRecord> frames;
+    for (IndexPage& page : readPages(bytes, header, shape, file, index.pages)) {
+        index.times.insert(index.times.end(), page.times.begin(), page.times.end());
+        index.models.insert(index.models.end(), page.models.begin(), page.models.end());
+        std::move(page.masks.begin(), page.masks.end(), std::back_inserter(index.masks));
+        if (page.previousMetadata != Block{}) index.retired.push_back(page.previousMetadata);
+        for (FrameRecord& frame : page.frames) {
+            require(frame.mask >= -1 && frame.mask < std::ssize(index.masks), "a mask is missing", file);
+            require(header.version == 1 || (frame.model >= 0 && frame.model < std::ssize(index.models)),
+                    "a model is missing", file);
+            if (!grows) {
+                frame.time = static_cast<std::uint32_t>(frames.size() / shape.components);
+                frame.component = static_cast<std::uint32_t>(frames.size() % shape.components);
+            }
+            frames.push_back(std::move(frame));
+        }
+    }
+    for (std::size_t t = 0; t < index.times.size(); ++t)
+        require(std::isfinite(index.times[t]) && (t == 0 || index.times[t] > index.times[t - 1]),
+                "times do not increase", file);
+    const std::uint64_t times = grows ? index.times.size() : shape.times;
+    require(times > 0, "no times", file);
+    require(frames.size() / shape.components == times && frames.size() % shape.components == 0,
+            "the index and the metadata disagree on the number of frames", file);
+    index.frames.resize(frames.size());
+    std::vector<bool> known(frames.size());
+    for (FrameRecord& frame : frames) {
+        require(frame.time < times && frame.component < shape.components, "a frame of no time or parameter", file);
+        const std::size_t number = std::size_t(frame.time) * shape.components + frame.component;
+        require(!known[number], "a frame is there twice", file);
+        known[number] = true;
+        index.frames[number] = std::move(frame);
+    }
+    requireFilled(index, header, file);
+    return index;
+}
+
+} // namespace tessera::codec
