@@ -1,5 +1,6 @@
 #include "vis/renderer_impl.h"
 
+#include "vis/model/context_blur.h"
 #include "vis/model/jitter.h"
 #include "vis/model/proxy.h"
 #include "vis/technique/box_lines.h"
@@ -16,6 +17,7 @@ namespace tessera::vis {
 namespace {
 
 constexpr double kSkipOccupancy = 0.7; ///< above, leaping costs more than it saves
+constexpr int kSeenUnit = 44;          ///< beyond those of any plan
 
 std::vector<Tile> tilesOf(glm::ivec2 size, int edge) {
     std::vector<Tile> tiles;
@@ -145,7 +147,8 @@ void Renderer::Impl::accumulate(const Program& rayProgram, ViewTarget& target, c
 }
 
 void Renderer::Impl::present(ViewTarget& target, const Scene& scene, bool reduced, const Tile& tile) {
-    const Program* found = programs.find({"screen.vert.glsl", "resolve.frag.glsl", {}, {}});
+    const bool blurs = blursContext(scene);
+    const Program* found = programs.find({"screen.vert.glsl", "resolve.frag.glsl", {}, {{"BLUR", blurs ? "1" : "0"}}});
     if (!found) throw Error("the program that presents pictures does not compile");
     const Program& resolve = *found;
     const RayBuffer& from = reduced ? target.reduced : target.full;
@@ -157,6 +160,10 @@ void Renderer::Impl::present(ViewTarget& target, const Scene& scene, bool reduce
     resolve.set("boxColor", glm::vec3(linearFromSrgb(glm::dvec3(scene.boxColor))));
     resolve.set("lineWidth", 1.3f);
     resolve.set("toneCurve", int(scene.tone.curve));
+    resolve.set("seen", kSeenUnit);
+    resolve.set("blurRadius", scene.selection.contextBlur * float(target.size.y));
+    resolve.set("blurTaps", kBlurTaps);
+    if (blurs) glBindTextureUnit(GLuint(kSeenUnit), from.pick.name());
     resolve.set("tone", glm::vec2(std::exp2(scene.tone.exposure), scene.tone.white));
     BoxLines lines;
     if (scene.showBox && source)
@@ -351,6 +358,11 @@ void Renderer::Impl::refine(ViewTarget& target, const Scene& scene, const FrameR
             target.msPerPixel = target.passMilliseconds / pixels;
             if (request.moving) break;
         }
+    }
+    // What is out of focus spreads over the borders of tiles.
+    if (blursContext(scene) && target.tilesDone >= perPass) {
+        present(target, scene, false, everything);
+        glBindTextureUnit(0, plan.fields[0].texture);
     }
     target.stillDone = target.tilesDone >= wanted && lit;
 }

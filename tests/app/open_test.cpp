@@ -162,7 +162,7 @@ TEST_F(OpenTest, ALayoutFitsAnyData) {
 TEST_F(OpenTest, ShippedLayoutsAreValid) {
     const std::vector<std::string> names = layoutNames();
     EXPECT_TRUE(std::find(names.begin(), names.end(), "overview") != names.end());
-    for (const char* shipped : {"gases", "starved", "statistics", "flow", "lens"})
+    for (const char* shipped : {"gases", "starved", "statistics", "flow", "lens", "focus"})
         EXPECT_TRUE(std::find(names.begin(), names.end(), shipped) != names.end()) << shipped;
     for (const std::string& name : names) {
         const SessionDocument layout = loadSession(findLayout(name));

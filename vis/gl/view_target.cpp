@@ -5,7 +5,7 @@ namespace tessera::vis {
 void RayBuffer::resize(glm::ivec2 wanted, bool exact, const char* label) {
     if (size == wanted) return;
     color = makeTexture2D(wanted, exact ? GL_RGBA32F : GL_RGBA16F, GL_LINEAR, label);
-    pick = makeTexture2D(wanted, GL_R32F, GL_NEAREST, label);
+    pick = makeTexture2D(wanted, GL_RG32F, GL_NEAREST, label);
     framebuffer = makeFramebuffer({color.name(), pick.name()}, label);
     size = wanted;
 }

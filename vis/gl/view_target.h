@@ -11,7 +11,7 @@
 
 namespace tessera::vis {
 
-/// One buffer the ray caster draws into: linear premultiplied colour and the distance of what a pixel shows.
+/// One buffer the ray caster draws into: linear premultiplied colour; distance of what a pixel shows and its interest.
 struct RayBuffer {
     Texture color, pick;
     Framebuffer framebuffer;

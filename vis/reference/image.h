@@ -11,6 +11,7 @@ namespace tessera::vis::reference {
 struct Image {
     glm::ivec2 size{0};
     std::vector<glm::dvec4> pixels;
+    std::vector<double> interest = {}; ///< degree of interest of what each pixel shows, 0 where nothing; or empty
 };
 
 /// How far two pictures of one size are apart, over all four components.
@@ -22,5 +23,9 @@ struct Difference {
     glm::ivec2 worst{0};    ///< pixel of the maximum
 };
 Difference compare(const Image& a, const Image& b, double threshold);
+
+/// The picture with what is not brushed out of focus (vis/model/context_blur.h); `radius` in pixels. It must have
+/// degrees of interest.
+Image outOfFocus(const Image& image, double radius);
 
 } // namespace tessera::vis::reference

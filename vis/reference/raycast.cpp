@@ -25,6 +25,7 @@ template <class Number> struct Caster {
     std::vector<RaySegment> holes = {}; ///< in samples
     Vec4<Number> out{0};
     Number step = 0;
+    double interest = 0; ///< of `out`, times its opacity
 
     Vec3<Number> at(Number t) const { return Vec3<Number>(ray.origin) + t * Vec3<Number>(ray.direction); }
     bool opaque() const { return out.a >= Number(kOpaque); }
@@ -36,17 +37,18 @@ template <class Number> struct Caster {
                             [&](const RaySegment& hole) { return k > hole.enter && k < hole.exit; });
     }
 
-    void blend(glm::dvec3 color, double opacity) {
+    void blend(glm::dvec3 color, double opacity, double doi) {
         const Number remaining = scene.options.flaws.additiveBlend ? Number(1) : 1 - out.a;
         const Number weight = remaining * Number(opacity);
         out += Vec4<Number>(Vec3<Number>(color) * weight, weight);
+        interest += double(weight) * doi;
     }
 
     /// A surface on the ray.
     struct Event {
         Number t;
         glm::dvec3 color;
-        double opacity;
+        double opacity, interest;
     };
 
     /// Adds the slices met in (from, to].
@@ -65,14 +67,15 @@ template <class Number> struct Caster {
             events.push_back({t, scene.focused(glm::dvec3(layer.classify(*value)), doi, lens.saturation),
                               std::min(double(std::get<SliceLayer>(*layer.technique).opacity) *
                                            scene.opacityFactor(doi) * lens.opacity,
-                                       1.0)});
+                                       1.0),
+                              doi});
         }
     }
 
     /// Nearest first, equal ones in the order found.
     void drawEvents(std::vector<Event>& events) {
         std::stable_sort(events.begin(), events.end(), [](const Event& a, const Event& b) { return a.t < b.t; });
-        for (const Event& event : events) blend(event.color, event.opacity);
+        for (const Event& event : events) blend(event.color, event.opacity, event.interest);
         events.clear();
     }
 
@@ -112,7 +115,7 @@ template <class Number> struct Caster {
         const LensAction lens = scene.lensAction(layer, place);
         const glm::dvec3 albedo = scene.focused(linearFromSrgb(glm::dvec3(iso.color)), doi, lens.saturation);
         const double opacity = std::min(double(iso.opacity) * scene.opacityFactor(doi) * lens.opacity, 1.0);
-        events.push_back({(lo + hi) / 2, shade(layer, place, albedo, true), opacity});
+        events.push_back({(lo + hi) / 2, shade(layer, place, albedo, true), opacity, doi});
     }
 
     /// Colour and opacity of a composite layer's sample, and the share of its length that they fill.
@@ -157,7 +160,7 @@ template <class Number> struct Caster {
         glm::dvec3 color = scene.focused(glm::dvec3(classified.color), doi, lens.saturation);
         color = volume.shaded ? shade(layer, place, color, false)
                               : vis::shade(scene.light, color, glm::dvec3(0), 0, place, -ray.direction);
-        blend(color, opacity);
+        blend(color, opacity, doi);
     }
 
     /// What a projection has seen.
@@ -200,16 +203,16 @@ template <class Number> struct Caster {
         if (seen.count == 0 || !(seen.factors > 0)) return;
         const auto opacity = [&](glm::dvec4 color) { return std::min(1.0, double(volume.density) * color.a); };
         if (volume.style == VolumeStyle::XRay) {
-            blend(glm::dvec3(layer.classifyPlace(seen.absorbed)), seen.absorbed);
+            blend(glm::dvec3(layer.classifyPlace(seen.absorbed)), seen.absorbed, 1);
         } else if (volume.style == VolumeStyle::Average) {
             // The mean belongs to no place: brushes act on it through its weights alone.
             const glm::dvec4 color = layer.classifyPlace(std::clamp(seen.weighted / seen.factors, 0.0, 1.0));
-            blend(glm::dvec3(color), std::min(opacity(color) * seen.factors / seen.count, 1.0));
+            blend(glm::dvec3(color), std::min(opacity(color) * seen.factors / seen.count, 1.0), 1);
         } else {
             const glm::dvec4 color = layer.classifyPlace(seen.bestPlace);
             const double factor = scene.opacityFactor(seen.bestInterest) * seen.bestLens.opacity;
             blend(scene.focused(glm::dvec3(color), seen.bestInterest, seen.bestLens.saturation),
-                  std::min(opacity(color) * factor, 1.0));
+                  std::min(opacity(color) * factor, 1.0), seen.bestInterest);
         }
     }
 
@@ -274,7 +277,8 @@ template <class Number>
 Image renderWith(const Scene& scene, const volume::BrickSource& source, glm::ivec2 size, const Options& options) {
     const Prepared prepared(scene, source, options);
     const bool perspective = scene.camera.projection == Projection::Perspective;
-    Image image{size, std::vector<glm::dvec4>(std::size_t(size.x) * std::size_t(size.y))};
+    const std::size_t count = std::size_t(size.x) * std::size_t(size.y);
+    Image image{size, std::vector<glm::dvec4>(count), std::vector<double>(count)};
     parallelFor(std::size_t(size.y), [&](std::size_t y) {
         for (int x = 0; x < size.x; ++x)
             for (int pass = 0; pass < std::max(scene.render.samples, 1); ++pass) {
@@ -286,6 +290,8 @@ Image renderWith(const Scene& scene, const volume::BrickSource& source, glm::ive
                 caster.cast();
                 glm::dvec4& out = image.pixels[y * std::size_t(size.x) + std::size_t(x)];
                 out += glm::dvec4(caster.out) / double(std::max(scene.render.samples, 1));
+                if (pass == 0 && caster.out.a > 0)
+                    image.interest[y * std::size_t(size.x) + std::size_t(x)] = caster.interest / double(caster.out.a);
             }
     });
     return image;

@@ -18,7 +18,7 @@ uniform vec3 proxyNormal;                // of the planes
 uniform float proxyFirst, proxySpacing;  // of surface 0, and between surfaces: along the normal, or of the radius
 
 layout(location = 0) out vec4 outColor; // linear, premultiplied
-layout(location = 1) out float outPick; // distance along the ray; large: nothing noticeable
+layout(location = 1) out vec2 outPick; // distance along the ray; large: nothing noticeable
 
 const float kFlatGradient = 0.005, kProxyPickOpacity = 0.02;
 
@@ -58,5 +58,5 @@ void main() {
     }
     if (color.a <= 0.0) discard;
     outColor = color;
-    outPick = color.a > kProxyPickOpacity ? t : 1e9;
+    outPick = vec2(color.a > kProxyPickOpacity ? t : 1e9, 0.0);
 }

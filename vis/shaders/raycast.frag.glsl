@@ -19,12 +19,20 @@
 #include <slot:skip>
 
 layout(location = 0) out vec4 outColor; // linear, premultiplied
-layout(location = 1) out float outPick; // distance along the ray of what a pixel shows, < 0: nothing
+layout(location = 1) out vec2 outPick; // distance along the ray of what a pixel shows, < 0: nothing; its interest
 
 #define EVENTS (SLICES + GEOMETRY)
 
 const float kOpaque = 0.995, kPickOpacity = 0.1, kFlatGradient = 0.005;
 const float kNoPick = -2.0;
+
+float interest = 0.0; // of what a pixel shows, times its opacity; for CONTEXT_BLUR
+
+// Puts `top` with a degree of interest behind what has accumulated.
+vec4 show(vec4 color, vec4 top, float doi) {
+    interest += (1.0 - color.a) * top.a * doi;
+    return under(color, top);
+}
 
 #if LAYERS > 0
 #include "lib/classify.glsl"
@@ -55,6 +63,7 @@ void main() {
     // Where slices and rasterised surfaces are met (in samples: sample k at k), and what is seen there; nearest first.
     float eventAt[EVENTS];
     vec4 eventColor[EVENTS];
+    float eventInterest[EVENTS];
 #if SLICES > 0
     for (int i = 0; i < SLICES; ++i) {
         float slope = dot(slicePlane[i].xyz, direction);
@@ -78,6 +87,7 @@ void main() {
         vec2 lens = lensAction(SLICE_LENS(i), world);
         float alpha = min(sliceMap[i].w * focusOpacity(doi) * lens.x, 1.0);
         eventColor[i] = vec4(focusColor(c, doi, lens.y) * alpha, alpha);
+        eventInterest[i] = doi;
     }
 #endif
 #if GEOMETRY > 0
@@ -87,6 +97,7 @@ void main() {
         bool seen = meets && t < 1e8;
         eventAt[SLICES + i] = seen ? (t - inside.x) / stepLength - phase : 1e9;
         eventColor[SLICES + i] = seen ? texelFetch(geometryColor, texel, 0) : vec4(0.0);
+        eventInterest[SLICES + i] = 1.0;
         // Nothing behind what is opaque: the ray ends there.
         if (eventColor[SLICES + i].a >= kOpaque)
             count = clamp(int(floor(min(eventAt[SLICES + i], 1e8))) + 1, 0, count);
@@ -97,6 +108,7 @@ void main() {
             if (eventAt[j] < eventAt[j - 1]) {
                 float at = eventAt[j]; eventAt[j] = eventAt[j - 1]; eventAt[j - 1] = at;
                 vec4 c = eventColor[j]; eventColor[j] = eventColor[j - 1]; eventColor[j - 1] = c;
+                float doi = eventInterest[j]; eventInterest[j] = eventInterest[j - 1]; eventInterest[j - 1] = doi;
             }
     float passed = -1e8; // events up to here are in `color`
     float nextEvent = eventAt[0];
@@ -236,6 +248,7 @@ void main() {
             // Where the surfaces are met after the last sample (in samples), and what is seen there; nearest first.
             float isoAt[ISOS];
             vec4 isoColor[ISOS];
+            float isoInterest[ISOS];
             for (int n = 0; n < ISOS; ++n) {
                 int i = ISO_LAYER(n), field = LAYER_FIELD(i);
                 float value = layerMap[i].z;
@@ -262,31 +275,33 @@ void main() {
                 vec3 c = shade(focusColor(layerColor[i], doi, lens.y), g, 1.0, world, -direction);
                 isoAt[n] = crossed ? float(k) + at : 1e9;
                 isoColor[n] = vec4(c * alpha, alpha);
+                isoInterest[n] = doi;
             }
             for (int n = 0; n < ISOS; ++n)
                 for (int m = ISOS - 1; m > n; --m)
                     if (isoAt[m] < isoAt[m - 1]) {
                         float at = isoAt[m]; isoAt[m] = isoAt[m - 1]; isoAt[m - 1] = at;
                         vec4 c = isoColor[m]; isoColor[m] = isoColor[m - 1]; isoColor[m - 1] = c;
+                        float doi = isoInterest[m]; isoInterest[m] = isoInterest[m - 1]; isoInterest[m - 1] = doi;
                     }
             for (int n = 0; n < ISOS; ++n) {
 #if EVENTS > 0
                 float until = min(isoAt[n], float(k));
                 for (int j = 0; j < EVENTS; ++j)
                     if (eventAt[j] > passed && eventAt[j] <= until) {
-                        color = under(color, eventColor[j]);
+                        color = show(color, eventColor[j], eventInterest[j]);
                         if (pick <= kNoPick && color.a > kPickOpacity) pick = eventAt[j];
                     }
                 passed = max(passed, until);
 #endif
-                color = under(color, isoColor[n]);
+                color = show(color, isoColor[n], isoInterest[n]);
                 if (pick <= kNoPick && color.a > kPickOpacity) pick = min(isoAt[n], float(k));
             }
 #endif
 #if EVENTS > 0
             for (int i = 0; i < EVENTS; ++i)
                 if (eventAt[i] > passed && eventAt[i] <= float(k)) {
-                    color = under(color, eventColor[i]);
+                    color = show(color, eventColor[i], eventInterest[i]);
                     if (pick <= kNoPick && color.a > kPickOpacity) pick = eventAt[i];
                 }
             passed = float(k);
@@ -327,7 +342,7 @@ void main() {
                 } else {
                     c.rgb = shadeFlat(c.rgb, world);
                 }
-                color = under(color, vec4(c.rgb * alpha, alpha));
+                color = show(color, vec4(c.rgb * alpha, alpha), doi);
             }
             if (pick <= kNoPick && color.a > kPickOpacity) pick = float(k);
 #endif
@@ -340,7 +355,7 @@ void main() {
     if (color.a < kOpaque)
         for (int i = 0; i < EVENTS; ++i)
             if (eventAt[i] > passed && eventAt[i] < 1e8) {
-                color = under(color, eventColor[i]);
+                color = show(color, eventColor[i], eventInterest[i]);
                 if (pick <= kNoPick && color.a > kPickOpacity) pick = eventAt[i];
             }
 #endif
@@ -348,7 +363,7 @@ void main() {
     for (int i = 0; i < LAYERS; ++i) {
         if (LAYER_STYLE(i) == COMPOSITE || LAYER_STYLE(i) == ISO) continue;
         vec4 c;
-        float alpha, at = 0.5 * float(count);
+        float alpha, at = 0.5 * float(count), doi = 1.0; // sums belong to no place
         if (LAYER_STYLE(i) == XRAY) {
             alpha = sum[i];
             c = transfer(i, alpha);
@@ -361,16 +376,19 @@ void main() {
             vec2 s = reconstruct(LAYER_FIELD(i), p);
             float x = s.x * layerMap[i].x + layerMap[i].y;
             if (LAYER_GRADIENT(i) == 1) x = gradientPlace(i, cellGradient(LAYER_FIELD(i), p, s.x, best[i] >= 0.0));
-            float doi = degreeOfInterest(p);
+            doi = degreeOfInterest(p);
             c = transfer(i, x);
             vec2 lens = lensAction(LAYER_LENS(i), origin + direction * (inside.x + (at + phase) * stepLength));
             c.rgb = focusColor(c.rgb, doi, lens.y);
             alpha = best[i] >= 0.0 ? min(min(1.0, layerMap[i].z * c.a) * focusOpacity(doi) * lens.x, 1.0) : 0.0;
         }
-        color = under(color, vec4(c.rgb * alpha, alpha));
+        color = show(color, vec4(c.rgb * alpha, alpha), doi);
         if (pick <= kNoPick && color.a > kPickOpacity) pick = at;
     }
 #endif
     outColor = meets ? color : vec4(0.0);
-    outPick = pick <= kNoPick ? -1e9 : inside.x + (pick + phase) * stepLength;
+    outPick = vec2(pick <= kNoPick ? -1e9 : inside.x + (pick + phase) * stepLength, 0.0);
+#if CONTEXT_BLUR
+    outPick.y = meets && color.a > 0.0 ? interest / color.a : 0.0;
+#endif
 }

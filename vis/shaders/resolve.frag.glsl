@@ -15,7 +15,36 @@ uniform float lineWidth;       // pixels
 uniform int toneCurve;
 uniform vec2 tone;              // gain, white
 
+#if BLUR
+#include "lib/context_blur.glsl"
+uniform sampler2D seen;   // distance and degree of interest
+uniform float blurRadius; // pixels
+uniform int blurTaps;     // kBlurTaps, no constant: not unrolled
+#endif
+
 out vec4 outColor;
+
+vec2 place(vec2 pixel) {
+    return clamp(pixel * sourceScale, vec2(0.0), sourceLimit);
+}
+
+// What a pixel shows before the background: what is not brushed is out of focus.
+vec4 picture(vec2 pixel) {
+    vec4 own = textureLod(source, place(pixel), 0.0);
+#if BLUR
+    float doi = textureLod(seen, place(pixel), 0.0).y;
+    vec4 sum = own;
+    float weight = 1.0;
+    for (int i = 0; i < (doi < 1.0 ? blurTaps : 0); ++i) {
+        vec2 offset = blurTap(i) * blurRadius, at = place(pixel + offset);
+        float share = blurShare(textureLod(seen, at, 0.0).y, length(offset), blurRadius);
+        sum += share * textureLod(source, at, 0.0);
+        weight += share;
+    }
+    own = mix(sum / weight, own, doi);
+#endif
+    return own;
+}
 
 // Share of the pixel that lines first .. last - 1 cover.
 float lines(int first, int last) {
@@ -29,7 +58,7 @@ float lines(int first, int last) {
 }
 
 void main() {
-    vec4 volume = textureLod(source, min(gl_FragCoord.xy * sourceScale, sourceLimit), 0.0);
+    vec4 volume = picture(gl_FragCoord.xy);
     float behind = edgeCount > 0 ? lines(0, edgeCount - frontCount) : 0.0;
     float before = edgeCount > 0 ? lines(edgeCount - frontCount, edgeCount) : 0.0;
     vec3 color = mix(background, boxColor, behind);

@@ -1,5 +1,7 @@
 #include "vis/technique/brush_uniforms.h"
 
+#include "vis/model/proxy.h"
+
 #include <algorithm>
 
 namespace tessera::vis {
@@ -143,6 +145,10 @@ std::vector<std::pair<std::string, std::string>> brushDefines(const BrushTests& 
     define("BRUSH_LENSES", has(tests, {kLens}));
     define("LASSO_TABLE", kLassoTable);
     return defines;
+}
+
+bool blursContext(const Scene& scene) {
+    return scene.selection.contextBlur > 0 && scene.selection.active() && !drawnByProxy(scene);
 }
 
 void setBrushUniforms(const Program& program, const BrushTests& tests, const Scene& scene) {

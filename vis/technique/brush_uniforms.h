@@ -23,6 +23,9 @@ BrushTests brushTests(const RayPlan& plan, const Scene& scene, const volume::Dat
 /// Which kinds of tests the program needs, and how many it has room for.
 std::vector<std::pair<std::string, std::string>> brushDefines(const BrushTests& tests);
 
+/// Whether what is not brushed is shown out of focus (vis/model/context_blur.h); proxy geometry does not.
+bool blursContext(const Scene& scene);
+
 /// Sets the brushes and how what they leave out is drawn.
 void setBrushUniforms(const Program& program, const BrushTests& tests, const Scene& scene);
 

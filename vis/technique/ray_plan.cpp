@@ -173,6 +173,7 @@ ProgramRecipe rayRecipe(const RayPlan& plan, const Scene& scene, const volume::B
                                 })
                        ? "1"
                        : "0");
+    define("CONTEXT_BLUR", blursContext(scene) ? "1" : "0");
     define("BCC", bcc ? "1" : "0");
     define("NORMAL_BITS", std::to_string(scene.render.normalBits));
     addLighting(recipe, scene);

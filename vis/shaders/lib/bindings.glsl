@@ -11,6 +11,7 @@
 //                  BRUSH_SPACE, BRUSH_LENSES: 0 or 1; BRUSH_FIELDS channels they look at, BRUSH_FIELD(i)
 // These are chains of ?: and not constant arrays, since Mesa turns such arrays into uniforms before it unrolls loops
 // and then runs every style for every layer.
+//   CONTEXT_BLUR  1 where the picture tells its degree of interest
 //   BCC       1 on that lattice; PRESENT_COVERAGE   kPresentCoverage of volume/reconstruct.h
 // Positions `p` are cells of the even sublattice at level 0 (Lattice::toCells); values are texel units.
 
