@@ -1,10 +1,12 @@
 #include "vis/renderer_impl.h"
 
 #include "vis/model/context_blur.h"
+#include "vis/model/grain.h"
 #include "vis/model/jitter.h"
 #include "vis/model/proxy.h"
 #include "vis/technique/box_lines.h"
 #include "vis/technique/lens_uniforms.h"
+#include "vis/technique/look_uniforms.h"
 #include "vis/technique/ray_tables.h"
 #include "vis/technique/ray_uniforms.h"
 #include "volume/error.h"
@@ -156,7 +158,11 @@ void Renderer::Impl::present(ViewTarget& target, const Scene& scene, bool reduce
     resolve.set("source", 0);
     resolve.set("sourceScale", used / glm::vec2(target.size) / whole);
     resolve.set("sourceLimit", (used - 0.5f) / whole);
-    resolve.set("background", glm::vec3(linearFromSrgb(glm::dvec3(scene.background))));
+    const std::optional<Paper> paper = paperOf(scene);
+    resolve.set("background", glm::vec3(linearFromSrgb(glm::dvec3(groundColor(scene)))));
+    resolve.set("paper", paper ? glm::vec2(paper->tooth, kGrainTexels / double(paper->grain)) : glm::vec2(0, 1));
+    resolve.set("grainTile", RayUnits::kPaper);
+    if (paper && paper->tooth > 0) glBindTextureUnit(GLuint(RayUnits::kPaper), grain.get());
     resolve.set("boxColor", glm::vec3(linearFromSrgb(glm::dvec3(scene.boxColor))));
     resolve.set("lineWidth", 1.3f);
     resolve.set("toneCurve", int(scene.tone.curve));
@@ -224,7 +230,7 @@ bool Renderer::Impl::bindLight(ViewTarget& target, const Scene& scene, const Fra
     glBindTextureUnit(first + 3, target.light.scattered() != 0 ? target.light.scattered() : noLight.name());
     if (!answer.program) return request.wait || answer.stage == ProgramStage::Failed;
     const auto setUniforms = [&](const Program& program) {
-        setRayUniforms(program, plan, scene, source->info(), source->grid(), 1, 1);
+        setRayUniforms(program, plan, scene, source->info(), source->grid(), target.size, 1);
     };
     target.light.update(scene, worldFrame(source->info().bounds, scene.stretch),
                         {residency.revision(), target.lastTime}, *answer.program, setUniforms, vertices.name(),
@@ -263,7 +269,6 @@ void Renderer::Impl::refine(ViewTarget& target, const Scene& scene, const FrameR
         return;
     }
     const Program* rayProgram = answer.program;
-    const double aspect = double(target.size.x) / target.size.y;
     const RayUnits units = rayUnits(plan);
     for (std::size_t i = 0; i < plan.fields.size(); ++i) {
         const BoundField& field = plan.fields[i];
@@ -276,19 +281,21 @@ void Renderer::Impl::refine(ViewTarget& target, const Scene& scene, const FrameR
     glBindTextureUnit(GLuint(units.blocks), target.blocks.name());
     glBindTextureUnit(GLuint(units.planes), target.planes.name());
     const volume::DatasetInfo& info = source->info();
+    if (std::any_of(plan.layers.begin(), plan.layers.end(), [](const RayLayer& l) { return l.look & kCharcoalBit; }))
+        glBindTextureUnit(GLuint(units.grain), grain.get());
     glBindTextureUnit(GLuint(units.lassos), brushes.update(brushTests(plan, scene, info)));
     const bool lit = bindLight(target, scene, request, plan);
     const double pixels = double(target.size.x) * target.size.y;
     const Tile everything{{0, 0}, target.size};
 
     if (answer.stage == ProgramStage::Linked) {
-        setRayUniforms(*rayProgram, plan, scene, info, source->grid(), aspect, 1);
+        setRayUniforms(*rayProgram, plan, scene, info, source->grid(), target.size, 1);
         programs.warmUp(recipe, target.full.framebuffer);
         return;
     }
     // Software GL compiles at the first draw: do that before any clock runs.
     if (programs.firstUse(*rayProgram)) {
-        setRayUniforms(*rayProgram, plan, scene, info, source->grid(), aspect, 1);
+        setRayUniforms(*rayProgram, plan, scene, info, source->grid(), target.size, 1);
         geometry(target, scene, plan, target.size);
         rays(*rayProgram, scene, target.reduced, target.size, {target.size / 2, target.size / 2 + 1});
         glFinish();
@@ -298,7 +305,7 @@ void Renderer::Impl::refine(ViewTarget& target, const Scene& scene, const FrameR
     const auto drawReduced = [&](double shrink, double stepFactor) {
         const Clock::time_point begin = Clock::now();
         target.reducedSize = glm::max(glm::ivec2(glm::vec2(target.size) / float(shrink)), glm::ivec2(1));
-        setRayUniforms(*rayProgram, plan, scene, info, source->grid(), aspect, stepFactor);
+        setRayUniforms(*rayProgram, plan, scene, info, source->grid(), target.size, stepFactor);
         geometry(target, scene, plan, target.reducedSize);
         rays(*rayProgram, scene, target.reduced, target.reducedSize, {{0, 0}, target.reducedSize}, stepFactor);
         glFinish();
@@ -334,7 +341,7 @@ void Renderer::Impl::refine(ViewTarget& target, const Scene& scene, const FrameR
             target.tileEdge /= 2;
     }
     const std::vector<Tile> tiles = tilesOf(target.size, target.tileEdge);
-    setRayUniforms(*rayProgram, plan, scene, info, source->grid(), aspect, 1);
+    setRayUniforms(*rayProgram, plan, scene, info, source->grid(), target.size, 1);
     bool first = true;
     // The whole picture once, then again with rays elsewhere in the pixels for a supersampled still.
     const int perPass = int(tiles.size()), wanted = perPass * std::max(scene.render.samples, 1);

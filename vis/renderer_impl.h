@@ -5,6 +5,7 @@
 #include "vis/gl/view_target.h"
 #include "vis/renderer.h"
 #include "vis/technique/brush_uniforms.h"
+#include "vis/technique/look_uniforms.h"
 #include "vis/technique/ray_plan.h"
 
 /// Inside the renderer: renderer.cpp has what is public, binding.cpp asks for textures, frame.cpp draws with them.
@@ -29,6 +30,7 @@ struct Renderer::Impl {
     ProgramCache programs;
     BrushTables brushes;
     GeometryPass geometryPass;
+    GrainTexture grain;
     std::string limits; ///< said last about lights and clips that are left out
     std::vector<std::string> messages;
     Texture noShadow = makeUniform3D(glm::vec4(1), "no shadow"), noLight = makeUniform3D(glm::vec4(0), "no light");

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "volume/describe.h"
+#include "volume/presets.h"
 
 #include <cmath>
 #include <glm/gtc/quaternion.hpp>
@@ -166,6 +166,13 @@ template <class T> Json valueToJson(const T& value, const FieldInfo& info) {
 template <class T>
 void valueFromJson(T& value, const Json& json, const FieldInfo& info, std::vector<JsonIssue>& issues,
                    const std::string& path) {
+    if constexpr (HasPresets<T>) {
+        if (json.is_string()) {
+            if (const auto index = nameFromJson(json, T::kPresetNames, issues, path))
+                value = *T::preset(T::kPresetNames[static_cast<std::size_t>(*index)]);
+            return;
+        }
+    }
     if constexpr (Described<T>) {
         if (!json.is_object()) return wrongType(json, "an object", issues, path);
         membersFromJson(value, json, {}, issues, path);

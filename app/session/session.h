@@ -8,6 +8,7 @@
 #include "volume/import/import.h"
 
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -103,6 +104,7 @@ struct Session {
     std::vector<vis::Clip> clips;
     std::vector<vis::Lens> lenses; ///< a later one lies over those before it
     vis::Tone tone;
+    std::optional<vis::Paper> paper; ///< in place of the theme's background
     Animation animation;
     Appearance appearance;
     // What is open, and where.
@@ -130,6 +132,8 @@ struct Session {
         visit(self.clips, FieldInfo{.key = "clips", .unit = "", .doc = "Planes and bodies that cut the picture"});
         visit(self.lenses, FieldInfo{.key = "lenses", .unit = "", .doc = "Magic lenses, the last one on top"});
         visit(self.tone, FieldInfo{.key = "tone", .unit = "", .doc = "Bright light brought into range"});
+        visit(self.paper,
+              FieldInfo{.key = "paper", .unit = "", .doc = "What pictures lie on; none: the theme's background"});
         visit(self.animation, FieldInfo{.key = "animation", .unit = "", .doc = "Playing through time"});
         visit(self.appearance, FieldInfo{.key = "appearance", .unit = "", .doc = "Looks of the window"});
         visit(self.views, FieldInfo{.key = "views", .unit = "", .doc = "Open views by name"});

@@ -3,9 +3,11 @@
 #include "app/session/describe_json.h"
 #include "volume/dataset.h"
 
+#include <algorithm>
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 /// Widgets for everything that is described: label to the left, control to the right, help as a tooltip, unit behind
 /// the number. A widget function edits its value and says whether it changed; nothing else.
@@ -63,6 +65,19 @@ template <class T> bool drawDescribedList(const WidgetContext& context, const Fi
     }
     if (!drawListButton(("Add to " + std::string(info.key)).c_str())) return changed;
     values.emplace_back();
+    return true;
+}
+
+/// A choice of the ready-made values; the one that `value` equals is the one chosen.
+template <class T> bool drawPresets(const WidgetContext& context, T& value) {
+    static constexpr std::string_view kOwn = "own settings";
+    std::vector<std::string_view> names(std::begin(T::kPresetNames), std::end(T::kPresetNames));
+    const auto found = std::find_if(names.begin(), names.end(), [&](auto name) { return T::preset(name) == value; });
+    int index = static_cast<int>(found - names.begin());
+    if (found == names.end()) names.push_back(kOwn);
+    const FieldInfo field{.key = "preset", .unit = "", .doc = "Ready-made settings to start from", .names = names};
+    if (!drawChoice(context, field, index) || names[static_cast<std::size_t>(index)] == kOwn) return false;
+    value = *T::preset(names[static_cast<std::size_t>(index)]);
     return true;
 }
 
@@ -127,6 +142,7 @@ struct MemberToWidget {
         } else if constexpr (Described<T>) {
             const std::string id(info.key);
             if (beginSection(id.c_str(), labelOf(info.key), info.doc)) {
+                if constexpr (HasPresets<T>) changed |= drawPresets(context, value);
                 changed |= drawDescribed(value, context);
                 endSection();
             }

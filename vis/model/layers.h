@@ -1,6 +1,7 @@
 #pragma once
 
 #include "vis/model/flow_layer.h"
+#include "vis/model/look.h"
 #include "volume/describe.h"
 
 #include <glm/vec3.hpp>
@@ -22,6 +23,8 @@ inline constexpr std::string_view kQuantityNames[] = {"value", "gradient"};
 enum class Classification { Post, Pre, PreIntegrated };
 inline constexpr std::string_view kClassificationNames[] = {"post", "pre", "preintegrated"};
 
+inline constexpr FieldInfo kLookField{.key = "look", .unit = "", .doc = "Style of drawing"};
+
 /// A scalar drawn through its transfer function by the ray caster.
 struct VolumeLayer {
     static constexpr std::string_view kType = "volume";
@@ -32,6 +35,7 @@ struct VolumeLayer {
     double threshold = 0;                                 ///< physical; local maximum only
     bool shaded = true;                                   ///< Phong by the gradient; composite only
     float density = 1;                                    ///< factor on optical depth
+    Look look = {};                                       ///< composite only
     bool operator==(const VolumeLayer&) const = default;
     static void describe(auto& self, auto&& visit) {
         visit(self.channel, FieldInfo{.key = "channel", .unit = "", .doc = "Parameter shown", .refersTo = "channel"});
@@ -58,6 +62,7 @@ struct VolumeLayer {
                                       .doc = "Factor on the optical depth",
                                       .range = Range{0.01, 100},
                                       .logScale = true});
+        visit(self.look, kLookField);
     }
 };
 
@@ -73,6 +78,7 @@ struct IsoLayer {
     float opacity = 1;
     SurfaceMethod method = SurfaceMethod::Rays;
     std::string colorBy = {}; ///< "" = `color`
+    Look look = {};           ///< rays only
     bool operator==(const IsoLayer&) const = default;
     static void describe(auto& self, auto&& visit) {
         visit(
@@ -91,6 +97,7 @@ struct IsoLayer {
                                       .unit = "",
                                       .doc = "Parameter whose transfer function colours the surface; polygons only",
                                       .refersTo = "colorChannel"});
+        visit(self.look, kLookField);
     }
 };
 
@@ -130,6 +137,18 @@ struct SliceLayer {
 };
 
 using Technique = std::variant<VolumeLayer, IsoLayer, SliceLayer, FlowLayer>;
+
+/// The look of a technique that takes one, else null.
+inline const Look* lookOf(const Technique& technique) {
+    return std::visit(
+        [](const auto& own) -> const Look* {
+            if constexpr (requires { own.look; })
+                return &own.look;
+            else
+                return nullptr;
+        },
+        technique);
+}
 
 struct Layer {
     std::string name;

@@ -14,7 +14,7 @@ bool drawnByProxy(const Scene& scene) {
         const auto* volume = std::get_if<VolumeLayer>(&layer.technique);
         return !layer.visible ||
                (volume && volume->style == VolumeStyle::Composite && volume->quantity == Quantity::Value &&
-                volume->classification == Classification::Post &&
+                volume->classification == Classification::Post && !volume->look.any() &&
                 transferFor(scene, volume->channel).kind == TransferKind::Curve);
     });
 }

@@ -23,7 +23,7 @@ struct ProxySurfaces {
     int count = 0;
 };
 
-/// Whether a scene can be drawn by proxies: composite volumes and nothing else.
+/// Whether a scene can be drawn by proxies: plain composite volumes and nothing else.
 bool drawnByProxy(const Scene& scene);
 /// The surfaces that meet the box. `stepFactor` widens the distance of slices and shells, as it does the step of rays.
 ProxySurfaces proxySurfaces(const Scene& scene, const volume::Lattice& lattice, const WorldFrame& frame,

@@ -12,6 +12,7 @@
 #include "vis/model/transfer_function.h"
 
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -90,6 +91,7 @@ struct Scene {
     glm::dvec3 cursor{0}; ///< physical
     double time = 0;
     glm::vec3 background{0.11f, 0.12f, 0.14f}; ///< sRGB
+    std::optional<Paper> paper = {};           ///< in place of the background; see paperOf()
     bool showBox = true;                       ///< wire box around the data
     glm::vec3 boxColor{0.6f};
     bool operator==(const Scene&) const = default;
@@ -100,5 +102,11 @@ const TransferFunction& transferFor(const Scene& scene, const std::string& name)
 
 /// The lenses of a scene.
 std::vector<PlacedLens> placeLenses(const Scene& scene, const WorldFrame& frame);
+
+/// What the picture lies on: the scene's paper; or the paper that a visible layer's drawing wants (not in a lens
+/// alone), cream under charcoal, dark under chalk; nullopt: the background.
+std::optional<Paper> paperOf(const Scene& scene);
+/// Its colour or the background's, sRGB.
+glm::vec3 groundColor(const Scene& scene);
 
 } // namespace tessera::vis

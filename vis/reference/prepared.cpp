@@ -28,7 +28,7 @@ glm::dvec4 DrawnLayer::classifyPlace(double at) const {
     return classify(glm::mix(range.lo, range.hi, at));
 }
 
-Prepared::Prepared(const Scene& drawn, const volume::BrickSource& source, const Options& wanted)
+Prepared::Prepared(const Scene& drawn, const volume::BrickSource& source, glm::ivec2 size, const Options& wanted)
     : scene(drawn), options(wanted), lattice(source.grid().lattice), interestOf({}) {
     const volume::DatasetInfo& info = source.info();
     frame = worldFrame(info.bounds, scene.stretch);
@@ -36,6 +36,8 @@ Prepared::Prepared(const Scene& drawn, const volume::BrickSource& source, const 
     clips = placeClips(scene.clips, frame);
     lenses = placeLenses(scene, frame);
     interestOf = DoiFunction(scene.selection, {lenses, frame});
+    look = lookView(scene, frame.halfSize, cell, size);
+    middle = cameraRay(scene.camera, 1, {0, 0}).direction;
     light = illuminate(scene.lighting, scene.camera);
     const int time = info.nearestTime(scene.time);
     const auto load = [&](const std::string& name, bool raw = false, double shift = 0) -> const Samples* {

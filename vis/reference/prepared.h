@@ -1,5 +1,6 @@
 #pragma once
 
+#include "vis/model/look_shading.h"
 #include "vis/model/preintegration.h"
 #include "vis/model/ray_setup.h"
 #include "vis/model/shade.h"
@@ -45,6 +46,8 @@ struct Prepared {
     Illumination light;
     std::vector<PlacedClip> clips;
     std::vector<PlacedLens> lenses;
+    LookView look;
+    glm::dvec3 middle{0, 0, -1}; ///< direction of the view
     /// By channel name, time, and 1 without prefilter, for pre-classification.
     std::map<std::tuple<std::string, int, bool>, std::unique_ptr<Samples>> samples;
     std::vector<DrawnLayer> layers;
@@ -52,7 +55,7 @@ struct Prepared {
     std::vector<const Samples*> brushed; ///< of interestOf.channels(); null: unknown
 
     /// Throws Error when the source does.
-    Prepared(const Scene& drawn, const volume::BrickSource& source, const Options& wanted);
+    Prepared(const Scene& drawn, const volume::BrickSource& source, glm::ivec2 size, const Options& wanted);
 
     /// Where the data lie that are seen at a world point: physical, and in cells.
     glm::dvec3 physical(glm::dvec3 world) const { return frame.toPhysical(bend(lenses, world, frame.halfSize)); }

@@ -79,21 +79,68 @@ template <class Number> struct Caster {
         events.clear();
     }
 
-    glm::dvec3 shade(const DrawnLayer& layer, glm::dvec3 place, glm::dvec3 albedo, bool surface) const {
-        if (layer.samples->categorical())
-            return vis::shade(scene.light, albedo, glm::dvec3(0), 0, place, -ray.direction);
-        const glm::dvec3 perCell = scene.gradient(*layer.samples, place);
+    /// The gradient in world axes as shading uses it.
+    glm::dvec3 worldGradient(const DrawnLayer& layer, glm::dvec3 place) const {
+        if (layer.samples->categorical()) return glm::dvec3(0);
         const glm::dvec3 edges = scene.lattice.spacing * scene.frame.scale; // of a sublattice cell, with sign
-        double weight = 1;
-        if (!surface) {
-            const double change = glm::length(perCell / glm::abs(edges) * scene.cell);
-            const double width = std::abs(layer.range.hi - layer.range.lo);
-            weight = width > 0 ? std::min(1.0, change / width / kFlatGradient) : 1;
-        }
-        glm::dvec3 gradient = perCell / edges;
+        const glm::dvec3 gradient = scene.gradient(*layer.samples, place) / edges;
         const int bits = scene.scene.render.normalBits;
-        if (bits > 0) gradient = quantizedDirection(gradient, bits) * glm::length(gradient);
-        return vis::shade(scene.light, albedo, gradient, weight, place, -ray.direction);
+        return bits > 0 ? quantizedDirection(gradient, bits) * glm::length(gradient) : gradient;
+    }
+
+    /// How much of a sample is surface: 1 on iso-surfaces.
+    double surfaceWeight(const DrawnLayer& layer, glm::dvec3 place) const {
+        if (std::holds_alternative<IsoLayer>(*layer.technique)) return 1;
+        if (layer.samples->categorical()) return 0;
+        const bool flat = layer.range.hi == layer.range.lo;
+        return flat ? 1 : std::min(1.0, scene.steepness(layer, place) / kFlatGradient);
+    }
+
+    LookSample lookSample(const DrawnLayer& layer, const Look& look, glm::dvec3 place, glm::dvec3 gradient, double t,
+                          double doi) const {
+        const LookView& view = scene.look;
+        LookSample sample;
+        sample.share = lookShare(look.part, doi);
+        sample.steepness = scene.steepPlace(layer, place);
+        const double along = t * glm::dot(ray.direction, scene.middle);
+        sample.depth = std::clamp((along - view.nearest) / (view.farthest - view.nearest), 0.0, 1.0);
+        sample.pixel = view.pixel.x + view.pixel.y * t;
+        const glm::dvec3 way = view.light.point ? view.light.place - place : view.light.place;
+        sample.toLight = way / std::max(glm::length(way), 1e-6);
+        sample.at.normal = glm::dvec3(0);
+        sample.at.toViewer = -ray.direction;
+        if (glm::length(gradient) > 0) {
+            sample.at = facing(gradient, -ray.direction);
+            sample.weight = surfaceWeight(layer, place);
+            const glm::dvec3 tangent = -ray.direction - glm::dot(-ray.direction, sample.at.normal) * sample.at.normal;
+            const glm::dvec3 across = tangent / std::max(glm::length(tangent), 1e-6);
+            const glm::dvec3 other = worldGradient(layer, place + across * view.reach);
+            if (glm::length(other) > 0)
+                sample.curvature = std::abs(glm::dot(glm::normalize(other) - sample.at.normal, across)) / view.reach;
+        }
+        if (look.charcoal)
+            sample.grain =
+                grainAt(*grainTile(), place, sample.at.normal,
+                        sample.pixel * double(look.charcoal->grain) / kGrainTexels, double(look.charcoal->angle));
+        return sample;
+    }
+
+    /// Colour and opacity of a sample, shaded and drawn in its look.
+    struct Drawn {
+        glm::dvec3 color{0};
+        double opacity = 0;
+    };
+    Drawn drawn(const DrawnLayer& layer, const Look& look, glm::dvec3 albedo, double opacity, bool shaded,
+                glm::dvec3 place, double t, double doi) const {
+        const glm::dvec3 gradient = shaded || look.any() ? worldGradient(layer, place) : glm::dvec3(0);
+        const auto lit = [&](glm::dvec3 color) {
+            return vis::shade(scene.light, color, shaded ? gradient : glm::dvec3(0),
+                              shaded ? surfaceWeight(layer, place) : 0, place, -ray.direction);
+        };
+        if (!look.any()) return {lit(albedo), opacity};
+        const LookSample sample = lookSample(layer, look, place, gradient, t, doi);
+        const glm::dvec3 color = lit(lookAlbedo(look, albedo, sample.share));
+        return {lookColor(look, albedo, color, sample, scene.look.ground), lookOpacity(look, opacity, sample)};
     }
 
     /// Adds the crossing of an iso-surface between the last sample and the one at t.
@@ -115,7 +162,8 @@ template <class Number> struct Caster {
         const LensAction lens = scene.lensAction(layer, place);
         const glm::dvec3 albedo = scene.focused(linearFromSrgb(glm::dvec3(iso.color)), doi, lens.saturation);
         const double opacity = std::min(double(iso.opacity) * scene.opacityFactor(doi) * lens.opacity, 1.0);
-        events.push_back({(lo + hi) / 2, shade(layer, place, albedo, true), opacity, doi});
+        const Drawn at = drawn(layer, iso.look, albedo, opacity, true, place, double(lo + hi) / 2, doi);
+        events.push_back({(lo + hi) / 2, at.color, at.opacity, doi});
     }
 
     /// Colour and opacity of a composite layer's sample, and the share of its length that they fill.
@@ -153,14 +201,12 @@ template <class Number> struct Caster {
         const glm::dvec3 place(at(t));
         const double doi = scene.interest(place);
         const LensAction lens = scene.lensAction(layer, place);
-        const double opacity =
-            correctedOpacity(classified.color.a * scene.opacityFactor(doi) * lens.opacity, double(step),
-                             double(volume.density) * classified.share * coverage(holes, k));
-        if (opacity <= 0) return;
-        glm::dvec3 color = scene.focused(glm::dvec3(classified.color), doi, lens.saturation);
-        color = volume.shaded ? shade(layer, place, color, false)
-                              : vis::shade(scene.light, color, glm::dvec3(0), 0, place, -ray.direction);
-        blend(color, opacity, doi);
+        const double opacity = classified.color.a * scene.opacityFactor(doi) * lens.opacity;
+        const double thickness = double(volume.density) * classified.share * coverage(holes, k);
+        if (opacity <= 0 || thickness <= 0) return;
+        const Drawn at = drawn(layer, volume.look, scene.focused(glm::dvec3(classified.color), doi, lens.saturation),
+                               opacity, volume.shaded, place, double(t), doi);
+        blend(at.color, correctedOpacity(at.opacity, double(step), thickness), doi);
     }
 
     /// What a projection has seen.
@@ -275,7 +321,7 @@ template <class Number> struct Caster {
 
 template <class Number>
 Image renderWith(const Scene& scene, const volume::BrickSource& source, glm::ivec2 size, const Options& options) {
-    const Prepared prepared(scene, source, options);
+    const Prepared prepared(scene, source, size, options);
     const bool perspective = scene.camera.projection == Projection::Perspective;
     const std::size_t count = std::size_t(size.x) * std::size_t(size.y);
     Image image{size, std::vector<glm::dvec4>(count), std::vector<double>(count)};

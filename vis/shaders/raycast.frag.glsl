@@ -36,6 +36,9 @@ vec4 show(vec4 color, vec4 top, float doi) {
 
 #if LAYERS > 0
 #include "lib/classify.glsl"
+#if LOOKS
+#include "lib/draw_look.glsl"
+#endif
 #endif
 
 void main() {
@@ -271,8 +274,21 @@ void main() {
                 vec2 lens = lensAction(LAYER_LENS(i), world);
                 float alpha = crossed ? min(layerMap[i].w * focusOpacity(doi) * lens.x, 1.0) : 0.0;
                 float centre = FIELD_COVERAGE(field) == 1 ? reconstruct(field, q).x : 0.0;
-                vec3 g = shadingGradient(cellGradient(field, q, centre, crossed));
-                vec3 c = shade(focusColor(layerColor[i], doi, lens.y), g, 1.0, world, -direction);
+                vec3 g = cellGradient(field, q, centre, crossed);
+                vec3 albedo = focusColor(layerColor[i], doi, lens.y), c = albedo;
+#if LOOKS
+                LookSample look;
+                if (LAYER_LOOK(i) != 0) {
+                    look = lookSample(i, field, q, g, 1.0, world, inside.x + (float(k) + phase + at) * stepLength,
+                                      direction, doi, crossed);
+                    alpha = lookOpacity(i, alpha, look);
+                    c = lookAlbedo(i, albedo, look);
+                }
+#endif
+                c = shade(c, shadingGradient(g), 1.0, world, -direction);
+#if LOOKS
+                if (LAYER_LOOK(i) != 0) c = lookColor(i, albedo, c, look);
+#endif
                 isoAt[n] = crossed ? float(k) + at : 1e9;
                 isoColor[n] = vec4(c * alpha, alpha);
                 isoInterest[n] = doi;
@@ -331,17 +347,30 @@ void main() {
 #endif
                 c = transfer(i, x);
                 float doi = degreeOfInterest(p);
-                vec3 world = origin + direction * (inside.x + (float(k) + phase) * stepLength);
+                float t = inside.x + (float(k) + phase) * stepLength;
+                vec3 world = origin + direction * t;
                 vec2 lens = lensAction(LAYER_LENS(i), world);
                 c.rgb = focusColor(c.rgb, doi, lens.y);
-                float alpha = correctedOpacity(c.a * focusOpacity(doi) * lens.x, lengths * layerMap[i].z * share * clipCoverage(float(k)));
-                if (LAYER_SHADED(i) == 1) {
-                    if (!byGradient) g = cellGradient(LAYER_FIELD(i), p, present(s) ? s.x : kUnknown, alpha > 0.0);
-                    float fade = min(1.0, length(g) * abs(layerMap[i].x) / kFlatGradient);
-                    c.rgb = shade(c.rgb, shadingGradient(g), fade, world, -direction);
-                } else {
-                    c.rgb = shadeFlat(c.rgb, world);
+                float opacity = c.a * focusOpacity(doi) * lens.x;
+                float thickness = lengths * layerMap[i].z * share * clipCoverage(float(k));
+                float alpha = correctedOpacity(opacity, thickness);
+                bool surface = LAYER_SHADED(i) == 1 || LAYER_LOOK(i) != 0;
+                if (surface && !byGradient) g = cellGradient(LAYER_FIELD(i), p, present(s) ? s.x : kUnknown, alpha > 0.0);
+                float fade = min(1.0, length(g) * abs(layerMap[i].x) / kFlatGradient);
+                vec3 albedo = c.rgb;
+#if LOOKS
+                LookSample look;
+                if (LAYER_LOOK(i) != 0) {
+                    look = lookSample(i, LAYER_FIELD(i), p, g, fade, world, t, direction, doi, alpha > 0.0);
+                    alpha = correctedOpacity(lookOpacity(i, opacity, look), thickness);
+                    c.rgb = lookAlbedo(i, albedo, look);
                 }
+#endif
+                c.rgb = LAYER_SHADED(i) == 1 ? shade(c.rgb, shadingGradient(g), fade, world, -direction)
+                                             : shadeFlat(c.rgb, world);
+#if LOOKS
+                if (LAYER_LOOK(i) != 0) c.rgb = lookColor(i, albedo, c.rgb, look);
+#endif
                 color = show(color, vec4(c.rgb * alpha, alpha), doi);
             }
             if (pick <= kNoPick && color.a > kPickOpacity) pick = float(k);

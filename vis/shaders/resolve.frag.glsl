@@ -1,12 +1,15 @@
-// The picture as shown: background, wire box behind, the ray caster's colour, wire box in front; linear light encoded
+// The picture as shown: background or paper, wire box behind, the ray caster's colour, wire box in front; linear light encoded
 // to sRGB at the end.
 #include "lib/color.glsl"
 #include "lib/tone.glsl"
+#include "lib/paper.glsl"
 
 uniform sampler2D source;      // linear, premultiplied
 uniform vec2 sourceScale;      // texture coordinate = gl_FragCoord * sourceScale, at most sourceLimit
 uniform vec2 sourceLimit;
 uniform vec3 background;       // linear
+uniform sampler2D grainTile;   // of paper
+uniform vec2 paper;            // how much its tooth shows, texels per pixel; 0: none
 uniform vec3 boxColor;         // linear
 uniform int edgeCount;
 uniform vec4 edges[12];        // ends in pixels; the last `frontCount` of them lie in front of the volume
@@ -64,6 +67,7 @@ void main() {
     vec3 color = mix(background, boxColor, behind);
     vec3 shown = toneMap(volume.rgb / max(volume.a, 1e-6), toneCurve, tone.x, tone.y) * volume.a;
     color = (toneCurve == 0 ? volume.rgb : shown) + (1.0 - volume.a) * color;
+    if (paper.x > 0.0) color *= paperShade(grainTile, gl_FragCoord.xy * paper.y, paper.x);
     color = mix(color, boxColor, before);
     outColor = vec4(srgbFromLinear(color), 1.0);
 }

@@ -5,6 +5,7 @@
 #include "vis/technique/clip_uniforms.h"
 #include "vis/technique/lens_uniforms.h"
 #include "vis/technique/light_uniforms.h"
+#include "vis/technique/look_uniforms.h"
 #include "vis/technique/ray_tables.h"
 #include "volume/reconstruct.h"
 
@@ -58,6 +59,7 @@ RayLayer volumeUse(RayPlan& plan, int layer, const VolumeLayer& volume, int chan
         const bool categorical = info.parameters[std::size_t(known.parameter)].categorical;
         const Classification asked = use.gradient || categorical ? Classification::Post : volume.classification;
         use.shaded = volume.shaded && !categorical;
+        use.look = lookBits(volume.look);
         if (!use.gradient &&
             transferFor(scene, own.transfer.empty() ? known.name : own.transfer).kind == TransferKind::Regions)
             use.lookup = RayLookup::Plane;
@@ -88,7 +90,11 @@ RayPlan planRays(const Scene& scene, const volume::DatasetInfo& info) {
         if (const auto* volume = std::get_if<VolumeLayer>(&layer.technique))
             plan.layers.push_back(volumeUse(plan, int(i), *volume, *channel, scene, info));
         else if (surface)
-            plan.layers.push_back({int(i), RayStyle::Iso, fieldOf(plan, info, *channel, false, layer), true});
+            plan.layers.push_back({.layer = int(i),
+                                   .style = RayStyle::Iso,
+                                   .field = fieldOf(plan, info, *channel, false, layer),
+                                   .shaded = true,
+                                   .look = lookBits(surface->look)});
         else
             plan.slices.push_back({int(i), fieldOf(plan, info, *channel, false, layer), *lens});
         if (!std::holds_alternative<SliceLayer>(layer.technique)) plan.layers.back().lens = *lens;
@@ -153,6 +159,10 @@ ProgramRecipe rayRecipe(const RayPlan& plan, const Scene& scene, const volume::B
     define("BRUSH_FIELD(i)", choice(plan.brushFields, [](int field) { return field; }));
     recipe.defines.insert(recipe.defines.end(), plan.brushDefines.begin(), plan.brushDefines.end());
     define("LAYER_LOOKUP(i)", choice(plan.layers, [](const RayLayer& layer) { return int(layer.lookup); }));
+    define("LAYER_LOOK(i)", choice(plan.layers, [](const RayLayer& layer) { return layer.look; }));
+    int lookParts = 0;
+    for (const RayLayer& layer : plan.layers) lookParts |= layer.look;
+    define("LOOKS", std::to_string(lookParts));
     define("LAYER_GRADIENT(i)", choice(plan.layers, [](const RayLayer& layer) { return layer.gradient; }));
     define("LAYER_PLANE(i)", choice(plan.layers, [](const RayLayer& layer) { return layer.page; }));
     define("ISOS", std::to_string(isos.size()));
@@ -168,7 +178,7 @@ ProgramRecipe rayRecipe(const RayPlan& plan, const Scene& scene, const volume::B
            }));
     define("FLAT", std::none_of(plan.layers.begin(), plan.layers.end(),
                                 [](const RayLayer& layer) {
-                                    return layer.shaded || layer.lookup == RayLookup::Plane ||
+                                    return layer.shaded || layer.look != 0 || layer.lookup == RayLookup::Plane ||
                                            layer.lookup == RayLookup::Lattice;
                                 })
                        ? "1"

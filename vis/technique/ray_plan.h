@@ -45,6 +45,7 @@ struct RayLayer {
     bool gradient = false; ///< shows the gradient's magnitude
     int page = -1;         ///< of the plane tables, for Plane and Slab
     int lens = -1;         ///< of placeLenses() that it is drawn in, -1: everywhere
+    int look = 0;          ///< parts of the look: LookBits of look_uniforms.h
 };
 
 struct SliceUse {

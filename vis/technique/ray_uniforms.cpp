@@ -4,6 +4,7 @@
 #include "vis/technique/clip_uniforms.h"
 #include "vis/technique/lens_uniforms.h"
 #include "vis/technique/light_uniforms.h"
+#include "vis/technique/look_uniforms.h"
 #include "vis/technique/ray_field.h"
 
 #include <algorithm>
@@ -38,7 +39,8 @@ void setLayers(const Program& program, const RayPlan& plan, const Scene& scene, 
         if (const auto* iso = std::get_if<IsoLayer>(&layer.technique)) {
             maps.emplace_back(1, 0, toTexel(field, iso->value), iso->opacity);
             colors.emplace_back(linearFromSrgb(glm::dvec3(iso->color)));
-            more.emplace_back(0);
+            const double top = double(transferOf(scene, info, field).function.gradientTop);
+            more.emplace_back(std::abs(transferMap(field, scene, info).x) / top, 0);
         } else {
             const auto& volume = std::get<VolumeLayer>(layer.technique);
             const glm::dvec2 map = transferMap(field, scene, info);
@@ -113,15 +115,16 @@ RayUnits rayUnits(const RayPlan& plan) {
     units.lassos = units.blocks + 1;
     units.planes = units.blocks + 2;
     units.light = units.planes + 1;
+    units.grain = units.light + 4;
     return units;
 }
 
 void setRayUniforms(const Program& program, const RayPlan& plan, const Scene& scene, const volume::DatasetInfo& info,
-                    const volume::BrickGrid& grid, double aspect, double stepFactor) {
+                    const volume::BrickGrid& grid, glm::ivec2 size, double stepFactor) {
     const WorldFrame frame = worldFrame(info.bounds, scene.stretch);
     const glm::dvec3 cellsPerWorld = 1.0 / (frame.scale * grid.lattice.spacing);
     const RenderParams& render = scene.render;
-    setCamera(program, scene, aspect);
+    setCamera(program, scene, double(size.x) / size.y);
     setFields(program, plan, grid);
     setLayers(program, plan, scene, info, frame);
     setBrushUniforms(program, brushTests(plan, scene, info), scene);
@@ -138,6 +141,7 @@ void setRayUniforms(const Program& program, const RayPlan& plan, const Scene& sc
     setLightUniforms(program, scene, frame, rayUnits(plan).light);
     setClipUniforms(program, scene, frame);
     setLensUniforms(program, scene, frame);
+    setLookUniforms(program, plan, scene, frame, worldCell(grid.lattice, frame), size, rayUnits(plan).grain);
     if (const BlockRanges* blocks = commonBlocks(plan)) {
         const double edge = double(1 << blocks->level) * blocks->edge;
         program.set("blockScale", glm::vec3(float(1 / edge)));

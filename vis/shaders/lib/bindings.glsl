@@ -2,6 +2,7 @@
 //   FIELDS    number of channels bound; FIELD_COVERAGE(i), FIELD_NEAREST(i): 0 or 1
 //   LAYERS    ray layers; LAYER_STYLE(i) (below), LAYER_FIELD(i), LAYER_SHADED(i); LAYER_LOOKUP(i): how a composite
 //             layer is classified (below); LAYER_GRADIENT(i): 1 where the gradient's magnitude is shown;
+//             LAYER_LOOK(i) (lib/draw_look.glsl);
 //             LAYER_PLANE(i): page of planeTable of LOOKUP_PLANE and LOOKUP_SLAB
 //   ISOS      iso layers; ISO_LAYER(n)
 //   SLICES    slice planes; SLICE_FIELD(i)

@@ -1,6 +1,5 @@
 // From samples to colour (linear, not premultiplied) and opacity of a layer kReferenceLength thick, for the composite
 // layers. Twin: classification in vis/reference/raycast.cpp; what the lookups mean stands in vis/model/ray_setup.h.
-// Another look (styles of drawing, say) that changes colour or opacity by value and gradient belongs behind these.
 
 // Place of the gradient's magnitude, 0..1 and beyond.
 float gradientPlace(int layer, vec3 gradient) {

@@ -1,0 +1,134 @@
+// Looks of layers: what the scene knows of them, put together. LAYER_LOOK(i): the parts of a layer's look, bits of
+// LookBits in vis/technique/look_uniforms.h; LOOKS: those of any layer.
+#include "lib/look.glsl"
+#include "lib/grain.glsl"
+
+#define LOOK_TONE 1
+#define LOOK_BOUNDARY 2
+#define LOOK_SILHOUETTE 4
+#define LOOK_DISTANCE 8
+#define LOOK_CARTOON 16
+#define LOOK_CHARCOAL 32
+#define LOOK_OPACITY (LOOK_BOUNDARY | LOOK_SILHOUETTE)
+#define LOOK_OUTLINE (LOOK_CARTOON | LOOK_CHARCOAL)
+
+uniform vec4 lookLight;   // direction towards the first light, 0; or its position, 1
+uniform vec2 lookDepth;   // distance along the view where depth is 0, and its change per world unit
+uniform vec2 lookPixel;   // world edge of a pixel: x + y * distance along the ray
+uniform float lookReach;  // distance over which curvature is measured, world
+uniform vec3 lookGround;  // colour of paper or background
+uniform vec2 lookShare[LAYERS]; // share = x + y * degree of interest
+#if (LOOKS & LOOK_TONE)
+uniform vec4 lookWarm[LAYERS], lookCool[LAYERS]; // colour; amount, share of the own colour
+#endif
+#if (LOOKS & LOOK_BOUNDARY)
+uniform vec3 lookBoundary[LAYERS];
+#endif
+#if (LOOKS & LOOK_SILHOUETTE)
+uniform vec3 lookSilhouette[LAYERS];
+#endif
+#if (LOOKS & LOOK_DISTANCE)
+uniform vec4 lookDistance[LAYERS]; // colour, amount
+uniform float lookDistanceExponent[LAYERS];
+#endif
+#if (LOOKS & LOOK_CARTOON)
+uniform vec3 lookCartoon[LAYERS];  // amount, steps, shadow
+uniform vec4 lookOutline[LAYERS];  // colour, pixels
+#endif
+#if (LOOKS & LOOK_CHARCOAL)
+uniform vec3 lookStick[LAYERS]; // colour
+uniform vec3 lookTone[LAYERS], lookLine[LAYERS]; // of charcoalInk()
+uniform vec4 lookMark[LAYERS];
+uniform vec4 lookGrain[LAYERS];                                    // texel in pixels, turn, local tone
+uniform sampler2D grainTile;
+#endif
+
+// `perCell`: gradient of cellGradient(), of the channel `field` at p; `t`: distance along the ray; `shown`: 0 spares
+// the gradients that nobody will see.
+LookSample lookSample(int i, int field, vec3 p, vec3 perCell, float weight, vec3 world, float t, vec3 direction,
+                      float doi, bool shown) {
+    LookSample at;
+    at.share = lookShare[i].x + lookShare[i].y * doi;
+    at.steepness = length(perCell) * layerMore[i].x;
+    at.depth = clamp((t * dot(direction, rayDirection) - lookDepth.x) * lookDepth.y, 0.0, 1.0);
+    at.pixel = lookPixel.x + lookPixel.y * t;
+    vec3 gradient = shadingGradient(perCell);
+    bool surface = dot(gradient, gradient) > 0.0;
+    vec3 normal = surface ? normalize(gradient) : vec3(0.0);
+    float along = dot(normal, -direction);
+    at.weight = surface ? weight : 0.0;
+    at.facing = abs(along);
+    vec3 way = lookLight.xyz - world * lookLight.w;
+    float front = clamp(0.5 + 0.5 * along / kEdgeOn, 0.0, 1.0);
+    at.light = (2.0 * front - 1.0) * dot(normal, way) * inversesqrt(max(dot(way, way), 1e-12));
+    at.curvature = 0.0;
+    at.grain = vec2(0.5);
+#if (LOOKS & LOOK_OUTLINE)
+    if ((LAYER_LOOK(i) & LOOK_OUTLINE) != 0) {
+        vec3 across = -direction - along * normal;
+        across *= inversesqrt(max(dot(across, across), 1e-12));
+        vec3 q = p + across * lookReach * cellsPerWorld;
+        vec2 there = reconstruct(field, q);
+        vec3 other = shadingGradient(cellGradient(field, q, present(there) ? there.x : kUnknown, shown && surface));
+        float size = dot(other, other);
+        at.curvature = size > 0.0 ? abs(dot(other * inversesqrt(size) - normal, across)) / lookReach : 0.0;
+    }
+#endif
+#if (LOOKS & LOOK_CHARCOAL)
+    if ((LAYER_LOOK(i) & LOOK_CHARCOAL) != 0)
+        at.grain = grainAt(grainTile, world, normal, lookGrain[i].x * at.pixel, lookGrain[i].yz);
+#endif
+    return at;
+}
+
+float lookOpacity(int i, float opacity, LookSample at) {
+    float factor = 1.0;
+#if (LOOKS & LOOK_BOUNDARY)
+    if ((LAYER_LOOK(i) & LOOK_BOUNDARY) != 0) factor *= boundaryFactor(lookBoundary[i], at);
+#endif
+#if (LOOKS & LOOK_SILHOUETTE)
+    if ((LAYER_LOOK(i) & LOOK_SILHOUETTE) != 0) factor *= silhouetteFactor(lookSilhouette[i], at);
+#endif
+    return min(1.0, opacity * mix(1.0, factor, at.share));
+}
+
+vec3 lookAlbedo(int i, vec3 albedo, LookSample at) {
+#if (LOOKS & LOOK_CHARCOAL)
+    if ((LAYER_LOOK(i) & LOOK_CHARCOAL) != 0)
+        return mix(albedo, mix(vec3(1.0), albedo, lookGrain[i].w), at.share);
+#endif
+    return albedo;
+}
+
+vec3 lookColor(int i, vec3 albedo, vec3 lit, LookSample at) {
+    vec3 color = lit;
+    float light = at.light;
+#if (LOOKS & LOOK_CARTOON)
+    if ((LAYER_LOOK(i) & LOOK_CARTOON) != 0) {
+        light = lightStep(light, lookCartoon[i].y);
+        color = mix(color, albedo * mix(lookCartoon[i].z, 1.0, light), lookCartoon[i].x * at.weight * at.share);
+    }
+#endif
+#if (LOOKS & LOOK_TONE)
+    if ((LAYER_LOOK(i) & LOOK_TONE) != 0)
+        color = mix(color, toned(albedo, light, lookWarm[i].rgb, lookCool[i].rgb, lookCool[i].a),
+                    lookWarm[i].a * at.weight * at.share);
+#endif
+#if (LOOKS & LOOK_CARTOON)
+    if ((LAYER_LOOK(i) & LOOK_CARTOON) != 0)
+        color = mix(color, lookOutline[i].rgb, outline(at.facing, at.curvature, lookOutline[i].a * at.pixel) *
+                                                   lookCartoon[i].x * at.weight * at.share);
+#endif
+#if (LOOKS & LOOK_CHARCOAL)
+    if ((LAYER_LOOK(i) & LOOK_CHARCOAL) != 0) {
+        float ink = charcoalInk(lit, at, lookTone[i], lookLine[i], lookMark[i]);
+        color = mix(color, mix(lookGround, lookStick[i], ink), at.share);
+    }
+#endif
+#if (LOOKS & LOOK_DISTANCE)
+    if ((LAYER_LOOK(i) & LOOK_DISTANCE) != 0)
+        color = mix(color, lookDistance[i].rgb,
+                    lookDistance[i].a * pow(max(at.depth, 1e-6), lookDistanceExponent[i]) * at.share);
+#endif
+    return color;
+}

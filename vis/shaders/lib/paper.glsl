@@ -1,0 +1,10 @@
+// Paper under a picture: its tooth catches light from the upper left, its pulp is a little uneven. All of the picture
+// lies on it, so that bare paper on an object is the paper beside it. Twin: vis/model/grain.h.
+
+// Factor on linear light, 1 on average; `at` in texels of the tile, `tooth` 0..1.
+float paperShade(sampler2D tile, vec2 at, float tooth) {
+    float edge = float(textureSize(tile, 0).x);
+    float here = textureLod(tile, at / edge, 0.0).r, there = textureLod(tile, (at + vec2(-1.5, 1.5)) / edge, 0.0).r;
+    float pulp = textureLod(tile, at / (7.3 * edge), 0.0).r - 0.5;
+    return 1.0 + tooth * (0.1 * (here - there) + 0.05 * pulp);
+}
