@@ -14,8 +14,11 @@ struct NamedBench {
     const char* name;
     BenchTable (*measure)();
 };
-constexpr NamedBench kBenches[] = {
-    {"lattice", benchLattice}, {"lattice", benchResample}, {"codec", benchCodec}, {"render", benchRender}};
+constexpr NamedBench kBenches[] = {{"lattice", benchLattice},
+                                   {"lattice", benchResample},
+                                   {"codec", benchCodec},
+                                   {"render", benchRender},
+                                   {"styles", benchStyles}};
 
 /// Columns of texts to the left, of numbers to the right.
 void print(const BenchTable& table) {

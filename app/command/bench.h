@@ -21,5 +21,7 @@ BenchTable benchResample();
 BenchTable benchCodec();
 /// Milliseconds per frame at 512x512 for 256^3 volumes, beside VTK's mappers where they are at hand.
 BenchTable benchRender();
+/// Milliseconds per frame of the fuel cell's temperature in each look, beside plain compositing.
+BenchTable benchStyles();
 
 } // namespace tessera::app

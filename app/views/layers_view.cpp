@@ -212,6 +212,14 @@ void drawLayersView(ViewContext& context, const std::string& pane, LayersView& v
         drawDescribed(session.selection, widgets);
     }
     if (ImGui::CollapsingHeader("Light")) drawDescribed(session.lighting, widgets);
+    if (ImGui::CollapsingHeader("Paper")) {
+        bool paper = session.paper.has_value();
+        if (drawBool(widgets, {.key = "paper", .unit = "", .doc = "Draw on paper of your own choice"}, paper)) {
+            const std::optional<vis::Paper> shown = vis::paperOf(sceneOf(session));
+            session.paper = paper ? std::optional(shown.value_or(vis::Paper{})) : std::nullopt;
+        }
+        if (session.paper) drawDescribed(*session.paper, widgets);
+    }
     if (ImGui::CollapsingHeader("Clipping"))
         drawDescribedList(widgets, {.key = "clips", .unit = "", .doc = "Planes and bodies that cut the picture"},
                           session.clips);

@@ -52,6 +52,7 @@ void drawSlice(ViewContext& context, vis::ViewTargetPtr& target, const std::stri
                double position, ImVec2 min, glm::ivec2 pixels, double budget) {
     const volume::DatasetInfo& info = context.source->info();
     vis::Scene scene = themedScene(context.session);
+    scene.paper.reset();
     scene.camera = cameraOf(axes, vis::worldFrame(info.bounds, context.session.stretch));
     scene.showBox = false;
     vis::SliceLayer layer;

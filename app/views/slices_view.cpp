@@ -143,6 +143,7 @@ void drawPlane(ViewContext& context, SlicesCache& cache, const SlicesView& view,
     }
 
     vis::Scene scene = themedScene(session);
+    scene.paper.reset();
     scene.camera = sliceCamera(plane, world);
     scene.showBox = false;
     vis::SliceLayer layer;

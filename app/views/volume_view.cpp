@@ -232,6 +232,23 @@ std::vector<LegendEntry> legendsOf(const Session& session, const volume::Dataset
     return entries;
 }
 
+/// Colours of texts and lines on the paper under a picture, while it lives.
+struct InkOnPaper {
+    bool paper;
+    explicit InkOnPaper(const vis::Scene& scene) : paper(vis::paperOf(scene).has_value()) {
+        if (!paper) return;
+        const glm::vec3 ground = vis::groundColor(scene);
+        const float ink = ground.r + ground.g + ground.b < 1.5f ? 0.9f : 0.12f;
+        ImGui::PushStyleColor(ImGuiCol_WindowBg, {ground.r, ground.g, ground.b, 1});
+        ImGui::PushStyleColor(ImGuiCol_Text, {ink, ink, ink, 1});
+    }
+    InkOnPaper(const InkOnPaper&) = delete;
+    InkOnPaper& operator=(const InkOnPaper&) = delete;
+    ~InkOnPaper() {
+        if (paper) ImGui::PopStyleColor(2);
+    }
+};
+
 /// The linked cross-hair: a small cross in the three axes' directions, long enough to be seen where it stands.
 void drawCursor(ImDrawList& draw, const SpaceFrame& frame, glm::dvec3 cursor) {
     const PlotColors colors = plotColors();
@@ -292,6 +309,7 @@ void drawVolumeView(ViewContext& context, const std::string& pane, VolumeView& v
     const vis::FrameStatus status = context.renderer.render(*cache.target, scene, request);
     if (!status.complete) context.busy = true;
 
+    const InkOnPaper ink(scene);
     ImDrawList& draw = *ImGui::GetWindowDrawList();
     draw.PushClipRect(picture.min, max, true);
     addPicture(draw, status.texture, picture.min, max);
