@@ -34,7 +34,8 @@ std::vector<ViewKind> viewKinds() {
             {"Statistics", "Every parameter inside and outside of the selection", StatisticsView{}},
             {"Histogram", "One parameter's histogram; drag to select", HistogramView{}},
             {"Line profile", "Parameters along a line", ProfileView{}},
-            {"Slice matrix", "Parameters on parallel planes", SliceMatrixView{}}};
+            {"Slice matrix", "Parameters on parallel planes", SliceMatrixView{}},
+            {"Shadow cube", "Projections on the faces of a cube around the scene", ShadowCubeView{}}};
 }
 
 } // namespace

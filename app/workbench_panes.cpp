@@ -66,6 +66,8 @@ void Workbench::drawPane(const std::string& pane) {
                 drawProfileView(context, pane, view);
             else if constexpr (std::is_same_v<View, SliceMatrixView>)
                 drawSliceMatrixView(context, pane, view);
+            else if constexpr (std::is_same_v<View, ShadowCubeView>)
+                drawShadowCubeView(context, pane, view);
             else if constexpr (std::is_same_v<View, HistoryView>)
                 drawHistoryPane();
             else

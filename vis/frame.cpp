@@ -160,6 +160,7 @@ void Renderer::Impl::present(ViewTarget& target, const Scene& scene, bool reduce
     resolve.set("sourceLimit", (used - 0.5f) / whole);
     const std::optional<Paper> paper = paperOf(scene);
     resolve.set("background", glm::vec3(linearFromSrgb(glm::dvec3(groundColor(scene)))));
+    resolve.set("showGround", scene.showGround ? 1 : 0);
     resolve.set("paper", paper ? glm::vec2(paper->tooth, kGrainTexels / double(paper->grain)) : glm::vec2(0, 1));
     resolve.set("grainTile", RayUnits::kPaper);
     if (paper && paper->tooth > 0) glBindTextureUnit(GLuint(RayUnits::kPaper), grain.get());

@@ -32,6 +32,16 @@ void appendRow(std::string& out, const std::string& key, const FieldInfo& info, 
 
 } // namespace detail
 
+namespace {
+
+template <HasPresets T> std::string presetNames() {
+    std::string all;
+    for (const std::string_view name : T::kPresetNames) all += (all.empty() ? "`" : ", `") + std::string(name) + "`";
+    return all;
+}
+
+} // namespace
+
 std::string parameterReference() {
     std::string out =
         "# Parameters\n\n"
@@ -46,6 +56,14 @@ std::string parameterReference() {
     out += markdownSection<vis::IsoLayer>("Layer of type `iso`", "A surface of equal value.");
     out += markdownSection<vis::SliceLayer>("Layer of type `slice`", "A coloured plane with contour lines.");
     out += markdownSection<vis::FlowLayer>("Layer of type `flow`", "Lines, tubes and glyphs of a vector.");
+    out += markdownSection<vis::WarmCool>(
+        "look.tone", "Part of a look. A look may also be the name of a preset: " + presetNames<vis::Look>() + ".");
+    out += markdownSection<vis::BoundaryEnhancement>("look.boundary", "Part of a look.");
+    out += markdownSection<vis::SilhouetteEnhancement>("look.silhouette", "Part of a look.");
+    out += markdownSection<vis::DistanceColor>("look.distance", "Part of a look.");
+    out += markdownSection<vis::Cartoon>("look.cartoon", "Part of a look.");
+    out += markdownSection<vis::CharcoalDrawing>("look.charcoal", "Part of a look.");
+    out += markdownSection<vis::Paper>("paper", "What pictures lie on.");
     out += markdownSection<vis::TransferFunction>("transfer", "Colour and opacity of one parameter, by its name.");
     out += markdownSection<vis::ColorStop>("transfer.colors", "A colour of a colour map of one's own.");
     out += markdownSection<vis::TransferRegion>("transfer.regions",
@@ -68,6 +86,8 @@ std::string parameterReference() {
     out += markdownSection<HistogramView>("View of type `histogram`", "One parameter's histogram.");
     out += markdownSection<ProfileView>("View of type `profile`", "Parameters along a line.");
     out += markdownSection<SliceMatrixView>("View of type `sliceMatrix`", "Parameters on parallel planes.");
+    out += markdownSection<ShadowCubeView>("View of type `shadowCube`",
+                                           "The scene in a cube; parameters projected on its faces.");
     out += markdownSection<volume::DerivedParameter>("data.derived", "A parameter computed from others.");
     out += markdownSection<volume::ExpressionRecipe>("Recipe of type `expression`", "A formula.");
     out += markdownSection<volume::GradientRecipe>("Recipe of type `gradient`", "A vector.");

@@ -97,8 +97,8 @@ std::string paneTitle(const Session& session, const std::string& pane) {
     const auto found = session.views.find(pane);
     if (found == session.views.end()) return pane;
     static constexpr std::string_view titles[] = {
-        "Volume",  "Slices",   "Scatterplots", "Transfer function", "Layers",       "Timeline",    "Data",
-        "History", "Messages", "Statistics",   "Histogram",         "Line profile", "Slice matrix"};
+        "Volume",  "Slices",   "Scatterplots", "Transfer function", "Layers",       "Timeline",     "Data",
+        "History", "Messages", "Statistics",   "Histogram",         "Line profile", "Slice matrix", "Shadow cube"};
     static_assert(std::variant_size_v<ViewState> == std::size(titles));
     std::string title(titles[found->second.index()]);
     if (const auto dash = pane.rfind('-'); dash != std::string::npos) title += " " + pane.substr(dash + 1);

@@ -2,6 +2,7 @@
 
 #include "volume/describe.h"
 
+#include <glm/gtc/quaternion.hpp>
 #include <glm/vec3.hpp>
 #include <map>
 #include <string>
@@ -210,8 +211,58 @@ struct SliceMatrixView {
     }
 };
 
+/// What a face of the cube shows of its parameter, along the axis that the face stands on.
+enum class WallKind { Slice, Mean, Maximum, XRay, Shadow };
+inline constexpr std::string_view kWallKindNames[] = {"slice", "mean", "maximum", "xray", "shadow"};
+
+struct Wall {
+    std::string channel = {}; ///< "" = the channel of the first layer
+    WallKind kind = WallKind::Mean;
+    bool operator==(const Wall&) const = default;
+    static void describe(auto& self, auto&& visit) {
+        visit(self.channel, FieldInfo{.key = "channel", .unit = "", .doc = "Parameter shown", .refersTo = "channel"});
+        visit(self.kind, FieldInfo{.key = "kind",
+                                   .unit = "",
+                                   .doc = "At the cursor, mean or maximum along the axis, absorption by the transfer "
+                                          "function, or the shadow that the selection casts",
+                                   .names = kWallKindNames});
+    }
+};
+
+/// The scene in a cube on whose inner faces, those turned to the viewer, parameters are projected.
+struct ShadowCubeView {
+    static constexpr std::string_view kType = "shadowCube";
+    Wall left, right{.kind = WallKind::Slice}, bottom, top{.kind = WallKind::Slice}, back,
+        front{.kind = WallKind::Slice}; ///< at the lower and upper end of x, y and z
+    float gap = 0.22f;
+    bool together = true;
+    glm::quat orientation{1, 0, 0, 0};
+    bool brushing = false;
+    bool operator==(const ShadowCubeView&) const = default;
+    static void describe(auto& self, auto&& visit) {
+        visit(self.left, FieldInfo{.key = "left", .unit = "", .doc = "Face at the lower end of x"});
+        visit(self.right, FieldInfo{.key = "right", .unit = "", .doc = "Face at the upper end of x"});
+        visit(self.bottom, FieldInfo{.key = "bottom", .unit = "", .doc = "Face at the lower end of y"});
+        visit(self.top, FieldInfo{.key = "top", .unit = "", .doc = "Face at the upper end of y"});
+        visit(self.back, FieldInfo{.key = "back", .unit = "", .doc = "Face at the lower end of z"});
+        visit(self.front, FieldInfo{.key = "front", .unit = "", .doc = "Face at the upper end of z"});
+        visit(self.gap, FieldInfo{.key = "gap",
+                                  .unit = "",
+                                  .doc = "From the data to the faces, longest edge = 1",
+                                  .range = Range{0, 1}});
+        visit(self.together, FieldInfo{.key = "together",
+                                       .unit = "",
+                                       .doc = "The cube turns with the object; else each is turned by itself"});
+        visit(
+            self.orientation,
+            FieldInfo{.key = "orientation", .unit = "", .doc = "Of the cube while it turns by itself", .hidden = true});
+        visit(self.brushing,
+              FieldInfo{.key = "brushing", .unit = "", .doc = "Dragging on a face selects the prism behind it"});
+    }
+};
+
 using ViewState =
     std::variant<VolumeView, SlicesView, ScatterMatrixView, TransferView, LayersView, TimelineView, DataView,
-                 HistoryView, LogView, StatisticsView, HistogramView, ProfileView, SliceMatrixView>;
+                 HistoryView, LogView, StatisticsView, HistogramView, ProfileView, SliceMatrixView, ShadowCubeView>;
 
 } // namespace tessera::app

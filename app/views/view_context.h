@@ -58,5 +58,6 @@ void drawStatisticsView(ViewContext& context, const std::string& pane, Statistic
 void drawHistogramView(ViewContext& context, const std::string& pane, HistogramView& view);
 void drawProfileView(ViewContext& context, const std::string& pane, ProfileView& view);
 void drawSliceMatrixView(ViewContext& context, const std::string& pane, SliceMatrixView& view);
+void drawShadowCubeView(ViewContext& context, const std::string& pane, ShadowCubeView& view);
 
 } // namespace tessera::app

@@ -16,8 +16,8 @@ using Structs =
                      vis::SphereRegion, vis::BoxRegion, vis::LensRegion, vis::Lens, vis::Brush, vis::Selection,
                      vis::TransferFunction, DockNode, FloatingPane, DockTree, DataFile, DataRef, Animation, Appearance,
                      VolumeView, SlicesView, ScatterMatrixView, TransferView, LayersView, TimelineView, DataView,
-                     HistoryView, LogView, StatisticsView, HistogramView, ProfileView, SliceMatrixView,
-                     volume::DerivedParameter, Session>;
+                     HistoryView, LogView, StatisticsView, HistogramView, ProfileView, SliceMatrixView, ShadowCubeView,
+                     vis::Look, vis::Paper, volume::DerivedParameter, Session>;
 
 template <class T> class DescribeTest : public ::testing::Test {};
 TYPED_TEST_SUITE(DescribeTest, Structs);

@@ -81,6 +81,7 @@ protected:
         draw("histogram", histogramView, drawHistogramView, size);
         draw("profile", profileView, drawProfileView, size);
         draw("sliceMatrix", sliceMatrixView, drawSliceMatrixView, size);
+        draw("shadowCube", shadowCubeView, drawShadowCubeView, size);
     }
     void drawAllSizes() {
         for (const ImVec2 size : {ImVec2{640, 480}, ImVec2{200, 120}, ImVec2{40, 30}})
@@ -108,6 +109,7 @@ protected:
     HistogramView histogramView;
     ProfileView profileView;
     SliceMatrixView sliceMatrixView;
+    ShadowCubeView shadowCubeView;
 };
 
 std::shared_ptr<const BrickSource> fuelCell(volume::LatticeKind lattice) {

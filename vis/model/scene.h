@@ -92,6 +92,7 @@ struct Scene {
     double time = 0;
     glm::vec3 background{0.11f, 0.12f, 0.14f}; ///< sRGB
     std::optional<Paper> paper = {};           ///< in place of the background; see paperOf()
+    bool showGround = true;                    ///< else the picture carries its opacity and lies on nothing
     bool showBox = true;                       ///< wire box around the data
     glm::vec3 boxColor{0.6f};
     bool operator==(const Scene&) const = default;

@@ -10,6 +10,7 @@ uniform vec2 sourceLimit;
 uniform vec3 background;       // linear
 uniform sampler2D grainTile;   // of paper
 uniform vec2 paper;            // how much its tooth shows, texels per pixel; 0: none
+uniform int showGround;        // 0: opacity and straight colour instead
 uniform vec3 boxColor;         // linear
 uniform int edgeCount;
 uniform vec4 edges[12];        // ends in pixels; the last `frontCount` of them lie in front of the volume
@@ -70,4 +71,11 @@ void main() {
     if (paper.x > 0.0) color *= paperShade(grainTile, gl_FragCoord.xy * paper.y, paper.x);
     color = mix(color, boxColor, before);
     outColor = vec4(srgbFromLinear(color), 1.0);
+    if (showGround == 0) {
+        // A line behind is seen through what is before it.
+        vec4 over = vec4(toneCurve == 0 ? volume.rgb : shown, volume.a);
+        over += (1.0 - over.a) * vec4(boxColor * behind, behind);
+        over = mix(over, vec4(boxColor, 1.0), before);
+        outColor = vec4(srgbFromLinear(over.rgb / max(over.a, 1e-6)), over.a);
+    }
 }
