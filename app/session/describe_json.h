@@ -231,8 +231,12 @@ void valueFromJson(T& value, const Json& json, const FieldInfo& info, std::vecto
         if (json.is_null()) {
             value.reset();
         } else {
-            typename T::value_type inner{};
+            typename T::value_type inner = value ? *value : typename T::value_type{};
+            const std::size_t before = issues.size();
             valueFromJson(inner, json, info, issues, path);
+            // What is no such value at all leaves the member alone; what is one with a fault inside is taken.
+            for (std::size_t i = before; i < issues.size(); ++i)
+                if (issues[i].path == path) return;
             value = std::move(inner);
         }
     } else {

@@ -329,6 +329,7 @@ std::set<int> drawWalls(ViewContext& context, const CubeFrame& frame, ShadowCube
         vis::FrameRequest request;
         request.size = glm::max(glm::ivec2(glm::round(glm::dvec2(width, height) / longer * double(kWallPixels))), 8);
         request.moving = moving;
+        request.budgetMs = double(scene.render.limits.frameTime) / 4; // three faces and the scene share a frame
         request.wait = context.headless;
         if (!cache.walls[i]) cache.walls[i] = context.renderer.makeTarget();
         const glm::vec3 shadow = darkTheme() ? glm::vec3(1, 0.69f, 0.25f) : glm::vec3(0.25f, 0.2f, 0.15f);
@@ -407,7 +408,9 @@ void drawShadowCubeView(ViewContext& context, const std::string& pane, ShadowCub
     }
     std::vector<LegendEntry> legends;
     for (const int channel : walls) legends.push_back(legendOf(session, info, channel));
-    drawLegends(draw, legends, frame.min, frame.max());
+    // At the top, where no face has its title.
+    const float height = (legendBarHeight() + em()) * static_cast<float>(legends.size()) + em();
+    drawLegends(draw, legends, frame.min, {frame.max().x, std::min(frame.max().y, frame.min.y + height)});
     const ImVec2 mouse = ImGui::GetIO().MousePos;
     if (const auto hit = hovered ? frame.hit(mouse) : std::nullopt; hit && frame.onData(*hit))
         drawReading(context, frame, cache, view, *hit, mouse);
