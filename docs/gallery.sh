@@ -33,21 +33,19 @@ done
 signal style-localmaximum --set "/layers=[$(volume rho '"style":"localmaximum","threshold":0.6')]"
 picture quantity-gradient --set "/layers=[$(volume T '"quantity":"gradient","density":4')]"
 # Looks
-for look in plain tone illustration cartoon glass distance charcoal pencil sanguine chalk boundaries; do
-    signal "look-$look" --set "/layers=[$(volume rho "\"density\":4,\"look\":\"$look\"")]" \
-        --set '/transfer/rho={"opacity":[[0,0],[0.49,0],[0.51,0.9],[1,0.9]]}' \
-        --set /camera/distance=2.6 --set '/lighting/lights=[{"kind":"viewer","azimuth":-55,"elevation":35}]'
+for look in plain tone illustration cartoon glass distance charcoal pencil sanguine chalk; do
+    "$tessera" render charcoal -o "$out/look-$look.png" --view volume --size "$size" \
+        --set '/layers/0/technique/color=[0.9,0.55,0.3]' --set "/layers/0/technique/look=\"$look\""
 done
-signal look-print --set "/layers=[$(volume rho '"density":4,"look":"charcoal"')]" \
-    --set '/transfer/rho={"opacity":[[0,0],[0.49,0],[0.51,0.9],[1,0.9]]}' --set '/paper={"color":[1,1,1],"tooth":0}' \
-    --set /camera/distance=2.6 --set '/lighting/lights=[{"kind":"viewer","azimuth":-55,"elevation":35}]'
+"$tessera" render charcoal -o "$out/look-print.png" --view volume --size "$size" --set '/paper={"color":[1,1,1],"tooth":0}'
+picture look-boundaries --set "/layers=[$(volume T '"look":"boundaries"')]"
 for look in charcoal illustration; do
-    "$tessera" render "$look" -o "$out/look-cell-$look.png" --view volume --size "$size"
+    "$tessera" render "$look" -o "$out/look-layout-$look.png" --view volume --size "$size"
 done
-picture look-context --set '/selection/contextOpacity=0.7' --set /selection/contextSaturation=1 \
-    --set "/layers=[$(volume T '"look":{"part":"context","charcoal":{}}')]" \
-    --set '/transfer/T={"colormap":"inferno","opacity":[[0,0],[0.4,0],[0.5,0.8],[1,0.9]]}' \
-    --set '/selection/brushes=[{"name":"hot","region":{"type":"range","intervals":[{"channel":"T","lo":357,"hi":400,"soft":0.3}]}}]'
+picture look-context --set '/selection/contextOpacity=0.8' --set /selection/contextSaturation=1 \
+    --set "/layers=[$(volume T '"density":2,"look":{"part":"context","charcoal":{"contrast":0.6}}')]" \
+    --set '/transfer/T={"colormap":"inferno","opacity":[[0,0],[0.6,0],[0.7,0.5],[1,0.9]]}' \
+    --set '/selection/brushes=[{"name":"hot","region":{"type":"range","intervals":[{"channel":"T","lo":356.2,"hi":400,"soft":0.2}]}}]'
 # Classification
 for kind in post pre preintegrated; do
     signal "classification-$kind" --set "/layers=[$(volume rho "\"classification\":\"$kind\",\"shaded\":false")]" \
