@@ -35,7 +35,9 @@ std::vector<ViewKind> viewKinds() {
             {"Histogram", "One parameter's histogram; drag to select", HistogramView{}},
             {"Line profile", "Parameters along a line", ProfileView{}},
             {"Slice matrix", "Parameters on parallel planes", SliceMatrixView{}},
-            {"Shadow cube", "Projections on the faces of a cube around the scene", ShadowCubeView{}}};
+            {"Shadow cube", "Projections on the faces of a cube around the scene", ShadowCubeView{}},
+
+            {"Tesseract", "The field in four dimensions, turned in six planes", TesseractView{}}};
 }
 
 } // namespace

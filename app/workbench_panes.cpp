@@ -68,6 +68,8 @@ void Workbench::drawPane(const std::string& pane) {
                 drawSliceMatrixView(context, pane, view);
             else if constexpr (std::is_same_v<View, ShadowCubeView>)
                 drawShadowCubeView(context, pane, view);
+            else if constexpr (std::is_same_v<View, TesseractView>)
+                drawTesseractView(context, pane, view);
             else if constexpr (std::is_same_v<View, HistoryView>)
                 drawHistoryPane();
             else

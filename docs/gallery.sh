@@ -73,3 +73,15 @@ signal light-studio --set "/layers=[$shape]" --set '/lighting/model="physical"' 
 signal light-shadows --set "/layers=[$shape]" --set /lighting/shadows/strength=0.8 --set /lighting/shadows/occlusion=0.8
 signal clip-sphere --set "/layers=[$shape,$(volume rho '"density":0.5')]" \
     --set '/clips=[{"kind":"sphere","keep":"outside","center":[0.6,0.6,0.6],"radius":0.7}]'
+# Space and time
+tesseract() { # tesseract NAME ARGUMENTS...: the tesseract view of its layout with changes
+    local name=$1
+    shift
+    "$tessera" render tesseract -o "$out/$name.png" --view tesseract --size "${size%x*}x${size%x*}" \
+        --set /views/tesseract/controls=false "$@"
+}
+tesseract tesseract
+tesseract tesseract-turned --set /views/tesseract/turn4=[35,0,-50] --set '/views/tesseract/colorBy="fourth"' \
+    --set /views/tesseract/lattice=3 --set /views/tesseract/eye=1.4
+tesseract tesseract-temperature --set '/views/tesseract/fourth="T"' --set /views/tesseract/turn4=[30,20,0] \
+    --set /views/tesseract/density=0.5 --set /views/tesseract/radius=5

@@ -88,6 +88,8 @@ std::string parameterReference() {
     out += markdownSection<SliceMatrixView>("View of type `sliceMatrix`", "Parameters on parallel planes.");
     out += markdownSection<ShadowCubeView>("View of type `shadowCube`",
                                            "The scene in a cube; parameters projected on its faces.");
+    out += markdownSection<TesseractView>("View of type `tesseract`",
+                                          "The field in four dimensions, turned in six planes.");
     out += markdownSection<volume::DerivedParameter>("data.derived", "A parameter computed from others.");
     out += markdownSection<volume::ExpressionRecipe>("Recipe of type `expression`", "A formula.");
     out += markdownSection<volume::GradientRecipe>("Recipe of type `gradient`", "A vector.");

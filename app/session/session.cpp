@@ -96,9 +96,10 @@ std::vector<std::string> paneKeys(const Session& session) {
 std::string paneTitle(const Session& session, const std::string& pane) {
     const auto found = session.views.find(pane);
     if (found == session.views.end()) return pane;
-    static constexpr std::string_view titles[] = {
-        "Volume",  "Slices",   "Scatterplots", "Transfer function", "Layers",       "Timeline",     "Data",
-        "History", "Messages", "Statistics",   "Histogram",         "Line profile", "Slice matrix", "Shadow cube"};
+    static constexpr std::string_view titles[] = {"Volume",       "Slices",      "Scatterplots", "Transfer function",
+                                                  "Layers",       "Timeline",    "Data",         "History",
+                                                  "Messages",     "Statistics",  "Histogram",    "Line profile",
+                                                  "Slice matrix", "Shadow cube", "Tesseract"};
     static_assert(std::variant_size_v<ViewState> == std::size(titles));
     std::string title(titles[found->second.index()]);
     if (const auto dash = pane.rfind('-'); dash != std::string::npos) title += " " + pane.substr(dash + 1);
@@ -174,6 +175,10 @@ void fitSession(Session& session, const volume::DatasetInfo& info, std::vector<s
         if (auto* slices = std::get_if<SlicesView>(&view)) replace(slices->channel);
         if (auto* transfer = std::get_if<TransferView>(&view)) replace(transfer->channel);
         if (auto* histogram = std::get_if<HistogramView>(&view)) replace(histogram->channel);
+        if (auto* tesseract = std::get_if<TesseractView>(&view)) {
+            replace(tesseract->channel);
+            if (!known(tesseract->fourth)) tesseract->fourth.clear();
+        }
         std::visit(
             [&](auto& each) {
                 if constexpr (requires { each.channels; })

@@ -261,8 +261,86 @@ struct ShadowCubeView {
     }
 };
 
-using ViewState =
-    std::variant<VolumeView, SlicesView, ScatterMatrixView, TransferView, LayersView, TimelineView, DataView,
-                 HistoryView, LogView, StatisticsView, HistogramView, ProfileView, SliceMatrixView, ShadowCubeView>;
+/// What colours the points of a tesseract.
+enum class TesseractColor { Value, Fourth };
+inline constexpr std::string_view kTesseractColorNames[] = {"value", "fourth"};
+
+/// The field in four dimensions, turned in six planes: splatted samples in a wire tesseract.
+struct TesseractView {
+    static constexpr std::string_view kType = "tesseract";
+    std::string channel; ///< "" = the channel of the first layer
+    std::string fourth;  ///< parameter along the fourth axis at the session's time; "" = time itself
+    TesseractColor colorBy = TesseractColor::Value;
+    glm::vec3 turn{0, -32, 22}, turn4{0, 0, 0};
+    float eye = 1.8f, zoom = 1;
+    float radius = 3;
+    float density = 1;
+    int points = 150000;
+    bool cube = true;
+    bool showWire = true, showNow = true, showLegend = true, showControls = true;
+    int lattice = 0;
+    bool tour = false;
+    float tourSpeed = 12;
+    bool operator==(const TesseractView&) const = default;
+    static void describe(auto& self, auto&& visit) {
+        visit(self.channel, FieldInfo{.key = "channel", .unit = "", .doc = "Parameter shown", .refersTo = "channel"});
+        visit(self.fourth, FieldInfo{.key = "fourth",
+                                     .unit = "",
+                                     .doc = "Parameter along the fourth axis, at the time shown; none: time itself",
+                                     .refersTo = "channel"});
+        visit(self.colorBy, FieldInfo{.key = "colorBy",
+                                      .unit = "",
+                                      .doc = "Points coloured by their value or by the fourth axis",
+                                      .names = kTesseractColorNames});
+        const Range turn{-180, 180};
+        visit(self.turn, FieldInfo{.key = "turn",
+                                   .unit = "deg",
+                                   .doc = "Rotation in the planes xy, xz, yz, in this order",
+                                   .range = turn});
+        visit(self.turn4, FieldInfo{.key = "turn4",
+                                    .unit = "deg",
+                                    .doc = "Rotation in the planes xw, yw, zw, after the others; w is the fourth axis",
+                                    .range = turn});
+        visit(self.eye, FieldInfo{.key = "eye",
+                                  .unit = "radius",
+                                  .doc = "Distance of the eye along the fourth axis, in radii of the tesseract",
+                                  .range = Range{1.1, 20},
+                                  .logScale = true});
+        visit(self.zoom, FieldInfo{.key = "zoom",
+                                   .unit = "",
+                                   .doc = "Magnification; at 1 the tesseract fits at any angle",
+                                   .range = Range{0.2, 10},
+                                   .logScale = true});
+        visit(self.radius,
+              FieldInfo{.key = "radius", .unit = "pixel", .doc = "Radius of a splat", .range = Range{0.5, 20}});
+        visit(self.density, FieldInfo{.key = "density",
+                                      .unit = "",
+                                      .doc = "Opacity of the points",
+                                      .range = Range{0.01, 20},
+                                      .logScale = true});
+        visit(self.points, FieldInfo{.key = "points",
+                                     .unit = "",
+                                     .doc = "Samples drawn at most",
+                                     .range = Range{1000, 2000000},
+                                     .logScale = true});
+        visit(self.cube,
+              FieldInfo{.key = "cube", .unit = "", .doc = "All axes equally long; else the proportions as shown"});
+        visit(self.showWire, FieldInfo{.key = "wire", .unit = "", .doc = "Draw the edges of the tesseract"});
+        visit(self.showNow, FieldInfo{.key = "now", .unit = "", .doc = "Draw the cell of the time shown"});
+        visit(self.showLegend, FieldInfo{.key = "legend", .unit = "", .doc = "Draw colour legends"});
+        visit(self.showControls, FieldInfo{.key = "controls", .unit = "", .doc = "Show a slider for each plane"});
+        visit(self.lattice, FieldInfo{.key = "lattice",
+                                      .unit = "",
+                                      .doc = "Cells of the lattice drawn along each axis, 0 = none",
+                                      .range = Range{0, 8}});
+        visit(self.tour, FieldInfo{.key = "tour", .unit = "", .doc = "Keep turning in two planes at once"});
+        visit(self.tourSpeed,
+              FieldInfo{.key = "tourSpeed", .unit = "deg/s", .doc = "Speed of the tour", .range = Range{1, 90}});
+    }
+};
+
+using ViewState = std::variant<VolumeView, SlicesView, ScatterMatrixView, TransferView, LayersView, TimelineView,
+                               DataView, HistoryView, LogView, StatisticsView, HistogramView, ProfileView,
+                               SliceMatrixView, ShadowCubeView, TesseractView>;
 
 } // namespace tessera::app

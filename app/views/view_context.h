@@ -59,5 +59,6 @@ void drawHistogramView(ViewContext& context, const std::string& pane, HistogramV
 void drawProfileView(ViewContext& context, const std::string& pane, ProfileView& view);
 void drawSliceMatrixView(ViewContext& context, const std::string& pane, SliceMatrixView& view);
 void drawShadowCubeView(ViewContext& context, const std::string& pane, ShadowCubeView& view);
+void drawTesseractView(ViewContext& context, const std::string& pane, TesseractView& view);
 
 } // namespace tessera::app

@@ -17,7 +17,7 @@ using Structs =
                      vis::TransferFunction, DockNode, FloatingPane, DockTree, DataFile, DataRef, Animation, Appearance,
                      VolumeView, SlicesView, ScatterMatrixView, TransferView, LayersView, TimelineView, DataView,
                      HistoryView, LogView, StatisticsView, HistogramView, ProfileView, SliceMatrixView, ShadowCubeView,
-                     vis::Look, vis::Paper, volume::DerivedParameter, Session>;
+                     TesseractView, vis::Look, vis::Paper, volume::DerivedParameter, Session>;
 
 template <class T> class DescribeTest : public ::testing::Test {};
 TYPED_TEST_SUITE(DescribeTest, Structs);

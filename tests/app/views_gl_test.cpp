@@ -82,6 +82,7 @@ protected:
         draw("profile", profileView, drawProfileView, size);
         draw("sliceMatrix", sliceMatrixView, drawSliceMatrixView, size);
         draw("shadowCube", shadowCubeView, drawShadowCubeView, size);
+        draw("tesseract", tesseractView, drawTesseractView, size);
     }
     void drawAllSizes() {
         for (const ImVec2 size : {ImVec2{640, 480}, ImVec2{200, 120}, ImVec2{40, 30}})
@@ -110,6 +111,7 @@ protected:
     ProfileView profileView;
     SliceMatrixView sliceMatrixView;
     ShadowCubeView shadowCubeView;
+    TesseractView tesseractView;
 };
 
 std::shared_ptr<const BrickSource> fuelCell(volume::LatticeKind lattice) {
@@ -335,6 +337,48 @@ TEST_F(Views, BrushingHotAndOxygenPoorSelectsWhatBruteForceSelects) {
     frame(matrix);
     EXPECT_TRUE(session.selection.brushes.empty());
     ImGui::GetIO().KeysDown[256] = false;
+}
+
+// Drags turn the tesseract in the planes they say, the angles stay those of a rotation, R turns back.
+TEST_F(Views, ATesseractTurnsByHand) {
+    show(fuelCell(volume::LatticeKind::BCC));
+    const auto view = [&] { draw("tesseract", tesseractView, drawTesseractView, {700, 600}); };
+    const auto drag = [&](int mouseButton, bool shift) {
+        mouse = {300, 250};
+        ImGui::GetIO().KeyShift = shift;
+        frame(view);
+        ImGui::GetIO().MouseDown[mouseButton] = true;
+        frame(view);
+        mouse = {360, 280};
+        frame(view);
+        ImGui::GetIO().MouseDown[mouseButton] = false;
+        frame(view);
+        ImGui::GetIO().KeyShift = false;
+    };
+    frame(view);
+    const TesseractView start = tesseractView;
+    drag(0, false);
+    EXPECT_NE(tesseractView.turn, start.turn);
+    EXPECT_LT(glm::length(tesseractView.turn4 - start.turn4), 1e-3f) << "a turn in space leaves time alone";
+    const TesseractView turned = tesseractView;
+    drag(1, false);
+    EXPECT_GT(glm::length(tesseractView.turn4 - turned.turn4), 5.0f);
+    const TesseractView twice = tesseractView;
+    drag(0, true);
+    EXPECT_GT(glm::length(tesseractView.turn4 - twice.turn4), 5.0f);
+    EXPECT_FALSE(busy);
+    tesseractView.tour = true;
+    headless = false;
+    frame(view);
+    EXPECT_TRUE(busy) << "a tour goes on";
+    headless = true;
+    ImGui::GetIO().KeysDown['R'] = true;
+    frame(view);
+    ImGui::GetIO().KeysDown['R'] = false;
+    frame(view);
+    EXPECT_EQ(tesseractView.turn, start.turn);
+    EXPECT_EQ(tesseractView.turn4, start.turn4);
+    EXPECT_FALSE(tesseractView.tour);
 }
 
 // A click enlarges a plot; a drag in the large one brushes by its own pixels, not by those of the small one.

@@ -1,0 +1,29 @@
+#pragma once
+
+#include "app/views/view_context.h"
+#include "vis/model/cloud4.h"
+#include "volume/samples4.h"
+
+#include <memory>
+#include <optional>
+#include <string>
+
+/// Samples for tesseract views, read in the background: the coarsest level first, then as many as the view may draw.
+namespace tessera::app {
+
+class TesseractFeed {
+public:
+    TesseractFeed();
+    /// The best samples so far for a query, or of the former one while nothing is here; null at first. Sets
+    /// context.busy while better ones are on their way; headless, reads to the end.
+    std::shared_ptr<const volume::Samples4> get(ViewContext& context, const std::string& jobKey,
+                                                const volume::SamplesQuery& query);
+    /// Why the last query failed (damaged data), "" if it did not.
+    std::string failure() const;
+
+private:
+    struct State;
+    std::shared_ptr<State> state_;
+};
+
+} // namespace tessera::app
