@@ -77,7 +77,7 @@ signal clip-sphere --set "/layers=[$shape,$(volume rho '"density":0.5')]" \
 tesseract() { # tesseract NAME ARGUMENTS...: the tesseract view of its layout with changes
     local name=$1
     shift
-    "$tessera" render tesseract -o "$out/$name.png" --view tesseract --size "${size%x*}x${size%x*}" \
+    "$tessera" render tesseract -o "$out/$name.png" --view tesseract --size "$((${size%x*} * 4 / 3))x${size%x*}" \
         --set /views/tesseract/controls=false "$@"
 }
 tesseract tesseract

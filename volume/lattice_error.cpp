@@ -13,7 +13,7 @@ namespace tessera::volume {
 
 namespace {
 
-constexpr int kMargin = 3; // cells beyond the box: one for the filter, one for the prefilter, one for rounding
+constexpr int kMargin = 4; // cells beyond the box: two for the filter, one for the prefilter, one for rounding
 
 /// Samples on a piece of an endless lattice: the box and a margin around it.
 struct Piece {
@@ -51,7 +51,7 @@ LatticeError latticeError(const std::function<double(glm::dvec3)>& signal, Latti
     const Lattice& lattice = piece.lattice;
     piece.values = everySample(lattice, [&](glm::ivec3 at) { return signal(lattice.position(at)); });
     const LevelGeometry geometry{kind, 1, 0};
-    if (filter == LatticeFilter::Quasi) {
+    if (filter == LatticeFilter::Quasi || filter == LatticeFilter::Quintic) {
         const Prefiltered filtered(piece, geometry);
         piece.values = everySample(lattice, [&](glm::ivec3 at) { return filtered(at).value; });
     }
@@ -67,6 +67,8 @@ LatticeError latticeError(const std::function<double(glm::dvec3)>& signal, Latti
         [&](std::size_t i) {
             const glm::dvec3 cells = lattice.toCells(positions[i]);
             const Blend blend = filter == LatticeFilter::Tetrahedral ? tetrahedral(geometry, piece, cells)
+                                : filter == LatticeFilter::Cosine    ? cosineWeighted(geometry, piece, cells)
+                                : filter == LatticeFilter::Quintic   ? quinticBox(geometry, piece, cells)
                                                                      : linear(geometry, piece, cells);
             errors[i] = std::abs(blend.sum / blend.coverage - signal(positions[i]));
         },

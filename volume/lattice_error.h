@@ -8,9 +8,10 @@
 
 namespace tessera::volume {
 
-/// Filters of volume/reconstruct.h: `linear` on samples as they are, on prefiltered ones, and `tetrahedral` (BCC).
-enum class LatticeFilter { Linear, Quasi, Tetrahedral };
-inline constexpr std::string_view kLatticeFilterNames[] = {"linear", "quasi", "tetrahedral"};
+/// Filters of volume/reconstruct.h: `linear` on samples as they are, on prefiltered ones; of BCC `tetrahedral`,
+/// `cosineWeighted`, and `quinticBox` on prefiltered samples.
+enum class LatticeFilter { Linear, Quasi, Tetrahedral, Cosine, Quintic };
+inline constexpr std::string_view kLatticeFilterNames[] = {"linear", "quasi", "tetrahedral", "cosine", "quintic"};
 
 struct LatticeError {
     double rms = 0, max = 0;

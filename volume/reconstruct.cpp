@@ -1,5 +1,7 @@
 #include "volume/reconstruct.h"
 
+#include <algorithm>
+
 #include <cassert>
 
 namespace tessera::volume {
@@ -43,6 +45,37 @@ BrickSamples prefilter(const BrickSamples& gathered, const LevelGeometry& geomet
                 out.values[to] = float(centre - differences / 12);
             }
     return out;
+}
+
+namespace {
+
+/// The truncated power of the directions (-1,1,1), (1,-1,1), (1,1,-1) and (1,1,1), each twice, times four: the integral
+/// over s of s (a - s)(b - s)(c - s), where a, b, c are the coordinates of the point along the first three directions.
+double truncatedPower(glm::dvec3 p) {
+    const double a = (p.y + p.z) / 2, b = (p.x + p.z) / 2, c = (p.x + p.y) / 2;
+    const double s = std::min({a, b, c});
+    if (s <= 0) return 0;
+    // s abc - s^2 (ab + bc + ca) + s^3 (a + b + c) - s^4, integrated.
+    return s * s * (a * b * c / 2 + s * (-(a * b + b * c + c * a) / 3 + s * ((a + b + c) / 4 - s / 5)));
+}
+
+} // namespace
+
+double quinticBoxSpline(glm::dvec3 halfCells) {
+    const glm::dvec3 p = glm::abs(halfCells);
+    if (p.x + p.y >= 4 || p.x + p.z >= 4 || p.y + p.z >= 4) return 0;
+    constexpr double kDifference[] = {1, -2, 1};
+    double sum = 0;
+    for (int a = 0; a < 3; ++a)
+        for (int b = 0; b < 3; ++b)
+            for (int c = 0; c < 3; ++c)
+                for (int d = 0; d < 3; ++d) {
+                    const int i = a - 1, j = b - 1, k = c - 1, l = d - 1;
+                    const glm::dvec3 moved(-i + j + k + l, i - j + k + l, i + j - k + l);
+                    sum +=
+                        kDifference[a] * kDifference[b] * kDifference[c] * kDifference[d] * truncatedPower(p - moved);
+                }
+    return sum;
 }
 
 } // namespace tessera::volume

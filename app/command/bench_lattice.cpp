@@ -66,6 +66,8 @@ BenchTable benchLattice() {
         {"BCC average", LatticeKind::BCC, sparse, LatticeFilter::Linear},
         {"BCC quasi", LatticeKind::BCC, sparse, LatticeFilter::Quasi},
         {"BCC tetrahedral", LatticeKind::BCC, sparse, LatticeFilter::Tetrahedral},
+        {"BCC cosine", LatticeKind::BCC, sparse, LatticeFilter::Cosine},
+        {"BCC quintic box", LatticeKind::BCC, sparse, LatticeFilter::Quintic},
         {"BCC average", LatticeKind::BCC, equal, LatticeFilter::Linear},
         {"BCC quasi", LatticeKind::BCC, equal, LatticeFilter::Quasi},
         {"BCC tetrahedral", LatticeKind::BCC, equal, LatticeFilter::Tetrahedral},

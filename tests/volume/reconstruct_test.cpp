@@ -44,6 +44,8 @@ TEST(Reconstruct, LinearFunctionsAreExact) {
             EXPECT_NEAR(linear(geometry, samples, p).value().value(), f(p), 1e-12);
             EXPECT_NEAR(linear(geometry, filtered, p).value().value(), f(p), 1e-12);
             EXPECT_NEAR(tetrahedral(geometry, samples, p).value().value(), f(p), 1e-12);
+            EXPECT_NEAR(cosineWeighted(geometry, samples, p).value().value(), f(p), 1e-12);
+            EXPECT_NEAR(quinticBox(geometry, filtered, p).value().value(), f(p), 1e-11);
             const auto value = [&](glm::dvec3 at) { return linear(geometry, filtered, at).value(); };
             const glm::dvec3 slope = gradient(value, p);
             EXPECT_NEAR(slope.x, 2, 1e-11);
@@ -192,6 +194,67 @@ TEST(Prefilter, OfABrickEqualsThatOfTheLattice) {
                             }
                 }
             }
+}
+
+TEST(Reconstruct, CosineWeightsKeepTheSamples) {
+    std::mt19937 random(11);
+    const auto samples = endless(LatticeKind::BCC, [](glm::dvec3 p) { return std::sin(3 * p.x + p.y) + p.z * p.z; });
+    const LevelGeometry geometry{LatticeKind::BCC, 1, 0};
+    for (int n = 0; n < 200; ++n) {
+        const glm::ivec3 at(random() % 9, random() % 9, random() % 9);
+        const double half = at.z & 1 ? 0.5 : 0;
+        const glm::dvec3 cells(at.x + half, at.y + half, at.z * 0.5);
+        EXPECT_NEAR(cosineWeighted(geometry, samples, cells).value().value(), samples(at).value, 1e-12);
+    }
+}
+
+TEST(Reconstruct, TheQuinticBoxSplineIsThirtyTwoSmoothWeights) {
+    std::mt19937 random(12);
+    for (int n = 0; n < 200; ++n) {
+        const glm::dvec3 p = randomPoint(random, -2, 2);
+        double sum = 0;
+        int used = 0;
+        for (int z = -7; z <= 7; ++z)
+            for (int y = -7; y <= 7; ++y)
+                for (int x = -7; x <= 7; ++x) {
+                    if (((x ^ z) & 1) != 0 || ((y ^ z) & 1) != 0) continue;
+                    const double weight = quinticBoxSpline(p - glm::dvec3(x, y, z));
+                    EXPECT_GE(weight, -1e-12);
+                    sum += weight;
+                    used += weight > 1e-12 ? 1 : 0;
+                }
+        EXPECT_NEAR(sum, 1, 1e-12);
+        EXPECT_LE(used, 32);
+        EXPECT_GE(used, 15);
+        EXPECT_NEAR(quinticBoxSpline(p), quinticBoxSpline({-p.y, p.z, p.x}), 1e-12); // as symmetric as the lattice
+        const auto along = [&](double t) { return quinticBoxSpline(p + t * glm::dvec3(0.3, -0.8, 0.5)); };
+        const double h = 1e-3, before = (along(0) - 2 * along(-h) + along(-2 * h)) / (h * h),
+                     after = (along(2 * h) - 2 * along(h) + along(0)) / (h * h);
+        EXPECT_NEAR(before, after, 0.02); // the second derivative does not jump
+    }
+}
+
+TEST(Reconstruct, ThePrefilteredQuinticBoxSplineReproducesCubics) {
+    std::mt19937 random(13);
+    const LevelGeometry geometry{LatticeKind::BCC, 1, 0};
+    const auto cubic = [](glm::dvec3 p) {
+        return p.x * p.x * p.x - 2 * p.x * p.y * p.z + p.y * p.z * p.z + 3 * p.x * p.x - p.y * p.z + p.z;
+    };
+    const auto samples = endless(LatticeKind::BCC, cubic);
+    const Prefiltered filtered(samples, geometry);
+    for (int n = 0; n < 300; ++n) {
+        const glm::dvec3 p = randomPoint(random, -2, 2);
+        EXPECT_NEAR(quinticBox(geometry, filtered, p).value().value(), cubic(p), 1e-10);
+    }
+    const auto quartic = [](glm::dvec3 p) { return p.x * p.x * p.x * p.x; };
+    const auto more = endless(LatticeKind::BCC, quartic);
+    const Prefiltered moreFiltered(more, geometry);
+    double worst = 0;
+    for (int n = 0; n < 100; ++n) {
+        const glm::dvec3 p = randomPoint(random, -2, 2);
+        worst = std::max(worst, std::abs(quinticBox(geometry, moreFiltered, p).value().value() - quartic(p)));
+    }
+    EXPECT_GT(worst, 0.01);
 }
 
 // Errors measured with a program of its own: 41^3 CC against BCC with 70.7 % of the samples, in |x|, |y|, |z| <= 0.8
