@@ -210,6 +210,18 @@ constexpr int kMostTables = 24;
 
 } // namespace
 
+double estimateFrameBytes(const volume::BrickGrid& grid, const volume::Field& field, const FrameOptions& options,
+                          std::size_t bricks) {
+    FrameRecord frame;
+    frame.mask = field.mask ? 0 : -1;
+    frame.numbers = chooseCoding(field, options.maxError);
+    frame.wavelet = options.wavelet.value_or(Wavelet::W22);
+    frame.codeBits = codeBitsOf(field, frame.numbers);
+    const int shift = frame.codeBits > 16 ? shiftFor(sampleTokens(grid, field, frame, bricks, 0)) : 0;
+    const double all = double(brickCount(grid));
+    return sampleTokens(grid, field, frame, bricks, shift).bits() / 8 * all / std::min(all, double(bricks));
+}
+
 /// The filter by trial on some bricks. Predictions alone alias in coarse levels: they have to be clearly better.
 Wavelet ArchiveWriter::Impl::waveletFor(const volume::Field& field, FrameRecord frame) const {
     constexpr Wavelet kTried[] = {Wavelet::W22, Wavelet::W42, Wavelet::W44, Wavelet::N2, Wavelet::N4};

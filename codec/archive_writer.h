@@ -20,6 +20,10 @@ struct FrameOptions {
     int zstdLevel = 3;
 };
 
+/// About how many bytes a frame is coded in, from the tokens of at most `bricks` of its bricks.
+double estimateFrameBytes(const volume::BrickGrid& grid, const volume::Field& field, const FrameOptions& options,
+                          std::size_t bricks);
+
 /// Writes an archive frame by frame, whole times at a time: what is committed stays readable whatever happens later.
 /// One frame and its coded bytes are in memory at a time.
 ///

@@ -3,12 +3,15 @@
 #include "codec/archive_writer.h"
 #include "codec/brick_access.h"
 #include "codec/continuation.h"
+#include "codec/frame_feed.h"
+#include "codec/memory_plan.h"
+#include "codec/pack_size.h"
+#include "codec/stopwatch.h"
 #include "volume/resample.h"
 #include "volume/series_dataset.h"
 
 #include <algorithm>
 #include <bit>
-#include <chrono>
 #include <cmath>
 #include <limits>
 
@@ -19,55 +22,6 @@ namespace {
 using volume::Field;
 using volume::LatticeKind;
 using volume::ScalarType;
-
-/// Adds the seconds of its life to a sum.
-class Stopwatch {
-public:
-    explicit Stopwatch(double& sum) : sum_(sum) {}
-    ~Stopwatch() { sum_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
-    Stopwatch(const Stopwatch&) = delete;
-    Stopwatch& operator=(const Stopwatch&) = delete;
-
-private:
-    double& sum_;
-    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
-
-constexpr Range kNothing{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
-
-void include(Range& range, double value) {
-    if (!std::isfinite(value)) return;
-    range.lo = std::min(range.lo, value);
-    range.hi = std::max(range.hi, value);
-}
-
-/// Widens the ranges of a parameter (components, then magnitude) by one time of it.
-void gatherRanges(const std::vector<Field>& components, std::vector<Range>& ranges) {
-    const std::size_t n = components.size();
-    ranges.resize(n == 1 ? 1 : n + 1, kNothing);
-    for (std::size_t c = 0; c < n; ++c) {
-        const Field& field = components[c];
-        Range range = kNothing;
-        volume::dispatch(field.type, [&]<class T>(T) {
-            const auto stored = field.as<T>();
-            for (std::size_t i = 0; i < stored.size(); ++i)
-                if (field.present(i)) include(range, static_cast<double>(stored[i]));
-        });
-        if (range.lo > range.hi) continue;
-        include(ranges[c], field.offset + field.scale * range.lo);
-        include(ranges[c], field.offset + field.scale * range.hi);
-    }
-    for (std::size_t i = 0; n > 1 && i < components.front().count(); ++i) {
-        double square = 0;
-        bool present = true;
-        for (const Field& field : components) {
-            present = present && field.present(i);
-            const double value = field.value(i);
-            square += value * value;
-        }
-        if (present) include(ranges[n], std::sqrt(square));
-    }
-}
 
 void settleRanges(volume::DatasetInfo& info, const std::vector<std::vector<Range>>& gathered) {
     for (std::size_t p = 0; p < info.parameters.size(); ++p) {
@@ -137,14 +91,6 @@ double boundFor(const PackOptions& options, const volume::Parameter& parameter, 
     return std::isfinite(bound) ? bound : 0;
 }
 
-Field loadChecked(volume::Dataset& dataset, int parameter, int component, int time) {
-    Field field = dataset.load(parameter, component, time);
-    const volume::Parameter& about = dataset.info.parameters[std::size_t(parameter)];
-    if (field.lattice.size != dataset.info.lattice.size || field.type != about.type)
-        throw Error("frame " + std::to_string(time) + " of " + about.name + " has another size or type");
-    return field;
-}
-
 /// The parameters with the ranges known so far.
 std::vector<volume::Parameter> withRanges(std::vector<volume::Parameter> parameters,
                                           const std::vector<std::vector<Range>>& gathered) {
@@ -152,14 +98,6 @@ std::vector<volume::Parameter> withRanges(std::vector<volume::Parameter> paramet
     info.parameters = std::move(parameters);
     settleRanges(info, gathered);
     return std::move(info.parameters);
-}
-
-/// One time of every component of a parameter.
-std::vector<Field> loadParameter(volume::Dataset& dataset, int parameter, int time) {
-    std::vector<Field> fields;
-    for (int c = 0; c < dataset.info.parameters[std::size_t(parameter)].components; ++c)
-        fields.push_back(loadChecked(dataset, parameter, c, time));
-    return fields;
 }
 
 } // namespace
@@ -194,6 +132,23 @@ PackOptions resolved(PackOptions options) {
 
 namespace {
 
+/// The ranges of every parameter where they are not known yet, by reading everything once.
+void gatherAllRanges(volume::Dataset& dataset, bool ahead, PackSummary& summary, const Progress& progress) {
+    volume::DatasetInfo& info = dataset.info;
+    const auto isKnown = [](const volume::Parameter& parameter) { return !parameter.ranges.empty(); };
+    if (std::all_of(info.parameters.begin(), info.parameters.end(), isKnown)) return;
+    std::vector<std::vector<Range>> ranges(info.parameters.size());
+    FrameFeed feed(dataset, {}, ahead, progress.stop);
+    const std::size_t steps = info.parameters.size() * info.times.size();
+    for (std::size_t step = 0; step < steps; ++step) {
+        progress.advance(double(step) / double(steps), "ranges");
+        const FeedStep fed = feed.next();
+        summary.loadSeconds += fed.loadSeconds;
+        widenRanges(ranges[std::size_t(fed.parameter)], fed.ranges);
+    }
+    settleRanges(info, ranges);
+}
+
 /// Packs into a new archive, or behind what is in `grown`, whose options `asked` are then.
 PackSummary packInto(volume::Dataset& source, const PackOptions& asked, const std::string& path, const Archive* grown,
                      const Progress& progress) {
@@ -221,25 +176,21 @@ PackSummary packInto(volume::Dataset& source, const PackOptions& asked, const st
     metadata.lossless = exact;
     metadata.program = "tessera";
     metadata.options = options;
+    metadata.options.memoryMb = 0; // of this machine, not of the archive
     const Continuation place = grown ? continuationOf(*grown, metadata) : Continuation(info);
 
     const std::size_t parameters = info.parameters.size(), times = info.times.size();
     std::vector<std::vector<Range>> ranges(parameters);
+    const FrameFeed::Resampling resampling{toBcc, options.resample};
+    const bool ahead = mayReadAhead(metadata, source.info, options);
     Progress work = progress;
     {
         Stopwatch all(summary.seconds);
         // A bound relative to the range of all times needs a pass of its own; one time is read once.
         const bool relative = options.maxError > 0 || options.psnr > 0;
         if (relative && (times > 1 || grown)) {
-            const Progress first = progress.part(0, 0.3);
             work = progress.part(0.3, 1);
-            for (std::size_t p = 0; p < parameters; ++p)
-                for (std::size_t t = 0; t < times && info.parameters[p].ranges.empty(); ++t) {
-                    first.advance(double(p * times + t) / double(parameters * times), "ranges");
-                    Stopwatch load(summary.loadSeconds);
-                    gatherRanges(loadParameter(dataset, int(p), int(t)), ranges[p]);
-                }
-            settleRanges(info, ranges);
+            gatherAllRanges(dataset, ahead, summary, progress.part(0, 0.3));
             if (grown) place.widen(info, metadata.info);
         }
 
@@ -256,54 +207,56 @@ PackSummary packInto(volume::Dataset& source, const PackOptions& asked, const st
             place.widen(read, now.info);
             return now;
         };
-        for (std::size_t t = 0; t < times; ++t) {
-            for (std::size_t p = 0; p < parameters; ++p) {
-                const volume::Parameter& parameter = info.parameters[p];
-                std::vector<Field> fields;
-                work.advance(done / frames, parameter.name);
-                {
-                    Stopwatch load(summary.loadSeconds);
-                    fields = loadParameter(dataset, int(p), int(t));
-                    if (parameter.ranges.empty()) gatherRanges(fields, ranges[p]);
-                    if (times == 1) settleRanges(info, ranges);
-                }
-                FrameOptions frame;
-                frame.wavelet = parameter.categorical ? Wavelet::N1 : waveletOf(options.wavelet);
-                frame.zstdLevel = options.zstdLevel;
-                frame.keepsAbsent = exact && !resamples;
-                for (std::size_t c = 0; c < fields.size(); ++c, ++done) {
-                    Field field = std::move(fields[c]);
-                    if (!metadata.alternating) {
-                        summary.sourceSamples += field.count();
-                        summary.sourceBytes += field.samples.size();
-                    } else if (t < source.info.times.size()) { // as many times as the source has
-                        summary.sourceSamples += source.info.lattice.count();
-                        summary.sourceBytes += source.info.lattice.count() * volume::byteSize(field.type);
-                    }
-                    if (toBcc) {
-                        Stopwatch resample(summary.resampleSeconds);
-                        field =
-                            volume::toBcc(field, parameter.categorical, options.resample, Progress{{}, progress.stop});
-                    }
-                    summary.storedSamples += field.count();
-                    // Bounds refer to the range of the whole archive, where that is known by now.
-                    const volume::Parameter& whole =
-                        grown && relative ? metadata.info.parameters[std::size_t(place.parameterOf[p])] : parameter;
-                    frame.maxError = exact ? 0 : boundFor(options, whole, field);
-                    const double extent = extentOf(whole);
-                    if (extent > 0)
-                        metadata.maxError =
-                            std::max(metadata.maxError, frame.maxError * std::abs(field.scale) / extent);
-                    Stopwatch code(summary.codeSeconds);
-                    writer.addFrame(place.parameterOf[p], int(c), int(place.firstTime + t), field, frame,
-                                    work.part(done / frames, (done + 1) / frames));
-                }
+        FrameFeed feed(dataset, resampling, ahead, progress.stop);
+        for (std::size_t step = 0; step < times * parameters; ++step) {
+            work.advance(done / frames, info.parameters[step % parameters].name);
+            FeedStep fed = [&] {
+                Stopwatch wait(summary.waitSeconds);
+                return feed.next();
+            }();
+            const std::size_t t = fed.time, p = std::size_t(fed.parameter);
+            const volume::Parameter& parameter = info.parameters[p];
+            summary.loadSeconds += fed.loadSeconds;
+            summary.resampleSeconds += fed.resampleSeconds;
+            widenRanges(ranges[p], fed.ranges);
+            if (times == 1) settleRanges(info, ranges);
+            if (!metadata.alternating) {
+                summary.sourceSamples += fed.sourceSamples;
+                summary.sourceBytes += fed.sourceBytes;
+            } else if (t < source.info.times.size()) { // as many times as the source has
+                const std::uint64_t samples = source.info.lattice.count() * fed.fields.size();
+                summary.sourceSamples += samples;
+                summary.sourceBytes += samples * volume::byteSize(parameter.type);
             }
-            if (place.wholeTimes && !metadata.alternating) writer.commit(soFar(), place.firstTime + t + 1);
+            FrameOptions frame;
+            frame.wavelet = parameter.categorical ? Wavelet::N1 : waveletOf(options.wavelet);
+            frame.zstdLevel = options.zstdLevel;
+            frame.keepsAbsent = exact && !resamples;
+            for (std::size_t c = 0; c < fed.fields.size(); ++c, ++done) {
+                const Field field = std::move(fed.fields[c]);
+                summary.storedSamples += field.count();
+                summary.storedBytes += field.samples.size();
+                // Bounds refer to the range of the whole archive, where that is known by now.
+                const volume::Parameter& whole =
+                    grown && relative ? metadata.info.parameters[std::size_t(place.parameterOf[p])] : parameter;
+                frame.maxError = exact ? 0 : boundFor(options, whole, field);
+                const double extent = extentOf(whole);
+                if (extent > 0)
+                    metadata.maxError = std::max(metadata.maxError, frame.maxError * std::abs(field.scale) / extent);
+                Stopwatch code(summary.codeSeconds);
+                writer.addFrame(place.parameterOf[p], int(c), int(place.firstTime + t), field, frame,
+                                work.part(done / frames, (done + 1) / frames));
+            }
+            if (p + 1 < parameters || !place.wholeTimes || metadata.alternating) continue;
+            Stopwatch write(summary.writeSeconds);
+            writer.commit(soFar(), place.firstTime + t + 1);
         }
         settleRanges(info, ranges);
         source.info.parameters = info.parameters;
-        summary.archiveBytes = writer.finish(soFar());
+        Stopwatch write(summary.writeSeconds);
+        const Metadata known = soFar();
+        summary.maxError = known.maxError;
+        summary.archiveBytes = writer.finish(known);
         summary.addedBytes = summary.archiveBytes - (grown ? grown->fileBytes() : 0);
     }
     progress.advance(1);
@@ -312,16 +265,29 @@ PackSummary packInto(volume::Dataset& source, const PackOptions& asked, const st
 
 } // namespace
 
-PackSummary pack(volume::Dataset& source, const PackOptions& options, const std::string& path,
-                 const Progress& progress) {
-    return packInto(source, options, path, nullptr, progress);
+PackSummary pack(volume::Dataset& source, const PackOptions& asked, const std::string& path, const Progress& progress) {
+    const PackOptions options = resolved(asked);
+    if (options.sizeMb == 0) return packInto(source, options, path, nullptr, progress);
+    const auto trial = [&](const PackOptions& with, const std::string& to, const Progress& part) {
+        return packInto(source, with, to, nullptr, part);
+    };
+    const auto bytesAt = [&](const Progress& part) {
+        PackSummary reading;
+        gatherAllRanges(source, mayReadAhead({}, source.info, options), reading, part.part(0, 0.5));
+        const bool toBcc = options.lattice == StoredLattice::BCC && source.info.lattice.kind == LatticeKind::CC;
+        const volume::Lattice lattice = toBcc ? volume::bccFor(source.info.lattice) : source.info.lattice;
+        return estimateSizes(source, gridFor(lattice, options), options, toBcc, part.part(0.5, 1));
+    };
+    return packToSize(options, path, bytesAt, trial, progress);
 }
 
-PackSummary append(volume::Dataset& source, const std::string& path, const Progress& progress) {
+PackSummary append(volume::Dataset& source, const std::string& path, double memoryMb, const Progress& progress) {
     const Archive grown(path);
     if (grown.metadata().alternating)
         throw Error("an archive of D4* frames does not grow: its last frames are made of all times to their end", path);
-    return packInto(source, grown.metadata().options, path, &grown, progress);
+    PackOptions options = grown.metadata().options;
+    options.memoryMb = memoryMb;
+    return packInto(source, options, path, &grown, progress);
 }
 
 } // namespace tessera::codec

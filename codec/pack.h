@@ -39,10 +39,12 @@ struct PackOptions {
     double maxError = 0;
     double absError = 0;
     double psnr = 0;
+    double sizeMb = 0;
     WaveletChoice wavelet = WaveletChoice::Auto;
     int brickSize = 64;
     int levels = 0;
     int zstdLevel = 9;
+    double memoryMb = 0;
 
     bool operator==(const PackOptions&) const = default;
     static void describe(auto& self, auto&& visit) {
@@ -76,6 +78,11 @@ struct PackOptions {
                                    .doc = "Least peak signal-to-noise ratio of each frame of floats, its parameter's "
                                           "range over the RMS error; 0 = not asked for",
                                    .range = Range{0, 200}});
+        visit(self.sizeMb, FieldInfo{.key = "size",
+                                     .unit = "MB",
+                                     .doc = "Largest size of the archive: the least error of float samples, relative "
+                                            "to their ranges, that fits is searched for; 0 = not asked for",
+                                     .range = Range{0, 1e9}});
         visit(self.wavelet, FieldInfo{.key = "wavelet",
                                       .unit = "",
                                       .doc = "Vanishing moments N,N~ of the integer wavelet; auto: the best by trial",
@@ -92,6 +99,11 @@ struct PackOptions {
                                         .unit = "",
                                         .doc = "Effort of zstd, which codes masks and what repeats itself",
                                         .range = Range{1, 19}});
+        visit(self.memoryMb, FieldInfo{.key = "memory",
+                                       .unit = "MB",
+                                       .doc = "Most memory for samples while packing; 0 = a quarter of the machine's. "
+                                              "Where it is tight, the next frame is not read ahead",
+                                       .range = Range{0, 1e9}});
     }
 };
 
@@ -104,7 +116,13 @@ struct PackSummary {
     std::uint64_t sourceSamples = 0, storedSamples = 0;
     std::uint64_t archiveBytes = 0; ///< of the whole file
     std::uint64_t addedBytes = 0;   ///< of those, by this run
-    double seconds = 0, loadSeconds = 0, resampleSeconds = 0, codeSeconds = 0;
+    std::uint64_t storedBytes = 0;  ///< of the samples on the lattice they are stored on
+    double maxError = 0;            ///< largest error of a float sample, relative to its parameter's range
+    double seconds = 0;
+    /// Of the stages, which overlap: reading and resampling go on while the frame before is coded.
+    double loadSeconds = 0, resampleSeconds = 0, codeSeconds = 0, writeSeconds = 0;
+    double waitSeconds = 0;         ///< for reading and resampling with nothing to code
+    int trials = 1;                 ///< packed so often to find the error that fits a size
     std::vector<std::string> notes; ///< what the user should know, one line each
 };
 
@@ -119,7 +137,8 @@ PackSummary pack(volume::Dataset& source, const PackOptions& options, const std:
 
 /// Appends a data set to an archive, with the options that was packed with: times later than its last of the same
 /// parameters, or further parameters at the same times. Every whole time that was appended stays when it throws; of
-/// parameters all or none. Error when the data does not continue the archive.
-PackSummary append(volume::Dataset& source, const std::string& path, const Progress& progress = {});
+/// parameters all or none. `memoryMb` as in the options. Error when the data does not continue the archive.
+PackSummary append(volume::Dataset& source, const std::string& path, double memoryMb = 0,
+                   const Progress& progress = {});
 
 } // namespace tessera::codec

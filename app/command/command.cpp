@@ -2,6 +2,7 @@
 
 #include "volume/error.h"
 
+#include <cmath>
 #include <csignal>
 #include <cstdio>
 #include <mutex>
@@ -17,6 +18,15 @@ volatile std::sig_atomic_t interrupted = 0;
 
 } // namespace
 
+std::optional<double> TimeLeft::after(double fraction) {
+    const auto now = std::chrono::steady_clock::now();
+    if (!begun_) begun_ = now;
+    const double seconds = std::chrono::duration<double>(now - *begun_).count();
+    constexpr double kSure = 0.02, kNotYet = 1; // of the job, s
+    if (fraction < kSure || fraction >= 1 || seconds < kNotYet) return std::nullopt;
+    return seconds * (1 - fraction) / fraction;
+}
+
 Progress terminalProgress(const std::string& title) {
     static std::stop_source source;
     static std::mutex mutex;
@@ -26,17 +36,20 @@ Progress terminalProgress(const std::string& title) {
     const bool terminal = isatty(STDERR_FILENO) != 0;
     Progress progress;
     progress.stop = source.get_token();
-    progress.report = [terminal, title, last = -1](double fraction, const std::string& what) mutable {
+    progress.report = [terminal, title, last = -1, left = TimeLeft()](double fraction,
+                                                                      const std::string& what) mutable {
         if (interrupted != 0) {
             source.request_stop();
             throw Cancelled();
         }
         if (!terminal) return;
         const std::lock_guard lock(mutex);
+        const std::optional<double> seconds = left.after(fraction);
         const int percent = static_cast<int>(fraction * 100);
         if (percent == last) return;
         last = percent;
-        std::fprintf(stderr, "\r\033[K%s %3d %% %s%s", title.c_str(), percent, what.c_str(),
+        const std::string rest = seconds ? ", " + std::to_string(std::lround(*seconds)) + " s left" : "";
+        std::fprintf(stderr, "\r\033[K%s %3d %%%s %s%s", title.c_str(), percent, rest.c_str(), what.c_str(),
                      percent >= 100 ? "\r\033[K" : "");
         std::fflush(stderr);
     };
@@ -49,6 +62,7 @@ int runCommandLine(int argc, const char* const* argv) {
     app.require_subcommand(0, 1);
     addWorkbench(app);
     addBenchCommand(app);
+    addConvertCommand(app);
     addGenerateCommand(app);
     addInfoCommand(app);
     addMeshCommand(app);

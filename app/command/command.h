@@ -3,6 +3,8 @@
 #include "volume/progress.h"
 
 #include <CLI/CLI.hpp>
+#include <chrono>
+#include <optional>
 #include <string>
 
 /// The command line. Each subcommand is one file of app/command with one add function; its callback does the work and
@@ -10,6 +12,7 @@
 namespace tessera::app {
 
 void addBenchCommand(CLI::App& app);
+void addConvertCommand(CLI::App& app);
 void addGenerateCommand(CLI::App& app);
 void addInfoCommand(CLI::App& app);
 void addMeshCommand(CLI::App& app);
@@ -24,8 +27,18 @@ void addWorkbench(CLI::App& app);
 /// Parses the arguments and runs what they ask for; returns the exit status.
 int runCommandLine(int argc, const char* const* argv);
 
-/// Progress on the terminal: a line "title 42 % what" on stderr when it is a terminal, nothing otherwise. Ctrl-C
-/// requests the stop of its token. One at a time.
+/// How long a job will still take, if it goes on as it went so far.
+class TimeLeft {
+public:
+    /// Seconds, once a fraction is done that tells; begins to count when first asked.
+    std::optional<double> after(double fraction);
+
+private:
+    std::optional<std::chrono::steady_clock::time_point> begun_;
+};
+
+/// Progress on the terminal: a line "title 42 %, 7 s left what" on stderr when it is a terminal, nothing otherwise.
+/// Ctrl-C requests the stop of its token. One at a time.
 Progress terminalProgress(const std::string& title);
 
 } // namespace tessera::app

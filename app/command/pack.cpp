@@ -22,24 +22,36 @@ struct Request {
     volume::ImportOptions import;
     codec::PackOptions options;
     bool append = false, json = false, progressJson = false;
+    bool keepsLattice = false; ///< convert: that of the archive, none being stated
 };
 
 /// One JSON object per line on stdout, for a window that runs this command.
 Progress jsonProgress(const Progress& terminal) {
     Progress progress = terminal;
-    progress.report = [inner = terminal.report, last = -1.0](double fraction, const std::string& what) mutable {
+    progress.report = [inner = terminal.report, last = -1.0, left = TimeLeft()](double fraction,
+                                                                                const std::string& what) mutable {
         if (inner) inner(fraction, what); // notices Ctrl-C
+        const std::optional<double> seconds = left.after(fraction);
         if (fraction - last < 0.005 && fraction < 1) return;
         last = fraction;
-        std::printf("%s\n", nlohmann::json{{"fraction", fraction}, {"what", what}}.dump().c_str());
+        nlohmann::json line{{"fraction", fraction}, {"what", what}};
+        if (seconds) line["secondsLeft"] = *seconds;
+        std::printf("%s\n", line.dump().c_str());
         std::fflush(stdout);
     };
     return progress;
 }
 
+codec::StoredLattice storedLattice(const std::string& path) {
+    const codec::Archive archive(path);
+    if (archive.metadata().alternating) return codec::StoredLattice::D4;
+    return archive.info().lattice.kind == volume::LatticeKind::BCC ? codec::StoredLattice::BCC
+                                                                   : codec::StoredLattice::CC;
+}
+
 /// The lattice an archive is to have, or has.
 codec::StoredLattice latticeOf(const Request& request) {
-    return request.append ? codec::Archive(request.output).metadata().options.lattice : request.options.lattice;
+    return request.append ? storedLattice(request.output) : request.options.lattice;
 }
 
 volume::Dataset open(const Request& request, const Progress& progress) {
@@ -66,34 +78,46 @@ void checkOutput(const Request& request) {
         if (std::filesystem::equivalent(input, request.output, ignored))
             throw Error("the output would replace an input", request.output);
     if (!request.append) return;
-    if (request.options != codec::PackOptions())
-        throw Error("with --append the options are those the archive was packed with; none can be given",
+    codec::PackOptions given = request.options;
+    given.memoryMb = 0;
+    if (given != codec::PackOptions())
+        throw Error("with --append the options are those the archive was packed with; only --memory can be given",
                     request.output);
     if (!std::filesystem::exists(request.output, ignored))
         throw Error("there is no archive to append to", request.output);
 }
 
 nlohmann::json toJson(const codec::PackSummary& summary, const std::string& path) {
+    const auto stage = [](const char* name, double seconds, std::uint64_t bytes) {
+        return nlohmann::json{{"name", name}, {"seconds", seconds}, {"bytes", bytes}};
+    };
     return {{"file", path},
             {"sourceBytes", summary.sourceBytes},
             {"sourceSamples", summary.sourceSamples},
             {"storedSamples", summary.storedSamples},
             {"archiveBytes", summary.archiveBytes},
             {"addedBytes", summary.addedBytes},
+            {"maxError", summary.maxError},
             {"seconds", summary.seconds},
-            {"loadSeconds", summary.loadSeconds},
-            {"resampleSeconds", summary.resampleSeconds},
-            {"codeSeconds", summary.codeSeconds}};
+            {"waitSeconds", summary.waitSeconds},
+            {"trials", summary.trials},
+            {"stages",
+             {stage("read", summary.loadSeconds, summary.sourceBytes),
+              stage("resample", summary.resampleSeconds, summary.storedBytes),
+              stage("code", summary.codeSeconds, summary.addedBytes),
+              stage("write", summary.writeSeconds, summary.addedBytes)}}};
 }
 
-void run(const Request& request) {
+void run(Request request) {
     checkOutput(request);
+    if (request.keepsLattice) request.options.lattice = storedLattice(request.inputs[0]);
     const Progress terminal = terminalProgress("pack");
     const Progress progress = request.progressJson ? jsonProgress(terminal) : terminal;
     volume::Dataset dataset = open(request, progress.part(0, 0.02));
     const Progress rest = progress.part(0.02, 1);
-    const codec::PackSummary summary = request.append ? codec::append(dataset, request.output, rest)
-                                                      : codec::pack(dataset, request.options, request.output, rest);
+    const codec::PackSummary summary = request.append
+                                           ? codec::append(dataset, request.output, request.options.memoryMb, rest)
+                                           : codec::pack(dataset, request.options, request.output, rest);
     if (request.json || request.progressJson) {
         std::printf("%s\n", toJson(summary, request.output).dump(request.progressJson ? -1 : 1).c_str());
         return;
@@ -127,6 +151,22 @@ void addPackCommand(CLI::App& app) {
     addDescribed(*command, request->options);
     addImportOptions(*command, request->import);
     command->callback([request] { run(*request); });
+}
+
+void addConvertCommand(CLI::App& app) {
+    CLI::App* command = app.add_subcommand(
+        "convert", "Pack an archive anew, with other options or in the newest version of the format");
+    const auto request = std::make_shared<Request>();
+    command->add_option("IN", request->inputs, "Archive (.tsr); errors add to those it has")->required()->expected(1);
+    command->add_option("-o,--output", request->output, "Archive to write (.tsr)")->required();
+    command->add_flag("--json", request->json, "Print the summary as JSON");
+    command->add_flag("--progress-json", request->progressJson, "Print progress and summary as JSON lines");
+    addDescribed(*command, request->options);
+    command->callback([request, command] {
+        if (!hasEnding(request->inputs[0], ".tsr")) throw Error("not an archive (.tsr)", request->inputs[0]);
+        request->keepsLattice = command->count("--lattice") == 0 && command->count("--preset") == 0;
+        run(*request);
+    });
 }
 
 } // namespace tessera::app

@@ -138,6 +138,23 @@ cmp grown.tsr kept.tsr || { echo "FAILED: a refused append has written"; failure
 printf unfinished >>grown.tsr
 check "an unfinished append is ignored" 0 "$tessera" verify grown.tsr
 
+# An archive packed anew: with an error, of a size, never above it; stages and time are told.
+check "convert to another bound" 0 "$tessera" convert all.tsr -o converted.tsr --abs-error 0.5 --json
+say '"stages"' out.txt
+check "verify what was converted" 0 "$tessera" verify converted.tsr
+[ "$(stat -c %s converted.tsr)" -lt "$(stat -c %s all.tsr)" ] || { echo "FAILED: a larger error takes more"; failures=$((failures + 1)); }
+check "convert keeps the lattice" 0 "$tessera" convert cc.tsr -o converted.tsr
+check "unpack it" 0 "$tessera" unpack converted.tsr -o back.raw
+cmp ramp.raw back.raw || { echo "FAILED: converting changes samples"; failures=$((failures + 1)); }
+check "convert what is no archive" 2 "$tessera" convert ramp.json -o x.tsr
+check "convert onto itself" 2 "$tessera" convert cc.tsr -o cc.tsr
+check "pack to a size" 0 "$tessera" pack wave.json -o sized.tsr --size 0.004
+[ "$(stat -c %s sized.tsr)" -le 4000 ] || { echo "FAILED: above the size asked"; failures=$((failures + 1)); }
+check "no such size" 2 "$tessera" pack wave.json -o x.tsr --size 0.0001
+check "too little memory" 2 "$tessera" pack wave.json -o x.tsr --memory 1
+check "progress as JSON" 0 "$tessera" pack wave.json -o sized.tsr --progress-json
+say '"fraction"' out.txt
+
 # Wrong usage 1, bad input 2 with one line, and nothing left behind.
 check "no output" 1 "$tessera" pack ramp.json
 check "no such wavelet" 1 "$tessera" pack ramp.json -o x.tsr --wavelet 9,9

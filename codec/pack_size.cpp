@@ -1,0 +1,148 @@
+#include "codec/pack_size.h"
+
+#include "codec/archive_writer.h"
+#include "volume/error.h"
+#include "volume/resample.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <optional>
+#include <unistd.h>
+
+namespace tessera::codec {
+
+namespace {
+
+constexpr double kLargestBound = 0.25;
+
+/// A file that disappears with the object.
+struct Scratch {
+    std::string path;
+    explicit Scratch(std::string name) : path(std::move(name)) {}
+    ~Scratch() { std::remove(path.c_str()); }
+    Scratch(const Scratch&) = delete;
+    Scratch& operator=(const Scratch&) = delete;
+};
+
+/// The bound at which the curve has `bytes`, between its points linear in the logarithm of the bound.
+double boundAt(const std::vector<SizeAtBound>& curve, double bytes) {
+    if (bytes >= curve.front().bytes) return 0;
+    for (std::size_t i = 1; i < curve.size(); ++i) {
+        const SizeAtBound &before = curve[i - 1], &at = curve[i];
+        if (at.bytes > bytes) continue;
+        if (i == 1 || before.bytes <= at.bytes) return at.bound;
+        const double part = (before.bytes - bytes) / (before.bytes - at.bytes);
+        return before.bound * std::pow(at.bound / before.bound, part);
+    }
+    return kLargestBound;
+}
+
+/// The estimate for a bound.
+double bytesAt(const std::vector<SizeAtBound>& curve, double bound) {
+    if (bound <= curve[1].bound) return bound == 0 ? curve[0].bytes : curve[1].bytes;
+    for (std::size_t i = 2; i < curve.size(); ++i) {
+        const SizeAtBound &before = curve[i - 1], &at = curve[i];
+        if (bound > at.bound) continue;
+        return before.bytes + (at.bytes - before.bytes) * std::log2(bound / before.bound);
+    }
+    return curve.back().bytes;
+}
+
+/// The bound to try next: between trials on either side by their sizes, else along the estimates from the one trial.
+double nextBound(const std::vector<SizeAtBound>& curve, const std::optional<SizeAtBound>& above,
+                 const std::optional<SizeAtBound>& below, double aim) {
+    constexpr double kLeastStep = 1.15, kFinest = 1e-8;
+    if (!above && !below) return boundAt(curve, aim);
+    if (above && below) {
+        const double finer = std::max(above->bound, kFinest);
+        const double part = (above->bytes - aim) / (above->bytes - below->bytes);
+        return finer * std::pow(below->bound / finer, std::clamp(part, 0.1, 0.9));
+    }
+    const SizeAtBound& trial = above ? *above : *below;
+    const double guess = boundAt(curve, bytesAt(curve, trial.bound) * aim / trial.bytes);
+    return above ? std::max({guess, kLeastStep * trial.bound, kFinest}) : std::min(guess, trial.bound / kLeastStep);
+}
+
+} // namespace
+
+std::vector<SizeAtBound> estimateSizes(volume::Dataset& dataset, const volume::BrickGrid& grid,
+                                       const PackOptions& options, bool toBcc, const Progress& progress) {
+    constexpr int kFinest = -26, kCoarsest = -2; // powers of two
+    constexpr std::size_t kTimes = 2, kBricks = 8;
+    std::vector<SizeAtBound> curve{{0, 0}};
+    for (int exponent = kFinest; exponent <= kCoarsest; ++exponent) curve.push_back({std::ldexp(1.0, exponent), 0});
+    const volume::DatasetInfo& info = dataset.info;
+    const std::size_t times = std::min(kTimes, info.times.size());
+    for (std::size_t p = 0; p < info.parameters.size(); ++p)
+        for (std::size_t t = 0; t < times; ++t) {
+            const volume::Parameter& parameter = info.parameters[p];
+            progress.advance(double(p * times + t) / double(info.parameters.size() * times), "sizes");
+            for (int c = 0; c < parameter.components; ++c) {
+                volume::Field field = dataset.load(int(p), c, int((2 * t + 1) * info.times.size() / (2 * times)));
+                if (toBcc) field = volume::toBcc(field, parameter.categorical, options.resample);
+                double extent = 0;
+                for (std::size_t k = 0; k < std::size_t(parameter.components) && k < parameter.ranges.size(); ++k)
+                    extent = std::max(extent, parameter.ranges[k].hi - parameter.ranges[k].lo);
+                const bool bounded = field.type == volume::ScalarType::F32 && !parameter.categorical;
+                FrameOptions frame;
+                frame.wavelet = parameter.categorical ? Wavelet::N1 : waveletOf(options.wavelet).value_or(Wavelet::W22);
+                double bytes = 0;
+                for (SizeAtBound& point : curve) {
+                    frame.maxError = bounded ? point.bound * extent / std::abs(field.scale) : 0;
+                    if (bounded || point.bound == 0) bytes = estimateFrameBytes(grid, field, frame, kBricks);
+                    point.bytes += bytes * double(info.times.size()) / double(times);
+                }
+            }
+        }
+    return curve;
+}
+
+PackSummary packToSize(const PackOptions& asked, const std::string& path,
+                       const std::function<std::vector<SizeAtBound>(const Progress&)>& estimate,
+                       const std::function<PackSummary(const PackOptions&, const std::string&, const Progress&)>& pack,
+                       const Progress& progress) {
+    if (asked.maxError > 0 || asked.absError > 0 || asked.psnr > 0)
+        throw Error("either a size or an error bound can be asked for, not both");
+    if (asked.lattice == StoredLattice::D4) throw Error("a size cannot be asked for with d4");
+    constexpr int kTrials = 8;
+    constexpr double kFull = 0.9, kAim = 0.96; // of the size
+    const double wanted = asked.sizeMb * 1e6, aim = kAim * wanted;
+    const std::vector<SizeAtBound> curve = estimate(progress.part(0, 0.1));
+    const Scratch trial(path + ".trial-" + std::to_string(::getpid()));
+    const Scratch best(path + ".best-" + std::to_string(::getpid()));
+    PackSummary found;
+    std::optional<SizeAtBound> above, below; // the nearest trials that came out too large, and small enough
+    int trials = 0;
+    while (trials < kTrials) {
+        PackOptions options = asked;
+        options.sizeMb = 0;
+        options.maxError = std::min(nextBound(curve, above, below, aim), kLargestBound);
+        const double begin = 0.1 + 0.9 * trials / kTrials;
+        const PackSummary summary = pack(options, trial.path, progress.part(begin, begin + 0.9 / kTrials));
+        ++trials;
+        const SizeAtBound came{options.maxError, double(summary.archiveBytes)};
+        if (came.bytes > wanted) {
+            above = came;
+            if (came.bound >= kLargestBound) break;
+            continue;
+        }
+        below = came;
+        if (summary.archiveBytes > found.archiveBytes) {
+            found = summary;
+            std::filesystem::rename(trial.path, best.path);
+        }
+        if (came.bound == 0 || came.bytes >= kFull * wanted) break;
+    }
+    if (found.archiveBytes == 0)
+        throw Error("the archive cannot be made so small: " + std::to_string(std::llround(above->bytes)) +
+                        " bytes even with the largest error tried (samples that are not floats are stored exactly)",
+                    path);
+    std::filesystem::rename(best.path, path);
+    found.trials = trials;
+    progress.advance(1);
+    return found;
+}
+
+} // namespace tessera::codec

@@ -1,0 +1,109 @@
+#include "codec/archive.h"
+#include "codec/pack.h"
+#include "tests/codec/make_dataset.h"
+
+#include <atomic>
+#include <gtest/gtest.h>
+#include <set>
+#include <thread>
+
+namespace tessera::codec {
+namespace {
+
+using namespace testing;
+using volume::ScalarType;
+
+/// A wave with noise far below it: what a size buys is precision.
+volume::Dataset waves(int times) {
+    volume::Dataset made = makeDataset({40, 36, 32},
+                                       {{"T", ScalarType::F32, 1, Texture::Smooth, true, false},
+                                        {"U", ScalarType::F32, 2, Texture::Smooth, false, false}},
+                                       times);
+    made.load = [load = made.load](int p, int c, int t) {
+        volume::Field field = load(p, c, t);
+        std::mt19937 random(unsigned(100 * p + 10 * c + t));
+        for (float& value : field.as<float>()) value += float(random() % 1000) * 1e-4f;
+        return field;
+    };
+    return made;
+}
+
+TEST(PackSize, NeverAboveTheSizeAskedAndMostlyUsed) {
+    const TemporaryFolder folder;
+    const std::string path = folder / "a.tsr";
+    double before = 1;
+    for (const double size : {0.05, 0.1, 0.3}) {
+        volume::Dataset made = waves(3);
+        PackOptions options;
+        options.sizeMb = size;
+        options.brickSize = 16;
+        const PackSummary summary = pack(made, options, path);
+        const Archive archive(path);
+        EXPECT_LE(readFile(path).size(), size * 1e6);
+        EXPECT_GE(readFile(path).size(), 0.85 * size * 1e6) << "after " << summary.trials << " trials";
+        EXPECT_EQ(archive.fileBytes(), summary.archiveBytes);
+        EXPECT_LT(archive.metadata().maxError, before); // more bytes, less error
+        EXPECT_GT(archive.metadata().maxError, 0);
+        before = archive.metadata().maxError;
+        EXPECT_EQ(archive.metadata().options.sizeMb, 0);
+        EXPECT_EQ(folder.files(), 1u);
+    }
+}
+
+TEST(PackSize, AmpleSizesAreLosslessAndTinyOnesRefused) {
+    const TemporaryFolder folder;
+    const std::string path = folder / "a.tsr";
+    volume::Dataset made = waves(1);
+    PackOptions options;
+    options.sizeMb = 10;
+    pack(made, options, path);
+    EXPECT_TRUE(Archive(path).metadata().lossless);
+    const std::vector<char> before = readFile(path);
+    options.sizeMb = 1e-4;
+    EXPECT_THROW(pack(made, options, path), Error);
+    EXPECT_EQ(readFile(path), before);
+    EXPECT_EQ(folder.files(), 1u);
+    options.psnr = 40;
+    EXPECT_THROW(pack(made, options, path), Error);
+}
+
+TEST(PackMemory, ALimitThatCannotBeKeptIsAnError) {
+    const TemporaryFolder folder;
+    volume::Dataset made = waves(2);
+    PackOptions options;
+    options.memoryMb = 1;
+    EXPECT_THROW(pack(made, options, folder / "a.tsr"), Error);
+    EXPECT_EQ(folder.files(), 0u);
+    options.memoryMb = 500;
+    pack(made, options, folder / "a.tsr");
+    EXPECT_EQ(folder.files(), 1u);
+}
+
+// Reading goes on while coding does; never more than one frame is read at a time, and a tight limit reads none ahead.
+TEST(PackFeed, ReadsOneStepAheadOrNone) {
+    const TemporaryFolder folder;
+    const auto countThreads = [&](double memoryMb) {
+        volume::Dataset made = waves(3);
+        std::atomic<int> inside = 0;
+        std::set<std::thread::id> threads;
+        made.load = [&, load = made.load](int p, int c, int t) {
+            EXPECT_EQ(++inside, 1);
+            threads.insert(std::this_thread::get_id());
+            volume::Field field = load(p, c, t);
+            --inside;
+            return field;
+        };
+        PackOptions options;
+        options.memoryMb = memoryMb;
+        pack(made, options, folder / (std::to_string(memoryMb) + ".tsr"));
+        return threads.size();
+    };
+    EXPECT_GT(countThreads(1000), 1u);
+    EXPECT_EQ(countThreads(65.2), 1u);
+    // The limit is no part of what is stored but among the options.
+    const Archive ample(folder / "1000.000000.tsr"), tight(folder / "65.200000.tsr");
+    for (int t = 0; t < 3; ++t) EXPECT_EQ(readField(ample, 0, 0, t).samples, readField(tight, 0, 0, t).samples);
+}
+
+} // namespace
+} // namespace tessera::codec
