@@ -14,11 +14,9 @@ struct NamedBench {
     const char* name;
     BenchTable (*measure)();
 };
-constexpr NamedBench kBenches[] = {{"lattice", benchLattice},
-                                   {"lattice", benchResample},
-                                   {"codec", benchCodec},
-                                   {"render", benchRender},
-                                   {"styles", benchStyles}};
+constexpr NamedBench kBenches[] = {
+    {"lattice", benchLattice},     {"lattice", benchResample},    {"codec", benchCodec},   {"thesis", benchThesisSizes},
+    {"thesis", benchThesisCoding}, {"thesis", benchThesisFrames}, {"render", benchRender}, {"styles", benchStyles}};
 
 /// Columns of texts to the left, of numbers to the right.
 void print(const BenchTable& table) {

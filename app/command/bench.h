@@ -19,6 +19,10 @@ BenchTable benchLattice();
 BenchTable benchResample();
 /// Pack throughput and archive size against raw and against zstd -19 of the same bytes.
 BenchTable benchCodec();
+/// Tables 6.1 and 6.2, 6.4, 6.5 of the thesis, its numbers beside ours for the volumes at hand.
+BenchTable benchThesisSizes();
+BenchTable benchThesisCoding();
+BenchTable benchThesisFrames();
 /// Milliseconds per frame at 512x512 for 256^3 volumes, beside VTK's mappers where they are at hand.
 BenchTable benchRender();
 /// Milliseconds per frame of the fuel cell's temperature in each look, beside plain compositing.
