@@ -85,3 +85,28 @@ tesseract tesseract-turned --set /views/tesseract/turn4=[35,0,-50] --set '/views
     --set /views/tesseract/lattice=3 --set /views/tesseract/eye=1.4
 tesseract tesseract-temperature --set '/views/tesseract/fourth="T"' --set /views/tesseract/turn4=[30,20,0] \
     --set /views/tesseract/density=0.5 --set /views/tesseract/radius=5
+# Lenses
+lens() { # lens NAME EFFECT LAYERS [MORE]: one in the middle of the cell
+    picture "lens-$1" --set "/layers=[$3]" --set /camera/distance=1.9 --set /views/volume/legend=false \
+        --set "/lenses=[{\"name\":\"lens\",\"effect\":\"$2\",\"center\":[0.0011,0.0009,0.02],\"size\":[0.17,0.17,0.17]${4:+,$4}}]"
+}
+inside() { # inside LAYER: drawn in the lens alone
+    echo "${1%\}},\"lens\":\"lens\"}"
+}
+lens parameter replace "$(volume T),$(inside "$(volume O2)")"
+lens technique replace "$(volume T),$(inside "$(surface O2 2.2 0.35,0.6,0.95 1)"),$(inside "$(surface H2 26.5 0.95,0.6,0.25 1)")"
+lens cut replace "$(volume T)" '"shape":"box","rotation":[0,30,0],"rim":0.03'
+lens only only "$(volume T)" '"shape":"cylinder"'
+lens enhance enhance "$(volume T '"density":0.4')"
+lens suppress suppress "$(volume T)"
+lens magnify magnify "$(volume T)" '"shape":"disc","magnification":3'
+# Focus and context
+focus() { # focus NAME ARGUMENTS...
+    local name=$1
+    shift
+    picture "focus-$name" --set "/layers=[$(volume T)]" \
+        --set '/selection/brushes=[{"region":{"type":"range","intervals":[{"channel":"O2","lo":0,"hi":1.5,"soft":0.2},{"channel":"T","lo":355.3,"hi":360,"soft":0.1}]}}]' "$@"
+}
+focus opacity --set /selection/contextOpacity=0.04
+focus lightness --set /selection/contextOpacity=0.3 --set /selection/contextLightness=1.5
+focus blur --set /selection/contextOpacity=0.5 --set /selection/contextSaturation=0.6 --set /selection/contextBlur=0.03

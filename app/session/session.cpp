@@ -171,9 +171,21 @@ void fitSession(Session& session, const volume::DatasetInfo& info, std::vector<s
             },
             layer.technique);
     }
+    for (vis::Layer& layer : session.layers) {
+        const auto named = [&](const vis::Lens& lens) { return lens.name == layer.lens; };
+        if (layer.lens.empty() || std::any_of(session.lenses.begin(), session.lenses.end(), named)) continue;
+        messages.push_back("layer " + layer.name + " is hidden: there is no lens " + layer.lens);
+        layer.visible = false;
+        layer.lens.clear();
+    }
+    const auto owned = [&](const std::string& name) { // by a layer alone
+        return std::any_of(session.layers.begin(), session.layers.end(),
+                           [&](const vis::Layer& layer) { return !name.empty() && layer.transfer == name; });
+    };
     for (auto& [key, view] : session.views) {
         if (auto* slices = std::get_if<SlicesView>(&view)) replace(slices->channel);
-        if (auto* transfer = std::get_if<TransferView>(&view)) replace(transfer->channel);
+        if (auto* transfer = std::get_if<TransferView>(&view); transfer && !owned(transfer->channel))
+            replace(transfer->channel);
         if (auto* histogram = std::get_if<HistogramView>(&view)) replace(histogram->channel);
         if (auto* tesseract = std::get_if<TesseractView>(&view)) {
             replace(tesseract->channel);

@@ -2,6 +2,7 @@
 
 #include "app/ui/widgets.h"
 #include "app/views/brush_edit.h"
+#include "app/views/lens_list.h"
 #include "app/views/ticks.h"
 #include "app/views/view_parts.h"
 
@@ -114,6 +115,9 @@ bool drawBrush(ViewContext& context, vis::Brush& brush, std::size_t index) {
                 drawDescribed(range->intervals[k], widgets);
                 ImGui::PopID();
             }
+        } else if (auto* lens = std::get_if<vis::LensRegion>(&brush.region)) {
+            drawLabel(widgets, "Lens", "Lens whose inside is brushed, wherever it is");
+            chooseLens("##lens", context.session, lens->lens, "all that mark");
         } else {
             std::visit([&](auto& region) { drawDescribed(region, widgets); }, brush.region);
         }
@@ -193,6 +197,13 @@ void drawBrushList(ViewContext& context) {
     };
     if (button("Sphere at cursor", true)) addAtCursor(context, false);
     if (button("Box at cursor")) addAtCursor(context, true);
+    if (!context.session.lenses.empty() && button("Inside the lens")) {
+        vis::Brush brush;
+        brush.name = newBrushName(selection, context.session.lenses.back().name);
+        brush.color = newBrushColor(selection);
+        brush.region = vis::LensRegion{context.session.lenses.back().name};
+        selection.brushes.push_back(std::move(brush));
+    }
     if (!selection.brushes.empty() && button("Clear all")) selection.brushes.clear();
 }
 

@@ -124,7 +124,7 @@ void drawList(ViewContext& context, int& selected) {
 void drawPlace(const WidgetContext& widgets, Session& session, vis::Layer& layer) {
     if (!session.lenses.empty()) {
         drawLabel(widgets, "Drawn", "Everywhere, or inside a lens alone");
-        chooseLens("##lens", session, layer.lens);
+        chooseLens("##lens", session, layer.lens, "everywhere");
     }
     if (!std::holds_alternative<vis::IsoLayer>(layer.technique)) {
         bool own = !layer.transfer.empty();

@@ -233,15 +233,15 @@ void drawLensMenu(ViewContext& context) {
         }
 }
 
-bool chooseLens(const char* id, const Session& session, std::string& value) {
+bool chooseLens(const char* id, const Session& session, std::string& value, const char* none) {
     bool changed = false;
-    if (!ImGui::BeginCombo(id, value.empty() ? "everywhere" : ("inside " + value).c_str())) return false;
+    if (!ImGui::BeginCombo(id, value.empty() ? none : ("inside " + value).c_str())) return false;
     const auto offer = [&](const char* text, const std::string& name) {
         if (!ImGui::Selectable(text, value == name)) return;
         changed = value != name;
         value = name;
     };
-    offer("everywhere", "");
+    offer(none, "");
     for (const vis::Lens& lens : session.lenses) offer(("inside " + lens.name).c_str(), lens.name);
     ImGui::EndCombo();
     return changed;

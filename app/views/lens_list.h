@@ -31,7 +31,7 @@ void removeLens(Session& session, std::size_t index);
 /// Items of a menu that add a lens.
 void drawLensMenu(ViewContext& context);
 
-/// A choice of lens for a layer; "" is everywhere.
-bool chooseLens(const char* id, const Session& session, std::string& value);
+/// A choice of lens; "" reads as `none`.
+bool chooseLens(const char* id, const Session& session, std::string& value, const char* none);
 
 } // namespace tessera::app

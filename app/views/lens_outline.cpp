@@ -150,6 +150,9 @@ void drawLensSections(ImDrawList& draw, const PlotFrame& frame, const Session& s
         if (outline.empty()) return;
         draw.AddPolyline(outline.data(), static_cast<int>(outline.size()), colorOf(lens, 0.9f), ImDrawFlags_Closed,
                          std::max(1.0f, em() * 0.1f));
+        const glm::dvec3 middle = world.toPhysical(placed.center);
+        draw.AddCircleFilled(frame.pixel(middle[right] * perUnit.x, middle[up] * perUnit.y), em() * 0.28f,
+                             colorOf(lens, 0.9f));
     });
 }
 

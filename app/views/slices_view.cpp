@@ -29,6 +29,7 @@ constexpr const char* kAxisNames[] = {"x", "y", "z"};
 struct SlicesCache : ViewCache {
     std::array<vis::ViewTargetPtr, 3> targets;
     int dragging = -1;
+    int lens = -1; ///< that is dragged, in place of the cursor
     Readout readout;
 };
 
@@ -58,6 +59,16 @@ void stepCursor(Session& session, const volume::DatasetInfo& info, int axis, flo
     const double cell = info.lattice.spacing[axis] * (info.lattice.kind == volume::LatticeKind::BCC ? 0.5 : 1);
     session.cursor[axis] = std::clamp(session.cursor[axis] + cell * static_cast<double>(steps), info.bounds.lo[axis],
                                       info.bounds.hi[axis]);
+}
+
+/// The pinned lens whose middle is at a pixel of a slice, -1 if none; later ones lie over those before them.
+int lensAt(const Session& session, const PlotFrame& frame, const Plane& plane, glm::dvec2 perUnit, ImVec2 mouse) {
+    for (int i = static_cast<int>(session.lenses.size()) - 1; i >= 0; --i) {
+        const vis::Lens& lens = session.lenses[static_cast<std::size_t>(i)];
+        const ImVec2 at = frame.pixel(lens.center[plane.right] * perUnit.x, lens.center[plane.up] * perUnit.y);
+        if (lens.enabled && !lens.followsCursor && std::hypot(at.x - mouse.x, at.y - mouse.y) < em() * 0.7f) return i;
+    }
+    return -1;
 }
 
 /// Lenses with layers of their own show these layers' parameters in their section, others nothing.
@@ -128,9 +139,19 @@ void drawPlane(ViewContext& context, SlicesCache& cache, const SlicesView& view,
     }
     ImGui::PopID();
     const ImGuiIO& io = ImGui::GetIO();
-    if (ImGui::IsItemActivated()) cache.dragging = index;
+    if (ImGui::IsItemActivated()) {
+        cache.dragging = index;
+        cache.lens = lensAt(session, frame, plane, {unitX.perUnit, unitY.perUnit}, io.MousePos);
+    }
     if (!ImGui::IsMouseDown(ImGuiMouseButton_Left)) cache.dragging = -1;
-    if (cache.dragging == index) {
+    if (cache.dragging == index && cache.lens >= 0 && cache.lens < static_cast<int>(session.lenses.size())) {
+        const glm::dvec2 at = frame.data(io.MousePos);
+        glm::dvec3& center = session.lenses[static_cast<std::size_t>(cache.lens)].center;
+        center[plane.right] =
+            std::clamp(at.x / unitX.perUnit, info.bounds.lo[plane.right], info.bounds.hi[plane.right]);
+        center[plane.up] = std::clamp(at.y / unitY.perUnit, info.bounds.lo[plane.up], info.bounds.hi[plane.up]);
+        context.interacting = true;
+    } else if (cache.dragging == index) {
         const glm::dvec2 at = frame.data(io.MousePos);
         session.cursor[plane.right] =
             std::clamp(at.x / unitX.perUnit, info.bounds.lo[plane.right], info.bounds.hi[plane.right]);

@@ -69,10 +69,9 @@ void drawRegionSettings(ViewContext& context, RegionDrag& drag, vis::TransferFun
 
 } // namespace
 
-void drawRegionPage(ViewContext& context, RegionPage& page, const volume::DatasetInfo& info, int index,
-                    const std::shared_ptr<const DerivativeResult>& result) {
+void drawRegionPage(ViewContext& context, RegionPage& page, vis::TransferFunction& function,
+                    const volume::DatasetInfo& info, int index, const std::shared_ptr<const DerivativeResult>& result) {
     const volume::Channel channel = info.channels()[static_cast<std::size_t>(index)];
-    vis::TransferFunction& function = transferOf(context.session, channel.name);
     const Range data = info.channelRange(channel), range = vis::effectiveRange(function, data);
     const ImVec2 min = ImGui::GetCursorScreenPos(), room = ImGui::GetContentRegionAvail();
     const float side = room.x > em() * 34 ? em() * 17 : 0;
@@ -114,10 +113,10 @@ void drawRegionPage(ViewContext& context, RegionPage& page, const volume::Datase
     }
 }
 
-void drawBoundaryPage(ViewContext& context, BoundaryPage& page, const volume::DatasetInfo& info, int index,
+void drawBoundaryPage(ViewContext& context, BoundaryPage& page, vis::TransferFunction& function,
+                      const volume::DatasetInfo& info, int index,
                       const std::shared_ptr<const DerivativeResult>& result) {
     const volume::Channel channel = info.channels()[static_cast<std::size_t>(index)];
-    vis::TransferFunction& function = transferOf(context.session, channel.name);
     const Range data = info.channelRange(channel), range = vis::effectiveRange(function, data);
     const PlotColors colors = plotColors();
     const ImVec2 min = ImGui::GetCursorScreenPos(), room = ImGui::GetContentRegionAvail();

@@ -7,7 +7,7 @@
 #include <memory>
 #include <vector>
 
-/// The pages of the transfer function view that look at gradients.
+/// The pages of the transfer function view that look at gradients. They edit a function of a channel's values.
 namespace tessera::app {
 
 /// Regions over the joint histogram of value and gradient magnitude.
@@ -17,7 +17,8 @@ struct RegionPage {
     std::shared_ptr<const DerivativeResult> shown; ///< what the picture shows
     bool dark = true;                              ///< and for which theme
 };
-void drawRegionPage(ViewContext& context, RegionPage& page, const volume::DatasetInfo& info, int channel,
+void drawRegionPage(ViewContext& context, RegionPage& page, vis::TransferFunction& function,
+                    const volume::DatasetInfo& info, int channel,
                     const std::shared_ptr<const DerivativeResult>& result);
 
 /// The curves that find boundaries, and the emphasis b(x) that makes the opacity curve from them.
@@ -29,7 +30,8 @@ struct BoundaryPage {
     std::shared_ptr<const DerivativeResult> from;
     bool apply = false; ///< make it now, without a change: the page was just chosen
 };
-void drawBoundaryPage(ViewContext& context, BoundaryPage& page, const volume::DatasetInfo& info, int channel,
+void drawBoundaryPage(ViewContext& context, BoundaryPage& page, vis::TransferFunction& function,
+                      const volume::DatasetInfo& info, int channel,
                       const std::shared_ptr<const DerivativeResult>& result);
 
 } // namespace tessera::app

@@ -21,10 +21,26 @@ struct TransferCache : ViewCache {
     RegionPage regions;
     BoundaryPage boundaries;
     bool boundary = false; ///< the curve is made from boundaries: the page that edits their emphasis
-    int channel = -1;      ///< that the pages were last drawn for
+    std::string shown;     ///< function that the pages were last drawn for
     int rangeEnd = 0;      ///< end of the range that is dragged: -1 low, 1 high
     double grab = 0;       ///< from the mouse to that end, in values
 };
+
+/// The layer whose own function a name is, null if none.
+const vis::Layer* layerOfFunction(const Session& session, const std::string& name) {
+    for (const vis::Layer& layer : session.layers)
+        if (!name.empty() && layer.transfer == name) return &layer;
+    return nullptr;
+}
+
+std::string channelOf(const vis::Technique& technique) {
+    return std::visit([](const auto& own) { return own.channel; }, technique);
+}
+
+/// The name of the function that is edited: a layer's own, or the channel's.
+std::string functionName(const Session& session, const TransferView& view, const std::string& channel) {
+    return layerOfFunction(session, view.channel) ? view.channel : channel;
+}
 
 /// A button with a small picture of the curve it sets.
 bool presetButton(OpacityPreset preset) {
@@ -102,6 +118,17 @@ void drawGradientTop(vis::TransferFunction& function) {
     if (ImGui::IsItemHovered()) tooltip("Gradient magnitude at the top of the plane, in ranges of the values per cell");
 }
 
+/// A choice among a parameter's own function and those of layers.
+void chooseFunction(const Session& session, TransferView& view, const std::string& channel) {
+    const std::string shown = layerOfFunction(session, view.channel) ? view.channel : "all layers";
+    if (!ImGui::BeginCombo("##function", shown.c_str())) return;
+    if (ImGui::Selectable("all layers", shown == "all layers")) view.channel = channel;
+    for (const vis::Layer& layer : session.layers)
+        if (!layer.transfer.empty() && ImGui::Selectable(layer.transfer.c_str(), layer.transfer == view.channel))
+            view.channel = layer.transfer;
+    ImGui::EndCombo();
+}
+
 void drawControls(ViewContext& context, TransferCache& cache, TransferView& view, const volume::DatasetInfo& info,
                   std::string channel) {
     const float room = ImGui::GetContentRegionAvail().x, gap = ImGui::GetStyle().ItemSpacing.x;
@@ -110,7 +137,16 @@ void drawControls(ViewContext& context, TransferCache& cache, TransferView& view
     ImGui::SetNextItemWidth(combo);
     if (chooseChannel("##channel", &info, channel)) view.channel = channel;
     if (ImGui::IsItemHovered()) tooltip("Parameter whose colours and opacity are edited");
-    vis::TransferFunction& function = transferOf(context.session, channel);
+    const bool choice = std::any_of(context.session.layers.begin(), context.session.layers.end(),
+                                    [](const vis::Layer& layer) { return !layer.transfer.empty(); });
+    if (choice) {
+        ImGui::SameLine();
+        ImGui::SetNextItemWidth(combo);
+        chooseFunction(context.session, view, channel);
+        if (ImGui::IsItemHovered()) tooltip("Whose: all layers', or that of a layer with one of its own");
+    }
+    vis::TransferFunction& function = transferOf(context.session, functionName(context.session, view, channel));
+    if (choice && room < em() * 34) ImGui::NewLine();
     ImGui::SameLine();
     ImGui::SetNextItemWidth(combo);
     chooseColormap("##colormap", function.colormap, function.reversed);
@@ -189,7 +225,7 @@ void drawStrip(ViewContext& context, TransferCache& cache, vis::TransferFunction
 void drawPlot(ViewContext& context, TransferCache& cache, const TransferView& view, const volume::DatasetInfo& info,
               int index, const std::string& pane) {
     const volume::Channel channel = info.channels()[static_cast<std::size_t>(index)];
-    vis::TransferFunction& function = transferOf(context.session, channel.name);
+    vis::TransferFunction& function = transferOf(context.session, functionName(context.session, view, channel.name));
     const Range data = info.channelRange(channel), range = vis::effectiveRange(function, data);
     const Range span = paddedRange({std::min(data.lo, range.lo), std::max(data.hi, range.hi)}, 0.03);
     const StatisticsWish wish = makeWish(context.session, info, {index}, {span}, 192, false);
@@ -266,7 +302,12 @@ void drawTransferView(ViewContext& context, const std::string& pane, TransferVie
         return;
     }
     const volume::DatasetInfo& info = context.source->info();
-    const auto channel = resolveChannel(info, context.session, view.channel);
+    const auto channelNow = [&] {
+        const vis::Layer* own = layerOfFunction(context.session, view.channel);
+        const std::string name = own ? channelOf(own->technique) : view.channel;
+        return resolveChannel(info, context.session, name);
+    };
+    const auto channel = channelNow();
     if (!channel) {
         drawHint("No parameters", "This data set has nothing to colour.");
         return;
@@ -274,16 +315,17 @@ void drawTransferView(ViewContext& context, const std::string& pane, TransferVie
     TransferCache& cache = cacheOf<TransferCache>(context, pane);
     updateReadout(context, cache.readout);
     drawControls(context, cache, view, info, info.channels()[static_cast<std::size_t>(*channel)].name);
-    const int now = resolveChannel(info, context.session, view.channel).value_or(*channel);
+    const int now = channelNow().value_or(*channel);
     const volume::Channel shown = info.channels()[static_cast<std::size_t>(now)];
-    const vis::TransferFunction& function = transferOf(context.session, shown.name);
+    const std::string name = functionName(context.session, view, shown.name);
+    vis::TransferFunction& function = transferOf(context.session, name);
     const bool regions = function.kind == vis::TransferKind::Regions;
     if (!regions && !cache.boundary) {
         drawPlot(context, cache, view, info, now, pane);
         return;
     }
-    if (cache.channel != now) { // what was held or made belongs to the other parameter
-        cache.channel = now;
+    if (cache.shown != name) { // what was held or made belongs to the other function
+        cache.shown = name;
         cache.regions.drag = {};
         cache.boundaries.from.reset();
     }
@@ -298,9 +340,9 @@ void drawTransferView(ViewContext& context, const std::string& pane, TransferVie
     if (cache.derivatives.failed() && !result)
         drawHint("No gradients", "The data could not be read; the log says where.");
     else if (regions)
-        drawRegionPage(context, cache.regions, info, now, result);
+        drawRegionPage(context, cache.regions, function, info, now, result);
     else
-        drawBoundaryPage(context, cache.boundaries, info, now, result);
+        drawBoundaryPage(context, cache.boundaries, function, info, now, result);
 }
 
 } // namespace tessera::app

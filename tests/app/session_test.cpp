@@ -172,6 +172,26 @@ TEST_F(SessionFileTest, TheOneLightOfSchemaOneBecomesTheFirst) {
     EXPECT_THROW(parseSession(R"({"schema": 1, "render": 3})", "x"), Error);
 }
 
+TEST_F(SessionFileTest, LayersOfALensThatIsMissingAreHidden) {
+    volume::DatasetInfo info;
+    info.bounds = {glm::dvec3(0), glm::dvec3(1)};
+    info.parameters.resize(1);
+    info.parameters[0].name = "T";
+    Session session;
+    session.lenses = {{.name = "here"}};
+    session.layers = {{"a", true, vis::VolumeLayer{.channel = "T"}, "here", "mine"},
+                      {"b", true, vis::VolumeLayer{.channel = "T"}, "gone"}};
+    session.views["transfer"] = TransferView{.channel = "mine"};
+    std::vector<std::string> messages;
+    fitSession(session, info, messages);
+    EXPECT_TRUE(session.layers[0].visible);
+    EXPECT_FALSE(session.layers[1].visible);
+    EXPECT_TRUE(session.layers[1].lens.empty());
+    ASSERT_EQ(messages.size(), 1u);
+    EXPECT_NE(messages[0].find("gone"), std::string::npos);
+    EXPECT_EQ(std::get<TransferView>(session.views["transfer"]).channel, "mine") << "a layer's own function";
+}
+
 TEST_F(SessionFileTest, FindsDataAfterTheFolderMoved) {
     write("one/data/cell.tsr", "12345");
     SessionDocument document = edited();

@@ -1,6 +1,7 @@
 #include "tests/vis/raycast_compare.h"
 #include "tests/vis/shader_probe.h"
 #include "vis/technique/lens_uniforms.h"
+#include "volume/memory_source.h"
 
 #include <functional>
 #include <random>
@@ -211,6 +212,46 @@ TEST_P(LensPictures, OverHalfTheVolumeStitchTwoPictures) {
         for (std::size_t i = 0; i < cut.pixels.size(); ++i)
             EXPECT_TRUE(int(i) % kSize.x < kSize.x / 2 || cut.pixels[i].a == 0) << i;
     }
+}
+
+/// A layer that is shown at another time is what all of the picture is at that time.
+TEST_P(LensPictures, LayersMayShowAnotherTime) {
+    volume::Dataset dataset;
+    dataset.info.lattice.size = {12, 12, 12};
+    dataset.info.bounds = {glm::dvec3(0), glm::dvec3(11)};
+    dataset.info.times = {0, 1, 2};
+    volume::Parameter parameter;
+    parameter.name = "a";
+    parameter.ranges = {{0, 4}};
+    dataset.info.parameters = {parameter};
+    dataset.load = [lattice = dataset.info.lattice](int, int, int time) {
+        volume::Field field = volume::makeField(lattice, volume::ScalarType::F32);
+        for (std::size_t i = 0; i < field.count(); ++i) field.as<float>()[i] = float(time) + float(i % 12) / 12;
+        return field;
+    };
+    Renderer renderer;
+    renderer.setSource(volume::makeMemorySource(dataset, {.lattice = GetParam().kind, .brickSize = 8}));
+    const ViewTargetPtr target = renderer.makeTarget();
+    const auto draw = [&](const Scene& scene) {
+        FrameRequest request;
+        request.size = kSize;
+        request.wait = true;
+        EXPECT_TRUE(renderer.render(*target, scene, request).complete);
+        return renderer.readLinear(*target);
+    };
+    Scene scene = baseScene(false);
+    scene.layers = {{"", true, VolumeLayer{.channel = "a", .shaded = false}}};
+    scene.transfer["a"].opacity = {{0, 0.01f}, {1, 0.2f}};
+    Scene later = scene;
+    later.time = 2;
+    const auto first = draw(scene), wanted = draw(later);
+    scene.layers[0].timeShift = 2;
+    EXPECT_EQ(draw(scene), wanted);
+    EXPECT_NE(first, wanted);
+    scene.layers[0].lens = "all";
+    scene.lenses = {{.name = "all", .shape = LensShape::Box, .center = glm::dvec3(5.5), .size = glm::vec3(2)}};
+    scene.lenses[0].rim = 0;
+    EXPECT_EQ(draw(scene), wanted);
 }
 
 } // namespace
