@@ -15,6 +15,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <set>
+#include <unistd.h>
 
 namespace tessera::app {
 
@@ -133,6 +134,25 @@ DataRef dataOf(const std::vector<std::string>& paths, const volume::ImportOption
 
 namespace {
 
+/// What an archive holds of a data set, through a file that nobody else sees.
+std::shared_ptr<const volume::BrickSource> openPacked(volume::Dataset& dataset, const codec::PackOptions& options,
+                                                      const Progress& progress) {
+    std::string name = (fs::temp_directory_path() / "tessera-packed-XXXXXX.tsr").string();
+    const int file = ::mkstemps(name.data(), 4);
+    if (file < 0) throw MachineError("cannot make a file to pack into", name);
+    ::close(file);
+    // Mapped files live on without a name.
+    struct Remove {
+        const std::string& path;
+        ~Remove() {
+            std::error_code problem;
+            fs::remove(path, problem);
+        }
+    } const remove{name};
+    codec::pack(dataset, options, name, progress);
+    return codec::openArchive(name);
+}
+
 std::shared_ptr<const volume::BrickSource> openStored(const DataRef& data, std::vector<std::string>& messages,
                                                       const Progress& progress) {
     if (!hasData(data)) throw Error("names no data: open data first, or give a data file", {}, "/data");
@@ -155,6 +175,7 @@ std::shared_ptr<const volume::BrickSource> openStored(const DataRef& data, std::
                 messages.push_back("parameter " + parameter.name + " has no present samples");
                 break;
             }
+    if (data.packed) return openPacked(dataset, *data.packed, progress.part(0.95, 1));
     volume::MemorySourceOptions options;
     options.lattice = data.bcc ? volume::LatticeKind::BCC : volume::LatticeKind::CC;
     return volume::makeMemorySource(std::move(dataset), options);

@@ -235,7 +235,7 @@ void Workbench::play() {
     // A timeline on screen plays by itself.
     for (const auto& [pane, view] : session_.views)
         if (drawn_.contains(pane) && std::holds_alternative<TimelineView>(view)) return;
-    advance(playback_, session_.animation, session_.time, source_->info().times, ImGui::GetIO().DeltaTime);
+    playOn(playback_, session_, source_->info().times, double(ImGui::GetIO().DeltaTime));
 }
 
 void Workbench::step(int count) {

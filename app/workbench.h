@@ -73,6 +73,11 @@ public:
     std::string windowTitle() const;
     void message(const std::string& text, bool failure = false);
     const std::vector<Command>& commands() const { return commands_; }
+    /// What the view of a pane keeps between frames; null before it was drawn.
+    const ViewCache* cache(const std::string& pane) const {
+        const auto found = caches_.find(pane);
+        return found == caches_.end() ? nullptr : found->second.get();
+    }
 
     /// Makes a picture of a session; given by the platform.
     std::function<vis::Image(const SessionDocument&, std::shared_ptr<const volume::BrickSource>,

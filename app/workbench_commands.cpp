@@ -37,7 +37,8 @@ std::vector<ViewKind> viewKinds() {
             {"Slice matrix", "Parameters on parallel planes", SliceMatrixView{}},
             {"Shadow cube", "Projections on the faces of a cube around the scene", ShadowCubeView{}},
 
-            {"Tesseract", "The field in four dimensions, turned in six planes", TesseractView{}}};
+            {"Tesseract", "The field in four dimensions, turned in six planes", TesseractView{}},
+            {"Side by side", "The 3D scene with other settings", CompareView{}}};
 }
 
 } // namespace
@@ -328,7 +329,7 @@ void Workbench::makeCommands() {
                  OpenRequest request;
                  request.data.emplace();
                  request.data->model = model;
-                 if (model == "fuel-cell") request.layout = "overview";
+                 if (model == "fuel-cell" || model == "planted") request.layout = "overview";
                  open(std::move(request));
              }});
     add({.menu = "Help", .name = "-About Tessera", .help = "Version", .run = [this] { askAbout_ = true; }});

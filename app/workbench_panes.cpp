@@ -70,6 +70,8 @@ void Workbench::drawPane(const std::string& pane) {
                 drawShadowCubeView(context, pane, view);
             else if constexpr (std::is_same_v<View, TesseractView>)
                 drawTesseractView(context, pane, view);
+            else if constexpr (std::is_same_v<View, CompareView>)
+                drawCompareView(context, pane, view);
             else if constexpr (std::is_same_v<View, HistoryView>)
                 drawHistoryPane();
             else

@@ -37,6 +37,8 @@ struct FrameStatus {
     bool complete = false;   ///< full resolution, all bricks at the level wanted: nothing to do until the scene changes
     int bricksMissing = 0;   ///< bricks still shown at a coarser level
     double milliseconds = 0; ///< of the last full pass
+    /// Lattice samples of the channels drawn, at the levels drawn, and bytes of the textures that hold them.
+    std::size_t samples = 0, bytes = 0;
 };
 
 /// Bytes in use and allowed; bricks in textures, bricks that a view wants and that are not there yet, jobs under way.

@@ -63,6 +63,7 @@ int runCommandLine(int argc, const char* const* argv) {
     addWorkbench(app);
     addBenchCommand(app);
     addConvertCommand(app);
+    addCompareCommand(app);
     addGenerateCommand(app);
     addInfoCommand(app);
     addMeshCommand(app);

@@ -13,6 +13,7 @@ namespace tessera::app {
 
 void addBenchCommand(CLI::App& app);
 void addConvertCommand(CLI::App& app);
+void addCompareCommand(CLI::App& app);
 void addGenerateCommand(CLI::App& app);
 void addInfoCommand(CLI::App& app);
 void addMeshCommand(CLI::App& app);

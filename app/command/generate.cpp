@@ -69,7 +69,7 @@ void listSettings(const std::string& model) {
     std::printf("%-22s %-9s %-18s %-5s %s\n", "setting", "default", "range", "unit", "meaning");
     const volume::FuelCellSettings cell;
     const volume::MarschnerLobbSettings signal;
-    if (model == "fuel-cell")
+    if (model != "marschner-lobb")
         volume::FuelCellSettings::describe(cell, PrintSetting());
     else
         volume::MarschnerLobbSettings::describe(signal, PrintSetting());
@@ -104,7 +104,9 @@ void run(const Request& request) {
 void addGenerateCommand(CLI::App& app) {
     CLI::App* command = app.add_subcommand("generate", "Compute a built-in data set and write it");
     const auto request = std::make_shared<Request>();
-    command->add_option("MODEL", request->model, "fuel-cell or marschner-lobb")
+    command
+        ->add_option("MODEL", request->model,
+                     "fuel-cell, planted (the same with events of known place) or marschner-lobb")
         ->required()
         ->check(CLI::IsMember(volume::modelNames()));
     CLI::Option* output =

@@ -1,6 +1,7 @@
 #include "app/command/picture_options.h"
 
 #include "app/command/import_options.h"
+#include "app/session/parameter_path.h"
 #include "volume/error.h"
 
 #include <cstdio>
@@ -15,15 +16,10 @@ void applySetting(Json& document, const std::string& setting) {
     const auto equals = setting.find('=');
     if (equals == std::string::npos || !setting.starts_with("/"))
         throw Error("needs /json/pointer=value", "--set", setting);
-    const std::string path = setting.substr(0, equals), text = setting.substr(equals + 1);
-    Json value = Json::parse(text, nullptr, false);
-    if (value.is_discarded()) value = text;
     try {
-        const Json::json_pointer pointer(path);
-        if (!document.contains(pointer.parent_pointer())) throw Error("no such place in the session", "--set", path);
-        document[pointer] = std::move(value);
-    } catch (const Json::exception&) {
-        throw Error("no such place in the session", "--set", path);
+        setInDocument(document, setting.substr(0, equals), setting.substr(equals + 1));
+    } catch (const Error&) {
+        throw Error("no such place in the session", "--set", setting.substr(0, equals));
     }
 }
 

@@ -1,57 +1,127 @@
 #include "app/command/command.h"
 #include "app/command/picture_options.h"
+#include "app/command/video.h"
 #include "volume/error.h"
 
+#include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <functional>
 #include <memory>
 
 namespace tessera::app {
 
-void addReplayCommand(CLI::App& app) {
-    struct Options {
-        PictureOptions picture;
-        std::string output;
-        bool animation = false;
+namespace {
+
+struct ReplayOptions {
+    PictureOptions picture;
+    std::string output, video;
+    bool animation = false;
+    double framesPerSecond = 0;
+};
+
+/// What is drawn: so many pictures, and the session of each.
+struct Reel {
+    std::size_t count = 0;
+    std::string name = "frame-%04zu.png";
+    double framesPerSecond = 1;
+    std::function<Session(std::size_t)> at;
+};
+
+/// The recorded steps, of which only those that show the pane are kept.
+Reel stepsReel(const Opened& opened) {
+    auto history = std::make_shared<History>(opened.document.history);
+    return {.count = history->steps().size() + 1,
+            .name = "step-%04zu.png",
+            .at = [history, source = opened.source](std::size_t i) {
+                Session session = history->seek(i);
+                std::vector<std::string> messages;
+                fitSession(session, source->info(), messages);
+                return session;
+            }};
+}
+
+/// The keyframes; where there are none, every stored time.
+Reel animationReel(const Opened& opened, double wantedRate) {
+    const Session& session = opened.document.session;
+    const Animation& animation = session.animation;
+    Reel reel;
+    if (animation.tracks.empty()) {
+        const std::vector<double> times = opened.source->info().times;
+        reel.count = times.size();
+        reel.framesPerSecond = wantedRate > 0 ? wantedRate : double(animation.speed);
+        reel.at = [session, times](std::size_t i) {
+            Session now = session;
+            now.time = times[i];
+            return now;
+        };
+        return reel;
+    }
+    const double rate = wantedRate > 0 ? wantedRate : double(animation.framesPerSecond);
+    // The last picture is the end, whatever the rate.
+    reel.count = std::max<std::size_t>(2, std::size_t(std::lround(animation.duration * rate)) + 1);
+    reel.framesPerSecond = rate;
+    reel.at = [session, count = reel.count](std::size_t i) {
+        Session now = session;
+        now.animation.position = now.animation.duration * double(i) / double(count - 1);
+        applyTracks(now, now.animation.position);
+        return now;
     };
-    auto options = std::make_shared<Options>();
+    return reel;
+}
+
+void run(const ReplayOptions& options) {
+    const Progress progress = terminalProgress("replay");
+    pictureRequest(options.picture, Session{});
+    if (!options.video.empty()) {
+        requireFfmpeg();
+        const auto folder = std::filesystem::absolute(options.video).parent_path();
+        if (!std::filesystem::is_directory(folder)) throw MachineError("no such folder", folder.string());
+    }
+    const Opened opened = openForPicture(options.picture, progress.part(0, 0.1));
+    std::error_code problem;
+    std::filesystem::create_directories(options.output, problem);
+    if (problem) throw MachineError(problem.message(), options.output);
+
+    const bool animation = options.animation || !options.video.empty();
+    const Reel reel = animation ? animationReel(opened, options.framesPerSecond) : stepsReel(opened);
+    const std::filesystem::path folder(options.output);
+    PictureMaker maker;
+    for (std::size_t i = 0; i < reel.count; ++i) {
+        progress.part(0.1, options.video.empty() ? 1 : 0.9)
+            .advance(double(i) / double(reel.count), std::to_string(i + 1));
+        SessionDocument document = opened.document;
+        document.session = reel.at(i);
+        document.history.reset(document.session);
+        const PictureRequest request = pictureRequest(options.picture, document.session);
+        if (!request.pane.empty() && !document.session.views.contains(request.pane)) continue; // not open yet
+        char name[32];
+        std::snprintf(name, sizeof name, reel.name.c_str(), i);
+        const std::string path = (folder / name).string();
+        const vis::Image image = maker.render(document, opened.source, request);
+        vis::writePng(path, image, {{vis::kSessionTextKey, printSession(document, path)}});
+    }
+    if (!options.video.empty())
+        writeVideo((folder / "frame-%04d.png").string(), reel.framesPerSecond, options.video, progress.part(0.9, 1));
+    progress.advance(1);
+}
+
+} // namespace
+
+void addReplayCommand(CLI::App& app) {
+    auto options = std::make_shared<ReplayOptions>();
     CLI::App* command =
         app.add_subcommand("replay", "Draw each step of a session's history, or its animation, into numbered PNGs");
     addPictureOptions(*command, options->picture);
-    command->add_flag("--animation", options->animation, "Every stored time instead of the recorded steps");
-    command->add_option("-o,--output", options->output, "Folder of the pictures; made if need be")->required();
-    command->callback([options] {
-        const Progress progress = terminalProgress("replay");
-        pictureRequest(options->picture, Session{});
-        Opened opened = openForPicture(options->picture, progress.part(0, 0.1));
-        std::error_code problem;
-        std::filesystem::create_directories(options->output, problem);
-        if (problem) throw MachineError(problem.message(), options->output);
-
-        SessionDocument document = opened.document;
-        const std::vector<double>& times = opened.source->info().times;
-        const std::size_t count = options->animation ? times.size() : document.history.steps().size() + 1;
-        PictureMaker maker;
-        for (std::size_t i = 0; i < count; ++i) {
-            progress.part(0.1, 1).advance(double(i) / double(count), std::to_string(i + 1));
-            if (options->animation) {
-                document.session.time = times[i];
-            } else {
-                document.session = opened.document.history.seek(i);
-                std::vector<std::string> messages;
-                fitSession(document.session, opened.source->info(), messages);
-            }
-            document.history.reset(document.session);
-            PictureRequest request = pictureRequest(options->picture, document.session);
-            char name[32];
-            std::snprintf(name, sizeof name, options->animation ? "frame-%04zu.png" : "step-%04zu.png", i);
-            const std::string path = (std::filesystem::path(options->output) / name).string();
-            if (!request.pane.empty() && !document.session.views.contains(request.pane)) continue; // not open yet
-            const vis::Image image = maker.render(document, opened.source, request);
-            vis::writePng(path, image, {{vis::kSessionTextKey, printSession(document, path)}});
-        }
-        progress.advance(1);
-    });
+    command->add_flag("--animation", options->animation,
+                      "The keyframes in place of the recorded steps; without keyframes every stored time");
+    command->add_option("--fps", options->framesPerSecond, "Pictures per second; else as the session says")
+        ->check(CLI::Range(0.1, 240.0));
+    command->add_option("--video", options->video, "Join the animation to a video too (needs ffmpeg)")
+        ->type_name("FILE.mp4");
+    command->add_option("-o,--output,--out", options->output, "Folder of the pictures; made if need be")->required();
+    command->callback([options] { run(*options); });
 }
 
 } // namespace tessera::app

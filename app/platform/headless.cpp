@@ -6,8 +6,11 @@
 
 namespace tessera::app {
 
-vis::Image renderPicture(const SessionDocument& document, std::shared_ptr<const volume::BrickSource> source,
-                         std::shared_ptr<vis::Renderer> renderer, const PictureRequest& request) {
+namespace {
+
+vis::Image renderAndInspect(const SessionDocument& document, std::shared_ptr<const volume::BrickSource> source,
+                            std::shared_ptr<vis::Renderer> renderer, const PictureRequest& request,
+                            const Inspect& inspect) {
     if (!request.pane.empty() && !document.session.views.contains(request.pane)) {
         std::string known;
         for (const std::string& pane : paneKeys(document.session)) known += (known.empty() ? "" : ", ") + pane;
@@ -21,7 +24,16 @@ vis::Image renderPicture(const SessionDocument& document, std::shared_ptr<const 
     opened.document.session.animation.playing = false;
     opened.source = std::move(source);
     workbench.install(std::move(opened));
-    return drawUntilDone(workbench, request.size, request.scale);
+    vis::Image image = drawUntilDone(workbench, request.size, request.scale);
+    if (inspect) inspect(workbench);
+    return image;
+}
+
+} // namespace
+
+vis::Image renderPicture(const SessionDocument& document, std::shared_ptr<const volume::BrickSource> source,
+                         std::shared_ptr<vis::Renderer> renderer, const PictureRequest& request) {
+    return renderAndInspect(document, std::move(source), std::move(renderer), request, {});
 }
 
 struct PictureMaker::Impl {
@@ -36,8 +48,8 @@ PictureMaker::PictureMaker(const vis::RendererOptions& options) : impl_(std::mak
 PictureMaker::~PictureMaker() = default;
 
 vis::Image PictureMaker::render(const SessionDocument& document, std::shared_ptr<const volume::BrickSource> source,
-                                const PictureRequest& request) {
-    return renderPicture(document, std::move(source), impl_->renderer, request);
+                                const PictureRequest& request, const Inspect& inspect) {
+    return renderAndInspect(document, std::move(source), impl_->renderer, request, inspect);
 }
 
 } // namespace tessera::app

@@ -9,6 +9,9 @@ namespace tessera::app {
 vis::Image renderPicture(const SessionDocument& document, std::shared_ptr<const volume::BrickSource> source,
                          std::shared_ptr<vis::Renderer> renderer, const PictureRequest& request);
 
+/// Looks at a workbench that has drawn its picture.
+using Inspect = std::function<void(const Workbench&)>;
+
 /// A GL context without a window together with a renderer: makes any number of pictures of one data set.
 class PictureMaker {
 public:
@@ -19,7 +22,7 @@ public:
     PictureMaker& operator=(const PictureMaker&) = delete;
 
     vis::Image render(const SessionDocument& document, std::shared_ptr<const volume::BrickSource> source,
-                      const PictureRequest& request);
+                      const PictureRequest& request, const Inspect& inspect = {});
 
 private:
     struct Impl;

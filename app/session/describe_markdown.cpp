@@ -90,6 +90,10 @@ std::string parameterReference() {
                                            "The scene in a cube; parameters projected on its faces.");
     out += markdownSection<TesseractView>("View of type `tesseract`",
                                           "The field in four dimensions, turned in six planes.");
+    out += markdownSection<CompareView>("View of type `compare`", "Variants of the 3D scene side by side.");
+    out += markdownSection<CompareVariant>("views.variants", "One variant.");
+    out += markdownSection<Track>("animation.tracks", "Keyframes of one parameter.");
+    out += markdownSection<Keyframe>("animation.tracks.keys", "One keyframe.");
     out += markdownSection<volume::DerivedParameter>("data.derived", "A parameter computed from others.");
     out += markdownSection<volume::ExpressionRecipe>("Recipe of type `expression`", "A formula.");
     out += markdownSection<volume::GradientRecipe>("Recipe of type `gradient`", "A vector.");

@@ -57,7 +57,15 @@ bool isNumber(const std::string& text) {
 
 /// What an animation changes by itself.
 void followPlayback(Session& base, const Session& now) {
-    if (now.animation.playing || base.animation.playing) base.time = now.time;
+    if (now.animation.playing || base.animation.playing) {
+        base.time = now.time;
+        for (const Track& track : base.animation.tracks) setNumbersAt(base, track.path, numbersAt(now, track.path));
+    }
+    // Looking at another place of the keyframes is no edit either.
+    if (now.animation.position != base.animation.position) {
+        base.animation.position = now.animation.position;
+        applyTracks(base, base.animation.position);
+    }
     base.animation.playing = now.animation.playing;
 }
 
@@ -106,9 +114,13 @@ bool History::observe(const Session& session, bool editing, double seconds, doub
     if (!pending_ || editing) return false;
     pending_ = false;
     // The document follows the base's playback state only here, where it is needed.
-    document_["time"] = app::toJson(base_.time);
-    document_["animation"] = app::toJson(base_.animation);
-    document_["data"] = app::toJson(base_.data);
+    if (base_.animation.tracks.empty()) {
+        document_["time"] = app::toJson(base_.time);
+        document_["animation"] = app::toJson(base_.animation);
+        document_["data"] = app::toJson(base_.data);
+    } else {
+        document_ = app::toJson(base_); // any parameter may have moved
+    }
     Json now = app::toJson(session);
     Json forward = Json::diff(document_, now);
     if (forward.empty()) { // differs only in what JSON does not tell apart

@@ -99,7 +99,7 @@ std::string paneTitle(const Session& session, const std::string& pane) {
     static constexpr std::string_view titles[] = {"Volume",       "Slices",      "Scatterplots", "Transfer function",
                                                   "Layers",       "Timeline",    "Data",         "History",
                                                   "Messages",     "Statistics",  "Histogram",    "Line profile",
-                                                  "Slice matrix", "Shadow cube", "Tesseract"};
+                                                  "Slice matrix", "Shadow cube", "Tesseract",    "Side by side"};
     static_assert(std::variant_size_v<ViewState> == std::size(titles));
     std::string title(titles[found->second.index()]);
     if (const auto dash = pane.rfind('-'); dash != std::string::npos) title += " " + pane.substr(dash + 1);

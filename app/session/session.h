@@ -1,7 +1,9 @@
 #pragma once
 
+#include "app/session/animation.h"
 #include "app/session/dock_tree.h"
 #include "app/session/view_state.h"
+#include "codec/pack.h"
 #include "vis/model/scene.h"
 #include "volume/dataset.h"
 #include "volume/derived.h"
@@ -41,6 +43,7 @@ struct DataRef {
     bool bcc = true;                               ///< show unpacked data on the BCC lattice at 70.7 % of the samples
     std::vector<volume::DerivedParameter> derived; ///< computed from the others
     volume::ImportOptions import;                  ///< what was stated about files that do not say it themselves
+    std::optional<codec::PackOptions> packed;      ///< unpacked data are shown as an archive packed so holds them
     bool operator==(const DataRef&) const = default;
     static void describe(auto& self, auto&& visit) {
         visit(self.files, FieldInfo{.key = "files", .unit = "", .doc = "Files that are shown together"});
@@ -50,26 +53,9 @@ struct DataRef {
         visit(self.derived,
               FieldInfo{.key = "derived", .unit = "", .doc = "Parameters computed from the others", .hidden = true});
         visit(self.import, FieldInfo{.key = "import", .unit = "", .doc = "What was stated about the files"});
-    }
-};
-
-enum class Loop { Once, Repeat, PingPong };
-inline constexpr std::string_view kLoopNames[] = {"once", "repeat", "pingPong"};
-
-struct Animation {
-    bool playing = false;
-    float speed = 4; ///< time steps per second
-    Loop loop = Loop::Repeat;
-    bool operator==(const Animation&) const = default;
-    static void describe(auto& self, auto&& visit) {
-        visit(self.playing, FieldInfo{.key = "playing", .unit = "", .doc = "Time is running"});
-        visit(self.speed, FieldInfo{.key = "speed",
-                                    .unit = "steps/s",
-                                    .doc = "Time steps shown per second",
-                                    .range = Range{0.1, 60},
-                                    .logScale = true});
-        visit(self.loop,
-              FieldInfo{.key = "loop", .unit = "", .doc = "What happens at the last time", .names = kLoopNames});
+        visit(self.packed, FieldInfo{.key = "packed",
+                                     .unit = "",
+                                     .doc = "Show data that are no archive as one packed so would hold them"});
     }
 };
 
@@ -134,7 +120,7 @@ struct Session {
         visit(self.tone, FieldInfo{.key = "tone", .unit = "", .doc = "Bright light brought into range"});
         visit(self.paper,
               FieldInfo{.key = "paper", .unit = "", .doc = "What pictures lie on; none: the theme's background"});
-        visit(self.animation, FieldInfo{.key = "animation", .unit = "", .doc = "Playing through time"});
+        visit(self.animation, FieldInfo{.key = "animation", .unit = "", .doc = "Playing through time or keyframes"});
         visit(self.appearance, FieldInfo{.key = "appearance", .unit = "", .doc = "Looks of the window"});
         visit(self.views, FieldInfo{.key = "views", .unit = "", .doc = "Open views by name"});
         visit(self.dock, FieldInfo{.key = "dock", .unit = "", .doc = "Arrangement of the panes", .hidden = true});

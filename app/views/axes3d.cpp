@@ -234,6 +234,21 @@ std::optional<vis::StandardView> drawTriad(ImDrawList& draw, ImVec2 center, floa
     return std::nullopt;
 }
 
+void drawCursor3d(ImDrawList& draw, const SpaceFrame& frame, glm::dvec3 cursor) {
+    const PlotColors colors = plotColors();
+    const auto middle = frame.pixel(cursor);
+    if (!middle) return;
+    for (int axis = 0; axis < 3; ++axis) {
+        glm::dvec3 a = cursor, b = cursor;
+        a[axis] = frame.bounds.lo[axis];
+        b[axis] = frame.bounds.hi[axis];
+        const auto from = frame.pixel(a), to = frame.pixel(b);
+        if (from && to) draw.AddLine(*from, *to, (colors.cursor & ~IM_COL32_A_MASK) | IM_COL32(0, 0, 0, 90));
+    }
+    draw.AddCircle(*middle, em() * 0.35f, colors.backdrop, 20, 3);
+    draw.AddCircle(*middle, em() * 0.35f, colors.cursor, 20, 1.5f);
+}
+
 std::string stretchText(glm::dvec3 stretch) {
     if (stretch == glm::dvec3(1)) return "";
     const auto digits = [](double v) { return formatNumber(v, v >= 10 ? 1 : 0); };

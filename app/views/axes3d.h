@@ -46,6 +46,9 @@ vis::StandardView viewAgainst(int axis, bool positive);
 std::optional<vis::StandardView> drawTriad(ImDrawList& draw, ImVec2 center, float radius, const vis::Camera& camera,
                                            const ImVec2* mouse, bool clicked);
 
+/// The linked cross-hair: lines through the box along the three axes, a ring where it stands.
+void drawCursor3d(ImDrawList& draw, const SpaceFrame& frame, glm::dvec3 cursor);
+
 /// "stretch 4 : 4 : 1", or "" when all are 1.
 std::string stretchText(glm::dvec3 stretch);
 

@@ -38,4 +38,38 @@ void advance(Playback& playback, Animation& animation, double& time, const std::
     time = times[static_cast<std::size_t>(index)];
 }
 
+namespace {
+
+/// Moves the position in the keyframes on; at the end it stops, starts again or turns round.
+void advanceKeyframes(Playback& playback, Animation& animation, double seconds) {
+    if (animation.loop != Loop::PingPong) playback.direction = 1;
+    animation.position += playback.direction * std::min(seconds, 0.5);
+    if (animation.position >= 0 && animation.position <= animation.duration) return;
+    switch (animation.loop) {
+    case Loop::Once:
+        animation.position = animation.duration;
+        animation.playing = false;
+        break;
+    case Loop::Repeat:
+        animation.position = std::fmod(std::max(animation.position, 0.0), animation.duration);
+        break;
+    case Loop::PingPong:
+        animation.position =
+            std::clamp(playback.direction > 0 ? 2 * animation.duration - animation.position : -animation.position, 0.0,
+                       animation.duration);
+        playback.direction = -playback.direction;
+        break;
+    }
+}
+
+} // namespace
+
+void playOn(Playback& playback, Session& session, const std::vector<double>& times, double seconds) {
+    Animation& animation = session.animation;
+    if (!animation.playing) return;
+    if (animation.tracks.empty()) return advance(playback, animation, session.time, times, seconds);
+    advanceKeyframes(playback, animation, seconds);
+    applyTracks(session, animation.position);
+}
+
 } // namespace tessera::app

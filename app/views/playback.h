@@ -17,4 +17,8 @@ struct Playback {
 /// it stops (playing becomes false), starts again or turns round, as animation.loop says.
 void advance(Playback& playback, Animation& animation, double& time, const std::vector<double>& times, double seconds);
 
+/// Plays keyframes where the session has some: moves the position on by `seconds` and everything keyed with it; else
+/// the times of the data, as above.
+void playOn(Playback& playback, Session& session, const std::vector<double>& times, double seconds);
+
 } // namespace tessera::app

@@ -124,8 +124,9 @@ void drawTimelineView(ViewContext& context, const std::string& pane, TimelineVie
     const volume::DatasetInfo& info = context.source->info();
     Session& session = context.session;
     const bool many = info.times.size() > 1;
-    if (many && session.animation.playing && !context.headless) {
-        advance(cache.playback, session.animation, session.time, info.times, ImGui::GetIO().DeltaTime);
+    const bool keyed = !session.animation.tracks.empty();
+    if ((many || keyed) && session.animation.playing && !context.headless) {
+        playOn(cache.playback, session, info.times, double(ImGui::GetIO().DeltaTime));
         context.busy = true;
     }
     const int index = info.nearestTime(session.time);

@@ -60,5 +60,6 @@ void drawProfileView(ViewContext& context, const std::string& pane, ProfileView&
 void drawSliceMatrixView(ViewContext& context, const std::string& pane, SliceMatrixView& view);
 void drawShadowCubeView(ViewContext& context, const std::string& pane, ShadowCubeView& view);
 void drawTesseractView(ViewContext& context, const std::string& pane, TesseractView& view);
+void drawCompareView(ViewContext& context, const std::string& pane, CompareView& view);
 
 } // namespace tessera::app

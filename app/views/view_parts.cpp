@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 namespace tessera::app {
 
@@ -172,6 +173,33 @@ LegendEntry legendOf(const Session& session, const volume::DatasetInfo& info, in
     entry.data = info.channelRange(c);
     entry.range = vis::effectiveRange(entry.function, entry.data);
     return entry;
+}
+
+std::vector<LegendEntry> sceneLegends(const Session& session, const volume::DatasetInfo& info) {
+    std::vector<LegendEntry> entries;
+    std::set<std::string> seen;
+    for (const vis::Layer& layer : session.layers) {
+        if (!layer.visible) continue;
+        const std::string& name =
+            std::visit([](const auto& technique) -> const std::string& { return technique.channel; }, layer.technique);
+        const auto channel = info.findChannel(name);
+        if (!channel) continue;
+        LegendEntry entry = legendOf(session, info, *channel);
+        if (const auto* iso = std::get_if<vis::IsoLayer>(&layer.technique)) {
+            entry.swatch = true;
+            entry.color = {iso->color.r, iso->color.g, iso->color.b};
+            entry.value = iso->value;
+            entries.push_back(entry);
+            const auto color = info.findChannel(iso->colorBy);
+            if (iso->method == vis::SurfaceMethod::Polygons && color && !iso->colorBy.empty()) {
+                entries.back().color = {0.5, 0.5, 0.5};
+                if (seen.insert(iso->colorBy).second) entries.push_back(legendOf(session, info, *color));
+            }
+        } else if (seen.insert(name).second) {
+            entries.push_back(entry);
+        }
+    }
+    return entries;
 }
 
 vis::Scene themedScene(const Session& session) {

@@ -66,6 +66,9 @@ vis::TransferFunction& transferOf(Session& session, const std::string& channel);
 /// Legend of a channel as it is drawn now.
 LegendEntry legendOf(const Session& session, const volume::DatasetInfo& info, int channel);
 
+/// Legends of the visible layers, each channel once.
+std::vector<LegendEntry> sceneLegends(const Session& session, const volume::DatasetInfo& info);
+
 /// The scene of the session with the theme's colours.
 vis::Scene themedScene(const Session& session);
 

@@ -47,8 +47,8 @@ volume::DatasetInfo cellInfo() {
 
 SessionDocument edited() {
     SessionDocument document;
-    document.session =
-        defaultSession(cellInfo(), {.files = {}, .model = "fuel-cell", .settings = {}, .derived = {}, .import = {}});
+    document.session = defaultSession(
+        cellInfo(), {.files = {}, .model = "fuel-cell", .settings = {}, .derived = {}, .import = {}, .packed = {}});
     document.history.reset(document.session);
     document.session.camera.distance = 3;
     document.history.observe(document.session, false, 0);
@@ -226,6 +226,7 @@ TEST(HistoryTest, UndoAllAndRedoAllOfRandomEdits) {
     std::mt19937 random(5);
     Session session = defaultSession(cellInfo(), {});
     session.animation.playing = false; // what plays is no edit
+    session.animation.position = 0;
     History history;
     history.reset(session);
     std::vector<Session> states{session};
@@ -233,6 +234,7 @@ TEST(HistoryTest, UndoAllAndRedoAllOfRandomEdits) {
         Session next = i % 7 == 0 ? randomValue<Session>(random) : session;
         next.schema = kSessionSchema;
         next.animation.playing = false;
+        next.animation.position = 0;
         if (i % 7 != 0) {
             next.camera.distance = 1 + float(i) / 10;
             if (i % 3 == 0) next.layers.push_back(randomValue<vis::Layer>(random));

@@ -21,7 +21,8 @@ std::vector<double> play(Animation animation, double time, int steps) {
 }
 
 TEST(Playback, RepeatsTurnsRoundOrStops) {
-    Animation animation{.playing = true, .speed = 4, .loop = Loop::Repeat};
+    Animation animation;
+    animation.playing = true;
     EXPECT_THAT(play(animation, 0.1, 5), testing::ElementsAre(0.2, 0.5, 0, 0.1, 0.2));
     animation.loop = Loop::PingPong;
     EXPECT_THAT(play(animation, 0.1, 7), testing::ElementsAre(0.2, 0.5, 0.2, 0.1, 0, 0.1, 0.2));
@@ -31,7 +32,9 @@ TEST(Playback, RepeatsTurnsRoundOrStops) {
 
 TEST(Playback, KeepsItsSpeedWhateverTheFrameRate) {
     for (const double frame : {0.01, 0.03, 0.11}) {
-        Animation animation{.playing = true, .speed = 10, .loop = Loop::Repeat};
+        Animation animation;
+        animation.playing = true;
+        animation.speed = 10;
         Playback playback;
         std::vector<double> times;
         for (int i = 0; i < 1000; ++i) times.push_back(i);
@@ -45,7 +48,7 @@ TEST(Playback, KeepsItsSpeedWhateverTheFrameRate) {
 }
 
 TEST(Playback, StaysPutWhenPausedOrStatic) {
-    Animation animation{.playing = false};
+    Animation animation;
     Playback playback;
     double time = 0.1;
     advance(playback, animation, time, kTimes, 10);

@@ -3,15 +3,17 @@
 #include "volume/error.h"
 #include "volume/synthetic/fuel_cell.h"
 #include "volume/synthetic/marschner_lobb.h"
+#include "volume/synthetic/planted.h"
 
 namespace tessera::volume {
 
 std::vector<std::string> modelNames() {
-    return {"fuel-cell", "marschner-lobb"};
+    return {"fuel-cell", "planted", "marschner-lobb"};
 }
 
 Dataset makeModel(const std::string& name, const std::map<std::string, double>& settings, const Progress& progress) {
     if (name == "fuel-cell") return makeFuelCell(settings, progress);
+    if (name == "planted") return makePlanted(settings, progress);
     if (name == "marschner-lobb") {
         progress.advance(1, name);
         return makeMarschnerLobb(settings);

@@ -1,0 +1,111 @@
+#include "app/session/compare.h"
+#include "app/command/command.h"
+#include "app/command/picture_options.h"
+#include "app/views/compare_view.h"
+#include "volume/atomic_file.h"
+#include "volume/error.h"
+
+#include <filesystem>
+#include <memory>
+
+namespace tessera::app {
+
+namespace {
+
+/// "NAME: /path=value; /path=value", the name and all but one change may be left out.
+CompareVariant parseVariant(const std::string& text) {
+    CompareVariant variant;
+    std::string rest = text;
+    if (!rest.starts_with('/')) {
+        const auto colon = rest.find(':');
+        variant.name = rest.substr(0, colon);
+        rest = colon == std::string::npos ? std::string() : rest.substr(colon + 1);
+    }
+    while (!rest.empty()) {
+        const auto end = std::min(rest.find(';'), rest.size());
+        std::string change = rest.substr(0, end);
+        rest = rest.substr(std::min(end + 1, rest.size()));
+        change.erase(0, change.find_first_not_of(' '));
+        if (change.empty()) continue;
+        const auto equals = change.find('=');
+        if (equals == std::string::npos || !change.starts_with('/'))
+            throw CLI::ValidationError("--variant", "needs NAME: /json/pointer=value; ..., not \"" + text + "\"");
+        variant.changes[change.substr(0, equals)] = change.substr(equals + 1);
+    }
+    return variant;
+}
+
+/// The pane that compares: the one asked for, or the first; one is opened where there is none.
+std::string comparePane(Session& session, const std::string& wanted) {
+    for (const auto& [pane, view] : session.views)
+        if (std::holds_alternative<CompareView>(view) && (wanted.empty() || pane == wanted)) return pane;
+    if (!wanted.empty()) throw Error("no side-by-side view of that name", {}, wanted);
+    return addView(session, CompareView{});
+}
+
+} // namespace
+
+void addCompareCommand(CLI::App& app) {
+    struct Options {
+        PictureOptions picture;
+        std::string output, csv;
+        std::vector<std::string> variants;
+        int reference = -1;
+    };
+    auto options = std::make_shared<Options>();
+    CLI::App* command = app.add_subcommand(
+        "compare", "Draw a session's 3D scene with other settings side by side: one figure with its table under it");
+    addPictureOptions(*command, options->picture);
+    command
+        ->add_option("--variant", options->variants,
+                     "What to compare, in place of the session's own list, e.g. \"box: /render/filter=tetrahedral\"")
+        ->type_name("[NAME:] /POINTER=VALUE; ...")
+        ->expected(1)
+        ->take_all();
+    command->add_option("--reference", options->reference, "Variant the others are measured against, from 0")
+        ->check(CLI::Range(0, 15));
+    command->add_option("-o,--output", options->output, "PNG to write; it carries the session")->required();
+    command->add_option("--csv", options->csv, "The table as CSV");
+    command->callback([options] {
+        const Progress progress = terminalProgress("compare");
+        pictureRequest(options->picture, Session{});
+        for (const std::string& path : {options->output, options->csv}) {
+            const auto folder = std::filesystem::absolute(path).parent_path();
+            if (!path.empty() && !std::filesystem::is_directory(folder))
+                throw MachineError("no such folder", folder.string());
+        }
+        Opened opened = openForPicture(options->picture, progress.part(0, 0.5));
+        Session& session = opened.document.session;
+        const std::string pane = comparePane(session, options->picture.view);
+        auto& view = std::get<CompareView>(session.views[pane]);
+        if (!options->variants.empty()) {
+            view.variants.clear();
+            for (const std::string& text : options->variants) view.variants.push_back(parseVariant(text));
+        }
+        if (options->reference >= 0) view.reference = options->reference;
+        const auto count = static_cast<int>(shownVariants(view).size());
+        if (view.reference >= count)
+            throw Error("there are " + std::to_string(count) + " variants, counted from 0", "--reference",
+                        std::to_string(view.reference));
+        for (const CompareVariant& variant : shownVariants(view)) variantSession(session, variant); // throws early
+        opened.document.history.reset(session);
+        PictureRequest request = pictureRequest(options->picture, session);
+        request.pane = pane;
+        PictureMaker maker;
+        std::vector<CompareRow> rows;
+        const vis::Image image = maker.render(opened.document, opened.source, request, [&](const Workbench& workbench) {
+            rows = drawnComparison(workbench.cache(pane));
+        });
+        for (const CompareRow& row : rows)
+            if (!row.failure.empty()) throw Error(row.failure, {}, row.name);
+        vis::writePng(options->output, image, {{vis::kSessionTextKey, printSession(opened.document, options->output)}});
+        if (!options->csv.empty()) {
+            AtomicFile csv(options->csv);
+            csv.write(compareCsv(rows));
+            csv.commit();
+        }
+        progress.advance(1);
+    });
+}
+
+} // namespace tessera::app

@@ -1,0 +1,182 @@
+#include "app/session/animation.h"
+
+#include "app/session/parameter_path.h"
+#include "app/session/session.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/gtc/quaternion.hpp>
+
+namespace tessera::app {
+
+namespace {
+
+template <class T>
+concept Numeric = std::is_arithmetic_v<T> || std::is_enum_v<T>;
+
+struct Read {
+    std::vector<double>& out;
+    template <class T> void operator()(const T& value, const FieldInfo&) const {
+        if constexpr (Numeric<T>) {
+            out.push_back(double(value));
+        } else if constexpr (detail::GlmLength<T>::value > 0) {
+            for (int i = 0; i < detail::GlmLength<T>::value; ++i) out.push_back(double(value[i]));
+        } else if constexpr (detail::IsQuat<T>::value) {
+            out.insert(out.end(), {double(value.w), double(value.x), double(value.y), double(value.z)});
+        } else if constexpr (std::is_same_v<T, Range>) {
+            out.insert(out.end(), {value.lo, value.hi});
+        }
+    }
+};
+
+double within(double number, const FieldInfo& info) {
+    return info.range ? std::clamp(number, info.range->lo, info.range->hi) : number;
+}
+
+struct Write {
+    std::span<const double> in;
+    bool& done;
+    template <class T> void operator()(T& value, const FieldInfo& info) const {
+        if (!std::all_of(in.begin(), in.end(), [](double number) { return std::isfinite(number); })) return;
+        if constexpr (std::is_same_v<T, bool>) {
+            if (in.size() != 1) return;
+            value = in[0] >= 0.5;
+        } else if constexpr (std::is_enum_v<T>) {
+            if (in.size() != 1 || info.names.empty()) return;
+            value = static_cast<T>(std::clamp(std::lround(in[0]), 0l, long(info.names.size()) - 1));
+        } else if constexpr (std::is_integral_v<T>) {
+            if (in.size() != 1) return;
+            value = static_cast<T>(std::lround(std::clamp(within(in[0], info), -2e9, 2e9)));
+        } else if constexpr (std::is_floating_point_v<T>) {
+            if (in.size() != 1) return;
+            value = static_cast<T>(within(in[0], info));
+        } else if constexpr (detail::GlmLength<T>::value > 0) {
+            if (in.size() != std::size_t(detail::GlmLength<T>::value)) return;
+            for (std::size_t i = 0; i < in.size(); ++i)
+                value[static_cast<typename T::length_type>(i)] =
+                    static_cast<typename T::value_type>(within(in[i], info));
+        } else if constexpr (detail::IsQuat<T>::value) {
+            using V = typename T::value_type;
+            if (in.size() != 4) return;
+            value = T(static_cast<V>(in[0]), static_cast<V>(in[1]), static_cast<V>(in[2]), static_cast<V>(in[3]));
+        } else if constexpr (std::is_same_v<T, Range>) {
+            if (in.size() != 2) return;
+            value = {in[0], in[1]};
+        } else {
+            return;
+        }
+        done = true;
+    }
+};
+
+struct Kind {
+    Between& between;
+    template <class T> void operator()(const T&, const FieldInfo&) const {
+        if constexpr (detail::IsQuat<T>::value)
+            between = Between::Arc;
+        else if constexpr (std::is_floating_point_v<T> || std::is_same_v<T, Range>)
+            between = Between::Line;
+        else if constexpr (std::is_integral_v<T> && !std::is_same_v<T, bool>)
+            between = Between::Line;
+        else if constexpr (detail::GlmLength<T>::value > 0)
+            between = Between::Line;
+    }
+};
+
+} // namespace
+
+double eased(Easing easing, double t) {
+    switch (easing) {
+    case Easing::Step:
+        return t < 1 ? 0 : 1;
+    case Easing::Linear:
+        return t;
+    case Easing::In:
+        return t * t * t;
+    case Easing::Out:
+        return 1 - (1 - t) * (1 - t) * (1 - t);
+    case Easing::InOut:
+        return t < 0.5 ? 4 * t * t * t : 1 - 4 * (1 - t) * (1 - t) * (1 - t);
+    }
+    return t;
+}
+
+std::vector<double> valueAt(const Track& track, double at, Between between) {
+    if (track.keys.empty()) return {};
+    const auto next =
+        std::find_if(track.keys.begin(), track.keys.end(), [&](const Keyframe& key) { return key.at > at; });
+    if (next == track.keys.begin()) return next->value;
+    const Keyframe& from = *(next - 1);
+    if (next == track.keys.end() || between == Between::Nothing || from.value.size() != next->value.size())
+        return from.value;
+    const double share = eased(from.easing, (at - from.at) / (next->at - from.at));
+    if (between == Between::Arc && from.value.size() == 4) {
+        const auto rotation = [](const std::vector<double>& v) {
+            return glm::normalize(glm::dquat(v[0], v[1], v[2], v[3]));
+        };
+        const glm::dquat turned = glm::slerp(rotation(from.value), rotation(next->value), share);
+        return {turned.w, turned.x, turned.y, turned.z};
+    }
+    std::vector<double> out(from.value.size());
+    for (std::size_t i = 0; i < out.size(); ++i) out[i] = from.value[i] + (next->value[i] - from.value[i]) * share;
+    return out;
+}
+
+std::vector<double> numbersAt(const Session& session, const std::string& path) {
+    std::vector<double> numbers;
+    visitParameter(session, path, Read{numbers});
+    return numbers;
+}
+
+bool setNumbersAt(Session& session, const std::string& path, std::span<const double> numbers) {
+    bool done = false;
+    visitParameter(session, path, Write{numbers, done});
+    return done;
+}
+
+Between betweenAt(const Session& session, const std::string& path) {
+    Between between = Between::Nothing;
+    visitParameter(session, path, Kind{between});
+    return between;
+}
+
+void applyTracks(Session& session, double at) {
+    const std::vector<Track> tracks = session.animation.tracks;
+    for (const Track& track : tracks)
+        if (!track.path.starts_with("/animation"))
+            setNumbersAt(session, track.path, valueAt(track, at, betweenAt(session, track.path)));
+}
+
+bool setKey(Session& session, const std::string& path) {
+    const std::vector<double> value = numbersAt(session, path);
+    if (value.empty() || path.starts_with("/animation")) return false;
+    std::vector<Track>& tracks = session.animation.tracks;
+    auto track = std::find_if(tracks.begin(), tracks.end(), [&](const Track& each) { return each.path == path; });
+    if (track == tracks.end()) track = tracks.insert(tracks.end(), Track{path, {}});
+    const double at = session.animation.position;
+    auto key =
+        std::find_if(track->keys.begin(), track->keys.end(), [&](const Keyframe& each) { return each.at >= at; });
+    if (key != track->keys.end() && key->at == at)
+        key->value = value;
+    else
+        track->keys.insert(key, Keyframe{at, value});
+    return true;
+}
+
+void removeKey(Animation& animation, std::size_t track, std::size_t key) {
+    std::vector<Keyframe>& keys = animation.tracks[track].keys;
+    keys.erase(keys.begin() + std::ptrdiff_t(key));
+    if (keys.empty()) animation.tracks.erase(animation.tracks.begin() + std::ptrdiff_t(track));
+}
+
+std::size_t moveKey(Animation& animation, std::size_t track, std::size_t key, double at) {
+    std::vector<Keyframe>& keys = animation.tracks[track].keys;
+    Keyframe moved = keys[key];
+    moved.at = std::clamp(at, 0.0, animation.duration);
+    keys.erase(keys.begin() + std::ptrdiff_t(key));
+    const auto before =
+        std::find_if(keys.begin(), keys.end(), [&](const Keyframe& each) { return each.at >= moved.at; });
+    return std::size_t(keys.insert(before, moved) - keys.begin());
+}
+
+} // namespace tessera::app

@@ -1,0 +1,112 @@
+#pragma once
+
+#include "volume/describe.h"
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+/// What plays: the times of the data, or keyframes of any described parameter of a session.
+namespace tessera::app {
+
+struct Session;
+
+enum class Loop { Once, Repeat, PingPong };
+inline constexpr std::string_view kLoopNames[] = {"once", "repeat", "pingPong"};
+
+/// How the way from one key to the next is gone.
+enum class Easing { Step, Linear, In, Out, InOut };
+inline constexpr std::string_view kEasingNames[] = {"step", "linear", "in", "out", "inOut"};
+
+struct Keyframe {
+    double at = 0;             ///< s of the animation
+    std::vector<double> value; ///< a number per component; a choice is its place in the list of names
+    Easing easing = Easing::InOut;
+    bool operator==(const Keyframe&) const = default;
+    static void describe(auto& self, auto&& visit) {
+        visit(
+            self.at,
+            FieldInfo{.key = "at", .unit = "s", .doc = "When the parameter has this value", .range = Range{0, 36000}});
+        visit(self.value, FieldInfo{.key = "value", .unit = "", .doc = "The value, one number per component"});
+        visit(self.easing,
+              FieldInfo{
+                  .key = "easing", .unit = "", .doc = "How the way to the next key is gone", .names = kEasingNames});
+    }
+};
+
+/// The keys of one parameter, in order of time.
+struct Track {
+    std::string path; ///< JSON pointer into the session, e.g. "/camera/distance"
+    std::vector<Keyframe> keys;
+    bool operator==(const Track&) const = default;
+    static void describe(auto& self, auto&& visit) {
+        visit(self.path, FieldInfo{.key = "path", .unit = "", .doc = "Place of the parameter in the session"});
+        visit(self.keys, FieldInfo{.key = "keys", .unit = "", .doc = "Values at times of the animation"});
+    }
+};
+
+struct Animation {
+    bool playing = false;
+    float speed = 4; ///< time steps per second
+    Loop loop = Loop::Repeat;
+    double position = 0; ///< s, of the keyframes
+    double duration = 5; ///< s
+    float framesPerSecond = 25;
+    std::vector<Track> tracks; ///< without any, the times of the data play
+    bool operator==(const Animation&) const = default;
+    static void describe(auto& self, auto&& visit) {
+        visit(self.playing, FieldInfo{.key = "playing", .unit = "", .doc = "Time is running"});
+        visit(self.speed, FieldInfo{.key = "speed",
+                                    .unit = "steps/s",
+                                    .doc = "Time steps shown per second, where there are no keyframes",
+                                    .range = Range{0.1, 60},
+                                    .logScale = true});
+        visit(self.loop,
+              FieldInfo{.key = "loop", .unit = "", .doc = "What happens at the last time", .names = kLoopNames});
+        visit(
+            self.position,
+            FieldInfo{.key = "position", .unit = "s", .doc = "Place in the keyframes shown", .range = Range{0, 36000}});
+        visit(self.duration, FieldInfo{.key = "duration",
+                                       .unit = "s",
+                                       .doc = "Length of the keyframe animation",
+                                       .range = Range{0.1, 36000},
+                                       .logScale = true});
+        visit(self.framesPerSecond, FieldInfo{.key = "framesPerSecond",
+                                              .unit = "1/s",
+                                              .doc = "Pictures per second of a recorded animation",
+                                              .range = Range{1, 120}});
+        visit(self.tracks, FieldInfo{.key = "tracks", .unit = "", .doc = "Keyframes by parameter", .hidden = true});
+    }
+};
+
+/// Share of the way gone after the share `t` of the time, both in [0, 1]; cubic polynomials (R. Penner, Motion,
+/// Tweening, and Easing, 2002): in t^3, out 1 - (1 - t)^3, inOut half of either.
+double eased(Easing easing, double t);
+
+/// What lies between two values of a parameter.
+enum class Between { Nothing, Line, Arc };
+
+/// A track's value: before its first key that of the first, after its last that of the last; empty without keys.
+/// `Arc`: the four numbers (w, x, y, z) of a rotation turn along the shortest great circle.
+std::vector<double> valueAt(const Track& track, double at, Between between);
+
+/// The numbers of the parameter at a path: one per component, 0 or 1 for a switch, the place of a choice. Empty for
+/// what has none (texts, lists) and where there is no such parameter.
+std::vector<double> numbersAt(const Session& session, const std::string& path);
+/// Sets them, rounded for whole numbers and kept within the parameter's range; false where that is not possible.
+bool setNumbersAt(Session& session, const std::string& path, std::span<const double> numbers);
+Between betweenAt(const Session& session, const std::string& path);
+
+/// Puts the session where its tracks are at `at` seconds. Tracks of parameters that it does not have are left alone.
+void applyTracks(Session& session, double at);
+
+/// Sets the key of a parameter at the animation's position to its present value; adds the track on first use. An
+/// existing key keeps its easing. False where the parameter cannot be keyed.
+bool setKey(Session& session, const std::string& path);
+/// Takes a key away, and its track with the last one.
+void removeKey(Animation& animation, std::size_t track, std::size_t key);
+/// Moves a key in time, within [0, duration] and kept in order; returns its new index.
+std::size_t moveKey(Animation& animation, std::size_t track, std::size_t key, double at);
+
+} // namespace tessera::app

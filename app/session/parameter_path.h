@@ -1,0 +1,83 @@
+#pragma once
+
+#include "app/session/describe_json.h"
+
+#include <string>
+#include <string_view>
+
+/// One described parameter of a struct, found by its JSON pointer.
+namespace tessera::app {
+
+namespace detail {
+
+/// Splits the first key off a pointer ("/a/b" -> "a", "/b"), escapes undone.
+std::string firstKey(std::string_view pointer, std::string_view& rest);
+/// A key as an index below `size`, else `size`.
+std::size_t indexOf(const std::string& key, std::size_t size);
+
+template <class T, class Visit> struct MemberAt {
+    const std::string& key;
+    std::string_view rest;
+    Visit& visit;
+    bool& found;
+    template <class M> void operator()(M& member, const FieldInfo& info) const;
+};
+
+template <class T, class Visit>
+bool visitPath(T& value, const FieldInfo& info, std::string_view pointer, Visit& visit) {
+    using V = std::remove_const_t<T>;
+    if (pointer.empty()) {
+        visit(value, info);
+        return true;
+    }
+    if constexpr (Described<V>) {
+        std::string_view rest;
+        const std::string key = firstKey(pointer, rest);
+        bool found = false;
+        V::describe(value, MemberAt<V, Visit>{key, rest, visit, found});
+        return found;
+    } else if constexpr (IsVariant<V>::value) {
+        return std::visit([&](auto& alternative) { return visitPath(alternative, info, pointer, visit); }, value);
+    } else if constexpr (IsVector<V>::value) {
+        std::string_view rest;
+        const std::size_t index = indexOf(firstKey(pointer, rest), value.size());
+        return index < value.size() && visitPath(value[index], info, rest, visit);
+    } else if constexpr (IsMap<V>::value) {
+        std::string_view rest;
+        const auto at = value.find(firstKey(pointer, rest));
+        return at != value.end() && visitPath(at->second, info, rest, visit);
+    } else if constexpr (IsOptional<V>::value) {
+        return value && visitPath(*value, info, pointer, visit);
+    } else {
+        return false; // components of vectors are no parameters of their own
+    }
+}
+
+template <class T, class Visit>
+template <class M>
+void MemberAt<T, Visit>::operator()(M& member, const FieldInfo& info) const {
+    if (!found && info.key == key) found = visitPath(member, info, rest, visit);
+}
+
+} // namespace detail
+
+/// Calls visit(member, FieldInfo) for the member that a JSON pointer names; false where there is none. Lists and maps
+/// are entered by index and key, variants without a word.
+template <class T, class Visit> bool visitParameter(T& value, std::string_view pointer, Visit&& visit) {
+    return detail::visitPath(value, FieldInfo{.key = "", .unit = "", .doc = ""}, pointer, visit);
+}
+
+struct Session;
+
+/// The paths of all parameters of a session that a reader may set one by one: numbers, switches, choices, texts; not
+/// what belongs to the window (views, dock, appearance) or to playing.
+std::vector<std::string> parameterPaths(const Session& session);
+
+/// "/layers/0/technique/density" -> "Layers 1: technique: density", with the name of the layer where it has one.
+std::string pathTitle(const Session& session, const std::string& path);
+
+/// Sets "/json/pointer" of a document to a value given as JSON, or as text where it is none. Throws Error where the
+/// parent does not exist.
+void setInDocument(Json& document, const std::string& path, const std::string& text);
+
+} // namespace tessera::app

@@ -1,0 +1,252 @@
+#include "app/views/compare_feed.h"
+
+#include "app/open.h"
+#include "codec/archive.h"
+#include "vis/model/transfer_function.h"
+#include "volume/error.h"
+
+#include <algorithm>
+#include <filesystem>
+
+namespace tessera::app {
+
+namespace {
+
+/// Files named without their place lie beside those of the session.
+DataRef located(DataRef data, const DataRef& session) {
+    std::string folder;
+    if (!session.files.empty()) folder = std::filesystem::path(session.files[0].absolutePath).parent_path().string();
+    if (!data.files.empty()) {
+        ResolvedData found = resolveData(data, folder);
+        if (!found.missing.empty()) throw Error("data file not found", found.missing.front().wanted.path);
+        data = found.data;
+    }
+    return data;
+}
+
+/// Equal sessions but for the panes, which no variant shows.
+bool sameScene(const Session& a, const Session& b) {
+    return a.camera == b.camera && a.time == b.time && a.cursor == b.cursor && a.layers == b.layers &&
+           a.transfer == b.transfer && a.selection == b.selection && a.render == b.render && a.lighting == b.lighting &&
+           a.clips == b.clips && a.tone == b.tone && a.lenses == b.lenses && a.paper == b.paper &&
+           a.stretch == b.stretch && a.data == b.data && a.appearance == b.appearance;
+}
+
+} // namespace
+
+std::shared_ptr<CompareData> CompareFeed::dataFor(ViewContext& context, const std::string& pane, const DataRef& data) {
+    for (const auto& known : data_)
+        if (known->data == data) {
+            known->used = true;
+            return known;
+        }
+    auto made = data_.emplace_back(std::make_shared<CompareData>());
+    made->data = data;
+    made->used = true;
+    const auto open = [data, session = context.session.data](std::string& failure, const Progress& progress) {
+        std::shared_ptr<const volume::BrickSource> source;
+        try {
+            std::vector<std::string> messages;
+            source = openSource(located(data, session), messages, progress);
+        } catch (const Error& error) {
+            failure = error.what();
+        }
+        return source;
+    };
+    if (context.headless) {
+        made->source = open(made->failure, {});
+        return made;
+    }
+    context.jobs.start(pane + ":data" + toJson(data).dump(), "Data to compare",
+                       [weak = std::weak_ptr(made), open](const Progress& progress) -> Jobs::Finish {
+                           std::string failure;
+                           auto source = open(failure, progress);
+                           return [weak, source, failure] {
+                               const auto to = weak.lock();
+                               if (!to) return;
+                               to->source = source;
+                               to->failure = failure;
+                           };
+                       });
+    return made;
+}
+
+void CompareFeed::drawCell(ViewContext& context, const std::string& pane, std::size_t index, glm::ivec2 size,
+                           bool moving) {
+    CompareCell& cell = *cells_[index];
+    cell.drawn = false;
+    if (!cell.failure.empty()) return;
+    if (!(cell.session.data == context.session.data)) {
+        const auto data = dataFor(context, pane, cell.session.data);
+        if (data != cell.data) cell.target.reset();
+        cell.data = data;
+        if (!data->failure.empty()) {
+            cell.failure = data->failure;
+            return;
+        }
+        if (!data->source) {
+            context.busy = true;
+            return;
+        }
+        if (!data->renderer) {
+            data->renderer = std::make_unique<vis::Renderer>();
+            data->renderer->setSource(data->source);
+        }
+    } else if (cell.data) {
+        cell.data.reset();
+        cell.target.reset();
+    }
+    ViewContext own{.session = cell.session,
+                    .source = cell.data ? cell.data->source : context.source,
+                    .renderer = cell.data ? *cell.data->renderer : context.renderer,
+                    .jobs = context.jobs,
+                    .caches = context.caches,
+                    .iconFont = context.iconFont,
+                    .scale = context.scale,
+                    .headless = context.headless,
+                    .interacting = context.interacting};
+    if (!cell.target) cell.target = own.renderer.makeTarget();
+    vis::FrameRequest request;
+    request.size = size;
+    request.moving = moving && !context.headless;
+    request.wait = context.headless;
+    const vis::Scene scene = cell.feed.get(own, pane + "/" + std::to_string(index), request.moving);
+    request.budgetMs = double(scene.render.limits.frameTime) / double(std::max<std::size_t>(cells_.size(), 1));
+    cell.status = own.renderer.render(*cell.target, scene, request);
+    cell.drawn = true;
+    if (!cell.status.complete || own.busy) context.busy = true;
+    if (!cell.status.complete || own.busy || request.moving) return;
+    const volume::BrickSource* source = own.source.get();
+    if (cell.image && cell.image->size == size && cell.imageSource == source && cell.imageOf == scene) return;
+    auto image = std::make_shared<vis::Image>();
+    image->rgba = own.renderer.readPixels(*cell.target, image->size);
+    cell.image = image;
+    cell.imageOf = scene;
+    cell.imageSource = source;
+}
+
+void CompareFeed::measure(ViewContext& context, const std::string& pane, std::size_t index, std::size_t reference) {
+    CompareCell& cell = *cells_[index];
+    const CompareCell& against = *cells_[reference];
+    if (index == reference || !cell.finished() || !against.finished()) return;
+    if (cell.measuredImage == cell.image && cell.measuredAgainst == against.image) return;
+    if (cell.image->size != against.image->size) return;
+    struct Result {
+        vis::ImageDifference of;
+        std::vector<std::uint8_t> map;
+    };
+    const auto compute = [image = cell.image, wanted = against.image] {
+        return Result{vis::difference(*image, *wanted), vis::differenceMap(*image, *wanted)};
+    };
+    const auto take = [image = cell.image, wanted = against.image](CompareCell& to, Result result) {
+        to.measured = result.of;
+        to.differences = std::move(result.map);
+        to.measuredImage = image;
+        to.measuredAgainst = wanted;
+    };
+    if (context.headless) {
+        take(cell, compute());
+        return;
+    }
+    context.busy = true;
+    const std::string key = pane + ":measure" + std::to_string(index);
+    if (context.jobs.running(key)) return;
+    context.jobs.start(
+        key, "Error of a variant",
+        [compute, take, weak = std::weak_ptr(cells_[index])](const Progress&) -> Jobs::Finish {
+            return [take, weak, result = compute()] {
+                if (const auto to = weak.lock()) take(*to, result);
+            };
+        },
+        true);
+}
+
+void CompareFeed::draw(ViewContext& context, const std::string& pane, const std::vector<CompareVariant>& variants,
+                       std::size_t reference, glm::ivec2 size, bool moving) {
+    for (const auto& data : data_) data->used = false;
+    cells_.resize(variants.size());
+    for (std::size_t i = 0; i < variants.size(); ++i) {
+        if (!cells_[i]) cells_[i] = std::make_shared<CompareCell>();
+        CompareCell& cell = *cells_[i];
+        if (!(cell.variant == variants[i]) || !sameScene(cell.of, context.session)) {
+            cell.variant = variants[i];
+            cell.of = context.session;
+            cell.failure.clear();
+            try {
+                Session bare = context.session;
+                bare.views.clear();
+                bare.dock = {};
+                cell.session = variantSession(bare, cell.variant);
+            } catch (const Error& error) {
+                cell.failure = error.what();
+            }
+        }
+        drawCell(context, pane, i, size, moving);
+    }
+    std::erase_if(data_, [](const auto& data) { return !data->used; });
+    for (std::size_t i = 0; i < cells_.size(); ++i) measure(context, pane, i, reference);
+}
+
+double CompareFeed::showDifferences(double top, std::size_t reference) {
+    if (top <= 0)
+        for (const auto& cell : cells_)
+            if (cell->measuredImage && cell->measuredImage == cell->image) top = std::max(top, cell->measured.maximum);
+    if (top <= 0) top = 1;
+    static const vis::TransferFunction scale = [] {
+        vis::TransferFunction made;
+        made.colormap = "inferno";
+        return made;
+    }();
+    for (std::size_t i = 0; i < cells_.size(); ++i) {
+        CompareCell& cell = *cells_[i];
+        if (i == reference || !cell.measuredImage || cell.measuredImage != cell.image) continue;
+        if (cell.shownImage == cell.measuredImage && cell.shownAgainst == cell.measuredAgainst && cell.shownTop == top)
+            continue;
+        std::vector<std::uint8_t> rgba;
+        rgba.reserve(cell.differences.size() * 4);
+        std::array<std::array<std::uint8_t, 3>, 256> colors;
+        for (std::size_t value = 0; value < 256; ++value) {
+            const glm::dvec4 color = vis::evaluate(scale, {0, 1}, std::min(1.0, double(value) / top));
+            for (int c = 0; c < 3; ++c) colors[value][std::size_t(c)] = std::uint8_t(color[c] * 255 + 0.5);
+        }
+        for (const std::uint8_t value : cell.differences) {
+            rgba.insert(rgba.end(), colors[value].begin(), colors[value].end());
+            rgba.push_back(255);
+        }
+        cell.differencePicture.upload(cell.measuredImage->size, rgba);
+        cell.shownImage = cell.measuredImage;
+        cell.shownAgainst = cell.measuredAgainst;
+        cell.shownTop = top;
+    }
+    return top;
+}
+
+std::vector<CompareRow> CompareFeed::rows(const ViewContext& context, std::size_t reference) const {
+    std::vector<CompareRow> out;
+    for (std::size_t i = 0; i < cells_.size(); ++i) {
+        const CompareCell& cell = *cells_[i];
+        CompareRow row;
+        row.name = variantName(context.session, cell.variant);
+        row.changes = changesText(context.session, cell.variant);
+        row.failure = cell.failure;
+        row.reference = i == reference;
+        row.milliseconds = cell.status.milliseconds;
+        row.samples = double(cell.status.samples);
+        row.bytes = double(cell.status.bytes);
+        if (const auto* archive = dynamic_cast<const codec::Archive*>(cell.source(context)))
+            row.storedBytes = double(archive->fileBytes());
+        const bool known = cell.measuredImage && cell.measuredImage == cell.image && reference < cells_.size() &&
+                           cell.measuredAgainst == cells_[reference]->image;
+        row.measured = known && i != reference && cell.failure.empty();
+        if (row.measured) {
+            row.maximum = cell.measured.maximum;
+            row.rmse = cell.measured.rmse;
+            row.psnr = cell.measured.psnr;
+            row.ssim = cell.measured.ssim;
+        }
+        out.push_back(row);
+    }
+    return out;
+}
+
+} // namespace tessera::app

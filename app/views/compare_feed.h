@@ -1,0 +1,74 @@
+#pragma once
+
+#include "app/session/compare.h"
+#include "app/views/scene_feed.h"
+#include "vis/gl/plot_texture.h"
+#include "vis/image_metrics.h"
+
+#include <list>
+#include <memory>
+#include <optional>
+
+/// Pictures of the variants of a comparison and how far each is from the reference. Variants of the same data are
+/// drawn by the window's renderer; other data, opened in the background, get one of their own.
+namespace tessera::app {
+
+/// Data of variants that are not those of the session.
+struct CompareData {
+    DataRef data;
+    std::shared_ptr<const volume::BrickSource> source; ///< null while it opens
+    std::unique_ptr<vis::Renderer> renderer;
+    std::string failure;
+    bool used = false;
+};
+
+struct CompareCell {
+    CompareVariant variant;
+    Session of, session;               ///< the session it was made from, and with the changes
+    std::string failure;               ///< why there is no picture
+    std::shared_ptr<CompareData> data; ///< null: the session's
+    SceneFeed feed;
+    vis::ViewTargetPtr target;
+    vis::FrameStatus status;
+    bool drawn = false;
+
+    // What was read back of a finished picture, and what came of it.
+    vis::Scene imageOf;
+    const volume::BrickSource* imageSource = nullptr;
+    std::shared_ptr<const vis::Image> image;
+    std::shared_ptr<const vis::Image> measuredImage, measuredAgainst;
+    vis::ImageDifference measured;
+    std::vector<std::uint8_t> differences; ///< differenceMap
+    vis::PlotTexture differencePicture;
+    std::shared_ptr<const vis::Image> shownImage, shownAgainst; ///< of differencePicture
+    double shownTop = -1;
+
+    const volume::BrickSource* source(const ViewContext& context) const {
+        return data ? data->source.get() : context.source.get();
+    }
+    bool finished() const { return drawn && status.complete && image; }
+};
+
+class CompareFeed {
+public:
+    /// Draws every variant at one size; index 0 is the first. Sets context.busy while something is not final.
+    void draw(ViewContext& context, const std::string& pane, const std::vector<CompareVariant>& variants,
+              std::size_t reference, glm::ivec2 size, bool moving);
+    std::vector<std::shared_ptr<CompareCell>>& cells() { return cells_; }
+    const std::vector<std::shared_ptr<CompareCell>>& cells() const { return cells_; }
+    /// Fills the pictures of the differences, brightest at `top` of 255, or at the largest where `top` is 0; returns
+    /// the one used.
+    double showDifferences(double top, std::size_t reference);
+    /// The table, as far as it is known.
+    std::vector<CompareRow> rows(const ViewContext& context, std::size_t reference) const;
+
+private:
+    std::shared_ptr<CompareData> dataFor(ViewContext& context, const std::string& pane, const DataRef& data);
+    void drawCell(ViewContext& context, const std::string& pane, std::size_t index, glm::ivec2 size, bool moving);
+    void measure(ViewContext& context, const std::string& pane, std::size_t index, std::size_t reference);
+
+    std::list<std::shared_ptr<CompareData>> data_; ///< before the cells: their targets go first
+    std::vector<std::shared_ptr<CompareCell>> cells_;
+};
+
+} // namespace tessera::app

@@ -1,0 +1,121 @@
+#include "app/platform/headless.h"
+#include "app/session/compare.h"
+#include "app/views/compare_view.h"
+#include "volume/error.h"
+#include "volume/memory_source.h"
+#include "volume/synthetic/models.h"
+
+#include <cmath>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace tessera::app {
+namespace {
+
+struct Compared {
+    SessionDocument document;
+    std::shared_ptr<const volume::BrickSource> source;
+    CompareView view;
+    std::vector<CompareRow> rows;
+
+    Compared() {
+        DataRef data;
+        data.model = "fuel-cell";
+        data.settings = {{"nx", 7}, {"ny", 9}, {"nz", 21}, {"times", 3}};
+        std::vector<std::string> messages;
+        source = openSource(data, messages);
+        document.session = defaultSession(source->info(), data);
+        document.session.render.samples = 1;
+        document.session.layers = {{"T", true, vis::VolumeLayer{.channel = "T", .shaded = false}}};
+    }
+    vis::Image draw(glm::ivec2 size = {480, 360}) {
+        static PictureMaker maker;
+        document.session.views["compare"] = view;
+        return maker.render(document, source, {.pane = "compare", .size = size, .scale = 1},
+                            [&](const Workbench& workbench) { rows = drawnComparison(workbench.cache("compare")); });
+    }
+};
+
+TEST(CompareView, MeasuresVariantsAgainstTheReference) {
+    Compared compared;
+    compared.view.variants = {{"as it is", {}}, {"again", {}}, {"coarse steps", {{"/render/step", "3"}}}};
+    compared.draw();
+    ASSERT_EQ(compared.rows.size(), 3u);
+    EXPECT_TRUE(compared.rows[0].reference);
+    EXPECT_FALSE(compared.rows[0].measured);
+    EXPECT_TRUE(compared.rows[1].measured);
+    EXPECT_EQ(compared.rows[1].maximum, 0);
+    EXPECT_TRUE(std::isinf(compared.rows[1].psnr));
+    EXPECT_EQ(compared.rows[1].ssim, 1);
+    EXPECT_GT(compared.rows[2].maximum, 0);
+    EXPECT_LT(compared.rows[2].ssim, 1);
+    EXPECT_NEAR(compared.rows[2].psnr, 20 * std::log10(255 / compared.rows[2].rmse), 1e-9);
+    for (const CompareRow& row : compared.rows) {
+        EXPECT_GT(row.milliseconds, 0);
+        EXPECT_EQ(row.samples, double(compared.source->grid().lattice.count()));
+        EXPECT_GT(row.bytes, row.samples);
+    }
+    compared.view.reference = 2;
+    compared.draw();
+    EXPECT_TRUE(compared.rows[2].reference);
+    EXPECT_EQ(compared.rows[0].rmse, compared.rows[1].rmse);
+    EXPECT_GT(compared.rows[0].rmse, 0);
+}
+
+TEST(CompareView, OtherDataAreOpenedForTheirVariant) {
+    Compared compared;
+    compared.view.variants = {{"BCC", {}},
+                              {"CC", {{"/data/bcc", "false"}}},
+                              {"packed", {{"/data/packed", "{\"lossless\": true}"}}},
+                              {"lossy", {{"/data/packed", "{\"lossless\": false, \"maxError\": 0.05}"}}},
+                              {"no such model", {{"/data/model", "nothing"}}}};
+    compared.draw({640, 480});
+    ASSERT_EQ(compared.rows.size(), 5u);
+    EXPECT_GT(compared.rows[1].samples, compared.rows[0].samples);
+    EXPECT_GT(compared.rows[1].rmse, 0);
+    // The default model in memory and from a lossless archive of the same lattice: the same picture.
+    EXPECT_EQ(compared.rows[2].samples, compared.rows[0].samples);
+    EXPECT_LE(compared.rows[2].maximum, 1);
+    EXPECT_GT(compared.rows[2].storedBytes, compared.rows[3].storedBytes);
+    EXPECT_GT(compared.rows[3].rmse, compared.rows[2].rmse);
+    EXPECT_NE(compared.rows[4].failure.find("nothing"), std::string::npos) << compared.rows[4].failure;
+    EXPECT_FALSE(compared.rows[4].measured);
+}
+
+/// Mean colour of a part of a picture, in shares of its size.
+glm::dvec3 mean(const vis::Image& image, double x0, double y0, double x1, double y1) {
+    glm::dvec3 sum(0);
+    int count = 0;
+    for (int y = int(y0 * image.size.y); y < int(y1 * image.size.y); ++y)
+        for (int x = int(x0 * image.size.x); x < int(x1 * image.size.x); ++x, ++count)
+            for (int c = 0; c < 3; ++c)
+                sum[c] +=
+                    image.rgba[4 * (std::size_t(y) * std::size_t(image.size.x) + std::size_t(x)) + std::size_t(c)];
+    return sum / double(count);
+}
+
+TEST(CompareView, SwipeShowsEitherSideOfTheLine) {
+    Compared compared;
+    compared.view.showTable = false;
+    compared.view.mode = CompareMode::Swipe;
+    compared.view.variants = {{"dark", {}}, {"light", {{"/appearance/theme", "light"}}}};
+    compared.view.swipe = 0.5f;
+    const vis::Image half = compared.draw();
+    EXPECT_LT(mean(half, 0.02, 0.6, 0.06, 0.9).g, 60);
+    EXPECT_GT(mean(half, 0.94, 0.3, 0.98, 0.6).g, 150);
+    compared.view.swipe = 0.0f;
+    EXPECT_GT(mean(compared.draw(), 0.04, 0.6, 0.08, 0.9).g, 150);
+}
+
+TEST(CompareView, DifferencesAreBrightWhereThereAreSome) {
+    Compared compared;
+    compared.view.showTable = false;
+    compared.view.mode = CompareMode::Difference;
+    compared.view.variants = {{"a", {}}, {"b", {}}, {"c", {{"/appearance/theme", "light"}}}};
+    const vis::Image image = compared.draw({900, 300});
+    EXPECT_LT(mean(image, 0.36, 0.5, 0.4, 0.9).r, 10) << "equal pictures differ nowhere";
+    EXPECT_GT(mean(image, 0.69, 0.5, 0.72, 0.9).r, 150);
+}
+
+} // namespace
+} // namespace tessera::app

@@ -1,0 +1,101 @@
+#include "app/session/compare.h"
+
+#include "app/session/history.h"
+#include "volume/error.h"
+
+#include <gtest/gtest.h>
+#include <limits>
+
+namespace tessera::app {
+namespace {
+
+Session withLayer() {
+    Session session;
+    session.layers.push_back({"O2", true, vis::VolumeLayer{.channel = "O2"}});
+    return session;
+}
+
+TEST(Compare, AVariantIsTheSessionWithItsChanges) {
+    const Session session = withLayer();
+    CompareVariant variant{"",
+                           {{"/render/filter", "tetrahedral"}, {"/layers/0/technique/density", "3"}, {"/time", "0.5"}}};
+    const Session changed = variantSession(session, variant);
+    EXPECT_EQ(changed.render.filter, vis::Filter::Tetrahedral);
+    EXPECT_EQ(std::get<vis::VolumeLayer>(changed.layers[0].technique).density, 3);
+    EXPECT_EQ(changed.time, 0.5);
+    Session back = changed;
+    back.render = session.render;
+    back.layers = session.layers;
+    back.time = session.time;
+    EXPECT_EQ(back, session) << "nothing else differs";
+    EXPECT_EQ(variantSession(session, {}), session);
+}
+
+TEST(Compare, AChangeThatDoesNotFitSaysWhere) {
+    const Session session = withLayer();
+    const auto reason = [&](const std::string& path, const std::string& value) -> std::string {
+        try {
+            variantSession(session, {"", {{path, value}}});
+        } catch (const Error& error) {
+            return error.what();
+        }
+        return {};
+    };
+    EXPECT_NE(reason("/render/filter", "sharp").find("/render/filter"), std::string::npos);
+    EXPECT_NE(reason("/render/step", "1e9").find("/render/step"), std::string::npos);
+    EXPECT_NE(reason("/render/nothing", "1").find("/render/nothing"), std::string::npos);
+    EXPECT_NE(reason("/layers/4/visible", "true").find("/layers/4"), std::string::npos);
+    EXPECT_NE(reason("no pointer", "1"), "");
+}
+
+TEST(Compare, ACaptionSaysWhatDiffers) {
+    const Session session = withLayer();
+    EXPECT_EQ(changesText(session, {}), "as it is");
+    EXPECT_EQ(changesText(session, {"", {{"/render/filter", "average"}}}), "filter average");
+    EXPECT_EQ(changesText(session, {"", {{"/data/bcc", "false"}}}), "lattice CC");
+    EXPECT_EQ(changesText(session, {"", {{"/layers/0/technique/density", "2"}}}), "O2: density 2");
+    EXPECT_EQ(variantName(session, {"mine", {{"/render/filter", "average"}}}), "mine");
+}
+
+TEST(Compare, EditsOfAVariantAreItsChanges) {
+    const Session session = withLayer();
+    Session changed = session;
+    CompareVariant variant;
+    changed.render.stepVoxels = 0.25f;
+    recordChange(variant, session, changed, "/render/step");
+    EXPECT_EQ(variantSession(session, variant), changed);
+    recordChange(variant, session, session, "/render/step");
+    EXPECT_TRUE(variant.changes.empty());
+}
+
+TEST(Compare, GridsUseTheRoom) {
+    EXPECT_EQ(gridFor(4, 1600, 1000).columns, 2);
+    EXPECT_EQ(gridFor(4, 1600, 300).columns, 4);
+    EXPECT_EQ(gridFor(3, 400, 1000).rows, 3);
+    EXPECT_EQ(gridFor(1, 10, 10).columns, 1);
+}
+
+TEST(Compare, TheTableIsCsv) {
+    CompareRow row;
+    row.name = "a, \"b\"";
+    row.changes = "x";
+    row.measured = true;
+    row.psnr = std::numeric_limits<double>::infinity();
+    row.rmse = 1.5;
+    const std::string csv = compareCsv({row});
+    EXPECT_NE(csv.find("\"a, \"\"b\"\"\",x,no,"), std::string::npos) << csv;
+    EXPECT_NE(csv.find(",1.5,inf,"), std::string::npos) << csv;
+}
+
+TEST(Compare, SurvivesTheSessionFile) {
+    Session session = withLayer();
+    CompareView view;
+    view.mode = CompareMode::Swipe;
+    view.variants = {{"one", {}}, {"two", {{"/render/filter", "average"}}}};
+    view.swipe = 0.3f;
+    session.views["compare"] = view;
+    EXPECT_EQ(sessionFromJson(toJson(session), {}), session);
+}
+
+} // namespace
+} // namespace tessera::app
