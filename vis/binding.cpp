@@ -1,5 +1,7 @@
 #include "vis/renderer_impl.h"
 
+#include "volume/time_pair.h"
+
 #include <algorithm>
 
 namespace tessera::vis {
@@ -8,28 +10,117 @@ namespace {
 
 constexpr std::size_t kSmallTexels = std::size_t(1) << 20; ///< channels up to here need no coarse picture first
 constexpr double kAfterTheRest = 1e6;
-constexpr double kMovingDetail = 2; ///< coarser bricks will do while something moves
+constexpr std::size_t kMostSamplers = 32, kOtherSamplers = 9; ///< of a program; those that are no channels
+constexpr double kMovingDetail = 2;                           ///< coarser bricks will do while something moves
+
+/// Adds what a channel holds to the numbers of a frame.
+void addCost(FrameStatus& status, const volume::BrickGrid& grid, const ChannelTexture* channel) {
+    if (!channel) return;
+    const auto count = [](glm::ivec3 size) { return std::size_t(size.x) * std::size_t(size.y) * std::size_t(size.z); };
+    if (!channel->bricks) {
+        status.samples += count(grid.levelSamples(channel->level));
+        status.bytes += channel->bytes;
+        return;
+    }
+    const std::size_t bricks = std::size_t(channel->bricks->resident());
+    const std::size_t perTexel = grid.lattice.kind == volume::LatticeKind::BCC ? 2 : 1;
+    status.samples += bricks * count(glm::ivec3(grid.brickSize)) * perTexel;
+    status.bytes += bricks * (channel->atlas->bytes() / std::max<std::size_t>(channel->atlas->capacity(), 1));
+}
 
 } // namespace
 
-/// Which bricks the picture needs, by what is known of the plan's channels at a time; true when that is something else
-/// than before.
+namespace {
+
+/// The frames that a plan's fields show at a time: one each or, where one lies between two stored times, two each: the
+/// earlier of all, then the later of all.
+struct Frames {
+    std::vector<ChannelKey> keys;
+    std::vector<double> weights; ///< of the later frame, per field; empty: all are on stored times
+};
+
+Frames framesAt(const RayPlan& plan, const Scene& scene, const volume::DatasetInfo& info, double time, bool bricked) {
+    const bool prefiltered = scene.render.filter == Filter::AverageQuasi;
+    const std::size_t count = plan.later > 0 ? std::size_t(plan.later) : plan.fields.size();
+    const std::size_t samplers = 2 * count * (bricked ? 2 : 1) + kOtherSamplers;
+    Frames frames;
+    std::vector<volume::TimePair> pairs;
+    bool between = false;
+    for (std::size_t i = 0; i < count; ++i) {
+        volume::TimePair pair = volume::timesAround(info.times, time + plan.fields[i].timeShift);
+        if (plan.fields[i].categorical || samplers > kMostSamplers) pair = {pair.nearest(), pair.nearest(), 0};
+        between = between || pair.between();
+        pairs.push_back(pair);
+    }
+    const auto add = [&](std::size_t i, int index) {
+        const BoundField& field = plan.fields[i];
+        frames.keys.push_back({field.channel, index, prefiltered && !field.categorical && !field.raw});
+    };
+    for (std::size_t i = 0; i < count; ++i) add(i, pairs[i].earlier);
+    for (std::size_t i = 0; between && i < count; ++i) {
+        add(i, pairs[i].later);
+        frames.weights.push_back(pairs[i].weight);
+    }
+    return frames;
+}
+
+/// Gives the plan a field for each frame.
+void setFrames(RayPlan& plan, const Frames& frames) {
+    if (plan.later > 0) plan.fields.resize(std::size_t(plan.later));
+    plan.later = int(frames.weights.size());
+    for (std::size_t i = 0; i < frames.weights.size(); ++i) plan.fields[i].laterWeight = frames.weights[i];
+    const std::vector<BoundField> once = plan.fields;
+    if (plan.later > 0) plan.fields.insert(plan.fields.end(), once.begin(), once.end());
+}
+
+/// What two frames of a channel need together.
+std::shared_ptr<const BrickDemand> either(const std::shared_ptr<const BrickDemand>& a,
+                                          const std::shared_ptr<const BrickDemand>& b) {
+    if (!a || !b || *a == *b) return a ? b ? a : nullptr : nullptr;
+    auto both = std::make_shared<BrickDemand>(*a);
+    for (std::size_t i = 0; i < both->level.size(); ++i) {
+        both->level[i] = std::min(a->level[i], b->level[i]);
+        const bool here = a->level[i] != BrickDemand::kNotWanted, there = b->level[i] != BrickDemand::kNotWanted;
+        both->priority[i] = here && there ? std::min(a->priority[i], b->priority[i])
+                            : here        ? a->priority[i]
+                                          : b->priority[i];
+    }
+    return both;
+}
+
+/// Ranges that hold every mixture of two frames, in texels of the earlier one; empty where their grids differ.
+BlockRanges mixedBlocks(const BoundField& earlier, const BoundField& later) {
+    const BlockRanges &a = *earlier.blocks, &b = *later.blocks;
+    BlockRanges out = a;
+    if (a.count != b.count || a.edge != b.edge || a.level != b.level) {
+        out.min.clear(), out.max.clear();
+        return out;
+    }
+    const double scale = later.encoding.scale / earlier.encoding.scale;
+    const double offset = (later.encoding.offset - earlier.encoding.offset) / earlier.encoding.scale;
+    for (std::size_t i = 0; i < out.min.size(); ++i) {
+        if (!(b.min[i] <= b.max[i])) continue;
+        const float lo = float(double(b.min[i]) * scale + offset), hi = float(double(b.max[i]) * scale + offset);
+        const bool absent = !(a.min[i] <= a.max[i]);
+        out.min[i] = absent ? lo : std::min(a.min[i], lo);
+        out.max[i] = absent ? hi : std::max(a.max[i], hi);
+    }
+    return out;
+}
+
+} // namespace
+
+/// Which bricks the picture needs, by what is known of the plan's channels at its frames; true when that is something
+/// else than before.
 bool Renderer::Impl::demandBricks(ViewTarget& target, const Scene& scene, const FrameRequest& request,
                                   const RayPlan& plan, const std::vector<ChannelKey>& keys) {
     if (!residency.bricked()) {
         target.demands.assign(keys.size(), nullptr);
         return false;
     }
-    RayPlan known = plan;
-    std::vector<const BlockRanges*> ranges(keys.size(), nullptr);
     std::vector<ChannelKey> state;
-    for (std::size_t i = 0; i < keys.size(); ++i) {
-        const ChannelTexture* channel = residency.known(keys[i]);
-        if (!channel || !channel->bricks) continue;
-        ranges[i] = &channel->bricks->brickRanges();
-        known.fields[i].encoding = channel->encoding;
-        state.push_back(keys[i]);
-    }
+    for (const ChannelKey& key : keys)
+        if (const ChannelTexture* channel = residency.known(key); channel && channel->bricks) state.push_back(key);
     DemandSettings settings{request.size, scene.render.detail * (request.moving ? kMovingDetail : 1)};
     if (target.demandsFor && *target.demandsFor == scene && target.demandSettings == settings &&
         target.demandsKnown == state && target.demands.size() == keys.size())
@@ -37,8 +128,27 @@ bool Renderer::Impl::demandBricks(ViewTarget& target, const Scene& scene, const 
     target.demandsFor = scene;
     target.demandSettings = settings;
     target.demandsKnown = state;
-    std::vector<std::shared_ptr<const BrickDemand>> demands =
-        brickDemands(std::move(known), scene, source->info(), source->grid(), ranges, settings);
+    const std::size_t count = plan.later > 0 ? std::size_t(plan.later) : plan.fields.size();
+    const auto demandsOf = [&](std::size_t first) {
+        RayPlan known = plan;
+        known.later = 0;
+        known.fields.resize(count);
+        std::vector<const BlockRanges*> ranges(count, nullptr);
+        for (std::size_t i = 0; i < count; ++i) {
+            const ChannelTexture* channel = residency.known(keys[first + i]);
+            if (!channel || !channel->bricks) continue;
+            ranges[i] = &channel->bricks->brickRanges();
+            known.fields[i].encoding = channel->encoding;
+        }
+        return brickDemands(std::move(known), scene, source->info(), source->grid(), ranges, settings);
+    };
+    std::vector<std::shared_ptr<const BrickDemand>> demands = demandsOf(0);
+    if (plan.later > 0) {
+        const std::vector<std::shared_ptr<const BrickDemand>> later = demandsOf(count);
+        for (std::size_t i = 0; i < count; ++i) demands[i] = either(demands[i], later[i]);
+        const std::vector<std::shared_ptr<const BrickDemand>> once = demands;
+        demands.insert(demands.end(), once.begin(), once.end());
+    }
     const bool changed = !std::equal(demands.begin(), demands.end(), target.demands.begin(), target.demands.end(),
                                      [](const auto& a, const auto& b) { return a == b || (a && b && *a == *b); });
     if (changed) target.demands = std::move(demands);
@@ -49,60 +159,77 @@ bool Renderer::Impl::demandBricks(ViewTarget& target, const Scene& scene, const 
 bool Renderer::Impl::bind(ViewTarget& target, const Scene& scene, const FrameRequest& request, RayPlan& plan,
                           FrameStatus& status) {
     const volume::DatasetInfo& info = source->info();
-    const bool prefiltered = scene.render.filter == Filter::AverageQuasi;
-    const int wantedTime = info.nearestTime(scene.time);
-    const auto keysAt = [&](int time) {
-        std::vector<ChannelKey> keys;
-        for (const BoundField& field : plan.fields) {
-            const bool shifted = field.timeShift != 0 && !info.times.empty();
-            const int own = shifted ? info.nearestTime(info.times[std::size_t(time)] + field.timeShift) : time;
-            keys.push_back({field.channel, own, prefiltered && !field.categorical && !field.raw});
-        }
-        return keys;
-    };
-    const std::vector<ChannelKey> wanted = keysAt(wantedTime);
+    const auto at = [&](double time) { return framesAt(plan, scene, info, time, residency.bricked()); };
+    const Frames wanted = at(scene.time);
+    setFrames(plan, wanted);
     const glm::ivec3 texels = source->grid().lattice.texels();
     const bool large = std::size_t(texels.x) * std::size_t(texels.y) * std::size_t(texels.z) > kSmallTexels;
-    demandBricks(target, scene, request, plan, wanted);
+    demandBricks(target, scene, request, plan, wanted.keys);
     do {
-        for (std::size_t i = 0; i < wanted.size(); ++i)
-            residency.want(wanted[i], double(i), large && !request.wait, target.demands[i]);
+        for (std::size_t i = 0; i < wanted.keys.size(); ++i)
+            residency.want(wanted.keys[i], double(i), large && !request.wait, target.demands[i]);
         if (request.wait) residency.finish();
-    } while (request.wait && demandBricks(target, scene, request, plan, wanted));
+    } while (request.wait && demandBricks(target, scene, request, plan, wanted.keys));
 
     // All channels of one picture show one time: the wanted one if each has something there, else the former one.
-    const auto here = [&](const std::vector<ChannelKey>& keys) {
-        return std::all_of(keys.begin(), keys.end(), [&](const ChannelKey& key) {
+    const auto here = [&](const Frames& frames) {
+        return std::all_of(frames.keys.begin(), frames.keys.end(), [&](const ChannelKey& key) {
             return residency.find(key) || residency.settled(key); // or it will never come
         });
     };
-    int time = wantedTime;
-    if (!here(wanted) && target.lastTime >= 0 && target.lastTime < int(info.times.size()) &&
-        here(keysAt(target.lastTime))) {
-        time = target.lastTime;
-        for (const ChannelKey& key : keysAt(time)) residency.keep(key);
+    double time = scene.time;
+    Frames shown = wanted;
+    if (!here(wanted) && target.lastTime) {
+        const Frames former = at(*target.lastTime);
+        if (here(former)) {
+            time = *target.lastTime;
+            shown = former;
+            setFrames(plan, shown);
+            for (const ChannelKey& key : shown.keys) residency.keep(key);
+        }
     }
-    const std::vector<ChannelKey> shown = keysAt(time);
     bool any = false, settled = true;
-    for (std::size_t i = 0; i < plan.fields.size(); ++i) {
-        settled = settled && residency.settled(wanted[i]);
-        status.bricksMissing += residency.missing(wanted[i]);
-        any = bindField(plan.fields[i], shown[i]) || any;
+    for (const ChannelKey& key : wanted.keys) {
+        settled = settled && residency.settled(key);
+        status.bricksMissing += residency.missing(key);
     }
+    for (std::size_t i = 0; i < plan.fields.size(); ++i) {
+        any = bindField(plan.fields[i], shown.keys[i]) || any;
+        addCost(status, source->grid(), residency.find(shown.keys[i]));
+    }
+    bindBetween(target, plan, shown.keys);
     // Part of the channels would want a program of its own, for a moment.
     if (!here(shown)) any = false;
-    if (any) target.lastTime = time;
+    if (any) {
+        target.lastTime = time;
+        target.shown = shown.keys;
+    }
     // While the time moves on, the frame after this one comes next.
-    if (wantedTime != target.wantedTime) target.timeStep = target.wantedTime < 0 ? 0 : wantedTime - target.wantedTime;
-    target.wantedTime = wantedTime;
-    const int next = wantedTime + target.timeStep;
+    const volume::TimePair now = volume::timesAround(info.times, scene.time);
+    if (now.earlier != target.wantedTime) target.timeStep = target.wantedTime < 0 ? 0 : now.earlier - target.wantedTime;
+    target.wantedTime = now.earlier;
+    const int next = (target.timeStep > 0 ? now.later : now.earlier) + target.timeStep;
     if (settled && !request.wait && target.timeStep != 0 && next >= 0 && next < int(info.times.size())) {
-        const std::vector<ChannelKey> coming = keysAt(next);
-        for (std::size_t i = 0; i < coming.size(); ++i)
-            residency.want(coming[i], kAfterTheRest + double(i), false, target.demands[i]);
+        const Frames coming = at(info.times[std::size_t(next)]);
+        for (std::size_t i = 0; i < coming.keys.size(); ++i)
+            residency.want(coming.keys[i], kAfterTheRest + double(i), false, target.demands[i % target.demands.size()]);
     }
     status.complete = settled;
     return any;
+}
+
+/// Block ranges of fields between two frames.
+void Renderer::Impl::bindBetween(ViewTarget& target, RayPlan& plan, const std::vector<ChannelKey>& keys) {
+    if (plan.later == 0) return;
+    if (target.betweenKeys != keys || target.betweenRevision != residency.revision()) {
+        target.betweenKeys = keys;
+        target.betweenRevision = residency.revision();
+        target.betweenBlocks.clear();
+        for (int i = 0; i < plan.later; ++i)
+            target.betweenBlocks.push_back(
+                mixedBlocks(plan.fields[std::size_t(i)], plan.fields[std::size_t(i + plan.later)]));
+    }
+    for (std::size_t i = 0; i < std::size_t(plan.later); ++i) plan.fields[i].blocks = &target.betweenBlocks[i];
 }
 
 bool Renderer::Impl::bindField(BoundField& field, const ChannelKey& key) {

@@ -35,11 +35,11 @@ ProgramRecipe Renderer::Impl::prepare(ViewTarget& target, const Scene& scene, co
     // Tables depend on these alone; a camera that moves keeps them.
     if (target.tablesFor && target.tablesRevision == residency.revision() && target.tablesFor->layers == scene.layers &&
         target.tablesFor->transfer == scene.transfer && target.tablesFor->render.filter == scene.render.filter &&
-        target.tablesTime == target.lastTime)
+        target.tablesKeys == target.shown)
         return rayRecipe(plan, scene, source->grid(), target.skip && !lensesBend(scene));
     target.tablesFor = scene;
     target.tablesRevision = residency.revision();
-    target.tablesTime = target.lastTime;
+    target.tablesKeys = target.shown;
 
     const std::optional<BlockDistances> blocks = blockDistances(plan, scene, source->info());
     target.skip = blocks && blocks->occupied < kSkipOccupancy;
@@ -234,8 +234,8 @@ bool Renderer::Impl::bindLight(ViewTarget& target, const Scene& scene, const Fra
         setRayUniforms(program, plan, scene, source->info(), source->grid(), target.size, 1);
     };
     target.light.update(scene, worldFrame(source->info().bounds, scene.stretch),
-                        {residency.revision(), target.lastTime}, *answer.program, setUniforms, vertices.name(),
-                        request.budgetMs / 3, request.wait);
+                        {residency.revision(), target.lastTime.value_or(0)}, *answer.program, setUniforms,
+                        vertices.name(), request.budgetMs / 3, request.wait);
     if (target.lightVersion != target.light.version()) {
         target.lightVersion = target.light.version();
         target.reducedValid = target.fullValid = target.stillDone = false;

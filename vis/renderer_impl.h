@@ -41,6 +41,7 @@ struct Renderer::Impl {
     bool demandBricks(ViewTarget& target, const Scene& scene, const FrameRequest& request, const RayPlan& plan,
                       const std::vector<ChannelKey>& keys);
     bool bindField(BoundField& field, const ChannelKey& key);
+    void bindBetween(ViewTarget& target, RayPlan& plan, const std::vector<ChannelKey>& keys);
     bool bind(ViewTarget& target, const Scene& scene, const FrameRequest& request, RayPlan& plan, FrameStatus& status);
 
     // frame.cpp

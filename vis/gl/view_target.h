@@ -44,21 +44,26 @@ public:
     bool fullValid = false; ///< every tile of `full` is done
     bool stillDone = false; ///< and every pass of a supersampled still
     double passMilliseconds = 0;
-    int lastTime = -1;
-    double msPerPixel = 0; ///< of a full pass; 0 = not measured
+    std::optional<double> lastTime; ///< of the data shown
+    std::vector<ChannelKey> shown;  ///< the frames of it
+    double msPerPixel = 0;          ///< of a full pass; 0 = not measured
 
     // Bricks wanted, and what they were wanted for.
     std::vector<std::shared_ptr<const BrickDemand>> demands; ///< per field of the plan
     std::optional<Scene> demandsFor;
     DemandSettings demandSettings;
     std::vector<ChannelKey> demandsKnown;
-    int wantedTime = -1, timeStep = 0; ///< which way the time runs
+    int wantedTime = -1, timeStep = 0;      ///< which way the time runs, in stored times
+    std::vector<BlockRanges> betweenBlocks; ///< of fields between two stored times, and what they were made for
+    std::vector<ChannelKey> betweenKeys;
+    std::uint64_t betweenRevision = 0;
 
     // Transfer tables and block distances, and what they were made for.
     Texture table, planes, blocks;
     std::optional<Scene> tablesFor;
     std::uint64_t tablesRevision = 0;
-    int tablesTime = -1, tableRows = 0, planePages = 0;
+    std::vector<ChannelKey> tablesKeys;
+    int tableRows = 0, planePages = 0;
     glm::ivec3 blockCount{0};
     bool skip = false; ///< leap over empty blocks
 

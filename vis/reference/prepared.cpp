@@ -39,15 +39,16 @@ Prepared::Prepared(const Scene& drawn, const volume::BrickSource& source, glm::i
     look = lookView(scene, frame.halfSize, cell, size);
     middle = cameraRay(scene.camera, 1, {0, 0}).direction;
     light = illuminate(scene.lighting, scene.camera);
-    const int time = info.nearestTime(scene.time);
     const auto load = [&](const std::string& name, bool raw = false, double shift = 0) -> const Samples* {
         const std::optional<int> channel = info.findChannel(name);
         if (!channel) return nullptr;
-        const int own = shift != 0 ? info.nearestTime(info.times[std::size_t(time)] + shift) : time;
+        const double own = scene.time + shift;
         std::unique_ptr<Samples>& entry = samples[{name, own, raw}];
         const Filter filter =
             raw && scene.render.filter == Filter::AverageQuasi ? Filter::Average : scene.render.filter;
-        if (!entry) entry = std::make_unique<Samples>(source, *channel, own, filter, options.flaws);
+        if (!entry)
+            entry = std::make_unique<Samples>(source, *channel, volume::timesAround(info.times, own), filter,
+                                              options.flaws);
         return entry.get();
     };
     for (const Layer& layer : scene.layers) {

@@ -49,7 +49,7 @@ struct Prepared {
     LookView look;
     glm::dvec3 middle{0, 0, -1}; ///< direction of the view
     /// By channel name, time, and 1 without prefilter, for pre-classification.
-    std::map<std::tuple<std::string, int, bool>, std::unique_ptr<Samples>> samples;
+    std::map<std::tuple<std::string, double, bool>, std::unique_ptr<Samples>> samples;
     std::vector<DrawnLayer> layers;
     DoiFunction interestOf;
     std::vector<const Samples*> brushed; ///< of interestOf.channels(); null: unknown

@@ -65,12 +65,18 @@ struct Samples::View {
     }
 };
 
-Samples::Samples(const volume::BrickSource& source, int channel, int time, Filter filter, const Flaws& flaws)
+Samples::Samples(const volume::BrickSource& source, int channel, volume::TimePair time, Filter filter,
+                 const Flaws& flaws)
     : geometry_(volume::levelGeometry(source.grid(), 0)), filter_(filter), flaws_(flaws),
       brickSize_(source.grid().brickSize) {
     const volume::DatasetInfo& info = source.info();
     categorical_ = info.parameters[std::size_t(info.channels()[std::size_t(channel)].parameter)].categorical;
-    const Whole whole(source, channel, time, flaws.ignoredMask);
+    if (categorical_) time = {time.nearest(), time.nearest(), 0};
+    if (time.between()) {
+        laterWeight_ = time.weight;
+        later_ = std::make_unique<Samples>(source, channel, volume::TimePair{time.later, time.later, 0}, filter, flaws);
+    }
+    const Whole whole(source, channel, time.earlier, flaws.ignoredMask);
     const int slices = geometry_.kind == volume::LatticeKind::BCC ? 2 : 1;
     const glm::ivec3 margin(kMargin, kMargin, kMargin * slices);
     first_ = -margin;
@@ -91,35 +97,51 @@ Samples::Samples(const volume::BrickSource& source, int channel, int time, Filte
     });
 }
 
-std::optional<double> Samples::value(glm::dvec3 cells) const {
+Samples::View Samples::view() const {
+    return {*this, first_, first_ + size_ - 1, geometry_.kind == volume::LatticeKind::BCC ? 2 : 1};
+}
+
+volume::Blend Samples::blend(glm::dvec3 cells) const {
     const int slices = geometry_.kind == volume::LatticeKind::BCC ? 2 : 1;
-    View view{*this, first_, first_ + size_ - 1, slices};
+    View here = view();
     if (flaws_.clampedBricks) {
         const glm::ivec3 brick = glm::ivec3(glm::floor(cells / double(brickSize_))), steps(1, 1, slices);
-        view.lo = glm::clamp(brick * brickSize_ * steps, view.lo, view.hi);
-        view.hi = glm::clamp((brick + 1) * brickSize_ * steps - 1, view.lo, view.hi);
+        here.lo = glm::clamp(brick * brickSize_ * steps, here.lo, here.hi);
+        here.hi = glm::clamp((brick + 1) * brickSize_ * steps - 1, here.lo, here.hi);
     }
+    volume::Blend blend;
     if (categorical_) {
-        const volume::Sample sample = volume::nearest(geometry_, view, cells);
-        return sample.present ? std::optional(sample.value) : std::nullopt;
+        blend.add(1, volume::nearest(geometry_, here, cells));
+    } else if (flaws_.unmovedSublattice && slices == 2) {
+        for (int s = 0; s < 2; ++s) volume::addTrilinear(blend, here, geometry_.toSublattice(cells, 0), s, 2, 0.5);
+    } else {
+        blend = filter_ == Filter::Tetrahedral ? volume::tetrahedral(geometry_, here, cells)
+                                               : volume::linear(geometry_, here, cells);
     }
-    if (flaws_.unmovedSublattice && slices == 2) {
-        volume::Blend blend;
-        for (int s = 0; s < 2; ++s) volume::addTrilinear(blend, view, geometry_.toSublattice(cells, 0), s, 2, 0.5);
-        return blend.value();
-    }
-    return (filter_ == Filter::Tetrahedral ? volume::tetrahedral(geometry_, view, cells)
-                                           : volume::linear(geometry_, view, cells))
-        .value();
+    if (!later_) return blend;
+    const volume::Blend later = later_->blend(cells);
+    return {(1 - laterWeight_) * blend.sum + laterWeight_ * later.sum,
+            (1 - laterWeight_) * blend.coverage + laterWeight_ * later.coverage};
+}
+
+std::optional<double> Samples::value(glm::dvec3 cells) const {
+    return blend(cells).value();
 }
 
 std::optional<glm::dvec4> Samples::blended(glm::dvec3 cells, const std::function<glm::dvec4(double)>& of) const {
-    const int slices = geometry_.kind == volume::LatticeKind::BCC ? 2 : 1;
-    const View view{*this, first_, first_ + size_ - 1, slices};
+    const auto sampleAt = [this, here = view()](glm::ivec3 at) {
+        const volume::Sample sample = here(at);
+        if (!later_) return sample;
+        volume::Blend both;
+        both.add(1 - laterWeight_, sample);
+        both.add(laterWeight_, later_->view()(at));
+        const std::optional<double> value = both.value();
+        return volume::Sample{value.value_or(0), value.has_value()};
+    };
     glm::dvec4 out(0);
     for (int c = 0; c < 4; ++c) {
         const auto component = [&](glm::ivec3 at) {
-            const volume::Sample sample = view(at);
+            const volume::Sample sample = sampleAt(at);
             return volume::Sample{sample.present ? of(sample.value)[c] : 0, sample.present};
         };
         const std::optional<double> value = volume::linear(geometry_, component, cells).value();

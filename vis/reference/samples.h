@@ -3,9 +3,11 @@
 #include "vis/model/scene.h"
 #include "volume/brick_source.h"
 #include "volume/reconstruct.h"
+#include "volume/time_pair.h"
 
 #include <functional>
 #include <glm/vec4.hpp>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -21,11 +23,12 @@ struct Flaws {
 };
 
 /// All samples of one channel at one time, full resolution, ready for one filter, with a margin of samples beyond the
-/// lattice so that no reading needs a special case.
+/// lattice so that no reading needs a special case. Between two stored times both are held and mixed: of a place, what
+/// is present in either takes part by its weight (labels: the nearer time).
 class Samples {
 public:
     /// Throws Error when the source does.
-    Samples(const volume::BrickSource& source, int channel, int time, Filter filter, const Flaws& flaws);
+    Samples(const volume::BrickSource& source, int channel, volume::TimePair time, Filter filter, const Flaws& flaws);
 
     /// The value at a continuous cell position (Lattice::toCells); nullopt where absent.
     std::optional<double> value(glm::dvec3 cells) const;
@@ -36,10 +39,14 @@ public:
 
 private:
     struct View;
+    View view() const;
+    volume::Blend blend(glm::dvec3 cells) const;
     volume::LevelGeometry geometry_;
     Filter filter_;
     Flaws flaws_;
     bool categorical_ = false;
+    std::unique_ptr<Samples> later_;
+    double laterWeight_ = 0;
     int brickSize_ = 0;
     glm::ivec3 first_{0}, size_{0}; ///< storage indices held
     std::vector<double> values_;

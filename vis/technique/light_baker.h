@@ -20,7 +20,7 @@ public:
     /// What the matter depends on besides the scene.
     struct Matter {
         std::uint64_t revision = 0; ///< of what is resident
-        int time = -1;
+        double time = 0;            ///< of the data
         bool operator==(const Matter&) const = default;
     };
 

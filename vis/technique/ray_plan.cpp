@@ -141,6 +141,7 @@ ProgramRecipe rayRecipe(const RayPlan& plan, const Scene& scene, const volume::B
                                                                                : "slots/recon_bcc_average.glsl";
     const auto define = [&](const char* name, const std::string& value) { recipe.defines.emplace_back(name, value); };
     define("FIELDS", std::to_string(plan.fields.size()));
+    define("LATER", std::to_string(plan.later));
     define("GEOMETRY", std::to_string(plan.peels));
     define("FIELD_COVERAGE(i)", choice(plan.fields, [](const BoundField& field) { return field.encoding.coverage; }));
     if (bricked) {

@@ -19,6 +19,7 @@ struct BoundField {
     bool raw = false;          ///< the samples themselves, whatever the filter: for pre-classification
     std::string transfer = {}; ///< Layer::transfer
     double timeShift = 0;      ///< Layer::timeShift
+    double laterWeight = 0;    ///< of the later frame, where the plan has some
     // Filled from what is resident:
     GLuint texture = 0;
     int level = 0;
@@ -55,6 +56,7 @@ struct SliceUse {
 /// What a scene needs, independent of what is resident.
 struct RayPlan {
     std::vector<BoundField> fields;
+    int later = 0; ///< fields from `later` on are the later frames of those before; 0: all are on stored times
     std::vector<RayLayer> layers;
     std::vector<SliceUse> slices;
     std::vector<int> brushFields;

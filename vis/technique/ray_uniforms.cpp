@@ -84,6 +84,13 @@ void setFields(const Program& program, const RayPlan& plan, const volume::BrickG
         pages.push_back(first.pages + i);
         atlases.push_back(first.atlases + i);
     }
+    std::vector<glm::vec3> frames;
+    for (int i = 0; i < plan.later; ++i) {
+        const BoundField& earlier = plan.fields[std::size_t(i)];
+        const TexelEncoding &from = plan.fields[std::size_t(i + plan.later)].encoding, &to = earlier.encoding;
+        frames.emplace_back(from.scale / to.scale, (from.offset - to.offset) / to.scale, earlier.laterWeight);
+    }
+    if (!frames.empty()) program.set("laterFrame", frames);
     program.set("fieldTexture", units);
     program.set("fieldScale", scales);
     program.set("fieldOffset", offsets);

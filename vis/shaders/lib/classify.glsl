@@ -25,7 +25,21 @@ vec4 latticeColor(int layer, vec3 p, out float share) {
 #else
         vec2 s = texel.rg;
 #endif
-        float weight = part.x * part.y * part.z * (FIELD_COVERAGE(field) == 1 ? s.y : 1.0);
+        if (FIELD_COVERAGE(field) == 0) s.y = 1.0;
+#if defined(LATER) && LATER > 0
+        vec4 laterTexel = fetchTexel(field + LATER, ivec3(base) + offset, p);
+#if BCC
+        vec2 later = sublattice == 1 ? laterTexel.ga : laterTexel.rb;
+#else
+        vec2 later = laterTexel.rg;
+#endif
+        if (FIELD_COVERAGE(field + LATER) == 0) later.y = 1.0;
+        vec3 frame = laterFrame[field];
+        vec2 times = vec2((1.0 - frame.z) * s.y, frame.z * later.y);
+        s.x = (times.x * s.x + times.y * (later.x * frame.x + frame.y)) / max(times.x + times.y, 1e-6);
+        s.y = times.x + times.y >= PRESENT_COVERAGE ? 1.0 : 0.0;
+#endif
+        float weight = part.x * part.y * part.z * s.y;
         vec4 c = transfer(layer, s.x * layerMap[layer].x + layerMap[layer].y);
         sum += weight * vec4(c.rgb * c.a, c.a);
         coverage += weight;

@@ -3,10 +3,12 @@
 #include "lib/bcc_nearest.glsl"
 
 // (value, coverage) at p; the sample is absent where coverage < PRESENT_COVERAGE.
-vec2 reconstruct(int field, vec3 p) {
+vec2 reconstructFrame(int field, vec3 p) {
     if (FIELD_NEAREST(field) == 1) return bccNearest(field, p);
     vec4 even = fetchEven(field, p), odd = fetchOdd(field, p);
     if (FIELD_COVERAGE(field) == 0) return vec2(0.5 * (even.r + odd.g), 1.0);
     float coverage = even.b + odd.a;
     return vec2((even.r + odd.g) / max(coverage, 1e-6), 0.5 * coverage);
 }
+
+#include "lib/between_times.glsl"

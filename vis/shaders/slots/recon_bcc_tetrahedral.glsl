@@ -11,7 +11,7 @@ vec2 latticePoint(int field, ivec3 corner, vec3 p) {
 
 // (value, coverage) at p; the sample is absent where coverage < PRESENT_COVERAGE. Coarse levels are no BCC lattice:
 // average there.
-vec2 reconstruct(int field, vec3 p) {
+vec2 reconstructFrame(int field, vec3 p) {
     if (FIELD_NEAREST(field) == 1) return bccNearest(field, p);
     if (!fineAt(field, p)) {
         vec4 even = fetchEven(field, p), odd = fetchOdd(field, p);
@@ -37,3 +37,5 @@ vec2 reconstruct(int field, vec3 p) {
     sum += f.z * latticePoint(field, corner, p);
     return vec2(sum.x / max(sum.y, 1e-6), sum.y);
 }
+
+#include "lib/between_times.glsl"

@@ -1,7 +1,7 @@
 // Slot reconstruct: trilinear on the cubic Cartesian lattice, or the nearest sample. Twin: volume/reconstruct.h.
 
 // (value, coverage) at p; the sample is absent where coverage < PRESENT_COVERAGE.
-vec2 reconstruct(int field, vec3 p) {
+vec2 reconstructFrame(int field, vec3 p) {
     vec4 texel;
     if (FIELD_NEAREST(field) == 1)
         texel = fetchTexel(field, ivec3(floor(sublatticeIndex(field, p, 0) + 0.5)), p);
@@ -10,3 +10,5 @@ vec2 reconstruct(int field, vec3 p) {
     if (FIELD_COVERAGE(field) == 0) return vec2(texel.r, 1.0);
     return vec2(texel.r / max(texel.g, 1e-6), texel.g);
 }
+
+#include "lib/between_times.glsl"
