@@ -86,6 +86,46 @@ std::vector<ProbeValue> probeAlong(const BrickSource& source, int channel, std::
     return values;
 }
 
+namespace {
+
+std::vector<ProbeValue> mixed(const std::vector<ProbeValue>& earlier, const std::vector<ProbeValue>& later,
+                              const TimePair& time) {
+    std::vector<ProbeValue> out;
+    for (std::size_t i = 0; i < earlier.size(); ++i) {
+        const ProbeValue &a = earlier[i], &b = later[i];
+        ProbeValue value = time.weight >= 0.5 ? b : a;
+        if (a.interpolated && b.interpolated)
+            value.interpolated = (1 - time.weight) * *a.interpolated + time.weight * *b.interpolated;
+        out.push_back(value);
+    }
+    return out;
+}
+
+} // namespace
+
+std::vector<ProbeValue> probe(const BrickSource& source, glm::dvec3 position, const TimePair& time) {
+    std::vector<ProbeValue> earlier = probe(source, position, time.earlier);
+    if (!time.between()) return earlier;
+    const std::vector<ProbeValue> later = probe(source, position, time.later);
+    std::vector<ProbeValue> out = mixed(earlier, later, time);
+    const DatasetInfo& info = source.info();
+    const std::vector<Channel> channels = info.channels();
+    for (std::size_t i = 0; i < out.size(); ++i)
+        if (info.parameters[std::size_t(channels[i].parameter)].categorical)
+            out[i] = time.weight >= 0.5 ? later[i] : earlier[i];
+    return out;
+}
+
+std::vector<ProbeValue> probeAlong(const BrickSource& source, int channel, std::span<const glm::dvec3> positions,
+                                   const TimePair& time) {
+    const DatasetInfo& info = source.info();
+    const Channel known = info.channels()[std::size_t(channel)];
+    if (!time.between() || info.parameters[std::size_t(known.parameter)].categorical)
+        return probeAlong(source, channel, positions, time.nearest());
+    return mixed(probeAlong(source, channel, positions, time.earlier),
+                 probeAlong(source, channel, positions, time.later), time);
+}
+
 std::vector<glm::dvec3> alongPolyline(std::span<const glm::dvec3> corners, int count) {
     std::vector<glm::dvec3> out;
     if (corners.empty() || count < 1) return out;

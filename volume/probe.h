@@ -1,6 +1,7 @@
 #pragma once
 
 #include "volume/brick_source.h"
+#include "volume/time_pair.h"
 
 #include <optional>
 #include <span>
@@ -24,6 +25,12 @@ std::vector<ProbeValue> probe(const BrickSource& source, glm::dvec3 position, in
 /// One channel at many positions, in order: bricks are read once for all of them. Throws Error.
 std::vector<ProbeValue> probeAlong(const BrickSource& source, int channel, std::span<const glm::dvec3> positions,
                                    int time);
+
+/// The same between two stored times: interpolated values are mixed, those of absent samples left out by their weight;
+/// labels and nearest samples are of the nearer time.
+std::vector<ProbeValue> probe(const BrickSource& source, glm::dvec3 position, const TimePair& time);
+std::vector<ProbeValue> probeAlong(const BrickSource& source, int channel, std::span<const glm::dvec3> positions,
+                                   const TimePair& time);
 
 /// Positions at `count` even distances along a polyline, both ends included.
 std::vector<glm::dvec3> alongPolyline(std::span<const glm::dvec3> corners, int count);

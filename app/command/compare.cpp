@@ -70,8 +70,9 @@ void addCompareCommand(CLI::App& app) {
         const Progress progress = terminalProgress("compare");
         pictureRequest(options->picture, Session{});
         for (const std::string& path : {options->output, options->csv}) {
+            if (path.empty()) continue;
             const auto folder = std::filesystem::absolute(path).parent_path();
-            if (!path.empty() && !std::filesystem::is_directory(folder))
+            if (!std::filesystem::is_directory(folder))
                 throw MachineError("no such folder", folder.string());
         }
         Opened opened = openForPicture(options->picture, progress.part(0, 0.5));

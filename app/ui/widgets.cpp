@@ -76,6 +76,10 @@ void drawLabel(const WidgetContext& context, std::string_view label, std::string
     ImGui::PopStyleColor();
     ImGui::PopClipRect();
     if (!help.empty() && ImGui::IsItemHovered()) ImGui::SetTooltip("%.*s", int(help.size()), help.data());
+    if (context.menu && !context.path.empty() && ImGui::BeginPopupContextItem(context.path.c_str())) {
+        (*context.menu)(context.path);
+        ImGui::EndPopup();
+    }
     ImGui::SameLine(start + column, 0);
     ImGui::SetNextItemWidth(-FLT_MIN);
 }

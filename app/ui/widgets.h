@@ -4,6 +4,7 @@
 #include "volume/dataset.h"
 
 #include <algorithm>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -17,6 +18,17 @@ namespace tessera::app {
 struct WidgetContext {
     const volume::DatasetInfo* info = nullptr; ///< parameters to choose from; may be null
     float labelShare = 0.4f;                   ///< of the width
+    std::string path = {};                     ///< of what is drawn, a JSON pointer into the session; "" = not in it
+    const std::function<void(const std::string& path)>* menu = nullptr; ///< of a right click on a label with a path
+
+    WidgetContext at(std::string place) const {
+        WidgetContext out = *this;
+        out.path = std::move(place);
+        return out;
+    }
+    WidgetContext under(std::string_view key) const {
+        return at(path.empty() ? std::string() : path + "/" + std::string(key));
+    }
 };
 
 /// A label in the left column with the help as a tooltip; the next item fills the rest of the line.
@@ -55,7 +67,7 @@ template <class T> bool drawDescribedList(const WidgetContext& context, const Fi
     for (std::size_t i = 0; i < values.size(); ++i) {
         const std::string id = std::string(info.key) + std::to_string(i);
         if (!beginSection(id.c_str(), labelOf(info.key) + " " + std::to_string(i + 1), info.doc)) continue;
-        changed |= drawDescribed(values[i], context);
+        changed |= drawDescribed(values[i], context.under(std::to_string(i)));
         if (drawListButton("Remove")) removed = i;
         endSection();
     }
@@ -84,7 +96,7 @@ template <class T> bool drawPresets(const WidgetContext& context, T& value) {
 namespace detail {
 
 struct MemberToWidget {
-    const WidgetContext& context;
+    const WidgetContext& outer;
     bool& changed;
     /// Range and unit of the parameter that the struct names, for members without a range of their own.
     std::optional<Range>& scale;
@@ -92,6 +104,10 @@ struct MemberToWidget {
 
     template <class T> void operator()(T& value, const FieldInfo& field) const {
         if (field.hidden) return;
+        draw(outer.under(field.key), value, field);
+    }
+
+    template <class T> void draw(const WidgetContext& context, T& value, const FieldInfo& field) const {
         FieldInfo info = field;
         if (!info.range && info.unit.empty() && scale) info.unit = unit;
         if constexpr (std::is_same_v<T, bool>) {
@@ -157,7 +173,7 @@ struct MemberToWidget {
                     value.reset();
                 changed = true;
             }
-            if (value) (*this)(*value, info);
+            if (value) draw(context, *value, info);
         } else if constexpr (IsVector<T>::value) {
             if constexpr (Described<typename T::value_type>) {
                 changed |= drawDescribedList(context, info, value);

@@ -1,5 +1,6 @@
 #include "app/ui/widgets.h"
 #include "app/views/brush_list.h"
+#include "app/views/keyframes.h"
 #include "app/views/lens_list.h"
 #include "app/views/ticks.h"
 #include "app/views/view_parts.h"
@@ -184,7 +185,8 @@ void drawLayersView(ViewContext& context, const std::string& pane, LayersView& v
     }
     const volume::DatasetInfo& info = context.source->info();
     Session& session = context.session;
-    const WidgetContext widgets{.info = &info};
+    const auto menu = parameterMenu(context);
+    const WidgetContext widgets{.info = &info, .menu = &menu};
     ImGui::BeginChild("layers");
     if (ImGui::CollapsingHeader("Layers", ImGuiTreeNodeFlags_DefaultOpen)) {
         drawList(context, view.selected);
@@ -199,7 +201,8 @@ void drawLayersView(ViewContext& context, const std::string& pane, LayersView& v
             drawLabel(widgets, "Name", "Name of the layer");
             ImGui::InputText("##name", &layer.name);
             const std::string before = channelOf(layer.technique);
-            std::visit([&](auto& technique) { drawDescribed(technique, widgets); }, layer.technique);
+            const WidgetContext own = widgets.at("/layers/" + std::to_string(view.selected) + "/technique");
+            std::visit([&](auto& technique) { drawDescribed(technique, own); }, layer.technique);
             followChannel(layer.name, before, channelOf(layer.technique));
             drawPlace(widgets, session, layer);
             ImGui::PopID();
@@ -209,22 +212,22 @@ void drawLayersView(ViewContext& context, const std::string& pane, LayersView& v
         drawLensList(context, pane, cacheOf<LayersCache>(context, pane).lenses);
     if (ImGui::CollapsingHeader("Focus and context", ImGuiTreeNodeFlags_DefaultOpen)) {
         drawBrushList(context);
-        drawDescribed(session.selection, widgets);
+        drawDescribed(session.selection, widgets.at("/selection"));
     }
-    if (ImGui::CollapsingHeader("Light")) drawDescribed(session.lighting, widgets);
+    if (ImGui::CollapsingHeader("Light")) drawDescribed(session.lighting, widgets.at("/lighting"));
     if (ImGui::CollapsingHeader("Paper")) {
         bool paper = session.paper.has_value();
         if (drawBool(widgets, {.key = "paper", .unit = "", .doc = "Draw on paper of your own choice"}, paper)) {
             const std::optional<vis::Paper> shown = vis::paperOf(sceneOf(session));
             session.paper = paper ? std::optional(shown.value_or(vis::Paper{})) : std::nullopt;
         }
-        if (session.paper) drawDescribed(*session.paper, widgets);
+        if (session.paper) drawDescribed(*session.paper, widgets.at("/paper"));
     }
     if (ImGui::CollapsingHeader("Clipping"))
-        drawDescribedList(widgets, {.key = "clips", .unit = "", .doc = "Planes and bodies that cut the picture"},
-                          session.clips);
-    if (ImGui::CollapsingHeader("Tone curve")) drawDescribed(session.tone, widgets);
-    if (ImGui::CollapsingHeader("Quality")) drawDescribed(session.render, widgets);
+        drawDescribedList(widgets.at("/clips"),
+                          {.key = "clips", .unit = "", .doc = "Planes and bodies that cut the picture"}, session.clips);
+    if (ImGui::CollapsingHeader("Tone curve")) drawDescribed(session.tone, widgets.at("/tone"));
+    if (ImGui::CollapsingHeader("Quality")) drawDescribed(session.render, widgets.at("/render"));
     if (ImGui::CollapsingHeader("Proportions")) {
         double stretch[] = {session.stretch.x, session.stretch.y, session.stretch.z};
         const FieldInfo field{.key = "stretch",

@@ -20,7 +20,8 @@ constexpr std::size_t kMostPlots = 8; ///< where the user has not chosen
 struct Wish {
     std::vector<int> channels;
     std::vector<glm::dvec3> corners;
-    int samples = 0, time = 0;
+    int samples = 0;
+    volume::TimePair time;
     bool operator==(const Wish&) const = default;
 };
 
@@ -214,7 +215,7 @@ void drawProfileView(ViewContext& context, const std::string& pane, ProfileView&
     drawToolbar(context, cache, view, shown);
     if (shown.empty()) return drawHint("No parameters", "This data set holds only labels.");
     const Wish wish{shown, profileCorners(view, context.session, info.bounds), std::clamp(view.samples, 2, 4096),
-                    timeIndex(context.session, info)};
+                    volume::timesAround(info.times, context.session.time)};
     update(context, cache, pane, wish);
     if (!cache.profile || cache.profile->distance.size() < 2 || !(cache.profile->distance.back() > 0)) {
         drawHint(cache.failed ? "The data cannot be read here" : "The line has no length",

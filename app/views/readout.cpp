@@ -48,7 +48,7 @@ void updateReadout(ViewContext& context, Readout& readout) {
         return;
     }
     const glm::dvec3 position = context.session.cursor;
-    const int time = timeIndex(context.session, context.source->info());
+    const volume::TimePair time = volume::timesAround(context.source->info().times, context.session.time);
     if (state.time == time && state.position == position) return;
     if (context.headless) {
         state.values = volume::probe(*state.cache, position, time);
@@ -110,11 +110,10 @@ void drawReadout(ViewContext& context, const Readout& readout) {
         ImGui::TextUnformatted(text.c_str());
     }
     ImGui::PushTextWrapPos(0);
-    const int time = timeIndex(context.session, info);
+    const double time = std::clamp(context.session.time, info.times.front(), info.times.back());
     std::string sample =
         "sample (" + std::to_string(index.x) + ", " + std::to_string(index.y) + ", " + std::to_string(index.z) + ")";
-    if (info.times.size() > 1)
-        sample += "   t " + formatQuantity(info.times[static_cast<std::size_t>(time)], info.timeUnit);
+    if (info.times.size() > 1) sample += "   t " + formatQuantity(time, info.timeUnit);
     ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetStyleColorVec4(ImGuiCol_TextDisabled));
     ImGui::TextUnformatted(sample.c_str());
     ImGui::PopStyleColor();

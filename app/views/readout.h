@@ -3,6 +3,7 @@
 #include "app/views/view_context.h"
 #include "volume/brick_cache.h"
 #include "volume/probe.h"
+#include "volume/time_pair.h"
 
 #include <memory>
 #include <optional>
@@ -17,7 +18,7 @@ struct Readout {
     struct State {
         std::vector<volume::ProbeValue> values; ///< by channel
         glm::dvec3 position{0};                 ///< where and when they were read
-        int time = -1;
+        std::optional<volume::TimePair> time;
         bool running = false;
         std::shared_ptr<const volume::BrickSource> source;
         std::shared_ptr<volume::BrickCache> cache; ///< bricks around the cursor, so that dragging it decodes few

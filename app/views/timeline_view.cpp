@@ -1,7 +1,9 @@
+#include "app/views/keyframes.h"
 #include "app/views/playback.h"
 #include "app/views/plot.h"
 #include "app/views/ticks.h"
 #include "app/views/view_parts.h"
+#include "volume/time_pair.h"
 
 #include <algorithm>
 #include <cmath>
@@ -32,9 +34,10 @@ void drawButtons(ViewContext& context, const std::vector<double>& times, int ind
     next();
     if (iconButton(context, "back", icons::kStepBack, "One step back (Left)", many)) go(index - 1);
     next();
-    const bool playing = session.animation.playing && many;
+    const bool playable = many || !session.animation.tracks.empty();
+    const bool playing = session.animation.playing && playable;
     if (iconButton(context, "play", playing ? icons::kPause : icons::kPlay, playing ? "Pause (Space)" : "Play (Space)",
-                   many, playing)) {
+                   playable, playing)) {
         session.animation.playing = !playing;
         // Play at the end of a single run starts it again.
         if (!playing && session.animation.loop == Loop::Once && index == last) go(0);
@@ -60,6 +63,27 @@ void drawButtons(ViewContext& context, const std::vector<double>& times, int ind
     if (ImGui::IsItemHovered()) tooltip("Time steps shown per second while playing");
 }
 
+/// The time under the mouse: any between the first and the last, but near a mark that stored time.
+double timeUnder(const PlotFrame& frame, const std::vector<double>& times, ImVec2 mouse) {
+    const double at = std::clamp(frame.data(mouse).x, times.front(), times.back());
+    const volume::TimePair pair = volume::timesAround(times, at);
+    const double nearest = times[static_cast<std::size_t>(pair.nearest())];
+    return std::abs(frame.pixel(nearest, 0).x - mouse.x) < em() * 0.35f ? nearest : at;
+}
+
+/// "3 of 24", or "between 3 and 4 of 24".
+std::string placeText(const std::vector<double>& times, double time) {
+    const volume::TimePair pair = volume::timesAround(times, time);
+    const std::string count = " of " + std::to_string(times.size());
+    if (!pair.between()) return std::to_string(pair.earlier + 1) + count;
+    return "between " + std::to_string(pair.earlier + 1) + " and " + std::to_string(pair.later + 1) + count;
+}
+
+std::string timeText(const volume::DatasetInfo& info, double time) {
+    const bool between = volume::timesAround(info.times, time).between();
+    return formatQuantity(time, info.timeUnit, timeResolution(info.times) / (between ? 10 : 1));
+}
+
 /// The track: one mark per stored time, the knob at the time shown, physical time below.
 void drawTrack(ViewContext& context, TimelineCache& cache, const volume::DatasetInfo& info, float height) {
     Session& session = context.session;
@@ -75,8 +99,7 @@ void drawTrack(ViewContext& context, TimelineCache& cache, const volume::Dataset
                           paddedRange({times.front(), times.back()}),
                           {0, 1}};
     if (held && times.size() > 1) {
-        const double wanted = frame.data(ImGui::GetIO().MousePos).x;
-        session.time = times[static_cast<std::size_t>(info.nearestTime(wanted))];
+        session.time = timeUnder(frame, times, ImGui::GetIO().MousePos);
         session.animation.playing = false;
         context.interacting = true;
     }
@@ -88,8 +111,7 @@ void drawTrack(ViewContext& context, TimelineCache& cache, const volume::Dataset
 
     ImDrawList& draw = *ImGui::GetWindowDrawList();
     const PlotColors colors = plotColors();
-    const int index = info.nearestTime(session.time);
-    const float knob = frame.pixel(times[static_cast<std::size_t>(index)], 0).x;
+    const float knob = frame.pixel(std::clamp(session.time, times.front(), times.back()), 0).x;
     const float thick = em() * 0.2f;
     draw.AddRectFilled({frame.min.x, y - thick / 2}, {frame.max.x, y + thick / 2}, colors.grid, thick / 2);
     draw.AddRectFilled({frame.min.x, y - thick / 2}, {frame.max.x, y + thick / 2}, colors.frame, thick / 2);
@@ -105,11 +127,8 @@ void drawTrack(ViewContext& context, TimelineCache& cache, const volume::Dataset
     draw.AddCircleFilled({knob, y}, em() * (hovered || held ? 0.48f : 0.4f), colors.cursor, 24);
     drawAxis(draw, frame, AxisSide::Bottom, "", "", origin.x, origin.x + width);
     if (hovered && !held) {
-        const int under = info.nearestTime(frame.data(ImGui::GetIO().MousePos).x);
-        ImGui::SetTooltip(
-            "%s  (%d of %zu)",
-            formatQuantity(times[static_cast<std::size_t>(under)], info.timeUnit, timeResolution(times)).c_str(),
-            under + 1, times.size());
+        const double under = timeUnder(frame, times, ImGui::GetIO().MousePos);
+        ImGui::SetTooltip("%s  (%s)", timeText(info, under).c_str(), placeText(times, under).c_str());
     }
 }
 
@@ -134,14 +153,19 @@ void drawTimelineView(ViewContext& context, const std::string& pane, TimelineVie
     ImGui::SameLine(0, em());
     ImGui::AlignTextToFramePadding();
     if (many) {
-        ImGui::Text("t = %s", formatQuantity(info.times[static_cast<std::size_t>(index)], info.timeUnit,
-                                             timeResolution(info.times))
-                                  .c_str());
+        const double now = std::clamp(session.time, info.times.front(), info.times.back());
+        ImGui::Text("t = %s", timeText(info, now).c_str());
         ImGui::SameLine(0, em());
-        ImGui::TextDisabled("%d of %zu", index + 1, info.times.size());
-        drawTrack(context, cache, info, std::clamp(ImGui::GetContentRegionAvail().y, em() * 1.4f, em() * 2.9f));
+        ImGui::TextDisabled("%s", placeText(info.times, now).c_str());
     } else {
-        ImGui::TextDisabled("This data has one time; there is nothing to play.");
+        ImGui::TextDisabled("This data has one time.");
+    }
+    ImGui::SameLine(0, em() * 1.5f);
+    drawKeyframeButtons(context);
+    if (many) drawTrack(context, cache, info, std::clamp(ImGui::GetContentRegionAvail().y, em() * 1.4f, em() * 2.9f));
+    if (keyed) {
+        const float room = ImGui::GetContentRegionAvail().y;
+        if (room > em() * 2) drawKeyframes(context, std::min(room, keyframesHeight(session)));
     }
 }
 

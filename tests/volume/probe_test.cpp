@@ -79,6 +79,33 @@ private:
     std::shared_ptr<const BrickSource> source_;
 };
 
+TEST(Probe, BetweenTwoTimesValuesAreMixed) {
+    const Lattice lattice = ccLattice({6, 5, 7}, {1, 1, 1}, {0, 0, 0});
+    Dataset dataset = test::datasetOf({sampled<float>(lattice, [](glm::dvec3 p) { return p.x; })});
+    dataset.info.bounds = test::boxOf(lattice);
+    dataset.info.times = {0, 10};
+    dataset.load = [lattice](int, int, int time) {
+        Field field = sampled<float>(lattice, [&](glm::dvec3 p) { return time == 0 ? p.x : 5 + 3 * p.z; });
+        if (time == 1) { // the far end has no samples then
+            auto mask = std::make_shared<Mask>(field.count(), std::uint8_t(1));
+            for (std::size_t i = 0; i < field.count(); ++i) (*mask)[i] = i < field.count() / 2;
+            field.mask = mask;
+        }
+        return field;
+    };
+    const auto source = makeMemorySource(dataset, {LatticeKind::CC, 8, 1 << 30});
+    const glm::dvec3 near(2.25, 1.5, 1.5), far(2.25, 1.5, 5.5);
+    const TimePair early = timesAround(dataset.info.times, 3), late = timesAround(dataset.info.times, 6);
+    EXPECT_NEAR(probe(*source, near, early)[0].interpolated.value(), 0.7 * 2.25 + 0.3 * 9.5, 1e-5);
+    EXPECT_NEAR(probe(*source, near, timesAround(dataset.info.times, 0))[0].interpolated.value(), 2.25, 1e-5);
+    // Where one time has nothing, the other one counts while it is the nearer.
+    EXPECT_NEAR(probe(*source, far, early)[0].interpolated.value(), 2.25, 1e-5);
+    EXPECT_FALSE(probe(*source, far, late)[0].interpolated.has_value());
+    const std::vector<glm::dvec3> places{near, far};
+    const std::vector<ProbeValue> line = probeAlong(*source, 0, places, early);
+    EXPECT_NEAR(line[0].interpolated.value(), 0.7 * 2.25 + 0.3 * 9.5, 1e-5);
+}
+
 TEST(BrickCache, ReadsOnceAndKeepsTheBudget) {
     const auto counting = std::make_shared<CountingSource>(
         makeMemorySource(test::datasetOf({sampled<float>(ccLattice({32, 16, 16}), [](glm::dvec3 p) { return p.x; })}),
