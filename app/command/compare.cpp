@@ -72,8 +72,7 @@ void addCompareCommand(CLI::App& app) {
         for (const std::string& path : {options->output, options->csv}) {
             if (path.empty()) continue;
             const auto folder = std::filesystem::absolute(path).parent_path();
-            if (!std::filesystem::is_directory(folder))
-                throw MachineError("no such folder", folder.string());
+            if (!std::filesystem::is_directory(folder)) throw MachineError("no such folder", folder.string());
         }
         Opened opened = openForPicture(options->picture, progress.part(0, 0.5));
         Session& session = opened.document.session;
