@@ -52,8 +52,7 @@ BenchTable benchStyles() {
     const vis::HeadlessContext context;
     vis::Renderer renderer{vis::RendererOptions{}};
     renderer.setSource(
-        volume::makeMemorySource(volume::makeModel("fuel-cell", {{"nx", 64}, {"ny", 64}, {"nz", 256}, {"times", 2}}),
-                                 {.lattice = volume::LatticeKind::BCC}));
+        volume::makeMemorySource(volume::makeModel("fuel-cell", {}), {.lattice = volume::LatticeKind::BCC}));
     vis::Scene scene;
     scene.stretch = {5, 10, 1};
     scene.camera.distance = 1.8f;
