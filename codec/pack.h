@@ -78,7 +78,7 @@ struct PackOptions {
                                    .doc = "Least peak signal-to-noise ratio of each frame of floats, its parameter's "
                                           "range over the RMS error; 0 = not asked for",
                                    .range = Range{0, 200}});
-        visit(self.sizeMb, FieldInfo{.key = "size",
+        visit(self.sizeMb, FieldInfo{.key = "targetSize",
                                      .unit = "MB",
                                      .doc = "Largest size of the archive: the least error of float samples, relative "
                                             "to their ranges, that fits is searched for; 0 = not asked for",

@@ -148,9 +148,9 @@ check "unpack it" 0 "$tessera" unpack converted.tsr -o back.raw
 cmp ramp.raw back.raw || { echo "FAILED: converting changes samples"; failures=$((failures + 1)); }
 check "convert what is no archive" 2 "$tessera" convert ramp.json -o x.tsr
 check "convert onto itself" 2 "$tessera" convert cc.tsr -o cc.tsr
-check "pack to a size" 0 "$tessera" pack wave.json -o sized.tsr --size 0.004
+check "pack to a size" 0 "$tessera" pack wave.json -o sized.tsr --target-size 0.004
 [ "$(stat -c %s sized.tsr)" -le 4000 ] || { echo "FAILED: above the size asked"; failures=$((failures + 1)); }
-check "no such size" 2 "$tessera" pack wave.json -o x.tsr --size 0.0001
+check "no such size" 2 "$tessera" pack wave.json -o x.tsr --target-size 0.0001
 check "too little memory" 2 "$tessera" pack wave.json -o x.tsr --memory 1
 check "progress as JSON" 0 "$tessera" pack wave.json -o sized.tsr --progress-json
 say '"fraction"' out.txt
