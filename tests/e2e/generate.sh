@@ -1,26 +1,7 @@
 #!/bin/bash
 # generate as a user runs it: arguments TESSERA SOURCE_DIR.
-set -u
 tessera=$1
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-cd "$work" || exit 1
-failures=0
-check() { # check WHAT STATUS COMMAND...: runs the command and compares its exit status
-    local what=$1 want=$2
-    shift 2
-    "$@" >out.txt 2>err.txt
-    local got=$?
-    if [ "$got" != "$want" ]; then
-        echo "FAILED: $what: exit status $got, not $want"
-        cat out.txt err.txt
-        failures=$((failures + 1))
-    fi
-}
-fail() {
-    echo "FAILED: $1"
-    failures=$((failures + 1))
-}
+source "$2/tests/e2e/common.bash"
 
 check "an archive" 0 "$tessera" generate fuel-cell -o cell.tsr --size 7x13x20 --times 3
 check "which is whole" 0 "$tessera" verify cell.tsr

@@ -1,25 +1,7 @@
 #!/bin/bash
 # pack, info, verify and unpack as a user runs them: arguments TESSERA SOURCE_DIR. Exit 77 skips (nothing to do so yet).
-set -u
 tessera=$1
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-cd "$work" || exit 1
-failures=0
-check() { # check WHAT STATUS COMMAND...: runs the command and compares its exit status
-    local what=$1 want=$2
-    shift 2
-    "$@" >out.txt 2>err.txt
-    local got=$?
-    if [ "$got" != "$want" ]; then
-        echo "FAILED: $what: exit status $got, not $want"
-        cat out.txt err.txt
-        failures=$((failures + 1))
-    fi
-}
-say() { # say TEXT FILE: the file must hold the text
-    grep -q -- "$1" "$2" || { echo "FAILED: no \"$1\" in:"; cat "$2"; failures=$((failures + 1)); }
-}
+source "$2/tests/e2e/common.bash"
 
 # A ramp of 16-bit numbers: 9 x 7 x 5, two times, two components.
 python3 - <<'EOF'
@@ -39,7 +21,7 @@ say "9 x 7 x 5" out.txt
 check "info --json" 0 "$tessera" info cc.tsr --json
 python3 -c 'import json,sys; d=json.load(open("out.txt")); assert d["size"]==[9,7,5] and d["times"]==[0,0.5] and d["lossless"] and [p["name"] for p in d["parameters"]]==["a","b"], d' || failures=$((failures + 1))
 check "unpack" 0 "$tessera" unpack cc.tsr -o back.raw
-cmp ramp.raw back.raw || { echo "FAILED: not the same samples"; failures=$((failures + 1)); }
+cmp ramp.raw back.raw || fail "not the same samples"
 check "its sidecar opens" 0 "$tessera" info back.json
 check "unpack .vti" 0 "$tessera" unpack cc.tsr -o back.vti -t 0.5
 check "unpack .nrrd" 0 "$tessera" unpack cc.tsr -o back.nrrd -p b -t 0
@@ -65,10 +47,10 @@ json.dump({"dims": [9, 7, 5], "dtype": "float32",
 EOF
 check "pack gaps" 0 "$tessera" pack gaps.json -o gaps.tsr --lattice cc --absent c=0 --no-auto-absent
 check "unpack gaps" 0 "$tessera" unpack gaps.tsr -o gaps-back.raw
-cmp gaps.raw gaps-back.raw || { echo "FAILED: absent samples differ"; failures=$((failures + 1)); }
+cmp gaps.raw gaps-back.raw || fail "absent samples differ"
 check "pack what came back" 0 "$tessera" pack gaps-back.json -o again.tsr --lattice cc --no-auto-absent
 [ "$("$tessera" info gaps.tsr --json | grep -A3 ranges)" = "$("$tessera" info again.tsr --json | grep -A3 ranges)" ] ||
-    { echo "FAILED: other ranges"; failures=$((failures + 1)); }
+    fail "other ranges"
 
 # Presets, and bounds in each unit.
 python3 - <<'EOF'
@@ -83,13 +65,13 @@ for preset in lossless visual small thesis; do
 done
 check "no such preset" 1 "$tessera" pack wave.json -o x.tsr --preset best
 check "unpack the lossless preset" 0 "$tessera" unpack lossless.tsr -o wave-back.raw
-cmp wave.raw wave-back.raw || { echo "FAILED: the preset lossless is not"; failures=$((failures + 1)); }
-[ "$(stat -c %s small.tsr)" -lt "$(stat -c %s visual.tsr)" ] || { echo "FAILED: small is not"; failures=$((failures + 1)); }
+cmp wave.raw wave-back.raw || fail "the preset lossless is not"
+[ "$(stat -c %s small.tsr)" -lt "$(stat -c %s visual.tsr)" ] || fail "small is not"
 for bound in "--abs-error 0.25" "--psnr 60" "--max-error 0.001"; do
     # shellcheck disable=SC2086
     check "pack $bound" 0 "$tessera" pack wave.json -o bound.tsr --lattice cc $bound
     check "unpack $bound" 0 "$tessera" unpack bound.tsr -o bound.raw
-    python3 - "$bound" <<'EOF' || { echo "FAILED: $bound is not kept"; failures=$((failures + 1)); }
+    python3 - "$bound" <<'EOF' || fail "$bound is not kept"
 import math, struct, sys
 read = lambda name: struct.unpack("<%df" % (16 * 17 * 18), open(name, "rb").read())
 a, b = read("wave.raw"), read("bound.raw")
@@ -173,7 +155,7 @@ check "is not unpacked" 2 "$tessera" unpack flip.tsr -o x.raw
 head -c 100 ramp.raw >short.raw
 cp ramp.json short.json
 check "a short raw file" 2 "$tessera" pack short.raw -o x.tsr
-ls x.* ./*.part-* 2>/dev/null && { echo "FAILED: something was left behind"; failures=$((failures + 1)); }
+ls x.* ./*.part-* 2>/dev/null && fail "something was left behind"
 
 # Real volumes, where they are: bit for bit.
 data=${TESSERA_DATA:-${TESSERA_TEST_DATA:-}}
@@ -182,6 +164,6 @@ for raw in "$data"/volumes/{nucleon,tooth,gfs,colpex}*.raw; do
     check "pack $raw" 0 "$tessera" pack "$raw" -o real.tsr --lattice cc
     check "verify $raw" 0 "$tessera" verify real.tsr
     check "unpack $raw" 0 "$tessera" unpack real.tsr -o real.raw
-    cmp "$raw" real.raw || { echo "FAILED: $raw differs"; failures=$((failures + 1)); }
+    cmp "$raw" real.raw || fail "$raw differs"
 done
 exit $((failures > 0))

@@ -1,0 +1,28 @@
+# Sourced by the scripts beside it: a folder of their own to work in, and checks that go on after a failure.
+set -u
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+export XDG_CONFIG_HOME=$work/config XDG_STATE_HOME=$work/state
+cd "$work" || exit 1
+failures=0
+
+fail() {
+    echo "FAILED: $*"
+    failures=$((failures + 1))
+}
+check() { # check WHAT STATUS COMMAND...: runs the command, output in out.txt and err.txt, and compares its exit status
+    local what=$1 want=$2
+    shift 2
+    "$@" >out.txt 2>err.txt
+    local got=$?
+    [ "$got" = "$want" ] || {
+        fail "$what: exit status $got, not $want"
+        cat out.txt err.txt
+    }
+}
+say() { # say TEXT FILE: the file must hold the text
+    grep -q -- "$1" "$2" || {
+        fail "no \"$1\" in:"
+        cat "$2"
+    }
+}
