@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <glm/gtc/quaternion.hpp>
 
 namespace tessera::app {
 
@@ -30,19 +29,6 @@ PlaneAxes axesOf(SliceAxis axis, const vis::WorldFrame& world) {
     return out;
 }
 
-/// Looks straight at a plane so that it fills the picture.
-vis::Camera cameraOf(const PlaneAxes& axes, const vis::WorldFrame& world) {
-    vis::Camera camera;
-    camera.projection = vis::Projection::Orthographic;
-    glm::vec3 right(0), up(0);
-    right[axes.right] = 1;
-    up[axes.up] = 1;
-    camera.orientation = glm::normalize(glm::quat_cast(glm::transpose(glm::mat3(right, up, glm::cross(right, up)))));
-    camera.fieldOfView = 35;
-    camera.distance = static_cast<float>(world.halfSize[axes.up]) / std::tan(glm::radians(camera.fieldOfView) / 2);
-    return camera;
-}
-
 /// Where plane `index` of `count` lies: in the middle of its share of the box.
 double planePosition(const volume::Box& bounds, int axis, int index, int count) {
     return bounds.lo[axis] + bounds.size()[axis] * (index + 0.5) / count;
@@ -53,7 +39,7 @@ void drawSlice(ViewContext& context, vis::ViewTargetPtr& target, const std::stri
     const volume::DatasetInfo& info = context.source->info();
     vis::Scene scene = themedScene(context.session);
     scene.paper.reset();
-    scene.camera = cameraOf(axes, vis::worldFrame(info.bounds, context.session.stretch));
+    scene.camera = vis::planeCamera(axes.right, axes.up, vis::worldFrame(info.bounds, context.session.stretch));
     scene.showBox = false;
     vis::SliceLayer layer;
     layer.channel = channel;

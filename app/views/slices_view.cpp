@@ -10,7 +10,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <glm/gtc/quaternion.hpp>
 
 namespace tessera::app {
 
@@ -32,19 +31,6 @@ struct SlicesCache : ViewCache {
     int lens = -1; ///< that is dragged, in place of the cursor
     Readout readout;
 };
-
-vis::Camera sliceCamera(const Plane& plane, const vis::WorldFrame& world) {
-    vis::Camera camera;
-    camera.projection = vis::Projection::Orthographic;
-    glm::vec3 right(0), up(0);
-    right[plane.right] = 1;
-    up[plane.up] = 1;
-    // Rows of the rotation are the eye's axes in world space; glm matrices are made of columns.
-    camera.orientation = glm::normalize(glm::quat_cast(glm::transpose(glm::mat3(right, up, glm::cross(right, up)))));
-    camera.fieldOfView = 35;
-    camera.distance = static_cast<float>(world.halfSize[plane.up]) / std::tan(glm::radians(camera.fieldOfView) / 2);
-    return camera;
-}
 
 /// Size of the first of two columns or rows whose plots share `room` in proportion to the box, none too narrow to
 /// read; each has `around` pixels of axes besides.
@@ -165,7 +151,7 @@ void drawPlane(ViewContext& context, SlicesCache& cache, const SlicesView& view,
 
     vis::Scene scene = themedScene(session);
     scene.paper.reset();
-    scene.camera = sliceCamera(plane, world);
+    scene.camera = vis::planeCamera(plane.right, plane.up, world);
     scene.showBox = false;
     vis::SliceLayer layer;
     layer.channel = channel;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/gtc/matrix_transform.hpp>
+#include <glm/gtc/quaternion.hpp>
 
 namespace tessera::vis {
 
@@ -138,6 +139,20 @@ glm::quat standardOrientation(StandardView view) {
         return glm::angleAxis(std::atan(std::sqrt(0.5f)), kX) * glm::angleAxis(quarter / 2, kY);
     }
     return {1, 0, 0, 0};
+}
+
+Camera planeCamera(int right, int up, const WorldFrame& world) {
+    Camera camera;
+    camera.projection = Projection::Orthographic;
+    glm::vec3 across(0), upward(0);
+    across[right] = 1;
+    upward[up] = 1;
+    // Rows of the rotation are the eye's axes in world space; glm matrices are made of columns.
+    camera.orientation =
+        glm::normalize(glm::quat_cast(glm::transpose(glm::mat3(across, upward, glm::cross(across, upward)))));
+    camera.fieldOfView = 35;
+    camera.distance = static_cast<float>(world.halfSize[up]) / std::tan(glm::radians(camera.fieldOfView) / 2);
+    return camera;
 }
 
 } // namespace tessera::vis

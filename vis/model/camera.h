@@ -87,5 +87,8 @@ enum class StandardView { Front, Back, Left, Right, Top, Bottom, Isometric };
 inline constexpr std::string_view kStandardViewNames[] = {"front", "back",   "left",     "right",
                                                           "top",   "bottom", "isometric"};
 glm::quat standardOrientation(StandardView view);
+/// Looks straight at a plane, world axis `right` to the right and `up` up (0..2), so that the box fills the picture's
+/// height.
+Camera planeCamera(int right, int up, const WorldFrame& world);
 
 } // namespace tessera::vis
