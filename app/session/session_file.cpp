@@ -141,6 +141,19 @@ void migrateBrushes(Json& document) {
     }
 }
 
+/// Up to schema 1 the style "xray" was the mean along the ray.
+void renameAverage(Json& json) {
+    if (json.is_object()) {
+        if (const auto style = json.find("style"); style != json.end() && *style == "xray") *style = "average";
+        if (const auto path = json.find("path"), value = json.find("value");
+            path != json.end() && path->is_string() && path->get_ref<const std::string&>().ends_with("/style") &&
+            value != json.end() && *value == "xray")
+            *value = "average";
+    }
+    if (json.is_structured())
+        for (Json& part : json) renameAverage(part);
+}
+
 } // namespace
 
 void migrate(Json& document, const std::string& file) {
@@ -159,8 +172,11 @@ void migrate(Json& document, const std::string& file) {
         if (const auto stretch = document.find("stretch"); stretch != document.end() && stretch->is_number())
             *stretch = Json::array({1, 1, stretch->get<double>()});
     }
-    if (schema < 2) migrateBrushes(document);
-    if (schema < 2) moveLight(document);
+    if (schema < 2) {
+        migrateBrushes(document);
+        moveLight(document);
+        renameAverage(document);
+    }
     document["schema"] = kSessionSchema;
 }
 

@@ -297,6 +297,22 @@ TEST(HistoryTest, PlayingIsNoEdit) {
     EXPECT_EQ(history.undo().time, 5);
 }
 
+TEST(Session, TheFormerXrayIsAnAverage) {
+    const SessionDocument old = parseSession(
+        R"({"schema": 1, "layers": [{"name": "a", "technique": {"type": "volume", "channel": "T", "style": "xray"}}],
+            "history": {"position": 1, "steps": [{"label": "s",
+                "forward": [{"op": "replace", "path": "/layers/0/technique/style", "value": "xray"}],
+                "inverse": [{"op": "replace", "path": "/layers/0/technique/style", "value": "composite"}]}]}})",
+        "x");
+    EXPECT_EQ(old.raw["layers"][0]["technique"]["style"], "average");
+    EXPECT_EQ(old.raw["history"]["steps"][0]["forward"][0]["value"], "average");
+    EXPECT_EQ(old.raw["history"]["steps"][0]["inverse"][0]["value"], "composite");
+    const SessionDocument now = parseSession(
+        R"({"schema": 2, "layers": [{"name": "a", "technique": {"type": "volume", "channel": "T", "style": "xray"}}]})",
+        "x");
+    EXPECT_EQ(now.raw["layers"][0]["technique"]["style"], "xray");
+}
+
 TEST(SessionTest, BrushesOfTheFirstSchemaBecomeRegions) {
     const SessionDocument old = parseSession(R"({"schema": 1, "selection": {"combine": "any", "contextOpacity": 0.5,
         "brushes": [{"name": "hot", "inverted": true, "intervals": [{"channel": "T", "lo": 3, "hi": 4, "soft": 0.5}]},
