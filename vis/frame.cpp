@@ -32,11 +32,16 @@ std::vector<Tile> tilesOf(glm::ivec2 size, int edge) {
 
 /// Tables of a bound plan and the program variant it wants.
 ProgramRecipe Renderer::Impl::prepare(ViewTarget& target, const Scene& scene, const RayPlan& plan) {
+    const auto recipe = [&] {
+        ProgramRecipe made = rayRecipe(plan, scene, source->grid(), target.skip && !lensesBend(scene));
+        if (options.countSamples) made.defines.emplace_back("COUNT_SAMPLES", "1");
+        return made;
+    };
     // Tables depend on these alone; a camera that moves keeps them.
     if (target.tablesFor && target.tablesRevision == residency.revision() && target.tablesFor->layers == scene.layers &&
         target.tablesFor->transfer == scene.transfer && target.tablesFor->render.filter == scene.render.filter &&
         target.tablesKeys == target.shown)
-        return rayRecipe(plan, scene, source->grid(), target.skip && !lensesBend(scene));
+        return recipe();
     target.tablesFor = scene;
     target.tablesRevision = residency.revision();
     target.tablesKeys = target.shown;
@@ -66,7 +71,7 @@ ProgramRecipe Renderer::Impl::prepare(ViewTarget& target, const Scene& scene, co
                             GL_RED_INTEGER, GL_UNSIGNED_BYTE, blocks->distance.data());
         glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
     }
-    return rayRecipe(plan, scene, source->grid(), target.skip && !lensesBend(scene));
+    return recipe();
 }
 
 /// Rasterises the geometry for a picture of this size, unless that is what the target has.

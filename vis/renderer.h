@@ -20,6 +20,7 @@ struct RendererOptions {
     /// Largest channel, in texels, kept as one texture: cheapest to sample. Larger ones are cut into bricks.
     std::size_t denseTexels = std::size_t(32) << 20;
     bool exactTextures = false; ///< 32-bit float bricks instead of 16-bit: for comparison with the reference
+    bool countSamples = false;  ///< instead of colours, readLinear gives how often each ray reconstructed a layer (red)
 };
 
 /// How a picture is wanted now.

@@ -23,9 +23,13 @@ BenchTable benchCodec();
 BenchTable benchThesisSizes();
 BenchTable benchThesisCoding();
 BenchTable benchThesisFrames();
-/// Milliseconds per frame at 512x512 for 256^3 volumes, beside VTK's mappers where they are at hand.
+/// Milliseconds per frame at 512x512 beside VTK's mappers where they are at hand, with geometric means over the
+/// volumes.
 BenchTable benchRender();
 /// Milliseconds per frame of the fuel cell's temperature in each look, beside plain compositing.
 BenchTable benchStyles();
+/// Every mode of the ray caster on small, 256^3 and full-model volumes: milliseconds per frame at 512x512, samples
+/// taken, bytes in textures, error against the double-precision reference.
+BenchTable benchModes();
 
 } // namespace tessera::app

@@ -132,6 +132,9 @@ void main() {
             before[i] = present(s) ? s.x * layerMap[i].x + layerMap[i].y : kUnknown;
         }
 #endif
+#ifdef COUNT_SAMPLES
+    int samples = 0;
+#endif
     int k = 0;
     while (k < count && color.a < kOpaque) {
         bool hit = false;
@@ -174,6 +177,9 @@ void main() {
 #endif
 #if EVENTS > 0
             hit = float(k) >= nextEvent;
+#endif
+#ifdef COUNT_SAMPLES
+            samples += LAYERS;
 #endif
             vec3 seen = origin + direction * (inside.x + (float(k) + phase) * stepLength);
             for (int i = 0; i < LAYERS; ++i) {
@@ -416,6 +422,9 @@ void main() {
     }
 #endif
     outColor = meets ? color : vec4(0.0);
+#if defined(COUNT_SAMPLES) && LAYERS > 0
+    outColor = vec4(float(samples), 0.0, 0.0, 1.0);
+#endif
     outPick = vec2(pick <= kNoPick ? -1e9 : inside.x + (pick + phase) * stepLength, 0.0);
 #if CONTEXT_BLUR
     outPick.y = meets && color.a > 0.0 ? interest / color.a : 0.0;

@@ -1,0 +1,27 @@
+#pragma once
+
+#include "vis/reference/raycast.h"
+#include "vis/renderer.h"
+
+#include <string>
+
+/// What the rendering benchmarks share: pictures of one layer, timed, compared and counted.
+namespace tessera::app {
+
+inline constexpr int kBenchPicture = 512; ///< pixels along an edge of the timed pictures
+inline constexpr int kBenchCompared = 48; ///< of the pictures compared with the reference
+inline constexpr int kBenchFrames = 3;    ///< timed pictures, of which the median counts
+
+/// One layer of parameter "v" (range 0..255) seen as a whole, a sample per voxel.
+vis::Scene benchScene(const vis::Technique& technique, const std::vector<glm::vec2>& opacity);
+
+/// Median milliseconds of a picture while the camera turns, after one to warm up.
+double timeFrames(vis::Renderer& renderer, vis::Scene scene);
+
+/// A picture of kBenchCompared pixels, linear.
+vis::reference::Image benchPicture(vis::Renderer& renderer, const vis::Scene& scene);
+
+/// A number with so many decimals; no more than the field's width is ever needed.
+std::string decimals(double value, int digits);
+
+} // namespace tessera::app
