@@ -1,5 +1,6 @@
 #pragma once
 
+#include "volume/load_once.h"
 #include "volume/mesh/sample_grid.h"
 
 #include <functional>
@@ -27,6 +28,21 @@ VectorGrid readVector(const BrickSource& source, int parameter, int time, int le
 
 using VectorField = std::function<std::optional<glm::dvec3>(glm::dvec3 position)>;
 
+/// A vector parameter at all its times, read when asked for; between two of them, linear. Refers to the source.
+/// May be used from several threads. Throws what readVector does.
+class VectorSeries {
+public:
+    VectorSeries(const BrickSource& source, int parameter, int level);
+    /// Empty before the first and after the last time, and where either neighbour has no vector.
+    std::optional<glm::dvec3> at(glm::dvec3 position, double time) const;
+
+private:
+    std::vector<double> times_;
+    mutable LoadOnce<std::size_t, VectorGrid, std::hash<std::size_t>> frames_;
+};
+
+using ChangingField = std::function<std::optional<glm::dvec3>(glm::dvec3 position, double time)>;
+
 struct StreamlineSettings {
     glm::dvec3 cell{1};       ///< steps and errors are measured in these lengths
     double tolerance = 1e-4;  ///< error of a step, cells
@@ -46,5 +62,21 @@ std::vector<glm::dvec3> streamline(const VectorField& field, glm::dvec3 seed, co
 /// Of each seed, in order; the same lines on any number of threads. `field` is called from all of them. Cancelled.
 std::vector<std::vector<glm::dvec3>> streamlines(const VectorField& field, std::span<const glm::dvec3> seeds,
                                                  const StreamlineSettings& settings, const Progress& progress = {});
+
+/// Where a particle is: vertices in the order of time.
+struct Pathline {
+    std::vector<glm::dvec3> places;
+    std::vector<double> times;
+};
+
+/// The way of a particle that is at `seed` at a time, from where it enters the field, or `begin`, to where it leaves
+/// it, or `end`. The integrator, and what ends a line, as of streamline(). The field's unit: lengths over times.
+Pathline pathline(const ChangingField& field, glm::dvec3 seed, double time, double begin, double end,
+                  const StreamlineSettings& settings);
+
+/// Of each seed, as streamlines().
+std::vector<Pathline> pathlines(const ChangingField& field, std::span<const glm::dvec3> seeds, double time,
+                                double begin, double end, const StreamlineSettings& settings,
+                                const Progress& progress = {});
 
 } // namespace tessera::volume

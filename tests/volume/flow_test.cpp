@@ -133,6 +133,55 @@ TEST(Streamline, TheSameOnAnyNumberOfThreads) {
     EXPECT_EQ(many, streamlines(turning, seeds, {.longest = 20}));
 }
 
+// Wind that turns with time: particles go around circles though every streamline is straight.
+TEST(Pathline, OfATurningWindIsACircle) {
+    const ChangingField wind = [](glm::dvec3, double t) -> std::optional<glm::dvec3> {
+        return glm::dvec3(2 * std::cos(t), 2 * std::sin(t), 0);
+    };
+    const Pathline line = pathline(wind, {0, 0, 0}, 1, 0, 2 * std::numbers::pi, {.tolerance = 1e-7});
+    ASSERT_GT(line.places.size(), 20u);
+    ASSERT_EQ(line.places.size(), line.times.size());
+    EXPECT_NEAR(line.times.front(), 0, 1e-9);
+    EXPECT_NEAR(line.times.back(), 2 * std::numbers::pi, 1e-9);
+    const glm::dvec3 middle(-2 * std::sin(1.0), 2 * std::cos(1.0), 0);
+    for (std::size_t i = 0; i < line.places.size(); ++i) {
+        const double t = line.times[i];
+        const glm::dvec3 known = middle + glm::dvec3(2 * std::sin(t), -2 * std::cos(t), 0);
+        EXPECT_LT(glm::distance(line.places[i], known), 1e-4);
+        EXPECT_TRUE(i == 0 || t > line.times[i - 1]);
+    }
+    EXPECT_LT(glm::distance(line.places.front(), line.places.back()), 1e-4) << "once around";
+}
+
+// Stored at two times, linear between them: a wind of 1 + t moves a particle by t + t^2 / 2.
+TEST(Pathline, OfASeriesBlendsItsTimes) {
+    const Lattice lattice = test::ccLattice({33, 9, 9}, glm::dvec3(0.5));
+    Dataset dataset;
+    dataset.info.lattice = lattice;
+    dataset.info.bounds = test::boxOf(lattice);
+    dataset.info.times = {0, 2};
+    dataset.info.parameters.resize(1);
+    dataset.info.parameters[0].components = 3;
+    dataset.load = [lattice](int, int component, int time) {
+        return test::sampled<float>(lattice, [&](glm::dvec3) { return component > 0 ? 0.0 : time > 0 ? 3.0 : 1.0; });
+    };
+    for (const LatticeKind kind : {LatticeKind::CC, LatticeKind::BCC}) {
+        Dataset copy = dataset;
+        const auto source = makeMemorySource(std::move(copy), {.lattice = kind});
+        const VectorSeries series(*source, 0, 0);
+        EXPECT_FALSE(series.at({4, 2, 2}, -0.1));
+        EXPECT_FALSE(series.at({4, 2, 2}, 2.1));
+        const Pathline line = pathline([&](glm::dvec3 p, double t) { return series.at(p, t); }, {4, 2, 2}, 0, 0, 2,
+                                       {.cell = glm::dvec3(0.5)});
+        ASSERT_GT(line.places.size(), 3u);
+        EXPECT_NEAR(line.times.back(), 2, 1e-9);
+        for (std::size_t i = 0; i < line.places.size(); ++i) {
+            const double t = line.times[i];
+            EXPECT_NEAR(line.places[i].x, 4 + t + t * t / 2, 1e-3);
+        }
+    }
+}
+
 TEST(Seeds, LieWhereTheShapeSays) {
     const auto everywhere = [](glm::dvec3) { return 1.0; };
     const auto line =

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <limits>
 #include <numbers>
 
 namespace tessera::vis {
@@ -129,6 +130,51 @@ std::function<double(glm::dvec3)> weightOf(const volume::BrickSource& source, co
     };
 }
 
+/// The ways of particles through all times, coloured by what they meet when they are there.
+LineSet particleWays(const volume::BrickSource& source, const FlowLayer& layer, int parameter, int time, int level,
+                     std::span<const glm::dvec3> seeds, const volume::StreamlineSettings& settings,
+                     const Progress& progress) {
+    const std::vector<double>& times = source.info().times;
+    const volume::VectorSeries series(source, parameter, level);
+    const volume::ChangingField field = [&](glm::dvec3 place, double when) -> std::optional<glm::dvec3> {
+        const auto vector = series.at(place, when);
+        if (!vector) return std::nullopt;
+        return *vector * double(layer.speed);
+    };
+    LineSet lines;
+    std::vector<double> moments;
+    for (const volume::Pathline& line : volume::pathlines(field, seeds, times[std::size_t(time)], times.front(),
+                                                          times.back(), settings, progress.part(0, 0.8))) {
+        if (line.places.size() < 2) continue;
+        lines.positions.insert(lines.positions.end(), line.places.begin(), line.places.end());
+        moments.insert(moments.end(), line.times.begin(), line.times.end());
+        lines.ends.push_back(std::uint32_t(lines.positions.size()));
+    }
+    // Vertices by the stored time before them; the values of both neighbours, blended.
+    lines.scalars.resize(lines.positions.size());
+    for (std::size_t before = 0; before < times.size(); ++before) {
+        const double next = before + 1 < times.size() ? times[before + 1] : std::numeric_limits<double>::infinity();
+        std::vector<std::size_t> vertices;
+        std::vector<glm::vec3> places;
+        for (std::size_t v = 0; v < moments.size(); ++v)
+            if (moments[v] >= times[before] && moments[v] < next) {
+                vertices.push_back(v);
+                places.push_back(lines.positions[v]);
+            }
+        if (vertices.empty()) continue;
+        const auto a = valuesAt(source, layer.channel, int(before), level, places, progress.part(0.8, 1));
+        const auto b = before + 1 < times.size()
+                           ? valuesAt(source, layer.channel, int(before) + 1, level, places, progress.part(0.8, 1))
+                           : a;
+        for (std::size_t i = 0; i < vertices.size(); ++i) {
+            const double share =
+                before + 1 < times.size() ? (moments[vertices[i]] - times[before]) / (next - times[before]) : 0;
+            lines.scalars[vertices[i]] = float(a[i] * (1 - share) + b[i] * share);
+        }
+    }
+    return lines;
+}
+
 } // namespace
 
 volume::SurfaceMesh tubes(const LineSet& lines, double radius, glm::dvec3 stretch) {
@@ -164,11 +210,11 @@ volume::SurfaceMesh cones(std::span<const Glyph> glyphs, glm::dvec3 stretch) {
     return glyphMesh(glyphs, stretch, false);
 }
 
-int flowLevel(const volume::BrickGrid& grid) {
+int flowLevel(const volume::BrickGrid& grid, int times) {
     int level = 0;
     for (; level + 1 < grid.levels; ++level) {
         const glm::ivec3 size = grid.levelSamples(level);
-        if (double(size.x) * size.y * size.z <= kMostSamples) break;
+        if (double(size.x) * size.y * size.z * times <= kMostSamples) break;
     }
     return level;
 }
@@ -179,9 +225,9 @@ std::shared_ptr<const Geometry> makeFlow(const volume::BrickSource& source, cons
     const auto parameter = std::find_if(info.parameters.begin(), info.parameters.end(),
                                         [&](const auto& p) { return p.components == 3 && p.name == layer.vector; });
     if (parameter == info.parameters.end()) return nullptr;
-    const int level = flowLevel(source.grid());
-    const auto grid =
-        volume::readVector(source, int(parameter - info.parameters.begin()), time, level, progress.part(0, 0.3));
+    const int index = int(parameter - info.parameters.begin());
+    const int level = flowLevel(source.grid(), layer.kind == FlowKind::Pathlines ? int(info.times.size()) : 1);
+    const auto grid = volume::readVector(source, index, time, level, progress.part(0, 0.3));
     const volume::VectorField field = [&](glm::dvec3 place) { return grid.at(place); };
     const auto magnitude = info.findChannel(layer.vector);
     const double fastest = magnitude ? info.channelRange(info.channels()[std::size_t(*magnitude)]).hi : 0;
@@ -204,6 +250,13 @@ std::shared_ptr<const Geometry> makeFlow(const volume::BrickSource& source, cons
         LineSet lines;
         const volume::StreamlineSettings settings{
             .cell = glm::abs(grid.x.lattice.spacing), .longest = double(layer.length) * longest, .slowest = slowest};
+        if (layer.kind == FlowKind::Pathlines) {
+            volume::StreamlineSettings particles = settings;
+            particles.slowest *= double(layer.speed);
+            out->mesh = tubes(particleWays(source, layer, index, time, level, seeds, particles, progress.part(0.4, 1)),
+                              double(layer.radius) * longestDrawn, stretch);
+            return out;
+        }
         for (const auto& line : volume::streamlines(field, seeds, settings, progress.part(0.4, 0.8))) {
             if (line.size() < 2) continue;
             lines.positions.insert(lines.positions.end(), line.begin(), line.end());

@@ -24,8 +24,8 @@ volume::SurfaceMesh tubes(const LineSet& lines, double radius, glm::dvec3 stretc
 volume::SurfaceMesh arrows(std::span<const Glyph> glyphs, glm::dvec3 stretch);
 volume::SurfaceMesh cones(std::span<const Glyph> glyphs, glm::dvec3 stretch);
 
-/// The finest level of detail with few enough samples to follow a vector in.
-int flowLevel(const volume::BrickGrid& grid);
+/// The finest level of detail with few enough samples to follow a vector in, at some times at once.
+int flowLevel(const volume::BrickGrid& grid, int times = 1);
 
 /// A flow layer of a data set, coloured by the values of its channel. Nothing where the data has no such vector.
 /// Throws Error, Cancelled.

@@ -8,10 +8,11 @@
 
 namespace tessera::vis {
 
-enum class FlowKind { Streamlines, Tubes, Hedgehogs, Arrows, Cones };
-inline constexpr std::string_view kFlowKindNames[] = {"streamlines", "tubes", "hedgehogs", "arrows", "cones"};
+enum class FlowKind { Streamlines, Tubes, Hedgehogs, Arrows, Cones, Pathlines };
+inline constexpr std::string_view kFlowKindNames[] = {"streamlines", "tubes", "hedgehogs",
+                                                      "arrows",      "cones", "pathlines"};
 inline bool followsFlow(FlowKind kind) {
-    return kind == FlowKind::Streamlines || kind == FlowKind::Tubes;
+    return kind == FlowKind::Streamlines || kind == FlowKind::Tubes || kind == FlowKind::Pathlines;
 }
 
 /// A vector parameter as lines that follow it, or as glyphs where they begin; made outside of the renderer
@@ -27,6 +28,7 @@ struct FlowLayer {
     int random = 1;
     std::string weight = {};    ///< "" = none
     float length = 2;           ///< of a line each way, parts of the data's longest edge
+    float speed = 1;            ///< of particles: lengths of the data over its times
     float minimumSpeed = 1e-4f; ///< parts of the greatest
     float radius = 0.004f;      ///< of a tube, parts of the longest edge as drawn
     float size = 0.05f;         ///< of the longest glyph, parts of the longest edge as drawn
@@ -40,10 +42,13 @@ struct FlowLayer {
         visit(
             self.channel,
             FieldInfo{.key = "channel", .unit = "", .doc = "Parameter whose colours are shown", .refersTo = "channel"});
-        visit(self.kind, FieldInfo{.key = "kind",
-                                   .unit = "",
-                                   .doc = "Lines or tubes along the flow, or lines, arrows or cones where they begin",
-                                   .names = kFlowKindNames});
+        visit(self.kind,
+              FieldInfo{.key = "kind",
+                        .unit = "",
+                        .doc =
+                            "Lines or tubes along the flow of this moment, lines, arrows or cones where they begin, or "
+                            "the ways of particles that are there now, through all times",
+                        .names = kFlowKindNames});
         visit(self.seeds, FieldInfo{.key = "seeds",
                                     .unit = "",
                                     .doc = "How beginnings are spread from corner to corner: along the diagonal, on "
@@ -74,6 +79,12 @@ struct FlowLayer {
                                      .doc = "Greatest length of a line each way, in longest edges of the data",
                                      .range = Range{0.001, 100},
                                      .logScale = true});
+        visit(self.speed, FieldInfo{.key = "speed",
+                                    .unit = "",
+                                    .doc = "Pathlines: lengths of the data's unit that a vector of 1 goes in its unit "
+                                           "of time; 1 = m, s and m/s",
+                                    .range = Range{1e-9, 1e9},
+                                    .logScale = true});
         visit(self.minimumSpeed, FieldInfo{.key = "minimumSpeed",
                                            .unit = "",
                                            .doc = "Share of the greatest speed below which nothing is drawn",
