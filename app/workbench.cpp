@@ -308,6 +308,12 @@ void Workbench::answerFile(const FileDialog::Answer& answer) {
                 writeTextAtomically(path, text);
                 return [this, name] { message("Exported " + name); };
             });
+    } else if (answer.purpose == "take" && takeFile_) {
+        try {
+            std::exchange(takeFile_, {})(session_, answer.paths.front());
+        } catch (const Error& error) {
+            message(error.what(), true);
+        }
     } else if (answer.purpose == "picture") {
         export_ = Export{picture_, answer.paths.front()};
     }

@@ -162,7 +162,8 @@ private:
     std::set<std::string> drawn_;
     Playback playback_;
     std::optional<Export> export_;
-    std::function<std::string(const Progress&)> exportText_; ///< what the next answer of "export" writes
+    std::function<std::string(const Progress&)> exportText_;     ///< what the next answer of "export" writes
+    std::function<void(Session&, const std::string&)> takeFile_; ///< what the next answer of "take" does
     PictureRequest picture_;
     bool askPicture_ = false, askQuit_ = false, askHelp_ = false, askAbout_ = false;
     bool quit_ = false, busy_ = true, quitAfterSave_ = false, interacting_ = false;

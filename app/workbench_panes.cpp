@@ -38,6 +38,11 @@ void Workbench::drawPane(const std::string& pane) {
                                 files_.show(FileMode::Save, "Export", "export", files_.folder(), name,
                                             dot == std::string::npos ? "" : name.substr(dot));
                             },
+                        .askFile =
+                            [this](const std::string& title, std::function<void(Session&, const std::string&)> take) {
+                                takeFile_ = std::move(take);
+                                files_.show(FileMode::Open, title, "take", files_.folder());
+                            },
                         .busy = false,
                         .interacting = interacting_};
     ImGui::PushID(pane.c_str());

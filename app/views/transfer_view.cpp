@@ -1,4 +1,7 @@
+#include "app/session/colormap_file.h"
+#include "app/session/describe_json.h"
 #include "app/ui/widgets.h"
+#include "app/views/color_edit.h"
 #include "app/views/opacity_edit.h"
 #include "app/views/readout.h"
 #include "app/views/statistics_feed.h"
@@ -17,6 +20,7 @@ struct TransferCache : ViewCache {
     StatisticsFeed feed;
     Readout readout;
     OpacityDrag drag;
+    ColorDrag colors;
     DerivativeFeed derivatives;
     RegionPage regions;
     BoundaryPage boundaries;
@@ -129,11 +133,38 @@ void chooseFunction(const Session& session, TransferView& view, const std::strin
     ImGui::EndCombo();
 }
 
+/// Colours of one's own: from the map in use, from a file, into one.
+void drawOwnColors(ViewContext& context, vis::TransferFunction& function, const std::string& channel) {
+    const bool own = !function.colors.empty();
+    if (iconButton(context, "own colours", icons::kColors, "Colours of one's own", true, own))
+        ImGui::OpenPopup("own colours");
+    if (!ImGui::BeginPopup("own colours")) return;
+    if (ImGui::MenuItem("Edit", nullptr, own)) {
+        std::vector<vis::ColorStop> colors;
+        if (!own) {
+            colors = ownColors(function);
+            function.reversed = false; // they run as the map did
+        }
+        function.colors = std::move(colors);
+    }
+    if (ImGui::MenuItem("Import...", nullptr, false, bool(context.askFile)))
+        context.askFile("Import colours", [channel](Session& session, const std::string& path) {
+            vis::TransferFunction& changed = transferOf(session, channel);
+            changed.colors = readColormap(path);
+            changed.reversed = false;
+        });
+    if (ImGui::MenuItem("Export...", nullptr, false, own && context.exportText))
+        context.exportText(channel + "-colors.json", [colors = function.colors](const Progress&) {
+            return Json{{"colors", toJson(colors)}}.dump(2) + "\n";
+        });
+    ImGui::EndPopup();
+}
+
 void drawControls(ViewContext& context, TransferCache& cache, TransferView& view, const volume::DatasetInfo& info,
                   std::string channel) {
     const float room = ImGui::GetContentRegionAvail().x, gap = ImGui::GetStyle().ItemSpacing.x;
     const float reverse = ImGui::GetFrameHeight() + em() * 0.4f;
-    const float combo = std::min(em() * 11, (room - reverse - 2 * gap) / 2);
+    const float combo = std::min(em() * 11, (room - 2 * reverse - 3 * gap) / 2);
     ImGui::SetNextItemWidth(combo);
     if (chooseChannel("##channel", &info, channel)) view.channel = channel;
     if (ImGui::IsItemHovered()) tooltip("Parameter whose colours and opacity are edited");
@@ -149,11 +180,17 @@ void drawControls(ViewContext& context, TransferCache& cache, TransferView& view
     if (choice && room < em() * 34) ImGui::NewLine();
     ImGui::SameLine();
     ImGui::SetNextItemWidth(combo);
-    chooseColormap("##colormap", function.colormap, function.reversed);
+    if (chooseColormap("##colormap", function.colormap, function.reversed)) function.colors.clear();
     if (ImGui::IsItemHovered()) tooltip("Colour map; perceptually uniform ones come first");
     ImGui::SameLine();
-    if (iconButton(context, "reverse", icons::kReverse, "Run the colour map backwards", true, function.reversed))
-        function.reversed = !function.reversed;
+    if (iconButton(context, "reverse", icons::kReverse, "Run the colour map backwards", true, function.reversed)) {
+        if (function.colors.empty())
+            function.reversed = !function.reversed;
+        else
+            reverseColors(function.colors);
+    }
+    ImGui::SameLine(0, em() * 0.2f);
+    drawOwnColors(context, function, functionName(context.session, view, channel));
 
     const Range data = info.channelRange(info.channels()[static_cast<std::size_t>(*info.findChannel(channel))]);
     const bool wide = room > em() * 48;
@@ -233,9 +270,10 @@ void drawPlot(ViewContext& context, TransferCache& cache, const TransferView& vi
 
     const ImVec2 origin = ImGui::GetCursorScreenPos(), room = ImGui::GetContentRegionAvail();
     const float left = axisRoom(AxisSide::Left, {0, 1}, room.y > em() * 10),
-                bottom = axisRoom(AxisSide::Bottom, span, true), strip = std::round(em() * 0.9f);
+                bottom = axisRoom(AxisSide::Bottom, span, true), strip = std::round(em() * 0.9f),
+                stops = function.colors.empty() ? 0 : std::round(em() * 0.8f);
     const PlotFrame frame{{origin.x + left, origin.y + em() * 0.4f},
-                          {origin.x + room.x - em() * 0.6f, origin.y + room.y - bottom - strip - em() * 0.35f},
+                          {origin.x + room.x - em() * 0.6f, origin.y + room.y - bottom - strip - stops - em() * 0.35f},
                           span,
                           {0, 1}};
     if (frame.width() < em() * 4 || frame.height() < em() * 1.5f) {
@@ -289,8 +327,15 @@ void drawPlot(ViewContext& context, TransferCache& cache, const TransferView& vi
     }
     const ImVec2 low{frame.min.x, frame.max.y + em() * 0.35f}, high{frame.max.x, frame.max.y + em() * 0.35f + strip};
     drawStrip(context, cache, function, range, frame, low, high);
+    if (stops > 0) {
+        const float from = frame.pixel(range.lo, 0).x, to = frame.pixel(range.hi, 0).x;
+        draw.PushClipRect({frame.min.x - em() * 0.5f, high.y}, {frame.max.x + em() * 0.5f, high.y + stops}, true);
+        if (editColors(cache.colors, function.colors, {from, high.y + 1}, {to, high.y + stops}))
+            context.interacting = true;
+        draw.PopClipRect();
+    }
     PlotFrame axis = frame;
-    axis.max.y = high.y;
+    axis.max.y = high.y + stops;
     drawAxis(draw, axis, AxisSide::Bottom, channel.name, channel.unit, origin.x, origin.x + room.x);
 }
 

@@ -35,6 +35,9 @@ struct ViewContext {
     std::function<void(const std::string& command)> runCommand = {};
     /// Asks where to save, then writes what `make` returns, in the background; null in tests.
     std::function<void(const std::string& fileName, std::function<std::string(const Progress&)> make)> exportText = {};
+    /// Asks for a file to open, then changes the session by it as an edit; an Error goes to the log. Null in tests.
+    std::function<void(const std::string& title, std::function<void(Session&, const std::string& path)> take)> askFile =
+        {};
     bool busy = false;        ///< set by a view that needs another frame soon (refining, animating, waiting for a job)
     bool interacting = false; ///< some edit is in progress (mouse held on a control): draw at reduced size
 };

@@ -1,4 +1,5 @@
 #include "app/ui/theme.h"
+#include "app/views/color_edit.h"
 #include "app/views/derivative_feed.h"
 #include "app/views/transfer_pages.h"
 #include "app/views/view_parts.h"
@@ -56,6 +57,26 @@ TEST(DerivativeImage, RowsRunDownAndMoreSamplesStandOutMore) {
         const int many = rgba[8], one = rgba[4], ground = dark ? 0 : 255;
         EXPECT_GT(std::abs(many - ground), std::abs(one - ground));
     }
+}
+
+TEST(ColorEdit, OwnColorsBeginAsTheMapThatWasInUse) {
+    for (const bool reversed : {false, true})
+        for (const char* map : {"viridis", "gray", "magma"}) {
+            vis::TransferFunction function;
+            function.colormap = map;
+            function.reversed = reversed;
+            vis::TransferFunction own;
+            own.colors = ownColors(function);
+            ASSERT_GE(own.colors.size(), 3u);
+            for (int i = 0; i <= 100; ++i) {
+                const glm::dvec4 a = vis::evaluate(function, {0, 1}, i / 100.0),
+                                 b = vis::evaluate(own, {0, 1}, i / 100.0);
+                for (int c = 0; c < 3; ++c) EXPECT_NEAR(a[c], b[c], 0.021) << map;
+            }
+        }
+    vis::TransferFunction gray;
+    gray.colormap = "gray";
+    EXPECT_LE(ownColors(gray).size(), 9u) << "as few as do";
 }
 
 /// The transfer function view in a window of its own, without a window system.
@@ -177,6 +198,50 @@ TEST_F(TransferPages, TheCurveFollowsTheEmphasisOfBoundaries) {
     function.opacity = {{0, 0}, {1, 1}}; // undone, or edited elsewhere: stays
     draw();
     EXPECT_EQ(function.opacity.size(), 2u);
+}
+
+TEST_F(TransferPages, StopsOfOwnColorsAreAddedMovedAndRemoved) {
+    std::vector<vis::ColorStop>& stops = session.transfer[channel].colors;
+    stops = {{0, {0, 0, 0}}, {1, {1, 0.5f, 0}}};
+    ColorDrag drag;
+    const auto draw = [&] {
+        ImGui::GetIO().MousePos = mouse;
+        ImGui::NewFrame();
+        ImGui::SetNextWindowPos({0, 0});
+        ImGui::SetNextWindowSize({600, 100});
+        ImGui::Begin("stops", nullptr, ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove);
+        editColors(drag, stops, {100, 40}, {500, 56});
+        ImGui::End();
+        ImGui::Render();
+    };
+    const auto press = [&](int button, ImVec2 at, ImVec2 to) {
+        mouse = at;
+        draw();
+        ImGui::GetIO().MouseDown[button] = true;
+        draw();
+        mouse = to;
+        draw();
+        draw();
+        ImGui::GetIO().MouseDown[button] = false;
+        draw();
+    };
+    ImGui::GetIO().DeltaTime = 1; // no two clicks make a double click
+    draw();
+    press(0, {200, 48}, {200, 48});
+    ASSERT_EQ(stops.size(), 3u);
+    EXPECT_NEAR(stops[1].position, 0.25f, 1e-3f);
+    EXPECT_NEAR(stops[1].color.r, 0.25f, 1e-3f) << "the colour that was there";
+    press(0, {200, 48}, {300, 48});
+    EXPECT_NEAR(stops[1].position, 0.5f, 1e-3f);
+    press(0, {300, 48}, {580, 48});
+    EXPECT_EQ(stops[1].position, 1.0f) << "no further than its neighbour";
+    press(0, {498, 48}, {300, 48});
+    press(1, {300, 48}, {300, 48});
+    EXPECT_EQ(stops.size(), 2u);
+    press(1, {100, 48}, {100, 48});
+    EXPECT_EQ(stops.size(), 2u) << "two always stay";
+    reverseColors(stops);
+    EXPECT_LE(stops[0].position, stops[1].position);
 }
 
 TEST_F(TransferPages, DrawingAloneEditsNothing) {
