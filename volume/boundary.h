@@ -19,6 +19,7 @@ struct DerivativeQuery {
     int valueBins = 256, gradientBins = 128;
     Range range{0, 0};      ///< of the values; of no width: DatasetInfo::channelRange
     double gradientTop = 0; ///< largest magnitude counted, in value units per cell; 0: width of the range / 4
+    bool operator==(const DerivativeQuery&) const = default;
 };
 
 /// The histogram volume of Kindlmann and Durkin, its axis of second derivatives reduced to their sum. Samples on the

@@ -91,6 +91,7 @@ struct TransferView {
     static constexpr std::string_view kType = "transfer";
     std::string channel; ///< "" = the channel of the first layer
     bool logHistogram = true;
+    bool visibility = false;
     bool operator==(const TransferView&) const = default;
     static void describe(auto& self, auto&& visit) {
         visit(self.channel, FieldInfo{.key = "channel",
@@ -99,6 +100,9 @@ struct TransferView {
                                       .refersTo = "channel"});
         visit(self.logHistogram,
               FieldInfo{.key = "logHistogram", .unit = "", .doc = "Show the logarithm of the counts"});
+        visit(self.visibility, FieldInfo{.key = "visibility",
+                                         .unit = "",
+                                         .doc = "Show how much of what one sees comes from which values"});
     }
 };
 

@@ -1,27 +1,11 @@
 #include "app/views/derivative_feed.h"
 
-#include "volume/error.h"
-
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 namespace tessera::app {
 
 namespace {
-
-bool same(const volume::DerivativeQuery& a, const volume::DerivativeQuery& b) {
-    return a.channel == b.channel && a.time == b.time && a.gradientTop == b.gradientTop;
-}
-
-std::shared_ptr<const DerivativeResult> compute(const volume::BrickSource& source, const volume::DerivativeQuery& query,
-                                                const Progress& progress) {
-    auto result = std::make_shared<DerivativeResult>();
-    result->query = query;
-    result->histogram = volume::derivativeHistogram(source, query, progress);
-    result->curves = volume::boundaryCurves(result->histogram);
-    return result;
-}
 
 /// sRGB byte of a grey of lightness L* (CIE 1976), 0..100.
 std::uint8_t greyOf(double lightness) {
@@ -32,66 +16,17 @@ std::uint8_t greyOf(double lightness) {
 
 } // namespace
 
-struct DerivativeFeed::State {
-    const volume::BrickSource* source = nullptr;
-    std::shared_ptr<const DerivativeResult> last;
-    std::optional<volume::DerivativeQuery> failed;
-};
-
-DerivativeFeed::DerivativeFeed() : state_(std::make_shared<State>()) {}
-
-bool DerivativeFeed::failed() const {
-    return state_->failed.has_value();
-}
-
 std::shared_ptr<const DerivativeResult> DerivativeFeed::get(ViewContext& context, const std::string& jobKey,
                                                             const volume::DerivativeQuery& query) {
-    if (state_->source != context.source.get()) {
-        context.jobs.cancel(jobKey);
-        state_ = std::make_shared<State>(); // a job of the old source finds its state gone
-        state_->source = context.source.get();
-    }
-    State& state = *state_;
-    const auto usable = state.last && state.last->query.channel == query.channel ? state.last : nullptr;
-    if (state.last && same(state.last->query, query)) return state.last;
-    if (state.failed && same(*state.failed, query)) return usable;
-    if (context.headless) {
-        try {
-            state.last = compute(*context.source, query, {});
-            return state.last;
-        } catch (const Error&) {
-            state.failed = query;
-            return usable;
-        }
-    }
-    context.busy = true;
-    // While something is dragged or played the running answer is waited for: cancelling it each frame would show none.
-    if (context.jobs.running(jobKey) && usable) return usable;
-    if (context.interacting && usable) return usable;
-    if (context.jobs.running(jobKey) && !state.last) return nullptr;
-    context.jobs.start(
-        jobKey, "Gradients",
-        [weak = std::weak_ptr(state_), source = context.source, query](const Progress& progress) -> Jobs::Finish {
-            std::shared_ptr<const DerivativeResult> result;
-            std::string failure;
-            try {
-                result = compute(*source, query, progress);
-            } catch (const Error& error) {
-                failure = error.what();
-            }
-            return [weak, result, query, failure] {
-                const auto owner = weak.lock();
-                if (!owner) return;
-                if (result) {
-                    owner->last = result;
-                    owner->failed.reset();
-                } else {
-                    owner->failed = query; // not tried again every frame
-                    throw Error(failure);
-                }
-            };
-        });
-    return usable;
+    return feed_.get(
+        context, jobKey, "Gradients", query,
+        [](const volume::BrickSource& source, const volume::DerivativeQuery& wish, const Progress& progress) {
+            DerivativeResult result;
+            result.histogram = volume::derivativeHistogram(source, wish, progress);
+            result.curves = volume::boundaryCurves(result.histogram);
+            return result;
+        },
+        [&](const volume::DerivativeQuery& answered) { return answered.channel == query.channel; });
 }
 
 std::vector<std::uint8_t> derivativeImage(const volume::DerivativeHistogram& histogram, bool dark) {

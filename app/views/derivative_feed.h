@@ -1,6 +1,6 @@
 #pragma once
 
-#include "app/views/view_context.h"
+#include "app/views/latest_feed.h"
 #include "vis/gl/plot_texture.h"
 #include "volume/boundary.h"
 
@@ -14,25 +14,22 @@ namespace tessera::app {
 
 /// What a channel's derivatives tell.
 struct DerivativeResult {
-    volume::DerivativeQuery query;
     volume::DerivativeHistogram histogram;
     volume::BoundaryCurves curves;
 };
 
-/// Keeps the last answer and asks for a new one when the wish changes. One per view, in its cache.
+/// The answers for one view, kept in its cache.
 class DerivativeFeed {
 public:
-    DerivativeFeed();
-    /// The answer to this query, else the last one of the same channel while it is being computed, else null. Sets
-    /// context.busy while a better one is on its way; headless, computes to the end.
+    /// The answer to this query, else the last one of the same channel while it is being computed, else null; as
+    /// LatestFeed::get.
     std::shared_ptr<const DerivativeResult> get(ViewContext& context, const std::string& jobKey,
                                                 const volume::DerivativeQuery& query);
     /// Whether the data could not be read; the log has the message.
-    bool failed() const;
+    bool failed() const { return feed_.failed(); }
 
 private:
-    struct State;
-    std::shared_ptr<State> state_;
+    LatestFeed<volume::DerivativeQuery, DerivativeResult> feed_;
 };
 
 /// The joint histogram as a picture, row 0 = the largest gradient: transparent where no sample is, else a grey whose

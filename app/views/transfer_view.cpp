@@ -8,6 +8,7 @@
 #include "app/views/ticks.h"
 #include "app/views/transfer_pages.h"
 #include "app/views/view_parts.h"
+#include "app/views/visibility_feed.h"
 
 #include <algorithm>
 #include <cmath>
@@ -22,6 +23,7 @@ struct TransferCache : ViewCache {
     OpacityDrag drag;
     ColorDrag colors;
     DerivativeFeed derivatives;
+    VisibilityFeed visibility;
     RegionPage regions;
     BoundaryPage boundaries;
     bool boundary = false; ///< the curve is made from boundaries: the page that edits their emphasis
@@ -213,6 +215,9 @@ void drawControls(ViewContext& context, TransferCache& cache, TransferView& view
     ImGui::SameLine(0, em() * 0.8f);
     ImGui::Checkbox("log", &view.logHistogram);
     if (ImGui::IsItemHovered()) tooltip("Show the logarithm of the number of samples");
+    ImGui::SameLine();
+    ImGui::Checkbox("visible", &view.visibility);
+    if (ImGui::IsItemHovered()) tooltip("Show how much of what one sees in 3D comes from which values");
 }
 
 /// The strip of colours below the curve, with handles at the ends of the range.
@@ -259,6 +264,29 @@ void drawStrip(ViewContext& context, TransferCache& cache, vis::TransferFunction
     }
 }
 
+/// The visibility histogram as a line over the plot, its top the plot's.
+void drawVisibility(ViewContext& context, TransferCache& cache, int channel, Range range, const PlotFrame& frame,
+                    const std::string& pane) {
+    constexpr int kBins = 96;
+    const auto seen = cache.visibility.get(context, "visibility " + pane, channel, range, kBins);
+    ImDrawList& draw = *ImGui::GetWindowDrawList();
+    const PlotColors colors = plotColors();
+    double top = 0, all = 0;
+    for (const double share : seen ? *seen : std::vector<double>{}) {
+        top = std::max(top, share);
+        all += share;
+    }
+    char text[64] = "no composite layer shows it";
+    if (seen) std::snprintf(text, sizeof text, "visible: %.0f %% covered", 100 * all);
+    draw.AddText({frame.max.x - ImGui::CalcTextSize(text).x - em() * 0.4f, frame.min.y + em() * 0.3f}, colors.cursor,
+                 text);
+    if (!(top > 0)) return;
+    std::vector<ImVec2> line;
+    for (std::size_t i = 0; i < seen->size(); ++i)
+        line.push_back(frame.pixel(range.lo + (double(i) + 0.5) / kBins * (range.hi - range.lo), (*seen)[i] / top));
+    draw.AddPolyline(line.data(), int(line.size()), colors.cursor, 0, std::max(1.5f, em() * 0.12f));
+}
+
 void drawPlot(ViewContext& context, TransferCache& cache, const TransferView& view, const volume::DatasetInfo& info,
               int index, const std::string& pane) {
     const volume::Channel channel = info.channels()[static_cast<std::size_t>(index)];
@@ -301,6 +329,7 @@ void drawPlot(ViewContext& context, TransferCache& cache, const TransferView& vi
         drawBars(draw, frame, all, (colors.bars & ~IM_COL32_A_MASK) | IM_COL32(0, 0, 0, 130));
         if (result->brushed) drawBars(draw, frame, focus, (colors.focus & ~IM_COL32_A_MASK) | IM_COL32(0, 0, 0, 170));
     }
+    if (view.visibility) drawVisibility(context, cache, index, range, frame, pane);
     draw.PopClipRect();
 
     ImGui::SetCursorScreenPos(frame.min);
