@@ -177,6 +177,34 @@ TEST_F(ResidencyTest, DistantBricksAreCoarse) {
     EXPECT_LT(std::sqrt(sum / (4 * double(fine.size()))), 0.03);
 }
 
+// Where bricks of different levels meet there is no more of a seam than the coarser one is wrong by itself: the error
+// of the mixed picture stays within that of a picture from the coarse level alone.
+TEST_F(ResidencyTest, SeamsBetweenLevelsAreBounded) {
+    Scene scene = volumeScene();
+    scene.camera.fieldOfView = 90;
+    scene.camera.distance = 0.75f; // near bricks are several times as large as far ones
+    const glm::ivec2 size(56, 56);
+    const auto with = [&](float detail, Watched& source) {
+        scene.render.detail = detail;
+        return picture(std::shared_ptr<Watched>(&source, [](Watched*) {}), bricks(), scene, size);
+    };
+    const auto all = waves(), some = waves(), none = waves();
+    const std::vector<glm::vec4> fine = with(0, *all);
+    const std::vector<glm::vec4> mixed = with(1.6f, *some);
+    const std::vector<glm::vec4> coarse = with(4, *none);
+    ASSERT_GT(some->count(0, 0), 5);
+    ASSERT_LT(some->count(0, 0), all->count(0, 0) - 20) << "levels are mixed";
+    ASSERT_EQ(none->count(0, 0), 0);
+    const auto rms = [&](const std::vector<glm::vec4>& image) {
+        double sum = 0;
+        for (std::size_t i = 0; i < image.size(); ++i) sum += glm::dot(image[i] - fine[i], image[i] - fine[i]);
+        return std::sqrt(sum / (4 * double(image.size())));
+    };
+    EXPECT_GT(rms(coarse), 0.001);
+    EXPECT_LT(rms(mixed), rms(coarse));
+    EXPECT_LT(test::maxDifference(mixed, fine), test::maxDifference(coarse, fine) + 1.0 / 255);
+}
+
 // A budget that holds only some of the bricks: no hole while bricks come and go, and it says so.
 TEST_F(ResidencyTest, NoHolesWithinTheBudget) {
     vis::RendererOptions options = bricks();
