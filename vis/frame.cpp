@@ -40,7 +40,7 @@ ProgramRecipe Renderer::Impl::prepare(ViewTarget& target, const Scene& scene, co
     // Tables depend on these alone; a camera that moves keeps them.
     if (target.tablesFor && target.tablesRevision == residency.revision() && target.tablesFor->layers == scene.layers &&
         target.tablesFor->transfer == scene.transfer && target.tablesFor->render.filter == scene.render.filter &&
-        target.tablesKeys == target.shown)
+        target.tablesKeys == target.shown && target.tablesFor->selection == scene.selection)
         return recipe();
     target.tablesFor = scene;
     target.tablesRevision = residency.revision();

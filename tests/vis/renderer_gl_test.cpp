@@ -286,6 +286,51 @@ TEST_F(RendererTest, EmptySpaceIsSkippedExactly) {
     }
 }
 
+// Where a brush leaves nothing and the rest is hidden, blocks are leapt over, and nothing changes.
+TEST_F(RendererTest, WhatBrushesHideIsSkippedExactly) {
+    const auto ramp = [](glm::dvec3 p) -> std::optional<double> { return p.x / 60; };
+    const auto waves = [](glm::dvec3 p) -> std::optional<double> {
+        if (p.y > 40) return std::nullopt;
+        return 0.5 + 0.5 * std::sin(0.3 * p.x) * std::sin(0.25 * p.z);
+    };
+    for (const volume::LatticeKind kind : {volume::LatticeKind::CC, volume::LatticeKind::BCC}) {
+        const auto source = std::make_shared<vis::FunctionSource>(
+            kind, glm::ivec3(61, 47, 53), glm::dvec3(1),
+            std::vector<vis::FunctionSource::Channel>{{"v", ramp}, {"w", waves}}, 16);
+        Scene scene = flatScene(0);
+        scene.camera = {};
+        scene.camera.distance = 1.7f;
+        scene.transfer["v"].opacity = {{0, 0.2f}, {1, 0.2f}};
+        scene.selection.contextOpacity = 0;
+        scene.selection.brushes = {vis::rangeBrush({{"w", 0.9, 1, 0.02}}), vis::rangeBrush({{"v", 0.3, 0.6, 0.05}})};
+        for (const bool outside : {false, true}) {
+            scene.selection.brushes[1].inverted = outside;
+            const glm::ivec2 size(56, 44);
+            vis::reference::Image drawn{size, {}};
+            double seen = 0;
+            for (const glm::vec4& pixel : picture(source, exact(), scene, size)) {
+                drawn.pixels.emplace_back(pixel);
+                seen += double(pixel.a);
+            }
+            EXPECT_GT(seen, 10);
+            const vis::reference::Difference difference =
+                vis::reference::compare(drawn, vis::reference::render(scene, *source, size), 2e-3);
+            EXPECT_LT(difference.rmseWithin, 2e-5);
+            EXPECT_LE(difference.beyond, 8u) << difference.worst.x << ", " << difference.worst.y;
+            vis::RendererOptions counting = exact();
+            counting.countSamples = true;
+            const auto samples = [&](const Scene& counted) {
+                double sum = 0;
+                for (const glm::vec4& pixel : picture(source, counting, counted, size)) sum += double(pixel.r);
+                return sum;
+            };
+            Scene all = scene;
+            all.selection.contextOpacity = 0.001f;
+            EXPECT_LT(samples(scene), 0.7 * samples(all)) << "it leaps";
+        }
+    }
+}
+
 // While the bricks of the next time are on their way the former time stays on screen.
 TEST_F(RendererTest, FormerTimeStaysUntilTheNextIsThere) {
     class TwoTimes : public CheckedSource {

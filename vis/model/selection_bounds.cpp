@@ -8,14 +8,14 @@ namespace {
 
 constexpr Range kAnything{0, 1};
 
-/// intervalDoi() rises to 1 and falls again: its least value is at an end.
+/// Absent values have none, so that the least is 0.
 Range boundsOf(const BrushInterval& interval, const std::map<std::string, Range>& ranges) {
     const auto found = ranges.find(interval.channel);
     if (found == ranges.end()) return kAnything;
     const auto [lo, hi] = found->second;
-    const double a = intervalDoi(interval, lo), b = intervalDoi(interval, hi);
+    if (!(lo <= hi)) return {0, 0};
     const bool meets = lo <= interval.hi && hi >= interval.lo;
-    return {std::min(a, b), meets ? 1.0 : std::max(a, b)};
+    return {0, meets ? 1.0 : std::max(intervalDoi(interval, lo), intervalDoi(interval, hi))};
 }
 
 Range boundsOf(const Region& region, const std::map<std::string, Range>& ranges) {

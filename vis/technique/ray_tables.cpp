@@ -1,14 +1,19 @@
 #include "vis/technique/ray_tables.h"
 
 #include "vis/model/preintegration.h"
+#include "vis/model/selection_bounds.h"
 #include "vis/technique/ray_field.h"
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 namespace tessera::vis {
 
 namespace {
+
+constexpr double kLabelRoom = 0.25;
+constexpr float kTexelSlack = 1e-4f; ///< rounding of the textures and of their interpolation
 
 /// Page of a function of regions.
 void addRegions(std::vector<glm::vec4>& table, const TransferFunction& function, Range range) {
@@ -122,6 +127,31 @@ void spread(std::vector<std::uint8_t>& distance, glm::ivec3 count) {
             for (int x = count.x - 1; x >= 0; --x) relax(x, y, z, false);
 }
 
+/// 1 for each block where every sample is out of focus and therefore transparent; empty: nothing can be said.
+std::vector<std::uint8_t> outOfFocus(const RayPlan& plan, const Scene& scene, const volume::DatasetInfo& info,
+                                     const BlockRanges& grid) {
+    if (scene.selection.contextOpacity > 0 || !scene.selection.active()) return {};
+    const std::vector<volume::Channel> channels = info.channels();
+    std::vector<const BoundField*> fields;
+    for (const int index : plan.brushFields) {
+        const BoundField& field = plan.fields[std::size_t(index)];
+        if (field.blocks && field.blocks->count == grid.count) fields.push_back(&field);
+    }
+    std::vector<std::uint8_t> out(grid.min.size());
+    std::map<std::string, Range> ranges;
+    for (std::size_t i = 0; i < out.size(); ++i) {
+        for (const BoundField* field : fields) {
+            const double room = field->categorical ? kLabelRoom : 0; // as in brush_uniforms.cpp
+            const TexelEncoding& encoding = field->encoding;
+            ranges[channels[std::size_t(field->channel)].name] = {
+                encoding.offset + encoding.scale * double(field->blocks->min[i] - kTexelSlack) - room,
+                encoding.offset + encoding.scale * double(field->blocks->max[i] + kTexelSlack) + room};
+        }
+        out[i] = interestBounds(scene.selection, ranges).hi == 0 ? 1 : 0;
+    }
+    return out;
+}
+
 } // namespace
 
 std::optional<BlockDistances> blockDistances(const RayPlan& plan, const Scene& scene, const volume::DatasetInfo& info) {
@@ -131,6 +161,7 @@ std::optional<BlockDistances> blockDistances(const RayPlan& plan, const Scene& s
     out.count = grid->count;
     const std::size_t total = grid->min.size();
     out.distance.assign(total, 255);
+    const std::vector<std::uint8_t> hidden = outOfFocus(plan, scene, info, *grid);
     for (const RayLayer& use : plan.layers) {
         const BoundField& field = plan.fields[std::size_t(use.field)];
         const Layer& layer = scene.layers[std::size_t(use.layer)];
@@ -149,12 +180,14 @@ std::optional<BlockDistances> blockDistances(const RayPlan& plan, const Scene& s
         }
         for (std::size_t i = 0; i < total; ++i) {
             if (!(blocks.min[i] <= blocks.max[i])) continue;
-            // Rounding of the texture and of its interpolation.
-            const float slack = 1e-4f, lo = blocks.min[i] - slack, hi = blocks.max[i] + slack;
+            const float lo = blocks.min[i] - kTexelSlack, hi = blocks.max[i] + kTexelSlack;
             bool shows = true;
             if (use.style == RayStyle::Iso) shows = lo <= value && value <= hi;
             // The gradient reaches beyond the block.
             if (use.style == RayStyle::Composite && !use.gradient) shows = anyOpacity(opacity, map, lo, hi);
+            // Projections count what is out of focus.
+            if (use.style == RayStyle::Composite || use.style == RayStyle::Iso)
+                shows = shows && (hidden.empty() || hidden[i] == 0);
             if (shows) out.distance[i] = 0;
         }
     }
