@@ -131,6 +131,8 @@ void spread(std::vector<std::uint8_t>& distance, glm::ivec3 count) {
 std::vector<std::uint8_t> outOfFocus(const RayPlan& plan, const Scene& scene, const volume::DatasetInfo& info,
                                      const BlockRanges& grid) {
     if (scene.selection.contextOpacity > 0 || !scene.selection.active()) return {};
+    // Outside of these nothing is brushed.
+    if (std::ranges::any_of(scene.lenses, [](const Lens& lens) { return lens.effect == LensEffect::Focus; })) return {};
     const std::vector<volume::Channel> channels = info.channels();
     std::vector<const BoundField*> fields;
     for (const int index : plan.brushFields) {
