@@ -298,19 +298,22 @@ TEST(HistoryTest, PlayingIsNoEdit) {
 }
 
 TEST(Session, TheFormerXrayIsAnAverage) {
+    const auto at = [](const SessionDocument& document, const char* path) {
+        return document.raw.at(Json::json_pointer(path));
+    };
     const SessionDocument old = parseSession(
         R"({"schema": 1, "layers": [{"name": "a", "technique": {"type": "volume", "channel": "T", "style": "xray"}}],
             "history": {"position": 1, "steps": [{"label": "s",
                 "forward": [{"op": "replace", "path": "/layers/0/technique/style", "value": "xray"}],
                 "inverse": [{"op": "replace", "path": "/layers/0/technique/style", "value": "composite"}]}]}})",
         "x");
-    EXPECT_EQ(old.raw["layers"][0]["technique"]["style"], "average");
-    EXPECT_EQ(old.raw["history"]["steps"][0]["forward"][0]["value"], "average");
-    EXPECT_EQ(old.raw["history"]["steps"][0]["inverse"][0]["value"], "composite");
+    EXPECT_EQ(at(old, "/layers/0/technique/style"), "average");
+    EXPECT_EQ(at(old, "/history/steps/0/forward/0/value"), "average");
+    EXPECT_EQ(at(old, "/history/steps/0/inverse/0/value"), "composite");
     const SessionDocument now = parseSession(
         R"({"schema": 2, "layers": [{"name": "a", "technique": {"type": "volume", "channel": "T", "style": "xray"}}]})",
         "x");
-    EXPECT_EQ(now.raw["layers"][0]["technique"]["style"], "xray");
+    EXPECT_EQ(at(now, "/layers/0/technique/style"), "xray");
 }
 
 TEST(SessionTest, BrushesOfTheFirstSchemaBecomeRegions) {

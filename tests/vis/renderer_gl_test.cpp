@@ -326,7 +326,7 @@ TEST_F(RendererTest, WhatBrushesHideIsSkippedExactly) {
             };
             Scene all = scene;
             all.selection.contextOpacity = 0.001f;
-            EXPECT_LT(samples(scene), 0.7 * samples(all)) << "it leaps";
+            EXPECT_LT(samples(scene), 0.9 * samples(all)) << "it leaps";
         }
     }
 }

@@ -10,12 +10,12 @@
 namespace tessera::vis {
 namespace {
 
-/// Two slabs: 0.75 where z is greater than the middle, 0.25 behind.
+/// Two slabs: 0.8 where z is greater than the middle, 0.3 behind.
 volume::SampleGrid slabs() {
     volume::SampleGrid grid;
     grid.lattice = volume::test::ccLattice({9, 9, 33}, glm::dvec3(1));
     for (int z = 0; z < 33; ++z)
-        for (int i = 0; i < 81; ++i) grid.values.push_back(z > 16 ? 0.75f : 0.25f);
+        for (int i = 0; i < 81; ++i) grid.values.push_back(z > 16 ? 0.8f : 0.3f);
     return grid;
 }
 

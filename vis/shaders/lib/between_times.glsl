@@ -5,18 +5,17 @@
 
 #if defined(LATER) && LATER > 0
 uniform vec3 laterFrame[LATER]; // texel units of the later frame to those of the earlier: x * value + y; z its weight
+#endif
 
 vec2 reconstruct(int field, vec3 p) {
     vec2 earlier = reconstructFrame(field, p);
+#if defined(LATER) && LATER > 0
     if (FIELD_NEAREST(field) == 1) return earlier;
     vec2 later = reconstructFrame(field + LATER, p);
     vec3 frame = laterFrame[field];
     vec2 share = vec2((1.0 - frame.z) * earlier.y, frame.z * later.y);
     float coverage = share.x + share.y;
-    return vec2((share.x * earlier.x + share.y * (later.x * frame.x + frame.y)) / max(coverage, 1e-6), coverage);
-}
-#else
-vec2 reconstruct(int field, vec3 p) {
-    return reconstructFrame(field, p);
-}
+    earlier = vec2((share.x * earlier.x + share.y * (later.x * frame.x + frame.y)) / max(coverage, 1e-6), coverage);
 #endif
+    return earlier;
+}
