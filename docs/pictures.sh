@@ -8,6 +8,8 @@ mkdir -p "$out"
 "$tessera" render overview -o "$out/overview.png" --size 1600x1000
 "$tessera" render starved -o "$out/starved.png" --size 1600x1000
 "$tessera" render gases -o "$out/gases.png" --view volume --size 1200x700
+"$tessera" render lens -o "$out/lens.png" --view volume --size 1200x700
+"$tessera" render flow -o "$out/flow.png" --view volume --size 1200x700
 "$tessera" render overview -o "$out/slices.png" --view slices --size 1200x700 --time 0.6 --set /views/slices/contours=12
 "$tessera" render overview -o "$out/marschner-lobb.png" --view volume --size 900x700 \
     --set '/data={"model":"marschner-lobb","settings":{"nx":64,"ny":64,"nz":64,"times":1}}' \
