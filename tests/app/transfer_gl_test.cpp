@@ -183,7 +183,7 @@ TEST_F(TransferPages, TheCurveFollowsTheEmphasisOfBoundaries) {
         ImGui::SetNextWindowSize({900, 500});
         ImGui::Begin("boundary", nullptr, ImGuiWindowFlags_NoDecoration);
         result = feed.get(context, "gradients", {.channel = index});
-        drawBoundaryPage(context, page, info, index, result);
+        drawBoundaryPage(context, page, function, info, index, result);
         ImGui::End();
         ImGui::Render();
     };
