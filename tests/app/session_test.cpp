@@ -298,22 +298,23 @@ TEST(HistoryTest, PlayingIsNoEdit) {
 }
 
 TEST(Session, TheFormerXrayIsAnAverage) {
-    const auto at = [](const SessionDocument& document, const char* path) {
-        return document.raw.at(Json::json_pointer(path));
+    const auto migrated = [](int schema) {
+        Json document = Json::parse(
+            R"({"layers": [{"name": "a", "technique": {"type": "volume", "channel": "T", "style": "xray"}}],
+                "history": {"position": 1, "steps": [{"label": "s",
+                    "forward": [{"op": "replace", "path": "/layers/0/technique/style", "value": "xray"}],
+                    "inverse": [{"op": "replace", "path": "/layers/0/technique/style", "value": "composite"}]}]}})");
+        document["schema"] = schema;
+        migrate(document, "x");
+        return document;
     };
-    const SessionDocument old = parseSession(
-        R"({"schema": 1, "layers": [{"name": "a", "technique": {"type": "volume", "channel": "T", "style": "xray"}}],
-            "history": {"position": 1, "steps": [{"label": "s",
-                "forward": [{"op": "replace", "path": "/layers/0/technique/style", "value": "xray"}],
-                "inverse": [{"op": "replace", "path": "/layers/0/technique/style", "value": "composite"}]}]}})",
-        "x");
+    const auto at = [](const Json& document, const char* path) { return document.at(Json::json_pointer(path)); };
+    const Json old = migrated(1), now = migrated(2);
     EXPECT_EQ(at(old, "/layers/0/technique/style"), "average");
     EXPECT_EQ(at(old, "/history/steps/0/forward/0/value"), "average");
     EXPECT_EQ(at(old, "/history/steps/0/inverse/0/value"), "composite");
-    const SessionDocument now = parseSession(
-        R"({"schema": 2, "layers": [{"name": "a", "technique": {"type": "volume", "channel": "T", "style": "xray"}}]})",
-        "x");
     EXPECT_EQ(at(now, "/layers/0/technique/style"), "xray");
+    EXPECT_EQ(at(now, "/history/steps/0/forward/0/value"), "xray");
 }
 
 TEST(SessionTest, BrushesOfTheFirstSchemaBecomeRegions) {

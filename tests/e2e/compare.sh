@@ -41,8 +41,9 @@ cat > keys.json <<'JSON'
 [{"path": "/camera/distance", "keys": [{"at": 0, "value": [2.2]}, {"at": 1, "value": [1.2], "easing": "linear"}, {"at": 2, "value": [2.2]}]},
  {"path": "/time", "keys": [{"at": 0, "value": [0], "easing": "linear"}, {"at": 2, "value": [0.06]}]}]
 JSON
+tracks=$(cat keys.json)
 replay() { "$tessera" replay cell.tsr --view volume --size 160x120 --set /render/samples=1 --set /animation/duration=2 \
-    --set "/animation/tracks=$(cat keys.json)" "$@" > /dev/null 2> err; }
+    --set "/animation/tracks=$tracks" "$@" > /dev/null 2> err; }
 replay --animation --fps 1 --out frames || fail "replay"
 [ "$(ls frames)" = "$(printf 'frame-%04d.png\n' 0 1 2)" ] || fail "frames: $(ls frames)"
 cmp -s frames/frame-0000.png frames/frame-0001.png && fail "nothing moved"

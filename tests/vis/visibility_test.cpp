@@ -42,8 +42,8 @@ TEST(VisibilityHistogram, FollowsTheLawOfAbsorption) {
         const double through = std::pow(1 - double(opacity), 0.5 / kReferenceLength);
         const double second = std::pow(1 - double(opacity) / 2, 0.5 / kReferenceLength);
         EXPECT_NEAR(seen[3], 1 - through, 0.05 * (1 - through)) << "in front";
-        EXPECT_NEAR(seen[1], through * (1 - second), 0.05 * through) << "what the front lets through";
-        EXPECT_EQ(seen[0] + seen[2], 0);
+        EXPECT_NEAR(seen[1], through * (1 - second), 0.05 * through + 1e-5) << "what the front lets through";
+        EXPECT_LT(seen[0] + seen[2], 0.04) << "what lies between the slabs";
     }
 }
 

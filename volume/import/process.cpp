@@ -57,7 +57,7 @@ ChildProcess::ChildProcess(const std::vector<std::string>& arguments) {
         std::vector<char*> words;
         for (const std::string& word : arguments) words.push_back(const_cast<char*>(word.c_str()));
         words.push_back(nullptr);
-        failed = posix_spawn(&pid_, words[0], &actions, nullptr, words.data(), environ);
+        failed = posix_spawnp(&pid_, words[0], &actions, nullptr, words.data(), environ);
         posix_spawn_file_actions_destroy(&actions);
     }
     closeFile(in[1]);

@@ -13,7 +13,7 @@ namespace tessera::volume {
 /// closes the pipes, kills the child if it still runs, and reaps it.
 class ChildProcess {
 public:
-    /// Starts `arguments[0]`. Throws Error if it cannot be started.
+    /// Starts `arguments[0]`, a path or a program on PATH. Throws Error if it cannot be started.
     explicit ChildProcess(const std::vector<std::string>& arguments);
     ~ChildProcess();
     ChildProcess(const ChildProcess&) = delete;
