@@ -50,6 +50,12 @@ void print(const BenchTable& table) {
 
 } // namespace
 
+std::string decimals(double value, int digits) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.*f", digits, value);
+    return text;
+}
+
 void addBenchCommand(CLI::App& app) {
     struct Options {
         std::vector<std::string> names;

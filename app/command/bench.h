@@ -13,6 +13,9 @@ struct BenchTable {
     std::vector<std::vector<std::string>> rows; ///< one text per column; numbers as plain decimals without units
 };
 
+/// A number with so many decimals, for a cell of a table.
+std::string decimals(double value, int digits);
+
 /// Reconstruction error of CC and BCC, with each filter, at equal and at 70.7 % of the samples, and of D4* at 50 %.
 BenchTable benchLattice();
 /// Seconds to resample a volume to BCC with each filter, and a series to D4*.

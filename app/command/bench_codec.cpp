@@ -19,12 +19,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string decimal(double value, int digits) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.*f", digits, value);
-    return text;
-}
-
 /// CPU seconds of the process that `body` takes: on a busy machine what wall time hides.
 template <class Body> double cpuSeconds(Body&& body) {
     const std::clock_t start = std::clock();
@@ -75,11 +69,11 @@ void measure(const std::string& name, volume::Dataset dataset, BenchTable& table
         });
         const double size = double(summary.archiveBytes);
         const double decode = stored / 1e6 / decodeSeconds, peer = bytes / 1e6 / zstdDecode;
-        table.rows.push_back({name, lattice == codec::StoredLattice::CC ? "CC" : "BCC", decimal(bytes / 1e6, 2),
-                              decimal(size / 1e6, 3), decimal(bytes / size, 2),
-                              decimal(bytes / double(packed.size()), 2), decimal(double(packed.size()) / size, 2),
-                              decimal(bytes / 1e6 / packSeconds, 1), decimal(decode, 0), decimal(peer, 0),
-                              decimal(decode / peer, 2)});
+        table.rows.push_back({name, lattice == codec::StoredLattice::CC ? "CC" : "BCC", decimals(bytes / 1e6, 2),
+                              decimals(size / 1e6, 3), decimals(bytes / size, 2),
+                              decimals(bytes / double(packed.size()), 2), decimals(double(packed.size()) / size, 2),
+                              decimals(bytes / 1e6 / packSeconds, 1), decimals(decode, 0), decimals(peer, 0),
+                              decimals(decode / peer, 2)});
     }
 }
 

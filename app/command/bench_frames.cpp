@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cstdio>
 
 namespace tessera::app {
 
@@ -46,12 +45,6 @@ vis::reference::Image benchPicture(vis::Renderer& renderer, const vis::Scene& sc
     image.size = request.size;
     for (const glm::vec4& pixel : renderer.readLinear(*target)) image.pixels.emplace_back(pixel);
     return image;
-}
-
-std::string decimals(double value, int digits) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.*f", digits, value);
-    return text;
 }
 
 } // namespace tessera::app

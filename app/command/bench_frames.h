@@ -3,7 +3,7 @@
 #include "vis/reference/raycast.h"
 #include "vis/renderer.h"
 
-#include <string>
+#include <vector>
 
 /// What the rendering benchmarks share: pictures of one layer, timed, compared and counted.
 namespace tessera::app {
@@ -20,8 +20,5 @@ double timeFrames(vis::Renderer& renderer, vis::Scene scene);
 
 /// A picture of kBenchCompared pixels, linear.
 vis::reference::Image benchPicture(vis::Renderer& renderer, const vis::Scene& scene);
-
-/// A number with so many decimals; no more than the field's width is ever needed.
-std::string decimals(double value, int digits);
 
 } // namespace tessera::app

@@ -11,12 +11,6 @@ namespace tessera::app {
 
 namespace {
 
-std::string decimal(double value, int digits) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.*f", digits, value);
-    return text;
-}
-
 struct LatticeRow {
     const char* name;
     volume::LatticeKind kind;
@@ -48,8 +42,9 @@ void addRows4(BenchTable& table) {
     for (const LatticeRow4& row : rows) {
         const auto error = volume::latticeError4(movingBlob, row.kind, row.spacing / 20, row.prefilter);
         if (row.kind == LatticeKind4::CC) quadrilinear = error;
-        table.rows.push_back({"moving blob", row.name, decimal(100 * error.samples / quadrilinear.samples, 1),
-                              decimal(error.rms, 5), decimal(error.max, 4), decimal(error.rms / quadrilinear.rms, 2)});
+        table.rows.push_back({"moving blob", row.name, decimals(100 * error.samples / quadrilinear.samples, 1),
+                              decimals(error.rms, 5), decimals(error.max, 4),
+                              decimals(error.rms / quadrilinear.rms, 2)});
     }
 }
 
@@ -85,9 +80,9 @@ BenchTable benchLattice() {
             const auto error = volume::latticeError([&](glm::dvec3 p) { return signal(p); }, row.kind,
                                                     row.spacing * cell, row.filter, box);
             if (row.kind == LatticeKind::CC && row.filter == LatticeFilter::Linear) trilinear = error;
-            table.rows.push_back({"Marschner-Lobb " + decimal(fM, 0), row.name,
-                                  decimal(100 * error.samples / trilinear.samples, 1), decimal(error.rms, 5),
-                                  decimal(error.max, 4), decimal(error.rms / trilinear.rms, 2)});
+            table.rows.push_back({"Marschner-Lobb " + decimals(fM, 0), row.name,
+                                  decimals(100 * error.samples / trilinear.samples, 1), decimals(error.rms, 5),
+                                  decimals(error.max, 4), decimals(error.rms / trilinear.rms, 2)});
         }
     }
     addRows4(table);

@@ -12,12 +12,6 @@ namespace tessera::app {
 
 namespace {
 
-std::string decimal(double value, int digits) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.*f", digits, value);
-    return text;
-}
-
 struct Seconds {
     double wall = 1e30, cpu = 1e30;
 };
@@ -37,8 +31,8 @@ template <class Work> Seconds best(const Work& work) {
 }
 
 void addRow(BenchTable& table, const std::string& data, const std::string& filter, double samples, Seconds seconds) {
-    table.rows.push_back({data, filter, decimal(samples / 1e6, 1), decimal(seconds.wall, 2), decimal(seconds.cpu, 2),
-                          decimal(samples / 1e6 / seconds.wall, 0)});
+    table.rows.push_back({data, filter, decimals(samples / 1e6, 1), decimals(seconds.wall, 2), decimals(seconds.cpu, 2),
+                          decimals(samples / 1e6 / seconds.wall, 0)});
 }
 
 } // namespace

@@ -39,12 +39,6 @@ double timeFrames(vis::Renderer& renderer, vis::Scene scene) {
     return times[times.size() / 2];
 }
 
-std::string decimals(double value, int digits) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.*f", digits, value);
-    return text;
-}
-
 } // namespace
 
 BenchTable benchStyles() {

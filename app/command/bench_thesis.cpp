@@ -20,12 +20,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string decimal(double value, int digits) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.*f", digits, value);
-    return text;
-}
-
 template <class Body> double seconds(Body&& body) {
     const auto start = std::chrono::steady_clock::now();
     body();
@@ -87,8 +81,8 @@ BenchTable benchThesisSizes() {
         const auto row = std::find_if(std::begin(kThesisTimes), std::end(kThesisTimes), of);
         const bool known = row != std::end(kThesisTimes);
         table.rows.push_back({name, sizeText(field.lattice.size), sizeText(bcc.lattice.size), known ? row->bccSize : "",
-                              decimal(resample, 3), known ? decimal(row->resample, 2) : "",
-                              decimal(summary.codeSeconds, 3), known ? decimal(row->wavelet, 2) : ""});
+                              decimals(resample, 3), known ? decimals(row->resample, 2) : "",
+                              decimals(summary.codeSeconds, 3), known ? decimals(row->wavelet, 2) : ""});
     }
     return table;
 }
@@ -123,10 +117,10 @@ BenchTable benchThesisCoding() {
                 const codec::ThesisResult one = codec::thesisCode(field, coding);
                 coding.threeDirections = true;
                 const codec::ThesisResult three = codec::thesisCode(field, coding);
-                table.rows.push_back({name, std::string(codec::kWaveletNames[std::size_t(wavelet)]), decimal(value, 1),
-                                      decimal(double(field.samples.size()) / 1e3, 1),
-                                      decimal(double(one.bytes) / 1e3, 1), decimal(double(three.bytes) / 1e3, 1),
-                                      decimal(one.rms, 3), decimal(double(summary.archiveBytes) / 1e3, 1)});
+                table.rows.push_back({name, std::string(codec::kWaveletNames[std::size_t(wavelet)]), decimals(value, 1),
+                                      decimals(double(field.samples.size()) / 1e3, 1),
+                                      decimals(double(one.bytes) / 1e3, 1), decimals(double(three.bytes) / 1e3, 1),
+                                      decimals(one.rms, 3), decimals(double(summary.archiveBytes) / 1e3, 1)});
             }
     }
     return table;
@@ -178,7 +172,7 @@ BenchTable benchThesisFrames() {
                 }));
         std::sort(times.begin(), times.end());
         table.rows.push_back({std::string(codec::kStoredLatticeNames[std::size_t(lattice)]),
-                              decimal(times[times.size() / 2], 4), thesis});
+                              decimals(times[times.size() / 2], 4), thesis});
     }
     return table;
 }
