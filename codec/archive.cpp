@@ -31,6 +31,9 @@ struct Archive::Impl {
     /// The models used last, the latest first; their tables take about 200 KiB each.
     mutable std::list<std::pair<std::int32_t, std::shared_ptr<const BandDecoder>>> decoders;
     mutable std::mutex decodersMutex;
+    /// Bricks whose memory waits to be used again.
+    mutable std::vector<std::unique_ptr<DecodedBrick>> idle;
+    mutable std::mutex idleMutex;
 
     explicit Impl(const std::string& name) : path(name), file(name) {
         header = parseHeaders(file.bytes(), file.bytes().size(), path);
@@ -54,13 +57,37 @@ struct Archive::Impl {
     std::span<const std::byte> segment(const Segment& segment) const;
     std::vector<std::uint8_t> flags(const FrameRecord& frame, std::size_t brick) const;
     std::shared_ptr<const BandDecoder> decoder(std::int32_t model) const;
-    DecodedBrick decode(const FrameRecord& frame, const BrickFormat& format, std::size_t brick, int level,
-                        std::span<const std::uint8_t> present) const;
+    void decode(const FrameRecord& frame, const BrickFormat& format, std::size_t brick, int level,
+                std::span<const std::uint8_t> present, DecodedBrick& out) const;
     volume::BrickSamples readComponent(int parameter, int component, const volume::BrickKey& key) const;
     volume::BrickStats statsOf(int parameter, int component, const volume::BrickKey& key) const;
 };
 
 namespace {
+
+/// A brick to decode into, given back at the end.
+class Lent {
+public:
+    explicit Lent(const auto& archive) : idle_(archive.idle), mutex_(archive.idleMutex) {
+        const std::lock_guard lock(mutex_);
+        if (idle_.empty()) idle_.push_back(std::make_unique<DecodedBrick>());
+        brick_ = std::move(idle_.back());
+        idle_.pop_back();
+    }
+    ~Lent() {
+        const std::lock_guard lock(mutex_);
+        idle_.push_back(std::move(brick_));
+    }
+    Lent(const Lent&) = delete;
+    Lent& operator=(const Lent&) = delete;
+    DecodedBrick& operator*() const { return *brick_; }
+    DecodedBrick* operator->() const { return brick_.get(); }
+
+private:
+    std::vector<std::unique_ptr<DecodedBrick>>& idle_;
+    std::mutex& mutex_;
+    std::unique_ptr<DecodedBrick> brick_;
+};
 
 [[noreturn]] void damaged(const std::string& path, std::uint64_t offset, const std::string& what) {
     throw Error(what, path, "byte " + std::to_string(offset));
@@ -141,18 +168,16 @@ std::shared_ptr<const BandDecoder> Archive::Impl::decoder(std::int32_t model) co
     return decoders.front().second;
 }
 
-DecodedBrick Archive::Impl::decode(const FrameRecord& frame, const BrickFormat& format, std::size_t brick, int level,
-                                   std::span<const std::uint8_t> present) const {
+void Archive::Impl::decode(const FrameRecord& frame, const BrickFormat& format, std::size_t brick, int level,
+                           std::span<const std::uint8_t> present, DecodedBrick& out) const {
     std::vector<std::span<const std::byte>> segments;
     for (int s = 0; s < format.levels - level; ++s)
         segments.push_back(segment(frame.segments[std::size_t(s) * bricks + brick]));
-    DecodedBrick decoded;
     const DecodeStatus status = frame.model < 0
-                                    ? decodeBrickV1(format, segments, level, present, decoded)
-                                    : decodeBrick(format, segments, level, present, *decoder(frame.model), decoded);
+                                    ? decodeBrickV1(format, segments, level, present, out)
+                                    : decodeBrick(format, segments, level, present, *decoder(frame.model), out);
     if (status != DecodeStatus::Ok)
         damaged(path, frame.segments[(segments.size() - 1) * bricks + brick].offset, reason(status));
-    return decoded;
 }
 
 volume::BrickSamples Archive::Impl::readComponent(int number, int component, const volume::BrickKey& key) const {
@@ -160,27 +185,29 @@ volume::BrickSamples Archive::Impl::readComponent(int number, int component, con
     const std::size_t brick = brickNumber(metadata.grid, key.index);
     const BrickFormat format = brickFormat(metadata.grid, key.index, parameter(number).type, record);
     const std::vector<std::uint8_t> fine = flags(record, brick);
-    DecodedBrick decoded = decode(record, format, brick, key.level, fine);
+    const Lent decoded(*this);
+    decode(record, format, brick, key.level, fine, *decoded);
 
     volume::BrickSamples out;
-    out.size = samplesAt(format, key.level);
-    out.values.resize(decoded.codes.size());
-    out.present = std::move(decoded.present);
-    for (std::size_t i = 0; i < out.values.size(); ++i)
-        out.values[i] =
-            static_cast<float>(record.valueOffset + record.valueScale * valueOf(record.numbers, decoded.codes[i]));
-    for (const ExactSample& exact : decoded.exact)
+    out.size = decoded->size;
+    out.values.resize(countOf(out.size));
+    out.present = decoded->present;
+    decoded->forRows([&](std::size_t first, auto row) {
+        toValues(record.numbers, record.valueOffset, record.valueScale, row, out.values.data() + first);
+    });
+    for (const ExactSample& exact : decoded->exact)
         out.values[exact.index] =
             static_cast<float>(record.valueOffset + record.valueScale * double(std::bit_cast<float>(exact.bits)));
+
+    std::int32_t infinite = 0;
+    for (const float value : out.values)
+        infinite |= (std::bit_cast<std::int32_t>(value) & 0x7fffffff) > 0x7f7fffff ? 1 : 0;
+    if (infinite != 0 && out.present.empty()) out.present.assign(out.values.size(), 1);
+    for (std::size_t i = 0; infinite != 0 && i < out.values.size(); ++i)
+        if (!std::isfinite(out.values[i])) out.present[i] = 0, out.values[i] = 0;
     const FrameBrick& range = record.bricks[brick];
-    for (std::size_t i = 0; i < out.values.size(); ++i) {
-        if (!std::isfinite(out.values[i])) {
-            if (out.present.empty()) out.present.assign(out.values.size(), 1);
-            out.present[i] = 0;
-        } else if (key.level > 0 && range.min <= range.max) {
-            out.values[i] = std::clamp(out.values[i], range.min, range.max);
-        }
-    }
+    if (key.level > 0 && range.min <= range.max)
+        for (float& value : out.values) value = std::clamp(value, range.min, range.max);
     return out;
 }
 
@@ -324,29 +351,34 @@ volume::Field readField(const Archive& archive, int parameter, int component, in
         const glm::ivec3 at = brickIndex(impl.metadata.grid, brick);
         const BrickFormat format = brickFormat(impl.metadata.grid, at, field.type, frame);
         const std::vector<std::uint8_t> fine = impl.flags(frame, brick);
-        const DecodedBrick decoded = impl.decode(frame, format, brick, 0, fine);
+        const Lent decoded(impl);
+        impl.decode(frame, format, brick, 0, fine, *decoded);
+        const glm::ivec3 begin = impl.metadata.grid.begin(at), size = decoded->size;
+        const auto placeOf = [&](std::size_t i) { // of a sample of the brick in the lattice
+            const std::size_t nx = std::size_t(size.x), ny = std::size_t(size.y);
+            return field.lattice.index(begin + glm::ivec3(int(i % nx), int(i / nx % ny), int(i / (nx * ny))));
+        };
         volume::dispatch(field.type, [&]<class T>(T) {
-            std::vector<T> samples(decoded.codes.size());
-            for (std::size_t i = 0; i < samples.size(); ++i) samples[i] = sampleOf<T>(frame.numbers, decoded.codes[i]);
+            const auto out = field.as<T>();
+            decoded->forRows(
+                [&](std::size_t first, auto row) { toSamples(frame.numbers, row, out.data() + placeOf(first)); });
             const auto put = [&](std::size_t i, std::uint32_t bits) {
                 if constexpr (std::same_as<T, float>)
-                    samples[i] = std::bit_cast<float>(bits);
+                    out[placeOf(i)] = std::bit_cast<float>(bits);
                 else
-                    samples[i] = static_cast<T>(bits);
+                    out[placeOf(i)] = static_cast<T>(bits);
             };
-            for (const ExactSample& exact : decoded.exact) put(exact.index, exact.bits);
+            for (const ExactSample& exact : decoded->exact) put(exact.index, exact.bits);
             // Absent samples: as stored, else a value that cannot be mistaken for data.
             std::size_t next = 0;
             for (std::size_t i = 0; i < fine.size(); ++i)
                 if (fine[i] == 0)
-                    put(i, frame.keepsAbsent ? decoded.absent[next++] : sizeof(T) == 4 ? 0x7fc00000u : 0u);
-            const auto out = field.as<T>();
-            forBrickRows(impl.metadata.grid, at, [&](std::size_t to, std::size_t from, std::size_t count) {
-                std::copy_n(samples.begin() + std::ptrdiff_t(from), count, out.begin() + std::ptrdiff_t(to));
-                if (!fine.empty())
-                    std::copy_n(fine.begin() + std::ptrdiff_t(from), count, mask.begin() + std::ptrdiff_t(to));
-            });
+                    put(i, frame.keepsAbsent ? decoded->absent[next++] : sizeof(T) == 4 ? 0x7fc00000u : 0u);
         });
+        if (!fine.empty())
+            forBrickRows(impl.metadata.grid, at, [&](std::size_t to, std::size_t from, std::size_t count) {
+                std::copy_n(fine.begin() + std::ptrdiff_t(from), count, mask.begin() + std::ptrdiff_t(to));
+            });
     });
     if (!mask.empty()) field.mask = std::make_shared<const volume::Mask>(std::move(mask));
     return field;
@@ -426,9 +458,10 @@ struct Verifier {
             guarded(where, [&] {
                 const BrickFormat format = brickFormat(impl.metadata.grid, at, parameters[parameter].type, record);
                 const std::vector<std::uint8_t> fine = impl.flags(record, brick);
+                const Lent decoded(impl);
                 for (int level = impl.metadata.grid.levels - 1; level >= 0; --level) {
-                    const DecodedBrick decoded = impl.decode(record, format, brick, level, fine);
-                    if (level == 0) samples += decoded.codes.size();
+                    impl.decode(record, format, brick, level, fine, *decoded);
+                    if (level == 0) samples += countOf(decoded->size);
                     const std::size_t s = std::size_t(format.levels - 1 - level);
                     bytes += record.segments[s * impl.bricks + brick].length;
                 }

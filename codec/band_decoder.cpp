@@ -130,101 +130,217 @@ TESSERA_AVX512 inline bool rawSymbols512(Stream& in, __mmask16 some, __m512i tok
     return true;
 }
 
-TESSERA_AVX512 inline __m256i load(const std::uint16_t* from) {
-    return _mm256_loadu_si256(reinterpret_cast<const __m256i*>(from));
+/// A constant that stays in its register: compilers make those they know anew each time.
+TESSERA_AVX512 TESSERA_INLINE __m512i kept512(int value) {
+    __m512i vector = _mm512_set1_epi32(value);
+    asm("" : "+v"(vector));
+    return vector;
 }
 
+/// What the loop over chunks reads and changes, in registers.
+struct Cursor512 {
+    const std::byte *next, *end;
+    unsigned group, groupMask;
+    const std::uint32_t* table;
+    __m512i tablesLow, tablesHigh, slotMask, lowest, one, bias;
+};
+
+/// Sixteen tokens, one in each lane of `active`, 0 in the others; `sums` are those of their contexts. False: the stream
+/// ends too early.
+TESSERA_AVX512 TESSERA_INLINE bool tokens512(Cursor512& in, std::uint32_t (*states)[kLanes], __m256i sums,
+                                             __mmask16 active, __m128i& tokens) {
+    const __m512i sum = _mm512_add_epi32(_mm512_cvtepu16_epi32(sums), in.one);
+    const __m512i context =
+        _mm512_sub_epi32(_mm512_srli_epi32(_mm512_castps_si512(_mm512_cvtepi32_ps(sum)), 22), in.bias);
+    const __m512i tables = _mm512_permutex2var_epi32(in.tablesLow, context, in.tablesHigh);
+    std::uint32_t* own = states[in.group];
+    in.group = (in.group + 1) & in.groupMask;
+    const __m512i state = _mm512_load_si512(own);
+    const __m512i entry =
+        _mm512_i32gather_epi32(_mm512_or_si512(tables, _mm512_and_si512(state, in.slotMask)), in.table, 4);
+    const __m512i frequency = _mm512_and_si512(_mm512_srli_epi32(entry, 8), in.slotMask); // as many bits
+    __m512i after = _mm512_add_epi32(_mm512_mullo_epi32(frequency, _mm512_srli_epi32(state, kProbabilityBits)),
+                                     _mm512_srli_epi32(entry, 20));
+    tokens = _mm512_maskz_cvtepi32_epi8(active, entry);
+    const __mmask16 low = _mm512_mask_cmplt_epu32_mask(active, after, in.lowest);
+    const int count = __builtin_popcount(low);
+    const std::ptrdiff_t left = in.end - in.next;
+    __m256i words;
+    if (left >= 32) [[likely]] {
+        words = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(in.next));
+    } else {
+        if (left < 2 * count) return false;
+        words = _mm256_maskz_loadu_epi16(static_cast<__mmask16>((1u << (left / 2)) - 1u), in.next);
+    }
+    in.next += 2 * count;
+    const __m512i refill = _mm512_maskz_expand_epi32(low, _mm512_cvtepu16_epi32(words));
+    after = _mm512_mask_or_epi32(after, low, _mm512_slli_epi32(after, 16), refill);
+    _mm512_store_si512(own, _mm512_mask_mov_epi32(state, active, after));
+    return true;
+}
+
+/// Sixteen tokens to coefficients, with the raw bits that follow; false when those end.
+template <class Word>
+TESSERA_AVX512 bool rawChunk512(Stream& in, const std::uint8_t* tokens, __mmask16 inside, Word* values,
+                                std::uint16_t* sizes) {
+    const __m512i token = _mm512_cvtepu8_epi32(_mm_loadu_si128(reinterpret_cast<const __m128i*>(tokens)));
+    __m512i symbol = token;
+    const __mmask16 some = _mm512_cmpge_epu32_mask(token, _mm512_set1_epi32(kDirect));
+    // 22 octaves of up to 25 bits behind the direct tokens.
+    if (_mm512_cmpge_epu32_mask(token, _mm512_set1_epi32(kDirect + 23 * 4)) == 0) {
+        if (!rawSymbols512(in, some, token, symbol)) return false;
+    } else {
+        alignas(64) std::uint32_t all[kLanes];
+        _mm512_store_si512(all, symbol);
+        for (std::uint32_t rest = some; rest != 0; rest &= rest - 1) {
+            std::uint32_t& one = all[__builtin_ctz(rest)];
+            const int bits = rawBitsOf(one);
+            if (in.rawEnd - in.rawAt < static_cast<std::uint64_t>(bits)) return false;
+            one = symbolBase(one) | takeRaw(in, bits);
+        }
+        symbol = _mm512_load_si512(all);
+    }
+    const __m512i sign = _mm512_sub_epi32(_mm512_setzero_si512(), _mm512_and_si512(symbol, _mm512_set1_epi32(1)));
+    const __m512i value = _mm512_xor_si512(_mm512_srli_epi32(symbol, 1), sign);
+    const __m512i size = _mm512_min_epu32(_mm512_srl_epi32(_mm512_abs_epi32(value), _mm_cvtsi32_si128(in.shift)),
+                                          _mm512_set1_epi32(static_cast<int>(kLargestMagnitude)));
+    _mm256_storeu_si256(reinterpret_cast<__m256i*>(sizes), _mm512_cvtepi32_epi16(size));
+    if constexpr (sizeof(Word) == 2)
+        _mm512_mask_cvtepi32_storeu_epi16(values, inside, value);
+    else
+        _mm512_mask_storeu_epi32(values, inside, value);
+    return true;
+}
+
+/// A row of direct tokens to coefficients.
+template <class Word>
+TESSERA_AVX512 inline void directRow512(const std::uint8_t* tokens, int width, int shift, Word* values,
+                                        std::uint16_t* sizes) {
+    for (int x = 0; x < width; x += 32) {
+        const __mmask32 inside = width - x >= 32 ? ~__mmask32(0) : (__mmask32(1) << (width - x)) - 1;
+        const __m512i symbol = _mm512_cvtepu8_epi16(_mm256_loadu_si256(reinterpret_cast<const __m256i*>(tokens + x)));
+        const __m512i sign = _mm512_sub_epi16(_mm512_setzero_si512(), _mm512_and_si512(symbol, _mm512_set1_epi16(1)));
+        const __m512i value = _mm512_xor_si512(_mm512_srli_epi16(symbol, 1), sign);
+        _mm512_storeu_si512(sizes + x, _mm512_srl_epi16(_mm512_abs_epi16(value), _mm_cvtsi32_si128(shift)));
+        if constexpr (sizeof(Word) == 2) {
+            _mm512_mask_storeu_epi16(values + x, inside, value);
+        } else {
+            _mm512_mask_storeu_epi32(values + x, static_cast<__mmask16>(inside),
+                                     _mm512_cvtepi16_epi32(_mm512_castsi512_si256(value)));
+            _mm512_mask_storeu_epi32(values + x + 16, static_cast<__mmask16>(inside >> 16),
+                                     _mm512_cvtepi16_epi32(_mm512_extracti64x4_epi64(value, 1)));
+        }
+    }
+}
+
+TESSERA_AVX512 TESSERA_INLINE __m512i load512(const std::uint16_t* from) {
+    return _mm512_loadu_si512(from);
+}
+
+/// What a band needs while its rows are decoded. 32 lanes are computed at a time: where only 16 are coded, tokens
+/// beyond are 0, and their magnitudes, 0 too, fall on the zeros before the next row.
+struct BandRow {
+    Magnitudes magnitudes;
+    std::vector<std::uint8_t> tokens;
+    std::uint8_t** rawEnd = nullptr; ///< of the chunks with raw bits, up to this band
+    explicit BandRow(glm::ivec3 size)
+        : magnitudes(glm::max(size, glm::ivec3(0))), tokens(std::size_t(std::max(size.x, 0)) + 64) {}
+};
+
+/// One chunk of a row.
+template <bool kMasked>
+TESSERA_AVX512 TESSERA_INLINE bool halfRow512(Cursor512& in, std::uint32_t (*states)[kLanes], __m256i sums, int x,
+                                              __mmask16 lanes, const std::uint8_t* present, int width,
+                                              std::uint8_t* tokens, std::uint8_t**& raw) {
+    __m128i token;
+    if constexpr (kMasked) lanes = static_cast<__mmask16>(activeLanes(present, x, width));
+    if (!tokens512(in, states, sums, lanes, token)) return false;
+    _mm_storeu_si128(reinterpret_cast<__m128i*>(tokens + x), token);
+    *raw = tokens + x;
+    raw += _mm_cmpge_epu8_mask(token, _mm_set1_epi8(kDirect)) != 0 ? 1 : 0;
+    return true;
+}
+
+/// The tokens of a row; those chunks that raw bits belong to are noted at `raw`, which then points behind them.
+template <bool kMasked>
+TESSERA_AVX512 TESSERA_INLINE bool tokenRow512(Cursor512& in, std::uint32_t (*states)[kLanes], const Neighbours& near,
+                                               const std::uint8_t* present, int width, std::uint8_t* tokens,
+                                               std::uint8_t**& raw) {
+    for (int x = 0; x < width; x += 2 * kLanes) {
+        const __m512i doubled = _mm512_add_epi16(load512(near.north + x), load512(near.before + x));
+        const __m512i sides =
+            _mm512_add_epi16(_mm512_add_epi16(load512(near.north + x - 1), load512(near.north + x + 1)),
+                             _mm512_add_epi16(load512(near.beforeNorth + x), load512(near.beforeSouth + x)));
+        const __m512i sums = _mm512_add_epi16(_mm512_add_epi16(doubled, doubled), sides);
+        const int left = width - x;
+        const std::uint32_t inside = left >= 32 ? ~0u : (1u << left) - 1u;
+        if (!halfRow512<kMasked>(in, states, _mm512_castsi512_si256(sums), x, static_cast<__mmask16>(inside), present,
+                                 width, tokens, raw))
+            return false;
+        if (left <= kLanes) break;
+        if (!halfRow512<kMasked>(in, states, _mm512_extracti64x4_epi64(sums, 1), x + kLanes,
+                                 static_cast<__mmask16>(inside >> 16), present, width, tokens, raw))
+            return false;
+    }
+    return true;
+}
+
+/// Tokens of all bands' rows at one place come first, then the few that raw bits belong to: nobody waits for those.
 template <class Word> TESSERA_AVX512 bool decodeRows512(Stream& in, std::span<const Band<Word>> bands) {
-    std::vector<Magnitudes> magnitudes = magnitudesFor(bands);
-    const __m512i tablesLow = _mm512_load_si512(in.tableOf), tablesHigh = _mm512_load_si512(in.tableOf + 16);
-    const __m512i lowest = _mm512_set1_epi32(static_cast<int>(kLowestState));
-    const __m128i shift = _mm_cvtsi32_si128(in.shift);
+    std::vector<BandRow> rows;
+    rows.reserve(bands.size());
+    std::size_t chunks = 0;
     glm::ivec3 most(0);
-    for (const Band<Word>& band : bands)
+    for (const Band<Word>& band : bands) {
+        rows.emplace_back(band.size);
+        chunks += std::size_t((std::max(band.size.x, 0) + kLanes - 1) / kLanes);
         if (band.size.x > 0) most = glm::max(most, band.size);
+    }
+    std::vector<std::uint8_t*> raw(chunks + 1);
+    Cursor512 cursor{in.next,
+                     in.end,
+                     0,
+                     in.groupMask,
+                     in.table,
+                     _mm512_load_si512(in.tableOf),
+                     _mm512_load_si512(in.tableOf + 16),
+                     kept512(static_cast<int>(kSlotMask)),
+                     kept512(static_cast<int>(kLowestState)),
+                     kept512(1),
+                     kept512(254)};
     for (int z = 0; z < most.z; ++z)
-        for (int y = 0; y < most.y; ++y)
+        for (int y = 0; y < most.y; ++y) {
+            std::uint8_t** rawEnd = raw.data();
             for (std::size_t b = 0; b < bands.size(); ++b) {
                 const Band<Word>& band = bands[b];
                 if (band.size.x < 1 || y >= band.size.y || z >= band.size.z) continue;
-                const Neighbours near(magnitudes[b], z, y);
-                const std::ptrdiff_t place = z * band.slicePitch + y * band.rowPitch;
-                std::uint16_t* sizes = magnitudes[b].row(z, y);
-                for (int x = 0; x < band.size.x; x += kLanes) {
-                    const __mmask16 inside = static_cast<__mmask16>((1u << std::min(kLanes, band.size.x - x)) - 1u);
-                    __mmask16 active = inside;
-                    if (band.present)
-                        active = static_cast<__mmask16>(activeLanes(band.present + place, x, band.size.x));
-
-                    // Contexts.
-                    const __m256i doubled = _mm256_add_epi16(load(near.north + x), load(near.before + x));
-                    const __m256i sides =
-                        _mm256_add_epi16(_mm256_add_epi16(load(near.north + x - 1), load(near.north + x + 1)),
-                                         _mm256_add_epi16(load(near.beforeNorth + x), load(near.beforeSouth + x)));
-                    const __m256i sum16 = _mm256_add_epi16(_mm256_add_epi16(doubled, doubled), sides);
-                    const __m512i sum = _mm512_add_epi32(_mm512_cvtepu16_epi32(sum16), _mm512_set1_epi32(1));
-                    const __m512i context = _mm512_sub_epi32(
-                        _mm512_srli_epi32(_mm512_castps_si512(_mm512_cvtepi32_ps(sum)), 22), _mm512_set1_epi32(254));
-                    const __m512i tables = _mm512_permutex2var_epi32(tablesLow, context, tablesHigh);
-
-                    // Symbols.
-                    std::uint32_t* states = in.states[in.group];
-                    in.group = (in.group + 1) & in.groupMask;
-                    const __m512i state = _mm512_load_si512(states);
-                    const __m512i slot = _mm512_and_si512(state, _mm512_set1_epi32(static_cast<int>(kSlotMask)));
-                    const __m512i entry = _mm512_i32gather_epi32(_mm512_or_si512(tables, slot), in.table, 4);
-                    const __m512i token = _mm512_and_si512(entry, _mm512_set1_epi32(255));
-                    const __m512i frequency = _mm512_and_si512(_mm512_srli_epi32(entry, 8), _mm512_set1_epi32(4095));
-                    __m512i after =
-                        _mm512_add_epi32(_mm512_mullo_epi32(frequency, _mm512_srli_epi32(state, kProbabilityBits)),
-                                         _mm512_srli_epi32(entry, 20));
-                    const __mmask16 low = _mm512_mask_cmplt_epu32_mask(active, after, lowest);
-                    const int count = __builtin_popcount(low);
-                    const std::ptrdiff_t left = in.end - in.next;
-                    if (left < 2 * count) return false;
-                    __m256i words;
-                    if (left >= 32)
-                        words = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(in.next));
-                    else
-                        words = _mm256_maskz_loadu_epi16(static_cast<__mmask16>((1u << (left / 2)) - 1u), in.next);
-                    in.next += 2 * count;
-                    const __m512i refill = _mm512_maskz_expand_epi32(low, _mm512_cvtepu16_epi32(words));
-                    after = _mm512_mask_or_epi32(after, low, _mm512_slli_epi32(after, 16), refill);
-                    _mm512_store_si512(states, _mm512_mask_mov_epi32(state, active, after));
-
-                    // Raw bits.
-                    __m512i symbol = _mm512_maskz_mov_epi32(active, token);
-                    const __mmask16 some = _mm512_cmpge_epu32_mask(symbol, _mm512_set1_epi32(kDirect));
-                    if (some != 0) {
-                        // 22 octaves of up to 25 bits behind the direct tokens.
-                        const __mmask16 wide =
-                            _mm512_mask_cmpge_epu32_mask(some, symbol, _mm512_set1_epi32(kDirect + 23 * 4));
-                        if (wide == 0) {
-                            if (!rawSymbols512(in, some, token, symbol)) return false;
-                        } else {
-                            alignas(64) std::uint32_t all[kLanes];
-                            _mm512_store_si512(all, symbol);
-                            for (std::uint32_t rest = some; rest != 0; rest &= rest - 1) {
-                                std::uint32_t& one = all[__builtin_ctz(rest)];
-                                const int bits = rawBitsOf(one);
-                                if (in.rawEnd - in.rawAt < static_cast<std::uint64_t>(bits)) return false;
-                                one = symbolBase(one) | takeRaw(in, bits);
-                            }
-                            symbol = _mm512_load_si512(all);
-                        }
-                    }
-                    const __m512i sign =
-                        _mm512_sub_epi32(_mm512_setzero_si512(), _mm512_and_si512(symbol, _mm512_set1_epi32(1)));
-                    const __m512i value = _mm512_xor_si512(_mm512_srli_epi32(symbol, 1), sign);
-                    const __m512i size = _mm512_min_epu32(_mm512_srl_epi32(_mm512_abs_epi32(value), shift),
-                                                          _mm512_set1_epi32(static_cast<int>(kLargestMagnitude)));
-                    _mm256_storeu_si256(reinterpret_cast<__m256i*>(sizes + x), _mm512_cvtepi32_epi16(size));
-                    if constexpr (sizeof(Word) == 2)
-                        _mm512_mask_cvtepi32_storeu_epi16(band.values + place + x, inside, value);
-                    else
-                        _mm512_mask_storeu_epi32(band.values + place + x, inside, value);
+                const Neighbours near(rows[b].magnitudes, z, y);
+                std::uint8_t* tokens = rows[b].tokens.data();
+                const std::uint8_t* present =
+                    band.present ? band.present + z * band.slicePitch + y * band.rowPitch : nullptr;
+                const bool whole =
+                    present ? tokenRow512<true>(cursor, in.states, near, present, band.size.x, tokens, rawEnd)
+                            : tokenRow512<false>(cursor, in.states, near, nullptr, band.size.x, tokens, rawEnd);
+                if (!whole) return false;
+                rows[b].rawEnd = rawEnd;
+            }
+            std::uint8_t** nextRaw = raw.data();
+            for (std::size_t b = 0; b < bands.size(); ++b) {
+                const Band<Word>& band = bands[b];
+                if (band.size.x < 1 || y >= band.size.y || z >= band.size.z) continue;
+                Word* values = band.values + z * band.slicePitch + y * band.rowPitch;
+                std::uint8_t* tokens = rows[b].tokens.data();
+                std::uint16_t* sizes = rows[b].magnitudes.row(z, y);
+                directRow512<Word>(tokens, band.size.x, in.shift, values, sizes);
+                for (; nextRaw < rows[b].rawEnd; ++nextRaw) {
+                    const std::ptrdiff_t x = *nextRaw - tokens;
+                    const auto inside =
+                        static_cast<__mmask16>((1u << std::min(kLanes, band.size.x - static_cast<int>(x))) - 1u);
+                    if (!rawChunk512<Word>(in, *nextRaw, inside, values + x, sizes + x)) return false;
                 }
             }
+        }
+    in.next = cursor.next;
     return true;
 }
 

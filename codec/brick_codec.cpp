@@ -196,30 +196,30 @@ DecodeStatus decodeLevel(std::span<const std::byte> in, std::span<const Band<Wor
 template <class Word>
 DecodeStatus decodeLevels(const BrickFormat& format, std::span<const std::span<const std::byte>> segments, int level,
                           std::span<const std::uint8_t> present, const BandDecoder& decoder, DecodedBrick& out) {
-    const int step = format.sublattices();
+    const auto step = static_cast<std::size_t>(format.sublattices());
     const bool masked = !present.empty();
-    std::vector<LevelBox<Word>> coarse(static_cast<std::size_t>(step)), fine(static_cast<std::size_t>(step));
+    auto& [samples, details, spare] = out.boxes<Word>();
     for (int l = format.levels - 1; l >= level; --l) {
         const bool coarsest = l == format.levels - 1;
-        for (int s = 0; s < step; ++s) {
-            LevelBox<Word>& box = fine[std::size_t(s)] = LevelBox<Word>(levelSize(format.sublatticeSize(s), l), masked);
-            if (box.masked()) placeFlags<Word>(format, present, l, s, !coarsest, box);
+        auto& coded = coarsest ? samples : details;
+        for (std::size_t s = 0; s < step; ++s) {
+            coded[s].reset(levelSize(format.sublatticeSize(int(s)), l), masked);
+            if (coded[s].masked()) placeFlags<Word>(format, present, l, int(s), !coarsest, coded[s]);
         }
         std::span<const std::byte> in = segments[std::size_t(format.levels - 1 - l)];
         if (l == 0)
             if (const DecodeStatus status = decodeExtras(format, present, in, out); status != DecodeStatus::Ok)
                 return status;
-        const auto bands = bandsOf<Word>(fine, coarsest);
+        const auto bands = bandsOf<Word>(std::span(coded).first(step), coarsest);
         if (const DecodeStatus status = decodeLevel<Word>(in, bands, l, decoder); status != DecodeStatus::Ok)
             return status;
-        if (coarsest)
+        if (coarsest) {
             fromDifferences<Word>(bands);
-        else
-            for (std::size_t s = 0; s < std::size_t(step); ++s) joinLevel<Word>(format, coarse[s], fine[s]);
-        std::swap(coarse, fine);
+            continue;
+        }
+        for (std::size_t s = 0; s < step; ++s) joinLevel<Word>(format, samples[s], details[s], spare[s]);
+        std::swap(samples, spare);
     }
-    out.codes.resize(countOf(samplesAt(format, level)));
-    for (int s = 0; s < step; ++s) putSublattice<Word>(format, coarse[std::size_t(s)], s, out.codes);
     return DecodeStatus::Ok;
 }
 
@@ -232,20 +232,16 @@ DecodeStatus decodeWhole(const BrickFormat& format, std::span<const std::byte> i
     std::vector<std::uint32_t> codes(total - absent);
     if (const DecodeStatus status = codec::decodeWhole(in, codes); status != DecodeStatus::Ok) return status;
     if (absent > 0) {
-        std::vector<std::uint32_t> placed(total);
+        std::vector<std::uint32_t> spread(total);
         const std::uint32_t* next = codes.data();
         for (std::size_t i = 0; i < total; ++i)
-            if (present[i] != 0) placed[i] = *next++;
-        codes = std::move(placed);
+            if (present[i] != 0) spread[i] = *next++;
+        codes = std::move(spread);
     }
-    if (level == 0) {
-        out.codes = std::move(codes);
-        return DecodeStatus::Ok;
-    }
-    const BrickLevels<Word> levels = splitBrick<Word>(format, codes, present, level + 1);
-    out.codes.resize(countOf(samplesAt(format, level)));
-    for (int s = 0; s < format.sublattices(); ++s)
-        putSublattice<Word>(format, levels[std::size_t(level * format.sublattices() + s)], s, out.codes);
+    auto& samples = out.boxes<Word>().samples;
+    BrickLevels<Word> levels = splitBrick<Word>(format, codes, present, level + 1);
+    const auto boxes = boxesAt(levels, format, level);
+    std::move(boxes.begin(), boxes.end(), samples.begin());
     return DecodeStatus::Ok;
 }
 
@@ -329,6 +325,24 @@ std::vector<Bytes> encodeBrick(const BrickFormat& format, std::span<const std::b
     return segments;
 }
 
+void DecodedBrick::begin(const BrickFormat& format, int level) {
+    size = samplesAt(format, level);
+    sublattices = format.sublattices();
+    narrow = false;
+    present.clear();
+    exact.clear();
+    absent.clear();
+}
+
+std::vector<std::uint32_t> DecodedBrick::codes() const {
+    std::vector<std::uint32_t> all(countOf(size));
+    forRows([&](std::size_t first, auto row) {
+        for (std::size_t i = 0; i < row.size(); ++i)
+            all[first + i] = static_cast<std::uint32_t>(static_cast<std::int32_t>(row[i]));
+    });
+    return all;
+}
+
 DecodeStatus decodeExtras(const BrickFormat& format, std::span<const std::uint8_t> present,
                           std::span<const std::byte>& in, DecodedBrick& out) {
     if (format.keepsAbsent) {
@@ -354,9 +368,9 @@ DecodeStatus decodeBrick(const BrickFormat& format, std::span<const std::span<co
                          std::span<const std::uint8_t> present, const BandDecoder& bands, DecodedBrick& out) {
     assert(level >= 0 && level < format.levels && int(segments.size()) == format.levels - level);
     assert(present.empty() || present.size() == countOf(format.size));
-    out = {};
+    out.begin(format, level);
     out.present = maskAt(format, present, level);
-    const bool narrow = fitsInt16(format, !present.empty());
+    const bool narrow = out.narrow = fitsInt16(format, !present.empty());
     // Where the extras come first, the mode of a brick of one level stands behind them.
     std::span<const std::byte> first = segments[0];
     if (format.levels == 1) {

@@ -3,10 +3,11 @@
 #include "codec/band_coder.h"
 #include "codec/decode_status.h"
 #include "codec/entropy.h"
-#include "codec/lifting.h"
+#include "codec/level_box.h"
 #include "codec/numbers.h"
 #include "volume/lattice.h"
 
+#include <array>
 #include <span>
 #include <vector>
 
@@ -66,11 +67,42 @@ struct ExactSample {
     std::uint32_t index = 0, bits = 0;
 };
 
+/// One level of a brick. Decoding into the same object again reuses its memory.
 struct DecodedBrick {
-    std::vector<std::uint32_t> codes;  ///< storage order of the level; undefined where absent
+    /// Boxes of the sublattices; all but `samples` is working memory.
+    template <class Word> struct Boxes { std::array<LevelBox<Word>, 2> samples, details, spare; };
+
+    glm::ivec3 size{0}; ///< storage samples of the level
+    int sublattices = 1;
+    bool narrow = false; ///< the codes are in `boxes16`, else in `boxes32`
+    Boxes<std::int16_t> boxes16;
+    Boxes<std::int32_t> boxes32;
     std::vector<std::uint8_t> present; ///< flags at the level; empty: all present
     std::vector<ExactSample> exact;    ///< full resolution only: samples that replace their codes
     std::vector<std::uint32_t> absent; ///< full resolution only: bits of absent samples in order, if kept
+
+    /// Empty, with the shape of a level.
+    void begin(const BrickFormat& format, int level);
+    template <class Word> Boxes<Word>& boxes() {
+        if constexpr (sizeof(Word) == 2)
+            return boxes16;
+        else
+            return boxes32;
+    }
+    /// Calls `visit(number of the first sample, codes)` for each row in storage order, with a span of 16- or 32-bit
+    /// codes; undefined where absent.
+    template <class Visit> void forRows(Visit&& visit) const {
+        const auto rows = [&](const auto& samples) {
+            std::size_t first = 0;
+            for (int z = 0; z < size.z; ++z)
+                for (int y = 0; y < size.y; ++y, first += std::size_t(size.x))
+                    visit(first, std::span(samples[std::size_t(z % sublattices)].box().row(y, z / sublattices),
+                                           std::size_t(size.x)));
+        };
+        narrow ? rows(boxes16.samples) : rows(boxes32.samples);
+    }
+    /// All codes in storage order.
+    std::vector<std::uint32_t> codes() const;
 };
 
 /// Decodes `level` from the segments up to it (levels - level of them, coarsest first). Never throws for what the bytes

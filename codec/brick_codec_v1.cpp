@@ -39,12 +39,12 @@ void takeSlices(std::span<const T> storage, glm::ivec3 size, int sublattice, int
         out.insert(out.end(), from, from + slice);
     }
 }
-template <class T>
-void putSlices(const std::vector<T>& plane, glm::ivec3 size, int sublattice, int step, std::vector<T>& storage) {
-    const std::size_t slice = std::size_t(size.x) * std::size_t(size.y);
-    const T* from = plane.data();
-    for (int z = sublattice; z < size.z; z += step, from += slice)
-        std::copy(from, from + slice, storage.begin() + std::ptrdiff_t(std::size_t(z) * slice));
+void toBox(const Plane& plane, LevelBox<std::int32_t>& box) {
+    box.reset(plane.size, false);
+    const std::uint32_t* from = plane.values.data();
+    for (int z = 0; z < plane.size.z; ++z)
+        for (int y = 0; y < plane.size.y; ++y, from += plane.size.x)
+            std::copy_n(from, plane.size.x, box.box().row(y, z));
 }
 
 } // namespace
@@ -55,7 +55,7 @@ DecodeStatus decodeBrickV1(const BrickFormat& format, std::span<const std::span<
     assert(present.empty() || present.size() == countOf(format.size));
     const int step = format.sublattices(), steps = format.levels - 1 - level;
     const glm::ivec3 size = samplesAt(format, level);
-    out = {};
+    out.begin(format, level);
     out.present = maskAt(format, present, level);
 
     std::vector<Plane> planes(static_cast<std::size_t>(step));
@@ -114,11 +114,10 @@ DecodeStatus decodeBrickV1(const BrickFormat& format, std::span<const std::span<
         if (!in.empty()) return DecodeStatus::Trailing;
     }
 
-    out.codes.resize(countOf(size));
     for (int s = 0; s < step; ++s) {
         Plane& plane = planes[std::size_t(s)];
         inverse(plane.values, plane.present, plane.size, steps, effectiveWavelet(format), arithmeticOf(format));
-        putSlices(plane.values, size, s, step, out.codes);
+        toBox(plane, out.boxes32.samples[std::size_t(s)]);
     }
     return DecodeStatus::Ok;
 }

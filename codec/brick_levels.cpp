@@ -72,21 +72,6 @@ void takeSublattice(const BrickFormat& format, std::span<const std::uint32_t> co
 }
 
 template <class Word>
-void putSublattice(const BrickFormat& format, const LevelBox<Word>& from, int sublattice,
-                   std::span<std::uint32_t> codes) {
-    const glm::ivec3 size = from.size();
-    for (int z = 0; z < size.z; ++z)
-        for (int y = 0; y < size.y; ++y) {
-            const std::size_t to =
-                (std::size_t(z * format.sublattices() + sublattice) * std::size_t(size.y) + std::size_t(y)) *
-                std::size_t(size.x);
-            const Word* row = from.box().row(y, z);
-            for (std::size_t x = 0; x < std::size_t(size.x); ++x)
-                codes[to + x] = static_cast<std::uint32_t>(static_cast<std::int32_t>(row[x]));
-        }
-}
-
-template <class Word>
 BrickLevels<Word> splitBrick(const BrickFormat& format, std::span<const std::uint32_t> codes,
                              std::span<const std::uint8_t> present, int levels) {
     const bool masked = !present.empty();
@@ -120,18 +105,22 @@ BrickLevels<Word> splitBrick(const BrickFormat& format, std::span<const std::uin
     return all;
 }
 
-template <class Word> void joinLevel(const BrickFormat& format, const LevelBox<Word>& coarse, LevelBox<Word>& fine) {
-    if (countOf(fine.size()) == 0) return;
+template <class Word>
+void joinLevel(const BrickFormat& format, const LevelBox<Word>& coarse, LevelBox<Word>& fine, LevelBox<Word>& samples) {
+    if (countOf(fine.size()) == 0) {
+        samples.reset(fine.size(), fine.masked());
+        return;
+    }
     copyCorner<Word>(coarse.box(), fine.box(), coarse.size());
     if (liftsFast(format, fine.masked())) {
-        LevelBox<Word> samples(fine.size(), false);
+        samples.reset(fine.size(), false);
         joinBox<Word>(fine.box(), samples.box(), format.wavelet, format.codeBits > kBitsOfInt32);
-        fine = std::move(samples);
         return;
     }
     Dense dense = gatherDense(fine);
     inverse(dense.values, dense.present, fine.size(), 1, effectiveWavelet(format), arithmeticOf(format));
     spreadDense(dense, fine);
+    std::swap(fine, samples);
 }
 
 template <class Word>
@@ -181,10 +170,9 @@ template <class Word> std::vector<Band<Word>> bandsOf(std::span<LevelBox<Word>> 
 #define TESSERA_LEVELS(Word)                                                                                           \
     template void takeSublattice(const BrickFormat&, std::span<const std::uint32_t>, std::span<const std::uint8_t>,    \
                                  int, LevelBox<Word>&);                                                                \
-    template void putSublattice(const BrickFormat&, const LevelBox<Word>&, int, std::span<std::uint32_t>);             \
     template BrickLevels<Word> splitBrick(const BrickFormat&, std::span<const std::uint32_t>,                          \
                                           std::span<const std::uint8_t>, int);                                         \
-    template void joinLevel(const BrickFormat&, const LevelBox<Word>&, LevelBox<Word>&);                               \
+    template void joinLevel(const BrickFormat&, const LevelBox<Word>&, LevelBox<Word>&, LevelBox<Word>&);              \
     template void placeFlags(const BrickFormat&, std::span<const std::uint8_t>, int, int, bool, LevelBox<Word>&);      \
     template std::vector<Band<Word>> bandsOf(std::span<LevelBox<Word>>, bool);
 TESSERA_LEVELS(std::int16_t)

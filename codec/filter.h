@@ -14,6 +14,7 @@ struct LiftStep {
     std::array<int, 3> weight{};
     bool antisymmetric = false;
     int shift = 0;
+    constexpr bool operator==(const LiftStep&) const = default;
 };
 
 struct LiftFilter {

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
+#include <type_traits>
 
 namespace tessera::codec {
 
@@ -17,7 +19,7 @@ struct Pairs {
 
 /// Predict: pair j of odd sample i is even (i - j, i + 1 + j) of `sources` even ones; update: details (i - 1 - j, i +
 /// j) of the `sources` that were predicted from two sides.
-Pairs pairsAt(int i, int count, int sources, bool update) {
+TESSERA_INLINE Pairs pairsAt(int i, int count, int sources, bool update) {
     Pairs pairs;
     for (int j = 0; j < count; ++j) {
         const int l = update ? i - 1 - j : i - j, r = update ? i + j : i + 1 + j;
@@ -39,154 +41,238 @@ Pairs pairsAt(int i, int count, int sources, bool update) {
     return pairs;
 }
 
-/// target[i] += or -= floor((sum of w_j (left_j[i] + right_j[i]) + half) / 2^shift) for whole blocks of kRowWords.
-/// No pairs: the centre itself, left[0], with half = shift.
 template <class Word> struct Sources { std::array<const Word*, 3> left{}, right{}; };
 
-template <class Word, class Sum, int kPairs>
-TESSERA_INLINE void addBody(Word* __restrict target, const Sources<Word>& from, std::size_t count, const LiftStep& step,
-                            bool add) {
+/// Steps of the wavelets that boxes are lifted with, each compiled on its own: constants become shifts.
+constexpr LiftStep kSame{1, 0, {}, false, 0}, kMean{0, 1, {1}, false, 1}, kCubic{0, 2, {9, -1}, false, 4};
+constexpr LiftStep kHalf{1, 0, {}, false, 1}, kUpdate22{0, 1, {1}, false, 2}, kUpdate24{0, 2, {19, -3}, false, 6},
+    kUpdate26{0, 3, {162, -39, 5}, false, 9}, kUpdate44{0, 2, {9, -1}, false, 5},
+    kUpdate46{0, 3, {306, -59, 9}, false, 10};
+
+constexpr bool isCubic(const LiftStep& step) {
+    return step.pairs == 2 && step.weight[0] == 9 && step.weight[1] == -1;
+}
+constexpr bool isUpdate(const LiftStep& step) {
+    return step != kSame && step != kMean && step != kCubic;
+}
+/// True for steps whose sums fit the words where codes have kBitsOfInt16.
+constexpr bool sumsFitInt16(const LiftStep& step) {
+    return step.pairs < 2 || isCubic(step);
+}
+
+/// floor((sum of w_j (left_j + right_j) + half) / 2^shift), modulo the type.
+template <class Sum, LiftStep kStep> TESSERA_INLINE Sum changeOf(Sum l0, Sum r0, Sum l1, Sum r1, Sum l2, Sum r2) {
+    using Modulo = std::make_unsigned_t<Sum>;
+    const auto add = [](Sum a, Sum b) { return static_cast<Sum>(Modulo(Modulo(a) + Modulo(b))); };
+    const auto times = [](int w, Sum a) { return static_cast<Sum>(Modulo(Modulo(w) * Modulo(a))); };
+    constexpr Sum kHalfStep = kStep.shift > 0 ? Sum(1 << (kStep.shift > 0 ? kStep.shift - 1 : 0)) : Sum(0);
+    if constexpr (kStep.pairs == 0) {
+        return static_cast<Sum>(add(l0, kHalfStep) >> kStep.shift);
+    } else if constexpr (kStep.pairs == 1) {
+        return static_cast<Sum>(add(add(l0, r0), kHalfStep) >> kStep.shift);
+    } else if constexpr (isCubic(kStep)) { // floor((8 a + (a - b) + half) / 8 / ..) in steps, so that sums stay small
+        const Sum a = add(l0, r0), b = add(l1, r1);
+        const Sum eighth = static_cast<Sum>(add(static_cast<Sum>(Modulo(Modulo(a) - Modulo(b))), kHalfStep) >> 3);
+        return static_cast<Sum>(add(a, eighth) >> (kStep.shift - 3));
+    } else {
+        Sum sum = add(add(times(kStep.weight[0], add(l0, r0)), times(kStep.weight[1], add(l1, r1))), kHalfStep);
+        if constexpr (kStep.pairs > 2) sum = add(sum, times(kStep.weight[2], add(l2, r2)));
+        return static_cast<Sum>(sum >> kStep.shift);
+    }
+}
+
+/// Adds the changes to, or takes them from, whole blocks of kRowWords.
+template <class Word, class Sum, LiftStep kStep, bool kAdd>
+TESSERA_INLINE void changeBlocks(Word* __restrict target, const Sources<Word>& from, std::size_t count) {
     const Word *l0 = from.left[0], *r0 = from.right[0], *l1 = from.left[1], *r1 = from.right[1], *l2 = from.left[2],
                *r2 = from.right[2];
-    const Sum w0 = static_cast<Sum>(step.weight[0]), w1 = static_cast<Sum>(step.weight[1]),
-              w2 = static_cast<Sum>(step.weight[2]);
-    const int shift = step.shift;
-    const Sum half = static_cast<Sum>(shift > 0 ? Sum(1) << (shift - 1) : 0);
-    const Sum sign = static_cast<Sum>(add ? 0 : -1);
-    count = (count + kRowWords - 1) / kRowWords * kRowWords;
-    for (std::size_t i = 0; i < count; ++i) {
-        Sum sum = static_cast<Sum>(Sum(l0[i]) + half);
-        if constexpr (kPairs == 1) sum = static_cast<Sum>(sum + Sum(r0[i]));
-        if constexpr (kPairs > 1)
-            sum = static_cast<Sum>(half + w0 * static_cast<Sum>(Sum(l0[i]) + Sum(r0[i])) +
-                                   w1 * static_cast<Sum>(Sum(l1[i]) + Sum(r1[i])));
-        if constexpr (kPairs > 2) sum = static_cast<Sum>(sum + w2 * static_cast<Sum>(Sum(l2[i]) + Sum(r2[i])));
-        const Sum change = static_cast<Sum>(((sum >> shift) ^ sign) - sign);
-        target[i] = static_cast<Word>(target[i] + static_cast<Word>(change));
-    }
+    const auto at = [](const Word* row, std::size_t i) { return static_cast<Sum>(row[i]); };
+    for (std::size_t block = 0; block < count; block += kRowWords)
+        for (std::size_t i = block; i < block + kRowWords; ++i) {
+            Sum change = 0;
+            if constexpr (kStep.pairs == 0)
+                change = changeOf<Sum, kStep>(at(l0, i), 0, 0, 0, 0, 0);
+            else if constexpr (kStep.pairs == 1)
+                change = changeOf<Sum, kStep>(at(l0, i), at(r0, i), 0, 0, 0, 0);
+            else if constexpr (kStep.pairs == 2)
+                change = changeOf<Sum, kStep>(at(l0, i), at(r0, i), at(l1, i), at(r1, i), 0, 0);
+            else
+                change = changeOf<Sum, kStep>(at(l0, i), at(r0, i), at(l1, i), at(r1, i), at(l2, i), at(r2, i));
+            using Modulo = std::make_unsigned_t<Word>;
+            const auto was = static_cast<Modulo>(target[i]), by = static_cast<Modulo>(change);
+            target[i] = static_cast<Word>(static_cast<Modulo>(kAdd ? was + by : was - by));
+        }
 }
 
-template <class Word, class Sum, int kPairs>
-void addPortable(Word* target, const Sources<Word>& from, std::size_t count, const LiftStep& step, bool add) {
-    addBody<Word, Sum, kPairs>(target, from, count, step, add);
-}
-template <class Word, class Sum, int kPairs>
-TESSERA_AVX2 void addAvx2(Word* target, const Sources<Word>& from, std::size_t count, const LiftStep& step, bool add) {
-    addBody<Word, Sum, kPairs>(target, from, count, step, add);
-}
-template <class Word, class Sum, int kPairs>
-TESSERA_AVX512 void addAvx512(Word* target, const Sources<Word>& from, std::size_t count, const LiftStep& step,
-                              bool add) {
-    addBody<Word, Sum, kPairs>(target, from, count, step, add);
-}
-
-template <class Word> using Add = void (*)(Word*, const Sources<Word>&, std::size_t, const LiftStep&, bool);
-
-template <class Word, class Sum, int kPairs> Add<Word> addFor(Cpu cpu) {
-    return cpu == Cpu::Avx512 ? addAvx512<Word, Sum, kPairs>
-           : cpu == Cpu::Avx2 ? addAvx2<Word, Sum, kPairs>
-                              : addPortable<Word, Sum, kPairs>;
-}
-
-/// One step with the loop that carries it out.
-template <class Word> struct Stage {
-    LiftStep step;
-    Add<Word> add = nullptr;
+/// Rows of `count` words, one behind the other: `targets` of them to change, `sources` to change them by.
+template <class Word> struct RowSet {
+    Word* target;
+    int targets;
+    const Word* source;
+    int sources;
+    std::size_t count;
 };
 
-template <class Word, class Sum> Add<Word> addOf(const LiftStep& step, Cpu cpu) {
-    return step.pairs == 0   ? addFor<Word, Sum, 0>(cpu)
-           : step.pairs == 1 ? addFor<Word, Sum, 1>(cpu)
-           : step.pairs == 2 ? addFor<Word, Sum, 2>(cpu)
-                             : addFor<Word, Sum, 3>(cpu);
-}
-
-/// Sums of single pairs of small numbers fit their words.
-template <class Word> Stage<Word> stageOf(const LiftStep& step, bool wide, Cpu cpu) {
-    if (wide) return {step, addOf<Word, std::int64_t>(step, cpu)};
-    if (sizeof(Word) == 2 && step.pairs < 2) return {step, addOf<Word, std::int16_t>(step, cpu)};
-    return {step, addOf<Word, std::int32_t>(step, cpu)};
-}
-
-/// Even and odd rows of `count` elements that lie one behind the other, `targets` of them to change.
-template <class Word>
-void liftRows(Word* target, int targets, const Word* source, int sources, std::size_t count, const Stage<Word>& stage,
-              bool update, bool add) {
-    for (int i = 0; i < targets; ++i) {
+template <class Word, class Sum, LiftStep kStep, bool kAdd> TESSERA_INLINE void changeRows(const RowSet<Word>& set) {
+    for (int i = 0; i < set.targets; ++i) {
         Sources<Word> from;
-        if (stage.step.pairs == 0) {
-            if (i >= sources) break;
-            from.left[0] = source + std::size_t(i) * count;
+        if constexpr (kStep.pairs == 0) {
+            if (i >= set.sources) break;
+            from.left[0] = set.source + std::size_t(i) * set.count;
         } else {
-            const Pairs pairs = pairsAt(i, stage.step.pairs, sources, update);
+            const Pairs pairs = pairsAt(i, kStep.pairs, set.sources, isUpdate(kStep));
             if (pairs.none) continue;
-            for (std::size_t j = 0; j < 3; ++j) {
-                from.left[j] = source + std::size_t(pairs.left[j]) * count;
-                from.right[j] = source + std::size_t(pairs.right[j]) * count;
+            for (std::size_t j = 0; j < std::size_t(kStep.pairs); ++j) {
+                from.left[j] = set.source + std::size_t(pairs.left[j]) * set.count;
+                from.right[j] = set.source + std::size_t(pairs.right[j]) * set.count;
             }
         }
-        stage.add(target + std::size_t(i) * count, from, count, stage.step, add);
+        changeBlocks<Word, Sum, kStep, kAdd>(set.target + std::size_t(i) * set.count, from, set.count);
     }
 }
 
-/// The even and the odd samples of a row, with room around them, so that loops run over whole blocks.
-template <class Word> struct Line {
-    static constexpr int kRoom = 32, kMost = 64 + kRowWords;
-    alignas(64) Word evens[kRoom + kMost + kRoom]{};
-    alignas(64) Word odds[kRoom + kMost + kRoom]{};
-    Word* even() { return evens + kRoom; }
-    Word* odd() { return odds + kRoom; }
+/// The even and the odd samples of some rows, with room around them, so that loops run over whole blocks.
+template <class Word> struct Lines {
+    static constexpr int kRows = 16, kRoom = 32, kWords = kRoom + 64 + kRowWords + kRoom;
+    alignas(64) Word evens[kRows * kWords]{};
+    alignas(64) Word odds[kRows * kWords]{};
+    Word* even(int row) { return evens + row * kWords + kRoom; }
+    Word* odd(int row) { return odds + row * kWords + kRoom; }
 };
 
-/// The same along a row: even samples and odd ones in arrays with kRoom words around them. Elements beyond both ends
-/// complete the innermost pair; the few sums whose outer pairs are incomplete are made one by one.
-template <class Word>
-void liftLine(Word* target, int targets, Word* source, int sources, const Stage<Word>& stage, bool update, bool add) {
-    Sources<Word> from;
-    const int n = stage.step.pairs;
-    if (n == 0) {
-        from.left[0] = source;
+/// The same along `rows` rows: even and odd samples lie in lines of Lines. Words beyond both ends complete the
+/// innermost pair; the few sums whose outer pairs are incomplete are made one by one.
+template <class Word> struct LineSet {
+    Word* target;
+    int targets;
+    Word* source;
+    int sources, rows;
+};
+
+/// A sum near the ends of a line: an incomplete pair and all further out take the values of the pair inside.
+template <class Word, LiftStep kStep> TESSERA_INLINE std::int64_t changeAt(const Word* source, int sources, int right) {
+    std::int64_t pair = std::int64_t(source[right - 1]) + source[right];
+    std::int64_t sum = (std::int64_t(1) << (kStep.shift - 1)) + kStep.weight[0] * pair;
+    for (int j = 1; j < kStep.pairs; ++j) {
+        const int l = right - 1 - j, r = right + j;
+        if (l >= 0 && r < sources) pair = std::int64_t(source[l]) + source[r];
+        sum += kStep.weight[std::size_t(j)] * pair;
+    }
+    return sum >> kStep.shift;
+}
+
+/// All rows are prepared before the first is changed: words written one by one are not at once ready to be read by
+/// blocks.
+template <class Word, class Sum, LiftStep kStep, bool kAdd> TESSERA_INLINE void changeLines(const LineSet<Word>& set) {
+    constexpr int n = kStep.pairs, kRows = Lines<Word>::kRows, kWords = Lines<Word>::kWords;
+    const int targets = set.targets, sources = set.sources;
+    if constexpr (n == 0) {
         const int count = std::min(targets, sources);
-        const Word kept = target[count]; // an even sample without an odd one
-        stage.add(target, from, std::size_t(count), stage.step, add);
-        target[count] = kept;
-        return;
+        std::array<Word, kRows> kept; // even samples without an odd one
+        for (int row = 0; row < set.rows; ++row) kept[std::size_t(row)] = set.target[row * kWords + count];
+        for (int row = 0; row < set.rows; ++row)
+            changeBlocks<Word, Sum, kStep, kAdd>(set.target + row * kWords, {{set.source + row * kWords}, {}},
+                                                 std::size_t(count));
+        for (int row = 0; row < set.rows; ++row) set.target[row * kWords + count] = kept[std::size_t(row)];
+    } else {
+        if (sources < 1) return;
+        constexpr int inner = isUpdate(kStep) ? 0 : 1; // the right sample of the innermost pair of i is i + inner
+        const int firstEnd = n > 1 ? std::min(targets, n - inner) : 0;
+        const int lastBegin = n > 1 ? std::max(firstEnd, std::min(targets, sources - n + 1 - inner)) : targets;
+        std::array<Word, kRows> kept;              // of an update: details that take no part
+        std::array<std::array<Word, 8>, kRows> at; // targets near the ends, changed
+        for (int row = 0; row < set.rows; ++row) {
+            Word* source = set.source + row * kWords;
+            const Word* target = set.target + row * kWords;
+            kept[std::size_t(row)] = source[sources];
+            source[sources] = source[sources - 1];
+            source[-1] = source[0];
+            std::size_t next = 0;
+            const auto change = [&](int i) {
+                const std::int64_t by = changeAt<Word, kStep>(source, sources, i + inner);
+                at[std::size_t(row)][next++] = static_cast<Word>(kAdd ? target[i] + by : target[i] - by);
+            };
+            for (int i = 0; i < firstEnd; ++i) change(i);
+            for (int i = lastBegin; i < targets; ++i) change(i);
+        }
+        for (int row = 0; row < set.rows; ++row) {
+            Word* source = set.source + row * kWords;
+            Sources<Word> from;
+            for (int j = 0; j < n; ++j) {
+                from.left[std::size_t(j)] = source + inner - 1 - j;
+                from.right[std::size_t(j)] = source + inner + j;
+            }
+            changeBlocks<Word, Sum, kStep, kAdd>(set.target + row * kWords, from, std::size_t(targets));
+        }
+        for (int row = 0; row < set.rows; ++row) {
+            Word* target = set.target + row * kWords;
+            set.source[row * kWords + sources] = kept[std::size_t(row)];
+            std::size_t next = 0;
+            for (int i = 0; i < firstEnd; ++i) target[i] = at[std::size_t(row)][next++];
+            for (int i = lastBegin; i < targets; ++i) target[i] = at[std::size_t(row)][next++];
+        }
     }
-    if (sources < 1) return;
-    const Word kept = source[sources]; // of an update: a detail that takes no part
-    source[sources] = source[sources - 1];
-    source[-1] = source[0];
-    const int firstEnd = n > 1 ? std::min(targets, n) : 0;
-    const int lastBegin = n > 1 ? std::max(firstEnd, std::min(targets, sources - n)) : targets;
-    std::array<Word, 3> first{};
-    std::array<Word, 8> last{};
-    for (int i = 0; i < firstEnd; ++i) first[std::size_t(i)] = target[i];
-    for (int i = lastBegin; i < targets; ++i) last[std::size_t(i - lastBegin)] = target[i];
-    const int inner = update ? 0 : 1; // the right sample of the innermost pair of i is i + inner
-    for (int j = 0; j < n; ++j) {
-        from.left[std::size_t(j)] = source + inner - 1 - j;
-        from.right[std::size_t(j)] = source + inner + j;
+}
+
+template <class Word, class Sum, LiftStep kStep> TESSERA_INLINE void rowsBody(const RowSet<Word>& set, bool add) {
+    add ? changeRows<Word, Sum, kStep, true>(set) : changeRows<Word, Sum, kStep, false>(set);
+}
+template <class Word, class Sum, LiftStep kStep> TESSERA_INLINE void linesBody(const LineSet<Word>& set, bool add) {
+    add ? changeLines<Word, Sum, kStep, true>(set) : changeLines<Word, Sum, kStep, false>(set);
+}
+
+/// One step with the loops that carry it out.
+template <class Word> struct Stage {
+    int pairs = 0;
+    void (*rows)(const RowSet<Word>&, bool add) = nullptr;
+    void (*lines)(const LineSet<Word>&, bool add) = nullptr;
+};
+
+template <class Word, class Sum, LiftStep kStep> struct Portable {
+    static void rows(const RowSet<Word>& set, bool add) { rowsBody<Word, Sum, kStep>(set, add); }
+    static void lines(const LineSet<Word>& set, bool add) { linesBody<Word, Sum, kStep>(set, add); }
+};
+template <class Word, class Sum, LiftStep kStep> struct Avx2 {
+    TESSERA_AVX2 static void rows(const RowSet<Word>& set, bool add) { rowsBody<Word, Sum, kStep>(set, add); }
+    TESSERA_AVX2 static void lines(const LineSet<Word>& set, bool add) { linesBody<Word, Sum, kStep>(set, add); }
+};
+template <class Word, class Sum, LiftStep kStep> struct Avx512 {
+    TESSERA_AVX512 static void rows(const RowSet<Word>& set, bool add) { rowsBody<Word, Sum, kStep>(set, add); }
+    TESSERA_AVX512 static void lines(const LineSet<Word>& set, bool add) { linesBody<Word, Sum, kStep>(set, add); }
+};
+
+template <class Word, class Sum, LiftStep kStep> Stage<Word> stageFor(Cpu cpu) {
+    const auto stage = [](auto loops) { return Stage<Word>{kStep.pairs, loops.rows, loops.lines}; };
+    return cpu == Cpu::Avx512 ? stage(Avx512<Word, Sum, kStep>())
+           : cpu == Cpu::Avx2 ? stage(Avx2<Word, Sum, kStep>())
+                              : stage(Portable<Word, Sum, kStep>());
+}
+
+template <class Word, LiftStep kStep> Stage<Word> stageFor(bool wide, Cpu cpu) {
+    if constexpr (sizeof(Word) == 2) {
+        using Sum = std::conditional_t<sumsFitInt16(kStep), std::int16_t, std::int32_t>;
+        return stageFor<Word, Sum, kStep>(cpu);
+    } else {
+        return wide ? stageFor<Word, std::int64_t, kStep>(cpu) : stageFor<Word, std::int32_t, kStep>(cpu);
     }
-    stage.add(target, from, std::size_t(targets), stage.step, add);
-    source[sources] = kept;
-    const auto single = [&](int i, Word value) {
-        const Pairs pairs = pairsAt(i, n, sources, update);
-        target[i] = value;
-        if (pairs.none) return;
-        std::int64_t sum = std::int64_t(1) << (stage.step.shift - 1);
-        for (std::size_t j = 0; j < std::size_t(n); ++j)
-            sum += std::int64_t(stage.step.weight[j]) *
-                   (std::int64_t(source[pairs.left[j]]) + std::int64_t(source[pairs.right[j]]));
-        const std::int64_t change = sum >> stage.step.shift;
-        target[i] = static_cast<Word>(std::int64_t(value) + (add ? change : -change));
-    };
-    for (int i = 0; i < firstEnd; ++i) single(i, first[std::size_t(i)]);
-    for (int i = lastBegin; i < targets; ++i) single(i, last[std::size_t(i - lastBegin)]);
+}
+
+template <class Word> Stage<Word> stageOf(const LiftStep& step, bool wide, Cpu cpu) {
+    if (step == kSame) return stageFor<Word, kSame>(wide, cpu);
+    if (step == kMean) return stageFor<Word, kMean>(wide, cpu);
+    if (step == kCubic) return stageFor<Word, kCubic>(wide, cpu);
+    if (step == kHalf) return stageFor<Word, kHalf>(wide, cpu);
+    if (step == kUpdate22) return stageFor<Word, kUpdate22>(wide, cpu);
+    if (step == kUpdate24) return stageFor<Word, kUpdate24>(wide, cpu);
+    if (step == kUpdate26) return stageFor<Word, kUpdate26>(wide, cpu);
+    if (step == kUpdate44) return stageFor<Word, kUpdate44>(wide, cpu);
+    assert(step == kUpdate46);
+    return stageFor<Word, kUpdate46>(wide, cpu);
 }
 
 /// Details that an update may use: those predicted from two sides; all for a mean of two.
-int usable(const LiftStep& update, int evens, int odds) {
-    return update.pairs == 0 ? odds : std::min(odds, evens - 1);
+int usable(int pairs, int evens, int odds) {
+    return pairs == 0 ? odds : std::min(odds, evens - 1);
 }
 
 /// A transform ready to run.
@@ -198,27 +284,44 @@ template <class Word> struct Plan {
         const LiftFilter filter = filterOf(wavelet);
         updates = filter.updates;
         predict = stageOf<Word>(filter.predict, wide, cpu);
-        update = stageOf<Word>(filter.update, wide, cpu);
+        if (updates) update = stageOf<Word>(filter.update, wide, cpu);
     }
-    void forwardRows(Word* even, int evens, Word* odd, int odds, std::size_t count) const {
-        liftRows<Word>(odd, odds, even, evens, count, predict, false, false);
-        if (updates) liftRows<Word>(even, evens, odd, usable(update.step, evens, odds), count, update, true, true);
-    }
-    void inverseRows(Word* even, int evens, Word* odd, int odds, std::size_t count) const {
-        if (updates) liftRows<Word>(even, evens, odd, usable(update.step, evens, odds), count, update, true, false);
-        liftRows<Word>(odd, odds, even, evens, count, predict, false, true);
-    }
-    void forwardLine(Word* even, int evens, Word* odd, int odds) const {
+    void rows(Word* even, int evens, Word* odd, int odds, std::size_t count, bool forward) const {
         if (odds == 0) return;
-        liftLine<Word>(odd, odds, even, evens, predict, false, false);
-        if (updates) liftLine<Word>(even, evens, odd, usable(update.step, evens, odds), update, true, true);
+        const auto predicts = [&] { predict.rows({odd, odds, even, evens, count}, !forward); };
+        if (forward) predicts();
+        if (updates) update.rows({even, evens, odd, usable(update.pairs, evens, odds), count}, forward);
+        if (!forward) predicts();
     }
-    void inverseLine(Word* even, int evens, Word* odd, int odds) const {
+    void lines(Lines<Word>& lines, int evens, int odds, int rows, bool forward) const {
         if (odds == 0) return;
-        if (updates) liftLine<Word>(even, evens, odd, usable(update.step, evens, odds), update, true, false);
-        liftLine<Word>(odd, odds, even, evens, predict, false, true);
+        Word *even = lines.even(0), *odd = lines.odd(0);
+        const auto predicts = [&] { predict.lines({odd, odds, even, evens, rows}, !forward); };
+        if (forward) predicts();
+        if (updates) update.lines({even, evens, odd, usable(update.pairs, evens, odds), rows}, forward);
+        if (!forward) predicts();
     }
 };
+
+/// Whole blocks of kRowWords, at least `count` words.
+template <class Word> TESSERA_INLINE void copyBlocks(const Word* __restrict from, int count, Word* __restrict to) {
+    for (int block = 0; block < count; block += kRowWords)
+        for (int i = block; i < block + kRowWords; ++i) to[i] = from[i];
+}
+/// `blocks` words of a row, even and odd ones in turn, to lines and back.
+template <class Word> TESSERA_INLINE void partRow(const Word* __restrict from, int words, Word* even, Word* odd) {
+    for (int block = 0; block < words / 2; block += kRowWords / 2)
+        for (int i = block; i < block + kRowWords / 2; ++i) even[i] = from[2 * i], odd[i] = from[2 * i + 1];
+}
+template <class Word> TESSERA_INLINE void mixRow(const Word* even, const Word* odd, int words, Word* __restrict to) {
+    for (int block = 0; block < words / 2; block += kRowWords / 2)
+        for (int i = block; i < block + kRowWords / 2; ++i) to[2 * i] = even[i], to[2 * i + 1] = odd[i];
+}
+
+/// Where rows lie whose even ones come first.
+int placeOf(int i, int evens) {
+    return i % 2 == 0 ? i / 2 : evens + i / 2;
+}
 
 } // namespace
 
@@ -233,22 +336,23 @@ void splitBox(const Box<const Word>& in, const Box<Word>& out, Wavelet wavelet, 
     const int ex = (size.x + 1) / 2, ey = (size.y + 1) / 2, ez = (size.z + 1) / 2;
     const int dx = size.x / 2, dy = size.y / 2, dz = size.z / 2;
     const auto row = std::size_t(in.pitch), slice = row * std::size_t(size.y);
-    Line<Word> line;
-    Word *even = line.even(), *odd = line.odd();
+    Lines<Word> lines;
+    alignas(64) Word whole[2 * Lines<Word>::kWords];
     for (int z = 0; z < size.z; ++z) {
-        Word* to = out.row(0, z % 2 == 0 ? z / 2 : ez + z / 2);
-        for (int y = 0; y < size.y; ++y) {
-            const Word* from = in.row(y, z);
-            const int half = in.pitch / 2; // whole blocks
-            for (int x = 0; x < half; ++x) even[x] = from[2 * x], odd[x] = from[2 * x + 1];
-            plan.forwardLine(even, ex, odd, dx);
-            Word* done = to + std::size_t(y % 2 == 0 ? y / 2 : ey + y / 2) * row;
-            std::copy_n(even, ex, done);
-            std::copy_n(odd, dx, done + ex);
+        Word* to = out.row(0, placeOf(z, ez));
+        for (int y0 = 0; y0 < size.y; y0 += lines.kRows) {
+            const int rows = std::min(lines.kRows, size.y - y0);
+            for (int y = 0; y < rows; ++y) partRow(in.row(y0 + y, z), in.pitch, lines.even(y), lines.odd(y));
+            plan.lines(lines, ex, dx, rows, true);
+            for (int y = 0; y < rows; ++y) {
+                copyBlocks(lines.even(y), ex, whole);
+                copyBlocks(lines.odd(y), dx, whole + ex);
+                copyBlocks<Word>(whole, in.pitch, to + std::size_t(placeOf(y0 + y, ey)) * row);
+            }
         }
-        if (dy > 0) plan.forwardRows(to, ey, to + std::size_t(ey) * row, dy, row);
+        plan.rows(to, ey, to + std::size_t(ey) * row, dy, row, true);
     }
-    if (dz > 0) plan.forwardRows(out.values, ez, out.row(0, ez), dz, slice);
+    if (dz > 0) plan.rows(out.values, ez, out.row(0, ez), dz, slice, true);
 }
 
 template <class Word> void joinBox(const Box<Word>& in, const Box<Word>& out, Wavelet wavelet, bool wide, Cpu cpu) {
@@ -257,20 +361,22 @@ template <class Word> void joinBox(const Box<Word>& in, const Box<Word>& out, Wa
     const int ex = (size.x + 1) / 2, ey = (size.y + 1) / 2, ez = (size.z + 1) / 2;
     const int dx = size.x / 2, dy = size.y / 2, dz = size.z / 2;
     const auto row = std::size_t(in.pitch), slice = row * std::size_t(size.y);
-    if (dz > 0) plan.inverseRows(in.values, ez, in.row(0, ez), dz, slice);
-    Line<Word> line;
-    Word *even = line.even(), *odd = line.odd();
+    if (dz > 0) plan.rows(in.values, ez, in.row(0, ez), dz, slice, false);
+    Lines<Word> lines;
+    alignas(64) Word whole[Lines<Word>::kRows][2 * Lines<Word>::kWords]{};
     for (int z = 0; z < size.z; ++z) {
-        Word* from = in.row(0, z % 2 == 0 ? z / 2 : ez + z / 2);
-        if (dy > 0) plan.inverseRows(from, ey, from + std::size_t(ey) * row, dy, row);
-        for (int y = 0; y < size.y; ++y) {
-            const Word* coded = from + std::size_t(y % 2 == 0 ? y / 2 : ey + y / 2) * row;
-            std::copy_n(coded, ex, even);
-            std::copy_n(coded + ex, dx, odd);
-            plan.inverseLine(even, ex, odd, dx);
-            Word* __restrict to = out.row(y, z);
-            const int half = in.pitch / 2;
-            for (int x = 0; x < half; ++x) to[2 * x] = even[x], to[2 * x + 1] = odd[x];
+        Word* from = in.row(0, placeOf(z, ez));
+        plan.rows(from, ey, from + std::size_t(ey) * row, dy, row, false);
+        for (int y0 = 0; y0 < size.y; y0 += lines.kRows) {
+            const int rows = std::min(lines.kRows, size.y - y0);
+            for (int y = 0; y < rows; ++y)
+                copyBlocks<Word>(from + std::size_t(placeOf(y0 + y, ey)) * row, in.pitch, whole[y]);
+            for (int y = 0; y < rows; ++y) {
+                copyBlocks<Word>(whole[y], ex, lines.even(y));
+                copyBlocks<Word>(whole[y] + ex, dx, lines.odd(y));
+            }
+            plan.lines(lines, ex, dx, rows, false);
+            for (int y = 0; y < rows; ++y) mixRow<Word>(lines.even(y), lines.odd(y), in.pitch, out.row(y0 + y, z));
         }
     }
 }

@@ -135,6 +135,60 @@ template <> float sampleOf<float>(const NumberCoding& coding, std::uint32_t code
     return static_cast<float>(valueOf(coding, code));
 }
 
+namespace {
+
+/// Calls `visit` with the function that makes a real number of a code.
+template <class Visit> void withValues(const NumberCoding& coding, Visit&& visit) {
+    const double origin = coding.origin, step = coding.step;
+    switch (coding.kind) {
+    case NumberKind::Integer:
+        return visit([](std::int32_t k) { return double(k); });
+    case NumberKind::Scaled:
+        return visit([step](std::int32_t k) { return double(k) / step; });
+    case NumberKind::Quantised:
+        return visit([origin, step](std::int32_t k) { return origin + step * double(k); });
+    case NumberKind::Float:
+        return visit([](std::int32_t k) { return double(floatOfCode(static_cast<std::uint32_t>(k))); });
+    }
+}
+
+} // namespace
+
+template <class T, class Word> void toSamples(const NumberCoding& coding, std::span<const Word> codes, T* samples) {
+    if constexpr (!std::same_as<T, float>) {
+        for (std::size_t i = 0; i < codes.size(); ++i) samples[i] = static_cast<T>(codes[i]);
+    } else if (coding.kind == NumberKind::Float) { // bit for bit, NaNs too
+        for (std::size_t i = 0; i < codes.size(); ++i) samples[i] = floatOfCode(static_cast<std::uint32_t>(codes[i]));
+    } else {
+        withValues(coding, [&](auto&& value) {
+            for (std::size_t i = 0; i < codes.size(); ++i) samples[i] = static_cast<float>(value(codes[i]));
+        });
+    }
+}
+
+template <class Word>
+void toValues(const NumberCoding& coding, double offset, double scale, std::span<const Word> codes, float* values) {
+    if (coding.kind == NumberKind::Integer && offset == 0 && scale == 1) {
+        for (std::size_t i = 0; i < codes.size(); ++i) values[i] = static_cast<float>(codes[i]);
+        return;
+    }
+    withValues(coding, [&](auto&& value) {
+        for (std::size_t i = 0; i < codes.size(); ++i) values[i] = static_cast<float>(offset + scale * value(codes[i]));
+    });
+}
+
+#define TESSERA_SAMPLES(T)                                                                                             \
+    template void toSamples(const NumberCoding&, std::span<const std::int16_t>, T*);                                   \
+    template void toSamples(const NumberCoding&, std::span<const std::int32_t>, T*);
+TESSERA_SAMPLES(std::uint8_t)
+TESSERA_SAMPLES(std::int16_t)
+TESSERA_SAMPLES(std::uint16_t)
+TESSERA_SAMPLES(std::int32_t)
+TESSERA_SAMPLES(float)
+#undef TESSERA_SAMPLES
+template void toValues(const NumberCoding&, double, double, std::span<const std::int16_t>, float*);
+template void toValues(const NumberCoding&, double, double, std::span<const std::int32_t>, float*);
+
 bool close(const NumberCoding& coding, double maxError, float sample, float decoded) {
     if (std::bit_cast<std::uint32_t>(sample) == std::bit_cast<std::uint32_t>(decoded)) return true;
     return coding.kind == NumberKind::Quantised && std::abs(double(sample) - double(decoded)) <= maxError;

@@ -42,8 +42,14 @@ template <class T> T sampleOf(const NumberCoding&, std::uint32_t code) {
 }
 template <> float sampleOf<float>(const NumberCoding& coding, std::uint32_t code);
 
+/// The same for a row of codes of 16 or 32 bits, into as many samples.
+template <class T, class Word> void toSamples(const NumberCoding& coding, std::span<const Word> codes, T* samples);
+
 /// The stored value of a code as a real number: coarse levels of integer types may lie between and beyond the samples.
 double valueOf(const NumberCoding& coding, std::uint32_t code);
+/// float(offset + scale * valueOf(code)) for a row of codes.
+template <class Word>
+void toValues(const NumberCoding& coding, double offset, double scale, std::span<const Word> codes, float* values);
 
 /// True if `sample` may be replaced by `decoded`: equal bits, or for Quantised at most `maxError` apart.
 bool close(const NumberCoding& coding, double maxError, float sample, float decoded);

@@ -83,21 +83,22 @@ TEST(BrickCodec, DecodesWhatItEncodes) {
             ASSERT_EQ(decodeBrick(made.format, views(segments, std::size_t(made.format.levels - level)), level,
                                   made.present, decoder, decoded),
                       DecodeStatus::Ok);
-            ASSERT_EQ(decoded.codes.size(), countOf(samplesAt(made.format, level)));
+            const std::vector<std::uint32_t> codes = decoded.codes();
+            ASSERT_EQ(codes.size(), countOf(samplesAt(made.format, level)));
             ASSERT_EQ(decoded.present, maskAt(made.format, made.present, level));
             if (level > 0) continue;
             ASSERT_EQ(decoded.present, made.present);
-            std::vector<std::uint32_t> exact(decoded.codes.size());
+            std::vector<std::uint32_t> exact(codes.size());
             std::vector<bool> isExact(exact.size());
             for (const ExactSample& sample : decoded.exact)
                 exact[sample.index] = sample.bits, isExact[sample.index] = true;
             std::size_t absent = 0;
             volume::dispatch(made.format.type, [&]<class T>(T) {
-                for (std::size_t i = 0; i < decoded.codes.size(); ++i) {
+                for (std::size_t i = 0; i < codes.size(); ++i) {
                     T original;
                     std::memcpy(&original, made.samples.data() + i * sizeof(T), sizeof(T));
                     std::uint32_t bits = 0;
-                    T value = sampleOf<T>(made.format.numbers, decoded.codes[i]);
+                    T value = sampleOf<T>(made.format.numbers, codes[i]);
                     if (!made.present.empty() && made.present[i] == 0) {
                         if (!made.format.keepsAbsent) continue;
                         bits = decoded.absent[absent++];

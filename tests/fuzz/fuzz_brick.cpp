@@ -41,7 +41,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         const std::vector<std::span<const std::byte>> parts(segments.begin(), segments.end() - level);
         codec::DecodedBrick decoded;
         const codec::DecodeStatus status = codec::decodeBrick(format, parts, level, present, decoder, decoded);
-        if (status == codec::DecodeStatus::Ok && level == 0 && decoded.codes.size() != count) std::abort();
+        if (status == codec::DecodeStatus::Ok && level == 0 && decoded.codes().size() != count) std::abort();
     }
     return 0;
 }

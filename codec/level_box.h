@@ -1,0 +1,34 @@
+#pragma once
+
+#include "codec/lift_box.h"
+
+#include <vector>
+
+namespace tessera::codec {
+
+/// A box with its storage, and the flags of its samples in the same places. What no sample was written to, between the
+/// rows and where absent, is anything.
+template <class Word> class LevelBox {
+public:
+    LevelBox() = default;
+    LevelBox(glm::ivec3 size, bool masked) { reset(size, masked); }
+    /// Becomes a box of another size; its memory is kept for that.
+    void reset(glm::ivec3 size, bool masked) {
+        const std::size_t words = std::size_t(pitchFor(size.x)) * std::size_t(size.y) * std::size_t(size.z);
+        size_ = size;
+        if (values_.size() < words) values_.resize(words);
+        present_.resize(masked ? words : 0);
+    }
+    Box<Word> box() { return {values_.data(), size_, pitchFor(size_.x)}; }
+    Box<const Word> box() const { return {values_.data(), size_, pitchFor(size_.x)}; }
+    Box<std::uint8_t> flags() { return {masked() ? present_.data() : nullptr, size_, pitchFor(size_.x)}; }
+    bool masked() const { return !present_.empty(); }
+    glm::ivec3 size() const { return size_; }
+
+private:
+    glm::ivec3 size_{0};
+    std::vector<Word> values_;
+    std::vector<std::uint8_t> present_;
+};
+
+} // namespace tessera::codec
