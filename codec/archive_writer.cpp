@@ -13,6 +13,7 @@
 #include <cassert>
 #include <cmath>
 #include <cstring>
+#include <glm/common.hpp>
 #include <limits>
 #include <map>
 #include <optional>
@@ -73,6 +74,10 @@ FrameBrick rangeOf(const BrickFormat& format, const volume::Field& field, std::s
 
 } // namespace
 
+namespace {
+struct Taken;
+}
+
 struct ArchiveWriter::Impl {
     GrowingFile file;
     Metadata metadata;
@@ -88,7 +93,8 @@ struct ArchiveWriter::Impl {
 
     int maskFor(const volume::Field& field, int zstdLevel);
     Wavelet waveletFor(const volume::Field& field, FrameRecord frame) const;
-    Model modelFor(const volume::Field& field, std::size_t component, FrameRecord& frame, const FrameOptions& options);
+    Model modelFor(const volume::Field& field, std::size_t component, FrameRecord& frame, const FrameOptions& options,
+                   Taken& taken);
     void writeModel(const Model& model, std::size_t component, FrameRecord& frame);
     void commit(const Metadata& now, std::size_t wholeTimes, bool always);
 };
@@ -145,37 +151,88 @@ struct BrickInput {
     std::vector<std::uint8_t> present; ///< empty: all
 
     void take(const volume::BrickGrid& grid, glm::ivec3 brick, const volume::Field& field, bool masked) {
-        const std::size_t sampleBytes = volume::byteSize(field.type);
+        const glm::ivec3 begin = grid.begin(brick);
+        take(grid, begin, grid.end(brick) - begin, field, masked);
+    }
+    /// Any box of the lattice.
+    void take(const volume::BrickGrid& grid, glm::ivec3 begin, glm::ivec3 size, const volume::Field& field,
+              bool masked) {
+        const std::size_t sampleBytes = volume::byteSize(field.type), n = std::size_t(size.x);
         samples.clear();
         present.clear();
         bool mixed = false;
-        forBrickRows(grid, brick, [&](std::size_t from, std::size_t, std::size_t n) {
-            const auto row = field.samples.begin() + std::ptrdiff_t(from * sampleBytes);
-            samples.insert(samples.end(), row, row + std::ptrdiff_t(n * sampleBytes));
-            for (std::size_t i = from; masked && i < from + n; ++i) {
-                present.push_back(field.present(i) ? 1 : 0);
-                mixed = mixed || present.back() == 0;
+        for (int z = 0; z < size.z; ++z)
+            for (int y = 0; y < size.y; ++y) {
+                const std::size_t from = grid.lattice.index(begin + glm::ivec3(0, y, z));
+                const auto row = field.samples.begin() + std::ptrdiff_t(from * sampleBytes);
+                samples.insert(samples.end(), row, row + std::ptrdiff_t(n * sampleBytes));
+                for (std::size_t i = from; masked && i < from + n; ++i) {
+                    present.push_back(field.present(i) ? 1 : 0);
+                    mixed = mixed || present.back() == 0;
+                }
             }
-        });
         if (!mixed) present.clear();
     }
 };
 
-/// Tokens of some bricks of a frame, spread over it.
+/// Bricks of a frame that were taken apart for its model, to be coded without doing that again.
+struct Taken {
+    Wavelet wavelet{};
+    int shift = 0;
+    double maxError = 0;
+    std::vector<std::optional<PreparedBrick>> bricks; ///< by number
+
+    bool serves(const FrameRecord& frame, const Model& model) const {
+        return wavelet == frame.wavelet && shift == model.shift;
+    }
+};
+
+/// Tokens of some bricks of a frame, spread over it; kept in `taken`, if there is one.
 Histogram sampleTokens(const volume::BrickGrid& grid, const volume::Field& field, const FrameRecord& frame,
-                       std::size_t most, int shift) {
+                       std::size_t most, int shift, double maxError = 0, Taken* taken = nullptr) {
     const std::size_t bricks = brickCount(grid), count = std::min(bricks, most);
     std::vector<Histogram> parts(count, Histogram(grid.levels));
+    if (taken) {
+        *taken = {frame.wavelet, shift, maxError, {}};
+        taken->bricks.resize(bricks);
+    }
     parallelFor(count, [&](std::size_t i) {
-        const glm::ivec3 brick = brickIndex(grid, i * bricks / count);
+        const std::size_t number = i * bricks / count;
+        const glm::ivec3 brick = brickIndex(grid, number);
         BrickInput input;
         input.take(grid, brick, field, frame.mask >= 0);
-        countBrick(brickFormat(grid, brick, field.type, frame), input.samples, input.present, shift, parts[i]);
+        PreparedBrick prepared =
+            prepareBrick(brickFormat(grid, brick, field.type, frame), input.samples, input.present, maxError, shift);
+        countBrick(prepared, parts[i]);
+        if (taken) taken->bricks[number] = std::move(prepared);
     });
     Histogram sum(grid.levels);
-    for (const Histogram& part : parts)
-        for (std::size_t c = 0; c < sum.counts.size(); ++c)
-            for (std::size_t t = 0; t < kTokens; ++t) sum.counts[c][t] += part.counts[c][t];
+    for (const Histogram& part : parts) sum.add(part);
+    return sum;
+}
+
+/// The same of the middles of some bricks, which is enough to compare filters.
+Histogram sampleMiddles(const volume::BrickGrid& grid, const volume::Field& field, const FrameRecord& frame,
+                        std::size_t most) {
+    constexpr int kMiddle = 32, kMiddleLevels = 3;
+    const std::size_t bricks = brickCount(grid), count = std::min(bricks, most);
+    const int levels = std::min(grid.levels, kMiddleLevels);
+    std::vector<Histogram> parts(count, Histogram(levels));
+    parallelFor(count, [&](std::size_t i) {
+        const glm::ivec3 brick = brickIndex(grid, i * bricks / count);
+        BrickFormat format = brickFormat(grid, brick, field.type, frame);
+        const int depth = kMiddle * format.sublattices();
+        const glm::ivec3 whole = format.size, size = glm::min(whole, glm::ivec3(kMiddle, kMiddle, depth));
+        glm::ivec3 first = (whole - size) / 2;
+        first.z -= first.z % format.sublattices(); // an even slice first
+        format.size = size;
+        format.levels = levels;
+        BrickInput input;
+        input.take(grid, grid.begin(brick) + first, size, field, frame.mask >= 0);
+        countBrick(prepareBrick(format, input.samples, input.present, 0, 0), parts[i]);
+    });
+    Histogram sum(levels);
+    for (const Histogram& part : parts) sum.add(part);
     return sum;
 }
 
@@ -205,7 +262,12 @@ int codeBitsOf(const volume::Field& field, const NumberCoding& numbers) {
     return std::max(1, int(std::bit_width(all)) + 1);
 }
 
-constexpr std::size_t kTrialBricks = 4, kModelBricks = 32;
+/// The bound that samples of a frame are held to beside their codes.
+double boundOf(const FrameRecord& frame, const FrameOptions& options) {
+    return frame.numbers.kind == NumberKind::Quantised ? options.maxError : 0;
+}
+
+constexpr std::size_t kTrialBricks = 6, kModelBricks = 32;
 constexpr int kMostTables = 24;
 
 } // namespace
@@ -231,7 +293,7 @@ Wavelet ArchiveWriter::Impl::waveletFor(const volume::Field& field, FrameRecord 
     Wavelet chosen = Wavelet::W22;
     for (const Wavelet wavelet : kTried) {
         frame.wavelet = wavelet;
-        double bits = sampleTokens(metadata.grid, field, frame, kTrialBricks, 0).bits();
+        double bits = sampleMiddles(metadata.grid, field, frame, kTrialBricks).bits();
         if (!filterOf(wavelet).updates) bits *= kPredictionHandicap;
         if (bits < best) best = bits, chosen = wavelet;
     }
@@ -241,15 +303,16 @@ Wavelet ArchiveWriter::Impl::waveletFor(const volume::Field& field, FrameRecord 
 /// The model of a frame: that of the component's frame before where its tables serve as well as new ones would, else a
 /// new one, not written yet (frame.model is -1). The filter is tried again only where the tables do not fit at all.
 Model ArchiveWriter::Impl::modelFor(const volume::Field& field, std::size_t component, FrameRecord& frame,
-                                    const FrameOptions& options) {
+                                    const FrameOptions& options, Taken& taken) {
     constexpr double kStillAlike = 1.05;
     const volume::BrickGrid& grid = metadata.grid;
+    const double maxError = boundOf(frame, options);
     std::optional<Model> fresh;
     const auto last = lastModel.find(component);
     if (last != lastModel.end() && last->second.resembles(frame)) {
         const Model& model = last->second.model;
         frame.wavelet = options.wavelet.value_or(last->second.wavelet);
-        const Histogram histogram = sampleTokens(grid, field, frame, kModelBricks, model.shift);
+        const Histogram histogram = sampleTokens(grid, field, frame, kModelBricks, model.shift, maxError, &taken);
         fresh = makeModel(histogram, model.shift, kMostTables);
         const double before = bitsWith(model, histogram), now = bitsWith(*fresh, histogram);
         if (before <= now + 8.0 * double(serialise(*fresh).size())) {
@@ -260,8 +323,8 @@ Model ArchiveWriter::Impl::modelFor(const volume::Field& field, std::size_t comp
     }
     if (!fresh) {
         if (!options.wavelet) frame.wavelet = waveletFor(field, frame);
-        const int shift = frame.codeBits > 16 ? shiftFor(sampleTokens(grid, field, frame, kTrialBricks, 0)) : 0;
-        fresh = makeModel(sampleTokens(grid, field, frame, kModelBricks, shift), shift, kMostTables);
+        const int shift = frame.codeBits > 16 ? shiftFor(sampleMiddles(grid, field, frame, kTrialBricks)) : 0;
+        fresh = makeModel(sampleTokens(grid, field, frame, kModelBricks, shift, maxError, &taken), shift, kMostTables);
     }
     return *fresh;
 }
@@ -315,9 +378,12 @@ void ArchiveWriter::addFrame(int parameter, int component, int time, const volum
     frame.valueOffset = field.offset;
     frame.valueScale = field.scale;
     frame.codeBits = codeBitsOf(field, frame.numbers);
-    const Model model = impl_->modelFor(field, ofTime, frame, options);
+    Taken taken;
+    const Model model = impl_->modelFor(field, ofTime, frame, options, taken);
     const BandEncoder encoder(model);
-    const double maxError = frame.numbers.kind == NumberKind::Quantised ? options.maxError : 0;
+    const double maxError = boundOf(frame, options);
+    if (!taken.serves(frame, model)) taken.bricks.clear();
+    taken.bricks.resize(brickCount(grid));
 
     const std::size_t bricks = brickCount(grid), levels = std::size_t(grid.levels);
     frame.bricks.resize(bricks);
@@ -335,7 +401,10 @@ void ArchiveWriter::addFrame(int parameter, int component, int time, const volum
                 const BrickFormat format = brickFormat(grid, brick, field.type, frame);
                 input.take(grid, brick, field, frame.mask >= 0);
                 frame.bricks[b] = rangeOf(format, field, input.samples, input.present, maxError);
-                coded[b] = encodeBrick(format, input.samples, input.present, maxError, compressor, encoder);
+                if (!taken.bricks[b])
+                    taken.bricks[b] = prepareBrick(format, input.samples, input.present, maxError, model.shift);
+                coded[b] = encodeBrick(format, *taken.bricks[b], input.samples, input.present, compressor, encoder);
+                taken.bricks[b].reset();
             }
         });
         progress.advance(double(first + count) / double(bricks));

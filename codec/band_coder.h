@@ -1,10 +1,8 @@
 #pragma once
 
-#include "codec/cpu.h"
-#include "codec/rans_model.h"
-
-#include <cstddef>
-#include <glm/vec3.hpp>
+#include "codec/band_tokens.h"
+#include "codec/decode_status.h"
+#include "codec/entropy.h"
 
 /// Bands of integer coefficients to bytes: interleaved rANS whose contexts are the magnitudes of the row and the slice
 /// before, never the left neighbour, so that sixteen lanes along x decode side by side.
@@ -13,26 +11,14 @@
 /// magnitude as the context is from Wu and Memon: CALIC (1997). (FORMAT.md "Bands".)
 namespace tessera::codec {
 
-/// Coefficients within an array of words: `size` of them, x one behind the other.
-template <class Word> struct Band {
-    Word* values = nullptr;
-    const std::uint8_t* present = nullptr; ///< flags with the same layout; null: all present. Absent: neither coded nor
-                                           ///< read; 0 when decoded
-    glm::ivec3 size{0};
-    std::ptrdiff_t rowPitch = 0, slicePitch = 0; ///< words
-};
-
-/// Adds the tokens of bands to a histogram, at the contexts of `level`.
-template <class Word>
-void countTokens(std::span<const Band<const Word>> bands, int level, int shift, Histogram& histogram);
-
 /// The model laid out for encoding; one for all bricks of a frame.
 class BandEncoder {
 public:
     explicit BandEncoder(Model model);
     const Model& model() const { return model_; }
-    /// Appends the bands, rows of all bands by turns; nothing when all coefficients are 0. Any value can be coded.
-    template <class Word> void encode(std::span<const Band<const Word>> bands, int level, Bytes& out) const;
+    /// Appends the coefficients of bands; nothing when all of them are 0. Any value can be coded. Every choice of `cpu`
+    /// gives the same bytes.
+    void encode(const TokenRun& run, int level, Bytes& out, Cpu cpu = bestCpu()) const;
 
     struct Entry {
         std::uint64_t reciprocal = 0;
@@ -41,7 +27,8 @@ public:
 
 private:
     Model model_;
-    std::vector<Entry> entries_; ///< [table << 8 | token]
+    std::vector<Entry> entries_;        ///< [table << 8 | token]
+    std::vector<std::uint32_t> packed_; ///< the same: frequency | start << 16
 };
 
 /// The model laid out for decoding; one for all bricks of a frame, used from any thread.

@@ -1,39 +1,16 @@
 #include "codec/band_coder.h"
 #include "codec/band_rows.h"
 
+#if TESSERA_X86
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC diagnostic ignored "-Wmaybe-uninitialized" // gcc 12 takes its own undefined vectors for a mistake
+#endif
+#include <immintrin.h>
+#endif
+
 namespace tessera::codec {
 
 namespace {
-
-/// Calls `visit(symbol, context class, lane of the row)` for each present coefficient, and `endOfChunk` behind each
-/// chunk of lanes.
-template <class Word, class Visit, class EndOfChunk>
-void forSymbols(std::span<const Band<const Word>> bands, int shift, Visit&& visit, EndOfChunk&& endOfChunk) {
-    std::vector<Magnitudes> magnitudes = magnitudesFor(bands);
-    forBandRows(bands, [&](std::size_t b, int z, int y) {
-        const Band<const Word>& band = bands[b];
-        const Neighbours near(magnitudes[b], z, y);
-        const std::ptrdiff_t at = z * band.slicePitch + y * band.rowPitch;
-        const Word* values = band.values + at;
-        std::uint16_t* size = magnitudes[b].row(z, y);
-        for (int x0 = 0; x0 < band.size.x; x0 += kLanes) {
-            const int end = std::min(x0 + kLanes, band.size.x);
-            std::uint32_t classes[kLanes];
-            for (int x = x0; x < x0 + kLanes; ++x) classes[x - x0] = classOf(near.sum(x));
-            for (int x = x0; x < end; ++x) {
-                if (band.present && band.present[at + x] == 0) {
-                    size[x] = 0;
-                    continue;
-                }
-                size[x] = magnitudeOf(values[x], shift);
-                visit(zigzag(static_cast<std::uint32_t>(std::int32_t(values[x]))), classes[x - x0],
-                      static_cast<std::uint32_t>(x - x0));
-            }
-            endOfChunk();
-        }
-        return true;
-    });
-}
 
 /// Raw bits, lowest first.
 class RawBits {
@@ -53,20 +30,122 @@ private:
     int count_ = 0;
 };
 
-} // namespace
+/// What the backward pass makes: states, words from the end of their buffer on, and where it had to escape.
+struct Coded {
+    alignas(64) std::uint32_t states[kMostGroups * kLanes];
+    std::vector<std::uint16_t> words;
+    std::size_t at = 0;
+    std::vector<std::uint32_t> escaped; ///< numbers of tokens, descending
 
-template <class Word>
-void countTokens(std::span<const Band<const Word>> bands, int level, int shift, Histogram& histogram) {
-    const std::size_t first = std::size_t(level) * kClasses;
-    forSymbols(
-        bands, shift,
-        [&](std::uint32_t symbol, std::uint32_t context, std::uint32_t) {
-            ++histogram.counts[first + context][tokenOf(symbol).token];
-        },
-        [] {});
+    explicit Coded(std::size_t tokens) : words(tokens + kLanes), at(words.size()) {
+        std::fill(std::begin(states), std::end(states), kLowestState);
+    }
+};
+
+/// Tokens to states and words, the last one first: a decoder undoes it. `tables`: number of each class's table << 8.
+void codeTokens(const TokenRun& run, const std::uint32_t* tables, std::span<const BandEncoder::Entry> entries,
+                Coded& out) {
+    const std::size_t groups = std::size_t(run.groups);
+    for (std::size_t i = run.tokens.size(); i-- > 0;) {
+        const std::uint32_t token = run.tokens[i];
+        if (token == TokenRun::kNone) continue;
+        const std::uint32_t table = tables[token >> 8];
+        const BandEncoder::Entry* entry = &entries[table | (token & 255u)];
+        if (entry->frequency == 0) {
+            entry = &entries[table | kEscape];
+            out.escaped.push_back(static_cast<std::uint32_t>(i));
+        }
+        std::uint32_t& state = out.states[i / kLanes % groups * kLanes + i % kLanes];
+        std::uint32_t x = state;
+        // Written always, kept when the state is too large: half of the time is no branch to predict.
+        out.words[out.at - 1] = static_cast<std::uint16_t>(x);
+        const bool full = x >> 20 >= entry->frequency;
+        out.at -= full ? 1 : 0;
+        x = full ? x >> 16 : x;
+        const auto quotient = static_cast<std::uint32_t>((x * entry->reciprocal) >> 44);
+        state = (quotient << kProbabilityBits) + (x - quotient * entry->frequency) + entry->start;
+    }
 }
 
-BandEncoder::BandEncoder(Model model) : model_(std::move(model)), entries_(model_.tables.size() << 8) {
+#if TESSERA_X86
+
+/// As codeTokens, a chunk at a time.
+TESSERA_AVX512 void codeTokens512(const TokenRun& run, const std::uint32_t* tables, const std::uint32_t* packed,
+                                  Coded& out) {
+    const __m512i tablesLow = _mm512_loadu_si512(tables), tablesHigh = _mm512_loadu_si512(tables + 16);
+    const std::size_t mask = std::size_t(run.groups) - 1;
+    std::uint16_t* words = out.words.data() + out.at;
+    for (std::size_t chunk = run.tokens.size() / kLanes; chunk-- > 0;) {
+        const __m512i both = _mm512_cvtepu16_epi32(
+            _mm256_loadu_si256(reinterpret_cast<const __m256i*>(run.tokens.data() + chunk * kLanes)));
+        const __mmask16 active = _mm512_cmpneq_epu32_mask(both, _mm512_set1_epi32(TokenRun::kNone));
+        const __m512i table = _mm512_permutex2var_epi32(tablesLow, _mm512_srli_epi32(both, 8), tablesHigh);
+        const __m512i index = _mm512_or_si512(table, _mm512_and_si512(both, _mm512_set1_epi32(255)));
+        __m512i entry = _mm512_mask_i32gather_epi32(_mm512_set1_epi32(1), active, index, packed, 4);
+        __m512i frequency = _mm512_and_si512(entry, _mm512_set1_epi32(0xffff));
+        const __mmask16 none = _mm512_mask_testn_epi32_mask(active, frequency, frequency);
+        if (none != 0) [[unlikely]] {
+            const __m512i escape = _mm512_or_si512(table, _mm512_set1_epi32(kEscape));
+            entry = _mm512_mask_i32gather_epi32(entry, none, escape, packed, 4);
+            frequency = _mm512_and_si512(entry, _mm512_set1_epi32(0xffff));
+            for (std::uint32_t lane = kLanes; lane-- > 0;)
+                if ((none >> lane & 1) != 0) out.escaped.push_back(static_cast<std::uint32_t>(chunk * kLanes + lane));
+        }
+        std::uint32_t* states = out.states + (chunk & mask) * kLanes;
+        const __m512i state = _mm512_load_si512(states);
+        const __mmask16 full = _mm512_mask_cmpge_epu32_mask(active, _mm512_srli_epi32(state, 20), frequency);
+        const int count = __builtin_popcount(full);
+        words -= count;
+        _mm256_mask_storeu_epi16(words, static_cast<__mmask16>((1u << count) - 1u),
+                                 _mm512_cvtepi32_epi16(_mm512_maskz_compress_epi32(full, state)));
+        const __m512i x = _mm512_mask_srli_epi32(state, full, state, 16);
+        // The quotient in float, at most one off, then put right.
+        const __m512 divisor = _mm512_cvtepu32_ps(frequency);
+        const __m512 guess = _mm512_rcp14_ps(divisor);
+        const __m512 reciprocal = _mm512_mul_ps(guess, _mm512_sub_ps(_mm512_set1_ps(2), _mm512_mul_ps(divisor, guess)));
+        __m512i quotient = _mm512_cvttps_epu32(_mm512_mul_ps(_mm512_cvtepu32_ps(x), reciprocal));
+        __m512i rest = _mm512_sub_epi32(x, _mm512_mullo_epi32(quotient, frequency));
+        const __mmask16 over = _mm512_movepi32_mask(rest);
+        quotient = _mm512_mask_sub_epi32(quotient, over, quotient, _mm512_set1_epi32(1));
+        rest = _mm512_mask_add_epi32(rest, over, rest, frequency);
+        const __mmask16 under = _mm512_cmpge_epu32_mask(rest, frequency);
+        quotient = _mm512_mask_add_epi32(quotient, under, quotient, _mm512_set1_epi32(1));
+        rest = _mm512_mask_sub_epi32(rest, under, rest, frequency);
+        const __m512i after = _mm512_add_epi32(_mm512_slli_epi32(quotient, kProbabilityBits),
+                                               _mm512_add_epi32(rest, _mm512_srli_epi32(entry, 16)));
+        _mm512_store_si512(states, _mm512_mask_mov_epi32(state, active, after));
+    }
+    out.at = static_cast<std::size_t>(words - out.words.data());
+}
+
+#endif
+
+/// The raw bits of symbols that need them, in order.
+Bytes rawBits(const TokenRun& run, std::span<const std::uint32_t> escaped) {
+    RawBits raw;
+    std::size_t left = escaped.size();
+    const auto escapeUpTo = [&](std::uint32_t at) { // of direct tokens, which are their symbols
+        for (; left > 0 && escaped[left - 1] < at; --left) raw.put(run.tokens[escaped[left - 1]] & 255u, 32);
+    };
+    for (const TokenRun::Large& large : run.large) {
+        escapeUpTo(large.at);
+        if (left > 0 && escaped[left - 1] == large.at) {
+            raw.put(large.symbol, 32);
+            --left;
+            continue;
+        }
+        const int bits = rawBitsOf(run.tokens[large.at] & 255u);
+        raw.put(large.symbol & ((1u << bits) - 1), bits);
+    }
+    escapeUpTo(~0u);
+    raw.flush();
+    return std::move(raw.bytes);
+}
+
+} // namespace
+
+BandEncoder::BandEncoder(Model model)
+    : model_(std::move(model)), entries_(model_.tables.size() << 8), packed_(entries_.size()) {
     for (std::size_t i = 0; i < model_.tables.size(); ++i) {
         std::uint32_t start = 0;
         for (std::size_t t = 0; t < kTokens; ++t) {
@@ -74,71 +153,38 @@ BandEncoder::BandEncoder(Model model) : model_(std::move(model)), entries_(model
             if (frequency == 0) continue;
             // Rounded up: exact for the states below frequency * 2^20 that are divided by it.
             entries_[i << 8 | t] = {((std::uint64_t(1) << 44) + frequency - 1) / frequency, frequency, start};
+            packed_[i << 8 | t] = frequency | start << 16;
             start += frequency;
         }
     }
 }
 
-template <class Word> void BandEncoder::encode(std::span<const Band<const Word>> bands, int level, Bytes& out) const {
-    const Lanes lanes(bands);
-    const std::uint8_t* tableOf = model_.tableOf.data() + std::size_t(level) * kClasses;
-    // First forwards: tokens with their tables and lanes, and raw bits.
-    std::vector<std::uint32_t> symbols; // lane << 16 | table << 8 | token
-    symbols.reserve(lanes.chunks * kLanes);
-    RawBits raw;
-    std::uint32_t group = 0, any = 0;
-    const auto groups = static_cast<std::uint32_t>(lanes.groups);
-    forSymbols(
-        bands, model_.shift,
-        [&](std::uint32_t symbol, std::uint32_t context, std::uint32_t lane) {
-            any |= symbol;
-            const std::uint32_t table = tableOf[context];
-            Token token = symbol < kDirect ? Token{symbol, 0} : tokenOf(symbol);
-            if (entries_[table << 8 | token.token].frequency == 0) token = {kEscape, 32};
-            if (token.rawBits == 32)
-                raw.put(symbol, 32);
-            else if (token.rawBits > 0)
-                raw.put(symbol & ((1u << token.rawBits) - 1), token.rawBits);
-            symbols.push_back((group * kLanes + lane) << 16 | table << 8 | token.token);
-        },
-        [&] { group = (group + 1) & (groups - 1); });
-    if (any == 0) return;
-    raw.flush();
-
-    // Then backwards: a decoder undoes the last symbol first.
-    std::uint32_t states[kMostGroups * kLanes];
-    std::fill(std::begin(states), std::end(states), kLowestState);
-    std::vector<std::uint16_t> words(symbols.size() + 1);
-    std::size_t at = words.size();
-    for (std::size_t i = symbols.size(); i-- > 0;) {
-        const Entry& entry = entries_[symbols[i] & 0xffffu];
-        std::uint32_t& state = states[symbols[i] >> 16];
-        std::uint32_t x = state;
-        // Written always, kept when the state is too large: half of the time is no branch to predict.
-        words[at - 1] = static_cast<std::uint16_t>(x);
-        const bool full = x >> 20 >= entry.frequency;
-        at -= full ? 1 : 0;
-        x = full ? x >> 16 : x;
-        const auto quotient = static_cast<std::uint32_t>((x * entry.reciprocal) >> 44);
-        state = (quotient << kProbabilityBits) + (x - quotient * entry.frequency) + entry.start;
-    }
-
-    auto length = static_cast<std::uint32_t>(raw.bytes.size());
+void BandEncoder::encode(const TokenRun& run, int level, Bytes& out, Cpu cpu) const {
+    if (run.zero) return;
+    std::uint32_t tables[kClasses];
+    for (std::size_t c = 0; c < kClasses; ++c)
+        tables[c] = std::uint32_t(model_.tableOf[std::size_t(level) * kClasses + c]) << 8;
+    Coded coded(run.tokens.size());
+#if TESSERA_X86
+    if (cpu == Cpu::Avx512)
+        codeTokens512(run, tables, packed_.data(), coded);
+    else
+#endif
+        codeTokens(run, tables, entries_, coded);
+    (void)cpu;
+    const Bytes raw = rawBits(run, coded.escaped);
+    auto length = static_cast<std::uint32_t>(raw.size());
     for (; length >= 128; length >>= 7) out.push_back(static_cast<std::byte>(length | 128u));
     out.push_back(static_cast<std::byte>(length));
-    out.insert(out.end(), raw.bytes.begin(), raw.bytes.end());
-    for (int lane = 0; lane < lanes.used; ++lane) appendU32(out, states[lane]);
-    const std::size_t begin = out.size();
-    out.resize(begin + 2 * (words.size() - at));
-    for (std::size_t i = at, to = begin; i < words.size(); ++i, to += 2) {
-        out[to] = static_cast<std::byte>(words[i]);
-        out[to + 1] = static_cast<std::byte>(words[i] >> 8);
+    out.insert(out.end(), raw.begin(), raw.end());
+    for (int lane = 0; lane < run.used; ++lane) appendU32(out, coded.states[lane]);
+    const std::size_t begin = out.size(), count = coded.words.size() - coded.at;
+    out.resize(begin + 2 * count);
+    for (std::size_t i = 0; i < count; ++i) {
+        const std::uint16_t word = coded.words[coded.at + i];
+        out[begin + 2 * i] = static_cast<std::byte>(word);
+        out[begin + 2 * i + 1] = static_cast<std::byte>(word >> 8);
     }
 }
-
-template void countTokens(std::span<const Band<const std::int16_t>>, int, int, Histogram&);
-template void countTokens(std::span<const Band<const std::int32_t>>, int, int, Histogram&);
-template void BandEncoder::encode(std::span<const Band<const std::int16_t>>, int, Bytes&) const;
-template void BandEncoder::encode(std::span<const Band<const std::int32_t>>, int, Bytes&) const;
 
 } // namespace tessera::codec

@@ -1,13 +1,14 @@
 #pragma once
 
-#include "codec/band_coder.h"
+#include "codec/band_tokens.h"
 
 #include <algorithm>
 #include <bit>
 #include <cstring>
 #include <glm/common.hpp>
+#include <vector>
 
-/// What encoder and decoder of bands share: contexts, and the way through the rows.
+/// What the files on bands share: contexts, and the way through the rows.
 namespace tessera::codec {
 
 inline constexpr int kLanes = 16, kMostGroups = 4;

@@ -20,10 +20,14 @@ using volume::ScalarType;
 constexpr std::byte kBands{4};
 constexpr std::byte kNothing{0};
 
-// Below these bits a coefficient, or a sample, the matches that zstd finds are worth a try.
-constexpr double kTryStream = 1.0, kTryWhole = 3.0;
-constexpr double kNearlyAsShort = 1.15;
-constexpr int kLeastEffort = 3, kMostEffort = 19;
+// Below these bits a sample the matches that zstd finds are worth a glance at so many samples.
+constexpr double kTryWhole = 3.0;
+constexpr std::size_t kGlance = 1 << 15;
+constexpr double kGlanceAsShort = 1.5, kNearlyAsShort = 1.15;
+constexpr double kSparse = 0.75;  // bits a sample
+constexpr double kRepeats = 0.02; // bytes a sample
+constexpr std::size_t kSmall = 1 << 17;
+constexpr int kLeastEffort = 1, kSomeEffort = 3, kMostEffort = 19;
 
 /// Codes of the samples, and what is stored beside them.
 struct Numbers {
@@ -35,6 +39,13 @@ Numbers numbersOf(const BrickFormat& format, std::span<const std::byte> samples,
     Numbers numbers;
     numbers.codes.resize(countOf(format.size));
     volume::dispatch(format.type, [&]<class T>(T) {
+        if constexpr (!std::same_as<T, float>)
+            if (present.empty()) {
+                const auto* from = reinterpret_cast<const T*>(samples.data());
+                for (std::size_t i = 0; i < numbers.codes.size(); ++i)
+                    numbers.codes[i] = static_cast<std::uint32_t>(static_cast<std::int32_t>(from[i]));
+                return;
+            }
         for (std::size_t i = 0; i < numbers.codes.size(); ++i) {
             T sample;
             std::memcpy(&sample, samples.data() + i * sizeof(T), sizeof(T));
@@ -105,69 +116,58 @@ std::span<LevelBox<Word>> boxesAt(BrickLevels<Word>& levels, const BrickFormat& 
 }
 
 template <class Word>
-void countLevels(const BrickFormat& format, const Numbers& numbers, std::span<const std::uint8_t> present, int shift,
-                 Histogram& histogram) {
+std::vector<TokenRun> levelTokens(const BrickFormat& format, const Numbers& numbers,
+                                  std::span<const std::uint8_t> present, int shift) {
     BrickLevels<Word> levels = splitBrick<Word>(format, numbers.codes, present, format.levels);
+    std::vector<TokenRun> runs;
     for (int level = 0; level < format.levels; ++level) {
         const bool coarsest = level == format.levels - 1;
         const auto bands = bandsOf<Word>(boxesAt(levels, format, level), coarsest);
         if (coarsest) toDifferences<Word>(bands);
-        countTokens<Word>(constBands<Word>(bands), level, shift, histogram);
+        runs.push_back(tokensOf<Word>(constBands<Word>(bands), shift));
     }
-}
-
-/// Coefficients of one level: the shorter of bands and a stream.
-template <class Word>
-void encodeLevel(std::span<const Band<Word>> bands, int level, const BandEncoder& encoder, Compressor& compressor,
-                 Bytes& out) {
-    if (bands.empty()) return;
-    Bytes coded{kBands};
-    encoder.encode<Word>(constBands<Word>(bands), level, coded);
-    if (coded.size() == 1) {
-        coded[0] = kNothing;
-    } else {
-        std::size_t count = 0;
-        forCoefficients(bands, [&](Word) { ++count; });
-        if (8.0 * double(coded.size()) < kTryStream * double(count) || count < 64) {
-            std::vector<std::uint32_t> symbols;
-            symbols.reserve(count);
-            forCoefficients(bands, [&](Word word) { symbols.push_back(zigzag(bitsOf(word))); });
-            Bytes stream;
-            encodeStream(symbols, compressor, stream);
-            if (stream.size() < coded.size()) coded = std::move(stream);
-        }
-    }
-    out.insert(out.end(), coded.begin(), coded.end());
-}
-
-template <class Word>
-std::vector<Bytes> encodeLevels(const BrickFormat& format, const Numbers& numbers,
-                                std::span<const std::uint8_t> present, Compressor& compressor,
-                                const BandEncoder& encoder) {
-    BrickLevels<Word> levels = splitBrick<Word>(format, numbers.codes, present, format.levels);
-    std::vector<Bytes> segments(static_cast<std::size_t>(format.levels));
-    for (int level = format.levels - 1; level >= 0; --level) {
-        const bool coarsest = level == format.levels - 1;
-        const auto bands = bandsOf<Word>(boxesAt(levels, format, level), coarsest);
-        if (coarsest) toDifferences<Word>(bands);
-        encodeLevel<Word>(bands, level, encoder, compressor, segments[std::size_t(format.levels - 1 - level)]);
-    }
-    return segments;
+    return runs;
 }
 
 /// All samples as one stream in segment 0, if that is shorter than the levels: constants, labels, repeated slices.
-void tryWhole(const Numbers& numbers, std::span<const std::uint8_t> present, std::vector<Bytes>& segments) {
+void tryWhole(const BrickFormat& format, std::span<const std::byte> samples, std::span<const std::uint8_t> present,
+              Compressor& compressor, std::vector<Bytes>& segments) {
     std::size_t bytes = 0;
     for (const Bytes& segment : segments) bytes += segment.size();
-    if (8.0 * double(bytes) > kTryWhole * double(numbers.codes.size()) || bytes <= segments.size()) return;
+    const std::size_t count = countOf(format.size);
+    if (8.0 * double(bytes) > kTryWhole * double(count) || bytes <= segments.size()) return;
+    const int effort = compressor.level();
+    Bytes whole;
+    const auto tryEffort = [&](std::span<const std::uint32_t> codes, int level, double nearly) {
+        compressor.setLevel(level);
+        whole = encodeWhole(codes, compressor);
+        compressor.setLevel(effort);
+        return double(whole.size()) <= nearly * double(bytes) * double(codes.size()) / double(count);
+    };
+    const bool sparse = 8.0 * double(bytes) < kSparse * double(count);
+    if (!sparse && present.empty() && volume::byteSize(format.type) == 1 && count > kGlance) {
+        Bytes glance;
+        constexpr std::size_t kPieces = 4, kPiece = kGlance / kPieces;
+        for (std::size_t i = 0; i < kPieces; ++i) {
+            const auto piece = samples.subspan((2 * i + 1) * (count - kPiece) / (2 * kPieces), kPiece);
+            glance.insert(glance.end(), piece.begin(), piece.end());
+        }
+        compressor.setLevel(kLeastEffort);
+        const Bytes seen = compressor.compress(glance);
+        compressor.setLevel(effort);
+        const double share = double(kGlance) / double(count);
+        if (seen.empty() || double(seen.size()) > kGlanceAsShort * double(bytes) * share) return;
+    }
+    const std::vector<std::uint32_t> all = numbersOf(format, samples, present, 0).codes;
     std::vector<std::uint32_t> codes;
-    codes.reserve(numbers.codes.size());
-    for (std::size_t i = 0; i < numbers.codes.size(); ++i)
-        if (present.empty() || present[i] != 0) codes.push_back(numbers.codes[i]);
-    // Where a glance finds matches that do about as well as bands, a long search for them is worth its time.
-    Compressor quick(kLeastEffort), thorough(kMostEffort);
-    if (double(encodeWhole(codes, quick).size()) > kNearlyAsShort * double(bytes)) return;
-    Bytes whole = encodeWhole(codes, thorough);
+    codes.reserve(all.size());
+    for (std::size_t i = 0; i < all.size(); ++i)
+        if (present.empty() || present[i] != 0) codes.push_back(all[i]);
+    // Where a quick search for matches does about as well as bands, a longer one is worth its time; the longest one
+    // where it is soon done.
+    if (!tryEffort(codes, kSomeEffort, kNearlyAsShort)) return;
+    const bool soon = double(whole.size()) < kRepeats * double(count) || count <= kSmall;
+    (void)tryEffort(codes, soon ? kMostEffort : effort, 1);
     if (whole.size() >= bytes) return;
     for (Bytes& segment : segments) segment.clear();
     segments[0] = std::move(whole);
@@ -293,36 +293,54 @@ std::vector<std::uint8_t> maskAt(const BrickFormat& format, std::span<const std:
     return out;
 }
 
-void countBrick(const BrickFormat& format, std::span<const std::byte> samples, std::span<const std::uint8_t> present,
-                int shift, Histogram& histogram) {
-    const Numbers numbers = numbersOf(format, samples, present, 0);
-    if (fitsInt16(format, !present.empty()))
-        countLevels<std::int16_t>(format, numbers, present, shift, histogram);
-    else
-        countLevels<std::int32_t>(format, numbers, present, shift, histogram);
+PreparedBrick prepareBrick(const BrickFormat& format, std::span<const std::byte> samples,
+                           std::span<const std::uint8_t> present, double maxError, int shift) {
+    assert(samples.size() == countOf(format.size) * volume::byteSize(format.type));
+    assert(present.empty() || present.size() == countOf(format.size));
+    Numbers numbers = numbersOf(format, samples, present, maxError);
+    PreparedBrick brick;
+    brick.levels = fitsInt16(format, !present.empty()) ? levelTokens<std::int16_t>(format, numbers, present, shift)
+                                                       : levelTokens<std::int32_t>(format, numbers, present, shift);
+    brick.exactIndex = std::move(numbers.exactIndex);
+    brick.exactBits = std::move(numbers.exactBits);
+    brick.absentBits = std::move(numbers.absentBits);
+    return brick;
+}
+
+void countBrick(const PreparedBrick& brick, Histogram& histogram) {
+    for (std::size_t level = 0; level < brick.levels.size(); ++level)
+        countTokens(brick.levels[level], int(level), histogram);
+}
+
+std::vector<Bytes> encodeBrick(const BrickFormat& format, const PreparedBrick& brick,
+                               std::span<const std::byte> samples, std::span<const std::uint8_t> present,
+                               Compressor& compressor, const BandEncoder& bands) {
+    std::vector<Bytes> segments(brick.levels.size());
+    for (std::size_t level = 0; level < brick.levels.size(); ++level) {
+        if (brick.levels[level].tokens.empty()) continue; // no bands
+        Bytes& out = segments[brick.levels.size() - 1 - level];
+        out.push_back(brick.levels[level].zero ? kNothing : kBands);
+        bands.encode(brick.levels[level], int(level), out);
+    }
+    tryWhole(format, samples, present, compressor, segments);
+
+    Bytes extras;
+    if (format.keepsAbsent) encodeStream(brick.absentBits, compressor, extras);
+    if (format.canHaveExact()) {
+        appendU32(extras, static_cast<std::uint32_t>(brick.exactIndex.size()));
+        encodeStream(brick.exactIndex, compressor, extras);
+        encodeStream(brick.exactBits, compressor, extras);
+    }
+    Bytes& fine = segments.back();
+    fine.insert(fine.begin(), extras.begin(), extras.end());
+    return segments;
 }
 
 std::vector<Bytes> encodeBrick(const BrickFormat& format, std::span<const std::byte> samples,
                                std::span<const std::uint8_t> present, double maxError, Compressor& compressor,
                                const BandEncoder& bands) {
-    assert(samples.size() == countOf(format.size) * volume::byteSize(format.type));
-    assert(present.empty() || present.size() == countOf(format.size));
-    const Numbers numbers = numbersOf(format, samples, present, maxError);
-    std::vector<Bytes> segments = fitsInt16(format, !present.empty())
-                                      ? encodeLevels<std::int16_t>(format, numbers, present, compressor, bands)
-                                      : encodeLevels<std::int32_t>(format, numbers, present, compressor, bands);
-    tryWhole(numbers, present, segments);
-
-    Bytes extras;
-    if (format.keepsAbsent) encodeStream(numbers.absentBits, compressor, extras);
-    if (format.canHaveExact()) {
-        appendU32(extras, static_cast<std::uint32_t>(numbers.exactIndex.size()));
-        encodeStream(numbers.exactIndex, compressor, extras);
-        encodeStream(numbers.exactBits, compressor, extras);
-    }
-    Bytes& fine = segments.back();
-    fine.insert(fine.begin(), extras.begin(), extras.end());
-    return segments;
+    const PreparedBrick brick = prepareBrick(format, samples, present, maxError, bands.model().shift);
+    return encodeBrick(format, brick, samples, present, compressor, bands);
 }
 
 void DecodedBrick::begin(const BrickFormat& format, int level) {

@@ -51,13 +51,26 @@ std::vector<std::uint8_t> maskAt(const BrickFormat& format, std::span<const std:
 Arithmetic arithmeticOf(const BrickFormat& format);
 Wavelet effectiveWavelet(const BrickFormat& format);
 
-/// Adds the tokens of a brick to the statistics a model is made of. `samples` and `present` as for encodeBrick.
-void countBrick(const BrickFormat& format, std::span<const std::byte> samples, std::span<const std::uint8_t> present,
-                int shift, Histogram& histogram);
+/// A brick as tokens: all that does not depend on a model.
+struct PreparedBrick {
+    std::vector<TokenRun> levels;                                 ///< the last is the coarsest
+    std::vector<std::uint32_t> exactIndex, exactBits, absentBits; ///< what is stored beside them
+};
 
-/// The coded brick: segment 0 holds the coarsest level, segment i what level `levels - 1 - i` adds. `samples` are
-/// numbers of format.type, x fastest; `present` one flag each, or empty: all. Quantised numbers off by more than
-/// `maxError` are stored exactly. Same input, same bytes.
+/// Takes a brick apart. `samples` are numbers of format.type, x fastest; `present` one flag each, or empty: all.
+/// Quantised numbers off by more than `maxError` are stored exactly; contexts see magnitudes divided by 2^shift.
+PreparedBrick prepareBrick(const BrickFormat& format, std::span<const std::byte> samples,
+                           std::span<const std::uint8_t> present, double maxError, int shift);
+/// Adds its tokens to the statistics a model is made of.
+void countBrick(const PreparedBrick& brick, Histogram& histogram);
+
+/// The coded brick: segment 0 holds the coarsest level, segment i what level `levels - 1 - i` adds. `brick` must be
+/// prepared from the same samples, with the shift of the model. Same input, same bytes.
+std::vector<Bytes> encodeBrick(const BrickFormat& format, const PreparedBrick& brick,
+                               std::span<const std::byte> samples, std::span<const std::uint8_t> present,
+                               Compressor& compressor, const BandEncoder& bands);
+
+/// Both in one.
 std::vector<Bytes> encodeBrick(const BrickFormat& format, std::span<const std::byte> samples,
                                std::span<const std::uint8_t> present, double maxError, Compressor& compressor,
                                const BandEncoder& bands);

@@ -48,6 +48,13 @@ Compressor::~Compressor() = default;
 Compressor::Compressor(Compressor&&) noexcept = default;
 Compressor& Compressor::operator=(Compressor&&) noexcept = default;
 
+void Compressor::setLevel(int zstdLevel) {
+    impl_->level = zstdLevel;
+}
+int Compressor::level() const {
+    return impl_->level;
+}
+
 Bytes Compressor::compress(std::span<const std::byte> in) {
     Bytes out(ZSTD_compressBound(in.size()));
     const std::size_t size =

@@ -23,6 +23,9 @@ public:
 
     /// zstd frame of `in`; empty when it would not be smaller than `in`.
     Bytes compress(std::span<const std::byte> in);
+    /// The effort of the next frames.
+    void setLevel(int zstdLevel);
+    int level() const;
 
 private:
     struct Impl;

@@ -40,17 +40,17 @@ Frequencies normalised(const Counts& counts) {
         sum += out[at];
     }
     // Settle the rest where it costs or gains most per step.
-    while (sum != int(kProbabilityOne)) {
-        const int step = sum < int(kProbabilityOne) ? 1 : -1;
-        double best = -1e300;
-        std::size_t at = 0;
-        for (std::size_t t = 0; t < kTokens; ++t) {
-            if (out[t] == 0 || (step < 0 && out[t] == 1)) continue;
-            const double gain = wanted[t] * (std::log2(double(out[t] + step)) - std::log2(double(out[t])));
-            if (gain > best) best = gain, at = t;
-        }
-        out[at] = static_cast<std::uint16_t>(out[at] + step);
-        sum += step;
+    const int step = sum < int(kProbabilityOne) ? 1 : -1;
+    const auto gainOf = [&](std::size_t t) {
+        if (out[t] == 0 || (step < 0 && out[t] == 1)) return -1e300;
+        return wanted[t] * (std::log2(double(out[t] + step)) - std::log2(double(out[t])));
+    };
+    std::array<double, kTokens> gains;
+    for (std::size_t t = 0; t < kTokens && sum != int(kProbabilityOne); ++t) gains[t] = gainOf(t);
+    for (; sum != int(kProbabilityOne); sum += step) {
+        const auto t = static_cast<std::size_t>(std::max_element(gains.begin(), gains.end()) - gains.begin());
+        out[t] = static_cast<std::uint16_t>(out[t] + step);
+        gains[t] = gainOf(t);
     }
     return out;
 }
@@ -104,6 +104,11 @@ double Histogram::bits() const {
                 sum += context[t] * (std::log2(total / context[t]) + rawBitsOf(static_cast<std::uint32_t>(t)));
     }
     return sum;
+}
+
+void Histogram::add(const Histogram& other) {
+    for (std::size_t c = 0; c < counts.size(); ++c)
+        for (std::size_t t = 0; t < kTokens; ++t) counts[c][t] += other.counts[c][t];
 }
 
 Model makeModel(const Histogram& histogram, int shift, int mostTables) {

@@ -4,6 +4,7 @@
 #include "codec/entropy.h"
 
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -26,8 +27,7 @@ struct Token {
 
 constexpr Token tokenOf(std::uint32_t symbol) {
     if (symbol < kDirect) return {symbol, 0};
-    int octave = 5;
-    while (octave < 31 && (symbol >> (octave + 1)) != 0) ++octave;
+    const int octave = static_cast<int>(std::bit_width(symbol)) - 1;
     return {kDirect + 4u * static_cast<std::uint32_t>(octave - 5) + ((symbol >> (octave - 2)) & 3u), octave - 2};
 }
 constexpr int rawBitsOf(std::uint32_t token) {
@@ -46,6 +46,8 @@ struct Histogram {
     std::vector<std::array<std::uint32_t, kTokens>> counts; ///< [level * kClasses + class]
     /// Bits the tokens and their raw bits take with ideal tables of this histogram, without the model itself.
     double bits() const;
+    /// Adds those of the same levels.
+    void add(const Histogram& other);
 };
 
 using Frequencies = std::array<std::uint16_t, kTokens>; ///< sum is kProbabilityOne; the escape's is above 0

@@ -56,10 +56,19 @@ template <class Word> void roundTrips(unsigned seed) {
         Histogram histogram(3);
         // With tables of other data, too, everything can be coded.
         const MadeBands<Word> other = randomBands<Word>(random, false);
-        countTokens<Word>(trial % 4 == 0 ? other.constant() : source, 1, shift, histogram);
+        countTokens(tokensOf<Word>(trial % 4 == 0 ? other.constant() : source, shift), 1, histogram);
         const BandEncoder encoder(makeModel(histogram, shift, 8));
         Bytes coded;
-        encoder.encode<Word>(source, 1, coded);
+        const TokenRun run = tokensOf<Word>(source, shift, Cpu::Portable);
+        encoder.encode(run, 1, coded, Cpu::Portable);
+        if (bestCpu() == Cpu::Avx512) {
+            const TokenRun other512 = tokensOf<Word>(source, shift, Cpu::Avx512);
+            ASSERT_EQ(other512.tokens, run.tokens) << trial;
+            ASSERT_EQ(other512.zero, run.zero);
+            Bytes same;
+            encoder.encode(other512, 1, same, Cpu::Avx512);
+            ASSERT_EQ(same, coded) << trial;
+        }
         const BandDecoder decoder(encoder.model());
         for (const Cpu cpu : {Cpu::Portable, Cpu::Avx2, Cpu::Avx512}) {
             if (cpu > bestCpu()) continue;
@@ -96,10 +105,11 @@ TEST(BandCoder, ComesNearTheEntropyOfItsContexts) {
         values[i] = static_cast<std::int16_t>(std::normal_distribution(0.0, 1.0 + double(i / 4096 % 16))(random));
     const Band<const std::int16_t> band{values.data(), nullptr, {64, 64, 64}, 64, 4096};
     Histogram histogram(1);
-    countTokens<std::int16_t>(std::span(&band, 1), 0, 0, histogram);
+    const TokenRun run = tokensOf<std::int16_t>(std::span(&band, 1), 0);
+    countTokens(run, 0, histogram);
     const Model model = makeModel(histogram, 0, 24);
     Bytes coded;
-    BandEncoder(model).encode<std::int16_t>(std::span(&band, 1), 0, coded);
+    BandEncoder(model).encode(run, 0, coded);
     EXPECT_LT(8.0 * double(coded.size()), bitsWith(model, histogram) * 1.001 + 64 * 32);
     EXPECT_LT(bitsWith(model, histogram), histogram.bits() * 1.01);
 }
@@ -109,10 +119,11 @@ TEST(BandCoder, RefusesTruncatedAndLongerBytesAndSurvivesAnyFlip) {
     for (int trial = 0; trial < 25; ++trial) {
         MadeBands<std::int32_t> made = randomBands<std::int32_t>(random, trial % 2 == 0);
         Histogram histogram(1);
-        countTokens<std::int32_t>(made.constant(), 0, 0, histogram);
+        const TokenRun run = tokensOf<std::int32_t>(made.constant(), 0);
+        countTokens(run, 0, histogram);
         const BandEncoder encoder(makeModel(histogram, 0, 8));
         Bytes coded;
-        encoder.encode<std::int32_t>(made.constant(), 0, coded);
+        encoder.encode(run, 0, coded);
         const BandDecoder decoder(encoder.model());
         for (const Cpu cpu : {Cpu::Portable, Cpu::Avx2, Cpu::Avx512}) {
             if (cpu > bestCpu() || coded.empty()) continue;

@@ -112,7 +112,7 @@ TEST(Corpus, DISABLED_WriteSeeds) {
         Bytes bytes = serialise(encoder.model());
         // The head of fuzz_bands.cpp.
         std::vector<char> file{char(bytes.size() % 256), char(bytes.size() / 256), 39, 4, 2};
-        encoder.encode<std::int32_t>(std::span(&band, 1), 0, bytes);
+        encoder.encode(tokensOf<std::int32_t>(std::span(&band, 1), encoder.model().shift), 0, bytes);
         for (const std::byte byte : bytes) file.push_back(char(byte));
         writeFile(corpus() + "fuzz_bands/" + std::to_string(seed), file);
     }

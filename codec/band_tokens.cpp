@@ -1,0 +1,146 @@
+#include "codec/band_tokens.h"
+
+#include "codec/band_rows.h"
+#include "codec/entropy.h"
+
+#if TESSERA_X86
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC diagnostic ignored "-Wmaybe-uninitialized" // gcc 12 takes its own undefined vectors for a mistake
+#endif
+#include <immintrin.h>
+#endif
+
+namespace tessera::codec {
+
+namespace {
+
+/// One row: sixteen tokens a chunk to `tokens`, which points behind them then.
+template <class Word>
+void rowTokens(const Band<const Word>& band, std::ptrdiff_t at, const Neighbours& near, int shift, std::uint16_t* size,
+               std::uint16_t*& tokens, TokenRun& run) {
+    const Word* values = band.values + at;
+    for (int x0 = 0; x0 < band.size.x; x0 += kLanes)
+        for (int x = x0; x < x0 + kLanes; ++x, ++tokens) {
+            if (x >= band.size.x || (band.present && band.present[at + x] == 0)) {
+                size[x] = 0;
+                *tokens = TokenRun::kNone;
+                continue;
+            }
+            size[x] = magnitudeOf(values[x], shift);
+            const std::uint32_t symbol = zigzag(static_cast<std::uint32_t>(std::int32_t(values[x])));
+            const std::uint32_t token = tokenOf(symbol).token;
+            *tokens = static_cast<std::uint16_t>(classOf(near.sum(x)) << 8 | token);
+            run.zero = run.zero && symbol == 0;
+            if (token >= kDirect) run.large.push_back({static_cast<std::uint32_t>(tokens - run.tokens.data()), symbol});
+        }
+}
+
+#if TESSERA_X86
+
+TESSERA_AVX512 inline __m256i load256(const std::uint16_t* from) {
+    return _mm256_loadu_si256(reinterpret_cast<const __m256i*>(from));
+}
+
+/// As rowTokens, sixteen at a time.
+template <class Word>
+TESSERA_AVX512 void rowTokens512(const Band<const Word>& band, std::ptrdiff_t at, const Neighbours& near, int shift,
+                                 std::uint16_t* sizes, std::uint16_t*& tokens, TokenRun& run) {
+    const Word* values = band.values + at;
+    __m512i any = _mm512_setzero_si512();
+    for (int x = 0; x < band.size.x; x += kLanes, tokens += kLanes) {
+        const auto inside = static_cast<__mmask16>((1u << std::min(kLanes, band.size.x - x)) - 1u);
+        __mmask16 active = inside;
+        if (band.present) {
+            const __m128i flags = _mm_maskz_loadu_epi8(inside, band.present + at + x);
+            active = _mm_test_epi8_mask(flags, flags);
+        }
+        const __m256i doubled = _mm256_add_epi16(load256(near.north + x), load256(near.before + x));
+        const __m256i sides =
+            _mm256_add_epi16(_mm256_add_epi16(load256(near.north + x - 1), load256(near.north + x + 1)),
+                             _mm256_add_epi16(load256(near.beforeNorth + x), load256(near.beforeSouth + x)));
+        const __m256i sums = _mm256_add_epi16(_mm256_add_epi16(doubled, doubled), sides);
+        const __m512i sum = _mm512_add_epi32(_mm512_cvtepu16_epi32(sums), _mm512_set1_epi32(1));
+        const __m512i context = _mm512_sub_epi32(_mm512_srli_epi32(_mm512_castps_si512(_mm512_cvtepi32_ps(sum)), 22),
+                                                 _mm512_set1_epi32(254));
+
+        __m512i value;
+        if constexpr (sizeof(Word) == 2)
+            value = _mm512_cvtepi16_epi32(_mm256_maskz_loadu_epi16(active, values + x));
+        else
+            value = _mm512_maskz_loadu_epi32(active, values + x);
+        const __m512i symbol = _mm512_xor_si512(_mm512_slli_epi32(value, 1), _mm512_srai_epi32(value, 31));
+        any = _mm512_or_si512(any, symbol);
+        const __m512i size = _mm512_min_epu32(_mm512_srl_epi32(_mm512_abs_epi32(value), _mm_cvtsi32_si128(shift)),
+                                              _mm512_set1_epi32(static_cast<int>(kLargestMagnitude)));
+        _mm256_storeu_si256(reinterpret_cast<__m256i*>(sizes + x), _mm512_cvtepi32_epi16(size));
+
+        __m512i token = symbol;
+        const __mmask16 large = _mm512_cmpge_epu32_mask(symbol, _mm512_set1_epi32(kDirect));
+        if (large != 0) { // octave o, its four parts: 32 + 4 (o - 5) + the two bits behind the first
+            const __m512i octave = _mm512_sub_epi32(_mm512_set1_epi32(31), _mm512_lzcnt_epi32(symbol));
+            const __m512i part = _mm512_and_si512(
+                _mm512_srlv_epi32(symbol, _mm512_sub_epi32(octave, _mm512_set1_epi32(2))), _mm512_set1_epi32(3));
+            token = _mm512_mask_add_epi32(
+                token, large, _mm512_add_epi32(_mm512_slli_epi32(octave, 2), _mm512_set1_epi32(kDirect - 20)), part);
+            alignas(64) std::uint32_t all[kLanes];
+            _mm512_store_si512(all, symbol);
+            const auto first = static_cast<std::uint32_t>(tokens - run.tokens.data());
+            for (std::uint32_t rest = large; rest != 0; rest &= rest - 1) {
+                const auto lane = static_cast<std::uint32_t>(__builtin_ctz(rest));
+                run.large.push_back({first + lane, all[lane]});
+            }
+        }
+        const __m512i both = _mm512_or_si512(_mm512_slli_epi32(context, 8), token);
+        _mm256_storeu_si256(reinterpret_cast<__m256i*>(tokens),
+                            _mm512_cvtepi32_epi16(_mm512_mask_mov_epi32(_mm512_set1_epi32(0xffff), active, both)));
+    }
+    if (_mm512_test_epi32_mask(any, any) != 0) run.zero = false;
+}
+
+#endif
+
+} // namespace
+
+template <class Word> TokenRun tokensOf(std::span<const Band<const Word>> bands, int shift, Cpu cpu) {
+    const Lanes lanes(bands);
+    TokenRun run;
+    run.groups = lanes.groups;
+    run.used = lanes.used;
+    run.tokens.resize(lanes.chunks * kLanes);
+    std::uint16_t* next = run.tokens.data();
+    std::vector<Magnitudes> magnitudes = magnitudesFor(bands);
+    forBandRows(bands, [&](std::size_t b, int z, int y) {
+        const Band<const Word>& band = bands[b];
+        const Neighbours near(magnitudes[b], z, y);
+        const std::ptrdiff_t at = z * band.slicePitch + y * band.rowPitch;
+        std::uint16_t* sizes = magnitudes[b].row(z, y);
+#if TESSERA_X86
+        if (cpu == Cpu::Avx512)
+            rowTokens512<Word>(band, at, near, shift, sizes, next, run);
+        else
+#endif
+            rowTokens<Word>(band, at, near, shift, sizes, next, run);
+        return true;
+    });
+    (void)cpu;
+    return run;
+}
+
+void countTokens(const TokenRun& run, int level, Histogram& histogram) {
+    // By turns into two tables, as the same token twice would wait for itself; kNone falls where no token is.
+    constexpr std::size_t kEntries = kClasses << 8;
+    std::vector<std::uint32_t> counts(2 * kEntries);
+    std::uint32_t *one = counts.data(), *two = one + kEntries;
+    for (std::size_t i = 0; i < run.tokens.size(); i += 2) {
+        ++one[run.tokens[i] % kEntries];
+        ++two[run.tokens[i + 1] % kEntries];
+    }
+    const std::size_t first = std::size_t(level) * kClasses;
+    for (std::size_t c = 0; c < kClasses; ++c)
+        for (std::size_t t = 0; t < kTokens; ++t) histogram.counts[first + c][t] += one[c << 8 | t] + two[c << 8 | t];
+}
+
+template TokenRun tokensOf(std::span<const Band<const std::int16_t>>, int, Cpu);
+template TokenRun tokensOf(std::span<const Band<const std::int32_t>>, int, Cpu);
+
+} // namespace tessera::codec
