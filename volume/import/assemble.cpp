@@ -165,8 +165,8 @@ Field allAbsent(const Lattice& lattice, ScalarType type) {
     return field;
 }
 
-Field converted(Field field, ScalarType type) {
-    if (field.type == type && field.scale == 1 && field.offset == 0) return field;
+/// In physical values where parameters mix types.
+Field inType(Field field, ScalarType type) {
     if (field.type == type) return field;
     Field out = makeField(field.lattice, ScalarType::F32);
     const auto values = out.as<float>();
@@ -230,7 +230,7 @@ struct Assembly {
             int local = 0;
             const Piece* piece = pieceAt(from, times[static_cast<std::size_t>(timeIndex)], local);
             if (piece == nullptr) continue;
-            Field field = converted(piece->load(from.array, component, local, lattice), parameters[p].type);
+            Field field = inType(piece->load(from.array, component, local, lattice), parameters[p].type);
             field.lattice = lattice;
             if (merged.samples.empty())
                 merged = std::move(field);

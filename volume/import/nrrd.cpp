@@ -1,6 +1,7 @@
 #include "volume/import/nrrd.h"
 
 #include "volume/error.h"
+#include "volume/import/import_limits.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,8 +11,6 @@
 namespace tessera::volume {
 
 namespace {
-
-constexpr int kMostSamplesPerAxis = 1 << 20;
 
 std::vector<double> numbers(std::string text, const std::string& file, const std::string& field) {
     std::replace(text.begin(), text.end(), ',', ' ');

@@ -1,5 +1,6 @@
 // Reads the form of a raw file: the JSON sidecar and the text of --raw.
 #include "volume/error.h"
+#include "volume/import/import_limits.h"
 #include "volume/import/raw.h"
 
 #include <algorithm>
@@ -14,9 +15,8 @@ namespace {
 
 using nlohmann::json;
 
-constexpr int kMostSamplesPerAxis = 1 << 20;
 constexpr double kMostBytes = 1e15;
-constexpr std::size_t kMostComponents = 4096, kMostTimes = 1'000'000;
+constexpr std::size_t kMostComponents = 4096;
 
 std::optional<RawType> parseType(std::string_view word) {
     struct Word {

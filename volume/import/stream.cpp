@@ -1,6 +1,7 @@
 #include "volume/import/stream.h"
 
 #include "volume/error.h"
+#include "volume/import/import_limits.h"
 
 #include <algorithm>
 #include <charconv>
@@ -15,8 +16,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr int kMostSamplesPerAxis = 1 << 20;
-constexpr std::size_t kMostPieces = 100'000, kMostArrays = 10'000, kMostTimes = 1'000'000;
+constexpr std::size_t kMostPieces = 100'000, kMostArrays = 10'000;
 
 template <class T> T take(std::span<const std::byte> bytes, std::size_t at) {
     T value;
@@ -24,7 +24,7 @@ template <class T> T take(std::span<const std::byte> bytes, std::size_t at) {
     return value;
 }
 
-struct Reader {
+struct HeaderReader {
     const json& object;
     const std::string& file;
     std::string place;
@@ -66,7 +66,7 @@ struct Reader {
 };
 
 Array parseArray(const json& entry, const std::string& file, const std::string& place) {
-    const Reader reader{entry, file, place + "."};
+    const HeaderReader reader{entry, file, place + "."};
     if (!entry.is_object()) reader.fail("");
     Array array;
     array.name = reader.text("name");
@@ -95,7 +95,7 @@ Array parseArray(const json& entry, const std::string& file, const std::string& 
 }
 
 Piece parsePiece(const json& entry, const std::string& file, const std::string& place) {
-    const Reader reader{entry, file, place + "."};
+    const HeaderReader reader{entry, file, place + "."};
     if (!entry.is_object()) reader.fail("");
     Piece piece;
     piece.file = file;
@@ -160,7 +160,7 @@ std::vector<Piece> parseStreamHeader(std::string_view text, const std::string& f
     const json document = json::parse(text, nullptr, false);
     if (document.is_discarded() || !document.is_object())
         throw Error("tessera-import sent a header that is no JSON", file);
-    const Reader reader{document, file, ""};
+    const HeaderReader reader{document, file, ""};
     const json& list = reader.get("pieces");
     if (!list.is_array() || list.size() > kMostPieces) reader.fail("pieces");
     std::vector<Piece> pieces;
