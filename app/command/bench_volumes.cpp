@@ -2,6 +2,7 @@
 
 #include "volume/import/import.h"
 #include "volume/parallel.h"
+#include "volume/synthetic/noise.h"
 
 #include <algorithm>
 #include <cmath>
@@ -17,13 +18,6 @@ namespace tessera::app {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// Noise in -1..1 that is the same everywhere and always.
-double noise(glm::ivec3 at) {
-    unsigned h = unsigned(at.x) * 73856093u ^ unsigned(at.y) * 19349663u ^ unsigned(at.z) * 83492791u;
-    h = (h ^ (h >> 13)) * 1274126177u;
-    return double((h ^ (h >> 16)) & 0xffff) / 32767.5 - 1;
-}
 
 /// `value(p, at)`: of the sample `at`, which lies at p in -1..1 along each axis.
 template <class Value> BenchVolume sampled(std::string name, glm::ivec3 size, Value&& value) {
@@ -50,12 +44,12 @@ std::string cube(const char* name, int edge) {
 BenchVolume phantomVolume(int edge) {
     return sampled(cube("CT phantom", edge), glm::ivec3(edge), [](glm::dvec3 p, glm::ivec3 at) {
         const double head = glm::length(p / glm::dvec3(0.72, 0.78, 0.9));
-        if (head > 1) return 2 + 2 * noise(at); // air
+        if (head > 1) return 2 + 2 * volume::noiseAt(at); // air
         const double hole = glm::length(glm::abs(p) - glm::dvec3(0.25, 0.62, 0.1));
         double value = head > 0.94 ? 80 : head > 0.84 && hole > 0.17 ? 205 : 105;
         if (glm::length((glm::abs(p) - glm::dvec3(0.18, 0, 0)) / glm::dvec3(0.1, 0.25, 0.3)) < 1) value = 60;
         if (value == 105) value += 12 * std::sin(9 * p.x) * std::sin(11 * p.y) * std::sin(7 * p.z);
-        return value + 5 * noise(at);
+        return value + 5 * volume::noiseAt(at);
     });
 }
 
@@ -75,7 +69,7 @@ BenchVolume foamVolume(glm::ivec3 size) {
         const glm::dvec3 s = glm::sin(p), c = glm::cos(p);
         const double gyroid = std::abs(s.x * c.y + s.y * c.z + s.z * c.x);
         const double thickness = 0.35 + 0.15 * std::sin(0.21 * p.x) * std::sin(0.17 * p.y) * std::sin(0.13 * p.z);
-        return 20 + 180 * glm::smoothstep(0.12, -0.12, gyroid - thickness) + 5 * noise(at);
+        return 20 + 180 * glm::smoothstep(0.12, -0.12, gyroid - thickness) + 5 * volume::noiseAt(at);
     });
 }
 

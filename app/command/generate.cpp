@@ -3,6 +3,7 @@
 #include "app/session/describe_cli.h"
 #include "codec/pack.h"
 #include "volume/export.h"
+#include "volume/synthetic/casting.h"
 #include "volume/synthetic/fuel_cell.h"
 #include "volume/synthetic/marschner_lobb.h"
 #include "volume/synthetic/models.h"
@@ -14,7 +15,7 @@ namespace tessera::app {
 
 namespace {
 
-struct Request {
+struct GenerateRequest {
     std::string model, output, size;
     std::optional<int> times;
     std::vector<std::string> settings;
@@ -33,7 +34,7 @@ std::optional<double> wholeNumber(const std::string& text) {
     return std::nullopt;
 }
 
-std::map<std::string, double> modelSettings(const Request& request) {
+std::map<std::string, double> modelSettings(const GenerateRequest& request) {
     std::map<std::string, double> settings;
     if (!request.size.empty()) {
         std::string rest = request.size;
@@ -69,13 +70,16 @@ void listSettings(const std::string& model) {
     std::printf("%-22s %-9s %-18s %-5s %s\n", "setting", "default", "range", "unit", "meaning");
     const volume::FuelCellSettings cell;
     const volume::MarschnerLobbSettings signal;
-    if (model != "marschner-lobb")
-        volume::FuelCellSettings::describe(cell, PrintSetting());
-    else
+    const volume::CastingSettings casting;
+    if (model == "marschner-lobb")
         volume::MarschnerLobbSettings::describe(signal, PrintSetting());
+    else if (model == "casting")
+        volume::CastingSettings::describe(casting, PrintSetting());
+    else
+        volume::FuelCellSettings::describe(cell, PrintSetting());
 }
 
-void run(const Request& request) {
+void run(const GenerateRequest& request) {
     const std::map<std::string, double> settings = modelSettings(request);
     if (request.list) {
         listSettings(request.model);
@@ -103,10 +107,10 @@ void run(const Request& request) {
 
 void addGenerateCommand(CLI::App& app) {
     CLI::App* command = app.add_subcommand("generate", "Compute a built-in data set and write it");
-    const auto request = std::make_shared<Request>();
+    const auto request = std::make_shared<GenerateRequest>();
     command
         ->add_option("MODEL", request->model,
-                     "fuel-cell, planted (the same with events of known place) or marschner-lobb")
+                     "fuel-cell, planted (the same with events of known place), marschner-lobb or casting (a scan)")
         ->required()
         ->check(CLI::IsMember(volume::modelNames()));
     CLI::Option* output =

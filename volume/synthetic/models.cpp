@@ -1,6 +1,7 @@
 #include "volume/synthetic/models.h"
 
 #include "volume/error.h"
+#include "volume/synthetic/casting.h"
 #include "volume/synthetic/fuel_cell.h"
 #include "volume/synthetic/marschner_lobb.h"
 #include "volume/synthetic/planted.h"
@@ -8,7 +9,7 @@
 namespace tessera::volume {
 
 std::vector<std::string> modelNames() {
-    return {"fuel-cell", "planted", "marschner-lobb"};
+    return {"fuel-cell", "planted", "marschner-lobb", "casting"};
 }
 
 Dataset makeModel(const std::string& name, const std::map<std::string, double>& settings, const Progress& progress) {
@@ -17,6 +18,10 @@ Dataset makeModel(const std::string& name, const std::map<std::string, double>& 
     if (name == "marschner-lobb") {
         progress.advance(1, name);
         return makeMarschnerLobb(settings);
+    }
+    if (name == "casting") {
+        progress.advance(1, name);
+        return makeCasting(settings);
     }
     std::string known;
     for (const std::string& model : modelNames()) known += (known.empty() ? "" : ", ") + model;
