@@ -15,25 +15,23 @@ namespace tessera::app {
 
 namespace {
 
-using nlohmann::json;
-
-json vectorJson(const auto& v) {
+Json vectorJson(const auto& v) {
     return {v.x, v.y, v.z};
 }
 
-json archiveJson(const codec::Archive& archive) {
+Json archiveJson(const codec::Archive& archive) {
     const volume::DatasetInfo& info = archive.info();
     const volume::BrickGrid& grid = archive.grid();
-    json parameters = json::array(), levels = json::array();
+    Json parameters = Json::array(), levels = Json::array();
     double stored = 0;
     for (const volume::Parameter& parameter : info.parameters) {
-        json entry = {{"name", parameter.name},
+        Json entry = {{"name", parameter.name},
                       {"unit", parameter.unit},
                       {"components", parameter.components},
                       {"type", volume::name(parameter.type)},
                       {"categorical", parameter.categorical},
-                      {"labels", json::object()},
-                      {"ranges", json::array()}};
+                      {"labels", Json::object()},
+                      {"ranges", Json::array()}};
         for (const volume::Label& label : parameter.labels) entry["labels"][std::to_string(label.value)] = label.name;
         for (const Range& range : parameter.ranges) entry["ranges"].push_back({range.lo, range.hi});
         parameters.push_back(std::move(entry));
@@ -122,11 +120,11 @@ SessionDocument sessionOfPicture(const std::string& path) {
 void printSession(const std::string& path, bool asJson) {
     const SessionDocument document = hasEnding(path, ".png") ? sessionOfPicture(path) : loadSession(path);
     const Session& session = document.session;
-    json files = json::array(), layers = json::array(), views = json::array();
+    Json files = Json::array(), layers = Json::array(), views = Json::array();
     for (const DataFile& file : session.data.files) files.push_back(file.path);
     for (const auto& [key, view] : session.views) views.push_back(key);
     if (asJson) {
-        std::printf("%s\n", json{{"kind", "session"},
+        std::printf("%s\n", Json{{"kind", "session"},
                                  {"file", path},
                                  {"schema", session.schema},
                                  {"title", session.title},

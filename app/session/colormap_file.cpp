@@ -11,16 +11,14 @@ namespace tessera::app {
 
 namespace {
 
-using nlohmann::json;
-
-double number(const json& value, const std::string& file, const std::string& place) {
+double number(const Json& value, const std::string& file, const std::string& place) {
     if (!value.is_number()) throw Error("not a number", file, place);
     const double x = value.get<double>();
     if (!std::isfinite(x)) throw Error("not a finite number", file, place);
     return x;
 }
 
-float component(const json& value, const std::string& file, const std::string& place) {
+float component(const Json& value, const std::string& file, const std::string& place) {
     const double x = number(value, file, place);
     if (x < 0 || x > 1) throw Error("a colour component is not within 0 to 1", file, place);
     return float(x);
@@ -29,11 +27,11 @@ float component(const json& value, const std::string& file, const std::string& p
 /// Positions as they stand in the file.
 using Stops = std::vector<std::pair<double, glm::vec3>>;
 
-Stops ownStops(const json& colors, const std::string& file) {
+Stops ownStops(const Json& colors, const std::string& file) {
     Stops stops;
     for (std::size_t i = 0; i < colors.size(); ++i) {
         const std::string place = "/colors/" + std::to_string(i);
-        const json& one = colors[i];
+        const Json& one = colors[i];
         if (!one.is_object() || !one.contains("position") || !one.contains("color") || !one["color"].is_array() ||
             one["color"].size() != 3)
             throw Error("no {\"position\": x, \"color\": [r, g, b]}", file, place);
@@ -44,7 +42,7 @@ Stops ownStops(const json& colors, const std::string& file) {
     return stops;
 }
 
-Stops paraViewStops(const json& points, const std::string& file) {
+Stops paraViewStops(const Json& points, const std::string& file) {
     const std::string place = "/0/RGBPoints";
     if (!points.is_array() || points.size() % 4 != 0) throw Error("no list of x, r, g, b", file, place);
     Stops stops;
@@ -59,7 +57,7 @@ Stops paraViewStops(const json& points, const std::string& file) {
 } // namespace
 
 std::vector<vis::ColorStop> parseColormap(std::string_view text, const std::string& file) {
-    const json document = json::parse(text, nullptr, false);
+    const Json document = Json::parse(text, nullptr, false);
     if (document.is_discarded()) throw Error("no JSON", file);
     Stops stops;
     if (document.is_object() && document.contains("colors") && document["colors"].is_array())

@@ -1,7 +1,7 @@
 #include "app/session/compare.h"
 
-#include "app/session/history.h"
 #include "app/session/parameter_path.h"
+#include "app/session/session_json.h"
 #include "volume/error.h"
 
 #include <algorithm>

@@ -1,7 +1,6 @@
 #pragma once
 
-#include "app/session/describe_json.h"
-#include "app/session/session.h"
+#include "app/session/session_json.h"
 
 #include <chrono>
 #include <string>
@@ -63,8 +62,5 @@ private:
 
 /// A readable name for a patch: "Layers 1: density".
 std::string describePatch(const Json& patch);
-
-/// Reads a session document; issues that are more than unknown keys throw Error with the JSON path.
-Session sessionFromJson(const Json& document, const std::string& file, std::vector<JsonIssue>* unknown = nullptr);
 
 } // namespace tessera::app

@@ -1,5 +1,6 @@
 #include "app/session/import_memory.h"
 
+#include "app/session/describe_json.h"
 #include "volume/atomic_file.h"
 #include "volume/error.h"
 #include "volume/import/absent.h"
@@ -9,7 +10,6 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
-#include <nlohmann/json.hpp>
 #include <set>
 
 namespace tessera::app {
@@ -18,9 +18,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-using nlohmann::json;
-
-std::map<std::string, std::string> readTexts(const json& object, const std::string& file, const std::string& place) {
+std::map<std::string, std::string> readTexts(const Json& object, const std::string& file, const std::string& place) {
     std::map<std::string, std::string> texts;
     if (!object.is_object()) throw Error("must be an object", file, place);
     for (const auto& [key, value] : object.items()) {
@@ -45,7 +43,7 @@ ImportMemory loadImportMemory(const std::string& path) {
     if (path.empty() || !fs::exists(path)) return memory;
     std::ifstream in(path, std::ios::binary);
     const std::string text{std::istreambuf_iterator<char>(in), {}};
-    const json document = json::parse(text, nullptr, false);
+    const Json document = Json::parse(text, nullptr, false);
     if (document.is_discarded() || !document.is_object()) throw Error("is not a JSON object", path);
     if (const auto units = document.find("units"); units != document.end())
         memory.units = readTexts(*units, path, "/units");
@@ -58,7 +56,7 @@ ImportMemory loadImportMemory(const std::string& path) {
         if (!absent->is_object()) throw Error("must be an object", path, "/absent");
         for (const auto& [data, rules] : absent->items()) {
             if (!rules.is_array()) throw Error("must be a list", path, "/absent/" + data);
-            for (const json& rule : rules) {
+            for (const Json& rule : rules) {
                 if (!rule.is_string()) throw Error("must be texts", path, "/absent/" + data);
                 volume::parseAbsentRule(rule.get<std::string>());
                 memory.absent[data].push_back(rule.get<std::string>());
@@ -72,12 +70,12 @@ void saveImportMemory(const ImportMemory& memory, const std::string& path) {
     if (path.empty()) throw MachineError("there is no home folder to remember units in");
     std::error_code ignored;
     fs::create_directories(fs::path(path).parent_path(), ignored);
-    json out;
+    Json out;
     out["units"] = memory.units;
     out["absent"] = memory.absent;
     out["rename"] = memory.rename;
     AtomicFile file(path);
-    file.write(out.dump(2, ' ', false, json::error_handler_t::replace) + "\n");
+    file.write(out.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
     file.commit();
 }
 

@@ -57,6 +57,14 @@ glm::dvec3 defaultStretch(const volume::Box& bounds) {
 
 } // namespace
 
+Session::Session() = default;
+Session::Session(const Session&) = default;
+Session::Session(Session&&) noexcept = default;
+Session& Session::operator=(const Session&) = default;
+Session& Session::operator=(Session&&) noexcept = default;
+Session::~Session() = default;
+bool Session::operator==(const Session&) const = default;
+
 vis::Scene sceneOf(const Session& session) {
     vis::Scene scene;
     scene.camera = session.camera;

@@ -97,7 +97,14 @@ struct Session {
     std::map<std::string, ViewState> views; ///< by pane key, e.g. "volume", "slices", "volume-2"
     DockTree dock;
 
-    bool operator==(const Session&) const = default;
+    // Defined in session.cpp: to copy, compare and destroy so much is too long to stand in every file that does.
+    Session();
+    Session(const Session&);
+    Session(Session&&) noexcept;
+    Session& operator=(const Session&);
+    Session& operator=(Session&&) noexcept;
+    ~Session();
+    bool operator==(const Session&) const;
     static void describe(auto& self, auto&& visit) {
         visit(self.schema, FieldInfo{.key = "schema", .unit = "", .doc = "Version of this format", .hidden = true});
         visit(self.title, FieldInfo{.key = "title", .unit = "", .doc = "What this session shows"});

@@ -1,6 +1,7 @@
 #include "app/views/compare_menu.h"
 
 #include "app/session/parameter_path.h"
+#include "app/session/session_json.h"
 #include "app/ui/keys.h"
 #include "app/ui/parameter_widget.h"
 #include "app/views/figure.h"

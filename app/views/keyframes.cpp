@@ -1,6 +1,7 @@
 #include "app/views/keyframes.h"
 
 #include "app/session/parameter_path.h"
+#include "app/session/session_json.h"
 #include "app/views/plot.h"
 #include "app/views/ticks.h"
 #include "app/views/view_parts.h"

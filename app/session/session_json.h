@@ -1,0 +1,16 @@
+#pragma once
+
+#include "app/session/describe_json.h"
+#include "app/session/session.h"
+
+/// A session as JSON. Its conversions are the largest templates of the program: session_json.cpp alone holds them.
+namespace tessera::app {
+
+extern template Json toJson(const Session& session);
+extern template void fromJson(Session& session, const Json& json, std::vector<JsonIssue>& issues,
+                              const std::string& path);
+
+/// Reads a session document; issues that are more than unknown keys throw Error with the JSON path.
+Session sessionFromJson(const Json& document, const std::string& file, std::vector<JsonIssue>* unknown = nullptr);
+
+} // namespace tessera::app
