@@ -3,13 +3,11 @@
 #include "app/views/derivative_feed.h"
 #include "app/views/transfer_pages.h"
 #include "app/views/view_parts.h"
+#include "tests/app/fed_imgui.h"
 #include "vis/gl/headless.h"
 #include "vis/model/boundary_opacity.h"
 #include "volume/memory_source.h"
 #include "volume/synthetic/models.h"
-
-#include <gtest/gtest.h>
-#include <imgui.h>
 
 namespace tessera::app {
 namespace {
@@ -80,17 +78,11 @@ TEST(ColorEdit, OwnColorsBeginAsTheMapThatWasInUse) {
 }
 
 /// The transfer function view in a window of its own, without a window system.
-class TransferPages : public testing::Test {
+class TransferPages : public FedImGui {
 protected:
+    TransferPages() : FedImGui({1280, 800}) {}
     void SetUp() override {
-        ImGui::CreateContext();
-        ImGuiIO& io = ImGui::GetIO();
-        io.DisplaySize = {1280, 800};
-        io.IniFilename = nullptr;
         loadFonts(1);
-        unsigned char* pixels;
-        int width, height;
-        io.Fonts->GetTexDataAsRGBA32(&pixels, &width, &height);
         applyTheme(Theme::Dark, 1);
         volume::Dataset model = volume::makeModel("fuel-cell", {{"nx", 9}, {"ny", 9}, {"nz", 21}, {"times", 2}});
         source = volume::makeMemorySource(std::move(model), {});
@@ -98,22 +90,13 @@ protected:
         session = defaultSession(source->info(), {});
         channel = source->info().channels()[std::size_t(resolveChannel(source->info(), session, "").value())].name;
     }
-    void TearDown() override {
-        caches.clear();
-        ImGui::DestroyContext();
-    }
     void frame(ImVec2 size = {900, 500}) {
-        ImGui::GetIO().DeltaTime = 1.0f / 60;
-        ImGui::GetIO().MousePos = mouse;
-        ImGui::NewFrame();
-        ViewContext context{session, source, renderer, jobs, caches};
-        context.headless = true;
-        ImGui::SetNextWindowPos({0, 0});
-        ImGui::SetNextWindowSize(size);
-        ImGui::Begin("transfer", nullptr, ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove);
-        drawTransferView(context, "transfer", view);
-        ImGui::End();
-        ImGui::Render();
+        ImGui::GetIO().DisplaySize = size;
+        feedWindow([&] {
+            ViewContext context{session, source, renderer, jobs, caches};
+            context.headless = true;
+            drawTransferView(context, "transfer", view);
+        });
         EXPECT_TRUE(jobs.collect().empty());
     }
 
@@ -125,7 +108,6 @@ protected:
     Session session;
     TransferView view;
     std::string channel;
-    ImVec2 mouse{-1000, -1000};
 };
 
 TEST_F(TransferPages, ADragMakesARegionAndARightClickRemovesIt) {

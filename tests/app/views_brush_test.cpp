@@ -1,42 +1,24 @@
 #include "app/views/brush_edit.h"
-
-#include <gtest/gtest.h>
+#include "tests/app/fed_imgui.h"
 
 namespace tessera::app {
 namespace {
 
 /// One plot of 200 x 100 pixels with values 0..10 and 0..1, driven by a fed mouse. ImGui needs no GPU for it.
-class BrushEdit : public testing::Test {
+class BrushEdit : public FedImGui {
 protected:
+    BrushEdit() : FedImGui({400, 300}) {}
     void SetUp() override {
-        ImGui::CreateContext();
-        ImGuiIO& io = ImGui::GetIO();
-        io.DisplaySize = {400, 300};
-        io.IniFilename = nullptr;
-        io.KeyMap[ImGuiKey_Escape] = 256;
-        unsigned char* pixels;
-        int width, height;
-        io.Fonts->GetTexDataAsRGBA32(&pixels, &width, &height);
         frame();
         frame();
     }
-    void TearDown() override { ImGui::DestroyContext(); }
 
     void frame() {
-        ImGuiIO& io = ImGui::GetIO();
-        io.DeltaTime = 1.0f / 60;
-        io.MousePos = mouse;
-        ImGui::NewFrame();
-        ImGui::SetNextWindowPos({0, 0});
-        ImGui::SetNextWindowSize({400, 300});
-        ImGui::Begin("test", nullptr, ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove);
-        ImGui::SetCursorScreenPos(plot.min);
-        ImGui::InvisibleButton("plot", {plot.width(), plot.height()},
-                               ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight);
-        changed = editBrushes(drag, selection, plot, channels, {tool, 0.1f});
-        drawBrushes(*ImGui::GetWindowDrawList(), selection, plot, channels);
-        ImGui::End();
-        ImGui::Render();
+        feedWindow([&] {
+            surface(plot.min, plot.max);
+            changed = editBrushes(drag, selection, plot, channels, {tool, 0.1f});
+            drawBrushes(*ImGui::GetWindowDrawList(), selection, plot, channels);
+        });
     }
     void moveTo(double x, double y) {
         mouse = plot.pixel(x, y);
@@ -61,7 +43,6 @@ protected:
     PlotChannels channels{"T", "O2"};
     BrushDrag drag;
     vis::Selection selection;
-    ImVec2 mouse{0, 0};
     bool changed = false;
     BrushTool tool = BrushTool::Rectangle;
 };

@@ -4,14 +4,13 @@
 #include "app/views/statistics_feed.h"
 #include "app/views/view_context.h"
 #include "app/views/view_parts.h"
+#include "tests/app/fed_imgui.h"
 #include "vis/gl/headless.h"
 #include "volume/error.h"
 #include "volume/memory_source.h"
 #include "volume/synthetic/models.h"
 
 #include <cmath>
-#include <gtest/gtest.h>
-#include <imgui.h>
 #include <limits>
 #include <thread>
 
@@ -21,23 +20,12 @@ namespace {
 using volume::BrickSource;
 
 /// Every view in a window of its own size, without a window system: ImGui fed by hand, pictures by EGL.
-class Views : public testing::Test {
+class Views : public FedImGui {
 protected:
+    Views() : FedImGui({1280, 800}) {}
     void SetUp() override {
-        ImGui::CreateContext();
-        ImGuiIO& io = ImGui::GetIO();
-        io.DisplaySize = {1280, 800};
-        io.IniFilename = nullptr;
-        io.KeyMap[ImGuiKey_Escape] = 256;
         fonts = loadFonts(1);
-        unsigned char* pixels;
-        int width, height;
-        io.Fonts->GetTexDataAsRGBA32(&pixels, &width, &height);
         applyTheme(Theme::Dark, 1);
-    }
-    void TearDown() override {
-        caches.clear();
-        ImGui::DestroyContext();
     }
 
     void show(std::shared_ptr<const BrickSource> data) {
@@ -60,13 +48,8 @@ protected:
         busy = busy || context.busy;
     }
     void frame(const std::function<void()>& body) {
-        ImGuiIO& io = ImGui::GetIO();
-        io.DeltaTime = 1.0f / 60;
-        io.MousePos = mouse;
         busy = false;
-        ImGui::NewFrame();
-        body();
-        ImGui::Render();
+        feed(body);
         messages = jobs.collect();
     }
     void drawAll(ImVec2 size) {
@@ -97,7 +80,6 @@ protected:
     std::shared_ptr<const BrickSource> source;
     Session session;
     bool headless = true, busy = false;
-    ImVec2 mouse{-1000, -1000};
     std::vector<std::string> messages;
     VolumeView volumeView;
     SlicesView slicesView;

@@ -1,26 +1,19 @@
 #include "app/views/lens_edit.h"
 #include "app/views/lens_list.h"
 #include "app/views/lens_outline.h"
+#include "tests/app/fed_imgui.h"
 
 #include <cmath>
 #include <glm/geometric.hpp>
-#include <gtest/gtest.h>
 
 namespace tessera::app {
 namespace {
 
 /// A picture of 400 x 300 pixels of a box of 2 x 1 x 1 with a lens in its middle, driven by a fed mouse.
-class LensEdit : public testing::Test {
+class LensEdit : public FedImGui {
 protected:
+    LensEdit() : FedImGui({500, 400}) {}
     void SetUp() override {
-        ImGui::CreateContext();
-        ImGuiIO& io = ImGui::GetIO();
-        io.DisplaySize = {500, 400};
-        io.IniFilename = nullptr;
-        io.KeyMap[ImGuiKey_Escape] = 256;
-        unsigned char* pixels;
-        int width, height;
-        io.Fonts->GetTexDataAsRGBA32(&pixels, &width, &height);
         session.camera.orientation = glm::quat(1, 0, 0, 0); // along -z, x to the right
         session.camera.projection = vis::Projection::Orthographic;
         session.cursor = {0.5, 0.5, 0.5};
@@ -28,7 +21,6 @@ protected:
         frame();
         frame();
     }
-    void TearDown() override { ImGui::DestroyContext(); }
 
     SpaceFrame space() const {
         return spaceFrame({50, 50}, {450, 350}, session.camera, {glm::dvec3(0), {2, 1, 1}}, session.stretch);
@@ -38,22 +30,12 @@ protected:
     }
     LensHandles handles() const { return lensHandles(space(), placed()); }
     void frame() {
-        ImGuiIO& io = ImGui::GetIO();
-        io.DeltaTime = 1.0f / 60;
-        io.MousePos = mouse;
-        ImGui::NewFrame();
-        ImGui::SetNextWindowPos({0, 0});
-        ImGui::SetNextWindowSize({500, 400});
-        ImGui::Begin("test", nullptr, ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove);
-        ImGui::SetCursorScreenPos({50, 50});
-        ImGui::InvisibleButton("picture", {400, 300},
-                               ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight);
-        taken = editLenses(drag, session, space(), ImGui::IsItemHovered());
-        drawLenses(*ImGui::GetWindowDrawList(), space(), session, drag.lens);
-        drawLensHandles(*ImGui::GetWindowDrawList(), drag, space(), session);
-        ImGui::End();
-        ImGui::Render();
-        io.MouseWheel = 0;
+        feedWindow([&] {
+            surface({50, 50}, {450, 350});
+            taken = editLenses(drag, session, space(), ImGui::IsItemHovered());
+            drawLenses(*ImGui::GetWindowDrawList(), space(), session, drag.lens);
+            drawLensHandles(*ImGui::GetWindowDrawList(), drag, space(), session);
+        });
     }
     void moveTo(ImVec2 at) {
         mouse = at;
@@ -80,7 +62,6 @@ protected:
 
     Session session;
     LensDrag drag;
-    ImVec2 mouse{0, 0};
     bool taken = false;
 };
 

@@ -1,8 +1,8 @@
 #include "app/views/opacity_edit.h"
 #include "app/views/playback.h"
+#include "tests/app/fed_imgui.h"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 namespace tessera::app {
 namespace {
@@ -59,34 +59,19 @@ TEST(Playback, StaysPutWhenPausedOrStatic) {
 }
 
 /// A curve over values 0..10 in a plot of 200 x 100 pixels, driven by a fed mouse.
-class OpacityEdit : public testing::Test {
+class OpacityEdit : public FedImGui {
 protected:
+    OpacityEdit() : FedImGui({400, 300}) {}
     void SetUp() override {
-        ImGui::CreateContext();
-        ImGuiIO& io = ImGui::GetIO();
-        io.DisplaySize = {400, 300};
-        io.IniFilename = nullptr;
-        unsigned char* pixels;
-        int width, height;
-        io.Fonts->GetTexDataAsRGBA32(&pixels, &width, &height);
         frame();
         frame();
     }
-    void TearDown() override { ImGui::DestroyContext(); }
     void frame() {
-        ImGuiIO& io = ImGui::GetIO();
-        io.DeltaTime = 1; // clicks a second apart are no double clicks
-        io.MousePos = mouse;
-        ImGui::NewFrame();
-        ImGui::SetNextWindowPos({0, 0});
-        ImGui::SetNextWindowSize({400, 300});
-        ImGui::Begin("test", nullptr, ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove);
-        ImGui::SetCursorScreenPos(plot.min);
-        ImGui::InvisibleButton("plot", {plot.width(), plot.height()},
-                               ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight);
-        editOpacity(drag, curve, plot, {0, 10});
-        ImGui::End();
-        ImGui::Render();
+        const auto body = [&] {
+            surface(plot.min, plot.max);
+            editOpacity(drag, curve, plot, {0, 10});
+        };
+        feedWindow(body, 1); // clicks a second apart are no double clicks
     }
     void button(int which, bool down) {
         ImGui::GetIO().MouseDown[which] = down;
@@ -100,7 +85,6 @@ protected:
     PlotFrame plot{{50, 50}, {250, 150}, {0, 10}, {0, 1}};
     std::vector<glm::vec2> curve = opacityPreset(OpacityPreset::Ramp);
     OpacityDrag drag;
-    ImVec2 mouse{0, 0};
 };
 
 TEST_F(OpacityEdit, AClickAddsAPointThatCanBeDraggedAtOnce) {

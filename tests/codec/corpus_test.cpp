@@ -14,7 +14,7 @@ using volume::LatticeKind;
 using volume::ScalarType;
 
 std::string corpus() {
-    return std::string(TESSERA_SOURCE_DIR) + "/tests/fuzz/corpus/";
+    return TESSERA_SOURCE_DIR "/tests/fuzz/corpus/";
 }
 
 volume::Dataset corpusDataset() {

@@ -53,10 +53,10 @@ volume::Dataset smoothDataset() {
     return dataset;
 }
 
-class PackD4 : public testing::Test {
+class PackD4 : public ::testing::Test {
 protected:
     void SetUp() override {
-        path_ = testing::TempDir() + "d4_" + std::to_string(getpid()) + ".tsr";
+        path_ = ::testing::TempDir() + "d4_" + std::to_string(getpid()) + ".tsr";
         volume::Dataset made = smoothDataset();
         PackOptions options;
         options.lattice = StoredLattice::D4;
@@ -151,7 +151,7 @@ TEST(PackD4Errors, OneTimeOrAnotherLatticeIsRefused) {
     still.info.times = {0};
     PackOptions options;
     options.lattice = StoredLattice::D4;
-    const std::string path = testing::TempDir() + "d4_none_" + std::to_string(getpid()) + ".tsr";
+    const std::string path = ::testing::TempDir() + "d4_none_" + std::to_string(getpid()) + ".tsr";
     EXPECT_THROW(pack(still, options, path), Error);
     volume::Dataset bcc = smoothDataset();
     bcc.info.lattice = volume::bccFor(bcc.info.lattice);

@@ -10,6 +10,11 @@ fail() {
     echo "FAILED: $*"
     failures=$((failures + 1))
 }
+die() { # die TEXT: for what the rest of a script stands on
+    echo "FAILED: $*"
+    [ -f err ] && cat err
+    exit 1
+}
 check() { # check WHAT STATUS COMMAND...: runs the command, output in out.txt and err.txt, and compares its exit status
     local what=$1 want=$2
     shift 2

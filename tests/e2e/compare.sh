@@ -1,23 +1,18 @@
 #!/bin/bash
 # Variants of a session in one figure with its table, keyframes as pictures and as a video. Arguments TESSERA SOURCE_DIR.
-set -u
 tessera=$1 source=$2
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-export XDG_CONFIG_HOME=$work/config XDG_STATE_HOME=$work/state
-cd "$work" || exit 1
-fail() { echo "FAILED: $*"; [ -f err ] && cat err; exit 1; }
+source "$2/tests/e2e/common.bash"
 
-"$tessera" generate fuel-cell -o cell.tsr --size 7x13x20 --times 3 > /dev/null 2> err || fail "generate"
+"$tessera" generate fuel-cell -o cell.tsr --size 7x13x20 --times 3 > /dev/null 2> err || die "generate"
 compare() { "$tessera" compare cell.tsr "$@" --size 480x320 --set /render/samples=1 > /dev/null 2> err; }
 compare -o figure.png --csv table.csv --variant "as it is:" --variant "/render/filter=average" \
     --variant "long steps: /render/step=3; /render/jitter=true"
 status=$?
 [ $status = 3 ] && grep -q 'OpenGL' err && { cat err; exit 77; }
-[ $status = 0 ] || fail "compare ends with $status"
-[ -s figure.png ] || fail "no figure"
-[ "$(wc -l < table.csv)" = 4 ] || fail "the table has $(wc -l < table.csv) lines"
-python3 - <<'PY' || fail "the table is wrong"
+[ $status = 0 ] || die "compare ends with $status"
+[ -s figure.png ] || die "no figure"
+[ "$(wc -l < table.csv)" = 4 ] || die "the table has $(wc -l < table.csv) lines"
+python3 - <<'PY' || die "the table is wrong"
 import csv
 rows = list(csv.DictReader(open("table.csv")))
 assert rows[0]["reference"] == "yes" and rows[0]["RMSE (of 255)"] == "", rows[0]
@@ -27,14 +22,14 @@ for row in rows[1:]:
     assert float(row["RMSE (of 255)"]) > 0 and float(row["SSIM"]) < 1, row
     assert float(row["samples"]) > 0 and float(row["stored bytes"]) > 0, row
 PY
-compare -o again.png --csv again.csv --variant "as it is:" --variant "again:" || fail "compare again"
-grep -q 'again,as it is,no,.*,0.0,0.0,inf,1.0,' again.csv || fail "equal variants differ: $(cat again.csv)"
+compare -o again.png --csv again.csv --variant "as it is:" --variant "again:" || die "compare again"
+grep -q 'again,as it is,no,.*,0.0,0.0,inf,1.0,' again.csv || die "equal variants differ: $(cat again.csv)"
 
 # What does not fit is said before anything is drawn.
-compare -o bad.png --variant "/render/nothing=1" && fail "an unknown setting passes"
-[ $? = 0 ] || grep -q '/render/nothing' err || fail "an unknown setting is not named"
-compare -o bad.png --reference 7 && fail "a reference that is none passes"
-[ -e bad.png ] && fail "a failed comparison left a picture"
+compare -o bad.png --variant "/render/nothing=1" && die "an unknown setting passes"
+[ $? = 0 ] || grep -q '/render/nothing' err || die "an unknown setting is not named"
+compare -o bad.png --reference 7 && die "a reference that is none passes"
+[ -e bad.png ] && die "a failed comparison left a picture"
 
 # Keyframes: first, middle and last picture differ, and the way back ends where it began.
 cat > keys.json <<'JSON'
@@ -44,10 +39,10 @@ JSON
 tracks=$(cat keys.json)
 replay() { "$tessera" replay cell.tsr --view volume --size 160x120 --set /render/samples=1 --set /animation/duration=2 \
     --set "/animation/tracks=$tracks" "$@" > /dev/null 2> err; }
-replay --animation --fps 1 --out frames || fail "replay"
-[ "$(ls frames)" = "$(printf 'frame-%04d.png\n' 0 1 2)" ] || fail "frames: $(ls frames)"
-cmp -s frames/frame-0000.png frames/frame-0001.png && fail "nothing moved"
-python3 - <<'PY' || fail "a frame is not where its keys say"
+replay --animation --fps 1 --out frames || die "replay"
+[ "$(ls frames)" = "$(printf 'frame-%04d.png\n' 0 1 2)" ] || die "frames: $(ls frames)"
+cmp -s frames/frame-0000.png frames/frame-0001.png && die "nothing moved"
+python3 - <<'PY' || die "a frame is not where its keys say"
 import json, zlib
 def session(name):
     data, at = open(name, "rb").read(), 8
@@ -65,11 +60,11 @@ PY
 # The video is ffmpeg's work: without it that is said at once, with it it gets the frames and their rate.
 mkdir bin && for tool in bash; do ln -s "$(command -v $tool)" bin/; done
 PATH=$work/bin replay --video out.mp4 --out none
-[ $? = 3 ] && grep -q 'ffmpeg' err || fail "a missing ffmpeg is not said"
+[ $? = 3 ] && grep -q 'ffmpeg' err || die "a missing ffmpeg is not said"
 printf '#!%s\necho "$@" > "%s/arguments"; for last; do :; done; echo video > "$last"\n' "$(command -v bash)" "$work" > bin/ffmpeg
 chmod +x bin/ffmpeg
-PATH=$work/bin:$PATH replay --video out.mp4 --fps 2 --out more || fail "replay to a video"
-[ "$(cat out.mp4)" = video ] || fail "no video"
-grep -q -- '-framerate 2 -i more/frame-%04d.png' arguments || fail "ffmpeg got: $(cat arguments)"
-[ "$(ls more | wc -l)" = 5 ] || fail "frames of the video: $(ls more)"
+PATH=$work/bin:$PATH replay --video out.mp4 --fps 2 --out more || die "replay to a video"
+[ "$(cat out.mp4)" = video ] || die "no video"
+grep -q -- '-framerate 2 -i more/frame-%04d.png' arguments || die "ffmpeg got: $(cat arguments)"
+[ "$(ls more | wc -l)" = 5 ] || die "frames of the video: $(ls more)"
 exit 0

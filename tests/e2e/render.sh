@@ -1,25 +1,20 @@
 #!/bin/bash
 # Pictures without a window: the same session gives the same picture, a picture is a session again, and a damaged
 # session or picture ends with status 2 and one line. Arguments TESSERA SOURCE_DIR.
-set -u
 tessera=$1 source=$2
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-export XDG_CONFIG_HOME=$work/config XDG_STATE_HOME=$work/state
-cd "$work" || exit 1
-fail() { echo "FAILED: $*"; [ -f err ] && cat err; exit 1; }
+source "$2/tests/e2e/common.bash"
 size=640x400
 draw() { "$tessera" render "$@" --size $size > /dev/null 2> err; }
 
-"$tessera" generate fuel-cell -o cell.tsr --size 7x13x20 --times 2 > /dev/null 2> err || fail "generate"
+"$tessera" generate fuel-cell -o cell.tsr --size 7x13x20 --times 2 > /dev/null 2> err || die "generate"
 draw cell.tsr --layout "$source/layouts/overview.json" -o first.png
 status=$?
 [ $status = 3 ] && grep -q 'OpenGL' err && { cat err; exit 77; }
-[ $status = 0 ] || fail "render ends with $status"
+[ $status = 0 ] || die "render ends with $status"
 
 # On one machine the same session gives the same bytes, run after run.
-draw cell.tsr --layout "$source/layouts/overview.json" -o second.png || fail "render again"
-cmp first.png second.png || fail "two runs of one session differ"
+draw cell.tsr --layout "$source/layouts/overview.json" -o second.png || die "render again"
+cmp first.png second.png || die "two runs of one session differ"
 
 # What a PNG holds: its pixels, or the session in it ("pixels" or "session").
 cat > png.py <<'PY'
@@ -34,26 +29,26 @@ while at < len(data):
     at += 12 + size
 sys.stdout.buffer.write(zlib.decompress(out))
 PY
-pixels() { python3 png.py pixels "$1" || fail "$1 cannot be read"; }
+pixels() { python3 png.py pixels "$1" || die "$1 cannot be read"; }
 
 # The picture opens as a session and gives the same pixels; so does the session in it, as a file.
-draw first.png -o again.png || fail "a picture does not open as a session"
-cmp <(pixels first.png) <(pixels again.png) || fail "the session in a picture gives another picture"
-python3 png.py session first.png > s.tessera.json || fail "no session in the picture"
-draw s.tessera.json -o from-file.png || fail "the session does not open"
-cmp <(pixels first.png) <(pixels from-file.png) || fail "the session as a file gives another picture"
+draw first.png -o again.png || die "a picture does not open as a session"
+cmp <(pixels first.png) <(pixels again.png) || die "the session in a picture gives another picture"
+python3 png.py session first.png > s.tessera.json || die "no session in the picture"
+draw s.tessera.json -o from-file.png || die "the session does not open"
+cmp <(pixels first.png) <(pixels from-file.png) || die "the session as a file gives another picture"
 
 # The comparison can fail: another camera is another picture.
-draw s.tessera.json --set /camera/distance=9 -o far.png || fail "--set"
-cmp -s <(pixels first.png) <(pixels far.png) && fail "another camera gives the same picture"
+draw s.tessera.json --set /camera/distance=9 -o far.png || die "--set"
+cmp -s <(pixels first.png) <(pixels far.png) && die "another camera gives the same picture"
 
 # Damaged: status 2, one line, no picture.
 bad() {
     draw "$1" -o bad.png
     local status=$?
-    [ $status = 2 ] || fail "$1: status $status"
-    [ "$(wc -l < err)" = 1 ] || fail "$1: not one line"
-    [ ! -e bad.png ] || fail "$1: drew a picture"
+    [ $status = 2 ] || die "$1: status $status"
+    [ "$(wc -l < err)" = 1 ] || die "$1: not one line"
+    [ ! -e bad.png ] || die "$1: drew a picture"
 }
 bytes=$(wc -c < s.tessera.json)
 for part in 0 1 $((bytes / 3)) $((bytes / 2)) $((bytes - 3)); do
@@ -76,6 +71,6 @@ PY
 for file in flip-*.json flip-*.png cut.png; do bad "$file"; done
 mv cell.tsr elsewhere.tsr
 bad s.tessera.json
-grep -q 'not found' err || fail "the missing data file is not named"
-ls ./*.part-* 2> /dev/null && fail "something is left behind"
+grep -q 'not found' err || die "the missing data file is not named"
+ls ./*.part-* 2> /dev/null && die "something is left behind"
 echo "render: all good"

@@ -23,6 +23,16 @@ vis::FrameStatus renderAll(vis::Renderer& renderer, vis::ViewTarget& target, con
     return status;
 }
 
+std::vector<glm::vec4> picture(std::shared_ptr<const volume::BrickSource> source, const vis::RendererOptions& options,
+                               const vis::Scene& scene, glm::ivec2 size) {
+    vis::Renderer renderer(options);
+    renderer.setSource(std::move(source));
+    const vis::ViewTargetPtr target = renderer.makeTarget();
+    renderAll(renderer, *target, scene, size);
+    for (const std::string& message : renderer.takeMessages()) ADD_FAILURE() << message;
+    return renderer.readLinear(*target);
+}
+
 double maxDifference(const std::vector<glm::vec4>& a, const std::vector<glm::vec4>& b) {
     if (a.size() != b.size()) return std::numeric_limits<double>::infinity();
     double worst = 0;

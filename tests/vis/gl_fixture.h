@@ -31,6 +31,10 @@ vis::Camera frontCamera(double extent = 1);
 /// Renders until complete.
 vis::FrameStatus renderAll(vis::Renderer& renderer, vis::ViewTarget& target, const vis::Scene& scene, glm::ivec2 size);
 
+/// The complete picture of a scene by a renderer of its own, whose every message fails the test.
+std::vector<glm::vec4> picture(std::shared_ptr<const volume::BrickSource> source, const vis::RendererOptions& options,
+                               const vis::Scene& scene, glm::ivec2 size = {64, 48});
+
 /// Largest absolute difference of any component.
 double maxDifference(const std::vector<glm::vec4>& a, const std::vector<glm::vec4>& b);
 

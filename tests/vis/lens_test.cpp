@@ -10,11 +10,11 @@
 namespace tessera::vis {
 namespace {
 
-std::mt19937 random(5);
+std::mt19937 lensRandom(5);
 
 glm::dvec3 vector(double most) {
     std::uniform_real_distribution<double> number(-most, most);
-    return {number(random), number(random), number(random)};
+    return {number(lensRandom), number(lensRandom), number(lensRandom)};
 }
 
 PlacedLens place(const Lens& lens, const Camera& camera = {}) {

@@ -103,15 +103,7 @@ Scene richScene() {
     return scene;
 }
 
-std::vector<glm::vec4> picture(std::shared_ptr<const volume::BrickSource> source, const vis::RendererOptions& options,
-                               const Scene& scene, glm::ivec2 size = {64, 48}) {
-    vis::Renderer renderer(options);
-    renderer.setSource(std::move(source));
-    const vis::ViewTargetPtr target = renderer.makeTarget();
-    test::renderAll(renderer, *target, scene, size);
-    for (const std::string& message : renderer.takeMessages()) ADD_FAILURE() << message;
-    return renderer.readLinear(*target);
-}
+using test::picture;
 
 // Bricks of 8 texels in an atlas and one texture of the whole give the same picture: no seams, right page table.
 TEST_F(RendererTest, BricksAndOneTextureAgree) {

@@ -80,14 +80,7 @@ vis::RendererOptions bricks() {
     return options;
 }
 
-std::vector<glm::vec4> picture(std::shared_ptr<const volume::BrickSource> source, const vis::RendererOptions& options,
-                               const Scene& scene, glm::ivec2 size) {
-    vis::Renderer renderer(options);
-    renderer.setSource(std::move(source));
-    const vis::ViewTargetPtr target = renderer.makeTarget();
-    test::renderAll(renderer, *target, scene, size);
-    return renderer.readLinear(*target);
-}
+using test::picture;
 
 class ResidencyTest : public test::GlTest {
 protected:

@@ -44,11 +44,6 @@ CubeMap makeMap(int edge) {
     return map;
 }
 
-double smooth(double from, double to, double x) {
-    const double t = std::clamp((x - from) / (to - from), 0.0, 1.0);
-    return t * t * (3 - 2 * t);
-}
-
 /// 1 inside a rectangle of light seen around `middle`, with a soft border.
 double panel(glm::dvec3 direction, glm::dvec3 middle, glm::dvec2 half) {
     const glm::dvec3 to = glm::normalize(middle);
@@ -56,7 +51,7 @@ double panel(glm::dvec3 direction, glm::dvec3 middle, glm::dvec2 half) {
     const double depth = glm::dot(direction, to);
     if (depth <= 0.05) return 0;
     const double x = std::abs(glm::dot(direction, side)) / depth, y = std::abs(glm::dot(direction, up)) / depth;
-    return (1 - smooth(half.x * 0.8, half.x * 1.2, x)) * (1 - smooth(half.y * 0.8, half.y * 1.2, y));
+    return (1 - glm::smoothstep(half.x * 0.8, half.x * 1.2, x)) * (1 - glm::smoothstep(half.y * 0.8, half.y * 1.2, y));
 }
 
 } // namespace
@@ -122,17 +117,17 @@ glm::dvec3 surroundings(Environment environment, glm::dvec3 d) {
         const glm::dvec3 zenith(0.30, 0.52, 1.0), horizon(0.92, 0.95, 1.0), ground(0.24, 0.21, 0.18);
         const glm::dvec3 sky = glm::mix(horizon, zenith, std::pow(std::max(d.y, 0.0), 0.6));
         const double sun = std::max(glm::dot(d, glm::normalize(glm::dvec3(-0.5, 0.7, 0.5))), 0.0);
-        return 0.85 * glm::mix(ground, sky, smooth(-0.08, 0.08, d.y)) +
+        return 0.85 * glm::mix(ground, sky, glm::smoothstep(-0.08, 0.08, d.y)) +
                glm::dvec3(1, 0.93, 0.8) * (7 * std::pow(sun, 60));
     }
     case Environment::Studio:
         // Warm key from the upper left, cool fill from the right, a rim from behind.
-        return glm::dvec3(0.06) + 0.06 * smooth(-0.2, 1, d.y) +
+        return glm::dvec3(0.06) + 0.06 * glm::smoothstep(-0.2, 1.0, d.y) +
                glm::dvec3(1, 0.95, 0.88) * (2.6 * panel(d, {-0.8, 0.7, 0.8}, {0.55, 0.55})) +
                glm::dvec3(0.75, 0.85, 1) * (0.8 * panel(d, {1, 0.2, 0.5}, {0.5, 0.9})) +
                glm::dvec3(1) * (2.0 * panel(d, {0.3, 0.6, -1}, {0.8, 0.25}));
     case Environment::SoftBox:
-        return glm::dvec3(0.24) + glm::dvec3(0.68) * smooth(-0.3, 0.9, d.y);
+        return glm::dvec3(0.24) + glm::dvec3(0.68) * glm::smoothstep(-0.3, 0.9, d.y);
     }
     return glm::dvec3(0);
 }

@@ -9,15 +9,6 @@
 
 namespace tessera::vis {
 
-namespace {
-
-double smooth(double from, double to, double x) {
-    const double t = std::clamp((x - from) / (to - from), 0.0, 1.0);
-    return t * t * (3 - 2 * t);
-}
-
-} // namespace
-
 LookView lookView(const Scene& scene, glm::dvec3 halfSize, glm::dvec3 cell, glm::ivec2 size) {
     const double aspect = double(size.x) / std::max(size.y, 1);
     const Ray middle = cameraRay(scene.camera, aspect, {0, 0}), up = cameraRay(scene.camera, aspect, {0, 1});
@@ -64,7 +55,7 @@ glm::dvec3 lookAlbedo(const Look& look, glm::dvec3 albedo, double share) {
 double outline(double facing, double curvature, double thickness) {
     const double bent = std::min(1.0, thickness * curvature);
     const double limit = std::sqrt(bent * (2 - bent));
-    return 1 - smooth(0.5, 1, facing / std::max(limit, 1e-6));
+    return 1 - glm::smoothstep(0.5, 1.0, facing / std::max(limit, 1e-6));
 }
 
 double lightStep(double light, int steps) {
@@ -80,13 +71,13 @@ double charcoalInk(const CharcoalDrawing& charcoal, glm::dvec3 lit, const LookSa
     const double drawn = charcoal.stick == Stick::Chalk ? bright : 1 - bright;
     const double steep = glm::mix(1.0, std::sqrt(std::clamp(sample.steepness, 0.0, 1.0)), double(charcoal.steepness));
     const double tone = std::pow(drawn, double(charcoal.contrast)) * steep;
-    const double open = glm::mix(1.0, smooth(0.1, 0.6, 1 - bright), double(charcoal.closure));
+    const double open = glm::mix(1.0, glm::smoothstep(0.1, 0.6, 1 - bright), double(charcoal.closure));
     const double line = double(charcoal.outlineStrength) * sample.weight * open *
                         outline(sample.facing(), sample.curvature, double(charcoal.outline) * sample.pixel);
     const double density = double(charcoal.pressure) * (1 - (1 - tone) * (1 - line));
     const double stroked = std::min(1.0, density * (1 + double(charcoal.strokes) * (2 * sample.grain.y - 1)));
     const double soft = grainSoftness(charcoal);
-    const double ink = smooth(sample.grain.x - soft, sample.grain.x + soft, stroked * (1 + 2 * soft) - soft);
+    const double ink = glm::smoothstep(sample.grain.x - soft, sample.grain.x + soft, stroked * (1 + 2 * soft) - soft);
     return glm::mix(ink, density, double(charcoal.smudge));
 }
 

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <gtest/gtest.h>
+#include <imgui.h>
+
+namespace tessera::app {
+
+/// ImGui without a window system or a GPU: a test feeds it the mouse and looks at what a frame did.
+class FedImGui : public testing::Test {
+protected:
+    explicit FedImGui(ImVec2 display) {
+        ImGui::CreateContext();
+        ImGuiIO& io = ImGui::GetIO();
+        io.DisplaySize = display;
+        io.IniFilename = nullptr;
+        io.KeyMap[ImGuiKey_Escape] = 256;
+    }
+    ~FedImGui() override { ImGui::DestroyContext(); }
+
+    /// One frame in which `body` makes the widgets. The default fonts are built before the first.
+    template <class Body> void feed(Body&& body, float seconds = 1.0f / 60) {
+        ImGuiIO& io = ImGui::GetIO();
+        unsigned char* pixels;
+        int width, height;
+        if (!io.Fonts->IsBuilt()) io.Fonts->GetTexDataAsRGBA32(&pixels, &width, &height);
+        io.DeltaTime = seconds;
+        io.MousePos = mouse;
+        ImGui::NewFrame();
+        body();
+        ImGui::Render();
+        io.MouseWheel = 0;
+    }
+    /// The same within a window over the whole display that nothing moves.
+    template <class Body> void feedWindow(Body&& body, float seconds = 1.0f / 60) {
+        feed(
+            [&] {
+                ImGui::SetNextWindowPos({0, 0});
+                ImGui::SetNextWindowSize(ImGui::GetIO().DisplaySize);
+                ImGui::Begin("test", nullptr, ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove);
+                body();
+                ImGui::End();
+            },
+            seconds);
+    }
+    /// An item from `min` to `max` that takes both mouse buttons.
+    static void surface(ImVec2 min, ImVec2 max) {
+        ImGui::SetCursorScreenPos(min);
+        ImGui::InvisibleButton("surface", {max.x - min.x, max.y - min.y},
+                               ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight);
+    }
+
+    ImVec2 mouse{-1000, -1000};
+};
+
+} // namespace tessera::app
