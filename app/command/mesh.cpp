@@ -38,14 +38,14 @@ struct MeshOptions {
     }
 };
 
-struct Request {
+struct MeshRequest {
     std::vector<std::string> inputs;
     std::string output;
     MeshOptions mesh;
     volume::ImportOptions import;
 };
 
-std::shared_ptr<const volume::BrickSource> openInput(const Request& request, const Progress& progress) {
+std::shared_ptr<const volume::BrickSource> openInput(const MeshRequest& request, const Progress& progress) {
     DataRef data;
     const std::vector<std::string> models = volume::modelNames();
     if (request.inputs.size() == 1 && std::ranges::find(models, request.inputs[0]) != models.end() &&
@@ -60,7 +60,7 @@ std::shared_ptr<const volume::BrickSource> openInput(const Request& request, con
     return source;
 }
 
-void run(const Request& request) {
+void run(const MeshRequest& request) {
     const std::string& path = request.output;
     if (std::ranges::none_of(volume::kMeshEndings, [&](auto ending) { return path.ends_with(ending); }))
         throw Error("meshes are written as .ply, .stl, .obj or .vtp", path);
@@ -95,7 +95,7 @@ void run(const Request& request) {
 void addMeshCommand(CLI::App& app) {
     CLI::App* command =
         app.add_subcommand("mesh", "Write an iso-surface as triangles: .ply, .stl, .obj or .vtp by the ending");
-    const auto request = std::make_shared<Request>();
+    const auto request = std::make_shared<MeshRequest>();
     command->add_option("IN", request->inputs, "Archive, data files that belong together, or a built-in model")
         ->required();
     command->add_option("-o,--output", request->output, "File to write")->required();

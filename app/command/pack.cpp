@@ -16,7 +16,7 @@ namespace tessera::app {
 
 namespace {
 
-struct Request {
+struct PackRequest {
     std::vector<std::string> inputs;
     std::string output;
     volume::ImportOptions import;
@@ -50,11 +50,11 @@ codec::StoredLattice storedLattice(const std::string& path) {
 }
 
 /// The lattice an archive is to have, or has.
-codec::StoredLattice latticeOf(const Request& request) {
+codec::StoredLattice latticeOf(const PackRequest& request) {
     return request.append ? storedLattice(request.output) : request.options.lattice;
 }
 
-volume::Dataset open(const Request& request, const Progress& progress) {
+volume::Dataset open(const PackRequest& request, const Progress& progress) {
     if (request.inputs.size() == 1 && hasEnding(request.inputs[0], ".tsr")) {
         const auto archive = std::make_shared<const codec::Archive>(request.inputs[0]);
         const bool asGrid = latticeOf(request) != codec::StoredLattice::BCC || archive->metadata().alternating;
@@ -72,7 +72,7 @@ volume::Dataset open(const Request& request, const Progress& progress) {
     return dataset;
 }
 
-void checkOutput(const Request& request) {
+void checkOutput(const PackRequest& request) {
     std::error_code ignored;
     for (const std::string& input : request.inputs)
         if (std::filesystem::equivalent(input, request.output, ignored))
@@ -108,7 +108,7 @@ nlohmann::json toJson(const codec::PackSummary& summary, const std::string& path
               stage("write", summary.writeSeconds, summary.addedBytes)}}};
 }
 
-void run(Request request) {
+void run(PackRequest request) {
     checkOutput(request);
     if (request.keepsLattice) request.options.lattice = storedLattice(request.inputs[0]);
     const Progress terminal = terminalProgress("pack");
@@ -139,7 +139,7 @@ void run(Request request) {
 
 void addPackCommand(CLI::App& app) {
     CLI::App* command = app.add_subcommand("pack", "Import, resample, brick and compress data into one archive");
-    const auto request = std::make_shared<Request>();
+    const auto request = std::make_shared<PackRequest>();
     command->add_option("IN", request->inputs, "Data files that belong together: parameters, times")->required();
     command->add_option("-o,--output", request->output, "Archive to write (.tsr)")->required();
     command->add_flag(
@@ -156,7 +156,7 @@ void addPackCommand(CLI::App& app) {
 void addConvertCommand(CLI::App& app) {
     CLI::App* command = app.add_subcommand(
         "convert", "Pack an archive anew, with other options or in the newest version of the format");
-    const auto request = std::make_shared<Request>();
+    const auto request = std::make_shared<PackRequest>();
     command->add_option("IN", request->inputs, "Archive (.tsr); errors add to those it has")->required()->expected(1);
     command->add_option("-o,--output", request->output, "Archive to write (.tsr)")->required();
     command->add_flag("--json", request->json, "Print the summary as JSON");

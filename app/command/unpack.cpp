@@ -12,7 +12,7 @@ namespace tessera::app {
 
 namespace {
 
-struct Request {
+struct UnpackRequest {
     std::string input, output;
     std::vector<std::string> parameters;
     std::vector<double> times;
@@ -21,7 +21,7 @@ struct Request {
     volume::TimeFilter timeFilter = volume::TimeFilter::Cubic;
 };
 
-volume::ExportSelection select(const Request& request, const volume::DatasetInfo& info) {
+volume::ExportSelection select(const UnpackRequest& request, const volume::DatasetInfo& info) {
     volume::ExportSelection selection;
     for (const std::string& wanted : request.parameters) {
         const auto found = info.findChannel(wanted);
@@ -70,7 +70,7 @@ volume::Dataset planeDataset(const std::shared_ptr<const codec::Archive>& archiv
     return dataset;
 }
 
-void run(const Request& request) {
+void run(const UnpackRequest& request) {
     const auto archive = std::make_shared<const codec::Archive>(request.input);
     const volume::Dataset dataset = request.plane.empty()
                                         ? codec::gridDataset(archive, request.level, request.timeFilter)
@@ -85,7 +85,7 @@ void run(const Request& request) {
 
 void addUnpackCommand(CLI::App& app) {
     CLI::App* command = app.add_subcommand("unpack", "Write an archive as a regular grid: .raw, .vti, .pvd or .nrrd");
-    const auto request = std::make_shared<Request>();
+    const auto request = std::make_shared<UnpackRequest>();
     command->add_option("IN", request->input, "Archive (.tsr)")->required();
     command->add_option("-o,--output", request->output, "File to write; its ending says how")->required();
     command->add_option("-p,--parameters", request->parameters, "Only these, separated by commas (default: all)")
