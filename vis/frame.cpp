@@ -7,6 +7,7 @@
 #include "vis/technique/box_lines.h"
 #include "vis/technique/lens_uniforms.h"
 #include "vis/technique/look_uniforms.h"
+#include "vis/technique/ray_field.h"
 #include "vis/technique/ray_tables.h"
 #include "vis/technique/ray_uniforms.h"
 #include "volume/error.h"
@@ -31,8 +32,9 @@ std::vector<Tile> tilesOf(glm::ivec2 size, int edge) {
 } // namespace
 
 /// Tables of a bound plan and the program variant it wants.
-ProgramRecipe Renderer::Impl::prepare(ViewTarget& target, const Scene& scene, const RayPlan& plan) {
+ProgramRecipe Renderer::Impl::prepare(ViewTarget& target, const Scene& scene, RayPlan& plan) {
     const auto recipe = [&] {
+        for (std::size_t i = 0; i < plan.layers.size(); ++i) plan.layers[i].opaque = target.opaque[i];
         ProgramRecipe made = rayRecipe(plan, scene, source->grid(), target.skip && !lensesBend(scene));
         if (options.countSamples) made.defines.emplace_back("COUNT_SAMPLES", "1");
         return made;
@@ -40,7 +42,8 @@ ProgramRecipe Renderer::Impl::prepare(ViewTarget& target, const Scene& scene, co
     // Tables depend on these alone; a camera that moves keeps them.
     if (target.tablesFor && target.tablesRevision == residency.revision() && target.tablesFor->layers == scene.layers &&
         target.tablesFor->transfer == scene.transfer && target.tablesFor->render.filter == scene.render.filter &&
-        target.tablesKeys == target.shown && target.tablesFor->selection == scene.selection)
+        target.tablesKeys == target.shown && target.tablesFor->selection == scene.selection &&
+        target.tablesFor->stretch == scene.stretch)
         return recipe();
     target.tablesFor = scene;
     target.tablesRevision = residency.revision();
@@ -48,7 +51,13 @@ ProgramRecipe Renderer::Impl::prepare(ViewTarget& target, const Scene& scene, co
 
     const std::optional<BlockDistances> blocks = blockDistances(plan, scene, source->info());
     target.skip = blocks && blocks->occupied < kSkipOccupancy;
+    target.occupied.reset();
+    target.coveredFor.reset();
+    if (blocks)
+        target.occupied = occupiedBoxes(*blocks, *commonBlocks(plan), source->grid(),
+                                        worldFrame(source->info().bounds, scene.stretch));
     const std::vector<glm::vec4> table = transferTables(plan, scene, source->info());
+    target.opaque = opaqueIntervals(plan, table);
     const int rows = int(table.size()) / kTableSize;
     if (rows > 0 && rows != target.tableRows) {
         target.table = makeTexture2D({kTableSize, rows}, GL_RGBA32F, GL_NEAREST, "transfer tables");
@@ -107,9 +116,23 @@ void Renderer::Impl::proxies(const Program& program, const Scene& scene, const R
     glDisable(GL_BLEND);
 }
 
-/// Draws a tile with the rays of a pass.
+/// The part of a picture that rays can see anything in; null: all of it.
+const std::vector<Tile>* Renderer::Impl::covered(ViewTarget& target, const Scene& scene, const RayPlan& plan,
+                                                 glm::ivec2 size) {
+    if (!target.occupied || plan.layers.empty() || !plan.slices.empty() || plan.peels > 0 || lensesBend(scene) ||
+        drawnByProxy(scene))
+        return nullptr;
+    if (target.coveredFor != scene.camera || target.coveredSize != size) {
+        target.covered = coveredPixels(scene.camera, *target.occupied, size);
+        target.coveredFor = scene.camera;
+        target.coveredSize = size;
+    }
+    return &target.covered;
+}
+
+/// Draws a tile with the rays of a pass; of it what lies in one of `parts`.
 void Renderer::Impl::rays(const Program& rayProgram, const Scene& scene, const RayBuffer& buffer, glm::ivec2 size,
-                          const Tile& tile, double stepFactor, int pass) {
+                          const Tile& tile, const std::vector<Tile>* parts, double stepFactor, int pass) {
     const float nothing[] = {0, 0, 0, 0}, nowhere[] = {-1e9f, 0, 0, 0};
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, buffer.framebuffer.name());
     glViewport(0, 0, size.x, size.y);
@@ -128,17 +151,23 @@ void Renderer::Impl::rays(const Program& rayProgram, const Scene& scene, const R
     glBindVertexArray(vertices.name());
     if (drawnByProxy(scene)) return proxies(rayProgram, scene, buffer, stepFactor);
     glUseProgram(rayProgram.name());
-    glDrawArrays(GL_TRIANGLES, 0, 3);
+    const std::vector<Tile> whole{{begin, end}};
+    for (const Tile& part : parts ? *parts : whole) {
+        const glm::ivec2 from = glm::max(begin, part.begin), to = glm::min(end, part.end);
+        if (from.x >= to.x || from.y >= to.y) continue;
+        glScissor(from.x, from.y, to.x - from.x, to.y - from.y);
+        glDrawArrays(GL_TRIANGLES, 0, 3);
+    }
 }
 
 /// Draws pass n > 0 of a supersampled still, beside, and makes it one n + 1-th of the picture. (Not by blending the
 /// rays themselves: software GL would compile their program anew. What a pixel picks stays that of its middle.)
 void Renderer::Impl::accumulate(const Program& rayProgram, ViewTarget& target, const Scene& scene, const Tile& tile,
-                                int pass) {
+                                const std::vector<Tile>* parts, int pass) {
     const Program* average = programs.find({"screen.vert.glsl", "accumulate.frag.glsl", {}, {}});
     if (!average) throw Error("the program that averages passes does not compile");
     target.reducedValid = false;
-    rays(rayProgram, scene, target.reduced, target.size, tile, 1, pass);
+    rays(rayProgram, scene, target.reduced, target.size, tile, parts, 1, pass);
     average->set("source", 0);
     glBindTextureUnit(0, target.reduced.color.name());
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, target.full.framebuffer.name());
@@ -154,8 +183,21 @@ void Renderer::Impl::accumulate(const Program& rayProgram, ViewTarget& target, c
 }
 
 void Renderer::Impl::present(ViewTarget& target, const Scene& scene, bool reduced, const Tile& tile) {
-    const bool blurs = blursContext(scene);
-    const Program* found = programs.find({"screen.vert.glsl", "resolve.frag.glsl", {}, {{"BLUR", blurs ? "1" : "0"}}});
+    const bool blurs = blursContext(scene), toned = scene.tone.curve != ToneCurve::None;
+    const std::optional<Paper> paper = paperOf(scene);
+    const bool rough = paper && paper->tooth > 0;
+    BoxLines lines;
+    if (scene.showBox && source)
+        lines = boxLines(scene.camera, worldFrame(source->info().bounds, scene.stretch).halfSize, target.size);
+    const auto flag = [](bool on) { return std::string(on ? "1" : "0"); };
+    const Program* found = programs.find({"screen.vert.glsl",
+                                          "resolve.frag.glsl",
+                                          {},
+                                          {{"BLUR", flag(blurs)},
+                                           {"LINES", flag(!lines.edges.empty())},
+                                           {"TONE", flag(toned)},
+                                           {"PAPER", flag(rough)},
+                                           {"GROUND", flag(scene.showGround)}}});
     if (!found) throw Error("the program that presents pictures does not compile");
     const Program& resolve = *found;
     const RayBuffer& from = reduced ? target.reduced : target.full;
@@ -163,12 +205,12 @@ void Renderer::Impl::present(ViewTarget& target, const Scene& scene, bool reduce
     resolve.set("source", 0);
     resolve.set("sourceScale", used / glm::vec2(target.size) / whole);
     resolve.set("sourceLimit", (used - 0.5f) / whole);
-    const std::optional<Paper> paper = paperOf(scene);
     resolve.set("background", glm::vec3(linearFromSrgb(glm::dvec3(groundColor(scene)))));
-    resolve.set("showGround", scene.showGround ? 1 : 0);
-    resolve.set("paper", paper ? glm::vec2(paper->tooth, kGrainTexels / double(paper->grain)) : glm::vec2(0, 1));
-    resolve.set("grainTile", RayUnits::kPaper);
-    if (paper && paper->tooth > 0) glBindTextureUnit(GLuint(RayUnits::kPaper), grain.get());
+    if (rough) {
+        resolve.set("paper", glm::vec2(paper->tooth, kGrainTexels / double(paper->grain)));
+        resolve.set("grainTile", RayUnits::kPaper);
+        glBindTextureUnit(GLuint(RayUnits::kPaper), grain.get());
+    }
     resolve.set("boxColor", glm::vec3(linearFromSrgb(glm::dvec3(scene.boxColor))));
     resolve.set("lineWidth", 1.3f);
     resolve.set("toneCurve", int(scene.tone.curve));
@@ -177,9 +219,6 @@ void Renderer::Impl::present(ViewTarget& target, const Scene& scene, bool reduce
     resolve.set("blurTaps", kBlurTaps);
     if (blurs) glBindTextureUnit(GLuint(kSeenUnit), from.pick.name());
     resolve.set("tone", glm::vec2(std::exp2(scene.tone.exposure), scene.tone.white));
-    BoxLines lines;
-    if (scene.showBox && source)
-        lines = boxLines(scene.camera, worldFrame(source->info().bounds, scene.stretch).halfSize, target.size);
     resolve.set("edgeCount", int(lines.edges.size()));
     resolve.set("frontCount", lines.front);
     resolve.set("edges", lines.edges);
@@ -262,7 +301,7 @@ void Renderer::Impl::nothing(ViewTarget& target, const Scene& scene) {
 }
 
 /// Draws as much of the bound plan as the budget allows.
-void Renderer::Impl::refine(ViewTarget& target, const Scene& scene, const FrameRequest& request, const RayPlan& plan,
+void Renderer::Impl::refine(ViewTarget& target, const Scene& scene, const FrameRequest& request, RayPlan& plan,
                             Clock::time_point start) {
     if (target.fullValid && (target.stillDone || request.moving)) return;
     const ProgramRecipe recipe = prepare(target, scene, plan);
@@ -303,7 +342,7 @@ void Renderer::Impl::refine(ViewTarget& target, const Scene& scene, const FrameR
     if (programs.firstUse(*rayProgram)) {
         setRayUniforms(*rayProgram, plan, scene, info, source->grid(), target.size, 1);
         geometry(target, scene, plan, target.size);
-        rays(*rayProgram, scene, target.reduced, target.size, {target.size / 2, target.size / 2 + 1});
+        rays(*rayProgram, scene, target.reduced, target.size, {target.size / 2, target.size / 2 + 1}, nullptr);
         glFinish();
         target.reducedValid = false;
     }
@@ -313,7 +352,8 @@ void Renderer::Impl::refine(ViewTarget& target, const Scene& scene, const FrameR
         target.reducedSize = glm::max(glm::ivec2(glm::vec2(target.size) / float(shrink)), glm::ivec2(1));
         setRayUniforms(*rayProgram, plan, scene, info, source->grid(), target.size, stepFactor);
         geometry(target, scene, plan, target.reducedSize);
-        rays(*rayProgram, scene, target.reduced, target.reducedSize, {{0, 0}, target.reducedSize}, stepFactor);
+        rays(*rayProgram, scene, target.reduced, target.reducedSize, {{0, 0}, target.reducedSize},
+             covered(target, scene, plan, target.reducedSize), stepFactor);
         glFinish();
         const double cost =
             millisecondsSince(begin) * stepFactor / std::max(1.0, double(target.reducedSize.x) * target.reducedSize.y);
@@ -357,9 +397,9 @@ void Renderer::Impl::refine(ViewTarget& target, const Scene& scene, const FrameR
         geometry(target, scene, plan, target.size, pass);
         const Clock::time_point begin = Clock::now();
         if (pass == 0)
-            rays(*rayProgram, scene, target.full, target.size, tile);
+            rays(*rayProgram, scene, target.full, target.size, tile, covered(target, scene, plan, target.size));
         else
-            accumulate(*rayProgram, target, scene, tile, pass);
+            accumulate(*rayProgram, target, scene, tile, covered(target, scene, plan, target.size), pass);
         glFinish();
         if (pass == 0) target.passMilliseconds += millisecondsSince(begin);
         present(target, scene, false, tile);

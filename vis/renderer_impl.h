@@ -17,11 +17,6 @@ inline double millisecondsSince(Clock::time_point start) {
     return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
 
-/// Pixels [begin, end) of a picture.
-struct Tile {
-    glm::ivec2 begin, end;
-};
-
 struct Renderer::Impl {
     RendererOptions options;
     Residency residency;
@@ -45,17 +40,19 @@ struct Renderer::Impl {
     bool bind(ViewTarget& target, const Scene& scene, const FrameRequest& request, RayPlan& plan, FrameStatus& status);
 
     // frame.cpp
-    ProgramRecipe prepare(ViewTarget& target, const Scene& scene, const RayPlan& plan);
+    ProgramRecipe prepare(ViewTarget& target, const Scene& scene, RayPlan& plan);
     void geometry(ViewTarget& target, const Scene& scene, const RayPlan& plan, glm::ivec2 size, int pass = 0);
+    const std::vector<Tile>* covered(ViewTarget& target, const Scene& scene, const RayPlan& plan, glm::ivec2 size);
     void rays(const Program& program, const Scene& scene, const RayBuffer& buffer, glm::ivec2 size, const Tile& tile,
-              double stepFactor = 1, int pass = 0);
+              const std::vector<Tile>* parts, double stepFactor = 1, int pass = 0);
     void proxies(const Program& program, const Scene& scene, const RayBuffer& buffer, double stepFactor);
     void present(ViewTarget& target, const Scene& scene, bool reduced, const Tile& tile);
-    void accumulate(const Program& program, ViewTarget& target, const Scene& scene, const Tile& tile, int pass);
+    void accumulate(const Program& program, ViewTarget& target, const Scene& scene, const Tile& tile,
+                    const std::vector<Tile>* parts, int pass);
     void sayLimits(const Scene& scene);
     bool bindLight(ViewTarget& target, const Scene& scene, const FrameRequest& request, const RayPlan& plan);
     void nothing(ViewTarget& target, const Scene& scene);
-    void refine(ViewTarget& target, const Scene& scene, const FrameRequest& request, const RayPlan& plan,
+    void refine(ViewTarget& target, const Scene& scene, const FrameRequest& request, RayPlan& plan,
                 Clock::time_point start);
 };
 

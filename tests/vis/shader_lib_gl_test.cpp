@@ -4,6 +4,7 @@
 #include "vis/model/lighting.h"
 #include "vis/model/ray_setup.h"
 #include "vis/model/tone.h"
+#include "vis/technique/ray_tables.h"
 
 #include <algorithm>
 #include <cmath>
@@ -190,6 +191,7 @@ TEST_F(ShaderLib, TablesAreLookedUpAlike) {
     vis::ProgramRecipe recipe;
     recipe.defines = {{"FIELDS", "1"}, {"LAYERS", "1"},       {"SLICES", "0"},
                       {"PLANES", "2"}, {"PLANE_SIZE", "256"}, {"TABLE_SIZE", "2048"}};
+    recipe.defines.emplace_back("LAYER_INTERVAL(i)", "0");
     const auto prepare = [&](const vis::Program& program) {
         program.set("transferTable", 1);
         program.set("planeTable", 2);
@@ -212,6 +214,15 @@ TEST_F(ShaderLib, TablesAreLookedUpAlike) {
         EXPECT_EQ(plane[i].w, 0.5f);
         EXPECT_EQ(opaque[i].x, a[i].x * (kSize - 1) >= 1001 ? 1 : 0) << a[i].x * (kSize - 1);
     }
+    // What the same entries say as an interval.
+    recipe.defines.back().second = "1";
+    const auto within = evaluate(bindings, "vec4(opaqueAt(0, a[i].x) ? 1.0 : 0.0)", recipe, [&](const auto& program) {
+        prepare(program);
+        vis::RayPlan plan;
+        plan.layers.resize(1);
+        program.set("layerOpaque", std::vector<glm::vec2>{*vis::opaqueIntervals(plan, table).front()});
+    });
+    for (int i = 0; i < kCases; ++i) EXPECT_EQ(within[i].x, opaque[i].x) << a[i].x;
 }
 
 } // namespace

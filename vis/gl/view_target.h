@@ -4,6 +4,7 @@
 #include "vis/gl/geometry_pass.h"
 #include "vis/renderer.h"
 #include "vis/technique/brick_demand.h"
+#include "vis/technique/covered_pixels.h"
 #include "vis/technique/light_baker.h"
 #include "vis/technique/light_uniforms.h"
 
@@ -65,7 +66,14 @@ public:
     std::vector<ChannelKey> tablesKeys;
     int tableRows = 0, planePages = 0;
     glm::ivec3 blockCount{0};
-    bool skip = false; ///< leap over empty blocks
+    bool skip = false;                             ///< leap over empty blocks
+    std::vector<std::optional<glm::vec2>> opaque;  ///< RayLayer::opaque
+    std::optional<std::vector<WorldBox>> occupied; ///< nullopt: not known
+
+    // The part of a picture that they cover, and what it was found for.
+    std::vector<Tile> covered;
+    std::optional<Camera> coveredFor;
+    glm::ivec2 coveredSize{0};
 
     LightMapTextures lightMaps;
     LightBaker light;

@@ -23,6 +23,16 @@ layout(location = 1) out vec2 outPick; // distance along the ray of what a pixel
 
 #define EVENTS (SLICES + GEOMETRY)
 
+// Of the samples of an empty region the last ones that are taken all the same: where surfaces are looked for, and local
+// maxima end, between samples, one; where parts of the ray are classified from end to end, one more.
+#if HAS_SLABS
+#define LAST_EMPTY 2
+#elif ONLY_COMPOSITE
+#define LAST_EMPTY 0
+#else
+#define LAST_EMPTY 1
+#endif
+
 const float kOpaque = 0.995, kPickOpacity = 0.1, kFlatGradient = 0.005;
 const float kNoPick = -2.0;
 
@@ -57,6 +67,9 @@ void main() {
     float phase = JITTER == 1 ? 0.5 + startJitter(uvec2(gl_FragCoord.xy), uint(passNumber)) : 0.5;
     vec3 first = toCells(origin + direction * inside.x) + phase * cellsPerSample;
     findHoles(origin, direction, inside.x, stepLength, phase);
+#if SKIPPING
+    beginBlocks(cellsPerSample);
+#endif
     float lengths = stepLength * REFERENCE_LENGTHS;
 
     vec4 color = vec4(0.0);
@@ -151,17 +164,15 @@ void main() {
 #if SKIPPING
 #if HAS_SLABS
             // From the front of this sample's part; the last empty one gives the next its front.
-            int leap = emptySamples(p - 0.5 * cellsPerSample, cellsPerSample) - 1;
+            int leap = emptySamples(p - 0.5 * cellsPerSample) - LAST_EMPTY;
 #else
-            int leap = emptySamples(p, cellsPerSample);
+            int leap = emptySamples(p) - LAST_EMPTY;
 #endif
+            // And on with the sample behind: software GL would take one in any case.
             if (leap > 0) {
                 k += leap;
+                p = first + float(k) * cellsPerSample;
                 for (int i = 0; i < LAYERS; ++i) previous[i] = kUnknown;
-#if FLAT
-                for (int i = 0; i < LAYERS; ++i) before[i] = kUnknown;
-#endif
-                continue;
             }
 #endif
 #if CLIP_HOLES
@@ -175,6 +186,7 @@ void main() {
                 continue;
             }
 #endif
+            bool within = k < count;
 #if EVENTS > 0
             hit = float(k) >= nextEvent;
 #endif
@@ -207,7 +219,7 @@ void main() {
                     hit = hit || (is && previous[i] > kUnknown && (s.x >= layerMap[i].z) != (previous[i] >= layerMap[i].z));
                     previous[i] = is ? s.x : kUnknown;
                 } else {
-                    is = is && clipShows(float(k));
+                    is = is && within && clipShows(float(k));
                     float f = is ? focusOpacity(degreeOfInterest(p)) * lens.x : 0.0;
                     float place = clamp(x, 0.0, 1.0);
                     if (LAYER_STYLE(i) == AVERAGE) {
@@ -228,8 +240,9 @@ void main() {
                     }
                 }
             }
+            hit = hit && within;
 #if FLAT
-        hit = true;
+        hit = within;
 #else
             if (hit) break;
             ++k;

@@ -1,23 +1,30 @@
 // The picture as shown: background or paper, wire box behind, the ray caster's colour, wire box in front; linear light encoded
 // to sRGB at the end.
+// Compiled in, as software GL would do it all for every pixel: BLUR, LINES, TONE, PAPER, GROUND (else opacity and straight
+// colour in place of the ground): 0 or 1.
 #include "lib/color.glsl"
-#include "lib/tone.glsl"
-#include "lib/paper.glsl"
 
 uniform sampler2D source;      // linear, premultiplied
 uniform vec2 sourceScale;      // texture coordinate = gl_FragCoord * sourceScale, at most sourceLimit
 uniform vec2 sourceLimit;
 uniform vec3 background;       // linear
-uniform sampler2D grainTile;   // of paper
-uniform vec2 paper;            // how much its tooth shows, texels per pixel; 0: none
-uniform int showGround;        // 0: opacity and straight colour instead
+#if PAPER
+#include "lib/paper.glsl"
+uniform sampler2D grainTile;
+uniform vec2 paper;            // how much its tooth shows, texels per pixel
+#endif
+#if LINES
 uniform vec3 boxColor;         // linear
 uniform int edgeCount;
 uniform vec4 edges[12];        // ends in pixels; the last `frontCount` of them lie in front of the volume
 uniform int frontCount;
 uniform float lineWidth;       // pixels
+#endif
+#if TONE
+#include "lib/tone.glsl"
 uniform int toneCurve;
-uniform vec2 tone;              // gain, white
+uniform vec2 tone;             // gain, white
+#endif
 
 #if BLUR
 #include "lib/context_blur.glsl"
@@ -50,6 +57,7 @@ vec4 picture(vec2 pixel) {
     return own;
 }
 
+#if LINES
 // Share of the pixel that lines first .. last - 1 cover.
 float lines(int first, int last) {
     float covered = 0.0;
@@ -60,22 +68,35 @@ float lines(int first, int last) {
     }
     return covered;
 }
+#endif
 
 void main() {
     vec4 volume = picture(gl_FragCoord.xy);
-    float behind = edgeCount > 0 ? lines(0, edgeCount - frontCount) : 0.0;
-    float before = edgeCount > 0 ? lines(edgeCount - frontCount, edgeCount) : 0.0;
-    vec3 color = mix(background, boxColor, behind);
-    vec3 shown = toneMap(volume.rgb / max(volume.a, 1e-6), toneCurve, tone.x, tone.y) * volume.a;
-    color = (toneCurve == 0 ? volume.rgb : shown) + (1.0 - volume.a) * color;
-    if (paper.x > 0.0) color *= paperShade(grainTile, gl_FragCoord.xy * paper.y, paper.x);
+#if TONE
+    volume.rgb = toneMap(volume.rgb / max(volume.a, 1e-6), toneCurve, tone.x, tone.y) * volume.a;
+#endif
+#if LINES
+    float behind = lines(0, edgeCount - frontCount), before = lines(edgeCount - frontCount, edgeCount);
+#endif
+#if GROUND
+    vec3 color = background;
+#if LINES
+    color = mix(color, boxColor, behind);
+#endif
+    color = volume.rgb + (1.0 - volume.a) * color;
+#if PAPER
+    color *= paperShade(grainTile, gl_FragCoord.xy * paper.y, paper.x);
+#endif
+#if LINES
     color = mix(color, boxColor, before);
+#endif
     outColor = vec4(srgbFromLinear(color), 1.0);
-    if (showGround == 0) {
-        // A line behind is seen through what is before it.
-        vec4 over = vec4(toneCurve == 0 ? volume.rgb : shown, volume.a);
-        over += (1.0 - over.a) * vec4(boxColor * behind, behind);
-        over = mix(over, vec4(boxColor, 1.0), before);
-        outColor = vec4(srgbFromLinear(over.rgb / max(over.a, 1e-6)), over.a);
-    }
+#else
+#if LINES
+    // A line behind is seen through what is before it.
+    volume += (1.0 - volume.a) * vec4(boxColor * behind, behind);
+    volume = mix(volume, vec4(boxColor, 1.0), before);
+#endif
+    outColor = vec4(srgbFromLinear(volume.rgb / max(volume.a, 1e-6)), volume.a);
+#endif
 }

@@ -165,6 +165,7 @@ ProgramRecipe rayRecipe(const RayPlan& plan, const Scene& scene, const volume::B
     for (const RayLayer& layer : plan.layers) lookParts |= layer.look;
     define("LOOKS", std::to_string(lookParts));
     define("LAYER_GRADIENT(i)", choice(plan.layers, [](const RayLayer& layer) { return layer.gradient; }));
+    define("LAYER_INTERVAL(i)", choice(plan.layers, [](const RayLayer& layer) { return layer.opaque.has_value(); }));
     define("LAYER_PLANE(i)", choice(plan.layers, [](const RayLayer& layer) { return layer.page; }));
     define("ISOS", std::to_string(isos.size()));
     define("ISO_LAYER(i)", choice(isos, [](int layer) { return layer; }));
@@ -173,6 +174,10 @@ ProgramRecipe rayRecipe(const RayPlan& plan, const Scene& scene, const volume::B
     define("HAS_PLANES", looks(RayLookup::Plane));
     define("HAS_LATTICE", looks(RayLookup::Lattice));
     define("HAS_SLABS", looks(RayLookup::Slab));
+    define("ONLY_COMPOSITE", std::all_of(plan.layers.begin(), plan.layers.end(),
+                                         [](const RayLayer& layer) { return layer.style == RayStyle::Composite; })
+                                 ? "1"
+                                 : "0");
     define("HAS_COMPOSITE", any([](const RayLayer& layer) { return layer.style == RayStyle::Composite; }));
     define("HAS_PROJECTION", any([](const RayLayer& layer) {
                return layer.style != RayStyle::Composite && layer.style != RayStyle::Iso;

@@ -47,6 +47,8 @@ struct RayLayer {
     int page = -1;         ///< of the plane tables, for Plane and Slab
     int lens = -1;         ///< of placeLenses() that it is drawn in, -1: everywhere
     int look = 0;          ///< parts of the look: LookBits of look_uniforms.h
+    /// The places between which all opacity lies, filled with the tables; none: there are gaps between.
+    std::optional<glm::vec2> opaque = {};
 };
 
 struct SliceUse {

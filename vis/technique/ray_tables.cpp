@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 
 namespace tessera::vis {
@@ -85,6 +86,25 @@ std::vector<glm::vec4> transferTables(const RayPlan& plan, const Scene& scene, c
         }
     }
     return table;
+}
+
+std::vector<std::optional<glm::vec2>> opaqueIntervals(const RayPlan& plan, const std::vector<glm::vec4>& tables) {
+    constexpr float kAny = std::numeric_limits<float>::max();
+    std::vector<std::optional<glm::vec2>> out;
+    for (std::size_t layer = 0; layer < plan.layers.size(); ++layer) {
+        const glm::vec4* row = &tables[(plan.layers.size() + plan.slices.size() + layer) * kTableSize];
+        const auto opaque = [](const glm::vec4& entry) { return entry.a > 0; };
+        const glm::vec4* begin = std::find_if(row, row + kTableSize, opaque);
+        const glm::vec4* end = std::find_if_not(begin, row + kTableSize, opaque);
+        if (std::any_of(end, row + kTableSize, opaque)) {
+            out.emplace_back();
+            continue;
+        }
+        // Entry i tells of what lies between i and i + 1.
+        const auto place = [&](const glm::vec4* entry) { return float(entry - row) / (kTableSize - 1); };
+        out.emplace_back(glm::vec2(begin == row ? -kAny : place(begin), end == row + kTableSize ? kAny : place(end)));
+    }
+    return out;
 }
 
 namespace {

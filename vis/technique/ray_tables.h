@@ -10,6 +10,10 @@ inline constexpr int kTableSize = 2048;
 /// whose opacity at i is the greater one of entries i and i + 1 (of regions: of any gradient).
 std::vector<glm::vec4> transferTables(const RayPlan& plan, const Scene& scene, const volume::DatasetInfo& info);
 
+/// The places between which the layers of a plan have all their opacity, from its transfer tables: beyond every number
+/// where it goes on at an end of the range; nullopt of a layer with a gap between.
+std::vector<std::optional<glm::vec2>> opaqueIntervals(const RayPlan& plan, const std::vector<glm::vec4>& tables);
+
 inline constexpr int kPlaneSize = 256;
 /// The plane tables of a plan, page by page: kPlaneSize x kPlaneSize, linear light, premultiplied. Of regions: value
 /// (x) and gradient magnitude up to gradientTop (y) from 0 to 1; of pre-integration: front (x) and back (y).

@@ -58,6 +58,9 @@ void setLayers(const Program& program, const RayPlan& plan, const Scene& scene, 
         slices.emplace_back(transferMap(plan.fields[std::size_t(use.field)], scene, info), slice.contours,
                             slice.opacity);
     }
+    std::vector<glm::vec2> opaque;
+    for (const RayLayer& use : plan.layers) opaque.push_back(use.opaque.value_or(glm::vec2(0)));
+    program.set("layerOpaque", opaque);
     program.set("layerMap", maps);
     program.set("layerColor", colors);
     program.set("layerMore", more);

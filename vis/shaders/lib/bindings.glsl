@@ -2,7 +2,7 @@
 //   FIELDS    number of channels bound; FIELD_COVERAGE(i), FIELD_NEAREST(i): 0 or 1; LATER: see lib/between_times.glsl
 //   LAYERS    ray layers; LAYER_STYLE(i) (below), LAYER_FIELD(i), LAYER_SHADED(i); LAYER_LOOKUP(i): how a composite
 //             layer is classified (below); LAYER_GRADIENT(i): 1 where the gradient's magnitude is shown;
-//             LAYER_LOOK(i) (lib/draw_look.glsl);
+//             LAYER_LOOK(i) (lib/draw_look.glsl); LAYER_INTERVAL(i): 1 where all opacity lies between layerOpaque[i];
 //             LAYER_PLANE(i): page of planeTable of LOOKUP_PLANE and LOOKUP_SLAB
 //   ISOS      iso layers; ISO_LAYER(n)
 //   SLICES    slice planes; SLICE_FIELD(i)
@@ -62,6 +62,7 @@ uniform sampler2D transferTable;
 uniform vec4 layerMap[LAYERS];
 uniform vec3 layerColor[LAYERS];
 uniform vec2 layerMore[LAYERS]; // factor from gradient magnitude (texels per cell) to its place; place of the threshold
+uniform vec2 layerOpaque[LAYERS]; // of LAYER_INTERVAL(i): the places between which there is opacity
 #endif
 #if PLANES > 0
 uniform sampler2D planeTable; // pages of PLANE_SIZE x PLANE_SIZE one above the other, premultiplied
@@ -107,6 +108,9 @@ vec4 planeAt(int page, vec2 at) {
 
 // Whether transfer(row, x) can have opacity: entry i says it for both ends of what lies between i and i + 1.
 bool opaqueAt(int row, float x) {
+#if LAYERS > 0
+    if (LAYER_INTERVAL(row) == 1) return x > layerOpaque[row].x && x < layerOpaque[row].y;
+#endif
     int i = int(clamp(x, 0.0, 1.0) * float(kTableSize - 1));
     return texelFetch(transferTable, ivec2(i, LAYERS + SLICES + row), 0).a > 0.0;
 }
