@@ -7,8 +7,6 @@ namespace tessera::vis {
 
 namespace {
 
-constexpr double kNear = 1e-3; ///< world units before the eye at which lines are cut off
-
 /// Whether the face of the box on side `sign` of `axis` looks at the viewer.
 bool faces(const Camera& camera, const Ray& middle, glm::dvec3 halfSize, int axis, double sign) {
     return camera.projection == Projection::Perspective ? sign * middle.origin[axis] > halfSize[axis]

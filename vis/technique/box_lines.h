@@ -7,6 +7,8 @@
 
 namespace tessera::vis {
 
+inline constexpr double kNear = 1e-3; ///< world units before the eye from which lines and boxes can be drawn
+
 /// The edges of the box as lines of the picture: (x, y, x, y) in pixels, y up; those that lie in front of everything
 /// inside the box last.
 struct BoxLines {

@@ -1,5 +1,7 @@
 #include "vis/technique/covered_pixels.h"
 
+#include "vis/technique/box_lines.h"
+
 #include <algorithm>
 #include <cstdint>
 
@@ -8,7 +10,6 @@ namespace tessera::vis {
 namespace {
 
 constexpr int kGroup = 4;       ///< blocks along an edge of a group
-constexpr double kNear = 1e-3;  ///< world units before the eye that a corner must have
 constexpr double kMargin = 1.5; ///< pixels
 
 } // namespace
