@@ -64,6 +64,28 @@ signal lattice-cc --set /data/bcc=false --set "/layers=[$(surface rho 0.5 0.85,0
 signal lattice-bcc-average --set "/layers=[$(surface rho 0.5 0.85,0.6,0.3 1)]" --set '/render/filter="average"'
 signal lattice-bcc-tetrahedral --set "/layers=[$(surface rho 0.5 0.85,0.6,0.3 1)]" --set '/render/filter="tetrahedral"'
 signal lattice-bcc --set "/layers=[$(surface rho 0.5 0.85,0.6,0.3 1)]" --set '/render/filter="quasi"'
+# A scan
+scan() { # scan NAME LAYERS [MORE]: the computed scan of a casting
+    local name=$1 layers=$2
+    shift 2
+    picture "scan-$name" --set '/data={"model":"casting"}' --set '/stretch=[1,1,1]' --set /time=0 --set '/selection/brushes=[]' \
+        --set /camera/distance=2.3 --set /views/volume/legend=false --set "/layers=[$layers]" \
+        --set '/transfer/density={"colormap":"cividis","opacity":[[0,0],[0.25,0],[0.4,0.1],[0.5,0.1],[0.7,0.9],[1,0.9]]}' "$@"
+}
+scan pre "$(volume density '"classification":"pre","shaded":false')"
+scan post "$(volume density '"shaded":false')"
+scan shaded "$(volume density '"density":3')"
+scan gradient "$(volume density '"quantity":"gradient","shaded":false')" \
+    --set '/transfer/density={"colormap":"gray","opacity":[[0,0],[0.15,0],[0.6,0.5],[1,0.8]]}'
+scan npr "$(volume density '"look":"illustration","density":0.5')" --set '/paper={"color":[1,1,1],"tooth":0}'
+scan surfaces "$(surface density 60 0.75,0.78,0.82 0.35),$(surface density 165 0.9,0.6,0.3 1)"
+scan xray "$(volume density '"style":"xray","density":0.12')"
+scan maximum "$(volume density '"style":"maximum"')"
+steel="$(surface density 60 0.6,0.68,0.75 1)"
+scan cc "$steel" --set '/data={"model":"casting","bcc":false}'
+scan bcc "$steel"
+scan half "$steel" --set '/data={"model":"casting","settings":{"nx":56,"ny":44,"nz":52}}'
+scan half-average "$steel" --set '/data={"model":"casting","settings":{"nx":56,"ny":44,"nz":52}}' --set '/render/filter="average"'
 # Light
 shape="$(surface rho 0.5 0.85,0.6,0.3 1)"
 signal light-phong --set "/layers=[$shape]"
