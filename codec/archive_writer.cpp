@@ -53,8 +53,22 @@ CodedMaskBrick encodeMask(std::span<const std::uint8_t> flags, Compressor& compr
 FrameBrick rangeOf(const BrickFormat& format, const volume::Field& field, std::span<const std::byte> samples,
                    std::span<const std::uint8_t> present, double maxError) {
     double lo = 0, hi = -1;
+    const auto add = [&](double number) {
+        const double value = field.offset + field.scale * number;
+        if (lo > hi) lo = hi = value;
+        lo = std::min(lo, value), hi = std::max(hi, value);
+    };
     volume::dispatch(format.type, [&]<class T>(T) {
         const std::size_t count = samples.size() / sizeof(T);
+        if constexpr (!std::same_as<T, float>)
+            if (present.empty() && count > 0) { // of the ends of the range only
+                const auto* from = reinterpret_cast<const T*>(samples.data());
+                T least = from[0], most = from[0];
+                for (std::size_t i = 0; i < count; ++i)
+                    least = std::min(least, from[i]), most = std::max(most, from[i]);
+                add(double(least)), add(double(most));
+                return;
+            }
         for (std::size_t i = 0; i < count; ++i) {
             if (!present.empty() && present[i] == 0) continue;
             T sample;
@@ -64,9 +78,7 @@ FrameBrick rangeOf(const BrickFormat& format, const volume::Field& field, std::s
                 if (close(format.numbers, maxError, sample, decoded)) sample = decoded;
                 if (!std::isfinite(sample)) continue;
             }
-            const double value = field.offset + field.scale * static_cast<double>(sample);
-            if (lo > hi) lo = hi = value;
-            lo = std::min(lo, value), hi = std::max(hi, value);
+            add(static_cast<double>(sample));
         }
     });
     return {static_cast<float>(lo), static_cast<float>(hi)};
@@ -196,15 +208,18 @@ Histogram sampleTokens(const volume::BrickGrid& grid, const volume::Field& field
         *taken = {frame.wavelet, shift, maxError, {}};
         taken->bricks.resize(bricks);
     }
-    parallelFor(count, [&](std::size_t i) {
-        const std::size_t number = i * bricks / count;
-        const glm::ivec3 brick = brickIndex(grid, number);
+    parallelRanges(count, [&](std::size_t begin, std::size_t end) {
         BrickInput input;
-        input.take(grid, brick, field, frame.mask >= 0);
-        PreparedBrick prepared =
-            prepareBrick(brickFormat(grid, brick, field.type, frame), input.samples, input.present, maxError, shift);
-        countBrick(prepared, parts[i]);
-        if (taken) taken->bricks[number] = std::move(prepared);
+        SplitMemory memory;
+        for (std::size_t i = begin; i < end; ++i) {
+            const std::size_t number = i * bricks / count;
+            const glm::ivec3 brick = brickIndex(grid, number);
+            input.take(grid, brick, field, frame.mask >= 0);
+            PreparedBrick prepared = prepareBrick(brickFormat(grid, brick, field.type, frame), input.samples,
+                                                  input.present, maxError, shift, memory);
+            countBrick(prepared, parts[i]);
+            if (taken) taken->bricks[number] = std::move(prepared);
+        }
     });
     Histogram sum(grid.levels);
     for (const Histogram& part : parts) sum.add(part);
@@ -229,7 +244,8 @@ Histogram sampleMiddles(const volume::BrickGrid& grid, const volume::Field& fiel
         format.levels = levels;
         BrickInput input;
         input.take(grid, grid.begin(brick) + first, size, field, frame.mask >= 0);
-        countBrick(prepareBrick(format, input.samples, input.present, 0, 0), parts[i]);
+        SplitMemory memory;
+        countBrick(prepareBrick(format, input.samples, input.present, 0, 0, memory), parts[i]);
     });
     Histogram sum(levels);
     for (const Histogram& part : parts) sum.add(part);
@@ -269,6 +285,8 @@ double boundOf(const FrameRecord& frame, const FrameOptions& options) {
 
 constexpr std::size_t kTrialBricks = 6, kModelBricks = 32;
 constexpr int kMostTables = 24;
+constexpr std::size_t kSmallFrame = 1 << 19; // samples
+constexpr int kMostEffort = 19;              // of zstd
 
 } // namespace
 
@@ -389,20 +407,23 @@ void ArchiveWriter::addFrame(int parameter, int component, int time, const volum
     frame.bricks.resize(bricks);
     frame.segments.resize(bricks * levels);
     std::vector<std::vector<Bytes>> coded(bricks);
+    // Small frames take no time worth saving.
+    const int effort = field.count() <= kSmallFrame ? kMostEffort : options.zstdLevel;
     // In batches, so that a cancel is noticed and the output does not depend on the number of cores.
     constexpr std::size_t kBatch = 64;
     for (std::size_t first = 0; first < bricks; first += kBatch) {
         const std::size_t count = std::min(kBatch, bricks - first);
         parallelRanges(count, [&](std::size_t begin, std::size_t end) {
-            Compressor compressor(options.zstdLevel);
+            Compressor compressor(effort);
             BrickInput input;
+            SplitMemory memory;
             for (std::size_t b = first + begin; b < first + end; ++b) {
                 const glm::ivec3 brick = brickIndex(grid, b);
                 const BrickFormat format = brickFormat(grid, brick, field.type, frame);
                 input.take(grid, brick, field, frame.mask >= 0);
                 frame.bricks[b] = rangeOf(format, field, input.samples, input.present, maxError);
                 if (!taken.bricks[b])
-                    taken.bricks[b] = prepareBrick(format, input.samples, input.present, maxError, model.shift);
+                    taken.bricks[b] = prepareBrick(format, input.samples, input.present, maxError, model.shift, memory);
                 coded[b] = encodeBrick(format, *taken.bricks[b], input.samples, input.present, compressor, encoder);
                 taken.bricks[b].reset();
             }

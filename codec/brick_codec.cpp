@@ -24,10 +24,8 @@ constexpr std::byte kNothing{0};
 constexpr double kTryWhole = 3.0;
 constexpr std::size_t kGlance = 1 << 15;
 constexpr double kGlanceAsShort = 1.5, kNearlyAsShort = 1.15;
-constexpr double kSparse = 0.75;  // bits a sample
-constexpr double kRepeats = 0.02; // bytes a sample
-constexpr std::size_t kSmall = 1 << 17;
-constexpr int kLeastEffort = 1, kSomeEffort = 3, kMostEffort = 19;
+constexpr double kSparse = 0.75; // bits a sample
+constexpr int kLeastEffort = 1, kSomeEffort = 3;
 
 /// Codes of the samples, and what is stored beside them.
 struct Numbers {
@@ -117,8 +115,8 @@ std::span<LevelBox<Word>> boxesAt(BrickLevels<Word>& levels, const BrickFormat& 
 
 template <class Word>
 std::vector<TokenRun> levelTokens(const BrickFormat& format, const Numbers& numbers,
-                                  std::span<const std::uint8_t> present, int shift) {
-    BrickLevels<Word> levels = splitBrick<Word>(format, numbers.codes, present, format.levels);
+                                  std::span<const std::uint8_t> present, int shift, BrickLevels<Word>& levels) {
+    splitBrick<Word>(format, numbers.codes, present, format.levels, levels);
     std::vector<TokenRun> runs;
     for (int level = 0; level < format.levels; ++level) {
         const bool coarsest = level == format.levels - 1;
@@ -163,11 +161,9 @@ void tryWhole(const BrickFormat& format, std::span<const std::byte> samples, std
     codes.reserve(all.size());
     for (std::size_t i = 0; i < all.size(); ++i)
         if (present.empty() || present[i] != 0) codes.push_back(all[i]);
-    // Where a quick search for matches does about as well as bands, a longer one is worth its time; the longest one
-    // where it is soon done.
+    // Where a quick search for matches does about as well as bands, a longer one is worth its time.
     if (!tryEffort(codes, kSomeEffort, kNearlyAsShort)) return;
-    const bool soon = double(whole.size()) < kRepeats * double(count) || count <= kSmall;
-    (void)tryEffort(codes, soon ? kMostEffort : effort, 1);
+    (void)tryEffort(codes, effort, 1);
     if (whole.size() >= bytes) return;
     for (Bytes& segment : segments) segment.clear();
     segments[0] = std::move(whole);
@@ -239,7 +235,8 @@ DecodeStatus decodeWhole(const BrickFormat& format, std::span<const std::byte> i
         codes = std::move(spread);
     }
     auto& samples = out.boxes<Word>().samples;
-    BrickLevels<Word> levels = splitBrick<Word>(format, codes, present, level + 1);
+    BrickLevels<Word> levels;
+    splitBrick<Word>(format, codes, present, level + 1, levels);
     const auto boxes = boxesAt(levels, format, level);
     std::move(boxes.begin(), boxes.end(), samples.begin());
     return DecodeStatus::Ok;
@@ -294,13 +291,14 @@ std::vector<std::uint8_t> maskAt(const BrickFormat& format, std::span<const std:
 }
 
 PreparedBrick prepareBrick(const BrickFormat& format, std::span<const std::byte> samples,
-                           std::span<const std::uint8_t> present, double maxError, int shift) {
+                           std::span<const std::uint8_t> present, double maxError, int shift, SplitMemory& memory) {
     assert(samples.size() == countOf(format.size) * volume::byteSize(format.type));
     assert(present.empty() || present.size() == countOf(format.size));
     Numbers numbers = numbersOf(format, samples, present, maxError);
     PreparedBrick brick;
-    brick.levels = fitsInt16(format, !present.empty()) ? levelTokens<std::int16_t>(format, numbers, present, shift)
-                                                       : levelTokens<std::int32_t>(format, numbers, present, shift);
+    brick.levels = fitsInt16(format, !present.empty())
+                       ? levelTokens<std::int16_t>(format, numbers, present, shift, memory.boxes16)
+                       : levelTokens<std::int32_t>(format, numbers, present, shift, memory.boxes32);
     brick.exactIndex = std::move(numbers.exactIndex);
     brick.exactBits = std::move(numbers.exactBits);
     brick.absentBits = std::move(numbers.absentBits);
@@ -339,7 +337,8 @@ std::vector<Bytes> encodeBrick(const BrickFormat& format, const PreparedBrick& b
 std::vector<Bytes> encodeBrick(const BrickFormat& format, std::span<const std::byte> samples,
                                std::span<const std::uint8_t> present, double maxError, Compressor& compressor,
                                const BandEncoder& bands) {
-    const PreparedBrick brick = prepareBrick(format, samples, present, maxError, bands.model().shift);
+    SplitMemory memory;
+    const PreparedBrick brick = prepareBrick(format, samples, present, maxError, bands.model().shift, memory);
     return encodeBrick(format, brick, samples, present, compressor, bands);
 }
 

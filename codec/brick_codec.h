@@ -57,10 +57,16 @@ struct PreparedBrick {
     std::vector<std::uint32_t> exactIndex, exactBits, absentBits; ///< what is stored beside them
 };
 
+/// What taking a brick apart leaves for the next one: its memory.
+struct SplitMemory {
+    std::vector<LevelBox<std::int16_t>> boxes16;
+    std::vector<LevelBox<std::int32_t>> boxes32;
+};
+
 /// Takes a brick apart. `samples` are numbers of format.type, x fastest; `present` one flag each, or empty: all.
 /// Quantised numbers off by more than `maxError` are stored exactly; contexts see magnitudes divided by 2^shift.
 PreparedBrick prepareBrick(const BrickFormat& format, std::span<const std::byte> samples,
-                           std::span<const std::uint8_t> present, double maxError, int shift);
+                           std::span<const std::uint8_t> present, double maxError, int shift, SplitMemory& memory);
 /// Adds its tokens to the statistics a model is made of.
 void countBrick(const PreparedBrick& brick, Histogram& histogram);
 

@@ -72,17 +72,21 @@ void takeSublattice(const BrickFormat& format, std::span<const std::uint32_t> co
 }
 
 template <class Word>
-BrickLevels<Word> splitBrick(const BrickFormat& format, std::span<const std::uint32_t> codes,
-                             std::span<const std::uint8_t> present, int levels) {
+void splitBrick(const BrickFormat& format, std::span<const std::uint32_t> codes, std::span<const std::uint8_t> present,
+                int levels, BrickLevels<Word>& out) {
     const bool masked = !present.empty();
     const int step = format.sublattices();
     const bool wide = format.codeBits > kBitsOfInt32;
-    BrickLevels<Word> all(std::size_t(levels * step));
+    out.resize(std::size_t((levels + 1) * step));
     for (int s = 0; s < step; ++s) {
-        LevelBox<Word> samples(format.sublatticeSize(s), masked);
-        takeSublattice<Word>(format, codes, present, s, samples);
+        // The last box, behind those of the levels, holds the samples that are taken apart next.
+        const auto box = [&](int level) -> LevelBox<Word>& { return out[std::size_t(level * step + s)]; };
+        LevelBox<Word>& whole = levels > 1 ? box(levels) : box(0);
+        whole.reset(format.sublatticeSize(s), masked);
+        takeSublattice<Word>(format, codes, present, s, whole);
         for (int level = 0; level + 1 < levels; ++level) {
-            LevelBox<Word> details(samples.size(), masked);
+            LevelBox<Word>&samples = box(levels), &details = box(level);
+            details.reset(samples.size(), masked);
             if (countOf(samples.size()) == 0) {
                 // the odd sublattice of a single slice
             } else if (liftsFast(format, masked)) {
@@ -92,17 +96,14 @@ BrickLevels<Word> splitBrick(const BrickFormat& format, std::span<const std::uin
                 forward(dense.values, dense.present, samples.size(), 1, effectiveWavelet(format), arithmeticOf(format));
                 spreadDense(dense, details);
             }
-            LevelBox<Word> low(levelSize(samples.size(), 1), masked);
+            LevelBox<Word>& low = level + 2 < levels ? box(levels) : box(levels - 1);
+            low.reset(levelSize(details.size(), 1), masked);
             copyCorner<Word>(std::as_const(details).box(), low.box(), low.size());
             for (int z = 0; masked && z < low.size().z; ++z)
                 for (int y = 0; y < low.size().y; ++y)
                     std::copy_n(details.flags().row(y, z), low.size().x, low.flags().row(y, z));
-            all[std::size_t(level * step + s)] = std::move(details);
-            samples = std::move(low);
         }
-        all[std::size_t((levels - 1) * step + s)] = std::move(samples);
     }
-    return all;
 }
 
 template <class Word>
@@ -170,8 +171,8 @@ template <class Word> std::vector<Band<Word>> bandsOf(std::span<LevelBox<Word>> 
 #define TESSERA_LEVELS(Word)                                                                                           \
     template void takeSublattice(const BrickFormat&, std::span<const std::uint32_t>, std::span<const std::uint8_t>,    \
                                  int, LevelBox<Word>&);                                                                \
-    template BrickLevels<Word> splitBrick(const BrickFormat&, std::span<const std::uint32_t>,                          \
-                                          std::span<const std::uint8_t>, int);                                         \
+    template void splitBrick(const BrickFormat&, std::span<const std::uint32_t>, std::span<const std::uint8_t>, int,   \
+                             BrickLevels<Word>&);                                                                      \
     template void joinLevel(const BrickFormat&, const LevelBox<Word>&, LevelBox<Word>&, LevelBox<Word>&);              \
     template void placeFlags(const BrickFormat&, std::span<const std::uint8_t>, int, int, bool, LevelBox<Word>&);      \
     template std::vector<Band<Word>> bandsOf(std::span<LevelBox<Word>>, bool);

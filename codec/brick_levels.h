@@ -6,7 +6,8 @@
 /// A brick taken apart into levels: for each sublattice and level a box whose low corner the next coarser level gives.
 namespace tessera::codec {
 
-/// [level * sublattices + sublattice]; the last level holds the coarsest samples, the others details.
+/// [level * sublattices + sublattice]; the last level holds the coarsest samples, the others details; boxes behind them
+/// are working memory.
 template <class Word> using BrickLevels = std::vector<LevelBox<Word>>;
 
 /// True when words of 16 bits do for a brick.
@@ -17,10 +18,10 @@ template <class Word>
 void takeSublattice(const BrickFormat& format, std::span<const std::uint32_t> codes,
                     std::span<const std::uint8_t> present, int sublattice, LevelBox<Word>& out);
 
-/// Takes codes in storage order apart, down to `levels` levels in all.
+/// Takes codes in storage order apart, down to `levels` levels in all. What `out` was before is used as memory.
 template <class Word>
-BrickLevels<Word> splitBrick(const BrickFormat& format, std::span<const std::uint32_t> codes,
-                             std::span<const std::uint8_t> present, int levels);
+void splitBrick(const BrickFormat& format, std::span<const std::uint32_t> codes, std::span<const std::uint8_t> present,
+                int levels, BrickLevels<Word>& out);
 
 /// The samples of a level from those of the coarser one and the details in `fine`, which are used up.
 template <class Word>

@@ -104,13 +104,13 @@ TESSERA_INLINE void changeBlocks(Word* __restrict target, const Sources<Word>& f
         }
 }
 
-/// Rows of `count` words, one behind the other: `targets` of them to change, `sources` to change them by.
+/// Rows of `count` words, `stride` apart: `targets` of them to change, `sources` to change them by.
 template <class Word> struct RowSet {
     Word* target;
     int targets;
     const Word* source;
     int sources;
-    std::size_t count;
+    std::size_t count, stride;
 };
 
 template <class Word, class Sum, LiftStep kStep, bool kAdd> TESSERA_INLINE void changeRows(const RowSet<Word>& set) {
@@ -118,16 +118,16 @@ template <class Word, class Sum, LiftStep kStep, bool kAdd> TESSERA_INLINE void 
         Sources<Word> from;
         if constexpr (kStep.pairs == 0) {
             if (i >= set.sources) break;
-            from.left[0] = set.source + std::size_t(i) * set.count;
+            from.left[0] = set.source + std::size_t(i) * set.stride;
         } else {
             const Pairs pairs = pairsAt(i, kStep.pairs, set.sources, isUpdate(kStep));
             if (pairs.none) continue;
             for (std::size_t j = 0; j < std::size_t(kStep.pairs); ++j) {
-                from.left[j] = set.source + std::size_t(pairs.left[j]) * set.count;
-                from.right[j] = set.source + std::size_t(pairs.right[j]) * set.count;
+                from.left[j] = set.source + std::size_t(pairs.left[j]) * set.stride;
+                from.right[j] = set.source + std::size_t(pairs.right[j]) * set.stride;
             }
         }
-        changeBlocks<Word, Sum, kStep, kAdd>(set.target + std::size_t(i) * set.count, from, set.count);
+        changeBlocks<Word, Sum, kStep, kAdd>(set.target + std::size_t(i) * set.stride, from, set.count);
     }
 }
 
@@ -286,12 +286,18 @@ template <class Word> struct Plan {
         predict = stageOf<Word>(filter.predict, wide, cpu);
         if (updates) update = stageOf<Word>(filter.update, wide, cpu);
     }
-    void rows(Word* even, int evens, Word* odd, int odds, std::size_t count, bool forward) const {
+    /// Rows of `stride` words one behind the other, a few columns at a time that stay in the cache for all steps.
+    void rows(Word* even, int evens, Word* odd, int odds, std::size_t stride, bool forward) const {
+        constexpr std::size_t kColumns = 512 / sizeof(Word);
         if (odds == 0) return;
-        const auto predicts = [&] { predict.rows({odd, odds, even, evens, count}, !forward); };
-        if (forward) predicts();
-        if (updates) update.rows({even, evens, odd, usable(update.pairs, evens, odds), count}, forward);
-        if (!forward) predicts();
+        for (std::size_t at = 0; at < stride; at += kColumns) {
+            const std::size_t count = std::min(kColumns, stride - at);
+            Word *e = even + at, *o = odd + at;
+            const auto predicts = [&] { predict.rows({o, odds, e, evens, count, stride}, !forward); };
+            if (forward) predicts();
+            if (updates) update.rows({e, evens, o, usable(update.pairs, evens, odds), count, stride}, forward);
+            if (!forward) predicts();
+        }
     }
     void lines(Lines<Word>& lines, int evens, int odds, int rows, bool forward) const {
         if (odds == 0) return;

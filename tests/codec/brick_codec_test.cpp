@@ -59,7 +59,8 @@ MadeBrick randomBrick(std::mt19937& random) {
 /// The model of the brick itself, or of another one: any brick must come back with any model.
 Model modelOf(const MadeBrick& made, bool own) {
     Histogram histogram(made.format.levels);
-    if (own) countBrick(prepareBrick(made.format, made.samples, made.present, 0, 3), histogram);
+    SplitMemory memory;
+    if (own) countBrick(prepareBrick(made.format, made.samples, made.present, 0, 3, memory), histogram);
     for (std::size_t t = 0; !own && t < 30; ++t) histogram.counts[5][t] = 100;
     return makeModel(histogram, 3, 16);
 }

@@ -62,7 +62,8 @@ TEST(WholeBrick, ASparseVolumeIsCodedAsOne) {
     for (std::size_t i = 0; i < samples.size(); i += 97) samples[i] = std::byte(1 + i % 3);
     Compressor compressor(3);
     Histogram histogram(format.levels);
-    countBrick(prepareBrick(format, samples, {}, 0, 0), histogram);
+    SplitMemory memory;
+    countBrick(prepareBrick(format, samples, {}, 0, 0, memory), histogram);
     const Model model = makeModel(histogram, 0, 16);
     const std::vector<Bytes> segments = encodeBrick(format, samples, {}, 0, compressor, BandEncoder(model));
     ASSERT_FALSE(segments[0].empty());
