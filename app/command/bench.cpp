@@ -15,9 +15,10 @@ struct NamedBench {
     BenchTable (*measure)();
 };
 constexpr NamedBench kBenches[] = {
-    {"lattice", benchLattice},    {"lattice", benchResample},    {"codec", benchCodec},
-    {"thesis", benchThesisSizes}, {"thesis", benchThesisCoding}, {"thesis", benchThesisFrames},
-    {"render", benchRender},      {"styles", benchStyles},       {"modes", benchModes}};
+    {"lattice", benchLattice},     {"lattice", benchResample},    {"codec", benchCodec},
+    {"codec", benchLevels},        {"codec", benchPeers},         {"thesis", benchThesisSizes},
+    {"thesis", benchThesisCoding}, {"thesis", benchThesisFrames}, {"render", benchRender},
+    {"styles", benchStyles},       {"modes", benchModes}};
 
 /// Columns of texts to the left, of numbers to the right.
 void print(const BenchTable& table) {

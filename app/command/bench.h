@@ -22,6 +22,10 @@ BenchTable benchLattice();
 BenchTable benchResample();
 /// Pack throughput and archive size against raw and against zstd -19 of the same bytes.
 BenchTable benchCodec();
+/// Archives beside zstd and whatever else is installed (lz4, xz, blosc, HDF5, OpenJPEG, zfp), in one process.
+BenchTable benchPeers();
+/// What coarse levels and single bricks cost beside whole frames, and frames on two threads beside one.
+BenchTable benchLevels();
 /// Tables 6.1 and 6.2, 6.4, 6.5 of the thesis, its numbers beside ours for the volumes at hand.
 BenchTable benchThesisSizes();
 BenchTable benchThesisCoding();
