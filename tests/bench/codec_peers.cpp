@@ -125,16 +125,16 @@ public:
         });
         const codec::Archive archive(path);
         const volume::DatasetInfo& info = archive.info();
-        Bytes out;
+        std::vector<volume::Field> fields;
         const double decode = best([&] {
-            out.clear();
+            fields.clear();
             for (int t = 0; t < int(info.times.size()); ++t)
                 for (int p = 0; p < int(info.parameters.size()); ++p)
-                    for (int c = 0; c < info.parameters[std::size_t(p)].components; ++c) {
-                        const volume::Field field = codec::readField(archive, p, c, t);
-                        out.insert(out.end(), field.samples.begin(), field.samples.end());
-                    }
+                    for (int c = 0; c < info.parameters[std::size_t(p)].components; ++c)
+                        fields.push_back(codec::readField(archive, p, c, t));
         });
+        Bytes out;
+        for (const volume::Field& field : fields) out.insert(out.end(), field.samples.begin(), field.samples.end());
         std::remove(path.c_str());
         if (maxError == 0 && out != loaded_.bytes)
             std::fprintf(stderr, "%s: the archive does not give back its samples\n", name_.c_str());
