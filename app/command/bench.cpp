@@ -12,13 +12,14 @@ namespace {
 
 struct NamedBench {
     const char* name;
-    BenchTable (*measure)();
+    BenchTable (*measure)() = nullptr;
+    BenchTable (*measureVolumes)(const std::string& volume) = nullptr;
 };
 constexpr NamedBench kBenches[] = {
     {"lattice", benchLattice},     {"lattice", benchResample},    {"codec", benchCodec},
     {"codec", benchLevels},        {"codec", benchPeers},         {"thesis", benchThesisSizes},
-    {"thesis", benchThesisCoding}, {"thesis", benchThesisFrames}, {"render", benchRender},
-    {"styles", benchStyles},       {"modes", benchModes}};
+    {"thesis", benchThesisCoding}, {"thesis", benchThesisFrames}, {"render", nullptr, benchRender},
+    {"styles", benchStyles},       {"modes", nullptr, benchModes}};
 
 /// Columns of texts to the left, of numbers to the right.
 void print(const BenchTable& table) {
@@ -60,6 +61,7 @@ std::string decimals(double value, int digits) {
 void addBenchCommand(CLI::App& app) {
     struct Options {
         std::vector<std::string> names;
+        std::string volume;
         bool json = false;
     };
     const auto options = std::make_shared<Options>();
@@ -68,13 +70,14 @@ void addBenchCommand(CLI::App& app) {
     for (const NamedBench& bench : kBenches)
         if (known.empty() || known.back() != bench.name) known.emplace_back(bench.name);
     command->add_option("name", options->names, "Which tables (all of them)")->check(CLI::IsMember(known));
+    command->add_option("--volume", options->volume, "Of render and modes: only volumes whose name contains this");
     command->add_flag("--json", options->json, "Print JSON with stable keys");
     command->callback([options] {
         nlohmann::json tables = nlohmann::json::array();
         for (const NamedBench& bench : kBenches) {
             if (!options->names.empty() && std::ranges::find(options->names, bench.name) == options->names.end())
                 continue;
-            const BenchTable table = bench.measure();
+            const BenchTable table = bench.measure ? bench.measure() : bench.measureVolumes(options->volume);
             if (options->json)
                 tables.push_back({{"name", table.name}, {"columns", table.columns}, {"rows", table.rows}});
             else

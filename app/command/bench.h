@@ -30,13 +30,13 @@ BenchTable benchLevels();
 BenchTable benchThesisSizes();
 BenchTable benchThesisCoding();
 BenchTable benchThesisFrames();
-/// Milliseconds per frame at 512x512 beside VTK's mappers where they are at hand, with geometric means over the
-/// volumes.
-BenchTable benchRender();
+/// CPU milliseconds of all threads per frame at 512x512 beside VTK's mappers where they are at hand, with geometric
+/// means over the volumes. `volume`: only those whose name contains it.
+BenchTable benchRender(const std::string& volume);
 /// Milliseconds per frame of the fuel cell's temperature in each look, beside plain compositing.
 BenchTable benchStyles();
-/// Every mode of the ray caster on small, 256^3 and full-model volumes: milliseconds per frame at 512x512, samples
-/// taken, bytes in textures, error against the double-precision reference.
-BenchTable benchModes();
+/// Every mode of the ray caster on small, 256^3 and full-model volumes: CPU milliseconds of all threads per frame at
+/// 512x512, samples taken, bytes in textures, error against the double-precision reference. `volume` as above.
+BenchTable benchModes(const std::string& volume);
 
 } // namespace tessera::app

@@ -1,9 +1,13 @@
 #include "app/command/bench_frames.h"
 
 #include <algorithm>
-#include <chrono>
+#include <ctime>
 
 namespace tessera::app {
+
+double cpuMilliseconds() {
+    return 1000 * double(std::clock()) / CLOCKS_PER_SEC;
+}
 
 vis::Scene benchScene(const vis::Technique& technique, const std::vector<glm::vec2>& opacity) {
     vis::Scene scene;
@@ -23,11 +27,11 @@ double timeFrames(vis::Renderer& renderer, vis::Scene scene) {
     request.wait = true;
     std::vector<double> times;
     for (int frame = 0; frame <= kBenchFrames; ++frame) {
-        const auto begin = std::chrono::steady_clock::now();
+        const double begin = cpuMilliseconds();
         renderer.render(*target, scene, request);
         glm::ivec2 size;
         renderer.readPixels(*target, size);
-        times.push_back(std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count());
+        times.push_back(cpuMilliseconds() - begin);
         vis::orbit(scene.camera, {0, 0}, {0.00175f, 0});
     }
     times.erase(times.begin());

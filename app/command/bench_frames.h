@@ -12,10 +12,13 @@ inline constexpr int kBenchPicture = 512; ///< pixels along an edge of the timed
 inline constexpr int kBenchCompared = 48; ///< of the pictures compared with the reference
 inline constexpr int kBenchFrames = 3;    ///< timed pictures, of which the median counts
 
+/// Processor time of all threads so far: what else the machine does hardly counts.
+double cpuMilliseconds();
+
 /// One layer of parameter "v" (range 0..255) seen as a whole, a sample per voxel.
 vis::Scene benchScene(const vis::Technique& technique, const std::vector<glm::vec2>& opacity);
 
-/// Median milliseconds of a picture while the camera turns, after one to warm up.
+/// Median cpuMilliseconds() of a picture while the camera turns, after one to warm up.
 double timeFrames(vis::Renderer& renderer, vis::Scene scene);
 
 /// A picture of kBenchCompared pixels, linear.

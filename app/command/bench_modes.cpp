@@ -6,6 +6,7 @@
 
 #include <cstdio>
 #include <memory>
+#include <string_view>
 #include <unistd.h>
 
 namespace tessera::app {
@@ -89,14 +90,15 @@ void measure(const BenchVolume& volume, BenchTable& table) {
 
 } // namespace
 
-BenchTable benchModes() {
+BenchTable benchModes(const std::string& only) {
     BenchTable table;
     table.name = "modes";
-    table.columns = {"volume", "lattice", "mode", "ms", "samples per pixel", "texture MB", "PSNR dB"};
+    table.columns = {"volume", "lattice", "mode", "CPU ms", "samples per pixel", "texture MB", "PSNR dB"};
     const vis::HeadlessContext context;
-    measure(phantomVolume(64), table);
-    measure(phantomVolume(256), table);
-    measure(foamVolume({250, 250, 1000}), table);
+    const auto wanted = [&](std::string_view name) { return name.find(only) != name.npos; };
+    if (wanted("CT phantom 64^3")) measure(phantomVolume(64), table);
+    if (wanted("CT phantom 256^3")) measure(phantomVolume(256), table);
+    if (wanted("foam")) measure(foamVolume({250, 250, 1000}), table);
     return table;
 }
 

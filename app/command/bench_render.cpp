@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <map>
 #include <memory>
+#include <string_view>
 #include <unistd.h>
 
 namespace tessera::app {
@@ -125,11 +126,11 @@ std::string ratio(const Mean& mean) {
 
 } // namespace
 
-BenchTable benchRender() {
+BenchTable benchRender(const std::string& only) {
     const bool peers = vtkPeerAtHand();
     BenchTable table;
     table.name = "render";
-    table.columns = {"volume", "lattice", "style", "ms", "shader dB", "converged dB"};
+    table.columns = {"volume", "lattice", "style", "CPU ms", "shader dB", "converged dB"};
     if (peers)
         for (const char* column :
              {"VTK GPU ms", "VTK GPU dB", "VTK GPU / ours", "VTK CPU ms", "VTK CPU dB", "VTK CPU / ours"})
@@ -139,10 +140,12 @@ BenchTable benchRender() {
 
     const vis::HeadlessContext context;
     std::map<std::string, Means> means;
-    measure(phantomVolume(kEdge), peers, means, table);
-    measure(marschnerLobbVolume(kEdge), peers, means, table);
-    for (const BenchVolume& volume : realVolumes()) measure(volume, peers, means, table);
-    measure(foamVolume(kFullModel), peers, means, table);
+    const auto wanted = [&](std::string_view name) { return name.find(only) != name.npos; };
+    if (wanted("CT phantom")) measure(phantomVolume(kEdge), peers, means, table);
+    if (wanted("Marschner-Lobb")) measure(marschnerLobbVolume(kEdge), peers, means, table);
+    for (const BenchVolume& volume : realVolumes())
+        if (wanted(volume.name)) measure(volume, peers, means, table);
+    if (wanted("foam")) measure(foamVolume(kFullModel), peers, means, table);
     for (const Style& style : styles()) {
         const Means& mean = means[style.name];
         std::vector<std::string> row{"geometric mean", "BCC / CC", style.name, ratio(mean.lattice), "", ""};

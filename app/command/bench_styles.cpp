@@ -1,4 +1,5 @@
 #include "app/command/bench.h"
+#include "app/command/bench_frames.h"
 #include "vis/gl/headless.h"
 #include "vis/renderer.h"
 #include "volume/memory_source.h"
@@ -6,7 +7,6 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <ctime>
 
 namespace tessera::app {
 
@@ -15,12 +15,8 @@ namespace {
 constexpr int kWidth = 640, kHeight = 480;
 constexpr int kFrames = 3; // timed pictures, of which the median counts
 
-double cpuMilliseconds() {
-    return 1000 * double(std::clock()) / CLOCKS_PER_SEC;
-}
-
 /// Median milliseconds of processor time of a picture while the camera turns, after one to warm up.
-double timeFrames(vis::Renderer& renderer, vis::Scene scene) {
+double timeLook(vis::Renderer& renderer, vis::Scene scene) {
     const vis::ViewTargetPtr target = renderer.makeTarget();
     vis::FrameRequest request;
     request.size = {kWidth, kHeight};
@@ -57,10 +53,10 @@ BenchTable benchStyles() {
     for (const std::string_view name : vis::Look::kPresetNames) {
         vis::VolumeLayer layer{.channel = "T"};
         scene.layers = {{"T", true, layer}};
-        const double plain = timeFrames(renderer, scene); // right before: ratios hold on a busy machine
+        const double plain = timeLook(renderer, scene); // right before: ratios hold on a busy machine
         layer.look = *vis::Look::preset(name);
         scene.layers = {{"T", true, layer}};
-        const double drawn = timeFrames(renderer, scene);
+        const double drawn = timeLook(renderer, scene);
         table.rows.push_back({std::string(name), decimals(drawn, 1), decimals(plain, 1), decimals(drawn / plain, 2)});
     }
     return table;

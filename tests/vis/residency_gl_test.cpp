@@ -222,6 +222,32 @@ TEST_F(ResidencyTest, NoHolesWithinTheBudget) {
     EXPECT_NE(said[0].find("budget"), std::string::npos);
 }
 
+// Texture memory that is taken away: bricks go, coarser ones stay, no hole; given back, the picture is what it was.
+TEST_F(ResidencyTest, BudgetMayShrinkAndGrow) {
+    vis::Renderer renderer(bricks());
+    renderer.setSource(waves());
+    const vis::ViewTargetPtr target = renderer.makeTarget();
+    Scene scene = volumeScene();
+    scene.render.detail = 0;
+    scene.transfer["v"].opacity = {{0, 0.5f}, {1, 0.5f}};
+    refine(renderer, *target, scene, {24, 24});
+    const std::vector<glm::vec4> first = renderer.readLinear(*target);
+    const vis::ResidencyInfo full = renderer.residency();
+
+    scene.render.limits.textureMemory = 1; // MiB
+    refine(renderer, *target, scene, {24, 24});
+    const std::vector<glm::vec4> coarse = renderer.readLinear(*target);
+    EXPECT_LE(renderer.residency().textureBytes, std::size_t(1) << 20);
+    EXPECT_LT(renderer.residency().bricksResident, full.bricksResident / 2);
+    for (std::size_t i = 0; i < first.size(); ++i) EXPECT_NEAR(coarse[i].a, first[i].a, 0.02) << i;
+    EXPECT_LT(test::maxDifference(coarse, first), 0.2);
+
+    scene.render.limits.textureMemory = 1024;
+    refine(renderer, *target, scene, {24, 24});
+    EXPECT_EQ(test::maxDifference(renderer.readLinear(*target), first), 0);
+    EXPECT_EQ(renderer.residency().bricksResident, full.bricksResident);
+}
+
 // While time moves on, the next frame is read before it is wanted.
 TEST_F(ResidencyTest, NextTimeIsPrefetched) {
     for (const bool dense : {true, false}) {
