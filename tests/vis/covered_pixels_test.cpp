@@ -8,8 +8,8 @@
 namespace tessera {
 namespace {
 
+using vis::OccupiedBox;
 using vis::Tile;
-using vis::WorldBox;
 
 bool holds(const std::vector<Tile>& tiles, glm::ivec2 pixel) {
     int found = 0;
@@ -19,7 +19,7 @@ bool holds(const std::vector<Tile>& tiles, glm::ivec2 pixel) {
     return found > 0;
 }
 
-bool meets(const vis::Ray& ray, const WorldBox& box, bool perspective) {
+bool meets(const vis::Ray& ray, const OccupiedBox& box, bool perspective) {
     vis::Ray moved = ray;
     moved.origin -= 0.5 * (box.lo + box.hi);
     return vis::clipToBox(moved, 0.5 * (box.hi - box.lo), perspective).has_value();
@@ -36,7 +36,7 @@ TEST(CoveredPixels, HoldEveryRayThatMeetsABox) {
         camera.projection = perspective ? vis::Projection::Perspective : vis::Projection::Orthographic;
         camera.distance = float(1.6 + 0.8 * unit(random));
         vis::orbit(camera, {0, 0}, {float(unit(random)), float(unit(random))});
-        std::vector<WorldBox> boxes;
+        std::vector<OccupiedBox> boxes;
         for (int i = 0; i < 3; ++i) {
             const glm::dvec3 at(0.4 * unit(random), 0.4 * unit(random), 0.4 * unit(random));
             boxes.push_back({at - 0.04, at + 0.04});
@@ -51,7 +51,7 @@ TEST(CoveredPixels, HoldEveryRayThatMeetsABox) {
                 const glm::dvec2 pixel = glm::dvec2(x, y) + 0.5 + 0.5 * glm::dvec2(unit(random), unit(random));
                 const vis::Ray ray =
                     vis::cameraRay(camera, double(size.x) / size.y, pixel / glm::dvec2(size) * 2.0 - 1.0);
-                for (const WorldBox& box : boxes) ASSERT_FALSE(meets(ray, box, perspective)) << x << ", " << y;
+                for (const OccupiedBox& box : boxes) ASSERT_FALSE(meets(ray, box, perspective)) << x << ", " << y;
             }
         EXPECT_LT(drawn, size.x * size.y * 3 / 4) << round;
     }
@@ -72,11 +72,11 @@ TEST(CoveredPixels, BoxesHoldTheOccupiedBlocks) {
     distances.distance.assign(9 * 5 * 12, 3);
     for (const glm::ivec3 block : {glm::ivec3(0, 0, 0), glm::ivec3(5, 2, 7), glm::ivec3(8, 4, 11)})
         distances.distance[std::size_t((block.z * 5 + block.y) * 9 + block.x)] = 0;
-    const std::vector<WorldBox> boxes = vis::occupiedBoxes(distances, blocks, grid, frame);
+    const std::vector<OccupiedBox> boxes = vis::occupiedBoxes(distances, blocks, grid, frame);
     ASSERT_EQ(boxes.size(), 3u);
     const auto inside = [&](glm::dvec3 cells) {
         const glm::dvec3 world = frame.toWorld(grid.lattice.origin + cells * grid.lattice.spacing);
-        return std::any_of(boxes.begin(), boxes.end(), [&](const WorldBox& box) {
+        return std::any_of(boxes.begin(), boxes.end(), [&](const OccupiedBox& box) {
             return glm::all(glm::lessThanEqual(box.lo, world + 1e-9)) &&
                    glm::all(glm::lessThanEqual(world - 1e-9, box.hi));
         });

@@ -66,9 +66,9 @@ public:
     std::vector<ChannelKey> tablesKeys;
     int tableRows = 0, planePages = 0;
     glm::ivec3 blockCount{0};
-    bool skip = false;                             ///< leap over empty blocks
-    std::vector<std::optional<glm::vec2>> opaque;  ///< RayLayer::opaque
-    std::optional<std::vector<WorldBox>> occupied; ///< nullopt: not known
+    bool skip = false;                                ///< leap over empty blocks
+    std::vector<std::optional<glm::vec2>> opaque;     ///< RayLayer::opaque
+    std::optional<std::vector<OccupiedBox>> occupied; ///< nullopt: not known
 
     // The part of a picture that they cover, and what it was found for.
     std::vector<Tile> covered;

@@ -14,8 +14,8 @@ constexpr double kMargin = 1.5; ///< pixels
 
 } // namespace
 
-std::vector<WorldBox> occupiedBoxes(const BlockDistances& distances, const BlockRanges& blocks,
-                                    const volume::BrickGrid& grid, const WorldFrame& frame) {
+std::vector<OccupiedBox> occupiedBoxes(const BlockDistances& distances, const BlockRanges& blocks,
+                                       const volume::BrickGrid& grid, const WorldFrame& frame) {
     const glm::ivec3 count = distances.count, groups = (count + kGroup - 1) / kGroup;
     std::vector<std::uint8_t> occupied(std::size_t(groups.x) * std::size_t(groups.y) * std::size_t(groups.z));
     std::size_t at = 0;
@@ -31,7 +31,7 @@ std::vector<WorldBox> occupiedBoxes(const BlockDistances& distances, const Block
         const glm::dvec3 cells = glm::dvec3(group * kGroup) * edge + phase;
         return frame.toWorld(grid.lattice.origin + cells * grid.lattice.spacing);
     };
-    std::vector<WorldBox> boxes;
+    std::vector<OccupiedBox> boxes;
     at = 0;
     for (int z = 0; z < groups.z; ++z)
         for (int y = 0; y < groups.y; ++y)
@@ -39,7 +39,7 @@ std::vector<WorldBox> occupiedBoxes(const BlockDistances& distances, const Block
                 if (occupied[at++] == 0) continue;
                 const glm::ivec3 group(x, y, z);
                 const glm::dvec3 a = world(group), b = world(group + 1);
-                WorldBox box{glm::min(a, b), glm::max(a, b)};
+                OccupiedBox box{glm::min(a, b), glm::max(a, b)};
                 for (int axis = 0; axis < 3; ++axis) {
                     const bool flipped = a[axis] > b[axis];
                     const bool first = group[axis] == 0, last = group[axis] == groups[axis] - 1;
@@ -51,12 +51,12 @@ std::vector<WorldBox> occupiedBoxes(const BlockDistances& distances, const Block
     return boxes;
 }
 
-std::vector<Tile> coveredPixels(const Camera& camera, std::span<const WorldBox> boxes, glm::ivec2 size) {
+std::vector<Tile> coveredPixels(const Camera& camera, std::span<const OccupiedBox> boxes, glm::ivec2 size) {
     const double aspect = double(size.x) / std::max(size.y, 1);
     const glm::dmat4 view = viewMatrix(camera), projection = projectionMatrix(camera, aspect);
     const glm::ivec2 cells = (size + kCoverCell - 1) / kCoverCell;
     std::vector<std::uint8_t> covered(std::size_t(cells.x) * std::size_t(cells.y));
-    for (const WorldBox& box : boxes) {
+    for (const OccupiedBox& box : boxes) {
         glm::dvec2 lo(size), hi(0);
         for (int corner = 0; corner < 8; ++corner) {
             const glm::dvec3 place(corner & 1 ? box.hi.x : box.lo.x, corner & 2 ? box.hi.y : box.lo.y,
