@@ -43,6 +43,19 @@ struct Archive::Impl {
         return index
             .frames[std::size_t(time) * components + firstComponent(metadata.info, parameter) + std::size_t(component)];
     }
+    /// The frame that holds the bytes of a brick: itself, or the one it repeats.
+    const FrameRecord& holding(const FrameRecord& frame, std::size_t brick) const {
+        const int repeats = frame.bricks[brick].notes.repeats;
+        if (repeats == 0) return frame;
+        return index.frames[(std::size_t(frame.time) - std::size_t(repeats)) * components + frame.component];
+    }
+    /// Bytes that decoding all of a brick takes.
+    std::uint64_t bytesOf(const FrameRecord& frame, std::size_t brick) const {
+        const FrameRecord& held = holding(frame, brick);
+        std::uint64_t sum = 0;
+        for (std::size_t s = brick; s < held.segments.size(); s += bricks) sum += held.segments[s].length;
+        return sum;
+    }
     /// The channel of a key; throws Error for a key outside the archive.
     const volume::Channel& channelOf(const volume::BrickKey& key) const {
         const glm::ivec3 count = metadata.grid.count();
@@ -53,6 +66,12 @@ struct Archive::Impl {
         if (!inside) throw Error("no such brick", path);
         return channels[std::size_t(key.channel)];
     }
+    /// The frame of a key that names a stored component; throws Error for others.
+    const FrameRecord& storedFrame(const volume::BrickKey& key) const {
+        const volume::Channel& channel = channelOf(key);
+        if (channel.magnitude) throw Error("a magnitude is not stored", path);
+        return frame(channel.parameter, channel.component, key.time);
+    }
     const volume::Parameter& parameter(int number) const { return metadata.info.parameters[std::size_t(number)]; }
     std::span<const std::byte> segment(const Segment& segment) const;
     std::vector<std::uint8_t> flags(const FrameRecord& frame, std::size_t brick) const;
@@ -61,6 +80,9 @@ struct Archive::Impl {
                 std::span<const std::uint8_t> present, DecodedBrick& out) const;
     volume::BrickSamples readComponent(int parameter, int component, const volume::BrickKey& key) const;
     volume::BrickStats statsOf(int parameter, int component, const volume::BrickKey& key) const;
+    std::optional<volume::BrickChange> changeOf(int parameter, int component, const volume::BrickKey& key,
+                                                int toTime) const;
+    bool hasNotes() const { return (header.header.features & kBrickNotes) != 0; }
 };
 
 namespace {
@@ -181,8 +203,8 @@ void Archive::Impl::decode(const FrameRecord& frame, const BrickFormat& format, 
 }
 
 volume::BrickSamples Archive::Impl::readComponent(int number, int component, const volume::BrickKey& key) const {
-    const FrameRecord& record = frame(number, component, key.time);
     const std::size_t brick = brickNumber(metadata.grid, key.index);
+    const FrameRecord& record = holding(frame(number, component, key.time), brick);
     const BrickFormat format = brickFormat(metadata.grid, key.index, parameter(number).type, record);
     const std::vector<std::uint8_t> fine = flags(record, brick);
     const Lent decoded(*this);
@@ -221,6 +243,23 @@ volume::BrickStats Archive::Impl::statsOf(int number, int component, const volum
                                 (size.x * size.y * size.z);
     }
     return stats;
+}
+
+/// The steps between two times, of D4* from one frame of a parity to the next.
+std::optional<volume::BrickChange> Archive::Impl::changeOf(int number, int component, const volume::BrickKey& key,
+                                                           int toTime) const {
+    const int step = metadata.alternating ? 2 : 1;
+    const int first = std::min(key.time, toTime), last = std::max(key.time, toTime);
+    if (first == last) return volume::BrickChange{};
+    if (!hasNotes() || (last - first) % step != 0) return std::nullopt;
+    const std::size_t brick = brickNumber(metadata.grid, key.index);
+    volume::BrickChange sum;
+    for (int time = first + step; time <= last; time += step) {
+        const volume::BrickChange& change = frame(number, component, time).bricks[brick].notes.change;
+        if (change.max == FrameBrick::kUnknown) return std::nullopt;
+        sum = accumulated(sum, change);
+    }
+    return sum;
 }
 
 Archive::Archive(const std::string& path) {
@@ -321,6 +360,51 @@ volume::BrickStats Archive::stats(const volume::BrickKey& key) const {
     return sum;
 }
 
+std::optional<volume::BrickImportance> Archive::importance(const volume::BrickKey& key) const {
+    const volume::Channel& channel = impl_->channelOf(key);
+    if (!impl_->hasNotes()) return std::nullopt;
+    const std::size_t brick = brickNumber(impl_->metadata.grid, key.index);
+    const auto of = [&](int component) {
+        return impl_->frame(channel.parameter, component, key.time).bricks[brick].notes.importance;
+    };
+    if (!channel.magnitude) return of(channel.component);
+    std::vector<volume::BrickImportance> components;
+    for (int c = 0; c < channel.component; ++c) components.push_back(of(c));
+    return volume::magnitudeImportance(components);
+}
+
+std::optional<volume::BrickChange> Archive::change(const volume::BrickKey& key, int toTime) const {
+    const volume::Channel& channel = impl_->channelOf(key);
+    if (toTime < 0 || std::size_t(toTime) >= impl_->metadata.info.times.size()) throw Error("no such time", path());
+    if (!channel.magnitude) return impl_->changeOf(channel.parameter, channel.component, key, toTime);
+    std::vector<volume::BrickChange> components;
+    for (int c = 0; c < channel.component; ++c) {
+        const auto change = impl_->changeOf(channel.parameter, c, key, toTime);
+        if (!change) return std::nullopt;
+        components.push_back(*change);
+    }
+    return volume::magnitudeChange(components);
+}
+
+Archive::Repeats Archive::repeats() const {
+    Repeats sum;
+    for (const FrameRecord& frame : impl_->index.frames)
+        for (std::size_t b = 0; b < impl_->bricks; ++b) {
+            if (frame.bricks[b].notes.repeats == 0) continue;
+            ++sum.bricks;
+            sum.bytes += impl_->bytesOf(frame, b);
+        }
+    return sum;
+}
+
+int Archive::repeats(const volume::BrickKey& key) const {
+    return impl_->storedFrame(key).bricks[brickNumber(impl_->metadata.grid, key.index)].notes.repeats;
+}
+
+std::uint64_t Archive::brickBytes(const volume::BrickKey& key) const {
+    return impl_->bytesOf(impl_->storedFrame(key), brickNumber(impl_->metadata.grid, key.index));
+}
+
 volume::BrickSamples Archive::read(const volume::BrickKey& key) const {
     const volume::Channel& channel = impl_->channelOf(key);
     if (!channel.magnitude) return impl_->readComponent(channel.parameter, channel.component, key);
@@ -341,13 +425,14 @@ std::shared_ptr<const volume::BrickSource> openArchive(const std::string& path) 
 
 volume::Field readField(const Archive& archive, int parameter, int component, int time) {
     const Archive::Impl& impl = *archive.impl_;
-    const FrameRecord& frame = impl.frame(parameter, component, time);
+    const FrameRecord& shown = impl.frame(parameter, component, time);
     volume::Field field = volume::makeField(impl.metadata.info.lattice, impl.parameter(parameter).type);
     if (impl.metadata.alternating && time % 2 != 0) field.lattice.origin += 0.5 * field.lattice.spacing;
-    field.offset = frame.valueOffset;
-    field.scale = frame.valueScale;
-    volume::Mask mask(frame.mask < 0 ? 0 : field.count(), 1);
+    field.offset = shown.valueOffset;
+    field.scale = shown.valueScale;
+    volume::Mask mask(shown.mask < 0 ? 0 : field.count(), 1);
     parallelFor(impl.bricks, [&](std::size_t brick) {
+        const FrameRecord& frame = impl.holding(shown, brick);
         const glm::ivec3 at = brickIndex(impl.metadata.grid, brick);
         const BrickFormat format = brickFormat(impl.metadata.grid, at, field.type, frame);
         const std::vector<std::uint8_t> fine = impl.flags(frame, brick);
@@ -375,7 +460,7 @@ volume::Field readField(const Archive& archive, int parameter, int component, in
                 if (fine[i] == 0)
                     put(i, frame.keepsAbsent ? decoded->absent[next++] : sizeof(T) == 4 ? 0x7fc00000u : 0u);
         });
-        if (!fine.empty())
+        if (!fine.empty() && !mask.empty())
             forBrickRows(impl.metadata.grid, at, [&](std::size_t to, std::size_t from, std::size_t count) {
                 std::copy_n(fine.begin() + std::ptrdiff_t(from), count, mask.begin() + std::ptrdiff_t(to));
             });
@@ -384,13 +469,14 @@ volume::Field readField(const Archive& archive, int parameter, int component, in
     return field;
 }
 
-ArchiveState stateOf(const Archive& archive) {
+ArchiveState stateOf(const Archive& archive, bool withFrames) {
     const Archive::Impl& impl = *archive.impl_;
     ArchiveState state{impl.header.header,
                        impl.metadata.info.times.size(),
                        impl.components,
                        impl.index.models.size(),
                        impl.index.masks.size(),
+                       {},
                        {},
                        {}};
     for (std::size_t c = 0; c < impl.components; ++c) {
@@ -419,6 +505,16 @@ ArchiveState stateOf(const Archive& archive) {
         });
         state.lastMasks.emplace_back(last.mask, std::move(mask));
     }
+    const std::size_t step = impl.metadata.alternating ? 2 : 1;
+    for (std::size_t t = state.times - std::min(state.times, step); withFrames && t < state.times; ++t)
+        for (std::size_t p = 0, c = 0; p < impl.metadata.info.parameters.size(); ++p)
+            for (int component = 0; component < impl.metadata.info.parameters[p].components; ++component, ++c) {
+                const FrameRecord& last = impl.index.frames[t * impl.components + c];
+                SeenFrame seen{
+                    int(t), last.keepsAbsent, readField(archive, int(p), component, int(t)), last.bricks, {}};
+                for (std::size_t b = 0; b < impl.bricks; ++b) seen.bytes.push_back(impl.bytesOf(last, b));
+                state.lastFrames.emplace_back(c, std::move(seen));
+            }
     return state;
 }
 
@@ -456,6 +552,10 @@ struct Verifier {
                                       " time " + std::to_string(time) + " brick " + std::to_string(at.x) + "," +
                                       std::to_string(at.y) + "," + std::to_string(at.z);
             guarded(where, [&] {
+                if (record.bricks[brick].notes.repeats > 0) { // decoded with the one it repeats
+                    samples += countOf(impl.metadata.grid.brickSamples(at, 0));
+                    return;
+                }
                 const BrickFormat format = brickFormat(impl.metadata.grid, at, parameters[parameter].type, record);
                 const std::vector<std::uint8_t> fine = impl.flags(record, brick);
                 const Lent decoded(impl);

@@ -33,6 +33,9 @@ public:
     const volume::DatasetInfo& info() const override;
     const volume::BrickGrid& grid() const override;
     volume::BrickStats stats(const volume::BrickKey& key) const override;
+    std::optional<volume::BrickImportance> importance(const volume::BrickKey& key) const override;
+    /// Of D4* frames: between frames of the same parity.
+    std::optional<volume::BrickChange> change(const volume::BrickKey& key, int toTime) const override;
     /// Coarse levels are held within the brick's range; floats that are not finite count as absent.
     volume::BrickSamples read(const volume::BrickKey& key) const override;
 
@@ -50,12 +53,22 @@ public:
     std::uint64_t levelBytes(int level) const;
     std::uint64_t maskBytes() const;
     int maskCount() const;
+    /// Bricks that are those of an earlier time, and the bytes they would have taken.
+    struct Repeats {
+        std::uint64_t bricks = 0, bytes = 0;
+    };
+    Repeats repeats() const;
+    /// Times before that of a key at which the stored brick lies: 0 where it has bytes of its own. Of stored
+    /// components.
+    int repeats(const volume::BrickKey& key) const;
+    /// Bytes that the levels of a brick take, whether they are its own or those it repeats. Of stored components.
+    std::uint64_t brickBytes(const volume::BrickKey& key) const;
 
 private:
     friend volume::Field readField(const Archive&, int, int, int);
     friend VerifyReport verifyArchive(const Archive&, const Progress&);
     friend struct Verifier;
-    friend struct ArchiveState stateOf(const Archive&);
+    friend struct ArchiveState stateOf(const Archive&, bool);
     struct Impl;
     std::unique_ptr<Impl> impl_;
 };

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "codec/archive.h"
+#include "codec/brick_input.h"
 #include "codec/index.h"
 #include "codec/rans_model.h"
 
@@ -26,11 +27,12 @@ struct KnownModel {
 struct ArchiveState {
     Header header;
     std::size_t times = 0, components = 0, models = 0, masks = 0;
-    std::vector<KnownModel> lastModels;                  ///< by component
-    std::vector<std::pair<int, volume::Mask>> lastMasks; ///< those of the last time
+    std::vector<KnownModel> lastModels;                        ///< by component
+    std::vector<std::pair<int, volume::Mask>> lastMasks;       ///< those of the last time
+    std::vector<std::pair<std::size_t, SeenFrame>> lastFrames; ///< by component, of D4* two of each
 };
 
-/// Throws Error when a model or mask is damaged.
-ArchiveState stateOf(const Archive& archive);
+/// `withFrames`: the last frames too. Throws Error when a model, a mask or a brick of a last frame is damaged.
+ArchiveState stateOf(const Archive& archive, bool withFrames);
 
 } // namespace tessera::codec

@@ -2,6 +2,7 @@
 
 #include "codec/archive_state.h"
 #include "codec/brick_access.h"
+#include "codec/brick_input.h"
 #include "codec/filter.h"
 #include "codec/growing_file.h"
 #include "codec/whole_brick.h"
@@ -49,41 +50,6 @@ CodedMaskBrick encodeMask(std::span<const std::uint8_t> flags, Compressor& compr
     return coded;
 }
 
-/// Range of what a reader will decode, as physical values.
-FrameBrick rangeOf(const BrickFormat& format, const volume::Field& field, std::span<const std::byte> samples,
-                   std::span<const std::uint8_t> present, double maxError) {
-    double lo = 0, hi = -1;
-    const auto add = [&](double number) {
-        const double value = field.offset + field.scale * number;
-        if (lo > hi) lo = hi = value;
-        lo = std::min(lo, value), hi = std::max(hi, value);
-    };
-    volume::dispatch(format.type, [&]<class T>(T) {
-        const std::size_t count = samples.size() / sizeof(T);
-        if constexpr (!std::same_as<T, float>)
-            if (present.empty() && count > 0) { // of the ends of the range only
-                const auto* from = reinterpret_cast<const T*>(samples.data());
-                T least = from[0], most = from[0];
-                for (std::size_t i = 0; i < count; ++i)
-                    least = std::min(least, from[i]), most = std::max(most, from[i]);
-                add(double(least)), add(double(most));
-                return;
-            }
-        for (std::size_t i = 0; i < count; ++i) {
-            if (!present.empty() && present[i] == 0) continue;
-            T sample;
-            std::memcpy(&sample, samples.data() + i * sizeof(T), sizeof(T));
-            if constexpr (std::same_as<T, float>) {
-                const float decoded = sampleOf<float>(format.numbers, codeOf(format.numbers, sample));
-                if (close(format.numbers, maxError, sample, decoded)) sample = decoded;
-                if (!std::isfinite(sample)) continue;
-            }
-            add(static_cast<double>(sample));
-        }
-    });
-    return {static_cast<float>(lo), static_cast<float>(hi)};
-}
-
 } // namespace
 
 namespace {
@@ -99,6 +65,12 @@ struct ArchiveWriter::Impl {
     IndexPage page;                               ///< what the next commit adds
     std::map<std::array<std::uint64_t, 2>, int> maskByHash;
     std::map<std::size_t, KnownModel> lastModel; ///< by component
+    bool keepsFrames = true;
+    Archive::Repeats repeats;
+    /// By component, of D4* by parity too. One that is not there: nothing is known of what changes.
+    std::map<std::pair<std::size_t, int>, SeenFrame> lastFrames;
+
+    int step() const { return metadata.alternating ? 2 : 1; } ///< times from a frame to the next of its grid
 
     explicit Impl(const std::string& path) : file(path) {}
     Impl(const std::string& path, const Header& last) : file(path, last), header(last) {}
@@ -108,6 +80,9 @@ struct ArchiveWriter::Impl {
     Model modelFor(const volume::Field& field, std::size_t component, FrameRecord& frame, const FrameOptions& options,
                    Taken& taken);
     void writeModel(const Model& model, std::size_t component, FrameRecord& frame);
+    const SeenFrame* frameBefore(const FrameRecord& frame, const volume::Field& field) const;
+    std::vector<std::uint8_t> repeated(const SeenFrame* before, const volume::Field& field, const FrameRecord& frame,
+                                       double maxError) const;
     void commit(const Metadata& now, std::size_t wholeTimes, bool always);
 };
 
@@ -156,36 +131,6 @@ int ArchiveWriter::Impl::maskFor(const volume::Field& field, int zstdLevel) {
 }
 
 namespace {
-
-/// The samples of one brick as encodeBrick wants them.
-struct BrickInput {
-    Bytes samples;
-    std::vector<std::uint8_t> present; ///< empty: all
-
-    void take(const volume::BrickGrid& grid, glm::ivec3 brick, const volume::Field& field, bool masked) {
-        const glm::ivec3 begin = grid.begin(brick);
-        take(grid, begin, grid.end(brick) - begin, field, masked);
-    }
-    /// Any box of the lattice.
-    void take(const volume::BrickGrid& grid, glm::ivec3 begin, glm::ivec3 size, const volume::Field& field,
-              bool masked) {
-        const std::size_t sampleBytes = volume::byteSize(field.type), n = std::size_t(size.x);
-        samples.clear();
-        present.clear();
-        bool mixed = false;
-        for (int z = 0; z < size.z; ++z)
-            for (int y = 0; y < size.y; ++y) {
-                const std::size_t from = grid.lattice.index(begin + glm::ivec3(0, y, z));
-                const auto row = field.samples.begin() + std::ptrdiff_t(from * sampleBytes);
-                samples.insert(samples.end(), row, row + std::ptrdiff_t(n * sampleBytes));
-                for (std::size_t i = from; masked && i < from + n; ++i) {
-                    present.push_back(field.present(i) ? 1 : 0);
-                    mixed = mixed || present.back() == 0;
-                }
-            }
-        if (!mixed) present.clear();
-    }
-};
 
 /// Bricks of a frame that were taken apart for its model, to be coded without doing that again.
 struct Taken {
@@ -355,17 +300,51 @@ void ArchiveWriter::Impl::writeModel(const Model& model, std::size_t component, 
     lastModel[component] = {frame.model, model, frame.wavelet, frame.numbers.kind, frame.codeBits};
 }
 
-ArchiveWriter::ArchiveWriter(const std::string& path, const Metadata& metadata) : impl_(std::make_unique<Impl>(path)) {
-    impl_->metadata = metadata;
+/// The last frame of the component on the same grid, if it is here and its numbers mean the same.
+const SeenFrame* ArchiveWriter::Impl::frameBefore(const FrameRecord& frame, const volume::Field& field) const {
+    const int time = int(frame.time);
+    const auto found = lastFrames.find({frame.component, time % step()});
+    if (found == lastFrames.end() || found->second.time != time - step()) return nullptr;
+    const volume::Field& before = found->second.field;
+    return before.offset == field.offset && before.scale == field.scale ? &found->second : nullptr;
 }
 
-ArchiveWriter::ArchiveWriter(const Archive& archive, const Metadata& metadata) {
+/// Flags of the bricks that need not be stored again.
+std::vector<std::uint8_t> ArchiveWriter::Impl::repeated(const SeenFrame* before, const volume::Field& field,
+                                                        const FrameRecord& frame, double maxError) const {
+    constexpr int kFurthest = 65535;
+    std::vector<std::uint8_t> flags(brickCount(metadata.grid), 0);
+    if (!before || (header.features & kBrickNotes) == 0) return flags;
+    parallelRanges(flags.size(), [&](std::size_t begin, std::size_t end) {
+        BrickInput was, is;
+        for (std::size_t b = begin; b < end; ++b) {
+            if (before->bricks[b].notes.repeats + step() > kFurthest) continue;
+            const glm::ivec3 brick = brickIndex(metadata.grid, b);
+            was.take(metadata.grid, brick, before->field, before->field.mask != nullptr);
+            is.take(metadata.grid, brick, field, frame.mask >= 0);
+            const bool absentToo = frame.keepsAbsent && !is.present.empty();
+            if (absentToo && !before->keepsAbsent) continue;
+            flags[b] = mayStandFor(field.type, was, is, maxError, absentToo) ? 1 : 0;
+        }
+    });
+    return flags;
+}
+
+ArchiveWriter::ArchiveWriter(const std::string& path, const Metadata& metadata, bool keepsFrames)
+    : impl_(std::make_unique<Impl>(path)) {
+    impl_->metadata = metadata;
+    impl_->keepsFrames = keepsFrames;
+}
+
+ArchiveWriter::ArchiveWriter(const Archive& archive, const Metadata& metadata, bool keepsFrames) {
     if (archive.version() < kGrowingVersion)
         throw Error("an archive of version " + std::to_string(archive.version()) + " does not grow; pack it again",
                     archive.path());
-    ArchiveState state = stateOf(archive);
+    const bool laterTimes = metadata.info.times.size() > archive.info().times.size();
+    ArchiveState state = stateOf(archive, keepsFrames && laterTimes);
     impl_ = std::make_unique<Impl>(archive.path(), state.header);
     impl_->metadata = metadata;
+    impl_->keepsFrames = keepsFrames;
     impl_->block = serialise(archive.metadata());
     impl_->times = state.times;
     impl_->models = state.models;
@@ -373,6 +352,8 @@ ArchiveWriter::ArchiveWriter(const Archive& archive, const Metadata& metadata) {
     for (const auto& [number, mask] : state.lastMasks) impl_->maskByHash.emplace(hashOf(mask), number);
     for (std::size_t c = 0; c < state.lastModels.size(); ++c)
         impl_->lastModel.emplace(c, std::move(state.lastModels[c]));
+    for (auto& [component, frame] : state.lastFrames)
+        impl_->lastFrames.emplace(std::pair(component, frame.time % impl_->step()), std::move(frame));
 }
 
 ArchiveWriter::~ArchiveWriter() = default;
@@ -396,14 +377,20 @@ void ArchiveWriter::addFrame(int parameter, int component, int time, const volum
     frame.valueOffset = field.offset;
     frame.valueScale = field.scale;
     frame.codeBits = codeBitsOf(field, frame.numbers);
+    const double maxError = boundOf(frame, options);
+    const SeenFrame* const before = impl_->frameBefore(frame, field);
+    const std::vector<std::uint8_t> repeated = impl_->repeated(before, field, frame, maxError);
+    const std::vector<volume::BrickImportance> importance =
+        volume::importanceOfBricks(grid, field, options.range, options.categorical, options.importance);
     Taken taken;
     const Model model = impl_->modelFor(field, ofTime, frame, options, taken);
     const BandEncoder encoder(model);
-    const double maxError = boundOf(frame, options);
     if (!taken.serves(frame, model)) taken.bricks.clear();
     taken.bricks.resize(brickCount(grid));
 
     const std::size_t bricks = brickCount(grid), levels = std::size_t(grid.levels);
+    SeenFrame seen{time, frame.keepsAbsent, impl_->keepsFrames ? field : volume::Field(), {}, {}};
+    seen.bytes.resize(bricks);
     frame.bricks.resize(bricks);
     frame.segments.resize(bricks * levels);
     std::vector<std::vector<Bytes>> coded(bricks);
@@ -419,20 +406,35 @@ void ArchiveWriter::addFrame(int parameter, int component, int time, const volum
             SplitMemory memory;
             for (std::size_t b = first + begin; b < first + end; ++b) {
                 const glm::ivec3 brick = brickIndex(grid, b);
-                const BrickFormat format = brickFormat(grid, brick, field.type, frame);
-                input.take(grid, brick, field, frame.mask >= 0);
-                frame.bricks[b] = rangeOf(format, field, input.samples, input.present, maxError);
-                if (!taken.bricks[b])
-                    taken.bricks[b] = prepareBrick(format, input.samples, input.present, maxError, model.shift, memory);
-                coded[b] = encodeBrick(format, *taken.bricks[b], input.samples, input.present, compressor, encoder);
+                FrameBrick& about = frame.bricks[b];
+                if (repeated[b] != 0) {
+                    about = before->bricks[b];
+                    about.notes.repeats += impl_->step();
+                    coded[b].resize(levels);
+                    seen.bytes[b] = before->bytes[b];
+                    input.take(grid, brick, before->field, false);
+                } else {
+                    const BrickFormat format = brickFormat(grid, brick, field.type, frame);
+                    input.take(grid, brick, field, frame.mask >= 0);
+                    if (!taken.bricks[b])
+                        taken.bricks[b] = prepareBrick(format, input.samples, input.present, maxError, model.shift, memory);
+                    coded[b] = encodeBrick(format, *taken.bricks[b], input.samples, input.present, compressor, encoder);
+                    for (const Bytes& segment : coded[b]) seen.bytes[b] += segment.size();
+                    roundAsDecoded(format, maxError, input);
+                    about = rangeOf(field, input);
+                }
                 taken.bricks[b].reset();
+                about.notes.importance = importance[b];
+                if (!impl_->keepsFrames) continue;
+                putSamples(grid, brick, input.samples, seen.field);
+                if (before) about.notes.change = volume::changeOfBrick(grid, brick, before->field, seen.field);
             }
         });
         progress.advance(double(first + count) / double(bricks));
     }
-    const bool allWhole = levels > 1 && std::all_of(coded.begin(), coded.end(), [](const std::vector<Bytes>& brick) {
-                              return !brick[0].empty() && isWhole(brick[0][0]);
-                          });
+    bool allWhole = levels > 1;
+    for (std::size_t b = 0; b < bricks; ++b)
+        allWhole = allWhole && (repeated[b] != 0 || (!coded[b][0].empty() && isWhole(coded[b][0][0])));
     // Nobody will look into the tables where there are no bands.
     if (frame.model < 0) impl_->writeModel(allWhole ? makeModel(Histogram(grid.levels), 0, 1) : model, ofTime, frame);
     GrowingFile& file = impl_->file;
@@ -445,6 +447,12 @@ void ArchiveWriter::addFrame(int parameter, int component, int time, const volum
             file.append(bytes);
         }
     frame.length = file.position() - frame.offset;
+    for (std::size_t b = 0; b < bricks; ++b)
+        if (repeated[b] != 0) impl_->repeats.bricks += 1, impl_->repeats.bytes += seen.bytes[b];
+    if (impl_->keepsFrames) {
+        seen.bricks = frame.bricks;
+        impl_->lastFrames[{ofTime, time % impl_->step()}] = std::move(seen);
+    }
     impl_->page.frames.push_back(std::move(frame));
 }
 
@@ -464,13 +472,17 @@ void ArchiveWriter::Impl::commit(const Metadata& now, std::size_t wholeTimes, bo
         file.append(text);
         block = std::move(text);
     }
-    const Bytes index = serialise(page);
+    const Bytes index = serialise(page, header.features);
     header.index = {file.position(), index.size(), checksum(index)};
     file.append(index);
     header.fileSize = file.position();
     file.commit(header);
     times = wholeTimes;
     page = {};
+}
+
+Archive::Repeats ArchiveWriter::repeats() const {
+    return impl_->repeats;
 }
 
 void ArchiveWriter::commit(const Metadata& metadata, std::size_t times) {

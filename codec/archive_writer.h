@@ -4,6 +4,7 @@
 #include "codec/lifting.h"
 #include "codec/metadata.h"
 #include "codec/numbers.h"
+#include "volume/brick_importance.h"
 #include "volume/progress.h"
 
 #include <memory>
@@ -18,6 +19,9 @@ struct FrameOptions {
     double maxError = 0;                           ///< absolute, in stored units; 0: every sample exactly
     bool keepsAbsent = false;                      ///< also the stored numbers of absent samples
     int zstdLevel = 3;
+    Range range{1, 0}; ///< physical, of the component, that importance refers to; lo > hi: that of the frame
+    bool categorical = false;
+    volume::ImportanceOptions importance;
 };
 
 /// About how many bytes a frame is coded in, from the tokens of at most `bricks` of its bricks.
@@ -25,7 +29,9 @@ double estimateFrameBytes(const volume::BrickGrid& grid, const volume::Field& fi
                           std::size_t bricks);
 
 /// Writes an archive frame by frame, whole times at a time: what is committed stays readable whatever happens later.
-/// One frame and its coded bytes are in memory at a time.
+/// One frame and its coded bytes are in memory at a time, and if frames are kept the last one of each component (of D4*
+/// the last two): then bricks that did not change are stored as repeats of earlier ones, and it is noted how far the
+/// others move. Whoever keeps none saves the memory.
 ///
 /// A new archive is made under a temporary name beside `path`; with its first commit it takes its name, where readers
 /// see it grow, and disappears if finish() is not reached. A file that is there already is replaced by finish() only.
@@ -34,11 +40,11 @@ class ArchiveWriter {
 public:
     /// A new archive. `metadata` gives the shape (lattice, grid, parameters, times); throws MachineError when the file
     /// cannot be made.
-    ArchiveWriter(const std::string& path, const Metadata& metadata);
+    ArchiveWriter(const std::string& path, const Metadata& metadata, bool keepsFrames = true);
     /// Appends to an archive: `metadata` is that of the archive with times behind its last or parameters behind its
     /// last. Throws Error when the archive is of an older version, has changed since it was opened, or another program
     /// is writing it. Bytes of an append that was not finished are cut off.
-    ArchiveWriter(const Archive& archive, const Metadata& metadata);
+    ArchiveWriter(const Archive& archive, const Metadata& metadata, bool keepsFrames = true);
     ~ArchiveWriter();
     ArchiveWriter(const ArchiveWriter&) = delete;
     ArchiveWriter& operator=(const ArchiveWriter&) = delete;
@@ -53,6 +59,9 @@ public:
     /// metadata, which must have all their frames. A commit writes the metadata (with the ranges so far) again, so
     /// little is left to wait for the next one: less than 64 times that much.
     void commit(const Metadata& metadata, std::size_t times);
+
+    /// Bricks added that repeat earlier ones, and the bytes that saves.
+    Archive::Repeats repeats() const;
 
     /// Commits everything and closes the file. Returns its bytes.
     std::uint64_t finish(const Metadata& metadata);

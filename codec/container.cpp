@@ -33,7 +33,8 @@ Header parseHeader(std::span<const std::byte> bytes, std::size_t at, std::uint64
         throw Error("archive version " + std::to_string(header.version) + ", this program reads versions up to " +
                         std::to_string(kFormatVersion),
                     file, place(8));
-    if (header.features != 0) throw Error("the archive needs features this program does not know", file, place(12));
+    if ((header.features & ~kKnownFeatures) != 0 || (header.features != 0 && header.version < kGrowingVersion))
+        throw Error("the archive needs features this program does not know", file, place(12));
     const bool grows = header.version >= kGrowingVersion;
     if (grows ? header.fileSize > fileBytes : header.fileSize != fileBytes)
         throw Error("the file has " + std::to_string(fileBytes) + " bytes, its header says " +

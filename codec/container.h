@@ -20,6 +20,8 @@ namespace tessera::codec {
 /// Version 1 knew neither models nor bands, version 2 did not grow; both are read, never written.
 inline constexpr std::uint32_t kFormatVersion = 3, kOldestVersion = 1, kGrowingVersion = 3;
 inline constexpr std::size_t kHeaderBytes = 80;
+/// Feature: the index says how important each brick is, how it changes, and which repeat an earlier one.
+inline constexpr std::uint32_t kBrickNotes = 1, kKnownFeatures = kBrickNotes;
 
 /// Where the chunks of a version begin.
 constexpr std::uint64_t firstChunk(std::uint32_t version) {
@@ -37,9 +39,9 @@ struct Block {
 
 struct Header {
     std::uint32_t version = kFormatVersion;
-    std::uint32_t features = 0; ///< bits a reader must know; none yet
-    std::uint64_t fileSize = 0; ///< bytes behind belong to an append that was not finished
-    Block metadata, index;      ///< index: the last page of it (versions 1, 2: all of it)
+    std::uint32_t features = kKnownFeatures; ///< bits a reader must know
+    std::uint64_t fileSize = 0;              ///< bytes behind belong to an append that was not finished
+    Block metadata, index;                   ///< index: the last page of it (versions 1, 2: all of it)
     bool operator==(const Header&) const = default;
 };
 

@@ -11,7 +11,25 @@ namespace tessera::codec {
 namespace {
 
 constexpr std::uint64_t kMaskRecordBytes = 16, kMaskBrickBytes = 16, kModelBytes = 24, kFrameRecordBytes = 56,
-                        kFrameModelBytes = 4, kFrameKeyBytes = 8, kFrameBrickBytes = 8, kSegmentBytes = 12;
+                        kFrameModelBytes = 4, kFrameKeyBytes = 8, kFrameBrickBytes = 8, kNotesBytes = 12,
+                        kSegmentBytes = 12;
+constexpr double kMost16 = 65535;
+
+std::uint16_t to16(double part) {
+    return static_cast<std::uint16_t>(std::lround(std::clamp(part, 0.0, 1.0) * kMost16));
+}
+
+/// The share of an RMS in a maximum, rounded up.
+std::uint16_t shareOf(const volume::BrickChange& change) {
+    if (!(change.max > 0)) return 0;
+    if (!std::isfinite(change.max)) return std::uint16_t(kMost16);
+    return static_cast<std::uint16_t>(std::min(std::ceil(double(change.rms) / double(change.max) * kMost16), kMost16));
+}
+
+volume::BrickChange changeOf(float max, std::uint16_t share) {
+    if (!(max > 0) || !std::isfinite(max)) return {max, max};
+    return {max, volume::roundedUp(double(max) * share / kMost16)};
+}
 
 void require(bool condition, const char* what, const std::string& file) {
     if (!condition) throw Error(what, file, "index");
@@ -22,8 +40,8 @@ class RecordReader {
 public:
     RecordReader(std::span<const std::byte> bytes, const Header& header, const IndexShape& shape,
                  const std::string& file)
-        : in_(bytes), version_(header.version), begin_(firstChunk(header.version)), end_(header.index.offset),
-          shape_(shape), file_(file) {}
+        : in_(bytes), version_(header.version), notes_((header.features & kBrickNotes) != 0),
+          begin_(firstChunk(header.version)), end_(header.index.offset), shape_(shape), file_(file) {}
 
     IndexPage page() {
         IndexPage page;
@@ -37,9 +55,10 @@ public:
         // No number here exceeds what the bytes of the index can hold, so nothing below overflows or allocates much.
         require(bricks <= room, "the index is too short", file_);
         const std::uint64_t maskBytes = kMaskRecordBytes + bricks * kMaskBrickBytes;
-        const std::uint64_t frameBytes =
-            kFrameRecordBytes + (hasModels ? kFrameModelBytes : 0) + (grows ? kFrameKeyBytes : 0) +
-            bricks * (kFrameBrickBytes + static_cast<std::uint64_t>(shape_.levels) * kSegmentBytes);
+        const std::uint64_t frameBytes = kFrameRecordBytes + (hasModels ? kFrameModelBytes : 0) +
+                                         (grows ? kFrameKeyBytes : 0) +
+                                         bricks * (kFrameBrickBytes + (notes_ ? kNotesBytes : 0) +
+                                                   static_cast<std::uint64_t>(shape_.levels) * kSegmentBytes);
         require(times <= room / 8 && masks <= room / maskBytes && frames <= room / frameBytes &&
                     models <= room / kModelBytes &&
                     headBytes + 8 * times + models * kModelBytes + masks * maskBytes + frames * frameBytes == room,
@@ -81,6 +100,19 @@ private:
         return mask;
     }
 
+    FrameBrick::Notes notes() {
+        FrameBrick::Notes notes;
+        notes.importance.importance = static_cast<float>(in_.get<std::uint16_t>() / kMost16);
+        notes.importance.detail = static_cast<float>(in_.get<std::uint16_t>() / kMost16);
+        const auto max = in_.get<float>();
+        const auto share = in_.get<std::uint16_t>();
+        notes.repeats = in_.get<std::uint16_t>();
+        require(max >= 0 || (max == FrameBrick::kUnknown && notes.repeats == 0), "an impossible change of a brick",
+                file_);
+        notes.change = changeOf(max, share);
+        return notes;
+    }
+
     FrameRecord frame() {
         const bool grows = version_ >= kGrowingVersion, hasModels = version_ > 1;
         FrameRecord frame;
@@ -109,6 +141,7 @@ private:
         for (FrameBrick& brick : frame.bricks) {
             brick.min = in_.get<float>();
             brick.max = in_.get<float>();
+            if (notes_) brick.notes = notes();
         }
         std::uint64_t at = frame.offset;
         frame.segments.resize(shape_.bricks * static_cast<std::uint64_t>(shape_.levels));
@@ -123,6 +156,7 @@ private:
 
     ByteReader in_;
     std::uint32_t version_;
+    bool notes_;
     std::uint64_t begin_, end_; ///< where chunks may lie
     const IndexShape& shape_;
     const std::string& file_;
@@ -151,6 +185,22 @@ std::vector<IndexPage> readPages(std::span<const std::byte> bytes, const Header&
     return pages;
 }
 
+/// A brick that repeats another has no bytes of its own, the other one has.
+void requireRepeats(const Index& index, const IndexShape& shape, const std::string& file) {
+    for (std::size_t f = 0; f < index.frames.size(); ++f) {
+        const FrameRecord& frame = index.frames[f];
+        for (std::size_t b = 0; b < shape.bricks; ++b) {
+            const auto repeats = static_cast<std::uint32_t>(frame.bricks[b].notes.repeats);
+            if (repeats == 0) continue;
+            require(repeats <= frame.time, "a brick repeats one before the first time", file);
+            const FrameRecord& other = index.frames[f - repeats * shape.components];
+            require(other.bricks[b].notes.repeats == 0, "a brick repeats one that repeats another", file);
+            for (std::size_t s = b; s < frame.segments.size(); s += shape.bricks)
+                require(frame.segments[s].length == 0, "a brick that repeats another has bytes of its own", file);
+        }
+    }
+}
+
 /// Chunks, pages and metadata, former ones too, touch each other from the first chunk to the end of the file.
 void requireFilled(const Index& index, const Header& header, const std::string& file) {
     std::vector<std::pair<std::uint64_t, std::uint64_t>> parts;
@@ -175,7 +225,16 @@ void requireFilled(const Index& index, const Header& header, const std::string& 
 
 } // namespace
 
-Bytes serialise(const IndexPage& page) {
+FrameBrick::Notes rounded(const FrameBrick::Notes& notes) {
+    FrameBrick::Notes out = notes;
+    out.importance.importance = static_cast<float>(to16(double(notes.importance.importance)) / kMost16);
+    out.importance.detail = static_cast<float>(to16(double(notes.importance.detail)) / kMost16);
+    out.change = changeOf(notes.change.max, shareOf(notes.change));
+    return out;
+}
+
+Bytes serialise(const IndexPage& page, std::uint32_t features) {
+    const bool hasNotes = (features & kBrickNotes) != 0;
     ByteWriter out;
     out.put(page.previousPage);
     out.put(page.previousMetadata);
@@ -212,6 +271,12 @@ Bytes serialise(const IndexPage& page) {
         for (const FrameBrick& brick : frame.bricks) {
             out.put(brick.min);
             out.put(brick.max);
+            if (!hasNotes) continue;
+            out.put(to16(double(brick.notes.importance.importance)));
+            out.put(to16(double(brick.notes.importance.detail)));
+            out.put(brick.notes.change.max);
+            out.put(shareOf(brick.notes.change));
+            out.put(static_cast<std::uint16_t>(brick.notes.repeats));
         }
         for (const Segment& segment : frame.segments) {
             out.put(segment.length);
@@ -258,6 +323,7 @@ Index readIndex(std::span<const std::byte> bytes, const Header& header, const In
         known[number] = true;
         index.frames[number] = std::move(frame);
     }
+    if ((header.features & kBrickNotes) != 0) requireRepeats(index, shape, file);
     requireFilled(index, header, file);
     return index;
 }

@@ -3,6 +3,7 @@
 #include "codec/container.h"
 #include "codec/lifting.h"
 #include "codec/numbers.h"
+#include "volume/brick_source.h"
 
 #include <vector>
 
@@ -29,7 +30,18 @@ struct MaskRecord {
 
 struct FrameBrick {
     float min = 0, max = -1; ///< physical values of present samples; min > max: none
+    /// What archives without kBrickNotes do not say of their bricks.
+    struct Notes {
+        volume::BrickImportance importance;             ///< stored with 16 bits each
+        volume::BrickChange change{kUnknown, kUnknown}; ///< from the frame before; rms is stored as a share of max
+        int repeats = 0; ///< above 0: the samples, and the bytes, are those of the frame so many times before
+    } notes;
+
+    static constexpr float kUnknown = -1;
 };
+
+/// As the archive will give them back, the change rounded up.
+FrameBrick::Notes rounded(const FrameBrick::Notes& notes);
 
 /// One component of one parameter at one time.
 struct FrameRecord {
@@ -71,7 +83,8 @@ struct IndexShape {
     std::uint64_t times = 0; ///< versions 1 and 2 only
 };
 
-Bytes serialise(const IndexPage& page);
+/// `features`: of the header.
+Bytes serialise(const IndexPage& page, std::uint32_t features);
 
 /// Reads and checks the index a header names. Throws Error naming `file` when a checksum or a length is wrong, frames
 /// are missing, or chunks, pages and metadata do not fill the file up to header.fileSize exactly, in any order.

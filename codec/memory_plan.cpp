@@ -20,24 +20,30 @@ double quarterOfRam() {
 
 } // namespace
 
-bool mayReadAhead(const Metadata& metadata, const volume::DatasetInfo& source, const PackOptions& options) {
+MemoryPlan planMemory(const Metadata& metadata, const volume::DatasetInfo& source, const PackOptions& options) {
     const double samples = double(source.lattice.count()),
                  stored = std::max(samples, double(metadata.info.lattice.count()));
-    double step = 0, coding = 0, all = 0;
+    double step = 0, coding = 0, all = 0, last = 0;
     for (const volume::Parameter& parameter : source.parameters) {
         const double bytes = double(volume::byteSize(parameter.type)) + 1; // and a flag
         step = std::max(step, parameter.components * samples * bytes + stored * bytes);
         coding = std::max(coding, parameter.components * stored * bytes + 2 * stored * bytes);
         all += parameter.components * samples * bytes;
+        last += parameter.components * stored * bytes;
     }
     constexpr double kTimesOfD4 = 6; // that the filter in time may keep
-    const double kept = options.lattice == StoredLattice::D4 ? kTimesOfD4 * all : 0;
+    const bool d4 = options.lattice == StoredLattice::D4;
+    const double kept = d4 ? kTimesOfD4 * all : 0;
     const double least = kOwn + kept + std::max(step, coding);
     const double limit = options.memoryMb > 0 ? options.memoryMb * kMega : quarterOfRam();
     if (options.memoryMb > 0 && least > limit)
         throw Error("packing frames of this size takes about " + std::to_string(std::lround(std::ceil(least / kMega))) +
                     " MB, the limit of memory is " + std::to_string(std::lround(options.memoryMb)) + " MB");
-    return least + step <= limit;
+    MemoryPlan plan;
+    const double frames = source.times.size() > 1 ? (d4 ? 2 : 1) * last : 0;
+    plan.keepFrames = least + frames <= limit;
+    plan.readAhead = least + (plan.keepFrames ? frames : 0) + step <= limit;
+    return plan;
 }
 
 } // namespace tessera::codec

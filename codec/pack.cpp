@@ -182,7 +182,7 @@ PackSummary packInto(volume::Dataset& source, const PackOptions& asked, const st
     const std::size_t parameters = info.parameters.size(), times = info.times.size();
     std::vector<std::vector<Range>> ranges(parameters);
     const FrameFeed::Resampling resampling{toBcc, options.resample};
-    const bool ahead = mayReadAhead(metadata, source.info, options);
+    const MemoryPlan memory = planMemory(metadata, source.info, options);
     Progress work = progress;
     {
         Stopwatch all(summary.seconds);
@@ -190,12 +190,12 @@ PackSummary packInto(volume::Dataset& source, const PackOptions& asked, const st
         const bool relative = options.maxError > 0 || options.psnr > 0;
         if (relative && (times > 1 || grown)) {
             work = progress.part(0.3, 1);
-            gatherAllRanges(dataset, ahead, summary, progress.part(0, 0.3));
+            gatherAllRanges(dataset, memory.readAhead, summary, progress.part(0, 0.3));
             if (grown) place.widen(info, metadata.info);
         }
 
-        const auto opened =
-            grown ? std::make_unique<ArchiveWriter>(*grown, metadata) : std::make_unique<ArchiveWriter>(path, metadata);
+        const auto opened = grown ? std::make_unique<ArchiveWriter>(*grown, metadata, memory.keepFrames)
+                                  : std::make_unique<ArchiveWriter>(path, metadata, memory.keepFrames);
         ArchiveWriter& writer = *opened;
         const double frames = double(times) * double(componentCount(info));
         double done = 0;
@@ -207,7 +207,7 @@ PackSummary packInto(volume::Dataset& source, const PackOptions& asked, const st
             place.widen(read, now.info);
             return now;
         };
-        FrameFeed feed(dataset, resampling, ahead, progress.stop);
+        FrameFeed feed(dataset, resampling, memory.readAhead, progress.stop);
         for (std::size_t step = 0; step < times * parameters; ++step) {
             work.advance(done / frames, info.parameters[step % parameters].name);
             FeedStep fed = [&] {
@@ -232,6 +232,8 @@ PackSummary packInto(volume::Dataset& source, const PackOptions& asked, const st
             frame.wavelet = parameter.categorical ? Wavelet::N1 : waveletOf(options.wavelet);
             frame.zstdLevel = options.zstdLevel;
             frame.keepsAbsent = exact && !resamples;
+            frame.categorical = parameter.categorical;
+            frame.importance = options.importance;
             for (std::size_t c = 0; c < fed.fields.size(); ++c, ++done) {
                 const Field field = std::move(fed.fields[c]);
                 summary.storedSamples += field.count();
@@ -240,6 +242,8 @@ PackSummary packInto(volume::Dataset& source, const PackOptions& asked, const st
                 const volume::Parameter& whole =
                     grown && relative ? metadata.info.parameters[std::size_t(place.parameterOf[p])] : parameter;
                 frame.maxError = exact ? 0 : boundFor(options, whole, field);
+                const std::vector<Range>& known = whole.ranges.empty() ? ranges[p] : whole.ranges;
+                frame.range = c < known.size() ? known[c] : Range{1, 0};
                 const double extent = extentOf(whole);
                 if (extent > 0)
                     metadata.maxError = std::max(metadata.maxError, frame.maxError * std::abs(field.scale) / extent);
@@ -254,6 +258,10 @@ PackSummary packInto(volume::Dataset& source, const PackOptions& asked, const st
         settleRanges(info, ranges);
         source.info.parameters = info.parameters;
         Stopwatch write(summary.writeSeconds);
+        if (!memory.keepFrames && times > 1)
+            summary.notes.push_back("memory is too tight to keep frames: what changes from time to time is not noted");
+        summary.repeatedBricks = writer.repeats().bricks;
+        summary.repeatedBytes = writer.repeats().bytes;
         const Metadata known = soFar();
         summary.maxError = known.maxError;
         summary.archiveBytes = writer.finish(known);
@@ -273,7 +281,7 @@ PackSummary pack(volume::Dataset& source, const PackOptions& asked, const std::s
     };
     const auto bytesAt = [&](const Progress& part) {
         PackSummary reading;
-        gatherAllRanges(source, mayReadAhead({}, source.info, options), reading, part.part(0, 0.5));
+        gatherAllRanges(source, planMemory({}, source.info, options).readAhead, reading, part.part(0, 0.5));
         const bool toBcc = options.lattice == StoredLattice::BCC && source.info.lattice.kind == LatticeKind::CC;
         const volume::Lattice lattice = toBcc ? volume::bccFor(source.info.lattice) : source.info.lattice;
         return estimateSizes(source, gridFor(lattice, options), options, toBcc, part.part(0.5, 1));

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "codec/lifting.h"
+#include "volume/brick_importance.h"
 #include "volume/dataset.h"
 #include "volume/describe.h"
 #include "volume/progress.h"
@@ -45,6 +46,7 @@ struct PackOptions {
     int levels = 0;
     int zstdLevel = 9;
     double memoryMb = 0;
+    volume::ImportanceOptions importance;
 
     bool operator==(const PackOptions&) const = default;
     static void describe(auto& self, auto&& visit) {
@@ -102,8 +104,11 @@ struct PackOptions {
         visit(self.memoryMb, FieldInfo{.key = "memory",
                                        .unit = "MB",
                                        .doc = "Most memory for samples while packing; 0 = a quarter of the machine's. "
-                                              "Where it is tight, the next frame is not read ahead",
+                                              "Where it is tight, frames are neither compared with the one before "
+                                              "nor read ahead",
                                        .range = Range{0, 1e9}});
+        visit(self.importance,
+              FieldInfo{.key = "importance", .unit = "", .doc = "How much a brick has to show, by its samples"});
     }
 };
 
@@ -114,10 +119,11 @@ PackOptions resolved(PackOptions options);
 struct PackSummary {
     std::uint64_t sourceBytes = 0; ///< of all samples read
     std::uint64_t sourceSamples = 0, storedSamples = 0;
-    std::uint64_t archiveBytes = 0; ///< of the whole file
-    std::uint64_t addedBytes = 0;   ///< of those, by this run
-    std::uint64_t storedBytes = 0;  ///< of the samples on the lattice they are stored on
-    double maxError = 0;            ///< largest error of a float sample, relative to its parameter's range
+    std::uint64_t archiveBytes = 0;                      ///< of the whole file
+    std::uint64_t addedBytes = 0;                        ///< of those, by this run
+    std::uint64_t storedBytes = 0;                       ///< of the samples on the lattice they are stored on
+    std::uint64_t repeatedBricks = 0, repeatedBytes = 0; ///< that are those of an earlier time; what that saves
+    double maxError = 0; ///< largest error of a float sample, relative to its parameter's range
     double seconds = 0;
     /// Of the stages, which overlap: reading and resampling go on while the frame before is coded.
     double loadSeconds = 0, resampleSeconds = 0, codeSeconds = 0, writeSeconds = 0;

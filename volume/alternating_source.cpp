@@ -96,6 +96,33 @@ public:
         return unionOf(rangeOf(key, timesOf(key, 0)), rangeOf(key, timesOf(key, 1)));
     }
 
+    std::optional<BrickImportance> importance(const BrickKey& key) const override {
+        (void)channelOf(key);
+        return frames_->importance(key);
+    }
+
+    /// Between its frames a grid moves no further than they do, one after the other.
+    std::optional<BrickChange> change(const BrickKey& key, int toTime) const override {
+        (void)channelOf(key);
+        if (toTime == key.time) return BrickChange{};
+        if (options_.filter != ResampleFilter::Linear) return std::nullopt;
+        const int times = int(info_.times.size()), lo = std::min(key.time, toTime), hi = std::max(key.time, toTime);
+        BrickChange most;
+        for (int parity = 0; parity < 2; ++parity) {
+            const int last = times - 1 - (times - 1 + parity) % 2; // of the parity
+            const int first = std::max(lo - (lo + parity) % 2, parity), end = std::min(hi + (hi + parity) % 2, last);
+            BrickChange sum;
+            BrickKey step = key;
+            for (step.time = std::min(first, last); step.time < end; step.time += 2) {
+                const std::optional<BrickChange> own = frames_->change(step, step.time + 2);
+                if (!own) return std::nullopt;
+                sum = accumulated(sum, *own);
+            }
+            most = {std::max(most.max, sum.max), std::max(most.rms, sum.rms)};
+        }
+        return most;
+    }
+
     BrickSamples read(const BrickKey& key) const override {
         const Channel& channel = channelOf(key);
         if (channel.magnitude && channel.component == 3)

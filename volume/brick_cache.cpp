@@ -31,6 +31,14 @@ BrickStats BrickCache::stats(const BrickKey& key) const {
     return impl_->source->stats(key);
 }
 
+std::optional<BrickImportance> BrickCache::importance(const BrickKey& key) const {
+    return impl_->source->importance(key);
+}
+
+std::optional<BrickChange> BrickCache::change(const BrickKey& key, int toTime) const {
+    return impl_->source->change(key, toTime);
+}
+
 BrickSamples BrickCache::read(const BrickKey& key) const {
     return *get(key);
 }

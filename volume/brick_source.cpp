@@ -1,7 +1,9 @@
 #include "volume/brick_source.h"
 
+#include <algorithm>
 #include <cmath>
 #include <glm/common.hpp>
+#include <limits>
 
 namespace tessera::volume {
 
@@ -47,6 +49,42 @@ glm::ivec3 BrickGrid::levelBegin(glm::ivec3 brick, int level) const {
 
 double BrickGrid::levelPhase(int level) const {
     return phase * ((1 << level) - 1);
+}
+
+BrickChange accumulated(const BrickChange& first, const BrickChange& second) {
+    return {roundedUp(double(first.max) + double(second.max)), roundedUp(double(first.rms) + double(second.rms))};
+}
+
+float roundedUp(double value) {
+    const auto rounded = static_cast<float>(value);
+    return double(rounded) < value ? std::nextafter(rounded, std::numeric_limits<float>::infinity()) : rounded;
+}
+
+BrickChange magnitudeChange(std::span<const BrickChange> components) {
+    double max = 0, rms = 0;
+    for (const BrickChange& component : components) {
+        max += double(component.max) * double(component.max);
+        rms += double(component.rms) * double(component.rms);
+    }
+    // Magnitudes are rounded to float by themselves, and only where a component moves.
+    constexpr double kRounding = 1 + 1e-6;
+    return {roundedUp(std::sqrt(max) * kRounding), roundedUp(std::sqrt(rms) * kRounding)};
+}
+
+BrickImportance magnitudeImportance(std::span<const BrickImportance> components) {
+    BrickImportance most;
+    for (const BrickImportance& component : components)
+        most = {std::max(most.importance, component.importance), std::max(most.detail, component.detail)};
+    return most;
+}
+
+std::optional<BrickImportance> BrickSource::importance(const BrickKey&) const {
+    return std::nullopt;
+}
+
+std::optional<BrickChange> BrickSource::change(const BrickKey& key, int toTime) const {
+    if (key.time == toTime) return BrickChange{};
+    return std::nullopt;
 }
 
 BrickSamples gather(const BrickGrid& grid, const BrickKey& key, int halo,

@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <functional>
 #include <glm/vec3.hpp>
+#include <optional>
+#include <span>
 #include <vector>
 
 namespace tessera::volume {
@@ -64,6 +66,31 @@ struct BrickStats {
     float presentFraction = 1;
 };
 
+/// How much a brick has to show, 0 to 1 each (volume/brick_importance.h).
+struct BrickImportance {
+    float importance = 0; ///< by mean, contrast and entropy
+    float detail = 0;     ///< by the energy of its details
+    float largest() const { return importance > detail ? importance : detail; }
+};
+
+/// How far the samples of a brick move between two times: physical values at full resolution. A sample that is there at
+/// one of them only moves infinitely far. Rounded up, so that a change of 0 says that every sample is the same.
+struct BrickChange {
+    float max = 0, rms = 0; ///< rms: over the samples present
+    bool operator==(const BrickChange&) const = default;
+};
+
+/// The least float that is not below a value.
+float roundedUp(double value);
+
+/// Bounds on the change over two steps, from those of each. (Minkowski's inequality.)
+BrickChange accumulated(const BrickChange& first, const BrickChange& second);
+
+/// Bounds for the magnitude of a vector from those of its components.
+BrickChange magnitudeChange(std::span<const BrickChange> components);
+/// The most important of a vector's components stands for its magnitude.
+BrickImportance magnitudeImportance(std::span<const BrickImportance> components);
+
 /// Samples of one brick at one level, without border: physical values, x fastest, storage order of the lattice.
 struct BrickSamples {
     glm::ivec3 size{0};
@@ -81,6 +108,12 @@ public:
     /// Statistics of a brick; `key.level` is ignored. Cheap for an archive; an in-memory source may have to load a
     /// frame.
     virtual BrickStats stats(const BrickKey& key) const = 0;
+    /// Importance of a brick; `key.level` is ignored. As cheap as `stats`; nothing where it is not known.
+    virtual std::optional<BrickImportance> importance(const BrickKey& key) const;
+    /// A bound on how far the samples of a brick at full resolution move from key.time to `toTime`, which may come
+    /// before it; nothing where none is known. Of coarser levels only a change of 0 says something: they stay as they
+    /// are. As cheap as `stats`.
+    virtual std::optional<BrickChange> change(const BrickKey& key, int toTime) const;
     /// Reads, and if need be decodes, one brick. Throws Error when the data is damaged.
     virtual BrickSamples read(const BrickKey& key) const = 0;
 };

@@ -151,6 +151,14 @@ public:
         return stats_.try_emplace(fine, stats).first->second;
     }
 
+    std::optional<BrickImportance> importance(const BrickKey& key) const override {
+        return key.channel < first_ ? below_->importance(key) : BrickSource::importance(key);
+    }
+
+    std::optional<BrickChange> change(const BrickKey& key, int toTime) const override {
+        return key.channel < first_ ? below_->change(key, toTime) : BrickSource::change(key, toTime);
+    }
+
     BrickSamples read(const BrickKey& key) const override {
         if (key.channel < first_) return below_->read(key);
         const auto component = std::size_t(key.channel - first_);

@@ -1,5 +1,6 @@
 #include "volume/memory_source.h"
 
+#include "volume/brick_importance.h"
 #include "volume/error.h"
 #include "volume/load_once.h"
 #include "volume/parallel.h"
@@ -215,6 +216,31 @@ public:
         return magnitudeStatsOf(components);
     }
 
+    std::optional<BrickImportance> importance(const BrickKey& key) const override {
+        const Channel& channel = channelOf(key);
+        if (!channel.magnitude)
+            return frameImportance({channel.parameter, channel.component, key.time})[brickIndex(key)];
+        std::vector<BrickImportance> components;
+        for (int c = 0; c < channel.component; ++c)
+            components.push_back(frameImportance({channel.parameter, c, key.time})[brickIndex(key)]);
+        return magnitudeImportance(components);
+    }
+
+    std::optional<BrickChange> change(const BrickKey& key, int toTime) const override {
+        const Channel& channel = channelOf(key);
+        if (toTime < 0 || std::size_t(toTime) >= info_.times.size()) throw Error("no such time", info_.name);
+        const auto of = [&](int component) {
+            const FramePtr from = frames_.get({channel.parameter, component, key.time}),
+                           to = frames_.get({channel.parameter, component, toTime});
+            return changeOfBrick(grid_, key.index, *from, *to);
+        };
+        if (key.time == toTime) return BrickChange{};
+        if (!channel.magnitude) return of(channel.component);
+        std::vector<BrickChange> components;
+        for (int c = 0; c < channel.component; ++c) components.push_back(of(c));
+        return magnitudeChange(components);
+    }
+
     BrickSamples read(const BrickKey& key) const override {
         const Channel& channel = channelOf(key);
         if (!channel.magnitude) return readComponent(key, channel.parameter, channel.component);
@@ -279,6 +305,21 @@ private:
         return stats_.try_emplace(key, std::move(all)).first->second;
     }
 
+    /// Importance of every brick of a frame; made at the first question and kept.
+    const std::vector<BrickImportance>& frameImportance(const FrameKey& key) const {
+        {
+            const std::lock_guard lock(statsMutex_);
+            if (const auto found = importance_.find(key); found != importance_.end()) return found->second;
+        }
+        const FramePtr frame = frames_.get(key);
+        const Parameter& about = parameter(key.parameter);
+        const std::size_t component = std::size_t(key.component);
+        const Range range = component < about.ranges.size() ? about.ranges[component] : Range{1, 0};
+        std::vector<BrickImportance> all = importanceOfBricks(grid_, *frame, range, about.categorical);
+        const std::lock_guard lock(statsMutex_);
+        return importance_.try_emplace(key, std::move(all)).first->second;
+    }
+
     Dataset dataset_;
     DatasetInfo info_;
     BrickGrid grid_;
@@ -287,6 +328,7 @@ private:
     mutable LoadOnce<FrameKey, Field, FrameKeyHash> frames_;
     mutable std::mutex statsMutex_;
     mutable std::map<FrameKey, std::vector<BrickStats>> stats_;
+    mutable std::map<FrameKey, std::vector<BrickImportance>> importance_;
 };
 
 } // namespace

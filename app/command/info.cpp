@@ -6,10 +6,12 @@
 #include "codec/archive.h"
 #include "vis/image_io.h"
 
+#include <cmath>
 #include <cstdio>
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 namespace tessera::app {
 
@@ -61,6 +63,8 @@ Json archiveJson(const codec::Archive& archive) {
             {"levels", std::move(levels)},
             {"masks", archive.maskCount()},
             {"maskBytes", archive.maskBytes()},
+            {"repeatedBricks", archive.repeats().bricks},
+            {"repeatedBytes", archive.repeats().bytes},
             {"lossless", archive.metadata().lossless},
             {"maxError", archive.metadata().maxError},
             {"provenance", info.provenance}};
@@ -94,6 +98,9 @@ void printArchive(const codec::Archive& archive) {
     std::printf("\n");
     if (archive.maskCount() > 0)
         std::printf("  masks      %d, %s\n", archive.maskCount(), bytesText(double(archive.maskBytes())).c_str());
+    if (const auto repeats = archive.repeats(); repeats.bricks > 0)
+        std::printf("  repeats    %llu bricks are those of an earlier time, which saves %s\n",
+                    static_cast<unsigned long long>(repeats.bricks), bytesText(double(repeats.bytes)).c_str());
     std::printf("  parameters\n");
     for (const volume::Parameter& parameter : info.parameters) {
         std::printf("    %-16s %-8s %-8s", parameter.name.c_str(), std::string(volume::name(parameter.type)).c_str(),
@@ -146,13 +153,89 @@ void printSession(const std::string& path, bool asJson) {
     for (const std::string& message : document.messages) std::printf("  %s\n", message.c_str());
 }
 
-void run(const std::vector<std::string>& paths, const volume::ImportOptions& import, bool asJson) {
+/// Calls `visit(channel, time, brick)` for every stored component of every brick.
+template <class Visit> void forBricks(const codec::Archive& archive, Visit&& visit) {
+    const auto channels = archive.info().channels();
+    const glm::ivec3 count = archive.grid().count();
+    for (std::size_t time = 0; time < archive.info().times.size(); ++time)
+        for (std::size_t channel = 0; channel < channels.size(); ++channel)
+            for (int n = 0; !channels[channel].magnitude && n < count.x * count.y * count.z; ++n)
+                visit(int(channel), int(time), glm::ivec3(n % count.x, n / count.x % count.y, n / (count.x * count.y)));
+}
+
+/// Of a brick from the frame before, if there is one and it is known.
+std::optional<volume::BrickChange> lastChange(const codec::Archive& archive, const volume::BrickKey& key) {
+    const int before = key.time - (archive.metadata().alternating ? 2 : 1);
+    return before < 0 ? std::nullopt : archive.change(key, before);
+}
+
+json bricksJson(const codec::Archive& archive) {
+    json bricks = json::array();
+    const auto channels = archive.info().channels();
+    forBricks(archive, [&](int channel, int time, glm::ivec3 brick) {
+        const volume::BrickKey key{channel, time, 0, brick};
+        const volume::BrickStats stats = archive.stats(key);
+        json entry = {{"channel", channels[std::size_t(channel)].name},
+                      {"time", archive.info().times[std::size_t(time)]},
+                      {"brick", vectorJson(brick)},
+                      {"presentFraction", stats.presentFraction},
+                      {"bytes", archive.brickBytes(key)},
+                      {"repeats", archive.repeats(key)}};
+        if (stats.presentFraction > 0) entry["range"] = {stats.min, stats.max};
+        if (const auto importance = archive.importance(key)) {
+            entry["importance"] = importance->importance;
+            entry["detail"] = importance->detail;
+        }
+        if (const auto change = lastChange(archive, key)) {
+            // Infinity has no number in JSON.
+            entry["change"] = std::isfinite(change->max) ? json(change->max) : json("appears");
+            entry["changeRms"] = std::isfinite(change->rms) ? json(change->rms) : json("appears");
+        }
+        bricks.push_back(std::move(entry));
+    });
+    return bricks;
+}
+
+void printBricks(const codec::Archive& archive) {
+    const auto channels = archive.info().channels();
+    std::printf("  %-16s %12s %-10s %10s %10s %7s %9s %6s %11s %11s %8s\n", "channel", "time", "brick", "min", "max",
+                "present", "importance", "detail", "change", "change RMS", "bytes");
+    forBricks(archive, [&](int channel, int time, glm::ivec3 brick) {
+        const volume::BrickKey key{channel, time, 0, brick};
+        const volume::BrickStats stats = archive.stats(key);
+        const auto importance = archive.importance(key);
+        const auto change = lastChange(archive, key);
+        const bool any = stats.presentFraction > 0;
+        const std::string place =
+            std::to_string(brick.x) + "," + std::to_string(brick.y) + "," + std::to_string(brick.z);
+        const auto changeText = [&](float value) {
+            return std::isfinite(value) ? numberText(double(value)) : std::string("appears");
+        };
+        std::printf("  %-16s %12s %-10s %10s %10s %6.1f%% %10s %6s %11s %11s %8s\n",
+                    channels[std::size_t(channel)].name.c_str(),
+                    numberText(archive.info().times[std::size_t(time)]).c_str(), place.c_str(),
+                    any ? numberText(double(stats.min)).c_str() : "-",
+                    any ? numberText(double(stats.max)).c_str() : "-", 100.0 * double(stats.presentFraction),
+                    importance ? numberText(std::round(1000 * double(importance->importance)) / 1000).c_str() : "-",
+                    importance ? numberText(std::round(1000 * double(importance->detail)) / 1000).c_str() : "-",
+                    change ? changeText(change->max).c_str() : "-", change ? changeText(change->rms).c_str() : "-",
+                    archive.repeats(key) > 0 ? "repeats" : std::to_string(archive.brickBytes(key)).c_str());
+    });
+}
+
+void run(const std::vector<std::string>& paths, const volume::ImportOptions& import, bool asJson, bool bricks) {
     if (paths.size() == 1 && hasEnding(paths[0], ".tsr")) {
         const codec::Archive archive(paths[0]);
-        if (asJson)
-            std::printf("%s\n", archiveJson(archive).dump(1).c_str());
-        else
+        if (asJson) {
+            json document = archiveJson(archive);
+            if (bricks) document["bricks"] = bricksJson(archive);
+            std::printf("%s\n", document.dump(1).c_str());
+        } else {
             printArchive(archive);
+            if (bricks) printBricks(archive);
+        }
+    } else if (bricks) {
+        throw Error("only archives (.tsr) have bricks", paths[0]);
     } else if (paths.size() == 1 && (hasEnding(paths[0], ".png") ||
                                      (hasEnding(paths[0], ".json") && looksLikeSession(readText(paths[0]))))) {
         printSession(paths[0], asJson);
@@ -173,9 +256,13 @@ void addInfoCommand(CLI::App& app) {
     const auto asJson = std::make_shared<bool>(false);
     command->add_option("FILE", *paths, "Archive, session, picture of ours, or data files that belong together")
         ->required();
+    const auto bricks = std::make_shared<bool>(false);
     command->add_flag("--json", *asJson, "Print as JSON with stable keys");
+    command->add_flag("--bricks", *bricks,
+                      "Of an archive also every brick of every component and time: range, importance, change from the "
+                      "time before, bytes");
     addImportOptions(*command, *import);
-    command->callback([=] { run(*paths, *import, *asJson); });
+    command->callback([=] { run(*paths, *import, *asJson, *bricks); });
 }
 
 } // namespace tessera::app

@@ -98,6 +98,9 @@ nlohmann::json toJson(const codec::PackSummary& summary, const std::string& path
             {"archiveBytes", summary.archiveBytes},
             {"addedBytes", summary.addedBytes},
             {"maxError", summary.maxError},
+            {"repeatedBricks", summary.repeatedBricks},
+            {"repeatedBytes", summary.repeatedBytes},
+            {"notes", summary.notes},
             {"seconds", summary.seconds},
             {"waitSeconds", summary.waitSeconds},
             {"trials", summary.trials},
@@ -122,6 +125,11 @@ void run(PackRequest request) {
         std::printf("%s\n", toJson(summary, request.output).dump(request.progressJson ? -1 : 1).c_str());
         return;
     }
+    for (const std::string& note : summary.notes) std::fprintf(stderr, "tessera: %s\n", note.c_str());
+    if (summary.repeatedBricks > 0)
+        std::printf("%llu bricks are those of an earlier time, which saves %s\n",
+                    static_cast<unsigned long long>(summary.repeatedBricks),
+                    bytesText(double(summary.repeatedBytes)).c_str());
     const double source = double(summary.sourceBytes), stored = double(summary.archiveBytes);
     if (request.append) {
         std::printf("%s: now %s, %s of it from %s, %.2f s (%s/s)\n", request.output.c_str(), bytesText(stored).c_str(),

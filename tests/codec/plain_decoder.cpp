@@ -396,11 +396,13 @@ Decoder::Decoder(std::vector<char> file) : file_(file.begin(), file.end()) {
         const std::uint64_t end = in.number(8);
         Piece found[2];
         for (Piece& part : found) part = readPiece(in);
-        if (in.number(8) != XXH3_64bits(file_.data() + at, 72) || version < 1 || version > 3 || features != 0)
+        if (in.number(8) != XXH3_64bits(file_.data() + at, 72) || version < 1 || version > 3 ||
+            features > (version < 3 ? 0 : 1))
             return false;
         if (version < 3 ? at > 0 || end != file_.size() : end > file_.size()) return false;
         if (end <= end_) return true; // the other copy is as good or better
         version_ = version;
+        hasNotes_ = features == 1;
         end_ = end;
         std::copy(found, found + 2, parts);
         return true;
@@ -526,7 +528,12 @@ void Decoder::readPage(const Octets& page, std::vector<double>& times,
         frame.step = table.f64();
         frame.valueOffset = table.f64();
         frame.valueScale = table.f64();
-        for (std::size_t b = 0; b < bricks; ++b) (void)table.number(8); // min, max
+        for (std::size_t b = 0; b < bricks; ++b) {
+            (void)table.number(8); // min, max
+            if (!hasNotes_) continue;
+            (void)table.take(10); // importance, detail, change
+            frame.repeats.push_back(table.number(2));
+        }
         for (std::size_t s = 0; s < bricks * std::size_t(levels_); ++s) {
             const std::size_t bytes = table.u32();
             frame.pieces.push_back({at, bytes, table.number(8)});
@@ -571,7 +578,10 @@ std::vector<bool> Decoder::fineFlags(const Frame& frame, int number, const Size&
 }
 
 Brick Decoder::brick(std::size_t frameNumber, int number, int level) const {
-    const Frame& frame = frames_[frameNumber];
+    const std::size_t repeats = hasNotes_ ? frames_[frameNumber].repeats[std::size_t(number)] * types_.size() : 0;
+    need(repeats <= frameNumber, "repeats");
+    const Frame& frame = frames_[frameNumber - repeats];
+    need(repeats == 0 || frame.repeats[std::size_t(number)] == 0, "repeats");
     const std::string& type = types_[frameNumber % types_.size()];
     const Size fine = fineSize(number);
     const std::vector<bool> flags = fineFlags(frame, number, fine);

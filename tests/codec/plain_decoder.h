@@ -54,7 +54,8 @@ private:
         std::size_t model = 0;
         bool keepsAbsent = false;
         double origin = 0, step = 1, valueOffset = 0, valueScale = 1;
-        std::vector<Piece> pieces; ///< [segment * bricks + brick]
+        std::vector<std::size_t> repeats; ///< by brick: the frame so many times before holds it
+        std::vector<Piece> pieces;        ///< [segment * bricks + brick]
     };
 
     static Piece readPiece(Reader& in);
@@ -73,6 +74,7 @@ private:
     int brickSize_ = 0, levels_ = 0;
     std::vector<std::string> types_; ///< of the component of each frame within a time
     std::uint32_t version_ = 0;
+    bool hasNotes_ = false;
     std::size_t end_ = 0; ///< of the archive in the file
     std::vector<Piece> models_;
     std::vector<Mask> masks_;

@@ -8,6 +8,7 @@ namespace tessera::vis {
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr float kPlain = 1.5f; ///< times the distance of a brick of no importance; of the most important ones 1 less
 constexpr std::size_t kMostBlocks = std::size_t(1) << 18;
 
 std::size_t volumeOf(glm::ivec3 size) {
@@ -81,7 +82,7 @@ BlockRanges onBlockGrid(const volume::BrickGrid& grid, const BlockRanges& coarse
 }
 
 BrickLevels::BrickLevels(const volume::BrickGrid& grid, const ChannelSummary& summary, const TexelEncoding& encoding)
-    : grid_(grid), pages_(grid.count()), blocks_(blockGrid(grid)),
+    : grid_(grid), importance_(summary.importance), pages_(grid.count()), blocks_(blockGrid(grid)),
       brickRanges_(rangesOfBricks(grid, summary, encoding)), blocksPerBrick_(grid.brickSize / blocks_.edge) {
     for (int level = 0; level < grid.levels; ++level) {
         Level& made = levels_.emplace_back();
@@ -127,7 +128,9 @@ void BrickLevels::want(const BrickDemand* wanted, std::uint64_t frame) {
     std::size_t i = 0;
     eachIndex(glm::ivec3(0), grid_.count(), [&](glm::ivec3 brick) {
         const int level = wanted->level[i];
-        const float priority = wanted->priority[i++];
+        float priority = wanted->priority[i];
+        if (!importance_.empty() && priority > 0) priority *= kPlain - importance_[i];
+        ++i;
         if (level == BrickDemand::kNotWanted || pages_.pages[i - 1].w == PageTable::kAbsent) return;
         demand({level, brick >> level}, priority, frame);
     });

@@ -19,7 +19,8 @@ class BrickLevels {
 public:
     BrickLevels(const volume::BrickGrid& grid, const ChannelSummary& summary, const TexelEncoding& encoding);
 
-    /// Says what a view needs now; null: the coarsest level. Replaces what was said before.
+    /// Says what a view needs now; null: the coarsest level. Replaces what was said before. Of bricks equally near
+    /// those with more to show are more urgent.
     void want(const BrickDemand* demand, std::uint64_t frame);
     /// Wanted bricks that are not here.
     int missing() const { return missing_; }
@@ -84,7 +85,8 @@ private:
 
     volume::BrickGrid grid_;
     std::vector<Level> levels_;
-    std::vector<BrickId> pending_; ///< wanted and away
+    std::vector<float> importance_; ///< of bricks of full resolution; empty: not known
+    std::vector<BrickId> pending_;  ///< wanted and away
     std::uint64_t call_ = 0;
     int missing_ = 0, coarsestMissing_ = 0, resident_ = 0;
     PageTable pages_;

@@ -17,12 +17,19 @@ SharedBrick absentBrick(const volume::BrickGrid& grid, const volume::BrickKey& k
     return std::make_shared<const volume::BrickSamples>(std::move(brick));
 }
 
-ChannelSummary summarize(const volume::BrickSource& source, int channel, int time) {
+/// `byBrick`: bricks are loaded one by one, so it matters which come first.
+ChannelSummary summarize(const volume::BrickSource& source, int channel, int time, bool byBrick) {
     ChannelSummary summary;
     const glm::ivec3 count = source.grid().count();
     for (int z = 0; z < count.z; ++z)
         for (int y = 0; y < count.y; ++y)
-            for (int x = 0; x < count.x; ++x) summary.bricks.push_back(source.stats({channel, time, 0, {x, y, z}}));
+            for (int x = 0; x < count.x; ++x) {
+                const volume::BrickKey key{channel, time, 0, {x, y, z}};
+                summary.bricks.push_back(source.stats(key));
+                if (!byBrick) continue;
+                if (const auto importance = source.importance(key)) summary.importance.push_back(importance->largest());
+            }
+    if (summary.importance.size() != summary.bricks.size()) summary.importance.clear();
     summary.all = channelStats(summary.bricks);
     return summary;
 }
@@ -33,7 +40,8 @@ void load(LoadExchange& exchange, const LoadRequest& request, LoadedTexels& out,
     const volume::Channel channel = source.info().channels()[std::size_t(request.key.channel)];
     const bool categorical = source.info().parameters[std::size_t(channel.parameter)].categorical;
     if (!out.summary)
-        out.summary = std::make_shared<const ChannelSummary>(summarize(source, request.key.channel, request.key.time));
+        out.summary = std::make_shared<const ChannelSummary>(
+            summarize(source, request.key.channel, request.key.time, request.brick.has_value()));
     out.encoding = makeEncoding(out.summary->all, categorical, request.exact, request.key.prefiltered);
     out.encoding.coverage = out.encoding.coverage || request.coverage;
 

@@ -23,6 +23,7 @@ struct ChannelKey {
 struct ChannelSummary {
     ChannelStats all;
     std::vector<volume::BrickStats> bricks; ///< x fastest
+    std::vector<float> importance;          ///< of them, 0..1; empty: not known
 };
 
 /// Texels ready to upload, or the word that there are none.

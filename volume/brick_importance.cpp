@@ -1,0 +1,337 @@
+#include "volume/brick_importance.h"
+
+#include "volume/parallel.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <concepts>
+#include <functional>
+#include <glm/common.hpp>
+#include <limits>
+#include <map>
+
+namespace tessera::volume {
+
+namespace {
+
+constexpr int kTones = 256;
+constexpr float kBinomial[] = {1.0f / 16, 4.0f / 16, 6.0f / 16, 4.0f / 16, 1.0f / 16};
+constexpr int kReach = 2;
+
+std::size_t countOf(glm::ivec3 size) {
+    return std::size_t(size.x) * std::size_t(size.y) * std::size_t(size.z);
+}
+
+/// One sublattice of a field, smoothed and halved: values 0..1 with how much of each was there.
+struct Smoothed {
+    glm::ivec3 size{0};
+    std::vector<float> values, coverage; ///< coverage: empty where everything is present
+    std::size_t index(glm::ivec3 at) const {
+        return (std::size_t(at.z) * std::size_t(size.y) + std::size_t(at.y)) * std::size_t(size.x) + std::size_t(at.x);
+    }
+    bool has(std::size_t i) const { return coverage.empty() || coverage[i] > 0; }
+};
+
+/// Row `y` of slice `k` of a field as parts of a range, and whether each is there.
+struct RowReader {
+    const Field& field;
+    double lo, scale; ///< part = (value - lo) * scale
+    bool masked;
+
+    void read(int k, int y, float* values, float* present) const {
+        const std::size_t row = field.lattice.index({0, y, k}), n = std::size_t(field.lattice.size.x);
+        dispatch(field.type, [&]<class T>(T) {
+            const T* from = field.as<T>().data() + row;
+            const auto factor = float(field.scale * scale), shift = float((field.offset - lo) * scale);
+            for (std::size_t x = 0; x < n; ++x) values[x] = std::clamp(float(from[x]) * factor + shift, 0.0f, 1.0f);
+            if (!masked) return;
+            for (std::size_t x = 0; x < n; ++x) {
+                bool there = field.present(row + x);
+                if constexpr (std::same_as<T, float>) there = there && std::isfinite(from[x]);
+                present[x] = there ? 1.0f : 0.0f;
+                if (!there) values[x] = 0;
+            }
+        });
+    }
+};
+
+/// Every second sample of a line, smoothed; beyond its ends the last sample again.
+template <class At> float smoothAt(int i, int n, const At& at) {
+    float sum = 0;
+    for (int tap = -kReach; tap <= kReach; ++tap)
+        sum += kBinomial[tap + kReach] * at(std::clamp(2 * i + tap, 0, n - 1));
+    return sum;
+}
+
+/// Slices of the sublattice halved along x and y, then along z.
+std::vector<float> halved(glm::ivec3 size, const std::function<void(int slice, int y, float* row)>& read) {
+    const glm::ivec3 half = (size + 1) / 2;
+    const std::size_t nx = std::size_t(size.x), hx = std::size_t(half.x), slice = hx * std::size_t(half.y);
+    std::vector<float> flat(slice * std::size_t(size.z)), out(countOf(half));
+    parallelRanges(std::size_t(size.z), [&](std::size_t begin, std::size_t end) {
+        std::vector<float> row(nx), rows(hx * std::size_t(size.y));
+        for (std::size_t z = begin; z < end; ++z) {
+            for (int y = 0; y < size.y; ++y) {
+                read(int(z), y, row.data());
+                float* to = rows.data() + std::size_t(y) * hx;
+                for (int x = 0; x < half.x; ++x) {
+                    const int at = 2 * x;
+                    if (at >= kReach && at + kReach < size.x) {
+                        const float* r = row.data() + at;
+                        to[x] = kBinomial[0] * (r[-2] + r[2]) + kBinomial[1] * (r[-1] + r[1]) + kBinomial[2] * r[0];
+                    } else {
+                        to[x] = smoothAt(x, size.x, [&](int i) { return row[std::size_t(i)]; });
+                    }
+                }
+            }
+            for (int y = 0; y < half.y; ++y) {
+                const float* taps[5];
+                for (int tap = 0; tap < 5; ++tap)
+                    taps[tap] = rows.data() + std::size_t(std::clamp(2 * y + tap - kReach, 0, size.y - 1)) * hx;
+                float* to = flat.data() + z * slice + std::size_t(y) * hx;
+                for (std::size_t x = 0; x < hx; ++x)
+                    to[x] = kBinomial[0] * (taps[0][x] + taps[4][x]) + kBinomial[1] * (taps[1][x] + taps[3][x]) +
+                            kBinomial[2] * taps[2][x];
+            }
+        }
+    });
+    parallelFor(std::size_t(half.z), [&](std::size_t z) {
+        const float* taps[5];
+        for (int tap = 0; tap < 5; ++tap)
+            taps[tap] = flat.data() + std::size_t(std::clamp(2 * int(z) + tap - kReach, 0, size.z - 1)) * slice;
+        float* to = out.data() + z * slice;
+        for (std::size_t i = 0; i < slice; ++i)
+            to[i] = kBinomial[0] * (taps[0][i] + taps[4][i]) + kBinomial[1] * (taps[1][i] + taps[3][i]) +
+                    kBinomial[2] * taps[2][i];
+    });
+    return out;
+}
+
+Smoothed smoothedHalf(const RowReader& reader, int sublattice) {
+    const Lattice& lattice = reader.field.lattice;
+    const int slices = lattice.kind == LatticeKind::BCC ? 2 : 1;
+    const glm::ivec3 size = lattice.sublatticeSize(sublattice);
+    Smoothed out;
+    out.size = (size + 1) / 2;
+    if (countOf(size) == 0) {
+        out.size = glm::ivec3(0);
+        return out;
+    }
+    const auto row = [&](int k, int y, float* values, float* present) {
+        reader.read(k * slices + sublattice, y, values, present);
+    };
+    if (!reader.masked) {
+        out.values = halved(size, [&](int k, int y, float* to) { row(k, y, to, nullptr); });
+        return out;
+    }
+    const std::size_t nx = std::size_t(size.x);
+    out.values = halved(size, [&](int k, int y, float* to) {
+        std::vector<float> present(nx);
+        row(k, y, to, present.data());
+    });
+    out.coverage = halved(size, [&](int k, int y, float* to) {
+        std::vector<float> values(nx);
+        row(k, y, values.data(), to);
+    });
+    for (std::size_t i = 0; i < out.values.size(); ++i)
+        if (out.coverage[i] > 0) out.values[i] /= out.coverage[i];
+    return out;
+}
+
+/// Sums over the samples of one brick.
+struct Sums {
+    double weight = 0, value = 0, square = 0, details = 0, axes = 0;
+    int samples = 0;
+    std::array<double, kTones> tones{};
+
+    void add(double value01, double w) {
+        weight += w;
+        value += w * value01;
+        square += w * value01 * value01;
+        tones[std::size_t(std::min(int(value01 * kTones), kTones - 1))] += w;
+        ++samples;
+    }
+    double entropy() const {
+        double bits = 0;
+        for (const double tone : tones)
+            if (tone > 0) bits -= tone / weight * std::log2(tone / weight);
+        return samples > 1 ? std::min(bits / std::log2(double(std::min(samples, kTones))), 1.0) : 0.0;
+    }
+    BrickImportance result() const {
+        if (weight == 0) return {};
+        // What is below these is the rounding of floats.
+        constexpr double kLeastVariance = 1e-12, kLeastDetail = 1e-6;
+        const double mean = value / weight, variance = square / weight - mean * mean;
+        const double detail = axes > 0 ? std::sqrt(details / axes) : 0.0;
+        return {variance < kLeastVariance ? 0.0f : float(std::cbrt(std::min(mean * 4 * variance * entropy(), 1.0))),
+                detail < kLeastDetail ? 0.0f : float(std::min(detail, 1.0))};
+    }
+};
+
+/// Adds what a sublattice has of the brick whose samples are [begin, end) of the halved one.
+void addBrick(const Smoothed& from, glm::ivec3 begin, glm::ivec3 end, double borderWeight, Sums& sums) {
+    const std::size_t steps[] = {1, std::size_t(from.size.x), std::size_t(from.size.x) * std::size_t(from.size.y)};
+    for (int z = begin.z; z < end.z; ++z)
+        for (int y = begin.y; y < end.y; ++y)
+            for (int x = begin.x; x < end.x; ++x) {
+                const glm::ivec3 at(x, y, z);
+                const std::size_t i = from.index(at);
+                if (!from.has(i)) continue;
+                bool border = false;
+                for (int axis = 0; axis < 3; ++axis) {
+                    border = border || at[axis] == begin[axis] || at[axis] == end[axis] - 1;
+                    if (at[axis] == 0 || at[axis] + 1 == from.size[axis]) continue;
+                    const std::size_t left = i - steps[axis], right = i + steps[axis];
+                    if (!from.has(left) || !from.has(right)) continue;
+                    const double detail =
+                        double(from.values[i]) - 0.5 * (double(from.values[left]) + double(from.values[right]));
+                    sums.details += detail * detail;
+                    ++sums.axes;
+                }
+                sums.add(double(from.values[i]), border ? borderWeight : 1);
+            }
+}
+
+/// Of labels: the entropy of their numbers.
+BrickImportance importanceOfLabels(const BrickGrid& grid, const Field& field, glm::ivec3 brick) {
+    const glm::ivec3 begin = grid.begin(brick), end = grid.end(brick);
+    std::map<double, std::size_t> counts;
+    std::size_t samples = 0;
+    for (int z = begin.z; z < end.z; ++z)
+        for (int y = begin.y; y < end.y; ++y)
+            for (int x = begin.x; x < end.x; ++x) {
+                const std::size_t i = field.lattice.index({x, y, z});
+                if (!field.present(i)) continue;
+                const double label = field.value(i);
+                if (!std::isfinite(label)) continue;
+                ++counts[label];
+                ++samples;
+            }
+    if (counts.size() < 2) return {};
+    double bits = 0;
+    for (const auto& [label, count] : counts) {
+        const double part = double(count) / double(samples);
+        bits -= part * std::log2(part);
+    }
+    const auto entropy = float(bits / std::log2(double(std::min<std::size_t>(samples, kTones))));
+    return {std::min(entropy, 1.0f), std::min(entropy, 1.0f)};
+}
+
+/// Range of present, finite samples, and whether there are others.
+struct Extent {
+    Range range{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+    bool gaps = false;
+};
+
+Extent extentOf(const Field& field) {
+    Extent extent;
+    dispatch(field.type, [&]<class T>(T) {
+        const auto samples = field.as<T>();
+        T lo{}, hi{};
+        bool any = false;
+        for (std::size_t i = 0; i < samples.size(); ++i) {
+            bool there = field.present(i);
+            if constexpr (std::same_as<T, float>) there = there && std::isfinite(samples[i]);
+            if (!there) {
+                extent.gaps = true;
+                continue;
+            }
+            if (!any) lo = hi = samples[i];
+            any = true;
+            lo = std::min(lo, samples[i]);
+            hi = std::max(hi, samples[i]);
+        }
+        const double a = field.offset + field.scale * double(lo), b = field.offset + field.scale * double(hi);
+        if (any) extent.range = {std::min(a, b), std::max(a, b)};
+    });
+    return extent;
+}
+
+glm::ivec3 brickAt(glm::ivec3 count, std::size_t number) {
+    const std::size_t nx = std::size_t(count.x), ny = std::size_t(count.y);
+    return {int(number % nx), int(number / nx % ny), int(number / (nx * ny))};
+}
+
+/// Each brick gets a share of what its most important neighbour has more.
+std::vector<BrickImportance> withNeighbours(const std::vector<BrickImportance>& own, glm::ivec3 count, double share) {
+    std::vector<BrickImportance> out = own;
+    for (std::size_t i = 0; i < own.size(); ++i) {
+        const glm::ivec3 brick = brickAt(count, i);
+        BrickImportance most = own[i];
+        const glm::ivec3 lo = glm::max(brick - 1, glm::ivec3(0)), hi = glm::min(brick + 2, count);
+        for (int z = lo.z; z < hi.z; ++z)
+            for (int y = lo.y; y < hi.y; ++y)
+                for (int x = lo.x; x < hi.x; ++x) {
+                    const BrickImportance& near = own[std::size_t((z * count.y + y) * count.x + x)];
+                    most.importance = std::max(most.importance, near.importance);
+                    most.detail = std::max(most.detail, near.detail);
+                }
+        out[i].importance += float(share) * (most.importance - own[i].importance);
+        out[i].detail += float(share) * (most.detail - own[i].detail);
+    }
+    return out;
+}
+
+} // namespace
+
+std::vector<BrickImportance> importanceOfBricks(const BrickGrid& grid, const Field& field, Range range,
+                                                bool categorical, const ImportanceOptions& options) {
+    const glm::ivec3 count = grid.count();
+    std::vector<BrickImportance> own(countOf(count));
+    if (categorical) {
+        parallelFor(own.size(), [&](std::size_t i) { own[i] = importanceOfLabels(grid, field, brickAt(count, i)); });
+        return withNeighbours(own, count, options.neighbours);
+    }
+    const Extent extent = extentOf(field);
+    if (!(range.lo <= range.hi)) range = extent.range;
+    if (!(range.lo < range.hi)) return own; // one value, or nothing
+    const RowReader reader{field, range.lo, 1 / (range.hi - range.lo), extent.gaps};
+    const int sublattices = grid.lattice.kind == LatticeKind::BCC ? 2 : 1;
+    std::vector<Smoothed> parts;
+    for (int s = 0; s < sublattices; ++s) parts.push_back(smoothedHalf(reader, s));
+    parallelFor(own.size(), [&](std::size_t i) {
+        const glm::ivec3 brick = brickAt(count, i);
+        Sums sums;
+        for (const Smoothed& part : parts) {
+            const glm::ivec3 begin = (brick * grid.brickSize + 1) / 2,
+                             end = glm::min((brick * grid.brickSize + grid.brickSize + 1) / 2, part.size);
+            addBrick(part, begin, end, options.borderWeight, sums);
+        }
+        own[i] = sums.result();
+    });
+    return withNeighbours(own, count, options.neighbours);
+}
+
+BrickChange changeOfBrick(const BrickGrid& grid, glm::ivec3 brick, const Field& before, const Field& after) {
+    const glm::ivec3 begin = grid.begin(brick), end = grid.end(brick);
+    const std::size_t width = std::size_t(end.x - begin.x);
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    double largest = 0, squares = 0;
+    std::size_t samples = 0;
+    dispatch(before.type, [&]<class T>(T) {
+        const auto first = before.as<T>(), second = after.as<T>();
+        for (int z = begin.z; z < end.z; ++z)
+            for (int y = begin.y; y < end.y; ++y) {
+                const std::size_t row = grid.lattice.index({begin.x, y, z});
+                for (std::size_t i = row; i < row + width; ++i) {
+                    bool was = before.present(i), is = after.present(i);
+                    const auto a = float(before.offset + before.scale * double(first[i]));
+                    const auto b = float(after.offset + after.scale * double(second[i]));
+                    was = was && std::isfinite(a);
+                    is = is && std::isfinite(b);
+                    if (was != is) largest = kInfinity;
+                    if (!was || !is) continue;
+                    const double moved = std::abs(double(b) - double(a));
+                    largest = std::max(largest, moved);
+                    squares += moved * moved;
+                    ++samples;
+                }
+            }
+    });
+    if (largest == kInfinity) return {roundedUp(kInfinity), roundedUp(kInfinity)};
+    const double rms = samples > 0 ? std::sqrt(squares / double(samples)) : 0.0;
+    return {roundedUp(largest), roundedUp(std::min(rms * (1 + 1e-12), largest))};
+}
+
+} // namespace tessera::volume
