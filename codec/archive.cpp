@@ -485,7 +485,7 @@ ArchiveState stateOf(const Archive& archive, bool withFrames) {
         while (impl.index.frames[t * impl.components + c].model != number) ++t;
         const FrameRecord& frame = impl.index.frames[t * impl.components + c];
         const Block& block = impl.index.models[std::size_t(number)];
-        KnownModel known{number, {}, frame.wavelet, frame.numbers.kind, frame.codeBits};
+        KnownModel known{number, {}, frame.wavelet, frame.numbers.kind, frame.codeBits, frame.bodyCentred};
         const auto bytes =
             checkedPart(impl.file.bytes(), block.offset, block.length, block.checksum, impl.path, "a model");
         if (const auto status = parseModel(bytes, impl.metadata.grid.levels, known.model); status != DecodeStatus::Ok)

@@ -18,6 +18,7 @@ struct KnownModel {
     Wavelet wavelet{};
     NumberKind kind{};
     int codeBits = 0;
+    bool bodyCentred = false;
 
     bool resembles(const FrameRecord& frame) const {
         return kind == frame.numbers.kind && codeBits - frame.codeBits <= 1 && frame.codeBits - codeBits <= 1;

@@ -79,6 +79,7 @@ struct ArchiveWriter::Impl {
     Wavelet waveletFor(const volume::Field& field, FrameRecord frame) const;
     Model modelFor(const volume::Field& field, std::size_t component, FrameRecord& frame, const FrameOptions& options,
                    Taken& taken);
+    bool prefersBodyCentred(const volume::Field& field, FrameRecord frame) const;
     void writeModel(const Model& model, std::size_t component, FrameRecord& frame);
     const SeenFrame* frameBefore(const FrameRecord& frame, const volume::Field& field) const;
     std::vector<std::uint8_t> repeated(const SeenFrame* before, const volume::Field& field, const FrameRecord& frame,
@@ -135,12 +136,13 @@ namespace {
 /// Bricks of a frame that were taken apart for its model, to be coded without doing that again.
 struct Taken {
     Wavelet wavelet{};
+    bool bodyCentred = false;
     int shift = 0;
     double maxError = 0;
     std::vector<std::optional<PreparedBrick>> bricks; ///< by number
 
     bool serves(const FrameRecord& frame, const Model& model) const {
-        return wavelet == frame.wavelet && shift == model.shift;
+        return wavelet == frame.wavelet && bodyCentred == frame.bodyCentred && shift == model.shift;
     }
 };
 
@@ -150,7 +152,7 @@ Histogram sampleTokens(const volume::BrickGrid& grid, const volume::Field& field
     const std::size_t bricks = brickCount(grid), count = std::min(bricks, most);
     std::vector<Histogram> parts(count, Histogram(grid.levels));
     if (taken) {
-        *taken = {frame.wavelet, shift, maxError, {}};
+        *taken = {frame.wavelet, frame.bodyCentred, shift, maxError, {}};
         taken->bricks.resize(bricks);
     }
     parallelRanges(count, [&](std::size_t begin, std::size_t end) {
@@ -263,6 +265,21 @@ Wavelet ArchiveWriter::Impl::waveletFor(const volume::Field& field, FrameRecord 
     return chosen;
 }
 
+/// Whether one grid of BCC predicted from the other comes out shorter, by trial on some bricks.
+bool ArchiveWriter::Impl::prefersBodyCentred(const volume::Field& field, FrameRecord frame) const {
+    if (metadata.grid.lattice.kind != volume::LatticeKind::BCC || frame.numbers.kind == NumberKind::Float) return false;
+    const auto bits = [&](bool bodyCentred) {
+        frame.bodyCentred = bodyCentred;
+        double least = std::numeric_limits<double>::infinity();
+        for (const Wavelet wavelet : {Wavelet::W22, Wavelet::W44}) {
+            frame.wavelet = wavelet;
+            least = std::min(least, sampleMiddles(metadata.grid, field, frame, kTrialBricks).bits());
+        }
+        return least;
+    };
+    return bits(true) < bits(false);
+}
+
 /// The model of a frame: that of the component's frame before where its tables serve as well as new ones would, else a
 /// new one, not written yet (frame.model is -1). The filter is tried again only where the tables do not fit at all.
 Model ArchiveWriter::Impl::modelFor(const volume::Field& field, std::size_t component, FrameRecord& frame,
@@ -275,6 +292,7 @@ Model ArchiveWriter::Impl::modelFor(const volume::Field& field, std::size_t comp
     if (last != lastModel.end() && last->second.resembles(frame)) {
         const Model& model = last->second.model;
         frame.wavelet = options.wavelet.value_or(last->second.wavelet);
+        frame.bodyCentred = options.bodyCentred.value_or(last->second.bodyCentred);
         const Histogram histogram = sampleTokens(grid, field, frame, kModelBricks, model.shift, maxError, &taken);
         fresh = makeModel(histogram, model.shift, kMostTables);
         const double before = bitsWith(model, histogram), now = bitsWith(*fresh, histogram);
@@ -285,6 +303,7 @@ Model ArchiveWriter::Impl::modelFor(const volume::Field& field, std::size_t comp
         if (before > kStillAlike * now) fresh.reset();
     }
     if (!fresh) {
+        frame.bodyCentred = options.bodyCentred ? *options.bodyCentred : prefersBodyCentred(field, frame);
         if (!options.wavelet) frame.wavelet = waveletFor(field, frame);
         const int shift = frame.codeBits > 16 ? shiftFor(sampleMiddles(grid, field, frame, kTrialBricks)) : 0;
         fresh = makeModel(sampleTokens(grid, field, frame, kModelBricks, shift, maxError, &taken), shift, kMostTables);
@@ -297,7 +316,7 @@ void ArchiveWriter::Impl::writeModel(const Model& model, std::size_t component, 
     frame.model = static_cast<std::int32_t>(models++);
     page.models.push_back({file.position(), bytes.size(), checksum(bytes)});
     file.append(bytes);
-    lastModel[component] = {frame.model, model, frame.wavelet, frame.numbers.kind, frame.codeBits};
+    lastModel[component] = {frame.model, model, frame.wavelet, frame.numbers.kind, frame.codeBits, frame.bodyCentred};
 }
 
 /// The last frame of the component on the same grid, if it is here and its numbers mean the same.
@@ -371,7 +390,7 @@ void ArchiveWriter::addFrame(int parameter, int component, int time, const volum
     frame.time = static_cast<std::uint32_t>(time);
     frame.component = static_cast<std::uint32_t>(ofTime);
     frame.mask = impl_->maskFor(field, options.zstdLevel);
-    frame.numbers = chooseCoding(field, options.maxError);
+    frame.numbers = options.numbers ? *options.numbers : chooseCoding(field, options.maxError);
     frame.wavelet = options.wavelet.value_or(Wavelet::W22);
     frame.keepsAbsent = options.keepsAbsent && frame.mask >= 0;
     frame.valueOffset = field.offset;

@@ -16,6 +16,8 @@ namespace tessera::codec {
 /// How one frame is coded.
 struct FrameOptions {
     std::optional<Wavelet> wavelet = Wavelet::W22; ///< none: the best of some, by trial
+    std::optional<bool> bodyCentred;               ///< of BCC (codec/body_centred.h); none: the shorter by trial
+    std::optional<NumberCoding> numbers;           ///< none: chosen for the bound
     double maxError = 0;                           ///< absolute, in stored units; 0: every sample exactly
     bool keepsAbsent = false;                      ///< also the stored numbers of absent samples
     int zstdLevel = 3;

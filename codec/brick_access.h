@@ -27,8 +27,8 @@ inline glm::ivec3 brickIndex(const volume::BrickGrid& grid, std::size_t number) 
 
 inline BrickFormat brickFormat(const volume::BrickGrid& grid, glm::ivec3 brick, volume::ScalarType type,
                                const FrameRecord& frame) {
-    return {grid.lattice.kind, grid.brickSamples(brick, 0), grid.levels,   frame.wavelet, type,
-            frame.numbers,     frame.keepsAbsent,           frame.codeBits};
+    return {grid.lattice.kind, grid.brickSamples(brick, 0), grid.levels,    frame.wavelet,    type,
+            frame.numbers,     frame.keepsAbsent,           frame.codeBits, frame.bodyCentred};
 }
 
 /// Components of the parameters before one: where its frames start within a time.

@@ -1,5 +1,6 @@
 #include "codec/brick_codec.h"
 
+#include "codec/body_centred.h"
 #include "codec/brick_levels.h"
 #include "codec/whole_brick.h"
 
@@ -190,15 +191,26 @@ DecodeStatus decodeLevel(std::span<const std::byte> in, std::span<const Band<Wor
 }
 
 template <class Word>
+void interpolateOddLevel(const BrickFormat& format, int level, std::array<LevelBox<Word>, 2>& samples) {
+    samples[1].reset(levelSize(format.sublatticeSize(1), level), false);
+    interpolateOdd<Word>(std::as_const(samples[0]).box(), samples[1].box(), level);
+}
+
+template <class Word>
 DecodeStatus decodeLevels(const BrickFormat& format, std::span<const std::span<const std::byte>> segments, int level,
                           std::span<const std::uint8_t> present, const BandDecoder& decoder, DecodedBrick& out) {
     const auto step = static_cast<std::size_t>(format.sublattices());
-    const bool masked = !present.empty();
+    const bool masked = !present.empty(), predicted = format.predictsOdd(masked);
     auto& [samples, details, spare] = out.boxes<Word>();
     for (int l = format.levels - 1; l >= level; --l) {
         const bool coarsest = l == format.levels - 1;
         auto& coded = coarsest ? samples : details;
         for (std::size_t s = 0; s < step; ++s) {
+            if (s == 1 && predicted) {
+                coded[s].reset(l == 0 ? format.sublatticeSize(1) : glm::ivec3(0), false);
+                coded[s].setUndivided();
+                continue;
+            }
             coded[s].reset(levelSize(format.sublatticeSize(int(s)), l), masked);
             if (coded[s].masked()) placeFlags<Word>(format, present, l, int(s), !coarsest, coded[s]);
         }
@@ -213,9 +225,15 @@ DecodeStatus decodeLevels(const BrickFormat& format, std::span<const std::span<c
             fromDifferences<Word>(bands);
             continue;
         }
-        for (std::size_t s = 0; s < step; ++s) joinLevel<Word>(format, samples[s], details[s], spare[s]);
+        for (std::size_t s = 0; s < (predicted ? 1 : step); ++s)
+            joinLevel<Word>(format, samples[s], details[s], spare[s]);
+        if (predicted) std::swap(spare[1], details[1]);
         std::swap(samples, spare);
     }
+    if (predicted && level == 0)
+        addPrediction<Word>(std::as_const(samples[0]).box(), samples[1].box(), format.codeBits > kBitsOfPrediction);
+    else if (predicted)
+        interpolateOddLevel<Word>(format, level, samples);
     return DecodeStatus::Ok;
 }
 
@@ -239,6 +257,7 @@ DecodeStatus decodeWhole(const BrickFormat& format, std::span<const std::byte> i
     splitBrick<Word>(format, codes, present, level + 1, levels);
     const auto boxes = boxesAt(levels, format, level);
     std::move(boxes.begin(), boxes.end(), samples.begin());
+    if (level > 0 && format.predictsOdd(!present.empty())) interpolateOddLevel<Word>(format, level, samples);
     return DecodeStatus::Ok;
 }
 
@@ -247,6 +266,11 @@ DecodeStatus decodeWhole(const BrickFormat& format, std::span<const std::byte> i
 glm::ivec3 BrickFormat::sublatticeSize(int sublattice) const {
     if (kind == LatticeKind::CC) return size;
     return {size.x, size.y, (size.z + 1 - sublattice) / 2};
+}
+
+bool BrickFormat::predictsOdd(bool masked) const {
+    return bodyCentred && kind == LatticeKind::BCC && !masked && levels > 1 && size.z > 1 &&
+           numbers.kind != NumberKind::Float;
 }
 
 bool BrickFormat::canHaveExact() const {

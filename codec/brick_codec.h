@@ -24,12 +24,15 @@ struct BrickFormat {
     NumberCoding numbers;
     bool keepsAbsent = false; ///< the stored numbers of absent samples are coded as well
     int codeBits = 32;        ///< every |code| is below 2^codeBits; narrow ones are faster
+    bool bodyCentred = false; ///< of BCC: the odd grid is predicted from the even one (codec/body_centred.h)
 
     bool operator==(const BrickFormat&) const = default;
 
     int sublattices() const { return kind == volume::LatticeKind::BCC ? 2 : 1; }
     /// Full-resolution samples of one sublattice of the brick.
     glm::ivec3 sublatticeSize(int sublattice) const;
+    /// Whether a brick, `masked` if samples of it are absent, predicts its odd grid.
+    bool predictsOdd(bool masked) const;
     /// True when samples may be stored beside the codes.
     bool canHaveExact() const;
 };

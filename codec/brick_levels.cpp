@@ -1,5 +1,7 @@
 #include "codec/brick_levels.h"
 
+#include "codec/body_centred.h"
+
 #include <algorithm>
 #include <type_traits>
 
@@ -77,13 +79,23 @@ void splitBrick(const BrickFormat& format, std::span<const std::uint32_t> codes,
     const bool masked = !present.empty();
     const int step = format.sublattices();
     const bool wide = format.codeBits > kBitsOfInt32;
+    const bool predicted = levels > 1 && format.predictsOdd(masked);
     out.resize(std::size_t((levels + 1) * step));
     for (int s = 0; s < step; ++s) {
         // The last box, behind those of the levels, holds the samples that are taken apart next.
         const auto box = [&](int level) -> LevelBox<Word>& { return out[std::size_t(level * step + s)]; };
+        if (predicted && s == 1) break; // came with the other one
         LevelBox<Word>& whole = levels > 1 ? box(levels) : box(0);
         whole.reset(format.sublatticeSize(s), masked);
         takeSublattice<Word>(format, codes, present, s, whole);
+        if (predicted) {
+            LevelBox<Word>& odd = out[1];
+            odd.reset(format.sublatticeSize(1), false);
+            odd.setUndivided();
+            takeSublattice<Word>(format, codes, present, 1, odd);
+            subtractPrediction<Word>(std::as_const(whole).box(), odd.box(), format.codeBits > kBitsOfPrediction);
+            for (int level = 1; level < levels; ++level) out[std::size_t(level * step + 1)].reset(glm::ivec3(0), false);
+        }
         for (int level = 0; level + 1 < levels; ++level) {
             LevelBox<Word>&samples = box(levels), &details = box(level);
             details.reset(samples.size(), masked);
@@ -151,8 +163,9 @@ template <class Word> std::vector<Band<Word>> bandsOf(std::span<LevelBox<Word>> 
         const Box<Word> box = level.box();
         const Box<std::uint8_t> flags = level.flags();
         const glm::ivec3 low = levelSize(box.size, 1);
-        for (int band = coarsest ? 0 : 1; band < (coarsest ? 1 : 8); ++band) {
-            glm::ivec3 begin(0), size = coarsest ? box.size : low;
+        const bool whole = coarsest || level.undivided();
+        for (int band = whole ? 0 : 1; band < (whole ? 1 : 8); ++band) {
+            glm::ivec3 begin(0), size = whole ? box.size : low;
             for (int axis = 0; axis < 3; ++axis)
                 if ((band >> axis & 1) != 0) begin[axis] = low[axis], size[axis] = box.size[axis] - low[axis];
             if (size.x < 1 || size.y < 1 || size.z < 1) continue;

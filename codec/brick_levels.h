@@ -18,7 +18,8 @@ template <class Word>
 void takeSublattice(const BrickFormat& format, std::span<const std::uint32_t> codes,
                     std::span<const std::uint8_t> present, int sublattice, LevelBox<Word>& out);
 
-/// Takes codes in storage order apart, down to `levels` levels in all. What `out` was before is used as memory.
+/// Takes codes in storage order apart, down to `levels` levels in all. What `out` was before is used as memory. Of a
+/// brick that predicts its odd grid that is at level 0 what the prediction leaves, undivided, and at the others nothing.
 template <class Word>
 void splitBrick(const BrickFormat& format, std::span<const std::uint32_t> codes, std::span<const std::uint8_t> present,
                 int levels, BrickLevels<Word>& out);
@@ -32,7 +33,7 @@ template <class Word>
 void placeFlags(const BrickFormat& format, std::span<const std::uint8_t> present, int level, int sublattice, bool split,
                 LevelBox<Word>& out);
 
-/// The seven bands of details of each box, or the boxes themselves of the coarsest level.
+/// The seven bands of details of each box, or the boxes themselves where undivided or of the coarsest level.
 template <class Word> std::vector<Band<Word>> bandsOf(std::span<LevelBox<Word>> boxes, bool coarsest);
 
 } // namespace tessera::codec

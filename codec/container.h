@@ -20,7 +20,8 @@ namespace tessera::codec {
 /// Version 1 knew neither models nor bands, version 2 did not grow; both are read, never written.
 inline constexpr std::uint32_t kFormatVersion = 3, kOldestVersion = 1, kGrowingVersion = 3;
 inline constexpr std::size_t kHeaderBytes = 80;
-/// Feature: the index says how important each brick is, how it changes, and which repeat an earlier one.
+/// Feature: the index says how important each brick is, how it changes, and which repeat an earlier one; frames may be
+/// coded body-centred, and integers in steps.
 inline constexpr std::uint32_t kBrickNotes = 1, kKnownFeatures = kBrickNotes;
 
 /// Where the chunks of a version begin.

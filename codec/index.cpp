@@ -125,11 +125,12 @@ private:
         constexpr std::size_t kWaveletsOfVersion1 = 8;
         require(kind <= static_cast<std::uint8_t>(NumberKind::Quantised), "an unknown coding of numbers", file_);
         require(wavelet < (hasModels ? std::size(kWaveletNames) : kWaveletsOfVersion1), "an unknown wavelet", file_);
-        require(keeps <= 1, "an unknown flag of a frame", file_);
+        require(keeps <= (notes_ ? 3 : 1), "an unknown flag of a frame", file_);
         require(hasModels ? codeBits >= 1 && codeBits <= 32 : codeBits == 0, "an impossible width of codes", file_);
         frame.numbers.kind = static_cast<NumberKind>(kind);
         frame.wavelet = static_cast<Wavelet>(wavelet);
-        frame.keepsAbsent = keeps == 1;
+        frame.keepsAbsent = (keeps & 1) != 0;
+        frame.bodyCentred = (keeps & 2) != 0;
         frame.codeBits = hasModels ? codeBits : 32;
         frame.mask = in_.get<std::int32_t>();
         if (hasModels) frame.model = in_.get<std::int32_t>();
@@ -260,7 +261,7 @@ Bytes serialise(const IndexPage& page, std::uint32_t features) {
         out.put(frame.length);
         out.put(static_cast<std::uint8_t>(frame.numbers.kind));
         out.put(static_cast<std::uint8_t>(frame.wavelet));
-        out.put(static_cast<std::uint8_t>(frame.keepsAbsent ? 1 : 0));
+        out.put(static_cast<std::uint8_t>((frame.keepsAbsent ? 1 : 0) | (frame.bodyCentred ? 2 : 0)));
         out.put(static_cast<std::uint8_t>(frame.codeBits));
         out.put(frame.mask);
         out.put(frame.model);

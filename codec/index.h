@@ -50,9 +50,10 @@ struct FrameRecord {
     NumberCoding numbers;
     Wavelet wavelet = Wavelet::W22;
     bool keepsAbsent = false;
-    std::int32_t mask = -1;  ///< index of a MaskRecord, -1: all present
-    std::int32_t model = -1; ///< index of a model, the tables of the coefficient coder; -1 in version 1
-    int codeBits = 32;       ///< every |code| is below 2^codeBits
+    bool bodyCentred = false; ///< only with kBrickNotes
+    std::int32_t mask = -1;   ///< index of a MaskRecord, -1: all present
+    std::int32_t model = -1;  ///< index of a model, the tables of the coefficient coder; -1 in version 1
+    int codeBits = 32;        ///< every |code| is below 2^codeBits
     double valueOffset = 0, valueScale = 1;
     std::vector<FrameBrick> bricks;
     std::vector<Segment> segments; ///< [segment * bricks + brick], coarsest level first, as they lie in the file

@@ -18,17 +18,22 @@ public:
         size_ = size;
         if (values_.size() < words) values_.resize(words);
         present_.resize(masked ? words : 0);
+        undivided_ = false;
     }
     Box<Word> box() { return {values_.data(), size_, pitchFor(size_.x)}; }
     Box<const Word> box() const { return {values_.data(), size_, pitchFor(size_.x)}; }
     Box<std::uint8_t> flags() { return {masked() ? present_.data() : nullptr, size_, pitchFor(size_.x)}; }
     bool masked() const { return !present_.empty(); }
+    /// One band, not seven with a corner for the coarser level.
+    bool undivided() const { return undivided_; }
+    void setUndivided() { undivided_ = true; }
     glm::ivec3 size() const { return size_; }
 
 private:
     glm::ivec3 size_{0};
     std::vector<Word> values_;
     std::vector<std::uint8_t> present_;
+    bool undivided_ = false;
 };
 
 } // namespace tessera::codec

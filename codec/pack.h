@@ -1,6 +1,7 @@
 #pragma once
 
 #include "codec/lifting.h"
+#include "codec/threshold.h"
 #include "volume/brick_importance.h"
 #include "volume/dataset.h"
 #include "volume/describe.h"
@@ -27,6 +28,10 @@ constexpr std::optional<Wavelet> waveletOf(WaveletChoice choice) {
 enum class PackPreset : std::uint8_t { None, Lossless, Visual, Small, Thesis };
 inline constexpr std::string_view kPackPresetNames[] = {"none", "lossless", "visual", "small", "thesis"};
 
+/// How BCC is taken apart: each of its grids by itself, or one predicted from the other; auto: the shorter by trial.
+enum class BccTransform : std::uint8_t { Auto, Separable, BodyCentred };
+inline constexpr std::string_view kBccTransformNames[] = {"auto", "separable", "bodyCentred"};
+
 /// Where the stored samples lie.
 enum class StoredLattice : std::uint8_t { CC, BCC, D4 };
 inline constexpr std::string_view kStoredLatticeNames[] = {"cc", "bcc", "d4"};
@@ -41,7 +46,10 @@ struct PackOptions {
     double absError = 0;
     double psnr = 0;
     double sizeMb = 0;
+    ThresholdOptions threshold;
+    double discard = 0;
     WaveletChoice wavelet = WaveletChoice::Auto;
+    BccTransform bccTransform = BccTransform::Auto;
     int brickSize = 64;
     int levels = 0;
     int zstdLevel = 9;
@@ -50,12 +58,14 @@ struct PackOptions {
 
     bool operator==(const PackOptions&) const = default;
     static void describe(auto& self, auto&& visit) {
-        visit(self.preset, FieldInfo{.key = "preset",
-                                     .unit = "",
-                                     .doc = "Settings for a purpose, which options given beside it override: lossless "
-                                            "(every sample of the source), visual (error 0.001 of range), small (0.01, "
-                                            "most effort), thesis (BCC, bricks of 16, 3 levels, (2,2))",
-                                     .names = kPackPresetNames});
+        visit(self.preset,
+              FieldInfo{.key = "preset",
+                        .unit = "",
+                        .doc = "Settings for a purpose, which options given beside it override: lossless "
+                               "(every sample of the source), visual (error 0.001 of range), small (0.01, "
+                               "most effort), thesis (BCC, bricks of 16, 3 levels, (2,2) on each grid, soft "
+                               "threshold by importance)",
+                        .names = kPackPresetNames});
         visit(self.lattice, FieldInfo{.key = "lattice",
                                       .unit = "",
                                       .doc = "Lattice of the stored samples: bcc keeps 70.7 % of them, d4 (in space "
@@ -67,28 +77,43 @@ struct PackOptions {
               FieldInfo{.key = "lossless", .unit = "", .doc = "Store every sample of the lattice bit for bit"});
         visit(self.maxError, FieldInfo{.key = "maxError",
                                        .unit = "of range",
-                                       .doc = "Largest error of a float sample, relative to its parameter's range; "
-                                              "above 0 it replaces lossless",
+                                       .doc = "Largest error of a sample, relative to its parameter's range; above 0 "
+                                              "it replaces lossless",
                                        .range = Range{0, 1}});
         visit(self.absError, FieldInfo{.key = "absError",
                                        .unit = "of the parameter",
-                                       .doc = "Largest error of a float sample, in the unit of its parameter; 0 = no "
-                                              "such bound. Of several bounds the strictest holds",
+                                       .doc = "Largest error of a sample, in the unit of its parameter; 0 = no such "
+                                              "bound. Of several bounds the strictest holds",
                                        .range = Range{0, 1e30}});
         visit(self.psnr, FieldInfo{.key = "psnr",
                                    .unit = "dB",
-                                   .doc = "Least peak signal-to-noise ratio of each frame of floats, its parameter's "
-                                          "range over the RMS error; 0 = not asked for",
+                                   .doc = "Least peak signal-to-noise ratio of each frame, its parameter's range over "
+                                          "the RMS error; 0 = not asked for",
                                    .range = Range{0, 200}});
-        visit(self.sizeMb, FieldInfo{.key = "targetSize",
-                                     .unit = "MB",
-                                     .doc = "Largest size of the archive: the least error of float samples, relative "
-                                            "to their ranges, that fits is searched for; 0 = not asked for",
-                                     .range = Range{0, 1e9}});
+        visit(self.sizeMb,
+              FieldInfo{.key = "targetSize",
+                        .unit = "MB",
+                        .doc = "Largest size of the archive: the least error of samples, relative to their "
+                               "ranges, that fits is searched for; 0 = not asked for",
+                        .range = Range{0, 1e9}});
+        visit(self.threshold, FieldInfo{.key = "threshold",
+                                        .unit = "",
+                                        .doc = "Details given up on top of rounding; bounds hold all the same, without "
+                                               "one the error is measured and noted"});
+        visit(self.discard, FieldInfo{.key = "discard",
+                                      .unit = "importance",
+                                      .doc = "Bricks that are less important than this in every parameter at every "
+                                             "time are left out, as absent samples; 0 = none",
+                                      .range = Range{0, 1}});
         visit(self.wavelet, FieldInfo{.key = "wavelet",
                                       .unit = "",
                                       .doc = "Vanishing moments N,N~ of the integer wavelet; auto: the best by trial",
                                       .names = kWaveletChoiceNames});
+        visit(self.bccTransform, FieldInfo{.key = "bccTransform",
+                                           .unit = "",
+                                           .doc = "Of BCC: take each of its two grids apart by itself, or predict one "
+                                                  "from the other; auto: the shorter by trial",
+                                           .names = kBccTransformNames});
         visit(self.brickSize, FieldInfo{.key = "brickSize",
                                         .unit = "texel",
                                         .doc = "Edge of a brick, a power of two",
@@ -123,7 +148,9 @@ struct PackSummary {
     std::uint64_t addedBytes = 0;                        ///< of those, by this run
     std::uint64_t storedBytes = 0;                       ///< of the samples on the lattice they are stored on
     std::uint64_t repeatedBricks = 0, repeatedBytes = 0; ///< that are those of an earlier time; what that saves
-    double maxError = 0; ///< largest error of a float sample, relative to its parameter's range
+    std::uint64_t bricks = 0, discardedBricks = 0;       ///< of the grid; left out of every parameter and time
+    std::uint64_t weakenedBricks = 0;                    ///< whose threshold was lowered to keep the bound
+    double maxError = 0; ///< bound on the error of a sample, relative to its parameter's range
     double seconds = 0;
     /// Of the stages, which overlap: reading and resampling go on while the frame before is coded.
     double loadSeconds = 0, resampleSeconds = 0, codeSeconds = 0, writeSeconds = 0;

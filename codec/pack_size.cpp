@@ -1,6 +1,7 @@
 #include "codec/pack_size.h"
 
 #include "codec/archive_writer.h"
+#include "codec/lossy_field.h"
 #include "volume/error.h"
 #include "volume/resample.h"
 
@@ -85,13 +86,22 @@ std::vector<SizeAtBound> estimateSizes(volume::Dataset& dataset, const volume::B
                 double extent = 0;
                 for (std::size_t k = 0; k < std::size_t(parameter.components) && k < parameter.ranges.size(); ++k)
                     extent = std::max(extent, parameter.ranges[k].hi - parameter.ranges[k].lo);
-                const bool bounded = field.type == volume::ScalarType::F32 && !parameter.categorical;
+                const bool isFloat = field.type == volume::ScalarType::F32, bounded = !parameter.categorical;
                 FrameOptions frame;
                 frame.wavelet = parameter.categorical ? Wavelet::N1 : waveletOf(options.wavelet).value_or(Wavelet::W22);
                 double bytes = 0;
+                int lastStep = 0;
                 for (SizeAtBound& point : curve) {
                     frame.maxError = bounded ? point.bound * extent / std::abs(field.scale) : 0;
-                    if (bounded || point.bound == 0) bytes = estimateFrameBytes(grid, field, frame, kBricks);
+                    if (bounded && !isFloat) {
+                        const int step = stepWithin(field.type, frame.maxError);
+                        frame.maxError = 0;
+                        if (step != lastStep)
+                            bytes = estimateFrameBytes(grid, inSteps(field, step / 2), frame, kBricks);
+                        lastStep = step;
+                    } else if (bounded || point.bound == 0) {
+                        bytes = estimateFrameBytes(grid, field, frame, kBricks);
+                    }
                     point.bytes += bytes * double(info.times.size()) / double(times);
                 }
             }
@@ -105,6 +115,7 @@ PackSummary packToSize(const PackOptions& asked, const std::string& path,
                        const Progress& progress) {
     if (asked.maxError > 0 || asked.absError > 0 || asked.psnr > 0)
         throw Error("either a size or an error bound can be asked for, not both");
+    if (asked.threshold.kind != ThresholdChoice::None) throw Error("a size cannot be asked for with a threshold");
     if (asked.lattice == StoredLattice::D4) throw Error("a size cannot be asked for with d4");
     constexpr int kTrials = 8;
     constexpr double kFull = 0.9, kAim = 0.96; // of the size

@@ -252,6 +252,36 @@ void split(Box& flags, int steps) {
     }
 }
 
+/// 4.7: adds to odd samples at full resolution what their even neighbours foresee, or makes those of a coarser level.
+void predictOdd(Box& even, Box& odd, int level) {
+    const auto power = std::int64_t(2) << level;
+    const std::int64_t far[] = {-1, 9, 9, -1}, near[] = {0, power - 1, 1, 0};
+    const std::int64_t* const weights = level == 0 ? far : near;
+    const std::int64_t one = level == 0 ? 16 : power, whole = one * one * one;
+    // An even sample, beyond the ends as the level says.
+    const auto sampleAt = [&](auto&& self, Size at, std::size_t axis) -> std::int64_t {
+        if (axis == 3) return asSigned(*even.at(at));
+        const int last = even.size[axis] - 1;
+        if (at[axis] >= 0 && at[axis] <= last) return self(self, at, axis + 1);
+        const bool goesOn = level > 0 && at[axis] > last && last > 0;
+        at[axis] = at[axis] < 0 ? 0 : last;
+        const std::int64_t end = self(self, at, axis + 1);
+        if (!goesOn) return end;
+        --at[axis];
+        return 2 * end - self(self, at, axis + 1);
+    };
+    places({0, 0, 0}, odd.size, [&](const Size& p) {
+        std::int64_t sum = whole / 2;
+        places({0, 0, 0}, {4, 4, 4}, [&](const Size& tap) {
+            const std::int64_t weight = weights[tap[0]] * weights[tap[1]] * weights[tap[2]];
+            if (weight != 0)
+                sum += weight * sampleAt(sampleAt, {p[0] - 1 + tap[0], p[1] - 1 + tap[1], p[2] - 1 + tap[2]}, 0);
+        });
+        const auto foreseen = std::uint32_t(sum >= 0 ? sum / whole : -((-sum + whole - 1) / whole));
+        odd.at(p) = level == 0 ? *odd.at(p) + foreseen : foreseen;
+    });
+}
+
 /// 4.5
 struct Band {
     Box* box = nullptr;
@@ -518,7 +548,10 @@ void Decoder::readPage(const Octets& page, std::vector<double>& times,
         covered.push_back({at, length, 0});
         frame.numbers = int(table.number(1));
         frame.wavelet = int(table.number(1));
-        frame.keepsAbsent = table.number(1) == 1;
+        const auto kept = table.number(1);
+        frame.keepsAbsent = kept % 2 == 1;
+        frame.bodyCentred = kept / 2 == 1;
+        need(kept < (hasNotes_ ? 4u : 2u), "frame");
         (void)table.number(1); // width of the codes: what a fast reader wants to know
         need(frame.numbers < 4 && frame.wavelet < 12, "frame");
         frame.mask = int(table.u32());
@@ -620,6 +653,8 @@ Brick Decoder::brick(std::size_t frameNumber, int number, int level) const {
             exactBits = stream(in, exact);
         }
     };
+    const bool centred = frame.bodyCentred && bcc_ && levels_ > 1 && fine[2] > 1 && frame.numbers != 2 &&
+                         std::find(flags.begin(), flags.end(), false) == flags.end();
     bool whole = false;
     for (int segment = 0; segment < levels_ - level; ++segment) {
         const Octets bytes = checked(frame.pieces[std::size_t(segment) * bricks + std::size_t(number)]);
@@ -627,6 +662,12 @@ Brick Decoder::brick(std::size_t frameNumber, int number, int level) const {
         std::vector<Cell*> order;
         std::vector<Band> bands;
         for (Box& box : boxes) {
+            if (centred && &box == &boxes[1]) { // undivided in the last segment, in no other
+                if (segment < levels_ - 1) continue;
+                bands.push_back({&box, {}, box.size});
+                places({0, 0, 0}, box.size, [&](const Size& p) { order.push_back(&box.at(p)); });
+                continue;
+            }
             Size part = box.size;
             for (int l = level; l < levels_ - 1 - segment; ++l) part = half(part);
             const Size low = half(part);
@@ -725,6 +766,11 @@ Brick Decoder::brick(std::size_t frameNumber, int number, int level) const {
             Box coarse = makeBox(part);
             places({0, 0, 0}, part, [&](const Size& p) { coarse.at(p) = box.at(p); });
             box = coarse;
+            if (centred && level > 0 && &box == &boxes[1]) predictOdd(boxes[0], box, level);
+            continue;
+        }
+        if (centred && &box == &boxes[1]) {
+            predictOdd(boxes[0], box, level);
             continue;
         }
         std::vector<Size> parts{box.size};

@@ -52,7 +52,7 @@ private:
     struct Frame {
         int numbers = 0, wavelet = 0, mask = -1;
         std::size_t model = 0;
-        bool keepsAbsent = false;
+        bool keepsAbsent = false, bodyCentred = false;
         double origin = 0, step = 1, valueOffset = 0, valueScale = 1;
         std::vector<std::size_t> repeats; ///< by brick: the frame so many times before holds it
         std::vector<Piece> pieces;        ///< [segment * bricks + brick]

@@ -1,0 +1,36 @@
+#pragma once
+
+#include "codec/lifting.h"
+#include "codec/numbers.h"
+#include "codec/threshold.h"
+#include "volume/brick_source.h"
+#include "volume/field.h"
+
+#include <span>
+#include <vector>
+
+/// What is given up of a field before it is coded: fields that look nearly the same and take fewer bytes.
+namespace tessera::codec {
+
+/// A field of integers whose numbers are counted in steps, which its offset and scale undo: every physical value within
+/// `maxError` (in stored numbers) of what it was. 0 stays 0. The step depends on the type and the bound alone. Floats
+/// and labels are not for this.
+volume::Field inSteps(volume::Field field, double maxError);
+/// The step inSteps takes: at most 2 maxError + 1, and such that no value leaves the type.
+int stepWithin(volume::ScalarType type, double maxError);
+
+struct Thresholded {
+    volume::Field field;
+    NumberCoding numbers;     ///< that code it exactly
+    double maxError = 0;      ///< largest |difference| of a sample, in stored numbers
+    std::size_t weakened = 0; ///< bricks whose threshold was lowered to keep the bound
+};
+
+/// Gives up details of every brick. `value`: in stored numbers, of a quantile the part of the details; a brick gets
+/// `strength` (0..1, by brick) of it. Where `maxError` is above 0 no sample moves further: the threshold of a brick is
+/// halved until it does not. Without a bound floats are rounded to 1/65536 of the range of the field first. Absent
+/// samples, and floats no rounded number stands for, stay as they are.
+Thresholded thresholded(const volume::BrickGrid& grid, volume::Field field, Wavelet wavelet, Threshold kind,
+                        double value, std::span<const float> strength, double maxError);
+
+} // namespace tessera::codec

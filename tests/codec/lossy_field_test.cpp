@@ -1,0 +1,207 @@
+#include "codec/archive.h"
+#include "codec/lossy_field.h"
+#include "codec/pack.h"
+#include "tests/codec/make_dataset.h"
+
+#include <gtest/gtest.h>
+#include <random>
+
+namespace tessera::codec {
+namespace {
+
+using namespace testing;
+using volume::ScalarType;
+
+TEST(InSteps, KeepsItsBoundAndNothingLeavesTheType) {
+    std::mt19937 random(2);
+    for (const ScalarType type : {ScalarType::U8, ScalarType::I16, ScalarType::U16, ScalarType::I32})
+        for (const double bound : {0.5, 1.0, 2.9, 6.0, 31.0, 127.0, 20000.0}) {
+            volume::Field field =
+                volume::makeField({volume::LatticeKind::CC, {16, 16, 16}, {1, 1, 1}, {0, 0, 0}}, type);
+            field.offset = -273.15, field.scale = 0.125;
+            volume::dispatch(type, [&]<class T>(T) {
+                auto samples = field.as<T>();
+                for (T& sample : samples) sample = static_cast<T>(random());
+                samples[0] = std::numeric_limits<T>::max(), samples[1] = std::numeric_limits<T>::lowest(),
+                samples[2] = T(0);
+            });
+            const volume::Field stepped = inSteps(field, bound);
+            EXPECT_LE(stepWithin(type, bound), 2 * bound + 1);
+            for (std::size_t i = 0; i < field.count(); ++i)
+                ASSERT_LE(std::abs(stepped.value(i) - field.value(i)), bound * 0.125 * (1 + 1e-12));
+            EXPECT_EQ(stepped.value(2), field.value(2));
+        }
+}
+
+/// Largest |difference| of an archive from its data, in stored numbers of the data, over present finite samples.
+double errorOf(const Archive& archive, const volume::Dataset& made, int parameter) {
+    double largest = 0;
+    for (int c = 0; c < made.info.parameters[std::size_t(parameter)].components; ++c)
+        for (int t = 0; t < int(made.info.times.size()); ++t) {
+            const volume::Field stored = readField(archive, parameter, c, t), wanted = made.load(parameter, c, t);
+            for (std::size_t i = 0; i < wanted.count(); ++i) {
+                if (!wanted.present(i)) continue;
+                EXPECT_TRUE(stored.present(i));
+                if (!std::isfinite(wanted.value(i))) continue;
+                largest = std::max(largest, std::abs(stored.value(i) - wanted.value(i)));
+            }
+        }
+    return largest;
+}
+
+std::vector<MadeParameter> kinds() {
+    return {{"a", ScalarType::U8, 1, Texture::Noise, true, false},
+            {"b", ScalarType::U16, 1, Texture::Nasty, false, false},
+            {"c", ScalarType::I16, 1, Texture::Nasty, true, false},
+            {"d", ScalarType::I32, 1, Texture::Noise, false, false},
+            {"e", ScalarType::F32, 2, Texture::Noise, true, false},
+            {"f", ScalarType::F32, 1, Texture::Smooth, false, false},
+            {"g", ScalarType::F32, 1, Texture::Constant, false, false},
+            {"region", ScalarType::U8, 1, Texture::Noise, false, true}};
+}
+
+TEST(LossyIntegers, NoBoundIsViolated) {
+    const TemporaryFolder folder;
+    for (const double bound : {0.4, 3.0, 17.5}) {
+        volume::Dataset made = makeDataset({20, 17, 15}, kinds(), 2);
+        PackOptions options;
+        options.lattice = StoredLattice::CC;
+        options.brickSize = 8;
+        options.absError = bound;
+        const PackSummary summary = pack(made, options, folder / "a.tsr");
+        const Archive archive(folder / "a.tsr");
+        EXPECT_GT(summary.maxError, 0);
+        for (int p = 0; p < 7; ++p) EXPECT_LE(errorOf(archive, made, p), bound) << p;
+        EXPECT_EQ(errorOf(archive, made, 7), 0);
+        EXPECT_EQ(verifyArchive(archive).damaged, 0u);
+        if (bound == 17.5) {
+            EXPECT_GT(errorOf(archive, made, 1), 1);
+        }
+    }
+}
+
+TEST(Thresholds, BoundsHoldAndWithoutOneTheErrorIsNoted) {
+    const TemporaryFolder folder;
+    for (const ThresholdChoice kind : {ThresholdChoice::Hard, ThresholdChoice::Soft, ThresholdChoice::Quantile})
+        for (const bool byImportance : {false, true})
+            for (const double bound : {0.0, 2.0}) {
+                volume::Dataset made = makeDataset({20, 17, 15}, kinds(), 1);
+                PackOptions options;
+                options.lattice = byImportance ? StoredLattice::BCC : StoredLattice::CC;
+                options.brickSize = 8;
+                options.absError = bound;
+                options.threshold = {kind, kind == ThresholdChoice::Quantile ? 0.7 : 0.05, byImportance};
+                const PackSummary summary = pack(made, options, folder / "a.tsr");
+                const Archive archive(folder / "a.tsr");
+                EXPECT_FALSE(archive.metadata().lossless);
+                EXPECT_GT(summary.maxError, 0);
+                if (byImportance) continue; // resampled
+                for (int p = 0; p < 7; ++p) {
+                    const auto& ranges = archive.info().parameters[std::size_t(p)].ranges;
+                    double extent = 0;
+                    for (int c = 0; c < archive.info().parameters[std::size_t(p)].components; ++c)
+                        extent = std::max(extent, ranges[std::size_t(c)].hi - ranges[std::size_t(c)].lo);
+                    const double limit = bound > 0 ? bound : archive.metadata().maxError * extent * (1 + 1e-6);
+                    EXPECT_LE(errorOf(archive, made, p), limit) << p << " " << int(kind);
+                }
+                EXPECT_EQ(errorOf(archive, made, 7), 0);
+                EXPECT_EQ(summary.weakenedBricks > 0, bound > 0);
+            }
+}
+
+TEST(Thresholds, GiveUpMoreForMoreAndSpareTheImportant) {
+    const TemporaryFolder folder;
+    volume::Dataset made = makeDataset({64, 32, 32}, {{"a", ScalarType::U8, 1, Texture::Smooth, false, false}}, 1);
+    made.load = [lattice = made.info.lattice](int, int, int) {
+        volume::Field field = volume::makeField(lattice, ScalarType::U8);
+        std::mt19937 random(8);
+        std::size_t i = 0;
+        for (int z = 0; z < lattice.size.z; ++z)
+            for (int y = 0; y < lattice.size.y; ++y)
+                for (int x = 0; x < lattice.size.x; ++x, ++i) {
+                    const double ball = 180 / (1 + std::exp(0.1 * (x - 16) * (x - 16) + 0.1 * (y - 16) * (y - 16) - 6));
+                    field.as<std::uint8_t>()[i] = static_cast<std::uint8_t>(20 + ball + double(random() % 9));
+                }
+        return field;
+    };
+    const auto packed = [&](double value, bool byImportance) {
+        PackOptions options;
+        options.lattice = StoredLattice::CC;
+        options.brickSize = 16;
+        options.threshold = {ThresholdChoice::Hard, value, byImportance};
+        volume::Dataset copy = made;
+        return pack(copy, options, folder / "a.tsr").archiveBytes;
+    };
+    const auto little = packed(0.005, false), much = packed(0.05, false);
+    EXPECT_LT(much, little / 2);
+    EXPECT_GT(packed(0.05, true), much);
+    const Archive archive(folder / "a.tsr"); // by importance
+    const volume::Field stored = readField(archive, 0, 0, 0), wanted = made.load(0, 0, 0);
+    double inside = 0, outside = 0;
+    for (std::size_t i = 0; i < stored.count(); ++i) {
+        const double error = std::abs(stored.value(i) - wanted.value(i));
+        (i % 64 < 32 ? inside : outside) += error;
+    }
+    EXPECT_LT(inside, 0.7 * outside);
+}
+
+TEST(Discard, LeavesOutWhatShowsNothingInAnyParameter) {
+    const TemporaryFolder folder;
+    volume::Dataset made = makeDataset({48, 16, 16},
+                                       {{"a", ScalarType::F32, 1, Texture::Smooth, false, false},
+                                        {"b", ScalarType::U8, 1, Texture::Smooth, false, false}},
+                                       2);
+    made.load = [lattice = made.info.lattice](int p, int, int t) {
+        volume::Field field = volume::makeField(lattice, p == 0 ? ScalarType::F32 : ScalarType::U8);
+        for (std::size_t i = 0; i < field.count(); ++i) {
+            const int x = int(i % 48), wave = int(i / 48 % 16) * 12;
+            // a shows something on the left, b on the right at the second time; nothing in the middle
+            if (p == 0) field.as<float>()[i] = x < 8 ? float(wave) : 3.0f;
+            if (p == 1) field.as<std::uint8_t>()[i] = x >= 40 && t == 1 ? std::uint8_t(wave) : std::uint8_t(3);
+        }
+        return field;
+    };
+    PackOptions options;
+    options.lattice = StoredLattice::CC;
+    options.brickSize = 8;
+    options.discard = 0.01;
+    options.importance.neighbours = 0;
+    volume::Dataset copy = made;
+    const PackSummary summary = pack(copy, options, folder / "a.tsr");
+    EXPECT_EQ(summary.bricks, 24u);
+    EXPECT_GE(summary.discardedBricks, 8u);
+    EXPECT_LE(summary.discardedBricks, 16u);
+    const Archive archive(folder / "a.tsr");
+    EXPECT_FALSE(archive.metadata().lossless);
+    for (int p = 0; p < 2; ++p)
+        for (int t = 0; t < 2; ++t) {
+            const volume::Field stored = readField(archive, p, 0, t), wanted = made.load(p, 0, t);
+            std::size_t absent = 0;
+            for (std::size_t i = 0; i < stored.count(); ++i) {
+                absent += stored.present(i) ? 0 : 1;
+                if (i % 48 < 8 || i % 48 >= 40) {
+                    EXPECT_TRUE(stored.present(i));
+                    EXPECT_EQ(stored.value(i), wanted.value(i)); // what is kept is exact
+                }
+            }
+            EXPECT_EQ(absent, summary.discardedBricks * 512);
+        }
+    options.discard = 1;
+    EXPECT_THROW(pack(copy, options, folder / "b.tsr"), Error);
+    EXPECT_FALSE(std::filesystem::exists(folder / "b.tsr"));
+}
+
+TEST(Thresholds, DoNotGoWithWhatTheyCannotPromise) {
+    const TemporaryFolder folder;
+    volume::Dataset made = makeDataset({8, 8, 8}, kinds(), 1);
+    PackOptions options;
+    options.threshold.kind = ThresholdChoice::Hard;
+    options.psnr = 40;
+    EXPECT_THROW(pack(made, options, folder / "a.tsr"), Error);
+    options.psnr = 0;
+    options.sizeMb = 1;
+    EXPECT_THROW(pack(made, options, folder / "a.tsr"), Error);
+}
+
+} // namespace
+} // namespace tessera::codec
