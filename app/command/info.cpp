@@ -169,13 +169,13 @@ std::optional<volume::BrickChange> lastChange(const codec::Archive& archive, con
     return before < 0 ? std::nullopt : archive.change(key, before);
 }
 
-json bricksJson(const codec::Archive& archive) {
-    json bricks = json::array();
+Json bricksJson(const codec::Archive& archive) {
+    Json bricks = Json::array();
     const auto channels = archive.info().channels();
     forBricks(archive, [&](int channel, int time, glm::ivec3 brick) {
         const volume::BrickKey key{channel, time, 0, brick};
         const volume::BrickStats stats = archive.stats(key);
-        json entry = {{"channel", channels[std::size_t(channel)].name},
+        Json entry = {{"channel", channels[std::size_t(channel)].name},
                       {"time", archive.info().times[std::size_t(time)]},
                       {"brick", vectorJson(brick)},
                       {"presentFraction", stats.presentFraction},
@@ -188,8 +188,8 @@ json bricksJson(const codec::Archive& archive) {
         }
         if (const auto change = lastChange(archive, key)) {
             // Infinity has no number in JSON.
-            entry["change"] = std::isfinite(change->max) ? json(change->max) : json("appears");
-            entry["changeRms"] = std::isfinite(change->rms) ? json(change->rms) : json("appears");
+            entry["change"] = std::isfinite(change->max) ? Json(change->max) : Json("appears");
+            entry["changeRms"] = std::isfinite(change->rms) ? Json(change->rms) : Json("appears");
         }
         bricks.push_back(std::move(entry));
     });
@@ -227,7 +227,7 @@ void run(const std::vector<std::string>& paths, const volume::ImportOptions& imp
     if (paths.size() == 1 && hasEnding(paths[0], ".tsr")) {
         const codec::Archive archive(paths[0]);
         if (asJson) {
-            json document = archiveJson(archive);
+            Json document = archiveJson(archive);
             if (bricks) document["bricks"] = bricksJson(archive);
             std::printf("%s\n", document.dump(1).c_str());
         } else {

@@ -98,6 +98,9 @@ nlohmann::json toJson(const codec::PackSummary& summary, const std::string& path
             {"archiveBytes", summary.archiveBytes},
             {"addedBytes", summary.addedBytes},
             {"maxError", summary.maxError},
+            {"bricks", summary.bricks},
+            {"discardedBricks", summary.discardedBricks},
+            {"weakenedBricks", summary.weakenedBricks},
             {"repeatedBricks", summary.repeatedBricks},
             {"repeatedBytes", summary.repeatedBytes},
             {"notes", summary.notes},
@@ -126,6 +129,10 @@ void run(PackRequest request) {
         return;
     }
     for (const std::string& note : summary.notes) std::fprintf(stderr, "tessera: %s\n", note.c_str());
+    if (summary.discardedBricks > 0)
+        std::printf("%llu of %llu bricks show too little and are left out\n",
+                    static_cast<unsigned long long>(summary.discardedBricks),
+                    static_cast<unsigned long long>(summary.bricks));
     if (summary.repeatedBricks > 0)
         std::printf("%llu bricks are those of an earlier time, which saves %s\n",
                     static_cast<unsigned long long>(summary.repeatedBricks),
