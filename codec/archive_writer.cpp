@@ -436,7 +436,8 @@ void ArchiveWriter::addFrame(int parameter, int component, int time, const volum
                     const BrickFormat format = brickFormat(grid, brick, field.type, frame);
                     input.take(grid, brick, field, frame.mask >= 0);
                     if (!taken.bricks[b])
-                        taken.bricks[b] = prepareBrick(format, input.samples, input.present, maxError, model.shift, memory);
+                        taken.bricks[b] =
+                            prepareBrick(format, input.samples, input.present, maxError, model.shift, memory);
                     coded[b] = encodeBrick(format, *taken.bricks[b], input.samples, input.present, compressor, encoder);
                     for (const Bytes& segment : coded[b]) seen.bytes[b] += segment.size();
                     roundAsDecoded(format, maxError, input);

@@ -19,7 +19,8 @@ void takeSublattice(const BrickFormat& format, std::span<const std::uint32_t> co
                     std::span<const std::uint8_t> present, int sublattice, LevelBox<Word>& out);
 
 /// Takes codes in storage order apart, down to `levels` levels in all. What `out` was before is used as memory. Of a
-/// brick that predicts its odd grid that is at level 0 what the prediction leaves, undivided, and at the others nothing.
+/// brick that predicts its odd grid that is at level 0 what the prediction leaves, undivided, and at the others
+/// nothing.
 template <class Word>
 void splitBrick(const BrickFormat& format, std::span<const std::uint32_t> codes, std::span<const std::uint8_t> present,
                 int levels, BrickLevels<Word>& out);
