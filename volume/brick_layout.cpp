@@ -32,13 +32,13 @@ struct Spread {
 };
 
 /// Bricks of a grid and which of them are still to be placed.
-struct Bricks {
+struct OpenBricks {
     glm::ivec3 count;
     std::span<const float> importance;
     double alike;
     std::vector<std::uint8_t> open;
 
-    Bricks(glm::ivec3 grid, std::span<const float> values, const MergeOptions& options)
+    OpenBricks(glm::ivec3 grid, std::span<const float> values, const MergeOptions& options)
         : count(grid), importance(values), alike(options.alike), open(values.size()) {
         for (std::size_t i = 0; i < open.size(); ++i) open[i] = double(values[i]) >= options.discardBelow ? 1 : 0;
     }
@@ -62,7 +62,7 @@ struct Bricks {
 };
 
 /// Starts at one corner and grows every box along the axes in turn.
-std::vector<MergedBrick> swept(Bricks bricks, const MergeOptions& options, std::array<int, 3> order) {
+std::vector<MergedBrick> swept(OpenBricks bricks, const MergeOptions& options, std::array<int, 3> order) {
     std::vector<MergedBrick> boxes;
     forBox(glm::ivec3(0), bricks.count, [&](glm::ivec3 begin) {
         if (bricks.open[linear(begin, bricks.count)] == 0) return;
@@ -91,7 +91,7 @@ std::vector<MergedBrick> swept(Bricks bricks, const MergeOptions& options, std::
 /// Joins the two boxes that are most alike, and again.
 class Joining {
 public:
-    Joining(const Bricks& bricks, const MergeOptions& options)
+    Joining(const OpenBricks& bricks, const MergeOptions& options)
         : count_(bricks.count), most_(options.mostBricks), alike_(options.alike), owner_(bricks.open.size(), kNobody) {
         forBox(glm::ivec3(0), count_, [&](glm::ivec3 at) {
             const std::size_t i = linear(at, count_);
@@ -127,8 +127,7 @@ private:
         int bricks, a, b;
         /// The most alike first, then the largest, then the first.
         bool operator<(const Pair& other) const {
-            return std::tuple(-width, bricks, -a, -b) <
-                   std::tuple(-other.width, other.bricks, -other.a, -other.b);
+            return std::tuple(-width, bricks, -a, -b) < std::tuple(-other.width, other.bricks, -other.a, -other.b);
         }
     };
 
@@ -145,8 +144,8 @@ private:
                 const Box& near = boxes_[std::size_t(other)];
                 bool face = near.end[axis] - near.begin[axis] + box.end[axis] - box.begin[axis] <= most_;
                 for (int side = 0; side < 3; ++side)
-                    face = face && (side == axis ||
-                                    (near.begin[side] == box.begin[side] && near.end[side] == box.end[side]));
+                    face = face &&
+                           (side == axis || (near.begin[side] == box.begin[side] && near.end[side] == box.end[side]));
                 Spread both = box.spread;
                 both.add(near.spread);
                 if (!face || both.width() > alike_) continue;
@@ -178,7 +177,7 @@ private:
 
 std::vector<MergedBrick> mergeBricks(glm::ivec3 count, std::span<const float> importance, const MergeOptions& options) {
     assert(importance.size() == std::size_t(count.x) * std::size_t(count.y) * std::size_t(count.z));
-    const Bricks bricks(count, importance, options);
+    const OpenBricks bricks(count, importance, options);
     std::vector<MergedBrick> best = swept(bricks, options, {0, 1, 2});
     if (options.shape == MergeShape::Best) {
         const auto consider = [&](std::vector<MergedBrick> boxes) {

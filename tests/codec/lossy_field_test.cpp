@@ -49,7 +49,7 @@ double errorOf(const Archive& archive, const volume::Dataset& made, int paramete
     return largest;
 }
 
-std::vector<MadeParameter> kinds() {
+std::vector<MadeParameter> boundedKinds() {
     return {{"a", ScalarType::U8, 1, Texture::Noise, true, false},
             {"b", ScalarType::U16, 1, Texture::Nasty, false, false},
             {"c", ScalarType::I16, 1, Texture::Nasty, true, false},
@@ -63,7 +63,7 @@ std::vector<MadeParameter> kinds() {
 TEST(LossyIntegers, NoBoundIsViolated) {
     const TemporaryFolder folder;
     for (const double bound : {0.4, 3.0, 17.5}) {
-        volume::Dataset made = makeDataset({20, 17, 15}, kinds(), 2);
+        volume::Dataset made = makeDataset({20, 17, 15}, boundedKinds(), 2);
         PackOptions options;
         options.lattice = StoredLattice::CC;
         options.brickSize = 8;
@@ -85,7 +85,7 @@ TEST(Thresholds, BoundsHoldAndWithoutOneTheErrorIsNoted) {
     for (const ThresholdChoice kind : {ThresholdChoice::Hard, ThresholdChoice::Soft, ThresholdChoice::Quantile})
         for (const bool byImportance : {false, true})
             for (const double bound : {0.0, 2.0}) {
-                volume::Dataset made = makeDataset({20, 17, 15}, kinds(), 1);
+                volume::Dataset made = makeDataset({20, 17, 15}, boundedKinds(), 1);
                 PackOptions options;
                 options.lattice = byImportance ? StoredLattice::BCC : StoredLattice::CC;
                 options.brickSize = 8;
@@ -193,7 +193,7 @@ TEST(Discard, LeavesOutWhatShowsNothingInAnyParameter) {
 
 TEST(Thresholds, DoNotGoWithWhatTheyCannotPromise) {
     const TemporaryFolder folder;
-    volume::Dataset made = makeDataset({8, 8, 8}, kinds(), 1);
+    volume::Dataset made = makeDataset({8, 8, 8}, boundedKinds(), 1);
     PackOptions options;
     options.threshold.kind = ThresholdChoice::Hard;
     options.psnr = 40;

@@ -16,7 +16,7 @@ BrickGrid gridOf(const Lattice& lattice, int brickSize = 8) {
     return {lattice, brickSize, 2, 0};
 }
 
-std::size_t at(const BrickGrid& grid, glm::ivec3 brick) {
+std::size_t numberOf(const BrickGrid& grid, glm::ivec3 brick) {
     const glm::ivec3 count = grid.count();
     return std::size_t((brick.z * count.y + brick.y) * count.x + brick.x);
 }
@@ -52,7 +52,7 @@ TEST(BrickImportance, WhatShowsIsImportantAndWithinOne) {
     const BrickGrid grid = gridOf(kCube);
     const Field field = test::sampled<float>(kCube, scene);
     const auto importance = importanceOfBricks(grid, field, {10, 100}, false, {.neighbours = 0});
-    const BrickImportance with = importance[at(grid, {1, 1, 1})], without = importance[at(grid, {3, 3, 3})];
+    const BrickImportance with = importance[numberOf(grid, {1, 1, 1})], without = importance[numberOf(grid, {3, 3, 3})];
     EXPECT_GT(with.importance, 0.2);
     EXPECT_GT(with.detail, 0.02);
     EXPECT_LT(without.importance, 0.01);
@@ -97,8 +97,8 @@ TEST(BrickImportance, SmoothingPutsStructureAboveNoise) {
     const Field field = test::sampled<float>(
         kCube, [&](glm::dvec3 p) { return scene(p) + (p.x >= 16 && p.y >= 16 && p.z >= 16 ? noise(random) + 30 : 0); });
     const auto importance = importanceOfBricks(grid, field, {0, 100}, false, {.neighbours = 0});
-    EXPECT_GT(importance[at(grid, {1, 1, 1})].importance, 1.4 * importance[at(grid, {3, 3, 3})].importance);
-    EXPECT_GT(importance[at(grid, {1, 1, 1})].detail, importance[at(grid, {3, 3, 3})].detail);
+    EXPECT_GT(importance[numberOf(grid, {1, 1, 1})].importance, 1.4 * importance[numberOf(grid, {3, 3, 3})].importance);
+    EXPECT_GT(importance[numberOf(grid, {1, 1, 1})].detail, importance[numberOf(grid, {3, 3, 3})].detail);
 }
 
 TEST(BrickImportance, NeighboursRaiseAndNeverLower) {
@@ -107,7 +107,7 @@ TEST(BrickImportance, NeighboursRaiseAndNeverLower) {
     const auto alone = importanceOfBricks(grid, field, {10, 100}, false, {.neighbours = 0}),
                half = importanceOfBricks(grid, field, {10, 100}, false, {.neighbours = 0.5});
     for (std::size_t b = 0; b < alone.size(); ++b) EXPECT_GE(half[b].importance, alone[b].importance);
-    const auto near = at(grid, {2, 2, 2}), most = at(grid, {1, 1, 1}), far = at(grid, {3, 3, 3});
+    const auto near = numberOf(grid, {2, 2, 2}), most = numberOf(grid, {1, 1, 1}), far = numberOf(grid, {3, 3, 3});
     EXPECT_NEAR(half[near].importance, 0.5f * (alone[near].importance + alone[most].importance), 1e-5);
     EXPECT_NEAR(half[far].importance, 0.5f * (alone[far].importance + alone[near].importance), 1e-5);
 }
@@ -143,9 +143,9 @@ TEST(BrickImportance, LabelsCountByTheirMixture) {
     for (std::uint8_t& label : renamed.as<std::uint8_t>()) label = std::uint8_t(200 - 50 * label % 97);
     const auto own = importanceOfBricks(grid, field, {0, 255}, true, {.neighbours = 0}),
                other = importanceOfBricks(grid, renamed, {0, 255}, true, {.neighbours = 0});
-    EXPECT_EQ(own[at(grid, {0, 1, 1})].importance, 0);
-    EXPECT_GT(own[at(grid, {1, 1, 1})].importance, 0);
-    EXPECT_GE(own[at(grid, {3, 1, 1})].importance, 0);
+    EXPECT_EQ(own[numberOf(grid, {0, 1, 1})].importance, 0);
+    EXPECT_GT(own[numberOf(grid, {1, 1, 1})].importance, 0);
+    EXPECT_GE(own[numberOf(grid, {3, 1, 1})].importance, 0);
     for (std::size_t b = 0; b < own.size(); ++b) EXPECT_NEAR(own[b].importance, other[b].importance, 1e-6);
 }
 
