@@ -6,8 +6,8 @@
 #include <string_view>
 #include <vector>
 
-/// Bricks put together by importance: what is left out, and which neighbours are alike. One layout serves all parameters
-/// and times. (Röber 2002, section 4.2.2.)
+/// Bricks put together by importance: what is left out, and which neighbours are alike. One layout serves all
+/// parameters and times. (Röber 2002, section 4.2.2.)
 namespace tessera::volume {
 
 /// Which shapes merging makes, and how it goes about it.
