@@ -33,6 +33,8 @@ struct WorkbenchOptions {
     bool headless = false;   ///< pictures: no messages, dialogs or remembered files; every frame is finished
     std::string onlyPane;    ///< shows this pane alone, without its strip
     std::string stateFolder; ///< recent files and autosave; "" remembers nothing
+    /// Called after each pane is drawn, for measurements: `behind` while it still shows an older state of the session.
+    std::function<void(const std::string& pane, bool behind)> paneDrawn = {};
 };
 
 class Workbench {

@@ -41,6 +41,39 @@ std::vector<ViewKind> viewKinds() {
             {"Side by side", "The 3D scene with other settings", CompareView{}}};
 }
 
+/// The stack a new view opens in: that of the pane the hand is on, unless it is too narrow to read; then the largest
+/// that hides no picture in space. 0: none.
+int stackFor(const Session& session, const std::string& beside, const std::map<int, DockRect>& rects, float scale) {
+    int chosen = 0;
+    float largest = 0;
+    const std::function<void(const DockNode&)> look = [&](const DockNode& node) {
+        for (const DockNode& child : node.children) look(child);
+        const auto rect = rects.find(node.id);
+        if (node.tabs.empty() || rect == rects.end()) return;
+        const ImVec2 size{rect->second.hi.x - rect->second.lo.x, rect->second.hi.y - rect->second.lo.y};
+        const auto has = [&](const auto& wanted) {
+            return std::any_of(node.tabs.begin(), node.tabs.end(), [&](const std::string& pane) {
+                const auto view = session.views.find(pane);
+                return view != session.views.end() && wanted(pane, view->second);
+            });
+        };
+        constexpr float kReadable = 400; // design pixels, the width of a tool bar
+        const bool near = has([&](const std::string& pane, const ViewState&) { return pane == beside; });
+        const bool space = has([](const std::string&, const ViewState& view) {
+            return std::holds_alternative<VolumeView>(view) || std::holds_alternative<ShadowCubeView>(view) ||
+                   std::holds_alternative<TesseractView>(view) || std::holds_alternative<CompareView>(view);
+        });
+        float worth = size.x * size.y;
+        if (near && size.x >= kReadable * scale) worth += 1e12f;
+        if (space && !near) worth *= 1e-6f;
+        if (worth <= largest) return;
+        largest = worth;
+        chosen = node.id;
+    };
+    look(session.dock.root);
+    return chosen;
+}
+
 } // namespace
 
 void Workbench::makeCommands() {
@@ -221,14 +254,8 @@ void Workbench::makeCommands() {
                  const std::string pane = addView(session_, view);
                  const std::map<int, DockRect> rects =
                      layoutDock(session_.dock, {0, 0}, ImGui::GetMainViewport()->Size, scale_);
-                 // Beside what the hand is on: the stack that holds it.
-                 const std::function<int(const DockNode&)> stackOf = [&](const DockNode& node) {
-                     if (std::find(node.tabs.begin(), node.tabs.end(), beside) != node.tabs.end()) return node.id;
-                     for (const DockNode& child : node.children)
-                         if (const int id = stackOf(child)) return id;
-                     return 0;
-                 };
-                 if (const int id = stackOf(session_.dock.root)) insertPane(session_.dock, pane, id, DockSide::Center);
+                 if (const int id = stackFor(session_, beside, rects, scale_))
+                     insertPane(session_.dock, pane, id, DockSide::Center);
                  session_.dock.maximised.clear();
                  hand_.focus = pane;
              }});
@@ -289,6 +316,7 @@ void Workbench::makeCommands() {
          .enabled = loaded});
     for (const std::string& name : layoutNames()) {
         std::string title = name;
+        std::replace(title.begin(), title.end(), '_', ' ');
         title[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(title[0])));
         add({.menu = "Layout",
              .name = (name == layoutNames().front() ? "-" : "") + title,

@@ -85,6 +85,7 @@ void Workbench::drawPane(const std::string& pane) {
         found->second);
     ImGui::PopID();
     busy_ = busy_ || context.busy;
+    if (options_.paneDrawn) options_.paneDrawn(pane, context.behind);
 }
 
 void Workbench::drawHistoryPane() {

@@ -28,10 +28,10 @@ void Workbench::exportSurface(std::string path) {
     if (chosen < 0 || !source_) return;
     if (!std::filesystem::path(path).has_extension()) path += ".ply";
     const vis::IsoLayer layer = std::get<vis::IsoLayer>(session_.layers[std::size_t(chosen)].technique);
-    const int time = timeIndex(session_, source_->info());
+    const volume::TimePair time = volume::timesAround(source_->info().times, session_.time);
     jobs_.start("export surface", "Writing " + std::filesystem::path(path).filename().string(),
                 [this, source = source_, layer, time, path](const Progress& progress) -> Jobs::Finish {
-                    const auto geometry = extractLayer(*source, layer, time, 0, progress.part(0, 0.7));
+                    const auto geometry = extractLayer(source, layer, time, 0, progress.part(0, 0.7));
                     if (!geometry) throw Error("there is no parameter \"" + layer.channel + "\"");
                     volume::writeMesh(geometry->mesh, path, layer.colorBy, progress.part(0.7, 1));
                     const std::size_t triangles = geometry->mesh.triangles.size();

@@ -35,6 +35,10 @@ BenchTable benchThesisFrames();
 BenchTable benchRender(const std::string& volume);
 /// Milliseconds per frame of the fuel cell's temperature in each look, beside plain compositing.
 BenchTable benchStyles();
+/// Milliseconds until every view shows what is dragged, on a fuel cell of 64x64x256 volumes, and the share of each.
+BenchTable benchLink();
+/// Milliseconds until a scatterplot matrix shows its first counts and all of them, and until it follows a brush.
+BenchTable benchScatter();
 /// Every mode of the ray caster on small, 256^3 and full-model volumes: CPU milliseconds of all threads per frame at
 /// 512x512, samples taken, bytes in textures, error against the double-precision reference. `volume` as above.
 BenchTable benchModes(const std::string& volume);

@@ -77,8 +77,8 @@ void run(const MeshRequest& request) {
                     std::to_string(request.mesh.level));
     const vis::IsoLayer layer{
         .channel = request.mesh.channel, .value = *request.mesh.iso, .colorBy = request.mesh.colorBy};
-    const int time = info.nearestTime(request.mesh.time.value_or(info.times.front()));
-    const auto geometry = extractLayer(*source, layer, time, request.mesh.level, progress.part(0.3, 0.8));
+    const volume::TimePair time = volume::timesAround(info.times, request.mesh.time.value_or(info.times.front()));
+    const auto geometry = extractLayer(source, layer, time, request.mesh.level, progress.part(0.3, 0.8));
     if (geometry->mesh.triangles.empty()) {
         const Range range = info.channelRange(info.channels()[std::size_t(*info.findChannel(layer.channel))]);
         throw Error("the surface is empty: values run from " + std::to_string(range.lo) + " to " +

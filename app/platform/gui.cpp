@@ -99,22 +99,44 @@ void Gui::draw(glm::ivec2 framebuffer, Theme theme) {
     ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
 }
 
+struct OffscreenFrames::Impl {
+    glm::ivec2 size;
+    Framebuffer target;
+};
+
+OffscreenFrames::OffscreenFrames(glm::ivec2 size) : impl_(new Impl{size, Framebuffer(size)}) {}
+OffscreenFrames::~OffscreenFrames() = default;
+
+void OffscreenFrames::draw(Workbench& workbench, float scale, const std::function<void(ImGuiIO&)>& input) {
+    if (workbench.prepare(scale)) Gui::uploadFonts();
+    ImGuiIO& io = ImGui::GetIO();
+    io.DisplaySize = {static_cast<float>(impl_->size.x), static_cast<float>(impl_->size.y)};
+    io.DeltaTime = 1.0f / 60;
+    io.MousePos = {-FLT_MAX, -FLT_MAX};
+    if (input) input(io);
+    ImGui_ImplOpenGL3_NewFrame();
+    ImGui::NewFrame();
+    workbench.frame();
+    ImGui::Render();
+    impl_->target.bind();
+    Gui::draw(impl_->size, workbench.session().appearance.theme);
+}
+
+vis::Image OffscreenFrames::read() const {
+    impl_->target.bind();
+    return readPicture(impl_->size);
+}
+
+void OffscreenFrames::finish() {
+    glFinish();
+}
+
 vis::Image drawUntilDone(Workbench& workbench, glm::ivec2 size, float scale) {
-    const Framebuffer target(size);
+    OffscreenFrames target(size);
     // Two quiet frames in a row: sizes that ImGui learns in one frame are right in the next.
     int quiet = 0;
     for (int frames = 0; quiet < 3; ++frames) {
-        if (workbench.prepare(scale)) Gui::uploadFonts();
-        ImGuiIO& io = ImGui::GetIO();
-        io.DisplaySize = {static_cast<float>(size.x), static_cast<float>(size.y)};
-        io.DeltaTime = 1.0f / 60;
-        io.MousePos = {-FLT_MAX, -FLT_MAX};
-        ImGui_ImplOpenGL3_NewFrame();
-        ImGui::NewFrame();
-        workbench.frame();
-        ImGui::Render();
-        target.bind();
-        Gui::draw(size, workbench.session().appearance.theme);
+        target.draw(workbench, scale);
         if (workbench.busy()) {
             quiet = 0;
             if (!workbench.jobs().list().empty()) std::this_thread::sleep_for(std::chrono::milliseconds(2));
@@ -123,8 +145,7 @@ vis::Image drawUntilDone(Workbench& workbench, glm::ivec2 size, float scale) {
         }
         if (frames > 100000) throw MachineError("the picture does not become complete");
     }
-    target.bind();
-    return readPicture(size);
+    return target.read();
 }
 
 } // namespace tessera::app

@@ -3,9 +3,12 @@
 #include "app/session/session.h"
 #include "vis/image_io.h"
 
+#include <functional>
 #include <glm/vec2.hpp>
+#include <memory>
 
 struct ImGuiContext;
+struct ImGuiIO;
 
 namespace tessera::app {
 
@@ -28,6 +31,27 @@ public:
 private:
     ImGuiContext* context_ = nullptr;
     ImGuiContext* former_ = nullptr;
+};
+
+/// Frames of a workbench in a framebuffer of its own, as a window of this size would show them. Needs an ImGui context
+/// (Gui) and a GL context.
+class OffscreenFrames {
+public:
+    /// Throws MachineError when the size is too large.
+    explicit OffscreenFrames(glm::ivec2 size);
+    ~OffscreenFrames();
+    OffscreenFrames(const OffscreenFrames&) = delete;
+    OffscreenFrames& operator=(const OffscreenFrames&) = delete;
+
+    /// Draws one frame; `input` may set mouse and keys before it begins, else the mouse is nowhere.
+    void draw(Workbench& workbench, float scale, const std::function<void(ImGuiIO&)>& input = {});
+    vis::Image read() const;
+    /// Waits until GL has drawn everything so far.
+    static void finish();
+
+private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
 };
 
 /// Runs frames of a workbench in a framebuffer of its own, as a window of this size would, until nothing is busy, and

@@ -10,12 +10,14 @@ namespace tessera::app {
 
 /// Mouse and key events in the order they came. ImGui 1.86 only sees states, once per frame: a key tapped or a button
 /// clicked during one slow frame would be lost, a drag would begin where the mouse is later. So each frame takes as
-/// many events as one set of states can tell, and the rest waits for the next.
+/// many events as one set of states can tell, and the rest waits for the next. Letters that are typed into a field are
+/// no states: any number of them fits a frame.
 class InputQueue {
 public:
     struct Event {
-        enum Kind { Move, Button, Key } kind = Move;
-        int code = 0, scancode = 0, mods = 0;
+        enum Kind { Move, Button, Key, Letter } kind = Move;
+        int code = 0; ///< of a button or key; of a letter its Unicode number
+        int scancode = 0, mods = 0;
         bool down = false;
         ImVec2 at{0, 0};
     };
@@ -30,9 +32,9 @@ public:
             events_.push_back(event);
     }
 
-    /// Takes what belongs to this frame; `key(event)` is called for each key event. Afterwards `mouse` and `buttons`
-    /// hold the states of this frame.
-    template <class Function> void take(Function&& key) {
+    /// Takes what belongs to this frame; `key(event)` is called for each key event and letter. Afterwards `mouse` and
+    /// `buttons` hold the states of this frame. `typing`: a text field has the keyboard.
+    template <class Function> void take(Function&& key, bool typing = false) {
         bool moved = false, clicked = false, pressed = false;
         std::array<bool, 512> changed{};
         while (!events_.empty()) {
@@ -46,7 +48,16 @@ public:
                 clicked = true;
                 mouse = event.at;
                 if (event.code >= 0 && event.code < 5) buttons[static_cast<std::size_t>(event.code)] = event.down;
+            } else if (event.kind == Event::Letter) {
+                key(event);
             } else {
+                // The key of a letter says nothing that the letter does not.
+                constexpr int kControlAltSuper = 2 | 4 | 8; // as GLFW has them
+                if (typing && event.code >= 32 && event.code <= 96 && (event.mods & kControlAltSuper) == 0) {
+                    key(event);
+                    events_.pop_front();
+                    continue;
+                }
                 const std::size_t code = event.code < 0 ? 0 : static_cast<std::size_t>(event.code) % changed.size();
                 // A key is pressed with the modifiers held at that moment: their release waits too.
                 if (changed[code] || pressed) break;

@@ -102,7 +102,7 @@ struct Window {
         });
         glfwSetCharCallback(handle, [](GLFWwindow* w, unsigned letter) {
             wake(w);
-            ImGui_ImplGlfw_CharCallback(w, letter);
+            of(w).input.add({.kind = InputQueue::Event::Letter, .code = int(letter)});
         });
         glfwSetWindowFocusCallback(handle, [](GLFWwindow* w, int focused) {
             wake(w);
@@ -202,10 +202,15 @@ void runWindow(const OpenRequest& request, const std::string& screenshots) {
         // Where the window is measured in points (Wayland, macOS) the framebuffer is denser already.
         if (width > 0 && pixelsX > width) contentScale = std::max(1.0f, contentScale * float(width) / float(pixelsX));
         if (workbench.prepare(contentScale)) Gui::uploadFonts();
-        window.input.take([&](const InputQueue::Event& event) {
-            ImGui_ImplGlfw_KeyCallback(window.handle, event.code, event.scancode,
-                                       event.down ? GLFW_PRESS : GLFW_RELEASE, event.mods);
-        });
+        window.input.take(
+            [&](const InputQueue::Event& event) {
+                if (event.kind == InputQueue::Event::Letter)
+                    ImGui_ImplGlfw_CharCallback(window.handle, static_cast<unsigned>(event.code));
+                else
+                    ImGui_ImplGlfw_KeyCallback(window.handle, event.code, event.scancode,
+                                               event.down ? GLFW_PRESS : GLFW_RELEASE, event.mods);
+            },
+            ImGui::GetIO().WantTextInput);
         ImGui_ImplOpenGL3_NewFrame();
         ImGui_ImplGlfw_NewFrame();
         ImGuiIO& io = ImGui::GetIO();

@@ -180,15 +180,25 @@ struct HistogramView {
     }
 };
 
-/// Parameters along a polyline in space.
+/// What a line profile runs over: a line in space, every time at the cursor, or both as a picture.
+enum class ProfileOver { Line, Time, LineAndTime };
+inline constexpr std::string_view kProfileOverNames[] = {"line", "time", "lineAndTime"};
+
+/// Parameters along a polyline in space, over time, or both.
 struct ProfileView {
     static constexpr std::string_view kType = "profile";
     std::vector<std::string> channels;
+    ProfileOver over = ProfileOver::Line;
     std::vector<glm::dvec3> points; ///< corners; fewer than two: the longest axis through the cursor
     int samples = 256;
     bool operator==(const ProfileView&) const = default;
     static void describe(auto& self, auto&& visit) {
         visit(self.channels, kShownChannels);
+        visit(self.over, FieldInfo{.key = "over",
+                                   .unit = "",
+                                   .doc = "Values along the line, at the cursor over time, or along the line at every "
+                                          "time as colours",
+                                   .names = kProfileOverNames});
         visit(self.points,
               FieldInfo{.key = "points", .unit = "m", .doc = "Corners of the line; none: along the longest axis"});
         visit(self.samples,

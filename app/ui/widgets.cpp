@@ -68,13 +68,19 @@ void drawLabel(const WidgetContext& context, std::string_view label, std::string
     const float width = ImGui::GetContentRegionAvail().x;
     const float start = ImGui::GetCursorPosX();
     const float column = std::floor(width * context.labelShare);
-    ImGui::AlignTextToFramePadding();
     const ImVec2 corner = ImGui::GetCursorScreenPos();
-    ImGui::PushClipRect(corner, {corner.x + column - ImGui::GetStyle().ItemInnerSpacing.x, corner.y + 100}, true);
-    ImGui::PushStyleColor(ImGuiCol_Text, palette().muted);
-    ImGui::TextUnformatted(label.data(), label.data() + label.size());
-    ImGui::PopStyleColor();
+    // A label that is a little too long is written smaller, rather than cut.
+    const float room = column - ImGui::GetStyle().ItemInnerSpacing.x;
+    const char *begin = label.data(), *end = begin + label.size();
+    const float scale = std::clamp(room / std::max(1.0f, ImGui::CalcTextSize(begin, end).x), 0.75f, 1.0f);
+    const float size = std::floor(ImGui::GetFontSize() * scale);
+    ImGui::PushClipRect(corner, {corner.x + room, corner.y + 100}, true);
+    ImGui::GetWindowDrawList()->AddText(
+        ImGui::GetFont(), size,
+        {corner.x, std::round(corner.y + ImGui::GetStyle().FramePadding.y + (ImGui::GetFontSize() - size) / 2)},
+        palette().muted, begin, end);
     ImGui::PopClipRect();
+    ImGui::Dummy({std::max(1.0f, room), ImGui::GetFrameHeight()});
     if (!help.empty() && ImGui::IsItemHovered()) ImGui::SetTooltip("%.*s", int(help.size()), help.data());
     if (context.menu && !context.path.empty() && ImGui::BeginPopupContextItem(context.path.c_str())) {
         (*context.menu)(context.path);

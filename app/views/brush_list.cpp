@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <imgui_stdlib.h>
+#include <utility>
 
 namespace tessera::app {
 
@@ -176,6 +177,21 @@ std::optional<SpaceShape> spaceShape(const vis::Brush& brush) {
     return std::nullopt;
 }
 
+/// Gives each visible volume a function of its own that hides nothing.
+void makeOpaque(Session& session) {
+    for (vis::Layer& layer : session.layers) {
+        const auto* volume = std::get_if<vis::VolumeLayer>(&layer.technique);
+        if (!volume || !layer.visible || volume->style != vis::VolumeStyle::Composite) continue;
+        if (layer.transfer.empty()) {
+            std::string name = layer.name;
+            while (name.empty() || session.transfer.contains(name)) name += "'";
+            session.transfer[name] = transferOf(std::as_const(session), volume->channel);
+            layer.transfer = name;
+        }
+        session.transfer[layer.transfer].opacity = {{0, 0.6f}, {1, 0.6f}};
+    }
+}
+
 } // namespace
 
 void drawBrushList(ViewContext& context) {
@@ -205,6 +221,10 @@ void drawBrushList(ViewContext& context) {
         selection.brushes.push_back(std::move(brush));
     }
     if (!selection.brushes.empty() && button("Clear all")) selection.brushes.clear();
+    if (selection.active() && button("Make it opaque")) makeOpaque(context.session);
+    if (selection.active() && ImGui::IsItemHovered())
+        tooltip("The volumes become equally opaque everywhere: what is selected shows, whatever the transfer function "
+                "hides, and the rest fades");
 }
 
 vis::Brush spaceBrush(const Session& session, const volume::DatasetInfo& info, bool box) {

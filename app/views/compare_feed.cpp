@@ -24,6 +24,17 @@ DataRef located(DataRef data, const DataRef& session) {
     return data;
 }
 
+/// Why the data of a variant cannot be had, "" if they can: files have the samples they have, an archive has them as
+/// they were packed.
+std::string whyNot(const DataRef& wanted, const DataRef& session) {
+    if (wanted.files.empty() || wanted.files != session.files) return {};
+    if (wanted.settings != session.settings) return "only built-in models come in other sizes";
+    if (wanted.files.size() != 1 || !wanted.files[0].absolutePath.ends_with(".tsr")) return {};
+    if (wanted.bcc != session.bcc) return "an archive keeps its lattice; compare with what it was packed from";
+    if (wanted.packed != session.packed) return "an archive stays as packed; compare with what it was packed from";
+    return {};
+}
+
 /// Equal sessions but for the panes, which no variant shows.
 bool sameScene(const Session& a, const Session& b) {
     return a.camera == b.camera && a.time == b.time && a.cursor == b.cursor && a.layers == b.layers &&
@@ -77,6 +88,8 @@ void CompareFeed::drawCell(ViewContext& context, const std::string& pane, std::s
     cell.drawn = false;
     if (!cell.failure.empty()) return;
     if (!(cell.session.data == context.session.data)) {
+        cell.failure = whyNot(cell.session.data, context.session.data);
+        if (!cell.failure.empty()) return;
         const auto data = dataFor(context, pane, cell.session.data);
         if (data != cell.data) cell.target.reset();
         cell.data = data;
@@ -115,6 +128,7 @@ void CompareFeed::drawCell(ViewContext& context, const std::string& pane, std::s
     cell.status = own.renderer.render(*cell.target, scene, request);
     cell.drawn = true;
     if (!cell.status.complete || own.busy) context.busy = true;
+    context.behind = context.behind || own.behind;
     if (!cell.status.complete || own.busy || request.moving) return;
     const volume::BrickSource* source = own.source.get();
     if (cell.image && cell.image->size == size && cell.imageSource == source && cell.imageOf == scene) return;

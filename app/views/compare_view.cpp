@@ -104,7 +104,7 @@ void drawGrid(const Frame& frame, const std::vector<PictureBox>& boxes, bool dif
         drawOver(frame, box, frame.context.session, nameOf(frame, i), i == frame.reference);
         if (shown && i == (frame.reference == 0 ? 1u : 0u)) {
             LegendEntry legend;
-            legend.title = "difference of colours, of 255";
+            legend.title = "difference (of 255)";
             legend.function.colormap = "inferno";
             legend.range = legend.data = {0, top};
             drawLegends(draw, {legend}, box.min, box.max());

@@ -133,11 +133,10 @@ void drawSelection(ViewContext& context, const StatisticsResult* result) {
             ImGui::SameLine();
             ImGui::TextDisabled("(first estimate)");
         }
-        const LengthUnit unit = suitableLength(info.lengthUnit, std::cbrt(volume));
-        const double cubes = volume * std::pow(unit.perUnit, 3);
-        const std::string cubic = unit.name.empty() ? "" : prettyUnit(unit.name) + "3";
-        ImGui::TextDisabled("%s, %s of the volume that has data", formatQuantity(cubes, cubic, cubes / 1000).c_str(),
+        ImGui::PushTextWrapPos(0);
+        ImGui::TextDisabled("%s, %s of the volume that has data", formatVolume(volume, info.lengthUnit).c_str(),
                             formatShare(whole->all.volume > 0 ? volume / whole->all.volume : 0).c_str());
+        ImGui::PopTextWrapPos();
     }
     constexpr ImGuiTableFlags kFlags =
         ImGuiTableFlags_RowBg | ImGuiTableFlags_SizingStretchProp | ImGuiTableFlags_PadOuterX;

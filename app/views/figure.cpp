@@ -192,6 +192,10 @@ void exportMenu(ViewContext& context, const std::string& title, std::function<st
     if (!ImGui::BeginPopup("export")) return;
     if (ImGui::MenuItem("Picture (PNG)...") && context.runCommand) context.runCommand("Save picture...");
     if (svg && ImGui::MenuItem("Vector graphics (SVG)...")) context.exportText(name + ".svg", std::move(svg));
+    if (csv && ImGui::MenuItem("Copy table (CSV)"))
+        context.jobs.start("copy " + title, "Copying " + title, [csv](const Progress& progress) -> Jobs::Finish {
+            return [text = csv(progress)] { ImGui::SetClipboardText(text.c_str()); };
+        });
     if (csv && ImGui::MenuItem("Table (CSV)...")) context.exportText(name + ".csv", std::move(csv));
     ImGui::EndPopup();
 }

@@ -3,6 +3,7 @@
 #include "app/views/view_parts.h"
 #include "vis/model/flow_geometry.h"
 #include "volume/error.h"
+#include "volume/source_at_time.h"
 
 #include <algorithm>
 #include <list>
@@ -16,18 +17,26 @@ constexpr std::size_t kKept = 48, kKeptVertices = 10'000'000; ///< about 300 MB
 /// What decides the geometry; how it is drawn is left out.
 struct Wish {
     vis::FlowLayer layer;
-    int time = 0;
+    volume::TimePair time;
     glm::dvec3 stretch{1};
     bool operator==(const Wish&) const = default;
 };
 
-Wish wishOf(const vis::FlowLayer& layer, int time, glm::dvec3 stretch) {
+Wish wishOf(const vis::FlowLayer& layer, volume::TimePair time, glm::dvec3 stretch) {
     const vis::FlowLayer drawn;
+    // Pathlines go through all times; which one is shown decides where their particles are born.
+    if (layer.kind == vis::FlowKind::Pathlines) time = {time.nearest(), time.nearest(), 0};
     Wish wish{layer, time, stretch};
     wish.layer.lineWidth = drawn.lineWidth;
     wish.layer.color = drawn.color;
     wish.layer.opacity = drawn.opacity;
     return wish;
+}
+
+std::shared_ptr<const vis::Geometry> make(const std::shared_ptr<const volume::BrickSource>& source, const Wish& wish,
+                                          const Progress& progress) {
+    const volume::SourceAtTime shown = volume::sourceAt(source, wish.time);
+    return vis::makeFlow(*shown.source, wish.layer, shown.time, wish.stretch, progress);
 }
 
 struct Made {
@@ -66,7 +75,7 @@ std::vector<vis::GeometryLayer> FlowFeed::get(ViewContext& context, const std::s
         state.source = context.source.get();
     }
     const Session& session = context.session;
-    const int time = timeIndex(session, context.source->info());
+    const volume::TimePair time = volume::timesAround(context.source->info().times, session.time);
     std::vector<vis::GeometryLayer> out;
     for (std::size_t i = 0; i < session.layers.size(); ++i) {
         const auto* flow = std::get_if<vis::FlowLayer>(&session.layers[i].technique);
@@ -77,13 +86,13 @@ std::vector<vis::GeometryLayer> FlowFeed::get(ViewContext& context, const std::s
         if (!here && context.headless) {
             Made made{wish, nullptr};
             try {
-                made.geometry = vis::makeFlow(*context.source, wish.layer, time, wish.stretch);
+                made.geometry = make(context.source, wish, {});
             } catch (const Error&) { // shown without it
             }
             state.keep(made);
             here = state.find(wish);
         } else if (!here) {
-            context.busy = true;
+            context.busy = context.behind = true;
             // One that is under way is waited for though the wish moved on: else a drag would show none.
             if (!state.running.contains(i) || !context.jobs.running(job)) {
                 state.running.insert_or_assign(i, wish);
@@ -94,7 +103,7 @@ std::vector<vis::GeometryLayer> FlowFeed::get(ViewContext& context, const std::s
                         std::shared_ptr<const vis::Geometry> made;
                         std::string failure;
                         try {
-                            made = vis::makeFlow(*source, wish.layer, wish.time, wish.stretch, progress);
+                            made = make(source, wish, progress);
                         } catch (const Error& error) {
                             failure = error.what();
                         }

@@ -139,11 +139,11 @@ void drawHistogramView(ViewContext& context, const std::string& pane, HistogramV
     ImGui::SetNextItemWidth(std::min(em() * 11, ImGui::GetContentRegionAvail().x * 0.4f));
     if (chooseChannel("##channel", &info, name)) view.channel = name;
     if (ImGui::IsItemHovered()) tooltip("Parameter whose values are counted");
-    ImGui::SameLine();
+    continueLine(em() * 3.5f);
     ImGui::Checkbox("log", &view.logCounts);
     if (ImGui::IsItemHovered()) tooltip("Show the logarithm of the number of samples");
     if (result) {
-        ImGui::SameLine();
+        continueLine(buttonWidth("Export"));
         exportMenu(
             context, channel.name + "-histogram",
             [result, channel](const Progress&) {
@@ -155,7 +155,7 @@ void drawHistogramView(ViewContext& context, const std::string& pane, HistogramV
             });
     }
     if (context.session.selection.brushes.empty()) {
-        ImGui::SameLine();
+        continueLine(ImGui::CalcTextSize("drag to brush").x);
         ImGui::TextDisabled("drag to brush");
     }
     drawPlot(context, cache, view, channel, range, result.get());

@@ -40,7 +40,7 @@ public:
                 return usable;
             }
         }
-        context.busy = true;
+        context.busy = context.behind = true;
         // While something is dragged or played the running answer is waited for: cancelling it each frame would show
         // none.
         if (context.jobs.running(jobKey) && (usable || !state.last)) return usable;

@@ -99,10 +99,10 @@ void drawLegendColumn(ImDrawList& draw, ImVec2 min, float height, const LegendEn
     draw.AddText({x, min.y + height - line}, colors.text, formatNumber(entry.range.lo, digits).c_str());
 }
 
-LegendArea drawLegends(ImDrawList& draw, const std::vector<LegendEntry>& entries, ImVec2 min, ImVec2 max) {
+LegendArea drawLegends(ImDrawList& draw, const std::vector<LegendEntry>& entries, ImVec2 min, ImVec2 max,
+                       LegendCorner corner) {
     const float pad = em() * 0.5f;
     const float width = std::min(em() * 15, (max.x - min.x) * 0.45f);
-    float bottom = max.y;
     if (width < em() * 7) return {max, max};
     std::vector<const LegendEntry*> shown;
     float height = 0;
@@ -113,6 +113,7 @@ LegendArea drawLegends(ImDrawList& draw, const std::vector<LegendEntry>& entries
         shown.push_back(&entry);
     }
     if (shown.empty()) return {max, max};
+    const float bottom = corner == LegendCorner::Bottom ? max.y : min.y + height + pad * 1.5f;
     const ImVec2 from{max.x - width - pad, bottom - height - pad};
     draw.AddRectFilled({from.x - pad, from.y - pad * 0.5f}, {max.x, bottom}, plotColors().backdrop, em() * 0.25f);
     float y = from.y;

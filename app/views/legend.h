@@ -28,12 +28,13 @@ struct LegendEntry {
 void drawColorStrip(ImDrawList& draw, ImVec2 min, ImVec2 max, const vis::TransferFunction& function,
                     bool withOpacity = false);
 
-/// Legends stacked upwards from the bottom right corner of a rectangle, at most as many as fit; returns the pixels
-/// they cover.
+/// Legends stacked in a right corner of a rectangle, at most as many as fit; returns the pixels they cover.
 struct LegendArea {
     ImVec2 min, max;
 };
-LegendArea drawLegends(ImDrawList& draw, const std::vector<LegendEntry>& entries, ImVec2 min, ImVec2 max);
+enum class LegendCorner { Bottom, Top };
+LegendArea drawLegends(ImDrawList& draw, const std::vector<LegendEntry>& entries, ImVec2 min, ImVec2 max,
+                       LegendCorner corner = LegendCorner::Bottom);
 
 /// One horizontal bar with ticks and title below in the given width; returns its height.
 float drawLegendBar(ImDrawList& draw, ImVec2 min, float width, const LegendEntry& entry);

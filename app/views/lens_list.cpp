@@ -58,7 +58,7 @@ void drawStatistics(ViewContext& context, const std::string& pane, LensStatistic
     const std::vector<volume::Channel> channels = info.channels();
     for (const int channel : shown)
         wish.ranges.push_back(paddedRange(info.channelRange(channels[static_cast<std::size_t>(channel)])));
-    wish.time = timeIndex(context.session, info);
+    wish.time = volume::timesAround(info.times, context.session.time);
     wish.bins = 1;
     wish.selection.brushes = {{.name = "", .color = {}, .region = vis::LensRegion{lens.name}}};
     wish.lenses = lensSpace(context.session, info);

@@ -82,7 +82,31 @@ void updateReadout(ViewContext& context, Readout& readout) {
         true);
 }
 
-void drawReadout(ViewContext& context, const Readout& readout) {
+namespace {
+
+/// Texts one after the other; lines break between them, never within a number.
+void drawFlowing(const std::vector<std::string>& texts) {
+    float room = 0;
+    for (const std::string& text : texts) {
+        const float width = ImGui::CalcTextSize(text.c_str()).x + em() * 0.8f;
+        if (room > width)
+            ImGui::SameLine(0, em() * 0.8f);
+        else
+            room = ImGui::GetContentRegionAvail().x + em() * 0.8f;
+        room -= width;
+        ImGui::TextUnformatted(text.c_str());
+    }
+}
+
+} // namespace
+
+float readoutHeight(const Readout& readout) {
+    const float row = ImGui::GetTextLineHeight() + 2 * ImGui::GetStyle().CellPadding.y;
+    return 2 * ImGui::GetTextLineHeightWithSpacing() + row * static_cast<float>(readout.channels.size() + 1) +
+           ImGui::GetFrameHeight();
+}
+
+void drawReadout(ViewContext& context, const Readout& readout, bool compact) {
     const volume::DatasetInfo& info = context.source->info();
     const glm::dvec3 cursor = context.session.cursor, size = info.bounds.size();
     static constexpr const char* kAxes[] = {"x", "y", "z"};
@@ -98,16 +122,21 @@ void drawReadout(ViewContext& context, const Readout& readout) {
         unitNow = unit.name;
         at.insert(at.begin(), text);
     }
-    // Lines break between the axes, never within a number.
-    float room = 0;
-    for (const std::string& text : at) {
-        const float width = ImGui::CalcTextSize(text.c_str()).x + em() * 0.8f;
-        if (room > width)
-            ImGui::SameLine(0, em() * 0.8f);
-        else
-            room = ImGui::GetContentRegionAvail().x + em() * 0.8f;
-        room -= width;
-        ImGui::TextUnformatted(text.c_str());
+    drawFlowing(at);
+    if (compact) {
+        std::vector<std::string> values;
+        for (std::size_t i = 0; i < readout.channels.size() && i < readout.state->values.size(); ++i) {
+            const volume::Channel& channel = readout.channels[i];
+            const std::optional<double>& value = readout.state->values[i].interpolated;
+            // Components say little beside the magnitude.
+            const bool component = channel.name.find('.') != std::string::npos;
+            if (value && !component)
+                values.push_back(channel.name + " " + valueText(info, channel, value) + " " + prettyUnit(channel.unit));
+        }
+        drawFlowing(values);
+        if (ImGui::SmallButton("Copy as CSV"))
+            ImGui::SetClipboardText(readoutCsv(context.session, info, readout).c_str());
+        return;
     }
     ImGui::PushTextWrapPos(0);
     const double time = std::clamp(context.session.time, info.times.front(), info.times.back());

@@ -33,8 +33,11 @@ struct Readout {
 /// Starts reading if the cursor or time is new. Headless, reads at once.
 void updateReadout(ViewContext& context, Readout& readout);
 
-/// Table of position, index and values, with a button that copies it.
-void drawReadout(ViewContext& context, const Readout& readout);
+/// Table of position, index and values, with a button that copies it; without room for a table (compact) the values in
+/// running lines.
+void drawReadout(ViewContext& context, const Readout& readout, bool compact = false);
+/// Pixels that the table needs.
+float readoutHeight(const Readout& readout);
 
 /// The same as comma-separated text: parameter, unit, interpolated, nearest; absent values are empty.
 std::string readoutCsv(const Session& session, const volume::DatasetInfo& info, const Readout& readout);

@@ -156,9 +156,9 @@ void drawScatterToolbar(ViewContext& context, ScatterMatrixView& view, const std
     if (ImGui::IsItemHovered()) tooltip("Show the logarithm of the number of samples");
     ImGui::SameLine();
     drawMore(context, view, shown, shared);
-    ImGui::SameLine();
+    continueLine(em() * 6.6f);
     chooseTool(view.tool);
-    ImGui::SameLine();
+    continueLine(em() * 5);
     ImGui::SetNextItemWidth(em() * 5);
     float percent = view.softness * 100;
     if (ImGui::SliderFloat("##soft", &percent, 0, 50, "soft %.0f %%")) view.softness = percent / 100;
@@ -174,22 +174,23 @@ void drawScatterToolbar(ViewContext& context, ScatterMatrixView& view, const std
         brief = "drag to brush";
     }
     if (!session.selection.brushes.empty()) {
-        ImGui::SameLine();
+        continueLine(ImGui::GetFrameHeight());
         if (iconButton(context, "clear", icons::kTrash, "Remove all brushes (Esc)")) session.selection.brushes.clear();
     }
-    ImGui::SameLine();
-    if (ImGui::CalcTextSize(text.c_str()).x > ImGui::GetContentRegionAvail().x) text = brief;
+    if (text.empty()) return;
+    // The share is never left out: where it does not fit the line it begins another. The hint is.
+    const float right = ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x;
+    const float room = right - ImGui::GetItemRectMax().x - ImGui::GetStyle().ItemSpacing.x;
+    if (ImGui::CalcTextSize(text.c_str()).x > room) text = brief;
     const float width = ImGui::CalcTextSize(text.c_str()).x;
-    if (ImGui::GetContentRegionAvail().x >= width) {
-        ImGui::SetCursorPosX(std::max(ImGui::GetCursorPosX(), ImGui::GetContentRegionMax().x - width));
-        ImGui::AlignTextToFramePadding();
-        if (brushed)
-            ImGui::TextUnformatted(text.c_str());
-        else
-            ImGui::TextDisabled("%s", text.c_str());
-    } else {
-        ImGui::NewLine();
-    }
+    if (width > room && !brushed) return;
+    if (width <= room) ImGui::SameLine();
+    ImGui::SetCursorPosX(std::max(ImGui::GetCursorPosX(), ImGui::GetContentRegionMax().x - width));
+    ImGui::AlignTextToFramePadding();
+    if (brushed)
+        ImGui::TextUnformatted(text.c_str());
+    else
+        ImGui::TextDisabled("%s", text.c_str());
 }
 
 } // namespace tessera::app

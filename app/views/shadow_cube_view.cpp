@@ -10,6 +10,7 @@
 #include "app/views/wall_projection.h"
 #include "volume/brick_cache.h"
 #include "volume/error.h"
+#include "volume/source_at_time.h"
 
 #include <algorithm>
 #include <array>
@@ -162,8 +163,10 @@ void drawReading(ViewContext& context, const CubeFrame& frame, ShadowCubeCache& 
     }
     std::string text;
     try {
-        const auto value = readWall(*cache.bricks, context.session, *channel, wall.kind, kCubeFaces[hit.face],
-                                    frame.physical(hit), timeIndex(context.session, frame.info));
+        const volume::SourceAtTime shown =
+            volume::sourceAt(cache.bricks, volume::timesAround(frame.info.times, context.session.time));
+        const auto value = readWall(*shown.source, context.session, *channel, wall.kind, kCubeFaces[hit.face],
+                                    frame.physical(hit), shown.time);
         const volume::Channel known = frame.info.channels()[static_cast<std::size_t>(*channel)];
         const bool share = wall.kind == WallKind::XRay || wall.kind == WallKind::Shadow;
         const Range range = frame.info.channelRange(known);
@@ -409,8 +412,7 @@ void drawShadowCubeView(ViewContext& context, const std::string& pane, ShadowCub
     std::vector<LegendEntry> legends;
     for (const int channel : walls) legends.push_back(legendOf(session, info, channel));
     // At the top, where no face has its title.
-    const float height = (legendBarHeight() + em()) * static_cast<float>(legends.size()) + em();
-    drawLegends(draw, legends, frame.min, {frame.max().x, std::min(frame.max().y, frame.min.y + height)});
+    drawLegends(draw, legends, frame.min, frame.max(), LegendCorner::Top);
     const ImVec2 mouse = ImGui::GetIO().MousePos;
     if (const auto hit = hovered ? frame.hit(mouse) : std::nullopt; hit && frame.onData(*hit))
         drawReading(context, frame, cache, view, *hit, mouse);

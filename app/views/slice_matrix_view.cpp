@@ -3,6 +3,7 @@
 #include "app/views/view_parts.h"
 #include "volume/error.h"
 #include "volume/probe.h"
+#include "volume/time_pair.h"
 
 #include <algorithm>
 #include <cmath>
@@ -63,7 +64,7 @@ void drawSlice(ViewContext& context, vis::ViewTargetPtr& target, const std::stri
 
 /// Every slice as numbers: plane, position in it, values.
 std::string sliceCsv(const volume::BrickSource& source, const std::vector<int>& channels, const PlaneAxes& axes,
-                     int planes, int time, const Progress& progress) {
+                     int planes, const volume::TimePair& time, const Progress& progress) {
     const volume::DatasetInfo& info = source.info();
     const std::vector<volume::Channel> all = info.channels();
     std::string csv = "x,y,z";
@@ -139,7 +140,7 @@ std::string sliceSvg(const volume::BrickSource& source, const Session& session, 
                     row.push_back(at);
                 }
                 for (const volume::ProbeValue& value :
-                     volume::probeAlong(source, channel, row, timeIndex(session, info))) {
+                     volume::probeAlong(source, channel, row, volume::timesAround(info.times, session.time))) {
                     const glm::dvec4 color =
                         value.interpolated ? vis::evaluate(function, range, *value.interpolated) : glm::dvec4(0);
                     for (int k = 0; k < 3; ++k)
@@ -159,7 +160,7 @@ void drawToolbar(ViewContext& context, SliceMatrixView& view, const std::vector<
         std::string(1, "xyz"[axes.right]) + " to the right, " + std::string(1, "xyz"[axes.up]) + " up";
     const float right = ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x;
     chooseChannels(info, view.channels, shown);
-    ImGui::SameLine();
+    continueLine(em() * 3.4f);
     ImGui::SetNextItemWidth(em() * 3.4f);
     if (ImGui::BeginCombo("##axis", kSliceAxisNames[static_cast<std::size_t>(view.axis)].data())) {
         for (int i = 0; i < 3; ++i)
@@ -168,11 +169,11 @@ void drawToolbar(ViewContext& context, SliceMatrixView& view, const std::vector<
         ImGui::EndCombo();
     }
     if (ImGui::IsItemHovered()) tooltip(("Axis the planes stand on; " + directions).c_str());
-    ImGui::SameLine();
+    continueLine(em() * 6);
     ImGui::SetNextItemWidth(em() * 6);
     ImGui::SliderInt("##planes", &view.planes, 1, 12, view.planes == 1 ? "%d plane" : "%d planes");
-    ImGui::SameLine();
-    const int time = timeIndex(context.session, info);
+    continueLine(buttonWidth("Export"));
+    const volume::TimePair time = volume::timesAround(info.times, context.session.time);
     exportMenu(
         context, "slices",
         [source = context.source, session = context.session, shown, axes, planes = view.planes](

@@ -238,10 +238,14 @@ void drawSlicesView(ViewContext& context, const std::string& pane, SlicesView& v
     LegendEntry legend = legendOf(context.session, info, *channel);
     updateReadout(context, cache.readout);
     if (const auto value = cache.readout.value(name)) legend.marker = *value;
+    // Where the table does not fit below the legend, the values come first and in running lines.
+    const bool compact =
+        view.showReadout && legendBarHeight() + readoutHeight(cache.readout) > ImGui::GetContentRegionAvail().y;
+    if (compact) drawReadout(context, cache.readout, true);
     const ImVec2 at = ImGui::GetCursorScreenPos();
     const float width = std::min(ImGui::GetContentRegionAvail().x, em() * 20);
     ImGui::Dummy({width, drawLegendBar(*ImGui::GetWindowDrawList(), at, width, legend) + em() * 0.3f});
-    if (view.showReadout) drawReadout(context, cache.readout);
+    if (view.showReadout && !compact) drawReadout(context, cache.readout);
     ImGui::EndChild();
 }
 

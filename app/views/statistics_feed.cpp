@@ -2,6 +2,7 @@
 
 #include "app/views/view_parts.h"
 #include "volume/error.h"
+#include "volume/source_at_time.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,12 +14,43 @@ namespace {
 
 constexpr std::size_t kKept = 32; ///< results; one of six parameters and 96 bins is 2 MB
 
-std::shared_ptr<const StatisticsResult> compute(const volume::BrickSource& source, const StatisticsWish& wish,
-                                                int level, const Progress& progress) {
+/// The wish as a query but for its time: its brushes become one function of the values.
+volume::StatisticsQuery makeQuery(const StatisticsWish& wish, const volume::DatasetInfo& info, int level) {
+    volume::StatisticsQuery query;
+    query.channels = wish.channels;
+    query.pairs = wish.pairs;
+    query.ranges = wish.ranges;
+    query.bins = wish.bins;
+    query.meanOf = wish.meanOf;
+    query.level = level;
+    if (!wish.selection.active()) return query;
+    const vis::DoiFunction doi(wish.selection, wish.lenses);
+    std::vector<int> positions; // of its channels in the values, -1: unknown, absent everywhere
+    for (const std::string& name : doi.channels()) {
+        const auto channel = info.findChannel(name);
+        const auto found =
+            channel ? std::find(wish.channels.begin(), wish.channels.end(), *channel) : wish.channels.end();
+        positions.push_back(found == wish.channels.end() ? -1 : static_cast<int>(found - wish.channels.begin()));
+    }
+    query.doi = [doi, positions](std::span<const float> values, glm::dvec3 position) {
+        constexpr std::size_t kMost = 32;
+        double few[kMost];
+        std::vector<double> many(positions.size() > kMost ? positions.size() : 0);
+        double* given = many.empty() ? few : many.data();
+        for (std::size_t i = 0; i < positions.size(); ++i)
+            given[i] =
+                positions[i] < 0 ? std::nan("") : static_cast<double>(values[static_cast<std::size_t>(positions[i])]);
+        return doi({given, positions.size()}, position);
+    };
+    return query;
+}
+
+std::shared_ptr<const StatisticsResult> compute(const std::shared_ptr<const volume::BrickSource>& source,
+                                                const StatisticsWish& wish, int level, const Progress& progress) {
     auto result = std::make_shared<StatisticsResult>();
     result->wish = wish;
     result->brushed = wish.selection.active();
-    result->statistics = volume::computeStatistics(source, makeQuery(wish, source.info(), level), progress);
+    result->statistics = answer(source, wish, level, progress);
     return result;
 }
 
@@ -58,7 +90,7 @@ StatisticsWish makeWish(const Session& session, const volume::DatasetInfo& info,
     wish.channels = channels;
     wish.ranges = ranges;
     wish.bins = bins;
-    wish.time = timeIndex(session, info);
+    wish.time = volume::timesAround(info.times, session.time);
     if (pairs) wish.pairs = volume::allPairs(static_cast<int>(channels.size()));
     for (vis::Brush brush : session.selection.brushes) {
         if (!brush.enabled) continue;
@@ -80,35 +112,12 @@ StatisticsWish makeWish(const Session& session, const volume::DatasetInfo& info,
     return wish;
 }
 
-volume::StatisticsQuery makeQuery(const StatisticsWish& wish, const volume::DatasetInfo& info, int level) {
-    volume::StatisticsQuery query;
-    query.channels = wish.channels;
-    query.pairs = wish.pairs;
-    query.ranges = wish.ranges;
-    query.time = wish.time;
-    query.bins = wish.bins;
-    query.meanOf = wish.meanOf;
-    query.level = level;
-    if (!wish.selection.active()) return query;
-    const vis::DoiFunction doi(wish.selection, wish.lenses);
-    std::vector<int> positions; // of its channels in the values, -1: unknown, absent everywhere
-    for (const std::string& name : doi.channels()) {
-        const auto channel = info.findChannel(name);
-        const auto found =
-            channel ? std::find(wish.channels.begin(), wish.channels.end(), *channel) : wish.channels.end();
-        positions.push_back(found == wish.channels.end() ? -1 : static_cast<int>(found - wish.channels.begin()));
-    }
-    query.doi = [doi, positions](std::span<const float> values, glm::dvec3 position) {
-        constexpr std::size_t kMost = 32;
-        double few[kMost];
-        std::vector<double> many(positions.size() > kMost ? positions.size() : 0);
-        double* given = many.empty() ? few : many.data();
-        for (std::size_t i = 0; i < positions.size(); ++i)
-            given[i] =
-                positions[i] < 0 ? std::nan("") : static_cast<double>(values[static_cast<std::size_t>(positions[i])]);
-        return doi({given, positions.size()}, position);
-    };
-    return query;
+volume::Statistics answer(const std::shared_ptr<const volume::BrickSource>& source, const StatisticsWish& wish,
+                          int level, const Progress& progress) {
+    const volume::SourceAtTime shown = volume::sourceAt(source, wish.time);
+    volume::StatisticsQuery query = makeQuery(wish, source->info(), level);
+    query.time = shown.time;
+    return volume::computeStatistics(*shown.source, query, progress);
 }
 
 std::shared_ptr<const StatisticsResult> StatisticsFeed::get(ViewContext& context, const std::string& jobKey,
@@ -140,7 +149,7 @@ std::shared_ptr<const StatisticsResult> StatisticsFeed::get(ViewContext& context
     if (state.failed == wish) return exact ? exact : similar;
     if (context.headless) {
         try {
-            keep(state, compute(*context.source, wish, 0, {}));
+            keep(state, compute(context.source, wish, 0, {}));
             return state.kept.front();
         } catch (const Error& error) {
             state.failed = wish;
@@ -149,6 +158,7 @@ std::shared_ptr<const StatisticsResult> StatisticsFeed::get(ViewContext& context
         }
     }
     context.busy = true;
+    context.behind = context.behind || !exact;
     // While a brush is dragged its first, coarse answer is waited for: cancelling it each frame would show none.
     const bool running = state.running && context.jobs.running(jobKey);
     const bool coarse = running && state.runningLevel == firstLevel(context.source->grid(), wish.channels.size());
@@ -167,7 +177,7 @@ std::shared_ptr<const StatisticsResult> StatisticsFeed::get(ViewContext& context
             std::shared_ptr<const StatisticsResult> result;
             std::string failure;
             try {
-                result = compute(*source, wish, level, progress);
+                result = compute(source, wish, level, progress);
             } catch (const Error& error) {
                 failure = error.what();
             }

@@ -2,6 +2,7 @@
 
 #include "app/views/view_context.h"
 #include "volume/statistics.h"
+#include "volume/time_pair.h"
 
 #include <memory>
 #include <string>
@@ -16,7 +17,8 @@ struct StatisticsWish {
     std::vector<int> channels;             ///< indices of DatasetInfo::channels(), the shown ones first
     std::vector<std::array<int, 2>> pairs; ///< positions in `channels`
     std::vector<Range> ranges;             ///< of the bins, by position in `channels`
-    int time = 0, bins = 96;
+    volume::TimePair time;
+    int bins = 96;
     int meanOf = -1;          ///< position in `channels`: see StatisticsQuery
     vis::Selection selection; ///< brushes and how they combine; the rest plays no part
     vis::LensSpace lenses;    ///< of the brushes that are lenses; empty if none is
@@ -28,9 +30,10 @@ struct StatisticsWish {
 StatisticsWish makeWish(const Session& session, const volume::DatasetInfo& info, const std::vector<int>& channels,
                         const std::vector<Range>& ranges, int bins, bool pairs);
 
-/// The wish as a query: its brushes become one function of the values. Channels a brush names but the data lacks count
-/// as absent.
-volume::StatisticsQuery makeQuery(const StatisticsWish& wish, const volume::DatasetInfo& info, int level);
+/// Counts what is wished for at a level of detail. Channels a brush names but the data lack count as absent. Throws
+/// Error, Cancelled.
+volume::Statistics answer(const std::shared_ptr<const volume::BrickSource>& source, const StatisticsWish& wish,
+                          int level, const Progress& progress = {});
 
 struct StatisticsResult {
     StatisticsWish wish;

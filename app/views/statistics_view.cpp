@@ -42,13 +42,13 @@ const volume::JointHistogram* jointOf(const volume::Statistics& statistics, std:
 }
 
 /// Everything at full resolution: summaries and all correlations.
-std::string statisticsCsv(const volume::BrickSource& source, StatisticsWish wish, std::size_t shown,
-                          const Progress& progress) {
-    const volume::DatasetInfo& info = source.info();
+std::string statisticsCsv(const std::shared_ptr<const volume::BrickSource>& source, StatisticsWish wish,
+                          std::size_t shown, const Progress& progress) {
+    const volume::DatasetInfo& info = source->info();
     const bool brushed = wish.selection.active();
     wish.pairs = volume::allPairs(static_cast<int>(shown));
     wish.bins = 1;
-    const volume::Statistics statistics = volume::computeStatistics(source, makeQuery(wish, info, 0), progress);
+    const volume::Statistics statistics = answer(source, wish, 0, progress);
     const std::vector<volume::Channel> channels = info.channels();
     const auto nameOf = [&](std::size_t i) { return channels[static_cast<std::size_t>(wish.channels[i])].name; };
     std::string csv = "parameter,unit,part,samples,volume [" + info.lengthUnit + "3],mean,deviation,min,max";
@@ -71,12 +71,6 @@ std::string statisticsCsv(const volume::BrickSource& source, StatisticsWish wish
         }
     }
     return csv;
-}
-
-std::string volumeText(const volume::DatasetInfo& info, double volume) {
-    const LengthUnit unit = suitableLength(info.lengthUnit, std::cbrt(volume));
-    const double cubes = volume * std::pow(unit.perUnit, 3);
-    return formatQuantity(cubes, unit.name.empty() ? "" : unit.name + "3", cubes / 1000);
 }
 
 void drawTable(const volume::DatasetInfo& info, const StatisticsResult& result, std::size_t shown, std::size_t with) {
@@ -110,7 +104,7 @@ void drawTable(const volume::DatasetInfo& info, const StatisticsResult& result, 
                 textRight(of.samples > 0 ? text : "-");
             };
             cell(formatCount(std::round(of.samples)));
-            cell(volumeText(info, of.volume));
+            cell(formatVolume(of.volume, info.lengthUnit));
             cell(formatNumber(of.mean, digits));
             cell(formatNumber(of.deviation, digits));
             cell(formatNumber(of.min, digits));
@@ -148,7 +142,7 @@ void drawStatisticsView(ViewContext& context, const std::string& pane, Statistic
     const auto result = cache.feed.get(context, "statistics " + pane, wish);
 
     chooseChannels(info, view.channels, shown);
-    ImGui::SameLine();
+    continueLine(em() * 9);
     ImGui::SetNextItemWidth(em() * 9);
     const std::string current = channels[static_cast<std::size_t>(shown[with])].name;
     if (ImGui::BeginCombo("##with", ("r with " + current).c_str())) {
@@ -159,18 +153,20 @@ void drawStatisticsView(ViewContext& context, const std::string& pane, Statistic
         ImGui::EndCombo();
     }
     if (ImGui::IsItemHovered()) tooltip("Parameter that every other one is correlated with (Pearson's r)");
-    ImGui::SameLine();
+    continueLine(buttonWidth("Export"));
     exportMenu(context, "statistics", {},
                [source = context.source, wish, count = shown.size()](const Progress& progress) {
-                   return statisticsCsv(*source, wish, count, progress);
+                   return statisticsCsv(source, wish, count, progress);
                });
     if (!result) {
         ImGui::TextDisabled("%s", cache.feed.failure().empty() ? "Counting..." : cache.feed.failure().c_str());
         return;
     }
-    ImGui::SameLine();
-    ImGui::TextDisabled("%s%s", result->brushed ? "weighted by the degree of interest" : "nothing is brushed",
-                        result->statistics.level > 0 ? ", first estimate" : "");
+    const std::string state =
+        std::string(result->brushed ? "weighted by the degree of interest" : "nothing is brushed") +
+        (result->statistics.level > 0 ? ", first estimate" : "");
+    continueLine(ImGui::CalcTextSize(state.c_str()).x);
+    ImGui::TextDisabled("%s", state.c_str());
     drawTable(info, *result, std::min(shown.size(), result->statistics.channels.size()),
               std::min(with, result->wish.channels.size() - 1));
 }

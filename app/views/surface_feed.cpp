@@ -3,6 +3,7 @@
 #include "app/views/view_parts.h"
 #include "volume/error.h"
 #include "volume/mesh/isosurface.h"
+#include "volume/source_at_time.h"
 
 #include <algorithm>
 #include <list>
@@ -17,7 +18,8 @@ constexpr double kCoarseSamples = 5e5;             ///< extracted within a few m
 
 /// What decides a shape; layers of equal wishes share one.
 struct Wish {
-    int channel = 0, colorBy = -1, time = 0;
+    int channel = 0, colorBy = -1;
+    volume::TimePair time;
     double value = 0;
     bool operator==(const Wish&) const = default;
 };
@@ -37,18 +39,20 @@ int firstLevel(const volume::BrickGrid& grid) {
     return level;
 }
 
-std::shared_ptr<const vis::Geometry> extract(const volume::BrickSource& source, const Wish& wish, int level,
-                                             const Progress& progress) {
+std::shared_ptr<const vis::Geometry> extract(const std::shared_ptr<const volume::BrickSource>& source, const Wish& wish,
+                                             int level, const Progress& progress) {
+    const volume::SourceAtTime shown = volume::sourceAt(source, wish.time);
     auto geometry = std::make_shared<vis::Geometry>();
     const double share = wish.colorBy < 0 ? 1 : 0.6;
     geometry->mesh =
-        volume::extractIsosurface(source, wish.channel, wish.time, wish.value, level, progress.part(0, share));
+        volume::extractIsosurface(*shown.source, wish.channel, shown.time, wish.value, level, progress.part(0, share));
     if (wish.colorBy >= 0)
-        volume::sampleAtVertices(geometry->mesh, source, wish.colorBy, wish.time, level, progress.part(share, 1));
+        volume::sampleAtVertices(geometry->mesh, *shown.source, wish.colorBy, shown.time, level,
+                                 progress.part(share, 1));
     return geometry;
 }
 
-std::optional<Wish> wishOf(const vis::IsoLayer& layer, const volume::DatasetInfo& info, int time) {
+std::optional<Wish> wishOf(const vis::IsoLayer& layer, const volume::DatasetInfo& info, const volume::TimePair& time) {
     const std::optional<int> channel = info.findChannel(layer.channel);
     if (!channel) return std::nullopt;
     Wish wish{*channel, -1, time, layer.value};
@@ -87,9 +91,10 @@ struct SurfaceFeed::State {
 
 SurfaceFeed::SurfaceFeed() : state_(std::make_shared<State>()) {}
 
-std::shared_ptr<const vis::Geometry> extractLayer(const volume::BrickSource& source, const vis::IsoLayer& layer,
-                                                  int time, int level, const Progress& progress) {
-    const std::optional<Wish> wish = wishOf(layer, source.info(), time);
+std::shared_ptr<const vis::Geometry> extractLayer(const std::shared_ptr<const volume::BrickSource>& source,
+                                                  const vis::IsoLayer& layer, const volume::TimePair& time, int level,
+                                                  const Progress& progress) {
+    const std::optional<Wish> wish = wishOf(layer, source->info(), time);
     return wish ? extract(source, *wish, level, progress) : nullptr;
 }
 
@@ -100,7 +105,8 @@ std::vector<vis::GeometryLayer> SurfaceFeed::get(ViewContext& context, const std
         state = {};
         state.source = context.source.get();
     }
-    const int time = timeIndex(context.session, info), first = firstLevel(context.source->grid());
+    const volume::TimePair time = volume::timesAround(info.times, context.session.time);
+    const int first = firstLevel(context.source->grid());
     std::vector<vis::GeometryLayer> out;
     for (std::size_t i = 0; i < context.session.layers.size(); ++i) {
         const vis::Layer& layer = context.session.layers[i];
@@ -112,7 +118,7 @@ std::vector<vis::GeometryLayer> SurfaceFeed::get(ViewContext& context, const std
         if ((!here || here->level > 0) && !state.hasFailed(*wish)) {
             if (context.headless) {
                 try {
-                    state.keep({*wish, 0, extract(*context.source, *wish, 0, {})});
+                    state.keep({*wish, 0, extract(context.source, *wish, 0, {})});
                 } catch (const Error&) {
                     state.failed.push_back(*wish);
                 }
@@ -134,7 +140,7 @@ std::vector<vis::GeometryLayer> SurfaceFeed::get(ViewContext& context, const std
                             std::shared_ptr<const vis::Geometry> made;
                             std::string failure;
                             try {
-                                made = extract(*source, wish, level, progress);
+                                made = extract(source, wish, level, progress);
                             } catch (const Error& error) {
                                 failure = error.what();
                             }
@@ -153,6 +159,7 @@ std::vector<vis::GeometryLayer> SurfaceFeed::get(ViewContext& context, const std
             }
             here = state.find(*wish, true);
         }
+        context.behind = context.behind || (!here && !state.hasFailed(*wish));
         if (here)
             state.shown.insert_or_assign(i, *wish);
         else if (const auto last = state.shown.find(i); last != state.shown.end())

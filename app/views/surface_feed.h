@@ -1,6 +1,7 @@
 #pragma once
 
 #include "app/views/view_context.h"
+#include "volume/time_pair.h"
 
 #include <memory>
 #include <string>
@@ -25,7 +26,8 @@ private:
 
 /// The surface of an iso-layer at a level of detail, with the values of its colouring parameter at the vertices.
 /// Nothing where the data has no such parameter. Throws Error, Cancelled.
-std::shared_ptr<const vis::Geometry> extractLayer(const volume::BrickSource& source, const vis::IsoLayer& layer,
-                                                  int time, int level, const Progress& progress);
+std::shared_ptr<const vis::Geometry> extractLayer(const std::shared_ptr<const volume::BrickSource>& source,
+                                                  const vis::IsoLayer& layer, const volume::TimePair& time, int level,
+                                                  const Progress& progress);
 
 } // namespace tessera::app

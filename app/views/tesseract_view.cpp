@@ -128,7 +128,9 @@ void drawSliders(TesseractView& view, float width) {
         if (i % columns != 0) ImGui::SameLine();
         ImGui::SetNextItemWidth(each);
         ImGui::PushID(i);
-        ImGui::SliderFloat("##angle", &angle, -180, 180, (name + "  %.0f\xc2\xb0").c_str());
+        // A drag leaves traces of a degree, which would be written "-0".
+        const char* number = std::abs(angle) < 0.5f ? "0" : "%.0f";
+        ImGui::SliderFloat("##angle", &angle, -180, 180, (name + "  " + number + "\xc2\xb0").c_str());
         ImGui::PopID();
         if (ImGui::IsItemHovered())
             tooltip(("Rotation in the plane of " + axes[std::size_t(kAxes[i][0])] + " and " +

@@ -168,4 +168,11 @@ LengthUnit suitableLength(std::string_view unit, double size) {
     return {"nm", from->second / 1e-9};
 }
 
+std::string formatVolume(double volume, std::string_view unit) {
+    // Cubes grow by 1e9 from unit to unit: rather 0.01 of the larger one than 1e7 of the smaller.
+    const LengthUnit length = suitableLength(unit, std::cbrt(volume * 100));
+    const double cubes = volume * std::pow(length.perUnit, 3);
+    return formatQuantity(cubes, length.name.empty() ? "" : length.name + "3", cubes / 1000);
+}
+
 } // namespace tessera::app

@@ -53,4 +53,7 @@ struct LengthUnit {
 };
 LengthUnit suitableLength(std::string_view unit, double size);
 
+/// A volume in cubes of `unit` as text in cubes of a unit that suits it: "0.268 mm3" for 2.68e-10 of "m".
+std::string formatVolume(double volume, std::string_view unit);
+
 } // namespace tessera::app

@@ -39,6 +39,7 @@ struct ViewContext {
     std::function<void(const std::string& title, std::function<void(Session&, const std::string& path)> take)> askFile =
         {};
     bool busy = false;        ///< set by a view that needs another frame soon (refining, animating, waiting for a job)
+    bool behind = false;      ///< set by a view that shows an older state of the session until an answer is there
     bool interacting = false; ///< some edit is in progress (mouse held on a control): draw at reduced size
 };
 

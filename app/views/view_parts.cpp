@@ -64,6 +64,15 @@ void drawHint(const char* title, const char* hint) {
     if (*hint) line(hint, b, ImGuiCol_TextDisabled);
 }
 
+void continueLine(float width) {
+    const float right = ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x;
+    if (ImGui::GetItemRectMax().x + ImGui::GetStyle().ItemSpacing.x + width <= right) ImGui::SameLine();
+}
+
+float buttonWidth(const char* text) {
+    return ImGui::CalcTextSize(text).x + 2 * ImGui::GetStyle().FramePadding.x;
+}
+
 void tooltip(const char* text) {
     ImGui::BeginTooltip();
     ImGui::PushTextWrapPos(em() * 28);

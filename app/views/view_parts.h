@@ -36,6 +36,10 @@ ImVec2 iconSize(const ViewContext& context, Icon icon);
 /// Two or three lines in the middle of the pane where there is nothing to draw.
 void drawHint(const char* title, const char* hint = "");
 
+/// Goes on in the line where an item of this width fits, else in the next: tool bars of narrow panes stay whole.
+void continueLine(float width);
+float buttonWidth(const char* text);
+
 /// Wrapped help on hover of the last item.
 void tooltip(const char* text);
 

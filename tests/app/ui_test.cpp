@@ -262,6 +262,34 @@ TEST(InputQueueTest, ATapWithinOneFrameIsSeenAsDownAndUp) {
     EXPECT_TRUE(queue.empty());
 }
 
+TEST(InputQueueTest, WhatIsTypedIntoAFieldFitsAFrameAndKeepsItsOrder) {
+    InputQueue queue;
+    using Event = InputQueue::Event;
+    // Ctrl+A, then "aa", then Enter: the letters come after what they replace and before what ends them.
+    for (const auto& [code, down, mods] : {std::tuple{341, true, 2}, {int('A'), true, 2}, {int('A'), false, 2}})
+        queue.add({.kind = Event::Key, .code = code, .mods = mods, .down = down});
+    queue.add({.kind = Event::Key, .code = 341, .mods = 0, .down = false});
+    for (int i = 0; i < 2; ++i) {
+        queue.add({.kind = Event::Key, .code = 'A', .down = true});
+        queue.add({.kind = Event::Letter, .code = 'a'});
+        queue.add({.kind = Event::Key, .code = 'A', .down = false});
+    }
+    queue.add({.kind = Event::Key, .code = 257, .down = true});
+    std::vector<std::string> frames;
+    while (!queue.empty() && frames.size() < 20) {
+        std::string seen;
+        queue.take(
+            [&](const Event& event) {
+                if (event.kind == Event::Letter) seen += char(event.code);
+                if (event.kind == Event::Key && event.down && event.code == 257) seen += '!';
+                if (event.kind == Event::Key && event.down && (event.mods & 2) && event.code == 'A') seen += '*';
+            },
+            true);
+        if (!seen.empty()) frames.push_back(seen);
+    }
+    EXPECT_EQ(frames, (std::vector<std::string>{"*", "aa!"}));
+}
+
 TEST(InputQueueTest, ADragBeginsWhereTheButtonWentDown) {
     InputQueue queue;
     using Event = InputQueue::Event;

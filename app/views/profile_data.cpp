@@ -1,0 +1,114 @@
+#include "app/views/profile_data.h"
+
+#include "app/views/figure.h"
+#include "app/views/ticks.h"
+#include "app/views/view_parts.h"
+#include "volume/probe.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+
+namespace tessera::app {
+
+Profile readProfile(const volume::BrickSource& source, const ProfileWish& wish, const Progress& progress) {
+    const bool line = wish.over == ProfileOver::Line;
+    Profile out{.wish = wish,
+                .distance = {},
+                .positions = volume::alongPolyline(wish.corners, wish.samples),
+                .times = line ? std::vector<double>{} : source.info().times,
+                .values = {}};
+    double length = 0;
+    for (std::size_t i = 1; i < wish.corners.size(); ++i) length += glm::distance(wish.corners[i - 1], wish.corners[i]);
+    for (std::size_t i = 0; i < out.positions.size(); ++i)
+        out.distance.push_back(length * static_cast<double>(i) / std::max(1, wish.samples - 1));
+    const std::size_t rows = line ? 1 : out.times.size();
+    for (const int channel : wish.channels) {
+        std::vector<double>& values = out.values.emplace_back();
+        for (std::size_t row = 0; row < rows; ++row) {
+            progress.advance((static_cast<double>(out.values.size() - 1) + static_cast<double>(row) / double(rows)) /
+                             static_cast<double>(wish.channels.size()));
+            const int t = static_cast<int>(row);
+            const volume::TimePair time = line ? wish.time : volume::TimePair{t, t, 0};
+            for (const volume::ProbeValue& value : volume::probeAlong(source, channel, out.positions, time))
+                values.push_back(value.interpolated.value_or(std::nan("")));
+        }
+    }
+    return out;
+}
+
+std::string profileCsv(const volume::DatasetInfo& info, const Profile& profile) {
+    const std::vector<volume::Channel> channels = info.channels();
+    const bool timed = profile.wish.over != ProfileOver::Line;
+    std::string csv = timed ? "time [" + info.timeUnit + "]," : std::string();
+    csv += "distance [" + info.lengthUnit + "],x,y,z";
+    for (const int channel : profile.wish.channels) {
+        const volume::Channel& own = channels[static_cast<std::size_t>(channel)];
+        csv += "," + csvField(titleWithUnit(own.name, own.unit));
+    }
+    csv += "\n";
+    const std::size_t places = profile.positions.size(), rows = timed ? profile.times.size() : 1;
+    for (std::size_t row = 0; row < rows; ++row)
+        for (std::size_t i = 0; i < places; ++i) {
+            if (timed) csv += csvNumber(profile.times[row]) + ",";
+            csv += csvNumber(profile.distance[i]);
+            for (int axis = 0; axis < 3; ++axis) csv += "," + csvNumber(profile.positions[i][axis]);
+            for (const std::vector<double>& values : profile.values) csv += "," + csvNumber(values[row * places + i]);
+            csv += "\n";
+        }
+    return csv;
+}
+
+std::vector<std::uint8_t> profileImage(const volume::DatasetInfo& info, const Session& session, const Profile& profile,
+                                       std::size_t channel) {
+    const volume::Channel own = info.channels()[static_cast<std::size_t>(profile.wish.channels[channel])];
+    const vis::TransferFunction& function = transferOf(session, own.name);
+    const Range range = vis::effectiveRange(function, info.channelRange(own));
+    const std::size_t places = profile.positions.size();
+    std::vector<std::uint8_t> rgba(places * profile.times.size() * 4);
+    for (std::size_t row = 0; row < profile.times.size(); ++row)
+        for (std::size_t i = 0; i < places; ++i) {
+            const double value = profile.values[channel][(profile.times.size() - 1 - row) * places + i];
+            if (std::isnan(value)) continue;
+            const glm::dvec4 color = vis::evaluate(function, range, value);
+            std::uint8_t* pixel = &rgba[(row * places + i) * 4];
+            for (int k = 0; k < 3; ++k)
+                pixel[k] = static_cast<std::uint8_t>(std::lround(255 * std::clamp(color[k], 0.0, 1.0)));
+            pixel[3] = 255;
+        }
+    return rgba;
+}
+
+std::string profileSvg(const volume::DatasetInfo& info, const Session& session, const Profile& profile) {
+    const std::vector<volume::Channel> channels = info.channels();
+    const LengthUnit unit = suitableLength(info.lengthUnit, profile.distance.back());
+    const bool overTime = profile.wish.over == ProfileOver::Time;
+    const FigureAxis distance{"distance [" + unit.name + "]", {0, profile.distance.back() * unit.perUnit}};
+    const auto timeAxis = [&] {
+        return FigureAxis{"t [" + info.timeUnit + "]", {info.times.front(), info.times.back()}};
+    };
+    std::vector<FigurePanel> panels;
+    for (std::size_t c = 0; c < profile.values.size(); ++c) {
+        const volume::Channel& own = channels[static_cast<std::size_t>(profile.wish.channels[c])];
+        const Range range = info.channelRange(own);
+        FigurePanel panel;
+        panel.x = overTime ? timeAxis() : distance;
+        if (profile.wish.over == ProfileOver::LineAndTime) {
+            panel.title = titleWithUnit(own.name, own.unit);
+            panel.y = timeAxis();
+            panel.image = {static_cast<int>(profile.positions.size()), static_cast<int>(profile.times.size()),
+                           profileImage(info, session, profile, c)};
+        } else {
+            panel.y = {titleWithUnit(own.name, own.unit), paddedRange(range, 0.03)};
+            FigureSeries line{own.name, {}, {0.1f, 0.36f, 0.62f}};
+            const std::vector<double>& across = profile.across();
+            for (std::size_t i = 0; i < across.size(); ++i)
+                line.points.push_back({across[i] * (overTime ? 1 : unit.perUnit), profile.values[c][i]});
+            panel.series.push_back(std::move(line));
+        }
+        panels.push_back(std::move(panel));
+    }
+    return figureSvg(panels, 2);
+}
+
+} // namespace tessera::app

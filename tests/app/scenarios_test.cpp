@@ -1,0 +1,344 @@
+#include "app/open.h"
+#include "app/views/profile_data.h"
+#include "app/views/profile_line.h"
+#include "app/views/statistics_feed.h"
+#include "app/views/wall_projection.h"
+#include "vis/model/rotation4.h"
+#include "volume/error.h"
+#include "volume/probe.h"
+#include "volume/sample_position.h"
+#include "volume/synthetic/planted.h"
+
+#include <cmath>
+#include <filesystem>
+#include <glm/geometric.hpp>
+#include <gtest/gtest.h>
+
+/// Tasks done by hand in the window on the planted fuel cell and saved with their history (tests/sessions): every step
+/// replays, and what the researcher found is what was planted.
+namespace tessera::app {
+namespace {
+
+namespace planted = volume::planted;
+
+struct Recorded {
+    SessionDocument document;
+    std::shared_ptr<const volume::BrickSource> source;
+    std::vector<Session> steps; ///< as opened, then after each edit
+    const Session& last() const { return steps.back(); }
+    const volume::DatasetInfo& info() const { return source->info(); }
+    int channel(const std::string& name) const { return info().findChannel(name).value(); }
+    Range range(const std::string& name) const {
+        return info().channelRange(info().channels()[std::size_t(channel(name))]);
+    }
+};
+
+std::string pathOf(const std::string& name) {
+    return TESSERA_SOURCE_DIR "/tests/sessions/" + name + ".tessera.json";
+}
+
+Recorded recorded(const std::string& name) {
+    Recorded out;
+    out.document = loadSession(pathOf(name));
+    EXPECT_TRUE(out.document.messages.empty()) << out.document.messages.front();
+    EXPECT_TRUE(out.document.unknown.empty());
+    static std::map<std::string, std::shared_ptr<const volume::BrickSource>> sources; // of equal data
+    auto& source = sources[toJson(out.document.session.data).dump()];
+    std::vector<std::string> messages;
+    if (!source) source = openSource(out.document.session.data, messages);
+    EXPECT_TRUE(messages.empty());
+    out.source = source;
+    History history = out.document.history;
+    for (std::size_t i = 0; i <= history.steps().size(); ++i) out.steps.push_back(history.seek(i));
+    return out;
+}
+
+/// Every present sample of some channels at a time, with its position; NaN where absent.
+template <class Visit>
+void forEach(const volume::BrickSource& source, const std::vector<int>& channels, int time, const Visit& visit) {
+    const glm::ivec3 count = source.grid().count();
+    for (int z = 0; z < count.z; ++z)
+        for (int y = 0; y < count.y; ++y)
+            for (int x = 0; x < count.x; ++x) {
+                std::vector<volume::BrickSamples> read;
+                for (const int channel : channels) read.push_back(source.read({channel, time, 0, {x, y, z}}));
+                volume::SamplePositions position(source.grid(), {x, y, z}, 0);
+                std::vector<double> values(channels.size());
+                for (std::size_t i = 0; i < read[0].values.size(); ++i, position.next()) {
+                    for (std::size_t c = 0; c < channels.size(); ++c) {
+                        const bool present = read[c].present.empty() || read[c].present[i] != 0;
+                        values[c] = present ? double(read[c].values[i]) : std::nan("");
+                    }
+                    visit(position.at(), values);
+                }
+            }
+}
+
+volume::Summary selected(const Recorded& of, const Session& session, const std::string& parameter) {
+    StatisticsWish wish = makeWish(session, of.info(), {of.channel(parameter)}, {of.range(parameter)}, 8, false);
+    return answer(of.source, wish, 0).channels.front().inside;
+}
+
+double correlation(const std::vector<double>& a, const std::vector<double>& b) {
+    double n = 0, sa = 0, sb = 0, saa = 0, sbb = 0, sab = 0;
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        if (std::isnan(a[i]) || std::isnan(b[i])) continue;
+        ++n, sa += a[i], sb += b[i], saa += a[i] * a[i], sbb += b[i] * b[i], sab += a[i] * b[i];
+    }
+    return (n * sab - sa * sb) / std::sqrt((n * saa - sa * sa) * (n * sbb - sb * sb));
+}
+
+TEST(Scenarios, EveryRecordedTaskReplaysAndUndoes) {
+    int files = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(TESSERA_SOURCE_DIR "/tests/sessions")) {
+        std::string name = entry.path().filename().string();
+        name = name.substr(0, name.find('.'));
+        SCOPED_TRACE(name);
+        Recorded task = recorded(name);
+        ++files;
+        EXPECT_GE(task.steps.size(), 3u);
+        EXPECT_EQ(task.steps[task.document.history.position()], task.document.session);
+        for (Session step : task.steps) {
+            const Session before = step;
+            std::vector<std::string> messages;
+            fitSession(step, task.info(), messages);
+            EXPECT_TRUE(messages.empty()) << messages.front();
+            EXPECT_EQ(step, before);
+        }
+        History history = task.document.history;
+        history.seek(history.steps().size());
+        while (history.canUndo()) history.undo();
+        EXPECT_EQ(history.seek(0), task.steps.front());
+        Session end;
+        while (history.canRedo()) end = history.redo();
+        EXPECT_EQ(end, task.last());
+    }
+    EXPECT_GE(files, 7);
+}
+
+// Little oxygen in much water: brushed in a plot, inverted, cleared.
+TEST(Scenarios, TheStarvedAndFloodedSamplesAreThePlantedBox) {
+    const Recorded task = recorded("starvation");
+    const auto brushed = std::find_if(task.steps.begin(), task.steps.end(),
+                                      [](const Session& step) { return !step.selection.brushes.empty(); });
+    ASSERT_NE(brushed, task.steps.end());
+    const auto& region = std::get<vis::RangeRegion>(brushed->selection.brushes.front().region);
+    ASSERT_EQ(region.intervals.size(), 2u);
+    std::vector<int> channels;
+    for (const vis::BrushInterval& interval : region.intervals) channels.push_back(task.channel(interval.channel));
+    const glm::dvec3 cell = task.info().lattice.spacing;
+    volume::Box box = planted::kFlooded;
+    box.lo -= cell, box.hi += cell; // resampling carries its edge by up to a cell
+    double surely = 0, perhaps = 0, all = 0;
+    glm::dvec3 middle{0};
+    forEach(*task.source, channels, task.info().nearestTime(brushed->time),
+            [&](glm::dvec3 at, const std::vector<double>& values) {
+                bool in = true, near = true, present = true;
+                for (std::size_t i = 0; i < values.size(); ++i) {
+                    const vis::BrushInterval& of = region.intervals[i];
+                    present = present && !std::isnan(values[i]);
+                    in = in && values[i] >= of.lo + of.soft && values[i] <= of.hi - of.soft;
+                    near = near && values[i] >= of.lo - of.soft && values[i] <= of.hi + of.soft;
+                }
+                all += present;
+                surely += in;
+                perhaps += near;
+                if (!near) return;
+                middle += at;
+                EXPECT_TRUE(planted::inside(box, at)) << at.x << ' ' << at.y << ' ' << at.z;
+            });
+    EXPECT_GT(surely, 10);
+    EXPECT_TRUE(planted::inside(planted::kFlooded, middle / perhaps));
+    const double counted = selected(task, *brushed, "O2").samples;
+    EXPECT_GE(counted, surely);
+    EXPECT_LE(counted, perhaps);
+
+    const auto inverted = std::find_if(brushed, task.steps.end(), [](const Session& step) {
+        return !step.selection.brushes.empty() && step.selection.brushes.front().inverted;
+    });
+    ASSERT_NE(inverted, task.steps.end());
+    EXPECT_NEAR(selected(task, *inverted, "O2").samples, all - counted, 1e-3 * all);
+    EXPECT_TRUE(task.last().selection.brushes.empty()) << "Esc over the volume clears every view's selection";
+}
+
+// Along the channel oxygen falls while water rises; the cursor is read at three places, further and further down.
+TEST(Scenarios, OxygenFallsAlongTheChannelWhileWaterRises) {
+    const Recorded task = recorded("along_channel");
+    for (std::size_t i = 2; i < task.steps.size(); ++i)
+        EXPECT_GT(task.steps[i].cursor.z, task.steps[i - 1].cursor.z + 1e-3);
+    const Session& session = task.last();
+    const auto view = std::find_if(session.views.begin(), session.views.end(),
+                                   [](const auto& entry) { return std::holds_alternative<ProfileView>(entry.second); });
+    ASSERT_NE(view, session.views.end());
+    ProfileWish wish{.over = ProfileOver::Line,
+                     .channels = {task.channel("O2"), task.channel("H2O"), task.channel("T")},
+                     .corners = profileCorners(std::get<ProfileView>(view->second), session, task.info().bounds),
+                     .samples = 200,
+                     .time = volume::timesAround(task.info().times, session.time)};
+    const Profile profile = readProfile(*task.source, wish);
+    EXPECT_LT(correlation(profile.values[0], profile.values[1]), -0.8);
+    EXPECT_LT(correlation(profile.distance, profile.values[0]), -0.3);
+    EXPECT_GT(correlation(profile.distance, profile.values[1]), 0.1);
+    EXPECT_LT(profile.values[0].back(), 0.8 * profile.values[0].front());
+
+    // As a table, with units; the row at the cursor holds what the read-out says.
+    const std::string csv = profileCsv(task.info(), profile);
+    EXPECT_EQ(csv.substr(0, csv.find('\n')), "distance [m],x,y,z,O2 [mol/m\u00b3],H2O [mol/m\u00b3],T [K]");
+    EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 201);
+    std::size_t nearest = 0;
+    for (std::size_t i = 0; i < profile.positions.size(); ++i)
+        if (glm::distance(profile.positions[i], session.cursor) <
+            glm::distance(profile.positions[nearest], session.cursor))
+            nearest = i;
+    const auto read = volume::probe(*task.source, profile.positions[nearest], wish.time);
+    for (std::size_t c = 0; c < wish.channels.size(); ++c)
+        EXPECT_EQ(profile.values[c][nearest], read[std::size_t(wish.channels[c])].interpolated.value());
+}
+
+// A lens is dragged and enlarged; its statistics are those of the samples within.
+TEST(Scenarios, ALensCountsWhatItHolds) {
+    const Recorded task = recorded("lens");
+    const vis::Lens &before = task.steps.front().lenses.front(), &after = task.last().lenses.front();
+    EXPECT_GT(glm::distance(before.center, after.center), 1e-3);
+    EXPECT_GT(after.size.x, before.size.x);
+    const vis::WorldFrame world = vis::worldFrame(task.info().bounds, task.last().stretch);
+    const glm::dvec3 middle = world.toWorld(after.center);
+    double surely = 0, perhaps = 0, least = 1e9, most = -1e9, sum = 0;
+    forEach(*task.source, {task.channel("T")}, task.info().nearestTime(task.last().time),
+            [&](glm::dvec3 at, const std::vector<double>& values) {
+                const double radius = glm::length((world.toWorld(at) - middle) / glm::dvec3(after.size));
+                if (std::isnan(values[0]) || radius >= 1) return;
+                perhaps += 1;
+                if (radius > 1 - double(after.rim)) return;
+                surely += 1;
+                sum += values[0];
+                least = std::min(least, values[0]);
+                most = std::max(most, values[0]);
+            });
+    ASSERT_GT(surely, 50);
+    StatisticsWish wish;
+    wish.channels = {task.channel("T")};
+    wish.ranges = {task.range("T")};
+    wish.time = volume::timesAround(task.info().times, task.last().time);
+    wish.bins = 1;
+    wish.selection.brushes = {{.name = "", .color = {}, .region = vis::LensRegion{after.name}}};
+    wish.lenses = lensSpace(task.last(), task.info());
+    const volume::Summary inside = answer(task.source, wish, 0).channels.front().inside;
+    EXPECT_GT(inside.samples, surely);
+    EXPECT_LT(inside.samples, perhaps);
+    EXPECT_LE(inside.min, least);
+    EXPECT_GE(inside.max, most);
+    EXPECT_NEAR(inside.mean, sum / surely, 1);
+}
+
+// Walls read what a search along the axis finds; the prism brushed on a wall reaches through the whole cell.
+TEST(Scenarios, WallsReadTheMaximumAndTheMeanBehindThem) {
+    const Recorded task = recorded("shadow_cube");
+    const Session& session = task.last();
+    const volume::Box bounds = task.info().bounds;
+    const int time = task.info().nearestTime(session.time), heat = task.channel("T");
+    const CubeFace& bottom = kCubeFaces[2];
+    const auto highest = [&](glm::dvec3 at) {
+        double most = -1e9;
+        for (int i = 0; i <= 600; ++i) {
+            at.y = bounds.lo.y + bounds.size().y * i / 600;
+            if (const auto value = volume::probeChannel(*task.source, heat, at, time).interpolated)
+                most = std::max(most, *value);
+        }
+        return most;
+    };
+    for (const double z : {0.004, 0.0115, 0.012, 0.022, 0.03}) {
+        const glm::dvec3 at{1.1e-3, 0, z};
+        const auto read = readWall(*task.source, session, heat, WallKind::Maximum, bottom, at, time);
+        EXPECT_NEAR(read.value(), highest(at), 0.1) << z;
+    }
+    const auto wall = [&](double z) {
+        return readWall(*task.source, session, heat, WallKind::Maximum, bottom, {1.1e-3, 0, z}, time).value();
+    };
+    EXPECT_GT(wall(planted::kHotSpot.z), wall(0.03) + 8) << "the hot spot shows on the wall";
+    const auto oxygen = [&](double z) {
+        return readWall(*task.source, session, task.channel("O2"), WallKind::Mean, kCubeFaces[0], {0, 1e-3, z}, time)
+            .value();
+    };
+    EXPECT_LT(oxygen(0.026), 0.8 * oxygen(0.02)) << "the flooded box shows on the wall";
+    const vis::Brush& brush = session.selection.brushes.back();
+    const auto& box = std::get<vis::BoxRegion>(brush.region);
+    EXPECT_LE(box.center.x - box.radius.x, bounds.lo.x);
+    EXPECT_GE(box.center.x + box.radius.x, bounds.hi.x);
+    EXPECT_TRUE(planted::inside(planted::kFlooded, box.center));
+    EXPECT_TRUE(planted::inside(planted::kFlooded, session.cursor)) << "a double click on the wall took it there";
+}
+
+// The pulse of hydrogen: found on the curves over time at the cursor, and as a slanted ridge over place and time.
+TEST(Scenarios, ThePulseBeginsAtItsPlantedTime) {
+    const Recorded task = recorded("pulse");
+    const Session& session = task.last();
+    EXPECT_EQ(task.info().times[std::size_t(task.info().nearestTime(session.time))], session.time);
+    EXPECT_NEAR(session.time, planted::kPulseOnset, 1e-9) << "the time the researcher stopped at";
+    const int hydrogen = task.channel("H2");
+    const std::vector<double>& times = task.info().times;
+    const auto view = std::find_if(session.views.begin(), session.views.end(), [](const auto& entry) {
+        const auto* profile = std::get_if<ProfileView>(&entry.second);
+        return profile && profile->over != ProfileOver::Line;
+    });
+    ASSERT_NE(view, session.views.end());
+    const Profile over = readProfile(
+        *task.source, {.over = ProfileOver::LineAndTime,
+                       .channels = {hydrogen},
+                       .corners = profileCorners(std::get<ProfileView>(view->second), session, task.info().bounds),
+                       .samples = 150,
+                       .time = {}});
+    const std::size_t places = over.positions.size();
+    const auto value = [&](std::size_t t, std::size_t i) { return over.values[0][t * places + i]; };
+    ASSERT_FALSE(std::isnan(value(0, places / 2))) << "the line lies where there is hydrogen";
+    // How far each time stands out against the first; where the ridge is.
+    int onset = -1;
+    std::vector<double> ridge;
+    for (std::size_t t = 0; t < times.size(); ++t) {
+        double most = 0, at = 0;
+        for (std::size_t i = 0; i < places; ++i)
+            if (const double rise = value(t, i) - value(0, i); rise > most) most = rise, at = over.positions[i].z;
+        if (most < 2) continue;
+        if (onset < 0) onset = int(t);
+        ridge.push_back(at);
+    }
+    ASSERT_GE(onset, 0);
+    EXPECT_EQ(times[std::size_t(onset)], session.time);
+    ASSERT_GE(ridge.size(), 3u);
+    const double interval = times[std::size_t(onset) + 1] - times[std::size_t(onset)];
+    EXPECT_NEAR((ridge[2] - ridge[0]) / (2 * interval), -planted::kPulseSpeed, 0.15 * planted::kPulseSpeed);
+}
+
+// Turned in planes of space and of time by hand, then turned back.
+TEST(Scenarios, TheTesseractTurnsAndTurnsBack) {
+    const Recorded task = recorded("tesseract");
+    const auto angles = [](const Session& session) {
+        for (const auto& [pane, view] : session.views)
+            if (const auto* tesseract = std::get_if<TesseractView>(&view))
+                return vis::Angles4{tesseract->turn.x,  tesseract->turn.y,  tesseract->turn.z,
+                                    tesseract->turn4.x, tesseract->turn4.y, tesseract->turn4.z};
+        return vis::Angles4{};
+    };
+    vis::Angles4 farthest{};
+    for (const Session& step : task.steps) {
+        const vis::Angles4 now = angles(step), start = angles(task.steps.front());
+        for (std::size_t i = 0; i < 6; ++i) farthest[i] = std::max(farthest[i], std::abs(now[i] - start[i]));
+        const glm::dmat4 rotation = vis::rotationOf(now);
+        const glm::dmat4 product = rotation * glm::transpose(rotation);
+        for (int c = 0; c < 4; ++c)
+            for (int r = 0; r < 4; ++r) EXPECT_NEAR(product[c][r], c == r ? 1 : 0, 1e-12);
+        for (int corner = 0; corner < vis::kCorners4; ++corner) {
+            const vis::Projected4 seen = vis::project({}, 2, rotation * vis::corner4(corner, glm::dvec4(1)));
+            EXPECT_LE(glm::length(seen.at), 1.0 + 1e-9) << "no blow-up at any angle";
+        }
+    }
+    for (std::size_t i = 0; i < 6; ++i) EXPECT_GT(farthest[i], 1) << vis::kPlane4Names[i];
+    EXPECT_EQ(angles(task.last()), angles(task.steps.front()));
+    const glm::dmat4 back =
+        vis::rotationOf(angles(task.last())) * glm::transpose(vis::rotationOf(angles(task.steps.front())));
+    for (int c = 0; c < 4; ++c)
+        for (int r = 0; r < 4; ++r) EXPECT_NEAR(back[c][r], c == r ? 1 : 0, 1e-12);
+}
+
+} // namespace
+} // namespace tessera::app
