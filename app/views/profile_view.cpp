@@ -146,7 +146,18 @@ void drawPicture(const Session& session, const std::string& title, const vis::Pl
                  const Profile& profile, const PlotFrame& frame, const Across& across) {
     ImDrawList& draw = *ImGui::GetWindowDrawList();
     const PlotColors colors = plotColors();
-    draw.AddImage(reinterpret_cast<ImTextureID>(static_cast<std::intptr_t>(picture.name())), frame.min, frame.max);
+    // A row of the picture reaches half way to the times before and after it, its first and last place to the edge.
+    const std::vector<double>& times = profile.times;
+    const auto rows = static_cast<float>(times.size());
+    draw.PushClipRect(frame.min, frame.max, true);
+    for (std::size_t t = 0; t < times.size(); ++t) {
+        const double from = t > 0 ? (times[t - 1] + times[t]) / 2 : times.front();
+        const double to = t + 1 < times.size() ? (times[t] + times[t + 1]) / 2 : times.back();
+        const float v = 1 - (static_cast<float>(t) + 0.5f) / rows;
+        draw.AddImage(reinterpret_cast<ImTextureID>(static_cast<std::intptr_t>(picture.name())),
+                      {frame.min.x, frame.pixel(0, to).y}, {frame.max.x, frame.pixel(0, from).y}, {0, v}, {1, v});
+    }
+    draw.PopClipRect();
     draw.PushClipRect(frame.min, frame.max, true);
     drawCrosshair(draw, frame, across.marked ? profile.distance[*across.marked] * across.perUnit : std::nan(""),
                   session.time);
@@ -260,7 +271,7 @@ void drawProfileView(ViewContext& context, const std::string& pane, ProfileView&
         if (pictures && taken && frame.contains(mouse))
             session.time = info.times[static_cast<std::size_t>(info.nearestTime(frame.data(mouse).y))];
         if (pictures)
-            drawPicture(session, title, cache.pictures[c], *profile, frame, across);
+            drawPicture(session, title + ", up: t [" + info.timeUnit + "]", cache.pictures[c], *profile, frame, across);
         else
             drawCurve(title, rangeOf(c), *profile, c, frame, across);
         if (c + 1 == profile->values.size())
