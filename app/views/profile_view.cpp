@@ -15,7 +15,7 @@ namespace tessera::app {
 
 namespace {
 
-constexpr std::size_t kMostPlots = 8; ///< where the user has not chosen
+constexpr std::size_t kMostProfiles = 8; ///< where the user has not chosen
 
 struct ProfileCache : ViewCache {
     LatestFeed<ProfileWish, Profile> feed;
@@ -190,7 +190,7 @@ void drawProfileView(ViewContext& context, const std::string& pane, ProfileView&
     Session& session = context.session;
     const volume::DatasetInfo& info = context.source->info();
     ProfileCache& cache = cacheOf<ProfileCache>(context, pane);
-    const std::vector<int> shown = chosenChannels(info, view.channels, kMostPlots);
+    const std::vector<int> shown = chosenChannels(info, view.channels, kMostProfiles);
     if (shown.empty()) return drawHint("No parameters", "This data set holds only labels.");
     ProfileWish wish{.over = info.times.size() > 1 ? view.over : ProfileOver::Line,
                      .channels = shown,
