@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr double kAutosaveSeconds = 10;
-constexpr double kToastSeconds = 7;
+constexpr double kToastLife = 7;
 constexpr std::size_t kMessages = 500;
 
 } // namespace
@@ -367,7 +367,7 @@ double Workbench::idleSeconds() const {
     double wait = std::numeric_limits<double>::infinity();
     for (const Jobs::Status& job : jobs_.list()) wait = std::min(wait, job.quiet ? 0.25 : 0.1);
     for (const Message& each : messages_)
-        if (!each.gone && !each.failure) wait = std::min(wait, std::max(0.05, each.born + kToastSeconds - now()));
+        if (!each.gone && !each.failure) wait = std::min(wait, std::max(0.05, each.born + kToastLife - now()));
     if (unsavedEdits_) wait = std::min(wait, std::max(0.1, lastAutosave_ + kAutosaveSeconds - now()));
     return wait;
 }
