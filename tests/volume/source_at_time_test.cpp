@@ -75,10 +75,10 @@ TEST(SourceAtTime, BetweenTimesSamplesAreMixed) {
 
 // The same as the read-out, which mixes by itself, at every lattice point; and statistics follow.
 TEST(SourceAtTime, AgreesWithTheReadOutOnTheFuelCell) {
-    const auto source = makeMemorySource(makeModel("fuel-cell", {{"nx", 7}, {"ny", 9}, {"nz", 21}, {"times", 3}}),
+    const auto source = makeMemorySource(makeModel("fuel-cell", {{"nx", 7}, {"ny", 9}, {"nz", 21}, {"times", 8}}),
                                          {.lattice = LatticeKind::BCC});
     const std::vector<double>& times = source->info().times;
-    const TimePair pair = timesAround(times, 0.3 * times[0] + 0.7 * times[1]);
+    const TimePair pair = timesAround(times, 0.3 * times[5] + 0.7 * times[6]);
     ASSERT_TRUE(pair.between());
     const SourceAtTime at = sourceAt(source, pair);
     const glm::dvec3 place = source->info().bounds.lo + 0.37 * source->info().bounds.size();
@@ -96,7 +96,7 @@ TEST(SourceAtTime, AgreesWithTheReadOutOnTheFuelCell) {
             .channels[0]
             .all.mean;
     };
-    const double before = mean(*source, 0), after = mean(*source, 1);
+    const double before = mean(*source, 5), after = mean(*source, 6);
     EXPECT_NE(before, after);
     EXPECT_NEAR(mean(*at.source, at.time), 0.3 * before + 0.7 * after, 1e-4);
 }
