@@ -244,7 +244,8 @@ TEST_F(ResidencyTest, BudgetMayShrinkAndGrow) {
 
     scene.render.limits.textureMemory = 1024;
     refine(renderer, *target, scene, {24, 24});
-    EXPECT_EQ(test::maxDifference(renderer.readLinear(*target), first), 0);
+    // Bricks lie elsewhere in the atlas now: the last bit of a coordinate may differ.
+    EXPECT_LT(test::maxDifference(renderer.readLinear(*target), first), 1e-3);
     EXPECT_EQ(renderer.residency().bricksResident, full.bricksResident);
 }
 
