@@ -56,9 +56,10 @@ struct Write {
                 value[static_cast<typename T::length_type>(i)] =
                     static_cast<typename T::value_type>(within(in[i], info));
         } else if constexpr (detail::IsQuat<T>::value) {
-            using V = typename T::value_type;
             if (in.size() != 4) return;
-            value = T(static_cast<V>(in[0]), static_cast<V>(in[1]), static_cast<V>(in[2]), static_cast<V>(in[3]));
+            const glm::dquat turn(in[0], in[1], in[2], in[3]);
+            if (!(glm::dot(turn, turn) > 0)) return; // no rotation at all
+            value = T(glm::normalize(turn));
         } else if constexpr (std::is_same_v<T, Range>) {
             if (in.size() != 2) return;
             value = {in[0], in[1]};
