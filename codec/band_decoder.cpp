@@ -1,12 +1,6 @@
 #include "codec/band_coder.h"
 #include "codec/band_rows.h"
-
-#if TESSERA_X86
-#if defined(__GNUC__) && !defined(__clang__)
-#pragma GCC diagnostic ignored "-Wmaybe-uninitialized" // gcc 12 takes its own undefined vectors for a mistake
-#endif
-#include <immintrin.h>
-#endif
+#include "codec/vector_intrinsics.h"
 
 namespace tessera::codec {
 

@@ -1,0 +1,11 @@
+#pragma once
+
+#include "codec/cpu.h"
+
+/// The processor's vector instructions where it is an x86.
+#if TESSERA_X86
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC diagnostic ignored "-Wmaybe-uninitialized" // gcc 12 takes its own undefined vectors for a mistake
+#endif
+#include <immintrin.h>
+#endif
