@@ -33,7 +33,7 @@ done
 signal style-localmaximum --set "/layers=[$(volume rho '"style":"localmaximum","threshold":0.6')]"
 picture quantity-gradient --set "/layers=[$(volume T '"quantity":"gradient","density":4')]"
 # Looks
-for look in plain tone illustration cartoon glass distance charcoal pencil sanguine chalk; do
+for look in plain tone illustration cartoon glass distance charcoal pencil sanguine chalk wire; do
     "$tessera" render charcoal -o "$out/look-$look.png" --view volume --size "$size" \
         --set '/layers/0/technique/color=[0.9,0.55,0.3]' --set "/layers/0/technique/look=\"$look\""
 done

@@ -85,11 +85,12 @@ ProgramRecipe Renderer::Impl::prepare(ViewTarget& target, const Scene& scene, Ra
 
 /// Rasterises the geometry for a picture of this size, unless that is what the target has.
 void Renderer::Impl::geometry(ViewTarget& target, const Scene& scene, const RayPlan& plan, glm::ivec2 size, int pass) {
-    const int peels = peelsOf(scene.geometry);
+    const int peels = peelsOf(scene);
     if (peels == 0) return;
     if (target.geometrySize != size || target.geometryPass != pass) {
         target.geometry.resize(target.size, peels);
-        geometryPass.draw(target.geometry, scene, source->info(), size, rayUnits(plan).light, pixelJitter(pass));
+        geometryPass.draw(target.geometry, scene, source->info(), size, target.size, rayUnits(plan).light, grain,
+                          pixelJitter(pass));
         target.geometrySize = size;
         target.geometryPass = pass;
     }

@@ -128,12 +128,13 @@ bool decode(Stream& stream, Image& image, std::vector<png_bytep>& rows, std::map
 
 } // namespace
 
-void writePng(const std::string& path, const Image& image, const std::map<std::string, std::string>& texts) {
+std::vector<std::uint8_t> encodePng(const Image& image, const std::map<std::string, std::string>& texts,
+                                    const std::string& name) {
     const std::size_t pixels = std::size_t(std::max(image.size.x, 0)) * std::size_t(std::max(image.size.y, 0));
     if (pixels == 0 || image.rgba.size() != pixels * 4)
         throw Error("a picture of " + std::to_string(image.size.x) + " x " + std::to_string(image.size.y) +
                         " cannot be written",
-                    path);
+                    name);
     std::vector<png_const_bytep> rows;
     for (std::size_t y = 0; y < std::size_t(image.size.y); ++y)
         rows.push_back(image.rgba.data() + y * std::size_t(image.size.x) * 4);
@@ -151,10 +152,14 @@ void writePng(const std::string& path, const Image& image, const std::map<std::s
         chunks.push_back(chunk);
     }
     Stream stream;
-    if (!encode(stream, image, chunks, rows, opaque)) throw Error(stream.error, path);
+    if (!encode(stream, image, chunks, rows, opaque)) throw Error(stream.error, name);
+    return {stream.bytes.begin(), stream.bytes.end()};
+}
 
+void writePng(const std::string& path, const Image& image, const std::map<std::string, std::string>& texts) {
+    const std::vector<std::uint8_t> bytes = encodePng(image, texts, path);
     AtomicFile file(path);
-    file.write(stream.bytes.data(), stream.bytes.size());
+    file.write(bytes.data(), bytes.size());
     file.commit();
 }
 

@@ -17,6 +17,10 @@ struct Image {
 /// Key of the text chunk that carries a session in an exported PNG.
 inline constexpr const char* kSessionTextKey = "tessera-session";
 
+/// A PNG's bytes, with compressed international text chunks (iTXt, UTF-8). Throws Error naming `name`.
+std::vector<std::uint8_t> encodePng(const Image& image, const std::map<std::string, std::string>& texts = {},
+                                    const std::string& name = {});
+
 /// Writes a PNG with compressed international text chunks (iTXt, UTF-8), atomically: a temporary file, then rename.
 /// Throws Error when the file cannot be written.
 void writePng(const std::string& path, const Image& image, const std::map<std::string, std::string>& texts = {});

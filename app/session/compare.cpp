@@ -29,7 +29,20 @@ std::string changesText(const Session& session, const CompareVariant& variant) {
         const Json parsed = Json::parse(value, nullptr, false);
         std::string shown = parsed.is_string() ? parsed.get<std::string>() : value;
         if (path == "/data/bcc") title = "lattice", shown = shown == "true" ? "BCC" : "CC";
-        if (shown.size() > 24) shown = "...";
+        // Of several values those that are other than the session's.
+        if (parsed.is_object() && !parsed.empty()) {
+            const Json base = toJson(session);
+            const Json::json_pointer at(path);
+            const Json before = base.contains(at) ? base[at] : Json();
+            shown.clear();
+            for (const auto& [key, part] : parsed.items())
+                if (!before.is_object() || !before.contains(key) || before[key] != part)
+                    shown += (shown.empty() ? "" : ", ") + key + " " +
+                             (part.is_string() ? part.get<std::string>() : part.dump());
+            text += (text.empty() ? "" : ", ") + (shown.empty() ? title : shown);
+            continue;
+        }
+        if (parsed.is_null()) shown = "none";
         text += (text.empty() ? "" : ", ") + title + " " + shown;
     }
     return text.empty() ? "as it is" : text;
@@ -76,13 +89,17 @@ std::string compareCsv(const std::vector<CompareRow>& rows) {
     };
     const auto number = [](double value) { return std::isfinite(value) ? toJson(value).dump() : std::string("inf"); };
     std::string csv = "variant,differs,reference,ms per frame,samples,texture bytes,stored bytes,"
-                      "maximum (of 255),RMSE (of 255),PSNR (dB),SSIM,failure\n";
+                      "maximum (of 255),RMSE (of 255),PSNR (dB),SSIM,samples that differ,largest error of a sample,"
+                      "RMSE of samples,failure\n";
     for (const CompareRow& row : rows) {
         csv += field(row.name) + "," + field(row.changes) + "," + (row.reference ? "yes" : "no");
         for (const double value : {row.milliseconds, row.samples, row.bytes, row.storedBytes})
             csv += "," + number(value);
         for (const double value : {row.maximum, row.rmse, row.psnr, row.ssim})
             csv += "," + (row.measured ? number(value) : std::string());
+        for (const double value : {row.data ? double(row.data->differing) : 0, row.data ? row.data->largest : 0,
+                                   row.data ? row.data->rms : 0})
+            csv += "," + (row.data ? number(value) : std::string());
         csv += "," + field(row.failure) + "\n";
     }
     return csv;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "app/session/session.h"
+#include "volume/source_difference.h"
 
 #include <string>
 #include <vector>
@@ -39,6 +40,7 @@ struct CompareRow {
     double bytes = 0;        ///< of their textures
     double storedBytes = 0;  ///< of the archive they come from; 0 = none
     double maximum = 0, rmse = 0, psnr = 0, ssim = 0;
+    std::optional<volume::SourceDifference> data; ///< of the first layer's samples, where both have them
 };
 std::string compareCsv(const std::vector<CompareRow>& rows);
 

@@ -3,6 +3,7 @@
 #include "app/ui/widgets.h"
 #include "app/views/brush_edit.h"
 #include "app/views/lens_list.h"
+#include "app/views/space_handles.h"
 #include "app/views/ticks.h"
 #include "app/views/view_parts.h"
 
@@ -134,35 +135,13 @@ void addAtCursor(ViewContext& context, bool box) {
     vis::Brush brush = spaceBrush(context.session, context.source->info(), box);
     brush.name = newBrushName(selection, brush.name);
     brush.color = newBrushColor(selection);
+    // Two places are seldom one within the other: together they are what either holds.
+    const bool beside = std::any_of(selection.brushes.begin(), selection.brushes.end(), [](const vis::Brush& other) {
+        return other.enabled && (std::holds_alternative<vis::SphereRegion>(other.region) ||
+                                 std::holds_alternative<vis::BoxRegion>(other.region));
+    });
+    if (beside) brush.combine = vis::BrushCombine::Or;
     selection.brushes.push_back(std::move(brush));
-}
-
-/// Calls `line(from, to)` for the lines that show a brush in space, in units of its radius.
-template <class Line> void wires(bool box, const Line& line) {
-    if (box) {
-        for (int axis = 0; axis < 3; ++axis)
-            for (int corner = 0; corner < 4; ++corner) {
-                glm::dvec3 a(0);
-                a[(axis + 1) % 3] = corner & 1 ? 1 : -1;
-                a[(axis + 2) % 3] = corner & 2 ? 1 : -1;
-                glm::dvec3 b = a;
-                a[axis] = -1;
-                b[axis] = 1;
-                line(a, b);
-            }
-        return;
-    }
-    for (int axis = 0; axis < 3; ++axis)
-        for (int i = 0; i < kParts; ++i) {
-            const auto at = [&](int k) {
-                const double angle = 2 * 3.14159265358979 * k / kParts;
-                glm::dvec3 p(0);
-                p[(axis + 1) % 3] = std::cos(angle);
-                p[(axis + 2) % 3] = std::sin(angle);
-                return p;
-            };
-            line(at(i), at(i + 1));
-        }
 }
 
 /// Centre and radius of a brush in space.
@@ -204,6 +183,11 @@ void drawBrushList(ViewContext& context) {
     }
     if (removed >= 0) selection.brushes.erase(selection.brushes.begin() + removed);
     if (selection.brushes.empty()) ImGui::TextDisabled("No brushes: drag in a plot to select.");
+    if (const std::string together = combinationText(selection); !together.empty()) {
+        ImGui::PushTextWrapPos();
+        ImGui::TextDisabled("Selected: %s", together.c_str());
+        ImGui::PopTextWrapPos();
+    }
     const auto button = [](const char* text, bool first = false) { // beside the last one, or below where it is narrow
         const float right = ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x;
         const ImGuiStyle& style = ImGui::GetStyle();
@@ -225,6 +209,25 @@ void drawBrushList(ViewContext& context) {
     if (selection.active() && ImGui::IsItemHovered())
         tooltip("The volumes become equally opaque everywhere: what is selected shows, whatever the transfer function "
                 "hides, and the rest fades");
+}
+
+std::string combinationText(const vis::Selection& selection) {
+    std::string text;
+    int count = 0;
+    bool either = false;
+    for (std::size_t i = 0; i < selection.brushes.size(); ++i) {
+        const vis::Brush& brush = selection.brushes[i];
+        if (!brush.enabled) continue;
+        either = either || brush.combine == vis::BrushCombine::Or;
+        static constexpr const char* kWords[] = {" and ", " or ", " without "};
+        if (count > 1 && text.find(' ') != std::string::npos) text = "(" + text + ")";
+        // The first one meets everything.
+        const bool taken = brush.inverted != (count == 0 && brush.combine == vis::BrushCombine::Minus);
+        const std::string own = (taken ? "not " : "") + std::to_string(i + 1);
+        text = count > 0 ? text + kWords[static_cast<std::size_t>(brush.combine)] + own : own;
+        ++count;
+    }
+    return count < 2 ? std::string() : either ? text : text + "; Shift in a plot adds (or), Ctrl takes away (minus)";
 }
 
 vis::Brush spaceBrush(const Session& session, const volume::DatasetInfo& info, bool box) {
@@ -252,11 +255,11 @@ void drawSpaceBrushes(ImDrawList& draw, const SpaceFrame& frame, const vis::Sele
         const auto shape = spaceShape(brush);
         if (!shape) continue;
         const ImU32 color = brushColor(brush, brush.enabled ? 0.8f : 0.3f);
-        wires(shape->box, [&](glm::dvec3 a, glm::dvec3 b) {
-            const auto from = frame.pixel(shape->center + a * shape->radius),
-                       to = frame.pixel(shape->center + b * shape->radius);
+        for (const auto& [a, b] : shape->box ? boxWires(shape->center - shape->radius, shape->center + shape->radius)
+                                             : ballWires(shape->center, shape->radius)) {
+            const auto from = frame.pixel(a), to = frame.pixel(b);
             if (from && to) draw.AddLine(*from, *to, color, std::max(1.0f, em() * 0.08f));
-        });
+        }
     }
 }
 

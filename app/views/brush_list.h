@@ -9,6 +9,10 @@ namespace tessera::app {
 /// Every brush with its colour, name, switches and numbers, and buttons that add brushes in space at the cursor.
 void drawBrushList(ViewContext& context);
 
+/// What the enabled brushes hold together, by their numbers: "(1 and 2) or 3", with a hint how to join them otherwise
+/// where they are only narrowed down; "" for fewer than two.
+std::string combinationText(const vis::Selection& selection);
+
 /// A ball or box around the cursor that looks a sixth of the shown box wide, whatever the stretch.
 vis::Brush spaceBrush(const Session& session, const volume::DatasetInfo& info, bool box);
 

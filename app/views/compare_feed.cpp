@@ -124,8 +124,17 @@ void CompareFeed::drawCell(ViewContext& context, const std::string& pane, std::s
     request.moving = moving && !context.headless;
     request.wait = context.headless;
     const vis::Scene scene = cell.feed.get(own, pane + "/" + std::to_string(index), request.moving);
-    request.budgetMs = double(scene.render.limits.frameTime) / double(std::max<std::size_t>(cells_.size(), 1));
+    const bool first = !cell.shows || request.moving || !(scene == cell.sceneShown);
+    const double share = double(scene.render.limits.frameTime) / double(std::max<std::size_t>(cells_.size(), 1));
+    request.budgetMs = first ? share : double(scene.render.limits.frameTime);
+    if (!first && !request.wait && cell.sizeShown == size && refined_ != index && !cell.status.complete) {
+        cell.drawn = context.busy = true; // as it is until its turn comes
+        return;
+    }
+    cell.sceneShown = scene;
+    cell.sizeShown = size;
     cell.status = own.renderer.render(*cell.target, scene, request);
+    cell.shows = cell.status.complete || cell.status.milliseconds > 0;
     cell.drawn = true;
     if (!cell.status.complete || own.busy) context.busy = true;
     context.behind = context.behind || own.behind;
@@ -175,10 +184,54 @@ void CompareFeed::measure(ViewContext& context, const std::string& pane, std::si
         true);
 }
 
+void CompareFeed::measureSamples(ViewContext& context, const std::string& pane, std::size_t index,
+                                 std::size_t reference) {
+    CompareCell& cell = *cells_[index];
+    const CompareCell& against = *cells_[reference];
+    const auto source = cell.data ? cell.data->source : context.source,
+               wanted = against.data ? against.data->source : context.source;
+    if (index == reference || !cell.failure.empty() || !source || !wanted || source == wanted) return;
+    const std::vector<vis::Layer>& layers = cell.session.layers;
+    if (layers.empty()) return;
+    const std::string name = std::visit([](const auto& own) { return own.channel; }, layers.front().technique);
+    const CompareCell::Samples of{source.get(), wanted.get(), name, cell.session.time};
+    if (cell.samplesOf == of) return;
+    const auto compute = [source, wanted, of](const Progress& progress) -> std::optional<volume::SourceDifference> {
+        const auto a = source->info().findChannel(of.channel), b = wanted->info().findChannel(of.channel);
+        if (!a || !b) return std::nullopt;
+        try {
+            return volume::sourceDifference({*source, *a, source->info().nearestTime(of.time)},
+                                            {*wanted, *b, wanted->info().nearestTime(of.time)}, progress);
+        } catch (const Error&) {
+            return std::nullopt; // damaged data: the picture says so
+        }
+    };
+    if (context.headless) {
+        cell.samplesOf = of;
+        cell.samples = compute({});
+        return;
+    }
+    const std::string key = pane + ":samples" + std::to_string(index);
+    context.busy = true;
+    if (context.jobs.running(key)) return;
+    context.jobs.start(
+        key, "Samples of a variant",
+        [compute, of, weak = std::weak_ptr(cells_[index])](const Progress& progress) -> Jobs::Finish {
+            return [of, weak, result = compute(progress)] {
+                const auto to = weak.lock();
+                if (!to) return;
+                to->samplesOf = of;
+                to->samples = result;
+            };
+        },
+        true);
+}
+
 void CompareFeed::draw(ViewContext& context, const std::string& pane, const std::vector<CompareVariant>& variants,
                        std::size_t reference, glm::ivec2 size, bool moving) {
     for (const auto& data : data_) data->used = false;
     cells_.resize(variants.size());
+    refined_ %= std::max<std::size_t>(cells_.size(), 1);
     for (std::size_t i = 0; i < variants.size(); ++i) {
         if (!cells_[i]) cells_[i] = std::make_shared<CompareCell>();
         CompareCell& cell = *cells_[i];
@@ -198,7 +251,14 @@ void CompareFeed::draw(ViewContext& context, const std::string& pane, const std:
         drawCell(context, pane, i, size, moving);
     }
     std::erase_if(data_, [](const auto& data) { return !data->used; });
-    for (std::size_t i = 0; i < cells_.size(); ++i) measure(context, pane, i, reference);
+    // One picture after the other is refined with the frame's whole time: sharing it would cost each its beginning anew
+    // in every frame.
+    for (std::size_t i = 0; i < cells_.size() && cells_[refined_ % cells_.size()]->final(); ++i)
+        refined_ = (refined_ + 1) % cells_.size();
+    for (std::size_t i = 0; i < cells_.size(); ++i) {
+        measure(context, pane, i, reference);
+        measureSamples(context, pane, i, reference);
+    }
 }
 
 double CompareFeed::showDifferences(double top, std::size_t reference) {
@@ -257,6 +317,11 @@ std::vector<CompareRow> CompareFeed::rows(const ViewContext& context, std::size_
             row.rmse = cell.measured.rmse;
             row.psnr = cell.measured.psnr;
             row.ssim = cell.measured.ssim;
+        }
+        if (i != reference && reference < cells_.size()) {
+            const volume::BrickSource* wanted = cells_[reference]->source(context);
+            if (cell.samplesOf.own == cell.source(context) && cell.samplesOf.reference == wanted && wanted)
+                row.data = cell.samples;
         }
         out.push_back(row);
     }

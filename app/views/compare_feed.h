@@ -31,6 +31,10 @@ struct CompareCell {
     vis::ViewTargetPtr target;
     vis::FrameStatus status;
     bool drawn = false;
+    // The scene and size of the picture that is there.
+    bool shows = false;
+    vis::Scene sceneShown;
+    glm::ivec2 sizeShown{0};
 
     // What was read back of a finished picture, and what came of it.
     vis::Scene imageOf;
@@ -38,6 +42,14 @@ struct CompareCell {
     std::shared_ptr<const vis::Image> image;
     std::shared_ptr<const vis::Image> measuredImage, measuredAgainst;
     vis::ImageDifference measured;
+    /// Samples of the first layer beside those of the reference: of what, and what came of it.
+    struct Samples {
+        const volume::BrickSource *own = nullptr, *reference = nullptr;
+        std::string channel;
+        double time = 0;
+        bool operator==(const Samples&) const = default;
+    } samplesOf;
+    std::optional<volume::SourceDifference> samples;
     std::vector<std::uint8_t> differences; ///< differenceMap
     vis::PlotTexture differencePicture;
     std::shared_ptr<const vis::Image> shownImage, shownAgainst; ///< of differencePicture
@@ -46,6 +58,8 @@ struct CompareCell {
     const volume::BrickSource* source(const ViewContext& context) const {
         return data ? data->source.get() : context.source.get();
     }
+    /// Nothing is left to draw.
+    bool final() const { return !failure.empty() || (drawn && status.complete); }
     bool finished() const { return drawn && status.complete && image; }
 };
 
@@ -66,7 +80,9 @@ private:
     std::shared_ptr<CompareData> dataFor(ViewContext& context, const std::string& pane, const DataRef& data);
     void drawCell(ViewContext& context, const std::string& pane, std::size_t index, glm::ivec2 size, bool moving);
     void measure(ViewContext& context, const std::string& pane, std::size_t index, std::size_t reference);
+    void measureSamples(ViewContext& context, const std::string& pane, std::size_t index, std::size_t reference);
 
+    std::size_t refined_ = 0;                      ///< the cell that has the frame's time
     std::list<std::shared_ptr<CompareData>> data_; ///< before the cells: their targets go first
     std::vector<std::shared_ptr<CompareCell>> cells_;
 };

@@ -17,6 +17,11 @@ namespace tessera::app {
 namespace {
 
 constexpr std::size_t kMostVariants = 16;
+constexpr const char* kRowHelp =
+    "Click: swiped over the reference. Ctrl+click: the reference. Errors are of the 8-bit colours on screen; samples "
+    "and "
+    "bytes those of the parameters shown; \"Differ\" counts stored samples of the first layer's parameter that are not "
+    "equal to the reference's, where both have the same ones.";
 
 /// The list to edit: what is shown becomes the view's own.
 std::vector<CompareVariant>& own(CompareView& view) {
@@ -178,9 +183,12 @@ void drawCompareTable(CompareView& view, const std::vector<CompareRow>& rows) {
                                        ImGuiTableFlags_BordersInnerV;
     const bool stored =
         std::any_of(rows.begin(), rows.end(), [](const CompareRow& row) { return row.storedBytes > 0; });
-    if (!ImGui::BeginTable("compare", stored ? 10 : 9, kFlags)) return;
+    const bool compared =
+        std::any_of(rows.begin(), rows.end(), [](const CompareRow& row) { return row.data.has_value(); });
     std::vector<const char*> names{"Variant", "What differs", "ms", "Samples", "Texture"};
     if (stored) names.push_back("File");
+    if (compared) names.push_back("Differ");
+    if (!ImGui::BeginTable("compare", static_cast<int>(names.size()) + 4, kFlags)) return;
     for (const char* name : {"Max.", "RMSE", "PSNR [dB]", "SSIM"}) names.push_back(name);
     ImGui::TableSetupScrollFreeze(1, 1);
     for (std::size_t i = 0; i < names.size(); ++i)
@@ -208,9 +216,7 @@ void drawCompareTable(CompareView& view, const std::vector<CompareRow>& rows) {
             else
                 view.other = static_cast<int>(i);
         }
-        if (ImGui::IsItemHovered())
-            tooltip("Click: swiped over the reference. Ctrl+click: the reference. Errors are of the 8-bit colours on "
-                    "screen; samples and bytes those of the parameters shown.");
+        if (ImGui::IsItemHovered()) tooltip((row.name + ": " + row.changes + "\n\n" + kRowHelp).c_str());
         const auto cell = [](const std::string& text, bool faint = false) {
             ImGui::TableNextColumn();
             textRight(text, faint);
@@ -221,6 +227,7 @@ void drawCompareTable(CompareView& view, const std::vector<CompareRow>& rows) {
         cell(row.samples > 0 ? formatCount(row.samples) : "-");
         cell(bytes(row.bytes));
         if (stored) cell(bytes(row.storedBytes));
+        if (compared) cell(row.data ? formatCount(double(row.data->differing)) : "-", row.reference);
         if (row.reference) {
             cell("reference", true);
             for (int k = 0; k < 3; ++k) cell("");

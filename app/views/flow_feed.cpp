@@ -19,6 +19,8 @@ struct Wish {
     vis::FlowLayer layer;
     volume::TimePair time;
     glm::dvec3 stretch{1};
+    vis::Selection brushes = {}; ///< of beginnings that follow them
+    vis::LensSpace lenses = {};
     bool operator==(const Wish&) const = default;
 };
 
@@ -30,13 +32,15 @@ Wish wishOf(const vis::FlowLayer& layer, volume::TimePair time, glm::dvec3 stret
     wish.layer.lineWidth = drawn.lineWidth;
     wish.layer.color = drawn.color;
     wish.layer.opacity = drawn.opacity;
+    wish.layer.look = drawn.look;
     return wish;
 }
 
-std::shared_ptr<const vis::Geometry> make(const std::shared_ptr<const volume::BrickSource>& source, const Wish& wish,
-                                          const Progress& progress) {
+std::shared_ptr<const vis::Geometry> makeWish(const std::shared_ptr<const volume::BrickSource>& source,
+                                              const Wish& wish, const Progress& progress) {
     const volume::SourceAtTime shown = volume::sourceAt(source, wish.time);
-    return vis::makeFlow(*shown.source, wish.layer, shown.time, wish.stretch, progress);
+    const vis::DoiFunction interest(wish.brushes, wish.lenses);
+    return vis::makeFlow(*shown.source, wish.layer, shown.time, wish.stretch, progress, &interest);
 }
 
 struct Made {
@@ -80,13 +84,17 @@ std::vector<vis::GeometryLayer> FlowFeed::get(ViewContext& context, const std::s
     for (std::size_t i = 0; i < session.layers.size(); ++i) {
         const auto* flow = std::get_if<vis::FlowLayer>(&session.layers[i].technique);
         if (!flow || !session.layers[i].visible) continue;
-        const Wish wish = wishOf(*flow, time, session.stretch);
+        Wish wish = wishOf(*flow, time, session.stretch);
+        if (flow->seedBrushed && session.selection.active()) {
+            wish.brushes.brushes = session.selection.brushes;
+            if (vis::selectsLens(session.selection)) wish.lenses = lensSpace(session, context.source->info());
+        }
         const std::string job = pane + ":flow" + std::to_string(i);
         const Made* here = state.find(wish);
         if (!here && context.headless) {
             Made made{wish, nullptr};
             try {
-                made.geometry = make(context.source, wish, {});
+                made.geometry = makeWish(context.source, wish, {});
             } catch (const Error&) { // shown without it
             }
             state.keep(made);
@@ -103,7 +111,7 @@ std::vector<vis::GeometryLayer> FlowFeed::get(ViewContext& context, const std::s
                         std::shared_ptr<const vis::Geometry> made;
                         std::string failure;
                         try {
-                            made = make(source, wish, progress);
+                            made = makeWish(source, wish, progress);
                         } catch (const Error& error) {
                             failure = error.what();
                         }
@@ -128,7 +136,10 @@ std::vector<vis::GeometryLayer> FlowFeed::get(ViewContext& context, const std::s
                        .channel = here->wish.layer.channel,
                        .opacity = flow->opacity,
                        .lineWidth = flow->lineWidth,
-                       .lens = session.layers[i].lens});
+                       .lens = session.layers[i].lens,
+                       .transfer = session.layers[i].transfer,
+                       .brushes = session.layers[i].brushes,
+                       .look = flow->look});
     }
     return out;
 }

@@ -1,3 +1,4 @@
+#include "app/session/context_style.h"
 #include "app/ui/widgets.h"
 #include "app/views/brush_list.h"
 #include "app/views/keyframes.h"
@@ -127,12 +128,13 @@ void drawPlace(const WidgetContext& widgets, Session& session, vis::Layer& layer
         drawLabel(widgets, "Drawn", "Everywhere, or inside a lens alone");
         chooseLens("##lens", session, layer.lens, "everywhere");
     }
-    if (!std::holds_alternative<vis::IsoLayer>(layer.technique)) {
+    const auto* surface = std::get_if<vis::IsoLayer>(&layer.technique);
+    if (!surface || !surface->colorBy.empty()) {
         bool own = !layer.transfer.empty();
         const FieldInfo field{
             .key = "ownTransfer", .unit = "", .doc = "Colours and opacity of its own, beside those of its parameter"};
         if (drawBool(widgets, field, own)) {
-            const std::string channel = channelOf(layer.technique);
+            const std::string channel = surface ? surface->colorBy : channelOf(layer.technique);
             const vis::TransferFunction now = transferOf(session, layer.transfer.empty() ? channel : layer.transfer);
             std::string name = channel + " in " + layer.name;
             while (own && session.transfer.contains(name)) name += "'";
@@ -141,10 +143,39 @@ void drawPlace(const WidgetContext& widgets, Session& session, vis::Layer& layer
             layer.transfer = own ? name : "";
         }
     }
-    double shift = layer.timeShift;
-    const FieldInfo field{
-        .key = "timeShift", .unit = "s", .doc = "How much later than the time of the session the layer is shown"};
-    if (drawNumber(widgets, field, {}, &shift, 1, false)) layer.timeShift = shift;
+    bool changed = false;
+    std::optional<Range> scale;
+    std::string unit;
+    const detail::MemberToWidget draw{widgets, changed, scale, unit};
+    vis::Layer::describe(layer, [&](auto& value, const FieldInfo& field) {
+        if (field.key == "timeShift" || field.key == "brushes") draw(value, field);
+    });
+}
+
+/// One click for each way of drawing what is not brushed, and the weights of its hull.
+void drawContextStyles(ViewContext& context, const WidgetContext& widgets) {
+    Session& session = context.session;
+    ImGui::TextDisabled("What is not brushed");
+    const float right = ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x;
+    for (std::size_t i = 0; i < std::size(kContextStyleNames); ++i) {
+        const std::string name(kContextStyleNames[i]);
+        const float width = ImGui::CalcTextSize(name.c_str()).x + 2 * ImGui::GetStyle().FramePadding.x;
+        if (i > 0 && ImGui::GetItemRectMax().x + ImGui::GetStyle().ItemSpacing.x + width <= right) ImGui::SameLine();
+        const auto style = static_cast<ContextStyle>(i);
+        if (ImGui::SmallButton(name.c_str())) setContextStyle(session, context.source->info(), style);
+        if (ImGui::IsItemHovered()) tooltip(std::string(contextStyleHelp(style)).c_str());
+    }
+    drawDescribed(session.selection, widgets.at("/selection"));
+    const std::optional<std::size_t> hull = hullLayer(session);
+    if (!hull) return;
+    auto& surface = std::get<vis::IsoLayer>(session.layers[*hull].technique);
+    const std::string path = "/layers/" + std::to_string(*hull) + "/technique";
+    ImGui::PushID("hull");
+    if (ImGui::TreeNodeEx("Hull", ImGuiTreeNodeFlags_DefaultOpen | ImGuiTreeNodeFlags_SpanAvailWidth)) {
+        drawDescribed(surface, widgets.at(path));
+        ImGui::TreePop();
+    }
+    ImGui::PopID();
 }
 
 void drawListButtons(ViewContext& context, const volume::DatasetInfo& info, int& selected) {
@@ -212,7 +243,7 @@ void drawLayersView(ViewContext& context, const std::string& pane, LayersView& v
         drawLensList(context, pane, cacheOf<LayersCache>(context, pane).lenses);
     if (ImGui::CollapsingHeader("Focus and context", ImGuiTreeNodeFlags_DefaultOpen)) {
         drawBrushList(context);
-        drawDescribed(session.selection, widgets.at("/selection"));
+        drawContextStyles(context, widgets);
     }
     if (ImGui::CollapsingHeader("Light")) drawDescribed(session.lighting, widgets.at("/lighting"));
     if (ImGui::CollapsingHeader("Paper")) {

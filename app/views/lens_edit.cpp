@@ -2,6 +2,7 @@
 
 #include "app/ui/keys.h"
 #include "app/views/lens_outline.h"
+#include "app/views/space_handles.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,13 +15,6 @@ namespace {
 
 constexpr float kShortest = 0.8f; ///< em: an axis handle closer to the middle than this is left out
 constexpr float kLeast = 0.005f, kMost = 2;
-
-/// What a pixel looks at.
-vis::Ray rayAt(const SpaceFrame& frame, const vis::Camera& camera, ImVec2 at) {
-    const double width = std::max(1.0f, frame.max.x - frame.min.x), height = std::max(1.0f, frame.max.y - frame.min.y);
-    return vis::cameraRay(camera, width / height,
-                          {(at.x - frame.min.x) / width * 2 - 1, 1 - (at.y - frame.min.y) / height * 2});
-}
 
 /// Axes of the picture in world space.
 glm::dmat3 eyeAxes(const vis::Camera& camera) {
@@ -56,18 +50,8 @@ LensGrip gripUnder(const LensHandles& handles, ImVec2 at) {
 
 void move(Session& session, vis::Lens& lens, const LensDrag& drag, const SpaceFrame& frame, ImVec2 mouse) {
     const glm::dvec3 physical = drag.before.followsCursor ? drag.cursorBefore : drag.before.center;
-    const glm::dvec3 from = frame.world.toWorld(physical);
-    const glm::dvec3 forward = -eyeAxes(session.camera)[2];
-    // Where a pixel's ray meets the plane through the middle that faces the viewer.
-    const auto met = [&](ImVec2 at) {
-        const vis::Ray ray = rayAt(frame, session.camera, at);
-        return ray.origin + ray.direction * (glm::dot(from - ray.origin, forward) / glm::dot(ray.direction, forward));
-    };
-    glm::dvec3 to = from + met(mouse) - met(drag.start);
-    if (ImGui::GetIO().KeyShift) {
-        const glm::dvec3 up = met({drag.start.x, drag.start.y - 1}) - met(drag.start);
-        to = from + forward * glm::length(up) * double(drag.start.y - mouse.y);
-    }
+    const glm::dvec3 to =
+        draggedPlace(frame, session.camera, frame.world.toWorld(physical), drag.start, mouse, ImGui::GetIO().KeyShift);
     const glm::dvec3 place = glm::clamp(frame.world.toPhysical(to), frame.bounds.lo, frame.bounds.hi);
     (lens.followsCursor ? session.cursor : lens.center) = place;
 }
@@ -122,7 +106,7 @@ LensHandles lensHandles(const SpaceFrame& frame, const vis::PlacedLens& placed) 
 }
 
 int lensUnder(const SpaceFrame& frame, const Session& session, ImVec2 at) {
-    const vis::Ray ray = rayAt(frame, session.camera, at);
+    const vis::Ray ray = rayThrough(frame, session.camera, at);
     for (int i = static_cast<int>(session.lenses.size()) - 1; i >= 0; --i) {
         const auto lens = placed(frame, session, i);
         if (!lens) continue;
@@ -134,6 +118,36 @@ int lensUnder(const SpaceFrame& frame, const Session& session, ImVec2 at) {
             if (lens->radius(ray.origin + ray.direction * (middle + reach * k / 24)) < 1) return i;
     }
     return -1;
+}
+
+bool followPointer(Session& session, const SpaceFrame& frame, bool hovered) {
+    const ImGuiIO& io = ImGui::GetIO();
+    if (!hovered) return false;
+    bool moved = false;
+    if (pressed({.key = 'F'}) && !typing()) {
+        // Those that follow are pinned where they are; else the one under the mouse is taken up, or the last one.
+        bool any = false;
+        for (vis::Lens& lens : session.lenses) any = any || lens.followsPointer;
+        for (vis::Lens& lens : session.lenses) lens.followsPointer = false;
+        if (!any && !session.lenses.empty()) {
+            const int under = lensUnder(frame, session, io.MousePos);
+            vis::Lens& lens = session.lenses[under < 0 ? session.lenses.size() - 1 : static_cast<std::size_t>(under)];
+            lens.followsPointer = lens.enabled = true;
+            lens.followsCursor = false;
+        }
+        moved = true;
+    }
+    if (io.MouseDown[0] || io.MouseDown[1] || io.MouseDown[2]) return moved;
+    for (vis::Lens& lens : session.lenses) {
+        if (!lens.enabled || !lens.followsPointer || lens.followsCursor) continue;
+        const glm::dvec3 from = frame.world.toWorld(lens.center);
+        const auto middle = worldPixel(frame, from);
+        if (!middle || distance(middle, io.MousePos) < 0.5f) continue;
+        const glm::dvec3 to = draggedPlace(frame, session.camera, from, *middle, io.MousePos, false);
+        lens.center = glm::clamp(frame.world.toPhysical(to), frame.bounds.lo, frame.bounds.hi);
+        moved = moved || io.MouseDelta.x != 0 || io.MouseDelta.y != 0;
+    }
+    return moved;
 }
 
 bool editLenses(LensDrag& drag, Session& session, const SpaceFrame& frame, bool hovered) {

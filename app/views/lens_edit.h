@@ -33,6 +33,10 @@ int lensUnder(const SpaceFrame& frame, const Session& session, ImVec2 at);
 /// the mouse for itself. A lens that follows the cursor takes the cursor along.
 bool editLenses(LensDrag& drag, Session& session, const SpaceFrame& frame, bool hovered);
 
+/// Lenses that follow the pointer move with it, in the plane through their middle that faces the viewer; F pins those
+/// that follow, or lets the one under the mouse (else the last one) follow. True while something changes.
+bool followPointer(Session& session, const SpaceFrame& frame, bool hovered);
+
 /// The handles of the lens under the mouse, and its name.
 void drawLensHandles(ImDrawList& draw, const LensDrag& drag, const SpaceFrame& frame, const Session& session);
 

@@ -102,7 +102,29 @@ void chooseEffect(vis::Lens& lens) {
     if (ImGui::IsItemHovered()) tooltip(kEffects[now].help);
 }
 
+constexpr const char* kLensPayload = "tessera-lens";
+
 enum class RowAction { None, Remove, Up };
+
+/// A grip in front of a lens: dragged onto another one it takes that one's place in the order. Returns the place of the
+/// lens that was dropped here, -1 for none.
+int drawGrip(const ViewContext& context, const vis::Lens& lens, std::size_t index) {
+    iconButton(context, "grip", {"\uf142", "::"}, "Drag to another lens: later ones lie over those before them");
+    if (ImGui::BeginDragDropSource()) {
+        const int from = static_cast<int>(index);
+        ImGui::SetDragDropPayload(kLensPayload, &from, sizeof from);
+        ImGui::TextUnformatted(lens.name.c_str());
+        ImGui::EndDragDropSource();
+    }
+    int dropped = -1;
+    if (ImGui::BeginDragDropTarget()) {
+        if (const ImGuiPayload* payload = ImGui::AcceptDragDropPayload(kLensPayload))
+            dropped = *static_cast<const int*>(payload->Data);
+        ImGui::EndDragDropTarget();
+    }
+    ImGui::SameLine(0, em() * 0.3f);
+    return dropped;
+}
 
 RowAction drawLens(ViewContext& context, const std::string& pane, LensStatistics& statistics, std::size_t index) {
     Session& session = context.session;
@@ -186,6 +208,13 @@ void renameLens(Session& session, std::size_t index, const std::string& name) {
             region->lens = now;
 }
 
+void moveLens(Session& session, std::size_t from, std::size_t to) {
+    if (from >= session.lenses.size() || to >= session.lenses.size()) return;
+    const vis::Lens moved = session.lenses[from];
+    session.lenses.erase(session.lenses.begin() + static_cast<std::ptrdiff_t>(from));
+    session.lenses.insert(session.lenses.begin() + static_cast<std::ptrdiff_t>(to), moved);
+}
+
 void removeLens(Session& session, std::size_t index) {
     const std::string name = session.lenses[index].name;
     session.lenses.erase(session.lenses.begin() + static_cast<std::ptrdiff_t>(index));
@@ -250,9 +279,13 @@ bool chooseLens(const char* id, const Session& session, std::string& value, cons
 void drawLensList(ViewContext& context, const std::string& pane, LensStatistics& statistics) {
     Session& session = context.session;
     RowAction action = RowAction::None;
-    std::size_t which = 0;
+    std::size_t which = 0, from = 0, to = 0;
     for (std::size_t i = 0; i < session.lenses.size(); ++i) {
         ImGui::PushID(static_cast<int>(i));
+        if (const int dropped = drawGrip(context, session.lenses[i], i); dropped >= 0) {
+            from = static_cast<std::size_t>(dropped);
+            to = i;
+        }
         if (const RowAction own = drawLens(context, pane, statistics, i); own != RowAction::None) {
             action = own;
             which = i;
@@ -261,6 +294,7 @@ void drawLensList(ViewContext& context, const std::string& pane, LensStatistics&
     }
     if (action == RowAction::Remove) removeLens(session, which);
     if (action == RowAction::Up) std::swap(session.lenses[which], session.lenses[which - 1]);
+    if (action == RowAction::None && from != to) moveLens(session, from, to);
     if (session.lenses.empty()) ImGui::TextDisabled("No lenses: add one at the linked cursor.");
     if (iconButton(context, "add lens", icons::kPlus, "Add a lens at the cursor")) ImGui::OpenPopup("add lens");
     if (ImGui::BeginPopup("add lens")) {
@@ -269,7 +303,7 @@ void drawLensList(ViewContext& context, const std::string& pane, LensStatistics&
     }
     if (!session.lenses.empty()) {
         ImGui::SameLine(0, em() * 0.8f);
-        ImGui::TextDisabled("Alt+drag moves, Alt+wheel resizes");
+        ImGui::TextDisabled("Alt+drag moves, Alt+wheel resizes, F follows the mouse");
     }
 }
 

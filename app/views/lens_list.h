@@ -25,6 +25,9 @@ void addLensWith(Session& session, const volume::DatasetInfo& info, vis::Techniq
 /// Gives a lens another name; what belongs to it follows.
 void renameLens(Session& session, std::size_t index, const std::string& name);
 
+/// Gives a lens another place in the order in which they lie over each other.
+void moveLens(Session& session, std::size_t from, std::size_t to);
+
 /// Takes a lens away; its layers are hidden.
 void removeLens(Session& session, std::size_t index);
 

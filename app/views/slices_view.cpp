@@ -4,6 +4,7 @@
 #include "app/views/lens_outline.h"
 #include "app/views/profile_line.h"
 #include "app/views/readout.h"
+#include "app/views/space_handles.h"
 #include "app/views/ticks.h"
 #include "app/views/view_parts.h"
 
@@ -29,6 +30,7 @@ struct SlicesCache : ViewCache {
     std::array<vis::ViewTargetPtr, 3> targets;
     int dragging = -1;
     int lens = -1; ///< that is dragged, in place of the cursor
+    std::array<HandleDrag, 3> handles;
     Readout readout;
 };
 
@@ -125,7 +127,12 @@ void drawPlane(ViewContext& context, SlicesCache& cache, const SlicesView& view,
     }
     ImGui::PopID();
     const ImGuiIO& io = ImGui::GetIO();
-    if (ImGui::IsItemActivated()) {
+    HandleDrag& handles = cache.handles[static_cast<std::size_t>(index)];
+    const glm::dvec2 perUnit(unitX.perUnit, unitY.perUnit);
+    const bool onHandle = editHandles(handles, session, info, frame, plane.right, plane.up, perUnit,
+                                      ImGui::IsItemHovered() && cache.dragging < 0);
+    if (onHandle) context.interacting = true;
+    if (ImGui::IsItemActivated() && !onHandle) {
         cache.dragging = index;
         cache.lens = lensAt(session, frame, plane, {unitX.perUnit, unitY.perUnit}, io.MousePos);
     }
@@ -182,6 +189,7 @@ void drawPlane(ViewContext& context, SlicesCache& cache, const SlicesView& view,
     drawLensSections(draw, frame, session, info, plane.right, plane.up, plane.normal, session.cursor[plane.normal],
                      {unitX.perUnit, unitY.perUnit});
     drawProfileLines(draw, frame, session, plane.right, plane.up, {unitX.perUnit, unitY.perUnit});
+    drawHandles(draw, handles, frame, session, info, plane.right, plane.up, perUnit);
     drawCrosshair(draw, frame, session.cursor[plane.right] * unitX.perUnit, session.cursor[plane.up] * unitY.perUnit);
     draw.PopClipRect();
 }

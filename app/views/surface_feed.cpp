@@ -170,7 +170,10 @@ std::vector<vis::GeometryLayer> SurfaceFeed::get(ViewContext& context, const std
                        .color = iso->color,
                        .channel = here->wish.colorBy >= 0 ? iso->colorBy : std::string(),
                        .opacity = iso->opacity,
-                       .lens = layer.lens});
+                       .lens = layer.lens,
+                       .transfer = layer.transfer,
+                       .brushes = layer.brushes,
+                       .look = iso->look});
     }
     return out;
 }

@@ -23,6 +23,9 @@ struct TesseractCache : ViewCache {
     TesseractFeed feed;
     vis::PointCloud cloud;
     std::shared_ptr<const volume::Samples4> samples; ///< of the cloud
+    std::vector<vis::CloudPoint> points;             ///< of the cloud
+    ImVec2 pressed{0, 0};                            ///< where a button went down
+    bool clicked = false;                            ///< it came up again near there
     std::optional<vis::CloudStyle> style;
     std::optional<vis::CloudView> drawn;
     std::uint32_t texture = 0;
@@ -144,6 +147,8 @@ bool handleInput(TesseractCache& cache, TesseractView& view, ImVec2 size) {
     const ImGuiIO& io = ImGui::GetIO();
     const bool hovered = ImGui::IsItemHovered();
     bool moving = false;
+    cache.clicked = false;
+    if (hovered && ImGui::IsMouseClicked(ImGuiMouseButton_Left)) cache.pressed = io.MousePos;
     if (hovered && cache.drag == Drag::None) {
         if (ImGui::IsMouseClicked(ImGuiMouseButton_Left))
             cache.drag = io.KeyShift ? Drag::Turn4 : io.KeyCtrl ? Drag::Roll : Drag::Turn;
@@ -171,8 +176,12 @@ bool handleInput(TesseractCache& cache, TesseractView& view, ImVec2 size) {
             moving = true;
         }
         if (!ImGui::IsMouseDown(ImGuiMouseButton_Left) && !ImGui::IsMouseDown(ImGuiMouseButton_Right) &&
-            !ImGui::IsMouseDown(ImGuiMouseButton_Middle))
+            !ImGui::IsMouseDown(ImGuiMouseButton_Middle)) {
+            cache.clicked =
+                cache.drag == Drag::Turn && hovered &&
+                std::hypot(io.MousePos.x - cache.pressed.x, io.MousePos.y - cache.pressed.y) < io.MouseDragThreshold;
             cache.drag = Drag::None;
+        }
     }
     if ((hovered || ImGui::IsWindowFocused()) && !typing() && pressed({.key = 'R'})) reset(view, cache);
     return moving;
@@ -221,12 +230,57 @@ bool updateCloud(ViewContext& context, const std::string& pane, TesseractCache& 
     const bool fits = samples->channels == static_cast<int>(query.channels.size());
     if (!fits) return cache.style.has_value(); // of other parameters: what is drawn stays until the new ones come
     if (samples != cache.samples || !cache.style || *cache.style != style) {
-        cache.cloud.upload(vis::makeCloud(*samples, style));
+        cache.points = vis::makeCloud(*samples, style);
+        cache.cloud.upload(cache.points);
         cache.samples = samples;
         cache.style = style;
         cache.drawn.reset();
     }
     return true;
+}
+
+/// The value, place and time of the point under the mouse; a click takes the linked cursor there, and the time along.
+void drawReading(ViewContext& context, const TesseractView& view, const TesseractCache& cache,
+                 const TesseractFrame& frame, int channel) {
+    const ImVec2 mouse = ImGui::GetIO().MousePos;
+    if (cache.points.empty() || cache.drag != Drag::None) return;
+    const double half = 0.5 * std::min(frame.max.x - frame.min.x, frame.max.y - frame.min.y);
+    const glm::dvec2 at((mouse.x - 0.5 * (frame.min.x + frame.max.x)) / half,
+                        (0.5 * (frame.min.y + frame.max.y) - mouse.y) / half);
+    const auto found = vis::nearestPoint(cache.points, frame.rotation, frame.projection, at, em() * 0.6 / half);
+    if (!found) return;
+    const vis::CloudPoint& point = cache.points[*found];
+    const volume::Samples4& samples = *cache.samples;
+    const std::size_t sample = point.sample;
+    const volume::DatasetInfo& info = context.source->info();
+    const glm::dvec3 place(samples.positions[sample]);
+    const double time = static_cast<double>(samples.times[sample]);
+    const volume::Channel known = info.channels()[static_cast<std::size_t>(channel)];
+    const Range range = info.channelRange(known);
+    const double value = static_cast<double>(samples.values[sample * static_cast<std::size_t>(samples.channels)]);
+    const LengthUnit unit = suitableLength(info.lengthUnit, glm::length(info.bounds.size()));
+    std::string text = known.name + " = " + formatQuantity(value, known.unit, (range.hi - range.lo) / 2000);
+    for (int axis = 0; axis < 3; ++axis)
+        text += (axis == 0 ? "\n" : ", ") +
+                formatNumber(place[axis] * unit.perUnit, info.bounds.size()[axis] * unit.perUnit / 500);
+    text += " " + prettyUnit(unit.name);
+    const double span = info.times.back() - info.times.front();
+    if (info.times.size() > 1) text += "\nt = " + formatQuantity(time, info.timeUnit, span / 500);
+    ImDrawList& draw = *ImGui::GetWindowDrawList();
+    const vis::Projected4 seen =
+        frame.project(glm::dvec4(point.position)); // where the ring goes: the splat itself may be small
+    const ImVec2 pixel = frame.pixel(seen.at);
+    draw.AddCircle(pixel, em() * 0.45f, plotColors().backdrop, 20, 3);
+    draw.AddCircle(pixel, em() * 0.45f, plotColors().cursor, 20, 1.5f);
+    const ImVec2 size = ImGui::CalcTextSize(text.c_str());
+    const ImVec2 corner{std::min(mouse.x + em(), frame.max.x - size.x - em() * 0.5f),
+                        std::min(mouse.y + em(), frame.max.y - size.y - em() * 0.5f)};
+    draw.AddRectFilled({corner.x - 4, corner.y - 2}, {corner.x + size.x + 4, corner.y + size.y + 2},
+                       plotColors().backdrop, 3);
+    draw.AddText(corner, plotColors().text, text.c_str());
+    if (!cache.clicked) return;
+    context.session.cursor = glm::clamp(place, info.bounds.lo, info.bounds.hi);
+    if (view.fourth.empty()) context.session.time = time;
 }
 
 void drawTexts(ViewContext& context, const TesseractView& view, const TesseractFrame& frame, ImVec2 max, int channel) {
@@ -283,6 +337,7 @@ void drawTesseractView(ViewContext& context, const std::string& pane, TesseractV
     ImGui::InvisibleButton("picture", size,
                            ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonMiddle |
                                ImGuiButtonFlags_MouseButtonRight);
+    const bool hovered = ImGui::IsItemHovered();
     bool moving = handleInput(cache, view, size);
     if (cache.drag != Drag::None) context.interacting = true;
     if (view.tour && !context.headless) {
@@ -334,6 +389,7 @@ void drawTesseractView(ViewContext& context, const std::string& pane, TesseractV
         drawNowCell(draw, frame, std::clamp((context.session.time - first) / (last - first), 0.0, 1.0), text);
     }
     drawTexts(context, view, frame, max, *channel);
+    if (hovered) drawReading(context, view, cache, frame, *channel);
     draw.PopClipRect();
     if (below > 0) drawSliders(view, room.x);
 }

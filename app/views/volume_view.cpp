@@ -8,6 +8,7 @@
 #include "app/views/profile_line.h"
 #include "app/views/scale_bar.h"
 #include "app/views/scene_feed.h"
+#include "app/views/space_handles.h"
 #include "app/views/ticks.h"
 #include "app/views/view_parts.h"
 
@@ -23,6 +24,7 @@ struct VolumeCache : ViewCache {
     SceneFeed scene;
     CameraHand hand;
     LensDrag lens;
+    HandleDrag handles;
 };
 
 void drawMenu(ViewContext& context, const char* id, VolumeView& view, const vis::WorldFrame& world, double aspect) {
@@ -52,7 +54,7 @@ void drawMenu(ViewContext& context, const char* id, VolumeView& view, const vis:
     ImGui::MenuItem("Linked cursor", "", &view.showCursor);
     ImGui::MenuItem("Direction gizmo", "", &view.showGizmo);
     ImGui::MenuItem("Scale bar", "", &view.showScaleBar);
-    ImGui::MenuItem("Outlines of lenses", "", &view.showLenses);
+    ImGui::MenuItem("Outlines and handles", "", &view.showLenses);
     if (context.runCommand) {
         ImGui::Separator();
         if (ImGui::MenuItem("Save picture...", "F12")) context.runCommand("Save picture...");
@@ -105,10 +107,15 @@ void drawVolumeView(ViewContext& context, const std::string& pane, VolumeView& v
         showTriad && hovered && std::hypot(mouse.x - triadAt.x, mouse.y - triadAt.y) < triad + em() * 0.5f;
     const SpaceFrame before = spaceFrame(picture.min, max, session.camera, info.bounds, session.stretch);
     const bool free = hovered && !cache.hand.dragging() && !cache.hand.blocked;
-    const bool onLens = view.showLenses && editLenses(cache.lens, session, before, free);
-    const bool moving = onLens || handleMouse(context, cache.hand, cache.target.get(), picture, world, "menu");
+    const bool onHandle =
+        view.showLenses && !cache.lens.active && editHandles(cache.handles, session, info, before, free);
+    const bool onLens =
+        view.showLenses && !onHandle && cache.handles.object.empty() && editLenses(cache.lens, session, before, free);
+    const bool follows = view.showLenses && followPointer(session, before, free);
+    const bool moving =
+        onHandle || onLens || follows || handleMouse(context, cache.hand, cache.target.get(), picture, world, "menu");
     drawMenu(context, "menu", view, world, picture.aspect());
-    if (cache.hand.dragging() || cache.lens.active) context.interacting = true;
+    if (cache.hand.dragging() || cache.lens.active || cache.handles.active) context.interacting = true;
 
     if (!cache.target) cache.target = context.renderer.makeTarget();
     vis::FrameRequest request;
@@ -131,6 +138,7 @@ void drawVolumeView(ViewContext& context, const std::string& pane, VolumeView& v
     if (view.showLenses) {
         drawLenses(draw, space, session, cache.lens.lens);
         drawLensHandles(draw, cache.lens, space, session);
+        drawHandles(draw, cache.handles, space, session, info);
     }
 
     std::vector<std::pair<ImVec2, ImVec2>> taken;

@@ -163,7 +163,7 @@ TEST_F(OpenTest, ShippedLayoutsAreValid) {
     const std::vector<std::string> names = layoutNames();
     EXPECT_TRUE(std::find(names.begin(), names.end(), "overview") != names.end());
     for (const char* shipped : {"gases", "starved", "statistics", "flow", "lens", "focus", "charcoal", "illustration",
-                                "shadowcube", "tesseract"})
+                                "shadowcube", "tesseract", "animation"})
         EXPECT_TRUE(std::find(names.begin(), names.end(), shipped) != names.end()) << shipped;
     for (const std::string& name : names) {
         const SessionDocument layout = loadSession(findLayout(name));

@@ -1,4 +1,5 @@
 #include "app/views/brush_edit.h"
+#include "app/views/brush_list.h"
 #include "tests/app/fed_imgui.h"
 
 namespace tessera::app {
@@ -211,6 +212,24 @@ TEST_F(BrushEdit, ALassoFollowsTheMouse) {
     // One of three corners at most holds nothing and cannot be held: a click beside it starts another.
     dragFromTo(8, 0.1, 9, 0.2);
     ASSERT_EQ(selection.brushes.size(), 1u);
+}
+
+TEST(BrushList, SaysHowBrushesMeet) {
+    vis::Selection selection;
+    EXPECT_EQ(combinationText(selection), "");
+    selection.brushes.resize(4);
+    selection.brushes[1].combine = vis::BrushCombine::And;
+    selection.brushes[2].combine = vis::BrushCombine::Or;
+    selection.brushes[3].combine = vis::BrushCombine::Minus;
+    selection.brushes[3].inverted = true;
+    EXPECT_EQ(combinationText(selection), "((1 and 2) or 3) without not 4");
+    selection.brushes[2].enabled = false;
+    EXPECT_TRUE(combinationText(selection).starts_with("(1 and 2) without not 4;")) << "with a hint";
+    selection.brushes[0].combine = vis::BrushCombine::Minus;
+    selection.brushes[3].enabled = false;
+    EXPECT_TRUE(combinationText(selection).starts_with("not 1 and 2;"));
+    selection.brushes[1].enabled = false;
+    EXPECT_EQ(combinationText(selection), "");
 }
 
 } // namespace

@@ -33,6 +33,7 @@ protected:
         feedWindow([&] {
             surface({50, 50}, {450, 350});
             taken = editLenses(drag, session, space(), ImGui::IsItemHovered());
+            if (follow) followed = followPointer(session, space(), ImGui::IsItemHovered());
             drawLenses(*ImGui::GetWindowDrawList(), space(), session, drag.lens);
             drawLensHandles(*ImGui::GetWindowDrawList(), drag, space(), session);
         });
@@ -62,7 +63,7 @@ protected:
 
     Session session;
     LensDrag drag;
-    bool taken = false;
+    bool taken = false, follow = false, followed = false;
 };
 
 TEST_F(LensEdit, TheMiddleMovesUnderTheMouse) {
@@ -183,6 +184,53 @@ TEST(LensList, NamesAreHeldTogether) {
     EXPECT_TRUE(session.layers[1].lens.empty());
     EXPECT_TRUE(session.selection.brushes.empty());
     EXPECT_TRUE(session.layers[0].visible);
+}
+
+/// A lens that follows the pointer stays under it in the plane of its middle; F pins it and takes it up again.
+TEST_F(LensEdit, FollowsThePointerUntilItIsPinned) {
+    session.lenses[0].followsPointer = true;
+    follow = true;
+    moveTo({150, 120});
+    moveTo({180, 140});
+    EXPECT_NEAR(handles().middle->x, 180, 0.1);
+    EXPECT_NEAR(handles().middle->y, 140, 0.1);
+    EXPECT_EQ(lens().center.z, 0.5);
+    EXPECT_TRUE(followed);
+    const auto key = [&] {
+        ImGui::GetIO().KeysDown['F'] = true;
+        frame();
+        ImGui::GetIO().KeysDown['F'] = false;
+        frame();
+    };
+    key();
+    EXPECT_FALSE(lens().followsPointer);
+    const glm::dvec3 pinned = lens().center;
+    moveTo({300, 200});
+    EXPECT_EQ(lens().center, pinned);
+    key();
+    EXPECT_TRUE(lens().followsPointer) << "the last one where none is under the mouse";
+    moveTo({301, 200});
+    EXPECT_NEAR(handles().middle->x, 301, 0.1);
+    ImGui::GetIO().MouseDown[0] = true; // the camera turns: the lens stays
+    moveTo({250, 220});
+    EXPECT_NEAR(handles().middle->x, 301, 0.1);
+    ImGui::GetIO().MouseDown[0] = false;
+}
+
+TEST(LensOrder, ALensTakesThePlaceItIsDroppedOn) {
+    Session session;
+    for (const char* name : {"a", "b", "c", "d"}) session.lenses.push_back({.name = name});
+    const auto order = [&] {
+        std::string names;
+        for (const vis::Lens& lens : session.lenses) names += lens.name;
+        return names;
+    };
+    moveLens(session, 0, 2);
+    EXPECT_EQ(order(), "bcad");
+    moveLens(session, 3, 0);
+    EXPECT_EQ(order(), "dbca");
+    moveLens(session, 1, 7);
+    EXPECT_EQ(order(), "dbca");
 }
 
 } // namespace

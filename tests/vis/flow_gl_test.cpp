@@ -114,5 +114,41 @@ TEST_F(FlowLayerTest, NothingWithoutTheVector) {
     EXPECT_EQ(makeFlow(*wind(), {.vector = "f", .channel = "f"}, 0, glm::dvec3(1)), nullptr);
 }
 
+/// Beginnings at random lie where the degree of interest is high, as dense as it is; those of a line leave out the
+/// rest.
+TEST_F(FlowLayerTest, SeedsLieWhereIsBrushed) {
+    const auto source = wind();
+    FlowLayer layer{.vector = "U", .channel = "f"};
+    layer.count = 4000;
+    layer.seedBrushed = true;
+    Selection selection;
+    selection.brushes = {rangeBrush({{"f", 0.75, 1, 0.5}})}; // interest rises along x from 0 at 4 to 1 at 12
+    const DoiFunction interest(selection);
+    const std::vector<glm::dvec3> seeds = flowSeeds(*source, layer, 0, glm::dvec3(1), {}, &interest);
+    ASSERT_EQ(seeds.size(), 4000u);
+    int high = 0, rising = 0, low = 0;
+    for (const glm::dvec3& seed : seeds) {
+        high += seed.x >= 12;
+        rising += seed.x >= 4 && seed.x < 12;
+        low += seed.x < 4;
+    }
+    EXPECT_EQ(low, 0);
+    EXPECT_NEAR(double(high) / rising, 1, 0.1) << "4 of full interest, 8 of half";
+    // Without brushes, and with a layer that does not ask for it, they lie everywhere.
+    for (const bool follows : {true, false}) {
+        layer.seedBrushed = follows;
+        const DoiFunction everything{Selection{}};
+        int below = 0;
+        for (const glm::dvec3& seed :
+             flowSeeds(*source, layer, 0, glm::dvec3(1), {}, follows ? &everything : &interest))
+            below += seed.x < 4;
+        EXPECT_NEAR(below, 1000, 120);
+    }
+    layer.seedBrushed = true;
+    layer.seeds = volume::SeedShape::Line;
+    layer.count = 17;
+    for (const glm::dvec3& seed : flowSeeds(*source, layer, 0, glm::dvec3(1), {}, &interest)) EXPECT_GT(seed.x, 4);
+}
+
 } // namespace
 } // namespace tessera::vis

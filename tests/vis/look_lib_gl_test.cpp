@@ -17,7 +17,7 @@ protected:
     static constexpr const char* kHead =
         "#include \"lib/look.glsl\"\n"
         "LookSample at(vec4 a, vec4 b) { return LookSample(a.x, abs(a.y), abs(a.z), abs(a.w) * 1.2, 40.0 * abs(b.x), "
-        "abs(b.y), 0.005, 1.0, abs(b.zw)); }\n";
+        "abs(b.y), 0.005, 1.0, 0.0, abs(b.zw)); }\n";
     vis::LookSample sample(int i) const {
         vis::LookSample out;
         const double facing = std::abs(a[i].y);
@@ -48,6 +48,21 @@ TEST_F(LookLib, EnhancementsAgree) {
         EXPECT_NEAR(got[i].z, vis::outline(std::abs(a[i].y), 40 * std::abs(b[i].x), 0.01), 2e-5) << i;
         EXPECT_EQ(got[i].w, float(vis::lightStep(a[i].x, 4))) << i;
     }
+}
+
+TEST_F(LookLib, WiresAgree) {
+    const auto got =
+        evaluate(kHead, "vec4(wireCoverage(a[i].xyz, normalize(b[i].xyz + 0.01), vec3(0.0, 0.0, 1.0), 0.1, "
+                        "2.0, 0.004), 0.0, 0.0, 0.0)");
+    int differ = 0, lines = 0;
+    for (int i = 0; i < kCases; ++i) {
+        const glm::dvec3 normal = glm::normalize(glm::dvec3(b[i]) + 0.01);
+        const double wanted = vis::wireCoverage(glm::dvec3(a[i]), normal, {0, 0, 1}, 0.1, 2, 0.004);
+        differ += std::abs(got[i].x - wanted) > 2e-3; // far along the view a coordinate runs through a line in no time
+        lines += wanted > 0.5;
+    }
+    EXPECT_LE(differ, 2);
+    EXPECT_GT(lines, 2);
 }
 
 TEST_F(LookLib, InkAgrees) {

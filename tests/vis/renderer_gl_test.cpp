@@ -294,7 +294,7 @@ TEST_F(RendererTest, WhatBrushesHideIsSkippedExactly) {
         scene.camera.distance = 1.7f;
         scene.transfer["v"].opacity = {{0, 0.2f}, {1, 0.2f}};
         scene.selection.contextOpacity = 0;
-        scene.selection.brushes = {vis::rangeBrush({{"w", 0.9, 1, 0.02}}), vis::rangeBrush({{"v", 0.3, 0.6, 0.05}})};
+        scene.selection.brushes = {vis::rangeBrush({{"w", 0.94, 1, 0.02}}), vis::rangeBrush({{"v", 0.3, 0.6, 0.05}})};
         for (const bool outside : {false, true}) {
             scene.selection.brushes[1].inverted = outside;
             const glm::ivec2 size(56, 44);

@@ -188,5 +188,25 @@ TEST(Cloud4, BrushesFadeWhatTheyLeaveOut) {
     EXPECT_EQ(makeCloud(someSamples(), style).size(), 1u); // focus points only
 }
 
+TEST(Cloud4, ThePointUnderAPlaceIsTheNearerOfThoseThere) {
+    std::vector<CloudPoint> points(4);
+    points[0].position = {0.3f, 0.2f, -0.4f, 0}; // behind the next one
+    points[1].position = {0.3f, 0.2f, 0.4f, 0};
+    points[2].position = {-0.5f, 0.1f, 0, 0.2f};
+    points[3].position = {0, -0.6f, 0, -0.3f};
+    const Projection4 projection;
+    const glm::dmat4 turned = planeRotation(Plane4::XW, 0.4) * planeRotation(Plane4::YZ, -0.2);
+    for (const glm::dmat4& rotation : {glm::dmat4(1), turned})
+        for (std::size_t i = 1; i < points.size(); ++i) {
+            const glm::dvec2 at = project(projection, 1, rotation * glm::dvec4(points[i].position)).at;
+            EXPECT_EQ(nearestPoint(points, rotation, projection, at + glm::dvec2(0.002, -0.001), 0.02), i);
+        }
+    EXPECT_FALSE(nearestPoint(points, glm::dmat4(1), projection, {0.9, 0.9}, 0.02));
+    // Nearly in line with the eye: the one in front.
+    const glm::dvec2 between = 0.5 * (project(projection, 1, glm::dvec4(points[0].position)).at +
+                                      project(projection, 1, glm::dvec4(points[1].position)).at);
+    EXPECT_EQ(nearestPoint(points, glm::dmat4(1), projection, between, 2), 1u);
+}
+
 } // namespace
 } // namespace tessera::vis

@@ -286,5 +286,72 @@ TEST(LatticeError, FiguresOfMarschnerLobb) {
     }
 }
 
+/// A function on a lattice of its own, asked for places on it alone.
+template <class Function> auto within(const Lattice& lattice, const Function& f) {
+    return [&lattice, f](glm::ivec3 at) {
+        EXPECT_EQ(clampToLattice(lattice.kind, lattice.size, at), at);
+        return Sample{f(lattice.position(at)), true};
+    };
+}
+
+TEST(Continued, LinearFunctionsGoOn) {
+    const auto f = [](glm::dvec3 p) { return 1 + 2 * p.x - 3 * p.y + 0.5 * p.z; };
+    for (const LatticeKind kind : kKinds) {
+        Lattice lattice = ccLattice({6, 5, 7});
+        if (kind == LatticeKind::BCC) lattice = bccFor(lattice);
+        const auto samples = within(lattice, f);
+        const Continued continued{samples, kind, lattice.size};
+        for (int z = -4; z < lattice.size.z + 4; ++z)
+            for (int y = -3; y < lattice.size.y + 3; ++y)
+                for (int x = -3; x < lattice.size.x + 3; ++x)
+                    EXPECT_NEAR(continued({x, y, z}).value, f(lattice.position({x, y, z})), 1e-9);
+    }
+}
+
+TEST(Continued, AbsentAndSingleSamplesAreRepeated) {
+    const Lattice lattice = ccLattice({3, 1, 1});
+    const auto samples = [](glm::ivec3 at) { return Sample{double(at.x), at.x != 1}; };
+    const Continued continued{samples, lattice.kind, lattice.size};
+    EXPECT_EQ(continued({-1, 0, 0}).value, 0) << "its mirror is absent";
+    EXPECT_EQ(continued({-2, 0, 0}).value, -2);
+    EXPECT_EQ(continued({0, 5, -3}).value, 0) << "one sample along y and z";
+    EXPECT_FALSE(continued({1, 2, 0}).present);
+}
+
+/// The sublattices of BCC end before the faces of the box; the signal is as good there as in the middle.
+TEST(Continued, FacesAreAsGoodAsTheMiddle) {
+    const MarschnerLobb signal{0.25, 2};
+    Lattice cc = ccLattice(glm::ivec3(41), glm::dvec3(0.05), glm::dvec3(-1));
+    for (const LatticeKind kind : kKinds) {
+        const Lattice lattice = kind == LatticeKind::BCC ? bccFor(cc) : cc;
+        const auto samples = within(lattice, [&](glm::dvec3 p) { return signal(p); });
+        const auto repeated = [&](glm::ivec3 at) {
+            return Sample{signal(lattice.position(clampToLattice(kind, lattice.size, at))), true};
+        };
+        const Continued continued{samples, kind, lattice.size};
+        const LevelGeometry geometry{kind, 1, 0};
+        const Prefiltered filtered(continued, geometry), former(repeated, geometry);
+        std::mt19937 random(5);
+        double shell = 0, before = 0, middle = 0;
+        int n = 0, m = 0;
+        for (int i = 0; i < 6000; ++i) {
+            const glm::dvec3 p = randomPoint(random, -1, 1);
+            const auto error = [&](const auto& from) {
+                const double apart = linear(geometry, from, lattice.toCells(p)).value().value() - signal(p);
+                return apart * apart;
+            };
+            if (std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) > 0.95)
+                shell += error(filtered), before += error(former), ++n;
+            else
+                middle += error(filtered), ++m;
+        }
+        shell = std::sqrt(shell / n), before = std::sqrt(before / n), middle = std::sqrt(middle / m);
+        EXPECT_LT(shell, 3 * middle);
+        EXPECT_LT(shell, (kind == LatticeKind::BCC ? 0.4 : 0.9) * before);
+        RecordProperty(kind == LatticeKind::BCC ? "bcc" : "cc",
+                       std::to_string(shell) + " " + std::to_string(before) + " " + std::to_string(middle));
+    }
+}
+
 } // namespace
 } // namespace tessera::volume

@@ -12,8 +12,8 @@ namespace tessera::vis {
 
 namespace {
 
-constexpr int kColors = 1024;                    ///< entries of a colour table's row
-constexpr int kTableUnit = 42, kFormerUnit = 43; ///< texture units that no plan of rays uses
+constexpr int kColors = 1024;                                     ///< entries of a colour table's row
+constexpr int kTableUnit = 42, kFormerUnit = 43, kGrainUnit = 45; ///< texture units that no plan of rays uses
 
 Texture makeArray(glm::ivec2 size, int layers, GLenum format, const char* label) {
     GLuint name = 0;
@@ -78,7 +78,7 @@ void GeometryBuffer::resize(glm::ivec2 wanted, int wantedPeels) {
     peels = wantedPeels;
     framebuffers.clear();
     color = makeArray(size, peels, GL_RGBA16F, "geometry colours");
-    distance = makeArray(size, peels, GL_R32F, "geometry distances");
+    distance = makeArray(size, peels, GL_RG32F, "geometry distances");
     depth = makeTexture2D(size, GL_DEPTH_COMPONENT32F, GL_NEAREST, "geometry depth");
     for (int layer = 0; layer < peels; ++layer) {
         GLuint name = 0;
@@ -136,7 +136,7 @@ void GeometryPass::table(const Scene& scene, const volume::DatasetInfo& info) {
             continue;
         }
         const volume::Channel known = info.channels()[std::size_t(*channel)];
-        const TransferFunction& function = transferFor(scene, known.name);
+        const TransferFunction& function = transferFor(scene, layer.transfer.empty() ? known.name : layer.transfer);
         const Range range = effectiveRange(function, info.channelRange(known));
         const double width = range.hi - range.lo;
         maps_.push_back(width == 0 ? glm::vec2(0, 0.5) : glm::vec2(1 / width, -range.lo / width));
@@ -153,11 +153,12 @@ void GeometryPass::table(const Scene& scene, const volume::DatasetInfo& info) {
     glTextureSubImage2D(table_.name(), 0, 0, 0, kColors, rows, GL_RGBA, GL_FLOAT, colors.data());
 }
 
-const Program& GeometryPass::program(const Scene& scene, bool lines) {
+const Program& GeometryPass::program(const Scene& scene, bool lines, int look) {
+    const std::string bits = std::to_string(look);
     ProgramRecipe recipe{lines ? "geometry_lines.vert.glsl" : "geometry_mesh.vert.glsl",
                          "geometry.frag.glsl",
                          {},
-                         {{"LINES", lines ? "1" : "0"}}};
+                         {{"LINES", lines ? "1" : "0"}, {"LAYERS", "1"}, {"LOOKS", bits}, {"LAYER_LOOK(i)", bits}}};
     addLighting(recipe, scene);
     addClipping(recipe, scene);
     addLenses(recipe, scene);
@@ -167,10 +168,9 @@ const Program& GeometryPass::program(const Scene& scene, bool lines) {
 }
 
 void GeometryPass::draw(GeometryBuffer& buffer, const Scene& scene, const volume::DatasetInfo& info, glm::ivec2 size,
-                        int lightUnit, glm::dvec2 jitter) {
-    const int peels = peelsOf(scene.geometry);
+                        glm::ivec2 pictureSize, int lightUnit, GrainTexture& grain, glm::dvec2 jitter) {
+    const int peels = peelsOf(scene);
     if (peels == 0) return;
-    const Program *const mesh = &program(scene, false), *const lineProgram = &program(scene, true);
     table(scene, info);
     const double aspect = double(size.x) / size.y;
     const WorldFrame frame = worldFrame(info.bounds, scene.stretch);
@@ -178,23 +178,45 @@ void GeometryPass::draw(GeometryBuffer& buffer, const Scene& scene, const volume
     // A ray's ndc is its pixel's plus 2 jitter / size, so what is drawn moves the other way.
     const glm::dmat4 moved = glm::translate(glm::dmat4(1), glm::dvec3(-2.0 * jitter / glm::dvec2(size), 0));
     const glm::mat4 worldToClip(moved * projectionMatrix(scene.camera, aspect) * viewMatrix(scene.camera));
-    for (const Program* program : {mesh, lineProgram}) {
-        program->set("worldScale", glm::vec3(frame.scale));
-        program->set("worldOffset", glm::vec3(frame.offset));
-        glProgramUniformMatrix4fv(program->name(), glGetUniformLocation(program->name(), "worldToClip"), 1, GL_FALSE,
+    const auto prepare = [&](const Program& program) {
+        program.set("worldScale", glm::vec3(frame.scale));
+        program.set("worldOffset", glm::vec3(frame.offset));
+        glProgramUniformMatrix4fv(program.name(), glGetUniformLocation(program.name(), "worldToClip"), 1, GL_FALSE,
                                   &worldToClip[0][0]);
-        program->set("rayOrigin", glm::vec3(middle.origin));
-        program->set("forward", glm::vec3(middle.direction));
-        program->set("perspective", scene.camera.projection == Projection::Perspective ? 1 : 0);
-        program->set("halfSize", glm::vec3(glm::max(frame.halfSize, glm::dvec3(1e-5))));
-        setLightUniforms(*program, scene, frame, lightUnit);
-        setClipUniforms(*program, scene, frame);
-        setLensUniforms(*program, scene, frame);
-        program->set("pixels", glm::vec2(size));
-        program->set("colors", kTableUnit);
-        program->set("former", kFormerUnit);
+        program.set("rayOrigin", glm::vec3(middle.origin));
+        program.set("forward", glm::vec3(middle.direction));
+        program.set("perspective", scene.camera.projection == Projection::Perspective ? 1 : 0);
+        program.set("halfSize", glm::vec3(glm::max(frame.halfSize, glm::dvec3(1e-5))));
+        setLightUniforms(program, scene, frame, lightUnit);
+        setClipUniforms(program, scene, frame);
+        setLensUniforms(program, scene, frame);
+        program.set("pixels", glm::vec2(size));
+        program.set("colors", kTableUnit);
+        program.set("former", kFormerUnit);
+    };
+    const std::vector<PlacedLens> placed = placeLenses(scene, frame);
+    // What is drawn, each layer with its own variant.
+    struct Draw {
+        std::size_t layer;
+        int lens;
+        bool lines;
+        const Uploaded* up;
+        const Program* program;
+    };
+    std::vector<Draw> draws;
+    for (std::size_t i = 0; i < scene.geometry.size(); ++i) {
+        const GeometryLayer& layer = scene.geometry[i];
+        const std::optional<int> lens = lensOf(placed, layer.lens);
+        if (!drawn(scene, layer) || !lens) continue;
+        const Uploaded& up = upload(layer.geometry);
+        if (layer.look.charcoal) glBindTextureUnit(kGrainUnit, grain.get());
+        for (const bool lines : {false, true}) {
+            if ((lines ? up.segmentCount : up.indexCount) == 0) continue;
+            const Program& own = program(scene, lines, lookBits(layer.look));
+            prepare(own);
+            draws.push_back({i, *lens, lines, &up, &own});
+        }
     }
-    const std::vector<PlacedLens> lenses = placeLenses(scene, frame);
     glBindTextureUnit(kTableUnit, table_.name());
     glBindTextureUnit(kFormerUnit, buffer.distance.name());
     glDisable(GL_BLEND);
@@ -210,28 +232,26 @@ void GeometryPass::draw(GeometryBuffer& buffer, const Scene& scene, const volume
         glClearNamedFramebufferfv(framebuffer, GL_COLOR, 0, empty);
         glClearNamedFramebufferfv(framebuffer, GL_COLOR, 1, nowhere);
         glClearNamedFramebufferfv(framebuffer, GL_DEPTH, 0, &far);
-        for (std::size_t i = 0; i < scene.geometry.size(); ++i) {
-            const GeometryLayer& layer = scene.geometry[i];
-            const std::optional<int> lens = lensOf(lenses, layer.lens);
-            if (!layer.geometry || layer.opacity <= 0 || !lens) continue;
-            const Uploaded& up = upload(layer.geometry);
-            for (const Program* program : {mesh, lineProgram}) {
-                const bool lines = program == lineProgram;
-                if ((lines ? up.segmentCount : up.indexCount) == 0) continue;
-                program->set("peel", peel);
-                program->set("row", (float(i) + 0.5f) / float(tableRows_));
-                program->set("map", maps_[i]);
-                program->set("plain", glm::vec3(linearFromSrgb(glm::dvec3(layer.color))));
-                program->set("opacity", layer.opacity);
-                program->set("lens", *lens);
-                program->set("lineWidth", layer.lineWidth);
-                glUseProgram(program->name());
-                glBindVertexArray(lines ? up.lines.name() : up.mesh.name());
-                if (lines)
-                    glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, up.segmentCount);
-                else
-                    glDrawElements(GL_TRIANGLES, up.indexCount, GL_UNSIGNED_INT, nullptr);
-            }
+        for (const Draw& each : draws) {
+            const GeometryLayer& layer = scene.geometry[each.layer];
+            const Program& own = *each.program;
+            own.set("peel", peel);
+            own.set("row", (float(each.layer) + 0.5f) / float(tableRows_));
+            own.set("map", maps_[each.layer]);
+            own.set("plain", glm::vec3(linearFromSrgb(glm::dvec3(layer.color))));
+            own.set("opacity", layer.opacity);
+            own.set("lens", each.lens);
+            own.set("lineWidth", layer.lineWidth);
+            own.set("brushEffect", float(int(layer.brushes)));
+            // Layers share variants: what looks say is set anew for each.
+            setLookUniforms(own, {layer.look.any() ? &layer.look : nullptr}, scene, frame,
+                            worldCell(info.lattice, frame), pictureSize, kGrainUnit);
+            glUseProgram(own.name());
+            glBindVertexArray(each.lines ? each.up->lines.name() : each.up->mesh.name());
+            if (each.lines)
+                glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, each.up->segmentCount);
+            else
+                glDrawElements(GL_TRIANGLES, each.up->indexCount, GL_UNSIGNED_INT, nullptr);
         }
         glTextureBarrier(); // the next peel reads what this one wrote
     }

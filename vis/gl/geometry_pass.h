@@ -3,6 +3,7 @@
 #include "vis/gl/handles.h"
 #include "vis/gl/program.h"
 #include "vis/model/scene.h"
+#include "vis/technique/look_uniforms.h"
 #include "volume/dataset.h"
 
 #include <map>
@@ -12,7 +13,7 @@ namespace tessera::vis {
 /// What the rasteriser found at each pixel: surfaces by distance along the ray, nearest in layer 0 of both arrays.
 struct GeometryBuffer {
     Texture color;    ///< linear light, premultiplied
-    Texture distance; ///< world units from the ray's origin; kNoGeometry: nothing
+    Texture distance; ///< world units from the ray's origin, kNoGeometry: nothing; BrushEffect of the layer
     Texture depth;
     std::vector<Framebuffer> framebuffers; ///< one per layer
     glm::ivec2 size{0};
@@ -27,9 +28,10 @@ class GeometryPass {
 public:
     /// Fills the buffer's lower left `size` pixels with what a picture of that size shows; every pixel's centre is
     /// moved by `jitter` pixels. Light is looked up in the texture units from `lightUnit` on (light_uniforms.h).
-    /// Nothing is drawn, and no layer made, when the scene has no geometry.
+    /// Nothing is drawn, and no layer made, when the scene has no geometry. `pictureSize`: of the picture at rest, for
+    /// what looks measure in pixels; `grain`: called where one draws with it.
     void draw(GeometryBuffer& buffer, const Scene& scene, const volume::DatasetInfo& info, glm::ivec2 size,
-              int lightUnit, glm::dvec2 jitter = glm::dvec2(0));
+              glm::ivec2 pictureSize, int lightUnit, GrainTexture& grain, glm::dvec2 jitter = glm::dvec2(0));
 
 private:
     struct Uploaded {
@@ -41,9 +43,9 @@ private:
     const Uploaded& upload(const std::shared_ptr<const Geometry>& geometry);
     void table(const Scene& scene, const volume::DatasetInfo& info);
 
-    const Program& program(const Scene& scene, bool lines);
+    const Program& program(const Scene& scene, bool lines, int look);
 
-    std::map<std::string, Program> programs_; ///< by recipe: variants of light and clips
+    std::map<std::string, Program> programs_; ///< by recipe: variants of light, clips and looks
     std::map<const Geometry*, Uploaded> uploaded_;
     Texture table_;
     int tableRows_ = 0;

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <glm/common.hpp>
+#include <glm/geometric.hpp>
 #include <limits>
 
 namespace tessera::vis {
@@ -70,9 +71,25 @@ std::vector<CloudPoint> makeCloud(const volume::Samples4& samples, const CloudSt
         opacity = 1 - std::pow(1 - std::min(opacity, 0.9999), power);
         if (opacity < 1e-4) continue;
         point.color.a = float(opacity);
+        point.sample = std::uint32_t(i);
         points.push_back(point);
     }
     return points;
+}
+
+std::optional<std::size_t> nearestPoint(std::span<const CloudPoint> points, const glm::dmat4& rotation,
+                                        const Projection4& projection, glm::dvec2 at, double reach) {
+    std::optional<std::size_t> best;
+    double least = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const Projected4 seen = project(projection, 1, rotation * glm::dvec4(points[i].position));
+        const glm::dvec2 away = seen.at - at;
+        const double distance = glm::dot(away, away);
+        if (distance > reach * reach) continue;
+        const double cost = std::floor(5 * std::sqrt(distance) / reach) + seen.depth;
+        if (!best || cost < least) best = i, least = cost;
+    }
+    return best;
 }
 
 } // namespace tessera::vis

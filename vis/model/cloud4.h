@@ -1,11 +1,14 @@
 #pragma once
 
+#include "vis/model/rotation4.h"
 #include "vis/model/selection.h"
 #include "vis/model/transfer_function.h"
 #include "volume/samples4.h"
 
+#include <cstdint>
 #include <glm/vec4.hpp>
 #include <optional>
+#include <span>
 #include <vector>
 
 /// Samples in space and time as points of a tesseract.
@@ -14,7 +17,8 @@ namespace tessera::vis {
 /// A point in four dimensions, within a ball of radius 1.
 struct CloudPoint {
     glm::vec4 position{0};
-    glm::vec4 color{1}; ///< linear light; opacity of the middle of the splat
+    glm::vec4 color{1};       ///< linear light; opacity of the middle of the splat
+    std::uint32_t sample = 0; ///< of Samples4
 };
 
 /// Where samples lie in the body -half..half and what they look like. Channels are positions in Samples4's.
@@ -36,5 +40,10 @@ struct CloudStyle {
 /// The samples that are visible, in their order. The opacity of one is 1 - (1 - a)^(density * 60000 / samples), so the
 /// picture does not grow denser with the budget; what is not brushed is faded and greyed as everywhere.
 std::vector<CloudPoint> makeCloud(const volume::Samples4& samples, const CloudStyle& style);
+
+/// The point drawn nearest to a place of the picture (-1..1, y up), within `reach` of it; of those at about the same
+/// distance (a fifth of the reach) the one that is nearer to the viewer.
+std::optional<std::size_t> nearestPoint(std::span<const CloudPoint> points, const glm::dmat4& rotation,
+                                        const Projection4& projection, glm::dvec2 at, double reach);
 
 } // namespace tessera::vis

@@ -111,23 +111,91 @@ std::vector<float> valuesAt(const volume::BrickSource& source, const std::string
     return std::move(points.scalars);
 }
 
-/// How likely a place is a beginning: where the flow can be seen, by the weighting parameter's share of its range.
-std::function<double(glm::dvec3)> weightOf(const volume::BrickSource& source, const FlowLayer& layer, int time,
-                                           int level, const volume::VectorField& field, double slowest,
-                                           const Progress& progress) {
-    const int channel = layer.weight.empty() ? -1 : source.info().findChannel(layer.weight).value_or(-1);
-    const auto flows = [field, slowest](glm::dvec3 place) {
+using Weight = std::function<double(glm::dvec3)>;
+
+/// 1 where the flow can be seen, else 0.
+Weight whereItFlows(const volume::VectorField& field, double slowest) {
+    return [field, slowest](glm::dvec3 place) {
         const auto vector = field(place);
-        return vector && glm::length(*vector) > slowest;
+        return vector && glm::length(*vector) > slowest ? 1.0 : 0.0;
     };
-    if (channel < 0) return [flows](glm::dvec3 place) { return flows(place) ? 1.0 : 0.0; };
+}
+
+/// A channel's share of its range, 0 where it is absent.
+Weight byChannel(const volume::BrickSource& source, int channel, int time, int level, const Progress& progress) {
     const Range range = source.info().channelRange(source.info().channels()[std::size_t(channel)]);
     const auto samples =
         std::make_shared<const volume::SampleGrid>(volume::readSamples(source, channel, time, level, progress));
-    return [flows, samples, range](glm::dvec3 place) {
-        const std::optional<double> value = flows(place) ? volume::valueAt(*samples, place) : std::nullopt;
+    return [samples, range](glm::dvec3 place) {
+        const std::optional<double> value = volume::valueAt(*samples, place);
         return value ? std::clamp((*value - range.lo) / (range.hi - range.lo), 0.0, 1.0) : 0.0;
     };
+}
+
+Weight byInterest(const volume::BrickSource& source, const DoiFunction& interest, int time, int level,
+                  const Progress& progress) {
+    std::vector<std::shared_ptr<const volume::SampleGrid>> grids; // null: unknown
+    for (const std::string& name : interest.channels()) {
+        const std::optional<int> channel = source.info().findChannel(name);
+        grids.push_back(channel ? std::make_shared<const volume::SampleGrid>(
+                                      volume::readSamples(source, *channel, time, level, progress))
+                                : nullptr);
+    }
+    return [grids, interest](glm::dvec3 place) {
+        std::vector<double> values;
+        for (const auto& grid : grids) {
+            const std::optional<double> value = grid ? volume::valueAt(*grid, place) : std::nullopt;
+            values.push_back(value.value_or(std::numeric_limits<double>::quiet_NaN()));
+        }
+        return interest(values, place);
+    };
+}
+
+/// What a layer is made of.
+struct FlowData {
+    int parameter = 0, level = 0;
+    volume::VectorGrid grid;
+    double slowest = 0;
+    volume::VectorField field() const {
+        return [this](glm::dvec3 place) { return grid.at(place); };
+    }
+};
+
+std::optional<FlowData> readFlow(const volume::BrickSource& source, const FlowLayer& layer, int time,
+                                 const Progress& progress) {
+    const volume::DatasetInfo& info = source.info();
+    const auto parameter = std::find_if(info.parameters.begin(), info.parameters.end(),
+                                        [&](const auto& p) { return p.components == 3 && p.name == layer.vector; });
+    if (parameter == info.parameters.end()) return std::nullopt;
+    FlowData data;
+    data.parameter = int(parameter - info.parameters.begin());
+    data.level = flowLevel(source.grid(), layer.kind == FlowKind::Pathlines ? int(info.times.size()) : 1);
+    data.grid = volume::readVector(source, data.parameter, time, data.level, progress);
+    const auto magnitude = info.findChannel(layer.vector);
+    const double fastest = magnitude ? info.channelRange(info.channels()[std::size_t(*magnitude)]).hi : 0;
+    data.slowest = fastest * double(layer.minimumSpeed);
+    return data;
+}
+
+std::vector<glm::dvec3> seedsOf(const volume::BrickSource& source, const FlowData& data, const FlowLayer& layer,
+                                int time, glm::dvec3 stretch, const Progress& progress, const DoiFunction* interest) {
+    const volume::Box& bounds = source.info().bounds;
+    std::vector<Weight> weights{whereItFlows(data.field(), data.slowest)};
+    if (const auto channel = layer.weight.empty() ? std::nullopt : source.info().findChannel(layer.weight))
+        weights.push_back(byChannel(source, *channel, time, data.level, progress));
+    if (layer.seedBrushed && interest) weights.push_back(byInterest(source, *interest, time, data.level, progress));
+    return volume::placeSeeds({.shape = layer.seeds,
+                               .from = bounds.lo + bounds.size() * glm::dvec3(layer.from),
+                               .to = bounds.lo + bounds.size() * glm::dvec3(layer.to),
+                               .proportions = stretch,
+                               .count = layer.count,
+                               .random = std::uint32_t(layer.random)},
+                              [&](glm::dvec3 place) {
+                                  double product = 1;
+                                  for (const Weight& weight : weights)
+                                      if (product > 0) product *= weight(place);
+                                  return product;
+                              });
 }
 
 /// The ways of particles through all times, coloured by what they meet when they are there.
@@ -219,37 +287,32 @@ int flowLevel(const volume::BrickGrid& grid, int times) {
     return level;
 }
 
+std::vector<glm::dvec3> flowSeeds(const volume::BrickSource& source, const FlowLayer& layer, int time,
+                                  glm::dvec3 stretch, const Progress& progress, const DoiFunction* interest) {
+    const std::optional<FlowData> data = readFlow(source, layer, time, progress.part(0, 0.7));
+    if (!data) return {};
+    return seedsOf(source, *data, layer, time, stretch, progress.part(0.7, 1), interest);
+}
+
 std::shared_ptr<const Geometry> makeFlow(const volume::BrickSource& source, const FlowLayer& layer, int time,
-                                         glm::dvec3 stretch, const Progress& progress) {
-    const volume::DatasetInfo& info = source.info();
-    const auto parameter = std::find_if(info.parameters.begin(), info.parameters.end(),
-                                        [&](const auto& p) { return p.components == 3 && p.name == layer.vector; });
-    if (parameter == info.parameters.end()) return nullptr;
-    const int index = int(parameter - info.parameters.begin());
-    const int level = flowLevel(source.grid(), layer.kind == FlowKind::Pathlines ? int(info.times.size()) : 1);
-    const auto grid = volume::readVector(source, index, time, level, progress.part(0, 0.3));
-    const volume::VectorField field = [&](glm::dvec3 place) { return grid.at(place); };
-    const auto magnitude = info.findChannel(layer.vector);
-    const double fastest = magnitude ? info.channelRange(info.channels()[std::size_t(*magnitude)]).hi : 0;
-    const double slowest = fastest * double(layer.minimumSpeed);
-    const glm::dvec3 size = info.bounds.size();
+                                         glm::dvec3 stretch, const Progress& progress, const DoiFunction* interest) {
+    const std::optional<FlowData> data = readFlow(source, layer, time, progress.part(0, 0.3));
+    if (!data) return nullptr;
+    const int level = data->level, index = data->parameter;
+    const volume::VectorField field = data->field();
+    const double slowest = data->slowest;
+    const glm::dvec3 size = source.info().bounds.size();
     const double longest = std::max({size.x, size.y, size.z});
     const glm::dvec3 drawn = size * stretch;
     const double longestDrawn = std::max({drawn.x, drawn.y, drawn.z});
-
     const std::vector<glm::dvec3> seeds =
-        volume::placeSeeds({.shape = layer.seeds,
-                            .from = info.bounds.lo + size * glm::dvec3(layer.from),
-                            .to = info.bounds.lo + size * glm::dvec3(layer.to),
-                            .proportions = stretch,
-                            .count = layer.count,
-                            .random = std::uint32_t(layer.random)},
-                           weightOf(source, layer, time, level, field, slowest, progress.part(0.3, 0.4)));
+        seedsOf(source, *data, layer, time, stretch, progress.part(0.3, 0.4), interest);
     auto out = std::make_shared<Geometry>();
     if (followsFlow(layer.kind)) {
         LineSet lines;
-        const volume::StreamlineSettings settings{
-            .cell = glm::abs(grid.x.lattice.spacing), .longest = double(layer.length) * longest, .slowest = slowest};
+        const volume::StreamlineSettings settings{.cell = glm::abs(data->grid.x.lattice.spacing),
+                                                  .longest = double(layer.length) * longest,
+                                                  .slowest = slowest};
         if (layer.kind == FlowKind::Pathlines) {
             volume::StreamlineSettings particles = settings;
             particles.slowest *= double(layer.speed);

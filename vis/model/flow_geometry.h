@@ -2,6 +2,7 @@
 
 #include "vis/model/flow_layer.h"
 #include "vis/model/geometry.h"
+#include "vis/model/selection.h"
 #include "volume/flow.h"
 
 #include <span>
@@ -28,8 +29,14 @@ volume::SurfaceMesh cones(std::span<const Glyph> glyphs, glm::dvec3 stretch);
 int flowLevel(const volume::BrickGrid& grid, int times = 1);
 
 /// A flow layer of a data set, coloured by the values of its channel. Nothing where the data has no such vector.
-/// Throws Error, Cancelled.
+/// `interest`: of places, for layers whose beginnings follow the brushes; null: all of it. Throws Error, Cancelled.
 std::shared_ptr<const Geometry> makeFlow(const volume::BrickSource& source, const FlowLayer& layer, int time,
-                                         glm::dvec3 stretch, const Progress& progress = {});
+                                         glm::dvec3 stretch, const Progress& progress = {},
+                                         const DoiFunction* interest = nullptr);
+
+/// Where the lines or glyphs of a flow layer begin, as makeFlow() spreads them.
+std::vector<glm::dvec3> flowSeeds(const volume::BrickSource& source, const FlowLayer& layer, int time,
+                                  glm::dvec3 stretch, const Progress& progress = {},
+                                  const DoiFunction* interest = nullptr);
 
 } // namespace tessera::vis

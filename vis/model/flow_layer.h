@@ -1,5 +1,6 @@
 #pragma once
 
+#include "vis/model/look.h"
 #include "volume/describe.h"
 #include "volume/seeds.h"
 
@@ -27,6 +28,7 @@ struct FlowLayer {
     int count = 60;
     int random = 1;
     std::string weight = {};    ///< "" = none
+    bool seedBrushed = false;   ///< as dense as the degree of interest is high
     float length = 2;           ///< of a line each way, parts of the data's longest edge
     float speed = 1;            ///< of particles: lengths of the data over its times
     float minimumSpeed = 1e-4f; ///< parts of the greatest
@@ -36,6 +38,7 @@ struct FlowLayer {
     float lineWidth = 2;        ///< pixels
     glm::vec3 color{0.75f};     ///< sRGB
     float opacity = 1;
+    Look look = {};
     bool operator==(const FlowLayer&) const = default;
     static void describe(auto& self, auto&& visit) {
         visit(self.vector, FieldInfo{.key = "vector", .unit = "", .doc = "Vector shown", .refersTo = "vector"});
@@ -74,6 +77,10 @@ struct FlowLayer {
                                      .unit = "",
                                      .doc = "Random beginnings are as dense as this parameter is high; none = evenly",
                                      .refersTo = "optionalChannel"});
+        visit(self.seedBrushed,
+              FieldInfo{.key = "seedBrushed",
+                        .unit = "",
+                        .doc = "Beginnings lie where is brushed; random ones are as dense as the interest is high"});
         visit(self.length, FieldInfo{.key = "length",
                                      .unit = "",
                                      .doc = "Greatest length of a line each way, in longest edges of the data",
@@ -110,6 +117,7 @@ struct FlowLayer {
                                     .doc = "Colour where the parameter has no value (sRGB)",
                                     .range = Range{0, 1}});
         visit(self.opacity, FieldInfo{.key = "opacity", .unit = "", .doc = "Opacity", .range = Range{0, 1}});
+        visit(self.look, kLookField);
     }
 };
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "vis/model/brush_effect.h"
+#include "vis/model/look.h"
 #include "volume/mesh/surface_mesh.h"
 
 #include <algorithm>
@@ -40,20 +42,16 @@ struct GeometryLayer {
     glm::vec3 color{0.8f};    ///< sRGB; of everything, or where a scalar is NaN
     std::string channel = {}; ///< its transfer function colours the scalars; "" = `color`
     float opacity = 1;
-    float lineWidth = 2;   ///< pixels
-    std::string lens = {}; ///< name of the lens that it is drawn in alone; "" = everywhere
+    float lineWidth = 2;       ///< pixels
+    std::string lens = {};     ///< name of the lens that it is drawn in alone; "" = everywhere
+    std::string transfer = {}; ///< name of a transfer function other than that of `channel`
+    BrushEffect brushes = BrushEffect::Fade;
+    Look look = {}; ///< nothing changes along a surface: places are as steep as can be
     bool operator==(const GeometryLayer&) const = default;
 };
 
-/// How many surfaces, one behind the other, are kept for each pixel: one is enough where all are opaque. What lies
-/// behind the last one is left out.
+/// How many surfaces, one behind the other, are kept for each pixel where some are translucent. What lies behind the
+/// last one is left out.
 inline constexpr int kPeels = 4;
-inline int peelsOf(const std::vector<GeometryLayer>& layers) {
-    int peels = 0;
-    for (const GeometryLayer& layer : layers)
-        if (layer.geometry && layer.opacity > 0)
-            peels = std::max(peels, layer.opacity < 1 || !layer.lens.empty() ? kPeels : 1);
-    return peels;
-}
 
 } // namespace tessera::vis

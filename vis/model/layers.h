@@ -1,5 +1,6 @@
 #pragma once
 
+#include "vis/model/brush_effect.h"
 #include "vis/model/flow_layer.h"
 #include "vis/model/look.h"
 #include "volume/describe.h"
@@ -22,8 +23,6 @@ inline constexpr std::string_view kQuantityNames[] = {"value", "gradient"};
 /// Where between samples and picture a transfer function is applied; for composite layers.
 enum class Classification { Post, Pre, PreIntegrated };
 inline constexpr std::string_view kClassificationNames[] = {"post", "pre", "preintegrated"};
-
-inline constexpr FieldInfo kLookField{.key = "look", .unit = "", .doc = "Style of drawing"};
 
 /// A scalar drawn through its transfer function by the ray caster.
 struct VolumeLayer {
@@ -78,7 +77,7 @@ struct IsoLayer {
     float opacity = 1;
     SurfaceMethod method = SurfaceMethod::Rays;
     std::string colorBy = {}; ///< "" = `color`
-    Look look = {};           ///< rays only
+    Look look = {};
     bool operator==(const IsoLayer&) const = default;
     static void describe(auto& self, auto&& visit) {
         visit(
@@ -157,6 +156,7 @@ struct Layer {
     std::string lens = {};     ///< name of the lens that it is drawn in alone; "" = everywhere
     std::string transfer = {}; ///< name of a transfer function of its own, "" = that of its channel
     double timeShift = 0;      ///< seconds, from the time of the scene to the one it shows
+    BrushEffect brushes = BrushEffect::Fade;
     bool operator==(const Layer&) const = default;
     static void describe(auto& self, auto&& visit) {
         visit(self.name, FieldInfo{.key = "name", .unit = "", .doc = "Name of the layer"});
@@ -169,6 +169,11 @@ struct Layer {
                                        .doc = "Name of its own transfer function; none: that of its parameter"});
         visit(self.timeShift,
               FieldInfo{.key = "timeShift", .unit = "s", .doc = "How much later than the others the layer is shown"});
+        visit(self.brushes, FieldInfo{.key = "brushes",
+                                      .unit = "",
+                                      .doc = "What brushes do to it: what is not brushed fades, nothing, only what is "
+                                             "not brushed (context) or only what is brushed (focus) stays",
+                                      .names = kBrushEffectNames});
     }
 };
 

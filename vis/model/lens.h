@@ -25,15 +25,16 @@ struct Lens {
     bool enabled = true;
     LensShape shape = LensShape::Sphere;
     LensEffect effect = LensEffect::Replace;
-    glm::dvec3 center{0};       ///< physical
-    bool followsCursor = false; ///< lies at the linked cursor instead
-    glm::vec3 size{0.2f};       ///< half of its edges, or its radii along its own axes, world; of a disc only x counts
-    glm::vec3 rotation{0};      ///< degrees; around x, then y, then z of the world
-    float rim = 0.15f;          ///< share of its radius over which it fades out
-    bool inverted = false;      ///< acts outside
-    float strength = 1;         ///< 0: nothing happens
-    float magnification = 2.5f; ///< in the middle; Magnify only
-    float detail = 1;           ///< factor on RenderParams::detail of the bricks it meets
+    glm::dvec3 center{0};        ///< physical
+    bool followsCursor = false;  ///< lies at the linked cursor instead
+    bool followsPointer = false; ///< 3D views move it to what lies under the mouse
+    glm::vec3 size{0.2f};        ///< half of its edges, or its radii along its own axes, world; of a disc only x counts
+    glm::vec3 rotation{0};       ///< degrees; around x, then y, then z of the world
+    float rim = 0.15f;           ///< share of its radius over which it fades out
+    bool inverted = false;       ///< acts outside
+    float strength = 1;          ///< 0: nothing happens
+    float magnification = 2.5f;  ///< in the middle; Magnify only
+    float detail = 1;            ///< factor on RenderParams::detail of the bricks it meets
     bool marks = true;
     glm::vec3 color{0.55f, 0.85f, 1.0f}; ///< sRGB, of its outline
 
@@ -53,6 +54,10 @@ struct Lens {
                         .names = kLensEffectNames});
         visit(self.center, FieldInfo{.key = "center", .unit = "m", .doc = "Middle of the lens"});
         visit(self.followsCursor, FieldInfo{.key = "followsCursor", .unit = "", .doc = "Lies at the linked cursor"});
+        visit(self.followsPointer,
+              FieldInfo{.key = "followsPointer",
+                        .unit = "",
+                        .doc = "Moves with the mouse over 3D views and slices (F pins it and lets it go)"});
         visit(self.size, FieldInfo{.key = "size",
                                    .unit = "",
                                    .doc = "Radii or half edges along its axes, longest edge of the data = 1",

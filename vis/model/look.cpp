@@ -67,6 +67,7 @@ Look made(std::string_view name) {
     if (name == "pencil") look = pencil();
     if (name == "sanguine") look = sanguine();
     if (name == "chalk") look = chalk();
+    if (name == "wire") look.wire.emplace();
     return look;
 }
 

@@ -180,6 +180,36 @@ struct CharcoalDrawing {
     }
 };
 
+/// Lines where the surface meets planes of even distance along x, y and z: a wire frame of the shape, whatever it is
+/// made of.
+struct WireFrame {
+    float spacing = 0.08f;
+    float width = 1.2f; ///< pixels
+    float retained = 0.05f;
+    glm::vec3 color{0.75f, 0.8f, 0.88f}; ///< sRGB
+    float ownColor = 0.3f;
+    bool operator==(const WireFrame&) const = default;
+    static void describe(auto& self, auto&& visit) {
+        visit(self.spacing, FieldInfo{.key = "spacing",
+                                      .unit = "",
+                                      .doc = "Distance between lines, longest edge of the data = 1",
+                                      .range = Range{0.002, 1},
+                                      .logScale = true});
+        visit(self.width,
+              FieldInfo{.key = "width", .unit = "pixel", .doc = "Width of the lines", .range = Range{0.2, 8}});
+        visit(self.retained, FieldInfo{.key = "retained",
+                                       .unit = "",
+                                       .doc = "Share of opacity that stays between the lines",
+                                       .range = Range{0, 1}});
+        visit(self.color,
+              FieldInfo{.key = "color", .unit = "", .doc = "Colour of the lines (sRGB)", .range = Range{0, 1}});
+        visit(self.ownColor, FieldInfo{.key = "ownColor",
+                                       .unit = "",
+                                       .doc = "From that to the colour that lies there",
+                                       .range = Range{0, 1}});
+    }
+};
+
 /// What brushes leave of a look.
 enum class LookPart { Everything, Context, Focus };
 inline constexpr std::string_view kLookPartNames[] = {"everything", "context", "focus"};
@@ -192,12 +222,13 @@ struct Look {
     std::optional<DistanceColor> distance;
     std::optional<Cartoon> cartoon;
     std::optional<CharcoalDrawing> charcoal;
-    bool any() const { return tone || boundary || silhouette || distance || cartoon || charcoal; }
+    std::optional<WireFrame> wire;
+    bool any() const { return tone || boundary || silhouette || distance || cartoon || charcoal || wire; }
     bool operator==(const Look&) const = default;
 
     static constexpr std::string_view kPresetNames[] = {"plain",  "tone",     "illustration", "boundaries",
                                                         "glass",  "distance", "cartoon",      "charcoal",
-                                                        "pencil", "sanguine", "chalk"};
+                                                        "pencil", "sanguine", "chalk",        "wire"};
     /// One of kPresetNames; nullopt of others.
     static std::optional<Look> preset(std::string_view name);
 
@@ -215,8 +246,11 @@ struct Look {
         visit(self.distance, FieldInfo{.key = "distance", .unit = "", .doc = "Colours pale with distance"});
         visit(self.cartoon, FieldInfo{.key = "cartoon", .unit = "", .doc = "Light in steps, with outlines"});
         visit(self.charcoal, FieldInfo{.key = "charcoal", .unit = "", .doc = "Strokes on paper grain"});
+        visit(self.wire, FieldInfo{.key = "wire", .unit = "", .doc = "Lines across the surface, little between them"});
     }
 };
+
+inline constexpr FieldInfo kLookField{.key = "look", .unit = "", .doc = "Style of drawing"};
 
 /// What the picture lies on.
 struct Paper {

@@ -44,12 +44,30 @@ double lookOpacity(const Look& look, double opacity, const LookSample& sample) {
     if (const auto& own = look.silhouette)
         factor *= double(own->retained) + double(own->strength) * sample.weight *
                                               std::pow(1 - std::min(sample.facing(), 1.0), double(own->exponent));
+    if (const auto& own = look.wire) factor *= glm::mix(double(own->retained), 1.0, sample.wire);
     return std::min(1.0, opacity * glm::mix(1.0, factor, sample.share));
 }
 
 glm::dvec3 lookAlbedo(const Look& look, glm::dvec3 albedo, double share) {
     if (!look.charcoal) return albedo;
     return glm::mix(albedo, glm::mix(glm::dvec3(1), albedo, double(look.charcoal->localTone)), share);
+}
+
+double wireCoverage(glm::dvec3 world, glm::dvec3 normal, glm::dvec3 toViewer, double spacing, double width,
+                    double pixel) {
+    double along = glm::dot(normal, toViewer), covered = 0;
+    along = along < 0 ? std::min(along, -0.02) : std::max(along, 0.02);
+    for (int axis = 0; axis < 3; ++axis) {
+        glm::dvec3 change = -toViewer[axis] / along * normal;
+        change[axis] += 1;
+        const double gap = spacing / std::max(glm::length(change) * pixel, 1e-6);
+        const double x = world[axis] / spacing, away = std::abs(x - std::floor(x + 0.5)) * gap;
+        const double line = glm::mix(std::clamp(0.5 * width + 0.5 - away, 0.0, 1.0), std::min(width / gap, 1.0),
+                                     std::clamp(2 - 0.5 * gap, 0.0, 1.0));
+        const double slope = std::sqrt(std::max(0.0, 1 - normal[axis] * normal[axis]));
+        covered = std::max(covered, line * smooth(0.1, 0.35, slope));
+    }
+    return covered;
 }
 
 double outline(double facing, double curvature, double thickness) {
@@ -102,6 +120,8 @@ glm::dvec3 lookColor(const Look& look, glm::dvec3 albedo, glm::dvec3 lit, const 
     }
     if (const auto& own = look.charcoal)
         color = glm::mix(color, glm::mix(background, linear(own->color), charcoalInk(*own, lit, sample)), sample.share);
+    if (const auto& own = look.wire)
+        color = glm::mix(color, glm::mix(linear(own->color), color, double(own->ownColor)), sample.wire * sample.share);
     if (const auto& own = look.distance)
         color = glm::mix(color, own->toBackground ? background : linear(own->color),
                          double(own->amount) * std::pow(std::clamp(sample.depth, 0.0, 1.0), double(own->exponent)) *

@@ -18,6 +18,7 @@ struct LookSample {
     double depth = 0;      ///< from the nearest (0) to the farthest (1) place of the box along the view
     double pixel = 0;      ///< world edge of a pixel there
     glm::dvec3 toLight{0}; ///< direction of length 1
+    double wire = 0;       ///< wireCoverage() times weight; of wire frames only
     glm::dvec2 grain{0.5}; ///< tooth and strokes, 0..1 (vis/model/grain.h); of charcoal only
     double share = 1;      ///< how much of the look applies here
 
@@ -42,11 +43,18 @@ double lookShare(LookPart part, double interest);
 
 /// Opacity (of a layer kReferenceLength thick, or of a surface) with boundaries and silhouettes enhanced (Rheingans and
 /// Ebert 2001, equations 5 and 6):
-///   a' = min(1, a mix(1, (kb + sb min(1, steepness)^eb) (ks + ss weight (1 - |n.v|)^es), share))
+///   a' = min(1, a mix(1, (kb + sb min(1, steepness)^eb) (ks + ss weight (1 - |n.v|)^es) mix(kw, 1, wire), share))
 double lookOpacity(const Look& look, double opacity, const LookSample& sample);
 
 /// What is lit in place of the albedo: charcoal draws from light on mix(white, albedo, localTone).
 glm::dvec3 lookAlbedo(const Look& look, glm::dvec3 albedo, double share);
+
+/// How much of a pixel, 0..1, lies on lines where a surface meets the planes at multiples of `spacing` along x, y and
+/// z, `width` pixels wide: |x| in pixels is its distance to a multiple over its change across the picture, |e - (v_e /
+/// n.v) n| per world unit. Where lines come closer than 4 pixels they turn into their mean, where the surface lies
+/// along the planes (within 6 to 20 degrees) they fade. `pixel`: world edge of a pixel.
+double wireCoverage(glm::dvec3 world, glm::dvec3 normal, glm::dvec3 toViewer, double spacing, double width,
+                    double pixel);
 
 /// 1 on outlines of even width, 0 off them: |n.v| < sqrt(T k (2 - T k)) for curvature k and thickness T, in world units
 /// (Kindlmann et al. 2003, equation 10), softened over its outer half.
@@ -70,7 +78,8 @@ double charcoalInk(const CharcoalDrawing& charcoal, glm::dvec3 lit, const LookSa
 ///   2. tone, by weight: mix(cool, warm, (1 + l) / 2) + ownColor max(l, 0) albedo; l = n.l, or its step in cartoons
 ///   3. outlines of cartoons
 ///   4. charcoal: mix(paper, stick, ink)
-///   5. distance: mix(colour, background, amount depth^exponent)
+///   5. wire: mix(colour, mix(its own, colour, ownColor), wire)
+///   6. distance: mix(colour, background, amount depth^exponent)
 /// each by its amount and the share.
 glm::dvec3 lookColor(const Look& look, glm::dvec3 albedo, glm::dvec3 lit, const LookSample& sample,
                      glm::dvec3 background);

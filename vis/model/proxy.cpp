@@ -9,7 +9,7 @@
 namespace tessera::vis {
 
 bool drawnByProxy(const Scene& scene) {
-    if (scene.render.proxy == Proxy::Rays || peelsOf(scene.geometry) > 0) return false;
+    if (scene.render.proxy == Proxy::Rays || peelsOf(scene) > 0) return false;
     return std::all_of(scene.layers.begin(), scene.layers.end(), [&](const Layer& layer) {
         const auto* volume = std::get_if<VolumeLayer>(&layer.technique);
         return !layer.visible ||

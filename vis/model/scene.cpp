@@ -1,11 +1,32 @@
 #include "vis/model/scene.h"
 
+#include <algorithm>
+
 namespace tessera::vis {
 
 const TransferFunction& transferFor(const Scene& scene, const std::string& name) {
     static const TransferFunction fallback;
     const auto found = scene.transfer.find(name);
     return found == scene.transfer.end() ? fallback : found->second;
+}
+
+int peelsOf(const Scene& scene) {
+    const bool brushed = scene.selection.active();
+    int peels = 0;
+    for (const GeometryLayer& layer : scene.geometry) {
+        if (!drawn(scene, layer)) continue;
+        const bool fades = brushed && layer.brushes != BrushEffect::None &&
+                           !(layer.brushes == BrushEffect::Fade && scene.selection.contextOpacity >= 1);
+        const bool translucent = layer.opacity < 1 || layer.look.silhouette || layer.look.boundary || layer.look.wire;
+        peels = std::max(peels, translucent || fades || !layer.lens.empty() ? kPeels : 1);
+    }
+    return peels;
+}
+
+bool drawn(const Scene& scene, const GeometryLayer& layer) {
+    // Nothing is context where nothing is brushed.
+    return layer.geometry && layer.opacity > 0 &&
+           (layer.brushes != BrushEffect::ContextOnly || scene.selection.active());
 }
 
 std::vector<PlacedLens> placeLenses(const Scene& scene, const WorldFrame& frame) {

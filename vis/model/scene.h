@@ -101,6 +101,13 @@ struct Scene {
 /// The transfer function of a channel (or of a layer with one of its own) in a scene, the default one if it has none.
 const TransferFunction& transferFor(const Scene& scene, const std::string& name);
 
+/// Surfaces of the scene's geometry, one behind the other, that are kept for each pixel: 0 where there is none, 1 where
+/// all are opaque, else kPeels.
+int peelsOf(const Scene& scene);
+
+/// Whether there is anything to see of a layer of geometry.
+bool drawn(const Scene& scene, const GeometryLayer& layer);
+
 /// The lenses of a scene.
 std::vector<PlacedLens> placeLenses(const Scene& scene, const WorldFrame& frame);
 

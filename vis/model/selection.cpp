@@ -206,6 +206,16 @@ double DoiFunction::operator()(std::span<const double> values, glm::dvec3 positi
     return doi;
 }
 
+DoiFunction::Holder DoiFunction::holder(std::span<const double> values, glm::dvec3 position) const {
+    Holder most;
+    for (const Part& part : parts_) {
+        if (part.brush.inverted || part.brush.combine == BrushCombine::Minus) continue;
+        const double own = regionDoi(part, values, position);
+        if (own > most.interest) most = {part.brush.color, own};
+    }
+    return most;
+}
+
 double degreeOfInterest(const Selection& selection, const std::function<double(const std::string& channel)>& valueOf,
                         glm::dvec3 position) {
     const DoiFunction doi(selection);

@@ -156,6 +156,7 @@ struct Selection {
     float contextOpacity = 0.04f;   ///< opacity factor of samples with DOI 0
     float contextSaturation = 0.1f; ///< colour saturation of samples with DOI 0
     float contextLightness = 1;     ///< of samples with DOI 0: 0 black, 1 as they are, 2 white
+    float brushColor = 0;           ///< how much samples take the colour of the brush that holds them most
     float contextBlur = 0;          ///< share of the picture's height: radius over which DOI 0 is out of focus
 
     bool operator==(const Selection&) const = default;
@@ -173,6 +174,10 @@ struct Selection {
                                                .unit = "",
                                                .doc = "Lightness of what is not brushed: 0 black, 1 as it is, 2 white",
                                                .range = Range{0, 2}});
+        visit(self.brushColor, FieldInfo{.key = "brushColor",
+                                         .unit = "",
+                                         .doc = "How much what is brushed takes the colour of its brush",
+                                         .range = Range{0, 1}});
         visit(self.contextBlur, FieldInfo{.key = "contextBlur",
                                           .unit = "",
                                           .doc = "How far out of focus what is not brushed is, share of the height",
@@ -225,6 +230,13 @@ public:
     const std::vector<std::string>& channels() const { return channels_; }
     /// Degree of interest of a point: values of channels() (NaN = absent) and its physical position. Thread-safe.
     double operator()(std::span<const double> values, glm::dvec3 position) const;
+    /// Of the brush that holds a point most (the first of equals; those that take away, or hold what lies outside, hold
+    /// nothing): its colour (sRGB) and how much it holds it. The same arguments.
+    struct Holder {
+        glm::vec3 color{0};
+        double interest = 0;
+    };
+    Holder holder(std::span<const double> values, glm::dvec3 position) const;
 
 private:
     struct Part {

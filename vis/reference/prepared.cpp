@@ -57,6 +57,7 @@ Prepared::Prepared(const Scene& drawn, const volume::BrickSource& source, glm::i
         DrawnLayer one;
         one.technique = &layer.technique;
         one.lens = findLens(lenses, layer.lens);
+        one.brushes = layer.brushes;
         const bool seen = layer.visible && !std::holds_alternative<FlowLayer>(layer.technique) &&
                           (layer.lens.empty() || one.lens >= 0);
         one.samples = seen ? load(name, false, layer.timeShift) : nullptr;
@@ -106,20 +107,21 @@ glm::dvec4 matterAt(const Prepared& scene, const LightGrid& grid, glm::dvec3 cen
             mean += *value / kPoints;
             slope += way * *value / edges; // kPoints (1/2) / 4 (upper mean - lower mean) / (edge / 2)
             if (!volume || !kept(scene.clips, world)) continue;
-            const double doi = scene.interest(world);
+            const Interest doi = scene.interest(world);
             const glm::dvec4 color = scene.colorAt(layer, *value, world);
             const LensAction lens = scene.lensAction(layer, world);
-            const double own = -std::log(1 - std::min(color.a * scene.opacityFactor(doi) * lens.opacity, kThickest)) *
-                               double(volume->density) / kReferenceLength / kPoints;
-            sum += glm::dvec4(scene.focused(glm::dvec3(color), doi, lens.saturation), 1) * own;
+            const double own =
+                -std::log(1 - std::min(color.a * scene.opacityFactor(layer, doi) * lens.opacity, kThickest)) *
+                double(volume->density) / kReferenceLength / kPoints;
+            sum += glm::dvec4(scene.focused(layer, glm::dvec3(color), doi, lens.saturation), 1) * own;
         }
         if (!iso || present < kPoints || !kept(scene.clips, center)) continue;
-        const double doi = scene.interest(center);
+        const Interest doi = scene.interest(center);
         const double away = std::abs(mean - iso->value) / std::max(glm::length(slope), 1e-20);
         const LensAction lens = scene.lensAction(layer, center);
-        const double alpha = std::min(double(iso->opacity) * scene.opacityFactor(doi) * lens.opacity, kThickest);
+        const double alpha = std::min(double(iso->opacity) * scene.opacityFactor(layer, doi) * lens.opacity, kThickest);
         const double own = -std::log(1 - alpha) * std::max(0.0, 1 - away / longest) / longest;
-        sum += glm::dvec4(scene.focused(linearFromSrgb(glm::dvec3(iso->color)), doi, lens.saturation), 1) * own;
+        sum += glm::dvec4(scene.focused(layer, linearFromSrgb(glm::dvec3(iso->color)), doi, lens.saturation), 1) * own;
     }
     return sum;
 }
@@ -136,13 +138,26 @@ Matter<double> Prepared::matter(const LightGrid& grid) const {
     return out;
 }
 
-double Prepared::interest(glm::dvec3 world) const {
-    if (!scene.selection.active()) return 1;
+Interest Prepared::interest(glm::dvec3 world) const {
+    if (!scene.selection.active()) return {};
     std::vector<double> values;
     for (const Samples* of : brushed)
         values.push_back(
             (of ? of->value(cells(world)) : std::nullopt).value_or(std::numeric_limits<double>::quiet_NaN()));
-    return confine(lenses, interestOf(values, physical(world)), world);
+    const DoiFunction::Holder holder = interestOf.holder(values, physical(world));
+    return {confine(lenses, interestOf(values, physical(world)), world), linearFromSrgb(glm::dvec3(holder.color)),
+            holder.interest};
+}
+
+glm::dvec3 Prepared::focused(const DrawnLayer& layer, glm::dvec3 color, const Interest& doi, double saturation) const {
+    const Selection& selection = scene.selection;
+    const double share = layer.brushes == BrushEffect::Fade ? doi.doi : 1;
+    color = glm::mix(glm::dvec3(luminance(color)), color,
+                     glm::mix(double(selection.contextSaturation), 1.0, share) * saturation);
+    const double lightness = glm::mix(double(selection.contextLightness), 1.0, share);
+    color = glm::mix(color * std::min(lightness, 1.0), glm::dvec3(1), std::max(lightness - 1, 0.0));
+    const double held = layer.brushes == BrushEffect::None ? 0 : doi.held * doi.doi;
+    return glm::mix(color, doi.color, held * double(selection.brushColor));
 }
 
 glm::dvec4 Prepared::colorAt(const DrawnLayer& layer, double value, glm::dvec3 world) const {

@@ -21,6 +21,7 @@ struct DrawnLayer {
     const Samples* samples = nullptr;
     Range range;
     const TransferFunction* function = nullptr;
+    BrushEffect brushes = BrushEffect::Fade;
     int lens = -1;                              ///< of Prepared::lenses that it is drawn in, -1: everywhere
     Plane plane;                                ///< of a slice
     std::optional<IntegralFunctions> integrals; ///< of a pre-integrated layer
@@ -34,6 +35,15 @@ struct DrawnLayer {
     glm::dvec4 classify(double value) const;
     /// The same of a place in the range, 0..1.
     glm::dvec4 classifyPlace(double place) const;
+};
+
+/// Degree of interest of a place, and the colour (linear) of the brush that holds it most with how much it does.
+struct Interest {
+    double doi = 1;
+    glm::dvec3 color{0};
+    double held = 0;
+    /// What out-of-focus blur sees of a layer.
+    double seen(const DrawnLayer& layer) const { return layer.brushes == BrushEffect::None ? 1 : doi; }
 };
 
 /// A scene made ready for its rays.
@@ -62,8 +72,8 @@ struct Prepared {
     glm::dvec3 cells(glm::dvec3 world) const { return lattice.toCells(physical(world)); }
     /// Matter of every cell of a light grid, as vis/model/light_volume.h says.
     Matter<double> matter(const LightGrid& grid) const;
-    /// Degree of interest of a world point.
-    double interest(glm::dvec3 world) const;
+    /// Of a world point.
+    Interest interest(glm::dvec3 world) const;
     /// Length of the change over one worldCell edge per axis, in ranges of the layer's transfer function.
     double steepness(const DrawnLayer& layer, glm::dvec3 world) const;
     /// Place of a gradient's magnitude, 0..1 and beyond.
@@ -82,15 +92,12 @@ struct Prepared {
     LensAction lensAction(const DrawnLayer& layer, glm::dvec3 world) const {
         return vis::lensAction(lenses, layer.lens, world);
     }
-    double opacityFactor(double doi) const { return glm::mix(double(scene.selection.contextOpacity), 1.0, doi); }
-    /// A colour as degree of interest and lenses leave it.
-    glm::dvec3 focused(glm::dvec3 color, double doi, double saturation) const {
-        const Selection& selection = scene.selection;
-        color = glm::mix(glm::dvec3(luminance(color)), color,
-                         glm::mix(double(selection.contextSaturation), 1.0, doi) * saturation);
-        const double lightness = glm::mix(double(selection.contextLightness), 1.0, doi);
-        return glm::mix(color * std::min(lightness, 1.0), glm::dvec3(1), std::max(lightness - 1, 0.0));
+    /// Factor on a layer's opacity.
+    double opacityFactor(const DrawnLayer& layer, const Interest& doi) const {
+        return brushedOpacity(layer.brushes, double(scene.selection.contextOpacity), doi.doi);
     }
+    /// A layer's colour as brushes and lenses leave it.
+    glm::dvec3 focused(const DrawnLayer& layer, glm::dvec3 color, const Interest& doi, double saturation) const;
 };
 
 } // namespace tessera::vis::reference

@@ -62,13 +62,13 @@ template <class Number> struct Caster {
             const glm::dvec3 place = glm::clamp(glm::dvec3(at(t)), -scene.frame.halfSize, scene.frame.halfSize);
             const std::optional<double> value = layer.samples->value(scene.cells(place));
             if (!value) continue;
-            const double doi = scene.interest(place);
+            const Interest doi = scene.interest(place);
             const LensAction lens = scene.lensAction(layer, glm::dvec3(at(t)));
-            events.push_back({t, scene.focused(glm::dvec3(layer.classify(*value)), doi, lens.saturation),
+            events.push_back({t, scene.focused(layer, glm::dvec3(layer.classify(*value)), doi, lens.saturation),
                               std::min(double(std::get<SliceLayer>(*layer.technique).opacity) *
-                                           scene.opacityFactor(doi) * lens.opacity,
+                                           scene.opacityFactor(layer, doi) * lens.opacity,
                                        1.0),
-                              doi});
+                              doi.seen(layer)});
         }
     }
 
@@ -118,6 +118,10 @@ template <class Number> struct Caster {
             if (glm::length(other) > 0)
                 sample.curvature = std::abs(glm::dot(glm::normalize(other) - sample.at.normal, across)) / view.reach;
         }
+        if (look.wire)
+            sample.wire =
+                sample.weight * wireCoverage(place, sample.at.normal, -ray.direction, double(look.wire->spacing),
+                                             double(look.wire->width), sample.pixel);
         if (look.charcoal)
             sample.grain =
                 grainAt(*grainTile(), place, sample.at.normal,
@@ -158,12 +162,12 @@ template <class Number> struct Caster {
         }
         if (!shows(inSamples(double(lo + hi) / 2))) return;
         const glm::dvec3 place(at((lo + hi) / 2));
-        const double doi = scene.interest(place);
+        const Interest doi = scene.interest(place);
         const LensAction lens = scene.lensAction(layer, place);
-        const glm::dvec3 albedo = scene.focused(linearFromSrgb(glm::dvec3(iso.color)), doi, lens.saturation);
-        const double opacity = std::min(double(iso.opacity) * scene.opacityFactor(doi) * lens.opacity, 1.0);
-        const Drawn at = drawn(layer, iso.look, albedo, opacity, true, place, double(lo + hi) / 2, doi);
-        events.push_back({(lo + hi) / 2, at.color, at.opacity, doi});
+        const glm::dvec3 albedo = scene.focused(layer, linearFromSrgb(glm::dvec3(iso.color)), doi, lens.saturation);
+        const double opacity = std::min(double(iso.opacity) * scene.opacityFactor(layer, doi) * lens.opacity, 1.0);
+        const Drawn at = drawn(layer, iso.look, albedo, opacity, true, place, double(lo + hi) / 2, doi.doi);
+        events.push_back({(lo + hi) / 2, at.color, at.opacity, doi.seen(layer)});
     }
 
     /// Colour and opacity of a composite layer's sample, and the share of its length that they fill.
@@ -199,19 +203,21 @@ template <class Number> struct Caster {
         const auto& volume = std::get<VolumeLayer>(*layer.technique);
         const Classified classified = classify(layer, t);
         const glm::dvec3 place(at(t));
-        const double doi = scene.interest(place);
+        const Interest doi = scene.interest(place);
         const LensAction lens = scene.lensAction(layer, place);
-        const double opacity = classified.color.a * scene.opacityFactor(doi) * lens.opacity;
+        const double opacity = classified.color.a * scene.opacityFactor(layer, doi) * lens.opacity;
         const double thickness = double(volume.density) * classified.share * coverage(holes, k);
         if (opacity <= 0 || thickness <= 0) return;
-        const Drawn at = drawn(layer, volume.look, scene.focused(glm::dvec3(classified.color), doi, lens.saturation),
-                               opacity, volume.shaded, place, double(t), doi);
-        blend(at.color, correctedOpacity(at.opacity, double(step), thickness), doi);
+        const Drawn at =
+            drawn(layer, volume.look, scene.focused(layer, glm::dvec3(classified.color), doi, lens.saturation), opacity,
+                  volume.shaded, place, double(t), doi.doi);
+        blend(at.color, correctedOpacity(at.opacity, double(step), thickness), doi.seen(layer));
     }
 
     /// What a projection has seen.
     struct Seen {
-        double best = -1, bestPlace = 0, bestInterest = 0;
+        double best = -1, bestPlace = 0;
+        Interest bestInterest = {};
         LensAction bestLens = {};
         bool found = false; ///< a local maximum
         double factors = 0, weighted = 0, absorbed = 0;
@@ -227,7 +233,8 @@ template <class Number> struct Caster {
             return;
         }
         const LensAction lens = scene.lensAction(layer, place);
-        const double doi = scene.interest(place), factor = scene.opacityFactor(doi) * lens.opacity;
+        const Interest doi = scene.interest(place);
+        const double factor = scene.opacityFactor(layer, doi) * lens.opacity;
         const double along =
             volume.quantity == Quantity::Gradient ? scene.steepPlace(layer, place) : layer.unclamped(*value);
         const double x = std::clamp(along, 0.0, 1.0);
@@ -256,9 +263,9 @@ template <class Number> struct Caster {
             blend(glm::dvec3(color), std::min(opacity(color) * seen.factors / seen.count, 1.0), 1);
         } else {
             const glm::dvec4 color = layer.classifyPlace(seen.bestPlace);
-            const double factor = scene.opacityFactor(seen.bestInterest) * seen.bestLens.opacity;
-            blend(scene.focused(glm::dvec3(color), seen.bestInterest, seen.bestLens.saturation),
-                  std::min(opacity(color) * factor, 1.0), seen.bestInterest);
+            const double factor = scene.opacityFactor(layer, seen.bestInterest) * seen.bestLens.opacity;
+            blend(scene.focused(layer, glm::dvec3(color), seen.bestInterest, seen.bestLens.saturation),
+                  std::min(opacity(color) * factor, 1.0), seen.bestInterest.seen(layer));
         }
     }
 

@@ -5,6 +5,9 @@
 #include "lib/lenses.glsl"
 #include <slot:shade>
 #include "lib/shade.glsl"
+#if LOOKS
+#include "lib/draw_look.glsl"
+#endif
 
 in vec3 world, direction;
 in float value, side;
@@ -17,32 +20,79 @@ uniform vec2 map; // place in the row = value * x + y
 uniform vec3 plain;
 uniform float opacity;
 uniform int lens; // that it is drawn in, -1: everywhere
+uniform float brushEffect;
 uniform sampler2DArray former;
 uniform int peel;
 
 layout(location = 0) out vec4 outColor;     // linear, premultiplied
-layout(location = 1) out float outDistance; // along the ray
+layout(location = 1) out vec2 outDistance; // along the ray; what brushes do to it
+
+#if LOOKS
+// A place of a surface as looks see it. `dx`, `dy`: its change from pixel to pixel, `turnX`, `turnY` that of its normal.
+// Shapes have no values to be steep in: they are as steep as can be.
+LookSample surfaceLook(vec3 normal, vec3 toViewer, float along, vec3 dx, vec3 dy, vec3 turnX, vec3 turnY) {
+    LookSample at;
+    at.share = 1.0;
+    at.weight = 1.0;
+    at.steepness = 1.0;
+    at.depth = clamp((dot(world - rayOrigin, forward) - lookDepth.x) * lookDepth.y, 0.0, 1.0);
+    at.pixel = lookPixel.x + lookPixel.y * along;
+    float facing = dot(normal, toViewer);
+    at.facing = abs(facing);
+    vec3 way = lookLight.xyz - world * lookLight.w;
+    float front = clamp(0.5 + 0.5 * facing / kEdgeOn, 0.0, 1.0);
+    at.light = (2.0 * front - 1.0) * dot(normal, way) * inversesqrt(max(dot(way, way), 1e-12));
+    // Curvature towards the viewer: how the normal turns along the way that lies in the surface and goes there.
+    vec3 across = toViewer - facing * normal;
+    across *= inversesqrt(max(dot(across, across), 1e-12));
+    float xx = dot(dx, dx), yy = dot(dy, dy), xy = dot(dx, dy), x = dot(across, dx), y = dot(across, dy);
+    float area = xx * yy - xy * xy;
+    vec3 turn = ((x * yy - y * xy) * turnX + (y * xx - x * xy) * turnY) / max(area, 1e-30);
+    at.curvature = area > 0.0 ? abs(dot(turn, across)) : 0.0;
+    at.grain = vec2(0.5);
+#if (LOOKS & LOOK_CHARCOAL)
+    at.grain = grainAt(grainTile, world, normal, lookGrain[0].x * at.pixel, lookGrain[0].yz);
+#endif
+    at.wire = 0.0;
+#if (LOOKS & LOOK_WIRE)
+    at.wire = wireCoverage(world, normal, toViewer, lookWire[0].x, lookWire[0].y, at.pixel);
+#endif
+    return at;
+}
+#endif
 
 void main() {
+    vec3 toViewer = perspective == 1 ? normalize(rayOrigin - world) : -forward;
+    vec3 dx = dFdx(world), dy = dFdy(world);
+#if LINES
+    // As a tube: towards the viewer in the middle, away to the sides.
+    vec3 tangent = normalize(direction), beside = cross(tangent, toViewer);
+    beside = dot(beside, beside) > 1e-8 ? normalize(beside) : vec3(0.0);
+    vec3 normal = cross(beside, tangent) * sqrt(max(0.0, 1.0 - side * side)) + beside * side;
+#else
+    vec3 normal = direction;
+    if (dot(normal, normal) < 1e-20) normal = cross(dx, dy);
+#endif
+#if LOOKS
+    vec3 unit = normalize(normal), turnX = dFdx(unit), turnY = dFdy(unit);
+#endif
     if (!clipKept(world)) discard;
     vec2 action = lensAction(lens, world);
     float alpha = min(opacity * action.x, 1.0);
     if (alpha <= 0.0) discard;
     float along = perspective == 1 ? distance(world, rayOrigin) : dot(world - rayOrigin, forward);
     if (peel > 0 && along <= texelFetch(former, ivec3(gl_FragCoord.xy, peel - 1), 0).r) discard;
-    vec3 toViewer = perspective == 1 ? normalize(rayOrigin - world) : -forward;
-#if LINES
-    // As a tube: towards the viewer in the middle, away to the sides.
-    vec3 tangent = normalize(direction), across = cross(tangent, toViewer);
-    across = dot(across, across) > 1e-8 ? normalize(across) : vec3(0.0);
-    vec3 normal = cross(across, tangent) * sqrt(max(0.0, 1.0 - side * side)) + across * side;
-#else
-    vec3 normal = direction;
-    if (dot(normal, normal) < 1e-20) normal = cross(dFdx(world), dFdy(world));
-#endif
     float entries = float(textureSize(colors, 0).x), place = clamp(value * map.x + map.y, 0.0, 1.0);
     vec3 color = isnan(value) ? plain : textureLod(colors, vec2((place * (entries - 1.0) + 0.5) / entries, row), 0.0).rgb;
     color = mix(vec3(luminance(color)), color, action.y);
-    outColor = vec4(shade(color, normal, 1.0, world, toViewer) * alpha, alpha);
-    outDistance = along;
+#if LOOKS
+    LookSample at = surfaceLook(unit, toViewer, along, dx, dy, turnX, turnY);
+    alpha = lookOpacity(0, alpha, at);
+    if (alpha < 0.002) discard;
+    color = lookColor(0, color, shade(lookAlbedo(0, color, at), normal, 1.0, world, toViewer), at);
+#else
+    color = shade(color, normal, 1.0, world, toViewer);
+#endif
+    outColor = vec4(color * alpha, alpha);
+    outDistance = vec2(along, brushEffect);
 }

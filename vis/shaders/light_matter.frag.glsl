@@ -50,15 +50,16 @@ void main() {
     for (int n = 0; n < matterSamples; ++n) {
         vec3 way = vec3(n & 1, n >> 1 & 1, n >> 2) - 0.5;
         vec3 world = center + 0.5 * way * edges, p = toCells(world);
-        float doi = degreeOfInterest(p), factor = clipKept(world) ? focusOpacity(doi) : 0.0;
+        float doi = degreeOfInterest(p), kept = clipKept(world) ? 1.0 : 0.0;
         for (int i = 0; i < LAYERS; ++i) {
             vec2 s = reconstruct(LAYER_FIELD(i), p);
             bool is = present(s);
             if (LAYER_STYLE(i) == COMPOSITE) {
                 vec4 c = colorAt(i, p, s);
                 vec2 lens = lensAction(LAYER_LENS(i), world);
+                float factor = kept * focusOpacity(doi, LAYER_BRUSHED(i));
                 float own = -log(1.0 - min(c.a * factor * lens.x, kThickest)) * layerMap[i].z * REFERENCE_LENGTHS;
-                sum += is ? vec4(focusColor(c.rgb, doi, lens.y), 1.0) * (own / 8.0) : vec4(0.0);
+                sum += is ? vec4(focusColor(c.rgb, doi, lens.y, LAYER_BRUSHED(i)), 1.0) * (own / 8.0) : vec4(0.0);
             } else if (LAYER_STYLE(i) == ISO) {
                 mean[i] += s.x / 8.0;
                 points[i] += is ? 1.0 : 0.0;
@@ -71,10 +72,10 @@ void main() {
         if (LAYER_STYLE(i) != ISO) continue;
         float away = abs(mean[i] - layerMap[i].z) / max(length(slope[i]), 1e-20);
         vec2 lens = lensAction(LAYER_LENS(i), center);
-        float alpha = min(layerMap[i].w * focusOpacity(middle) * lens.x, kThickest);
+        float alpha = min(layerMap[i].w * focusOpacity(middle, LAYER_BRUSHED(i)) * lens.x, kThickest);
         float own = -log(1.0 - alpha) * max(0.0, 1.0 - away / longest) / longest;
         bool is = points[i] > 7.5 && clipKept(center);
-        sum += is ? vec4(focusColor(layerColor[i], middle, lens.y), 1.0) * own : vec4(0.0);
+        sum += is ? vec4(focusColor(layerColor[i], middle, lens.y, LAYER_BRUSHED(i)), 1.0) * own : vec4(0.0);
     }
 #endif
     outMatter = sum;

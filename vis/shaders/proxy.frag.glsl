@@ -45,8 +45,8 @@ void main() {
         vec4 c = transfer(i, s.x * layerMap[i].x + layerMap[i].y);
         float doi = degreeOfInterest(p);
         vec2 lens = lensAction(LAYER_LENS(i), world);
-        c.rgb = focusColor(c.rgb, doi, lens.y);
-        float alpha = present(s) ? correctedOpacity(c.a * focusOpacity(doi) * lens.x, lengths * layerMap[i].z) : 0.0;
+        c.rgb = focusColor(c.rgb, doi, lens.y, LAYER_BRUSHED(i));
+        float alpha = present(s) ? correctedOpacity(c.a * focusOpacity(doi, LAYER_BRUSHED(i)) * lens.x, lengths * layerMap[i].z) : 0.0;
         if (LAYER_SHADED(i) == 1) {
             vec3 g = cellGradient(LAYER_FIELD(i), p, s.x, alpha > 0.0);
             float fade = min(1.0, length(g) * abs(layerMap[i].x) / kFlatGradient);

@@ -48,6 +48,7 @@ vec4 show(vec4 color, vec4 top, float doi) {
 #include "lib/classify.glsl"
 #if LOOKS
 #include "lib/draw_look.glsl"
+#include "lib/look_sample.glsl"
 #endif
 #endif
 
@@ -101,19 +102,30 @@ void main() {
         float at = (t - inside.x) / stepLength - phase;
         eventAt[i] = seen && clipShows(at) ? at : 1e9;
         vec2 lens = lensAction(SLICE_LENS(i), world);
-        float alpha = min(sliceMap[i].w * focusOpacity(doi) * lens.x, 1.0);
-        eventColor[i] = vec4(focusColor(c, doi, lens.y) * alpha, alpha);
-        eventInterest[i] = doi;
+        float alpha = min(sliceMap[i].w * focusOpacity(doi, SLICE_BRUSHED(i)) * lens.x, 1.0);
+        eventColor[i] = vec4(focusColor(c, doi, lens.y, SLICE_BRUSHED(i)) * alpha, alpha);
+        eventInterest[i] = focusInterest(doi, SLICE_BRUSHED(i));
     }
 #endif
 #if GEOMETRY > 0
     for (int i = 0; i < GEOMETRY; ++i) {
         ivec3 texel = ivec3(gl_FragCoord.xy, i);
-        float t = texelFetch(geometryDistance, texel, 0).r;
+        vec2 found = texelFetch(geometryDistance, texel, 0).rg;
+        float t = found.x;
         bool seen = meets && t < 1e8;
         eventAt[SLICES + i] = seen ? (t - inside.x) / stepLength - phase : 1e9;
-        eventColor[SLICES + i] = seen ? texelFetch(geometryColor, texel, 0) : vec4(0.0);
+        vec4 c = seen ? texelFetch(geometryColor, texel, 0) : vec4(0.0);
         eventInterest[SLICES + i] = 1.0;
+#if BRUSH_TESTS > 0
+        // Brushes act on what was lit: the rasteriser knows nothing of them.
+        int effect = int(found.y + 0.5);
+        float doi = degreeOfInterest(toCells(origin + direction * min(t, 1e3)));
+        vec3 own = focusColor(c.rgb / max(c.a, 1e-6), doi, 1.0, effect);
+        float alpha = c.a * focusOpacity(doi, effect);
+        c = vec4(own * alpha, alpha);
+        eventInterest[SLICES + i] = focusInterest(doi, effect);
+#endif
+        eventColor[SLICES + i] = c;
         // Nothing behind what is opaque: the ray ends there.
         if (eventColor[SLICES + i].a >= kOpaque)
             count = clamp(int(floor(min(eventAt[SLICES + i], 1e8))) + 1, 0, count);
@@ -220,7 +232,7 @@ void main() {
                     previous[i] = is ? s.x : kUnknown;
                 } else {
                     is = is && within && clipShows(float(k));
-                    float f = is ? focusOpacity(degreeOfInterest(p)) * lens.x : 0.0;
+                    float f = is ? focusOpacity(degreeOfInterest(p), LAYER_BRUSHED(i)) * lens.x : 0.0;
                     float place = clamp(x, 0.0, 1.0);
                     if (LAYER_STYLE(i) == AVERAGE) {
                         sum[i] += is ? f * x : 0.0;
@@ -291,10 +303,10 @@ void main() {
                 crossed = crossed && clipShows(float(k) + at);
                 vec3 world = origin + direction * (inside.x + (float(k) + phase + at) * stepLength);
                 vec2 lens = lensAction(LAYER_LENS(i), world);
-                float alpha = crossed ? min(layerMap[i].w * focusOpacity(doi) * lens.x, 1.0) : 0.0;
+                float alpha = crossed ? min(layerMap[i].w * focusOpacity(doi, LAYER_BRUSHED(i)) * lens.x, 1.0) : 0.0;
                 float centre = FIELD_COVERAGE(field) == 1 ? reconstruct(field, q).x : 0.0;
                 vec3 g = cellGradient(field, q, centre, crossed);
-                vec3 albedo = focusColor(layerColor[i], doi, lens.y), c = albedo;
+                vec3 albedo = focusColor(layerColor[i], doi, lens.y, LAYER_BRUSHED(i)), c = albedo;
 #if LOOKS
                 LookSample look;
                 if (LAYER_LOOK(i) != 0) {
@@ -310,7 +322,7 @@ void main() {
 #endif
                 isoAt[n] = crossed ? float(k) + at : 1e9;
                 isoColor[n] = vec4(c * alpha, alpha);
-                isoInterest[n] = doi;
+                isoInterest[n] = focusInterest(doi, LAYER_BRUSHED(i));
             }
             for (int n = 0; n < ISOS; ++n)
                 for (int m = ISOS - 1; m > n; --m)
@@ -369,8 +381,8 @@ void main() {
                 float t = inside.x + (float(k) + phase) * stepLength;
                 vec3 world = origin + direction * t;
                 vec2 lens = lensAction(LAYER_LENS(i), world);
-                c.rgb = focusColor(c.rgb, doi, lens.y);
-                float opacity = c.a * focusOpacity(doi) * lens.x;
+                c.rgb = focusColor(c.rgb, doi, lens.y, LAYER_BRUSHED(i));
+                float opacity = c.a * focusOpacity(doi, LAYER_BRUSHED(i)) * lens.x;
                 float thickness = lengths * layerMap[i].z * share * clipCoverage(float(k));
                 float alpha = correctedOpacity(opacity, thickness);
                 bool surface = LAYER_SHADED(i) == 1 || LAYER_LOOK(i) != 0;
@@ -390,7 +402,7 @@ void main() {
 #if LOOKS
                 if (LAYER_LOOK(i) != 0) c.rgb = lookColor(i, albedo, c.rgb, look);
 #endif
-                color = show(color, vec4(c.rgb * alpha, alpha), doi);
+                color = show(color, vec4(c.rgb * alpha, alpha), focusInterest(doi, LAYER_BRUSHED(i)));
             }
             if (pick <= kNoPick && color.a > kPickOpacity) pick = float(k);
 #endif
@@ -427,10 +439,10 @@ void main() {
             doi = degreeOfInterest(p);
             c = transfer(i, x);
             vec2 lens = lensAction(LAYER_LENS(i), origin + direction * (inside.x + (at + phase) * stepLength));
-            c.rgb = focusColor(c.rgb, doi, lens.y);
-            alpha = best[i] >= 0.0 ? min(min(1.0, layerMap[i].z * c.a) * focusOpacity(doi) * lens.x, 1.0) : 0.0;
+            c.rgb = focusColor(c.rgb, doi, lens.y, LAYER_BRUSHED(i));
+            alpha = best[i] >= 0.0 ? min(min(1.0, layerMap[i].z * c.a) * focusOpacity(doi, LAYER_BRUSHED(i)) * lens.x, 1.0) : 0.0;
         }
-        color = show(color, vec4(c.rgb * alpha, alpha), doi);
+        color = show(color, vec4(c.rgb * alpha, alpha), focusInterest(doi, LAYER_BRUSHED(i)));
         if (pick <= kNoPick && color.a > kPickOpacity) pick = at;
     }
 #endif

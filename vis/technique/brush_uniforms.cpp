@@ -34,6 +34,8 @@ public:
             tests.lassos.resize(lassos);
             return;
         }
+        const bool holds = !brush.inverted && brush.combine != BrushCombine::Minus;
+        tests.colors.resize(tests.meanings.size(), glm::vec4(linearFromSrgb(glm::dvec3(brush.color)), holds ? 1 : 0));
         if (first == 0) tests.start = brush.combine == BrushCombine::Or ? 0.0f : 1.0f;
         tests.meanings[first].w |= 1;
         const bool turned = brush.inverted != (brush.combine == BrushCombine::Minus);
@@ -132,7 +134,7 @@ BrushTests brushTests(const RayPlan& plan, const Scene& scene, const volume::Dat
     return std::move(encoder.tests);
 }
 
-std::vector<std::pair<std::string, std::string>> brushDefines(const BrushTests& tests) {
+std::vector<std::pair<std::string, std::string>> brushDefines(const BrushTests& tests, const Scene& scene) {
     std::vector<std::pair<std::string, std::string>> defines;
     const auto define = [&](const char* name, int value) { defines.emplace_back(name, std::to_string(value)); };
     // Few sizes, so that a brush more rarely means another program.
@@ -143,6 +145,7 @@ std::vector<std::pair<std::string, std::string>> brushDefines(const BrushTests& 
     define("BRUSH_LASSOS", has(tests, {kLasso}));
     define("BRUSH_SPACE", has(tests, {kSphere, kBox}));
     define("BRUSH_LENSES", has(tests, {kLens}));
+    define("BRUSH_COLORS", count > 0 && scene.selection.brushColor > 0);
     define("LASSO_TABLE", kLassoTable);
     return defines;
 }
@@ -156,6 +159,8 @@ void setBrushUniforms(const Program& program, const BrushTests& tests, const Sce
     program.set("brushMeaning", std::span<const glm::ivec4>(tests.meanings));
     program.set("brushShape", tests.shapes);
     program.set("brushStart", tests.start);
+    program.set("brushOwnColor", tests.colors);
+    program.set("brushColorShare", scene.selection.brushColor);
     program.set("context", glm::vec3(scene.selection.contextOpacity, scene.selection.contextSaturation,
                                      scene.selection.contextLightness));
 }

@@ -14,6 +14,7 @@ struct BrushTests {
                                       ///< (of a lens: bits of the lenses) and second brush field (-1: unknown), flags
                                       ///< (1 first of its brush, 2 last, 4 inverted, 8 or)
     std::vector<glm::vec4> shapes;    ///< two each; see brush_uniforms.cpp
+    std::vector<glm::vec4> colors;    ///< of the test's brush, linear; 1, or 0 where it holds nothing
     std::vector<LassoRegion> lassos;  ///< whose tables the tests look up, in order
     float start = 1;                  ///< what the first brush meets
     int dropped = 0;                  ///< brushes beyond kMaxBrushTests, from the last one on
@@ -21,7 +22,7 @@ struct BrushTests {
 BrushTests brushTests(const RayPlan& plan, const Scene& scene, const volume::DatasetInfo& info);
 
 /// Which kinds of tests the program needs, and how many it has room for.
-std::vector<std::pair<std::string, std::string>> brushDefines(const BrushTests& tests);
+std::vector<std::pair<std::string, std::string>> brushDefines(const BrushTests& tests, const Scene& scene);
 
 /// Whether what is not brushed is shown out of focus (vis/model/context_blur.h); proxy geometry does not.
 bool blursContext(const Scene& scene);

@@ -11,13 +11,20 @@ namespace tessera::vis {
 
 int lookBits(const Look& look) {
     return (look.tone ? kToneBit : 0) | (look.boundary ? kBoundaryBit : 0) | (look.silhouette ? kSilhouetteBit : 0) |
-           (look.distance ? kDistanceBit : 0) | (look.cartoon ? kCartoonBit : 0) | (look.charcoal ? kCharcoalBit : 0);
+           (look.distance ? kDistanceBit : 0) | (look.cartoon ? kCartoonBit : 0) | (look.charcoal ? kCharcoalBit : 0) |
+           (look.wire ? kWireBit : 0);
 }
 
-void setLookUniforms(const Program& program, const RayPlan& plan, const Scene& scene, const WorldFrame& frame,
-                     glm::dvec3 cell, glm::ivec2 size, int unit) {
-    if (std::none_of(plan.layers.begin(), plan.layers.end(), [](const RayLayer& layer) { return layer.look != 0; }))
-        return;
+std::vector<const Look*> looksOf(const RayPlan& plan, const Scene& scene) {
+    std::vector<const Look*> looks;
+    for (const RayLayer& layer : plan.layers)
+        looks.push_back(layer.look != 0 ? lookOf(scene.layers[std::size_t(layer.layer)].technique) : nullptr);
+    return looks;
+}
+
+void setLookUniforms(const Program& program, const std::vector<const Look*>& looks, const Scene& scene,
+                     const WorldFrame& frame, glm::dvec3 cell, glm::ivec2 size, int unit) {
+    if (std::none_of(looks.begin(), looks.end(), [](const Look* look) { return look != nullptr; })) return;
     const LookView view = lookView(scene, frame.halfSize, cell, size);
     const auto linear = [](glm::vec3 srgb) { return glm::vec3(linearFromSrgb(glm::dvec3(srgb))); };
     program.set("lookLight", glm::vec4(view.light.place, view.light.point ? 1 : 0));
@@ -27,13 +34,12 @@ void setLookUniforms(const Program& program, const RayPlan& plan, const Scene& s
     program.set("lookGround", glm::vec3(view.ground));
     program.set("grainTile", unit);
     std::vector<glm::vec2> share;
-    std::vector<glm::vec4> warm, cool, distance, outline, mark, grain;
-    std::vector<glm::vec3> boundary, silhouette, cartoon, stick, tone, line;
+    std::vector<glm::vec4> warm, cool, distance, outline, mark, grain, wire;
+    std::vector<glm::vec3> boundary, silhouette, cartoon, stick, tone, line, wireColor;
     std::vector<float> exponent;
-    for (const RayLayer& layer : plan.layers) {
+    for (const Look* own : looks) {
         static const Look kPlain;
-        const Look* own = lookOf(scene.layers[std::size_t(layer.layer)].technique);
-        const Look& look = own && layer.look != 0 ? *own : kPlain;
+        const Look& look = own ? *own : kPlain;
         const double none = lookShare(look.part, 0), all = lookShare(look.part, 1);
         share.emplace_back(none, all - none);
         const WarmCool gooch = look.tone.value_or(WarmCool{});
@@ -55,6 +61,9 @@ void setLookUniforms(const Program& program, const RayPlan& plan, const Scene& s
         tone.emplace_back(drawn.contrast, drawn.steepness, drawn.stick == Stick::Chalk ? 1 : 0);
         line.emplace_back(drawn.outline, drawn.outlineStrength, drawn.closure);
         mark.emplace_back(grainSoftness(drawn), drawn.strokes, drawn.smudge, drawn.pressure);
+        const WireFrame net = look.wire.value_or(WireFrame{});
+        wire.emplace_back(net.spacing, net.width, net.retained, net.ownColor);
+        wireColor.push_back(linear(net.color));
         grain.emplace_back(double(drawn.grain) / kGrainTexels, std::cos(turn), std::sin(turn), drawn.localTone);
     }
     program.set("lookShare", share);
@@ -71,6 +80,8 @@ void setLookUniforms(const Program& program, const RayPlan& plan, const Scene& s
     program.set("lookLine", line);
     program.set("lookMark", mark);
     program.set("lookGrain", grain);
+    program.set("lookWire", wire);
+    program.set("lookWireColor", wireColor);
 }
 
 GLuint GrainTexture::get() {

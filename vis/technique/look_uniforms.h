@@ -13,13 +13,17 @@ enum LookBits : int {
     kSilhouetteBit = 4,
     kDistanceBit = 8,
     kCartoonBit = 16,
-    kCharcoalBit = 32
+    kCharcoalBit = 32,
+    kWireBit = 64
 };
 int lookBits(const Look& look);
 
-/// Sets everything but the texture, which goes to `unit`. `size`: pixels of the picture at rest.
-void setLookUniforms(const Program& program, const RayPlan& plan, const Scene& scene, const WorldFrame& frame,
-                     glm::dvec3 cell, glm::ivec2 size, int unit);
+/// Sets everything but the texture, which goes to `unit`. `looks`: of each layer, null where it has none. `size`:
+/// pixels of the picture at rest.
+void setLookUniforms(const Program& program, const std::vector<const Look*>& looks, const Scene& scene,
+                     const WorldFrame& frame, glm::dvec3 cell, glm::ivec2 size, int unit);
+/// The looks of a plan's layers.
+std::vector<const Look*> looksOf(const RayPlan& plan, const Scene& scene);
 
 /// The grain tile as a texture, made at first use.
 class GrainTexture {

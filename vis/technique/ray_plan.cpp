@@ -96,11 +96,13 @@ RayPlan planRays(const Scene& scene, const volume::DatasetInfo& info) {
                                    .shaded = true,
                                    .look = lookBits(surface->look)});
         else
-            plan.slices.push_back({int(i), fieldOf(plan, info, *channel, false, layer), *lens});
-        if (!std::holds_alternative<SliceLayer>(layer.technique)) plan.layers.back().lens = *lens;
+            plan.slices.push_back({int(i), fieldOf(plan, info, *channel, false, layer), *lens, layer.brushes});
+        if (std::holds_alternative<SliceLayer>(layer.technique)) continue;
+        plan.layers.back().lens = *lens;
+        plan.layers.back().brushes = layer.brushes;
     }
-    plan.brushDefines = brushDefines({});
-    plan.peels = peelsOf(scene.geometry);
+    plan.brushDefines = brushDefines({}, scene);
+    plan.peels = peelsOf(scene);
     if (plan.peels > 0 && plan.fields.empty() && !info.channels().empty()) fieldOf(plan, info, 0); // samplers need one
     if (plan.empty() || !scene.selection.active()) return plan;
     const std::vector<std::string> brushed = selectedChannels(scene.selection);
@@ -113,7 +115,7 @@ RayPlan planRays(const Scene& scene, const volume::DatasetInfo& info) {
     }
     // Brushes whose channels are unknown still decide: sample something.
     if (plan.brushFields.empty() && !brushed.empty()) plan.brushFields.push_back(0);
-    plan.brushDefines = brushDefines(brushTests(plan, scene, info));
+    plan.brushDefines = brushDefines(brushTests(plan, scene, info), scene);
     return plan;
 }
 
@@ -154,6 +156,8 @@ ProgramRecipe rayRecipe(const RayPlan& plan, const Scene& scene, const volume::B
     define("LAYER_SHADED(i)", choice(plan.layers, [](const RayLayer& layer) { return layer.shaded; }));
     define("LAYER_LENS(i)", choice(plan.layers, [](const RayLayer& layer) { return layer.lens; }));
     define("SLICE_LENS(i)", choice(plan.slices, [](const SliceUse& slice) { return slice.lens; }));
+    define("LAYER_BRUSHED(i)", choice(plan.layers, [](const RayLayer& layer) { return int(layer.brushes); }));
+    define("SLICE_BRUSHED(i)", choice(plan.slices, [](const SliceUse& slice) { return int(slice.brushes); }));
     define("SLICES", std::to_string(plan.slices.size()));
     define("SLICE_FIELD(i)", choice(plan.slices, [](const SliceUse& slice) { return slice.field; }));
     define("BRUSH_FIELDS", std::to_string(plan.brushFields.size()));

@@ -49,10 +49,12 @@ struct RayLayer {
     int look = 0;          ///< parts of the look: LookBits of look_uniforms.h
     /// The places between which all opacity lies, filled with the tables; none: there are gaps between.
     std::optional<glm::vec2> opaque = {};
+    BrushEffect brushes = BrushEffect::Fade;
 };
 
 struct SliceUse {
     int layer = 0, field = 0, lens = -1;
+    BrushEffect brushes = BrushEffect::Fade;
 };
 
 /// What a scene needs, independent of what is resident.

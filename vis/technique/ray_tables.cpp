@@ -147,10 +147,17 @@ void spread(std::vector<std::uint8_t>& distance, glm::ivec3 count) {
             for (int x = count.x - 1; x >= 0; --x) relax(x, y, z, false);
 }
 
-/// 1 for each block where every sample is out of focus and therefore transparent; empty: nothing can be said.
+/// Whether a layer shows nothing of what is out of focus.
+bool hidesContext(const RayLayer& layer, const Selection& selection) {
+    return layer.brushes == BrushEffect::FocusOnly ||
+           (layer.brushes == BrushEffect::Fade && selection.contextOpacity <= 0);
+}
+
+/// 1 for each block where every sample is out of focus; empty: nothing can be said, or no layer asks.
 std::vector<std::uint8_t> outOfFocus(const RayPlan& plan, const Scene& scene, const volume::DatasetInfo& info,
                                      const BlockRanges& grid) {
-    if (scene.selection.contextOpacity > 0 || !scene.selection.active()) return {};
+    const auto asks = [&](const RayLayer& layer) { return hidesContext(layer, scene.selection); };
+    if (!scene.selection.active() || std::ranges::none_of(plan.layers, asks)) return {};
     // Outside of these nothing is brushed.
     if (std::ranges::any_of(scene.lenses, [](const Lens& lens) { return lens.effect == LensEffect::Focus; })) return {};
     const std::vector<volume::Channel> channels = info.channels();
@@ -209,7 +216,7 @@ std::optional<BlockDistances> blockDistances(const RayPlan& plan, const Scene& s
             if (use.style == RayStyle::Composite && !use.gradient) shows = anyOpacity(opacity, map, lo, hi);
             // Projections count what is out of focus.
             if (use.style == RayStyle::Composite || use.style == RayStyle::Iso)
-                shows = shows && (hidden.empty() || hidden[i] == 0);
+                shows = shows && (hidden.empty() || hidden[i] == 0 || !hidesContext(use, scene.selection));
             if (shows) out.distance[i] = 0;
         }
     }

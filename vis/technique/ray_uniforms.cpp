@@ -151,7 +151,8 @@ void setRayUniforms(const Program& program, const RayPlan& plan, const Scene& sc
     setLightUniforms(program, scene, frame, rayUnits(plan).light);
     setClipUniforms(program, scene, frame);
     setLensUniforms(program, scene, frame);
-    setLookUniforms(program, plan, scene, frame, worldCell(grid.lattice, frame), size, rayUnits(plan).grain);
+    setLookUniforms(program, looksOf(plan, scene), scene, frame, worldCell(grid.lattice, frame), size,
+                    rayUnits(plan).grain);
     if (const BlockRanges* blocks = commonBlocks(plan)) {
         const double edge = double(1 << blocks->level) * blocks->edge;
         program.set("blockScale", glm::vec3(float(1 / edge)));

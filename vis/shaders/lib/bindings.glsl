@@ -8,8 +8,9 @@
 //   SLICES    slice planes; SLICE_FIELD(i)
 //   GEOMETRY  layers of rasterised surfaces
 //   LAYER_LENS(i), SLICE_LENS(i)  lens that it is drawn in, -1 everywhere
+//   LAYER_BRUSHED(i), SLICE_BRUSHED(i)  BrushEffect of vis/model/brush_effect.h
 //   BRUSH_TESTS    room for tests of brushes, 0 = no brush is active; BRUSH_RANGES, BRUSH_ELLIPSES, BRUSH_LASSOS,
-//                  BRUSH_SPACE, BRUSH_LENSES: 0 or 1; BRUSH_FIELDS channels they look at, BRUSH_FIELD(i)
+//                  BRUSH_SPACE, BRUSH_LENSES: 0 or 1; BRUSH_COLORS: 1 where samples take theirs; BRUSH_FIELDS channels they look at, BRUSH_FIELD(i)
 // These are chains of ?: and not constant arrays, since Mesa turns such arrays into uniforms before it unrolls loops
 // and then runs every style for every layer.
 //   CONTEXT_BLUR  1 where the picture tells its degree of interest
@@ -75,7 +76,7 @@ uniform vec4 sliceMap[SLICES];   // transfer coordinate = value * x + y; z = con
 
 #if GEOMETRY > 0
 uniform sampler2DArray geometryColor;    // linear, premultiplied; layer 0 the nearest
-uniform sampler2DArray geometryDistance; // along the ray; 1e9: nothing
+uniform sampler2DArray geometryDistance; // along the ray, 1e9: nothing; BrushEffect
 #endif
 
 #if BRUSH_TESTS > 0
@@ -84,6 +85,10 @@ uniform ivec4 brushMeaning[BRUSH_TESTS];   // kind, brush fields, flags: BrushTe
 uniform vec4 brushShape[2 * BRUSH_TESTS];
 uniform float brushStart;
 uniform sampler2D lassoTables;
+#endif
+#if BRUSH_COLORS
+uniform vec4 brushOwnColor[BRUSH_TESTS]; // of the test's brush, linear; 1, or 0 where it holds nothing
+uniform float brushColorShare;
 #endif
 uniform vec3 context; // opacity, saturation, lightness of what is not brushed
 

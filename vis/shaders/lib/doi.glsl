@@ -1,6 +1,10 @@
 // Degree of interest of a place; twin: DoiFunction in vis/model/selection.h. The brushes come as tests in a row (see
 // vis/technique/brush_uniforms.h); kinds that no brush has are left out at compile time.
 
+#if BRUSH_COLORS
+vec4 brushHolder = vec4(0.0); // of the last degreeOfInterest(): colour of the brush that holds most, how much it does
+#endif
+
 #if BRUSH_TESTS > 0
 // 1 up to one radius, 0 from 1 + soft on; `inverseSoft` 1e30 for a hard edge.
 float radialDoi(float radii, float inverseSoft) {
@@ -33,6 +37,9 @@ float degreeOfInterest(vec3 p) {
     for (int i = 0; i < BRUSH_FIELDS; ++i) samples[i] = reconstruct(BRUSH_FIELD(i), p);
 #endif
     float doi = brushStart, own = 1.0;
+#if BRUSH_COLORS
+    vec4 most = vec4(0.0);
+#endif
     for (int i = 0; i < brushTestCount; ++i) {
         ivec4 meaning = brushMeaning[i]; // kind, first field or -1, second field, flags
         vec4 a = brushShape[2 * i], b = brushShape[2 * i + 1];
@@ -74,24 +81,42 @@ float degreeOfInterest(vec3 p) {
 #endif
         own = min(own, test);
         if ((meaning.w & 2) != 0) {
+#if BRUSH_COLORS
+            float held = own * brushOwnColor[i].w;
+            if (held > most.w) most = vec4(brushOwnColor[i].rgb, held);
+#endif
             if ((meaning.w & 4) != 0) own = 1.0 - own;
             doi = (meaning.w & 8) != 0 ? max(doi, own) : min(doi, own);
         }
     }
+#if BRUSH_COLORS
+    brushHolder = most;
+#endif
     return lensConfine(doi, fromCells(p));
 #else
     return 1.0;
 #endif
 }
 
-// Factor on opacity.
-float focusOpacity(float doi) {
-    return mix(context.x, 1.0, doi);
+// Factor on opacity of a layer that brushes affect so (BrushEffect of vis/model/brush_effect.h).
+float focusOpacity(float doi, int effect) {
+    return effect == 0 ? mix(context.x, 1.0, doi) : effect == 1 ? 1.0 : effect == 2 ? 1.0 - doi : doi;
 }
 
-// Colour pulled towards its luminance, further by the factor `saturation`, and made darker or lighter.
-vec3 focusColor(vec3 color, float doi, float saturation) {
-    vec3 c = mix(vec3(luminance(color)), color, mix(context.y, 1.0, doi) * saturation);
-    float lightness = mix(context.z, 1.0, doi);
-    return mix(c * min(lightness, 1.0), vec3(1.0), max(lightness - 1.0, 0.0));
+// Degree of interest that out-of-focus blur sees.
+float focusInterest(float doi, int effect) {
+    return effect == 1 ? 1.0 : doi;
+}
+
+// Colour pulled towards its luminance, further by the factor `saturation`, and made darker or lighter, then towards the
+// colour of the brush that holds the place of the last degreeOfInterest().
+vec3 focusColor(vec3 color, float doi, float saturation, int effect) {
+    float share = effect == 0 ? doi : 1.0;
+    vec3 c = mix(vec3(luminance(color)), color, mix(context.y, 1.0, share) * saturation);
+    float lightness = mix(context.z, 1.0, share);
+    c = mix(c * min(lightness, 1.0), vec3(1.0), max(lightness - 1.0, 0.0));
+#if BRUSH_COLORS
+    c = mix(c, brushHolder.rgb, effect == 1 ? 0.0 : brushHolder.a * doi * brushColorShare);
+#endif
+    return c;
 }

@@ -9,7 +9,7 @@
 #define LOOK_DISTANCE 8
 #define LOOK_CARTOON 16
 #define LOOK_CHARCOAL 32
-#define LOOK_OPACITY (LOOK_BOUNDARY | LOOK_SILHOUETTE)
+#define LOOK_WIRE 64
 #define LOOK_OUTLINE (LOOK_CARTOON | LOOK_CHARCOAL)
 
 uniform vec4 lookLight;   // direction towards the first light, 0; or its position, 1
@@ -42,44 +42,10 @@ uniform vec4 lookMark[LAYERS];
 uniform vec4 lookGrain[LAYERS];                                    // texel in pixels, turn, local tone
 uniform sampler2D grainTile;
 #endif
-
-// `perCell`: gradient of cellGradient(), of the channel `field` at p; `t`: distance along the ray; `shown`: 0 spares
-// the gradients that nobody will see.
-LookSample lookSample(int i, int field, vec3 p, vec3 perCell, float weight, vec3 world, float t, vec3 direction,
-                      float doi, bool shown) {
-    LookSample at;
-    at.share = lookShare[i].x + lookShare[i].y * doi;
-    at.steepness = length(perCell) * layerMore[i].x;
-    at.depth = clamp((t * dot(direction, rayDirection) - lookDepth.x) * lookDepth.y, 0.0, 1.0);
-    at.pixel = lookPixel.x + lookPixel.y * t;
-    vec3 gradient = shadingGradient(perCell);
-    bool surface = dot(gradient, gradient) > 0.0;
-    vec3 normal = surface ? normalize(gradient) : vec3(0.0);
-    float along = dot(normal, -direction);
-    at.weight = surface ? weight : 0.0;
-    at.facing = abs(along);
-    vec3 way = lookLight.xyz - world * lookLight.w;
-    float front = clamp(0.5 + 0.5 * along / kEdgeOn, 0.0, 1.0);
-    at.light = (2.0 * front - 1.0) * dot(normal, way) * inversesqrt(max(dot(way, way), 1e-12));
-    at.curvature = 0.0;
-    at.grain = vec2(0.5);
-#if (LOOKS & LOOK_OUTLINE)
-    if ((LAYER_LOOK(i) & LOOK_OUTLINE) != 0) {
-        vec3 across = -direction - along * normal;
-        across *= inversesqrt(max(dot(across, across), 1e-12));
-        vec3 q = p + across * lookReach * cellsPerWorld;
-        vec2 there = reconstruct(field, q);
-        vec3 other = shadingGradient(cellGradient(field, q, present(there) ? there.x : kUnknown, shown && surface));
-        float size = dot(other, other);
-        at.curvature = size > 0.0 ? abs(dot(other * inversesqrt(size) - normal, across)) / lookReach : 0.0;
-    }
+#if (LOOKS & LOOK_WIRE)
+uniform vec4 lookWire[LAYERS];      // spacing in world units, pixels, retained, own colour
+uniform vec3 lookWireColor[LAYERS];
 #endif
-#if (LOOKS & LOOK_CHARCOAL)
-    if ((LAYER_LOOK(i) & LOOK_CHARCOAL) != 0)
-        at.grain = grainAt(grainTile, world, normal, lookGrain[i].x * at.pixel, lookGrain[i].yz);
-#endif
-    return at;
-}
 
 float lookOpacity(int i, float opacity, LookSample at) {
     float factor = 1.0;
@@ -88,6 +54,9 @@ float lookOpacity(int i, float opacity, LookSample at) {
 #endif
 #if (LOOKS & LOOK_SILHOUETTE)
     if ((LAYER_LOOK(i) & LOOK_SILHOUETTE) != 0) factor *= silhouetteFactor(lookSilhouette[i], at);
+#endif
+#if (LOOKS & LOOK_WIRE)
+    if ((LAYER_LOOK(i) & LOOK_WIRE) != 0) factor *= mix(lookWire[i].z, 1.0, at.wire);
 #endif
     return min(1.0, opacity * mix(1.0, factor, at.share));
 }
@@ -124,6 +93,10 @@ vec3 lookColor(int i, vec3 albedo, vec3 lit, LookSample at) {
         float ink = charcoalInk(lit, at, lookTone[i], lookLine[i], lookMark[i]);
         color = mix(color, mix(lookGround, lookStick[i], ink), at.share);
     }
+#endif
+#if (LOOKS & LOOK_WIRE)
+    if ((LAYER_LOOK(i) & LOOK_WIRE) != 0)
+        color = mix(color, mix(lookWireColor[i], color, lookWire[i].w), at.wire * at.share);
 #endif
 #if (LOOKS & LOOK_DISTANCE)
     if ((LAYER_LOOK(i) & LOOK_DISTANCE) != 0)

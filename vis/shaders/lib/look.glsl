@@ -3,7 +3,7 @@
 
 // A place as looks see it: n.l of the side that is seen, |n.v|, the rest as in LookSample.
 struct LookSample {
-    float light, facing, weight, steepness, curvature, depth, pixel, share;
+    float light, facing, weight, steepness, curvature, depth, pixel, share, wire;
     vec2 grain;
 };
 
@@ -13,6 +13,22 @@ float boundaryFactor(vec3 own, LookSample at) {
 }
 float silhouetteFactor(vec3 own, LookSample at) {
     return own.x + own.y * at.weight * pow(max(1.0 - at.facing, 1e-6), own.z);
+}
+
+// How much of a pixel lies on lines where a surface meets the planes at multiples of `spacing` along x, y and z, `width`
+// pixels wide.
+float wireCoverage(vec3 world, vec3 normal, vec3 toViewer, float spacing, float width, float pixel) {
+    float along = dot(normal, toViewer), covered = 0.0;
+    along = along < 0.0 ? min(along, -0.02) : max(along, 0.02);
+    for (int axis = 0; axis < 3; ++axis) {
+        vec3 change = -toViewer[axis] / along * normal; // of the coordinate, per world unit across the picture
+        change[axis] += 1.0;
+        float gap = spacing / max(length(change) * pixel, 1e-6); // pixels
+        float x = world[axis] / spacing, away = abs(x - floor(x + 0.5)) * gap;
+        float line = mix(clamp(0.5 * width + 0.5 - away, 0.0, 1.0), min(width / gap, 1.0), clamp(2.0 - 0.5 * gap, 0.0, 1.0));
+        covered = max(covered, line * smoothstep(0.1, 0.35, sqrt(max(0.0, 1.0 - normal[axis] * normal[axis]))));
+    }
+    return covered;
 }
 
 float outline(float facing, float curvature, float thickness) {

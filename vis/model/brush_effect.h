@@ -1,0 +1,28 @@
+#pragma once
+
+#include <glm/common.hpp>
+#include <string_view>
+
+namespace tessera::vis {
+
+/// What brushes do to a layer: what is not brushed fades as the selection's context settings say; nothing; only what is
+/// not brushed stays; only what is brushed stays. Numbers known to vis/shaders/lib/doi.glsl.
+enum class BrushEffect { Fade, None, ContextOnly, FocusOnly };
+inline constexpr std::string_view kBrushEffectNames[] = {"fade", "none", "context", "focus"};
+
+/// Factor on the opacity of a layer at a degree of interest; twin: focusOpacity in vis/shaders/lib/doi.glsl.
+inline double brushedOpacity(BrushEffect effect, double contextOpacity, double interest) {
+    switch (effect) {
+    case BrushEffect::None:
+        return 1;
+    case BrushEffect::ContextOnly:
+        return 1 - interest;
+    case BrushEffect::FocusOnly:
+        return interest;
+    case BrushEffect::Fade:
+        break;
+    }
+    return glm::mix(contextOpacity, 1.0, interest);
+}
+
+} // namespace tessera::vis
