@@ -330,7 +330,8 @@ TEST(Continued, FacesAreAsGoodAsTheMiddle) {
         };
         const Continued continued{samples, kind, lattice.size};
         const LevelGeometry geometry{kind, 1, 0};
-        const Prefiltered filtered(continued, geometry), former(repeated, geometry);
+        const Prefiltered filtered(continued, geometry);
+        const Prefiltered former(repeated, geometry);
         std::mt19937 random(5);
         double shell = 0, before = 0, middle = 0;
         int n = 0, m = 0;

@@ -65,7 +65,7 @@ double wireCoverage(glm::dvec3 world, glm::dvec3 normal, glm::dvec3 toViewer, do
         const double line = glm::mix(std::clamp(0.5 * width + 0.5 - away, 0.0, 1.0), std::min(width / gap, 1.0),
                                      std::clamp(2 - 0.5 * gap, 0.0, 1.0));
         const double slope = std::sqrt(std::max(0.0, 1 - normal[axis] * normal[axis]));
-        covered = std::max(covered, line * smooth(0.1, 0.35, slope));
+        covered = std::max(covered, line * glm::smoothstep(0.1, 0.35, slope));
     }
     return covered;
 }
