@@ -38,33 +38,6 @@ inline glm::ivec3 clampToLattice(LatticeKind kind, glm::ivec3 size, glm::ivec3 a
     return {glm::clamp(at.x, 0, last.x), glm::clamp(at.y, 0, last.y), top < 0 ? 0 : glm::clamp(at.z, parity, top)};
 }
 
-/// Samples of a lattice continued beyond it by point reflection, as resampling does: along each axis sample -i is 2 *
-/// sample 0 - sample i of the same sublattice, likewise at the other end. The sublattices of BCC end up to half a cell
-/// before the faces of the box: there it keeps the filters at second order. Where the mirrored sample is absent, or the
-/// lattice has one sample along the axis, the outermost one is repeated. Labels have nothing to continue. Refers to the
-/// samples, which are asked for places on the lattice alone.
-template <class Samples> struct Continued {
-    const Samples& samples;
-    LatticeKind kind;
-    glm::ivec3 size; ///< storage samples of the lattice
-
-    Sample operator()(glm::ivec3 at) const { return along(at, 2); }
-
-private:
-    Sample along(glm::ivec3 at, int axis) const {
-        if (axis < 0) return samples(at);
-        glm::ivec3 edge = clampToLattice(kind, size, at);
-        for (int other = 0; other < 3; ++other)
-            if (other != axis) edge[other] = at[other];
-        const Sample end = along(edge, axis - 1);
-        if (edge == at || !end.present) return end;
-        glm::ivec3 mirror = 2 * edge - at, kept = clampToLattice(kind, size, mirror);
-        mirror[axis] = kept[axis];
-        const Sample inner = along(mirror, axis - 1);
-        return inner.present ? Sample{2 * end.value - inner.value, true} : end;
-    }
-};
-
 /// The samples of a field. Refers to the field.
 struct FieldSamples {
     const Field& field;

@@ -32,7 +32,6 @@ TexelEncoding makeEncoding(const ChannelStats& stats, bool categorical, bool exa
     TexelEncoding encoding;
     encoding.coverage = stats.someAbsent;
     encoding.exact = exact;
-    encoding.labels = categorical;
     encoding.prefiltered = prefiltered && !categorical;
     const double range = stats.max > stats.min ? stats.max - stats.min : 1;
     if (categorical && range < 65535) {
@@ -87,39 +86,9 @@ std::size_t linear(glm::ivec3 at, glm::ivec3 size) {
     return (std::size_t(at.z) * std::size_t(size.y) + std::size_t(at.y)) * std::size_t(size.x) + std::size_t(at.x);
 }
 
-/// Point reflection at the ends of the lattice along one axis, where mapAxis repeated the outermost samples. `begin`
-/// and `halo` in texels, `whole` storage samples of the lattice.
-void continueAlong(BrickSamples& samples, int axis, int begin, int halo, int whole, int perTexel) {
-    const int first = (begin - halo) * perTexel, n = samples.size[axis];
-    glm::ivec3 others = samples.size;
-    others[axis] = 1;
-    const bool masked = !samples.present.empty();
-    for (int i = 0; i < n; ++i) {
-        const int parity = perTexel == 2 ? (first + i) & 1 : 0, count = (whole + perTexel - 1 - parity) / perTexel;
-        const int at = (first + i - parity) / perTexel, edge = glm::clamp(at, 0, count - 1);
-        if (count < 1 || at == edge) continue;
-        const int mirror = glm::clamp(2 * edge - at, 0, count - 1);
-        const auto inside = [&](int texel) { return glm::clamp(texel * perTexel + parity - first, 0, n - 1); };
-        for (int z = 0; z < others.z; ++z)
-            for (int y = 0; y < others.y; ++y)
-                for (int x = 0; x < others.x; ++x) {
-                    const auto sample = [&](int place) {
-                        glm::ivec3 where(x, y, z);
-                        where[axis] = place;
-                        return linear(where, samples.size);
-                    };
-                    const std::size_t end = sample(inside(edge)), inner = sample(inside(mirror)), to = sample(i);
-                    const bool reflects = !masked || (samples.present[end] != 0 && samples.present[inner] != 0);
-                    samples.values[to] =
-                        reflects ? 2 * samples.values[end] - samples.values[inner] : samples.values[end];
-                    if (masked) samples.present[to] = samples.present[end];
-                }
-    }
-}
-
 } // namespace
 
-BrickSamples gatherBox(const BrickGrid& grid, const BrickKey& which, const TexelBox& box, int halo, bool continued,
+BrickSamples gatherBox(const BrickGrid& grid, const BrickKey& which, const TexelBox& box, int halo,
                        const ReadBrick& read) {
     const glm::ivec3 whole = grid.levelSamples(box.level);
     const int perTexel = grid.lattice.kind == LatticeKind::BCC ? 2 : 1, edge = grid.brickSize >> box.level;
@@ -152,8 +121,6 @@ BrickSamples gatherBox(const BrickGrid& grid, const BrickKey& which, const Texel
                 }
             }
     });
-    if (continued)
-        for (int a = 0; a < 3; ++a) continueAlong(out, a, box.begin[a], halo, whole[a], a == 2 ? perTexel : 1);
     return out;
 }
 
@@ -193,8 +160,7 @@ BlockRanges blockRanges(const std::vector<float>& row, glm::ivec3 size, int samp
 
 TexelBlock makeTexels(const BrickGrid& grid, const BrickKey& which, const TexelBox& box, const TexelEncoding& encoding,
                       const ReadBrick& read) {
-    BrickSamples samples =
-        gatherBox(grid, which, box, encoding.prefiltered ? kHalo + 1 : kHalo, !encoding.labels, read);
+    BrickSamples samples = gatherBox(grid, which, box, encoding.prefiltered ? kHalo + 1 : kHalo, read);
     if (encoding.prefiltered) samples = volume::prefilter(samples, volume::levelGeometry(grid, box.level));
 
     TexelBlock out;

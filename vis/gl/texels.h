@@ -17,7 +17,6 @@ inline constexpr int kBlockTexels = 8; ///< edge of a block of the empty-space m
 struct TexelEncoding {
     bool coverage = false;   ///< a second set of components says how much of a sample is present
     bool exact = false;      ///< 32-bit float texels, else 16-bit normalised
-    bool labels = false;     ///< categorical: nothing lies between samples, or beyond them
     bool prefiltered = true; ///< Prefiltered (volume/reconstruct.h), else the samples as they are
     double offset = 0, scale = 1;
     bool operator==(const TexelEncoding&) const = default;
@@ -69,10 +68,9 @@ using SharedBrick = std::shared_ptr<const volume::BrickSamples>;
 /// Gives one decoded brick; called from several threads at once.
 using ReadBrick = std::function<SharedBrick(const volume::BrickKey&)>;
 
-/// Samples of a box with `halo` texels around it. Beyond the lattice they are `continued` as Continued
-/// (volume/reconstruct.h) says, else the nearest one is repeated.
+/// Samples of a box with `halo` texels around it, the nearest sample repeated beyond the lattice.
 volume::BrickSamples gatherBox(const volume::BrickGrid& grid, const volume::BrickKey& which, const TexelBox& box,
-                               int halo, bool continued, const ReadBrick& read);
+                               int halo, const ReadBrick& read);
 
 /// Reads, filters and packs a box. Throws what `read` throws.
 TexelBlock makeTexels(const volume::BrickGrid& grid, const volume::BrickKey& which, const TexelBox& box,

@@ -14,7 +14,7 @@ std::size_t linearIndex(glm::ivec3 size, glm::ivec3 at) {
     return (std::size_t(at.z) * std::size_t(size.y) + std::size_t(at.y)) * std::size_t(size.x) + std::size_t(at.x);
 }
 
-/// The samples of the whole lattice, brick by brick.
+/// The samples of the whole lattice, brick by brick; beyond it the nearest one of the same sublattice.
 struct Whole {
     volume::Lattice lattice;
     std::vector<float> values;
@@ -84,15 +84,12 @@ Samples::Samples(const volume::BrickSource& source, int channel, volume::TimePai
     values_.resize(std::size_t(size_.x) * std::size_t(size_.y) * std::size_t(size_.z));
     if (!whole.present.empty()) present_.resize(values_.size());
     const bool prefiltered = filter == Filter::AverageQuasi && !categorical_ && !flaws.unfiltered;
-    // Labels are repeated beyond the lattice.
-    const auto beyond = [&, continued = volume::Continued<Whole>{whole, whole.lattice.kind, whole.lattice.size}](
-                            glm::ivec3 at) { return categorical_ ? whole(at) : continued(at); };
-    const volume::Prefiltered filtered(beyond, geometry_);
+    const volume::Prefiltered<Whole> filtered(whole, geometry_);
     parallelFor(std::size_t(size_.z), [&](std::size_t z) {
         for (int y = 0; y < size_.y; ++y)
             for (int x = 0; x < size_.x; ++x) {
                 const glm::ivec3 at(x, y, int(z));
-                const volume::Sample sample = prefiltered ? filtered(first_ + at) : beyond(first_ + at);
+                const volume::Sample sample = prefiltered ? filtered(first_ + at) : whole(first_ + at);
                 const std::size_t to = linearIndex(size_, at);
                 values_[to] = sample.value;
                 if (!present_.empty()) present_[to] = sample.present;
