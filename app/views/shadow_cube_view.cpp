@@ -3,6 +3,7 @@
 #include "app/views/axes3d.h"
 #include "app/views/brush_edit.h"
 #include "app/views/brush_list.h"
+#include "app/views/cube_faces.h"
 #include "app/views/flow_feed.h"
 #include "app/views/surface_feed.h"
 #include "app/views/ticks.h"
@@ -22,7 +23,6 @@ namespace tessera::app {
 namespace {
 
 constexpr int kWallPixels = 384; ///< of the longer edge of a projection
-constexpr int kPatches = 8;      ///< along either edge of a face, so that perspective is seen
 constexpr std::size_t kHoverBudget = std::size_t(32) << 20;
 
 enum class CubeDrag { None, Object, Cube, Both, Pan, Zoom, Brush };
@@ -42,113 +42,9 @@ struct ShadowCubeCache : ViewCache {
     std::shared_ptr<const volume::BrickSource> bricksOf;
 };
 
-/// All that one frame of the view looks at.
-struct CubeFrame {
-    const volume::DatasetInfo& info;
-    ImVec2 min, size;
-    vis::WorldFrame world;
-    glm::dvec3 half;    ///< of the cube
-    vis::Camera camera; ///< of the cube
-    SpaceFrame space;   ///< of the cube
-    double aspect() const { return double(size.x) / std::max(1.0f, size.y); }
-    ImVec2 max() const { return {min.x + size.x, min.y + size.y}; }
-    glm::vec2 ndc(ImVec2 at) const { return {(at.x - min.x) / size.x * 2 - 1, 1 - (at.y - min.y) / size.y * 2}; }
-    std::optional<ImVec2> pixel(glm::dvec3 at) const { return space.pixel(world.toPhysical(at)); }
-    std::optional<FaceHit> hit(ImVec2 at) const {
-        return hitFace(vis::cameraRay(camera, aspect(), glm::dvec2(ndc(at))), half, camera);
-    }
-    /// Physical position behind a place of a face.
-    glm::dvec3 physical(const FaceHit& at) const { return world.toPhysical(kCubeFaces[at.face].at(at.s, at.t, half)); }
-    bool onData(const FaceHit& at) const {
-        const CubeFace& face = kCubeFaces[at.face];
-        return std::abs(at.s) <= world.halfSize[face.right()] && std::abs(at.t) <= world.halfSize[face.up()];
-    }
-};
-
 std::string kindName(WallKind kind) {
     static constexpr const char* kNames[] = {"slice", "mean", "maximum", "absorption", "shadow"};
     return kNames[static_cast<std::size_t>(kind)];
-}
-
-/// The face itself, and its projection in patches.
-void drawFace(ImDrawList& draw, const CubeFrame& frame, const CubeFace& face, std::uint32_t texture) {
-    const auto corner = [&](double s, double t) { return frame.pixel(face.at(s, t, frame.half)); };
-    const double right = frame.half[face.right()], up = frame.half[face.up()];
-    const auto a = corner(-right, -up), b = corner(right, -up), c = corner(right, up), d = corner(-right, up);
-    if (!a || !b || !c || !d) return;
-    const bool dark = darkTheme();
-    draw.AddQuadFilled(*a, *b, *c, *d, dark ? IM_COL32(36, 39, 45, 255) : IM_COL32(236, 237, 240, 255));
-    const double s = frame.world.halfSize[face.right()], t = frame.world.halfSize[face.up()];
-    const auto id = reinterpret_cast<ImTextureID>(static_cast<std::intptr_t>(texture));
-    for (int j = 0; j < kPatches; ++j)
-        for (int i = 0; i < kPatches; ++i) {
-            const auto at = [](int k) { return float(k) / kPatches; };
-            const auto place = [&](int x, int y) {
-                return corner((2 * double(at(x)) - 1) * s, (2 * double(at(y)) - 1) * t);
-            };
-            const auto p = place(i, j), q = place(i + 1, j), r = place(i + 1, j + 1), u = place(i, j + 1);
-            if (!p || !q || !r || !u) continue;
-            draw.AddImageQuad(id, *p, *q, *r, *u, {at(i), at(j)}, {at(i + 1), at(j)}, {at(i + 1), at(j + 1)},
-                              {at(i), at(j + 1)});
-        }
-    draw.AddQuad(*a, *b, *c, *d, plotColors().frame);
-}
-
-/// A rectangle of a face between two physical positions.
-void drawRectangle(ImDrawList& draw, const CubeFrame& frame, const CubeFace& face, glm::dvec3 lo, glm::dvec3 hi,
-                   ImU32 line, ImU32 fill) {
-    const glm::dvec3 a = frame.world.toWorld(lo), b = frame.world.toWorld(hi);
-    ImVec2 corners[4];
-    for (int i = 0; i < 4; ++i) {
-        const bool right = i == 1 || i == 2, up = i >= 2;
-        const auto at = frame.pixel(face.at((right ? b : a)[face.right()], (up ? b : a)[face.up()], frame.half));
-        if (!at) return;
-        corners[i] = *at;
-    }
-    draw.AddConvexPolyFilled(corners, 4, fill);
-    draw.AddPolyline(corners, 4, line, ImDrawFlags_Closed, 1.5f);
-}
-
-/// Cursor, brushes in space and title of a face.
-void drawMarks(ImDrawList& draw, const CubeFrame& frame, const Session& session, std::size_t index,
-               const std::string& title) {
-    const CubeFace& face = kCubeFaces[index];
-    const PlotColors colors = plotColors();
-    for (const vis::Brush& brush : session.selection.brushes) {
-        const auto* box = std::get_if<vis::BoxRegion>(&brush.region);
-        if (!brush.enabled || !box) continue;
-        const glm::dvec3 lo = glm::max(box->center - box->radius, frame.info.bounds.lo),
-                         hi = glm::min(box->center + box->radius, frame.info.bounds.hi);
-        drawRectangle(draw, frame, face, lo, hi, brushColor(brush), brushColor(brush, 0.12f));
-    }
-    const glm::dvec3 cursor = frame.world.toWorld(session.cursor);
-    const double s = cursor[face.right()], t = cursor[face.up()];
-    const glm::dvec3 box = frame.world.halfSize;
-    const auto line = [&](glm::dvec3 from, glm::dvec3 to, ImU32 color) {
-        const auto a = frame.pixel(from), b = frame.pixel(to);
-        if (a && b) draw.AddLine(*a, *b, color, 1.2f);
-    };
-    line(face.at(-box[face.right()], t, frame.half), face.at(box[face.right()], t, frame.half), colors.cursor);
-    line(face.at(s, -box[face.up()], frame.half), face.at(s, box[face.up()], frame.half), colors.cursor);
-    line(cursor, face.at(s, t, frame.half), (colors.cursor & ~IM_COL32_A_MASK) | IM_COL32(0, 0, 0, 110));
-    // The title stands in the margin at the outer edge that is furthest from the middle of the picture.
-    const ImVec2 middle{frame.min.x + frame.size.x / 2, frame.min.y + frame.size.y / 2};
-    float furthest = -1;
-    ImVec2 at = middle;
-    for (const int end : {-1, 1})
-        for (const bool along : {false, true}) {
-            const int axis = along ? face.right() : face.up();
-            const double place = end * (0.5 * frame.half[axis] + 0.5 * box[axis]);
-            const auto p = frame.pixel(along ? face.at(place, 0, frame.half) : face.at(0, place, frame.half));
-            if (!p) continue;
-            const float away = std::hypot(p->x - middle.x, p->y - middle.y);
-            if (away > furthest) furthest = away, at = *p;
-        }
-    const ImVec2 size = ImGui::CalcTextSize(title.c_str());
-    at.x = std::clamp(at.x, frame.min.x + size.x / 2 + em(),
-                      std::max(frame.min.x + size.x / 2 + em(), frame.max().x - size.x / 2 - em()));
-    at.y = std::clamp(at.y, frame.min.y + em(), std::max(frame.min.y + em(), frame.max().y - em()));
-    addTextWithBackdrop(draw, at, {0.5f, 0.5f}, colors.text, title.c_str());
 }
 
 /// What the face under the mouse reads, with its unit, beside the mouse.
