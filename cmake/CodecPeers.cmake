@@ -2,7 +2,7 @@
 # Nothing else needs them.
 add_executable(tessera-codec-peers tests/bench/codec_peers.cpp tests/bench/peer_codecs.cpp tests/bench/peer_images.cpp)
 target_link_libraries(tessera-codec-peers PRIVATE codec PkgConfig::zstd)
-tessera_little_optimised(tessera-codec-peers)
+tessera_little_optimised(tessera-codec-peers 1)
 set_target_properties(tessera-codec-peers PROPERTIES UNITY_BUILD OFF)
 foreach(peer IN ITEMS LZ4:liblz4 XZ:liblzma BLOSC:blosc HDF5:hdf5-serial OPENJPEG:libopenjp2)
   string(REGEX MATCH "^[^:]+" name ${peer})
