@@ -153,8 +153,8 @@ std::shared_ptr<const volume::BrickSource> openPacked(volume::Dataset& dataset, 
     return codec::openArchive(name);
 }
 
-std::shared_ptr<const volume::BrickSource> openStored(const DataRef& data, std::vector<std::string>& messages,
-                                                      const Progress& progress) {
+std::shared_ptr<const volume::BrickSource> openWhole(const DataRef& data, std::vector<std::string>& messages,
+                                                     const Progress& progress) {
     if (!hasData(data)) throw Error("names no data: open data first, or give a data file", {}, "/data");
     if (data.files.size() == 1 && endsWith(data.files[0].absolutePath, ".tsr"))
         return codec::openArchive(data.files[0].absolutePath);
@@ -179,6 +179,15 @@ std::shared_ptr<const volume::BrickSource> openStored(const DataRef& data, std::
     volume::MemorySourceOptions options;
     options.lattice = data.bcc ? volume::LatticeKind::BCC : volume::LatticeKind::CC;
     return volume::makeMemorySource(std::move(dataset), options);
+}
+
+std::shared_ptr<const volume::BrickSource> openStored(const DataRef& data, std::vector<std::string>& messages,
+                                                      const Progress& progress) {
+    auto source = openWhole(data, messages, progress);
+    if (!data.timeAxis) return source;
+    volume::MemorySourceOptions options;
+    options.lattice = source->info().lattice.kind;
+    return volume::makeMemorySource(volume::withTimeAlong(source, *data.timeAxis), options);
 }
 
 } // namespace

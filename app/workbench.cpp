@@ -319,6 +319,16 @@ void Workbench::answerFile(const FileDialog::Answer& answer) {
     }
 }
 
+void Workbench::showAs(const DataRef& data, const std::string& title) {
+    const auto opened = std::make_shared<Opened>();
+    opened->document = document();
+    opened->sessionPath = sessionPath_;
+    jobs_.start("open", title, [this, opened, data](const Progress& progress) -> Jobs::Finish {
+        const auto done = std::make_shared<Opened>(openWith(*opened, data, progress));
+        return [this, done] { install(std::move(*done)); };
+    });
+}
+
 bool Workbench::showsDataFiles() const {
     const auto& files = session_.data.files;
     return source_ && !files.empty() && !(files.size() == 1 && files[0].absolutePath.ends_with(".tsr"));

@@ -118,9 +118,10 @@ private:
     void answerFile(const FileDialog::Answer& answer);
     void save(const std::string& path);
     void pack(const std::string& path);
-    int chosenSurface() const;            // workbench_surface.cpp
-    void exportSurface(std::string path); // workbench_surface.cpp
-    bool showsDataFiles() const;          ///< files that are not an archive
+    void showAs(const DataRef& data, const std::string& title); ///< the same data, made or cut otherwise
+    int chosenSurface() const;                                  // workbench_surface.cpp
+    void exportSurface(std::string path);                       // workbench_surface.cpp
+    bool showsDataFiles() const;                                ///< files that are not an archive
     void replace(Session session);
     void watchEdits();
     void autosave();

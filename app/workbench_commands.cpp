@@ -232,18 +232,33 @@ void Workbench::makeCommands() {
          .help = "Resample data files to 70.7 % of the samples on the body-centred cubic lattice",
          .run =
              [this] {
-                 auto opened = std::make_shared<Opened>();
-                 opened->document = document();
-                 opened->sessionPath = sessionPath_;
                  DataRef data = session_.data;
                  data.bcc = !data.bcc;
-                 jobs_.start("open", "Resampling", [this, opened, data](const Progress& progress) -> Jobs::Finish {
-                     auto done = std::make_shared<Opened>(openWith(*opened, data, progress));
-                     return [this, done] { install(std::move(*done)); };
-                 });
+                 showAs(data, "Resampling");
              },
          .enabled = [this] { return source_ && (session_.data.files.empty() || showsDataFiles()); },
          .checked = [this] { return session_.data.bcc; }});
+    for (const auto axis : {volume::SpaceAxis::X, volume::SpaceAxis::Y, volume::SpaceAxis::Z}) {
+        const auto shown = [this, axis] { return session_.data.timeAxis && session_.data.timeAxis->axis == axis; };
+        add({.menu = "Edit",
+             .name = "Time along " + std::string(volume::kSpaceAxisNames[std::size_t(axis)]),
+             .help = "The plane through the cross-hair at all times, time in place of the axis",
+             .run =
+                 [this, axis, shown] {
+                     DataRef data = session_.data;
+                     data.timeAxis.reset();
+                     const volume::Box& box = source_->info().bounds;
+                     const int a = static_cast<int>(axis);
+                     if (!shown()) data.timeAxis = {axis, (session_.cursor[a] - box.lo[a]) / box.size()[a]};
+                     showAs(data, "Times as an axis");
+                 },
+             .enabled =
+                 [this, axis, shown] {
+                     return source_ && (shown() || (!session_.data.timeAxis && source_->info().times.size() > 1 &&
+                                                    source_->info().bounds.size()[static_cast<int>(axis)] > 0));
+                 },
+             .checked = shown});
+    }
 
     for (const ViewKind& kind : viewKinds())
         add({.menu = "View",

@@ -8,6 +8,7 @@
 #include "volume/dataset.h"
 #include "volume/derived.h"
 #include "volume/import/import.h"
+#include "volume/time_axis.h"
 
 #include <map>
 #include <optional>
@@ -44,6 +45,7 @@ struct DataRef {
     std::vector<volume::DerivedParameter> derived; ///< computed from the others
     volume::ImportOptions import;                  ///< what was stated about files that do not say it themselves
     std::optional<codec::PackOptions> packed;      ///< unpacked data are shown as an archive packed so holds them
+    std::optional<volume::TimeAxis> timeAxis;      ///< a plane at all times is shown in place of the data
     bool operator==(const DataRef&) const = default;
     static void describe(auto& self, auto&& visit) {
         visit(self.files, FieldInfo{.key = "files", .unit = "", .doc = "Files that are shown together"});
@@ -56,6 +58,7 @@ struct DataRef {
         visit(self.packed, FieldInfo{.key = "packed",
                                      .unit = "",
                                      .doc = "Show data that are no archive as one packed so would hold them"});
+        visit(self.timeAxis, FieldInfo{.key = "timeAxis", .unit = "", .doc = "Show time in place of an axis"});
     }
 };
 

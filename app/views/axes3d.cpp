@@ -9,8 +9,6 @@ namespace tessera::app {
 
 namespace {
 
-constexpr const char* kAxisNames[] = {"x", "y", "z"};
-
 float length(ImVec2 v) {
     return std::hypot(v.x, v.y);
 }
@@ -94,7 +92,7 @@ std::vector<LabelledEdge> labelledEdges(const SpaceFrame& frame, glm::dvec3 eye)
     return edges;
 }
 
-void drawAxes3d(ImDrawList& draw, const SpaceFrame& frame, const vis::Camera& camera, const std::string& lengthUnit,
+void drawAxes3d(ImDrawList& draw, const SpaceFrame& frame, const vis::Camera& camera, const AxisLabels& labels,
                 std::vector<std::pair<ImVec2, ImVec2>> avoid) {
     const PlotColors colors = plotColors();
     glm::dvec3 eye = vis::cameraRay(camera, 1, {0, 0}).origin;
@@ -115,8 +113,7 @@ void drawAxes3d(ImDrawList& draw, const SpaceFrame& frame, const vis::Camera& ca
     };
     for (const LabelledEdge& edge : labelledEdges(frame, eye)) {
         const float pixels = length({edge.b.x - edge.a.x, edge.b.y - edge.a.y});
-        const double physical = edge.to[edge.axis] - edge.from[edge.axis];
-        const LengthUnit unit = suitableLength(lengthUnit, physical);
+        const auto& [name, unit] = labels[static_cast<std::size_t>(edge.axis)];
         const Range range{edge.from[edge.axis] * unit.perUnit, edge.to[edge.axis] * unit.perUnit};
         TickLabels ticks;
         // As many as stand clear of each other along this edge's direction on screen.
@@ -145,7 +142,7 @@ void drawAxes3d(ImDrawList& draw, const SpaceFrame& frame, const vis::Camera& ca
             if (place(besides(start, edge.outward, size), colors.text, ticks.texts[i]))
                 furthest = std::max(furthest, std::abs(edge.outward.x) * size.x + std::abs(edge.outward.y) * size.y);
         }
-        std::string title = titleWithUnit(kAxisNames[edge.axis], unit.name);
+        std::string title = titleWithUnit(name, unit.name);
         if (!ticks.note.empty()) title += "  " + ticks.note;
         const ImVec2 size = ImGui::CalcTextSize(title.c_str());
         bool placed = false;
@@ -187,7 +184,7 @@ vis::StandardView viewAgainst(int axis, bool positive) {
 }
 
 std::optional<vis::StandardView> drawTriad(ImDrawList& draw, ImVec2 center, float radius, const vis::Camera& camera,
-                                           const ImVec2* mouse, bool clicked) {
+                                           const AxisLabels& labels, const ImVec2* mouse, bool clicked) {
     struct End {
         int axis;
         bool positive;
@@ -222,9 +219,10 @@ std::optional<vis::StandardView> drawTriad(ImDrawList& draw, ImVec2 center, floa
         if (end.positive) {
             draw.AddLine(center, p, color, std::max(1.5f, em() * 0.13f));
             draw.AddCircleFilled(p, dot, lit ? plotColors().text : color, 20);
-            const ImVec2 size = ImGui::CalcTextSize(kAxisNames[end.axis]);
+            const ImVec2 size = ImGui::CalcTextSize(labels[static_cast<std::size_t>(end.axis)].name);
             draw.AddText({std::round(p.x - size.x / 2), std::round(p.y - size.y / 2)},
-                         darkTheme() ? IM_COL32(12, 14, 18, 255) : IM_COL32(255, 255, 255, 255), kAxisNames[end.axis]);
+                         darkTheme() ? IM_COL32(12, 14, 18, 255) : IM_COL32(255, 255, 255, 255),
+                         labels[static_cast<std::size_t>(end.axis)].name);
         } else {
             draw.AddCircleFilled(p, dot * 0.62f,
                                  lit ? plotColors().text : ((color & ~IM_COL32_A_MASK) | IM_COL32(0, 0, 0, 120)), 16);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "app/views/axis_label.h"
 #include "app/views/plot.h"
 #include "vis/model/camera.h"
 #include "volume/dataset.h"
@@ -36,7 +37,7 @@ std::vector<LabelledEdge> labelledEdges(const SpaceFrame& frame, glm::dvec3 eyeD
 
 /// Ticks, numbers and units on the labelled edges; texts that would overlap or leave the picture are left out.
 /// `avoid` are rectangles already taken.
-void drawAxes3d(ImDrawList& draw, const SpaceFrame& frame, const vis::Camera& camera, const std::string& lengthUnit,
+void drawAxes3d(ImDrawList& draw, const SpaceFrame& frame, const vis::Camera& camera, const AxisLabels& labels,
                 std::vector<std::pair<ImVec2, ImVec2>> avoid = {});
 
 /// The standard view that looks against an axis direction (0 = x, 1 = y, 2 = z).
@@ -44,7 +45,7 @@ vis::StandardView viewAgainst(int axis, bool positive);
 
 /// Axis triad around a point; returns the view whose end was clicked. `mouse` is null where the mouse is elsewhere.
 std::optional<vis::StandardView> drawTriad(ImDrawList& draw, ImVec2 center, float radius, const vis::Camera& camera,
-                                           const ImVec2* mouse, bool clicked);
+                                           const AxisLabels& labels, const ImVec2* mouse, bool clicked);
 
 /// The linked cross-hair: lines through the box along the three axes, a ring where it stands.
 void drawCursor3d(ImDrawList& draw, const SpaceFrame& frame, glm::dvec3 cursor);

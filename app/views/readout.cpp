@@ -1,5 +1,6 @@
 #include "app/views/readout.h"
 
+#include "app/views/axis_label.h"
 #include "app/views/ticks.h"
 #include "app/views/view_parts.h"
 #include "volume/error.h"
@@ -109,15 +110,15 @@ float readoutHeight(const Readout& readout) {
 void drawReadout(ViewContext& context, const Readout& readout, bool compact) {
     const volume::DatasetInfo& info = context.source->info();
     const glm::dvec3 cursor = context.session.cursor, size = info.bounds.size();
-    static constexpr const char* kAxes[] = {"x", "y", "z"};
+    const AxisLabels labels = axisLabels(context.session, info);
     const glm::ivec3 index = info.lattice.nearest(cursor);
     // The unit once, where all three axes have the same.
     std::vector<std::string> at;
     std::string unitNow;
     for (int axis = 2; axis >= 0; --axis) {
-        const LengthUnit unit = suitableLength(info.lengthUnit, size[axis]);
+        const auto& [name, unit] = labels[static_cast<std::size_t>(axis)];
         std::string text =
-            std::string(kAxes[axis]) + " " + formatNumber(cursor[axis] * unit.perUnit, size[axis] * unit.perUnit / 200);
+            std::string(name) + " " + formatNumber(cursor[axis] * unit.perUnit, size[axis] * unit.perUnit / 200);
         if (unit.name != unitNow) text += " " + prettyUnit(unit.name);
         unitNow = unit.name;
         at.insert(at.begin(), text);
@@ -179,9 +180,13 @@ std::string readoutCsv(const Session& session, const volume::DatasetInfo& info, 
         return std::string(text);
     };
     std::string csv = "parameter,unit,interpolated,nearest\n";
-    const char* const axes[] = {"x", "y", "z"};
-    for (int axis = 0; axis < 3; ++axis)
-        csv += std::string(axes[axis]) + "," + info.lengthUnit + "," + number(session.cursor[axis]) + ",\n";
+    const AxisLabels labels = axisLabels(session, info);
+    for (int axis = 0; axis < 3; ++axis) {
+        const bool time = session.data.timeAxis && static_cast<int>(session.data.timeAxis->axis) == axis;
+        const auto& [name, unit] = labels[static_cast<std::size_t>(axis)];
+        csv += std::string(name) + "," + (time ? unit.name : info.lengthUnit) + "," +
+               number(session.cursor[axis] * (time ? unit.perUnit : 1)) + ",\n";
+    }
     csv += "time," + info.timeUnit + "," + number(session.time) + ",\n";
     for (std::size_t i = 0; i < readout.channels.size() && i < readout.state->values.size(); ++i) {
         const volume::ProbeValue& value = readout.state->values[i];

@@ -1,3 +1,4 @@
+#include "app/views/axis_label.h"
 #include "app/views/figure.h"
 #include "app/views/ticks.h"
 #include "app/views/view_parts.h"
@@ -106,9 +107,10 @@ std::string sliceSvg(const volume::BrickSource& source, const Session& session, 
                      const PlaneAxes& axes, int planes, const Progress& progress) {
     const volume::DatasetInfo& info = source.info();
     const std::vector<volume::Channel> all = info.channels();
-    const LengthUnit unitX = suitableLength(info.lengthUnit, info.bounds.size()[axes.right]),
-                     unitY = suitableLength(info.lengthUnit, info.bounds.size()[axes.up]),
-                     unit = suitableLength(info.lengthUnit, info.bounds.size()[axes.normal]);
+    const AxisLabels labels = axisLabels(session, info);
+    const auto& [nameX, unitX] = labels[static_cast<std::size_t>(axes.right)];
+    const auto& [nameY, unitY] = labels[static_cast<std::size_t>(axes.up)];
+    const auto& [name, unit] = labels[static_cast<std::size_t>(axes.normal)];
     const double depth = info.bounds.size()[axes.normal] * unit.perUnit;
     std::vector<FigurePanel> panels;
     for (const int channel : channels)
@@ -121,12 +123,12 @@ std::string sliceSvg(const volume::BrickSource& source, const Session& session, 
             FigurePanel panel;
             const double digits = (range.hi - range.lo) / 100;
             const double position = planePosition(info.bounds, axes.normal, plane, planes);
-            panel.title = "xyz"[axes.normal] +
-                          (" = " + formatQuantity(position * unit.perUnit, unit.name, depth / 100)) + ", " + own.name +
-                          " " + formatNumber(range.lo, digits) + " .. " + formatQuantity(range.hi, own.unit, digits);
-            panel.x = {std::string(1, "xyz"[axes.right]) + " [" + unitX.name + "]",
+            panel.title = name + (" = " + formatQuantity(position * unit.perUnit, unit.name, depth / 100)) + ", " +
+                          own.name + " " + formatNumber(range.lo, digits) + " .. " +
+                          formatQuantity(range.hi, own.unit, digits);
+            panel.x = {std::string(nameX) + " [" + unitX.name + "]",
                        {info.bounds.lo[axes.right] * unitX.perUnit, info.bounds.hi[axes.right] * unitX.perUnit}};
-            panel.y = {std::string(1, "xyz"[axes.up]) + " [" + unitY.name + "]",
+            panel.y = {std::string(nameY) + " [" + unitY.name + "]",
                        {info.bounds.lo[axes.up] * unitY.perUnit, info.bounds.hi[axes.up] * unitY.perUnit}};
             panel.image.width = panel.image.height = kExported;
             for (int j = kExported - 1; j >= 0; --j) {
@@ -156,8 +158,9 @@ std::string sliceSvg(const volume::BrickSource& source, const Session& session, 
 
 void drawToolbar(ViewContext& context, SliceMatrixView& view, const std::vector<int>& shown, const PlaneAxes& axes) {
     const volume::DatasetInfo& info = context.source->info();
-    const std::string directions =
-        std::string(1, "xyz"[axes.right]) + " to the right, " + std::string(1, "xyz"[axes.up]) + " up";
+    const AxisLabels labels = axisLabels(context.session, info);
+    const std::string directions = std::string(labels[static_cast<std::size_t>(axes.right)].name) + " to the right, " +
+                                   labels[static_cast<std::size_t>(axes.up)].name + " up";
     const float right = ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x;
     chooseChannels(info, view.channels, shown);
     continueLine(em() * 3.4f);
@@ -215,7 +218,8 @@ void drawSliceMatrixView(ViewContext& context, const std::string& pane, SliceMat
     const glm::ivec2 pixels(std::max(1.0, std::floor(worldX * scale)), std::max(1.0, std::floor(worldY * scale)));
     ImDrawList& draw = *ImGui::GetWindowDrawList();
     const PlotColors colors = plotColors();
-    const LengthUnit unit = suitableLength(info.lengthUnit, info.bounds.size()[axes.normal]);
+    const AxisLabel along = axisLabels(context.session, info)[static_cast<std::size_t>(axes.normal)];
+    const LengthUnit& unit = along.unit;
     // Narrow slices stand close together, but not closer than their titles.
     const float pitch = std::min(cellX, std::max(static_cast<float>(pixels.x), em() * 6.5f)) + gap;
     cache.targets.resize(shown.size() * static_cast<std::size_t>(view.planes));
@@ -223,7 +227,7 @@ void drawSliceMatrixView(ViewContext& context, const std::string& pane, SliceMat
         const double position = planePosition(info.bounds, axes.normal, plane, view.planes);
         const float x = std::round(origin.x + title + pitch * static_cast<float>(plane));
         const std::string place =
-            std::string(1, "xyz"[axes.normal]) + " = " +
+            std::string(along.name) + " = " +
             formatQuantity(position * unit.perUnit, unit.name, info.bounds.size()[axes.normal] * unit.perUnit / 100);
         draw.AddText({x, origin.y}, colors.text, fitText(place, pitch - gap).c_str());
         for (std::size_t row = 0; row < shown.size(); ++row) {

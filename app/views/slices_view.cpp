@@ -24,7 +24,6 @@ struct Plane {
 /// Top left, top right (shares the upright axis), bottom left (shares the level one).
 constexpr std::array<Plane, 3> kPlanes{
     {{0, 1, 2, vis::SliceOrientation::Z}, {2, 1, 0, vis::SliceOrientation::X}, {0, 2, 1, vis::SliceOrientation::Y}}};
-constexpr const char* kAxisNames[] = {"x", "y", "z"};
 
 struct SlicesCache : ViewCache {
     std::array<vis::ViewTargetPtr, 3> targets;
@@ -85,20 +84,21 @@ void drawPlane(ViewContext& context, SlicesCache& cache, const SlicesView& view,
     ImDrawList& draw = *ImGui::GetWindowDrawList();
 
     const glm::dvec3 size = info.bounds.size();
-    const LengthUnit unitX = suitableLength(info.lengthUnit, size[plane.right]),
-                     unitY = suitableLength(info.lengthUnit, size[plane.up]),
-                     unitN = suitableLength(info.lengthUnit, size[plane.normal] > 0 ? size[plane.normal] : 1.0);
+    const AxisLabels labels = axisLabels(session, info);
+    const auto& [nameX, unitX] = labels[static_cast<std::size_t>(plane.right)];
+    const auto& [nameY, unitY] = labels[static_cast<std::size_t>(plane.up)];
+    const auto& [nameN, unitN] = labels[static_cast<std::size_t>(plane.normal)];
     const Range rangeX{info.bounds.lo[plane.right] * unitX.perUnit, info.bounds.hi[plane.right] * unitX.perUnit};
     const Range rangeY{info.bounds.lo[plane.up] * unitY.perUnit, info.bounds.hi[plane.up] * unitY.perUnit};
 
     // Slices below each other begin at the same pixel, whatever their numbers.
-    const LengthUnit unitZ = suitableLength(info.lengthUnit, size.z);
+    const LengthUnit& unitZ = labels[2].unit;
     const Range rangeZ{info.bounds.lo.z * unitZ.perUnit, info.bounds.hi.z * unitZ.perUnit};
     const float left = std::max(axisRoom(AxisSide::Left, rangeY, false), axisRoom(AxisSide::Left, rangeZ, false));
     const float bottom = axisRoom(AxisSide::Bottom, rangeX, false);
     const ImVec2 lo{min.x + left, min.y + em() * 1.35f}, hi{max.x - em() * 0.8f, max.y - bottom};
     // The head line names the slice and its place, in the colour of the axis it is perpendicular to.
-    const std::string place = std::string(kAxisNames[plane.normal]) + " = " +
+    const std::string place = std::string(nameN) + " = " +
                               formatQuantity(session.cursor[plane.normal] * unitN.perUnit, unitN.name,
                                              size[plane.normal] * unitN.perUnit / 1000);
     draw.AddText({std::round(hi.x - ImGui::CalcTextSize(place.c_str()).x), min.y}, axisColor(plane.normal),
@@ -106,7 +106,7 @@ void drawPlane(ViewContext& context, SlicesCache& cache, const SlicesView& view,
     if (hi.x - lo.x < em() * 2 || hi.y - lo.y < em() * 2) return;
     const double worldX = world.halfSize[plane.right], worldY = world.halfSize[plane.up];
     if (!(worldX > 0) || !(worldY > 0)) {
-        const std::string text = std::string("no extent along ") + kAxisNames[worldX > 0 ? plane.up : plane.right];
+        const std::string text = std::string("no extent along ") + (worldX > 0 ? nameY : nameX);
         draw.AddText({lo.x, lo.y}, colors.faint, text.c_str());
         return;
     }
@@ -179,10 +179,9 @@ void drawPlane(ViewContext& context, SlicesCache& cache, const SlicesView& view,
     if (!status.complete) context.busy = true;
     addPicture(draw, status.texture, frame.min, frame.max);
     draw.AddRect(frame.min, frame.max, colors.frame);
-    drawAxis(draw, frame, AxisSide::Bottom, kAxisNames[plane.right], unitX.name, min.x,
-             std::min(max.x, frame.max.x + em() * 4), {.inlineTitle = true});
-    drawAxis(draw, frame, AxisSide::Left, kAxisNames[plane.up], unitY.name, min.y, max.y,
-             {.inlineTitle = true, .room = left});
+    drawAxis(draw, frame, AxisSide::Bottom, nameX, unitX.name, min.x, std::min(max.x, frame.max.x + em() * 4),
+             {.inlineTitle = true});
+    drawAxis(draw, frame, AxisSide::Left, nameY, unitY.name, min.y, max.y, {.inlineTitle = true, .room = left});
     draw.PushClipRect(frame.min, frame.max, true);
     drawBrushSections(draw, frame, session.selection, plane.right, plane.up, plane.normal, session.cursor[plane.normal],
                       {unitX.perUnit, unitY.perUnit});

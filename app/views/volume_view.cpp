@@ -141,18 +141,20 @@ void drawVolumeView(ViewContext& context, const std::string& pane, VolumeView& v
         drawHandles(draw, cache.handles, space, session, info);
     }
 
+    const AxisLabels labels = axisLabels(session, info);
     std::vector<std::pair<ImVec2, ImVec2>> taken;
     if (view.showLegend) {
         const LegendArea area = drawLegends(draw, sceneLegends(session, info), picture.min, max);
         taken.push_back({area.min, area.max});
     }
     if (showTriad) {
-        const auto clicked = drawTriad(draw, triadAt, triad, session.camera, cache.hand.blocked ? &mouse : nullptr,
-                                       cache.hand.blocked && ImGui::IsMouseClicked(ImGuiMouseButton_Left));
+        const auto clicked =
+            drawTriad(draw, triadAt, triad, session.camera, labels, cache.hand.blocked ? &mouse : nullptr,
+                      cache.hand.blocked && ImGui::IsMouseClicked(ImGuiMouseButton_Left));
         if (clicked) lookAlong(session.camera, *clicked, world, picture.aspect());
         taken.push_back({{triadAt.x - triad, triadAt.y - triad}, {triadAt.x + triad, triadAt.y + triad}});
     }
-    if (view.showScaleBar) {
+    if (view.showScaleBar && !session.data.timeAxis) {
         const float left = showTriad ? triadAt.x + triad + em() : picture.min.x + em();
         const float right = taken.empty() || !view.showLegend ? max.x : taken.front().first.x;
         const float most = std::min(em() * 9, right - left - em());
@@ -175,7 +177,7 @@ void drawVolumeView(ViewContext& context, const std::string& pane, VolumeView& v
         addTextWithBackdrop(draw, at, {0, 0}, colors.faint, text.c_str());
         taken.push_back({at, {at.x + size.x, at.y + size.y}});
     }
-    if (view.showAxes) drawAxes3d(draw, space, session.camera, info.lengthUnit, taken);
+    if (view.showAxes) drawAxes3d(draw, space, session.camera, labels, taken);
     draw.PopClipRect();
 }
 

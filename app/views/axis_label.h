@@ -1,0 +1,20 @@
+#pragma once
+
+#include "app/session/session.h"
+#include "app/views/ticks.h"
+
+#include <array>
+
+namespace tessera::app {
+
+/// How places along an axis are written: its letter, and the unit that suits its extent.
+struct AxisLabel {
+    const char* name = "x";
+    LengthUnit unit;
+};
+using AxisLabels = std::array<AxisLabel, 3>;
+
+/// Of the axes of a session's data: lengths, but where time takes the place of an axis "t" in the unit of time.
+AxisLabels axisLabels(const Session& session, const volume::DatasetInfo& info);
+
+} // namespace tessera::app
