@@ -8,6 +8,7 @@
 #include "volume/error.h"
 #include "volume/import/import.h"
 #include "volume/memory_source.h"
+#include "volume/originals.h"
 #include "volume/synthetic/models.h"
 
 #include <algorithm>
@@ -175,9 +176,15 @@ std::shared_ptr<const volume::BrickSource> openWhole(const DataRef& data, std::v
                 messages.push_back("parameter " + parameter.name + " has no present samples");
                 break;
             }
-    if (data.packed) return openPacked(dataset, *data.packed, progress.part(0.95, 1));
     volume::MemorySourceOptions options;
     options.lattice = data.bcc ? volume::LatticeKind::BCC : volume::LatticeKind::CC;
+    if (data.packed) {
+        auto packed = openPacked(dataset, *data.packed, progress.part(0.95, 1));
+        if (!data.originals) return packed;
+        options.lattice = packed->info().lattice.kind;
+        options.brickSize = packed->grid().brickSize;
+        return volume::withOriginals(std::move(packed), volume::makeMemorySource(std::move(dataset), options));
+    }
     return volume::makeMemorySource(std::move(dataset), options);
 }
 

@@ -45,6 +45,7 @@ struct DataRef {
     std::vector<volume::DerivedParameter> derived; ///< computed from the others
     volume::ImportOptions import;                  ///< what was stated about files that do not say it themselves
     std::optional<codec::PackOptions> packed;      ///< unpacked data are shown as an archive packed so holds them
+    bool originals = false;                        ///< packed data lie beside the data as computed
     std::optional<volume::TimeAxis> timeAxis;      ///< a plane at all times is shown in place of the data
     bool operator==(const DataRef&) const = default;
     static void describe(auto& self, auto&& visit) {
@@ -58,6 +59,9 @@ struct DataRef {
         visit(self.packed, FieldInfo{.key = "packed",
                                      .unit = "",
                                      .doc = "Show data that are no archive as one packed so would hold them"});
+        visit(self.originals, FieldInfo{.key = "originals",
+                                        .unit = "",
+                                        .doc = "Show packed data with the data as computed beside, as parameters"});
         visit(self.timeAxis, FieldInfo{.key = "timeAxis", .unit = "", .doc = "Show time in place of an axis"});
     }
 };

@@ -1,5 +1,7 @@
 #include "app/views/derivative_feed.h"
 
+#include "volume/source_at_time.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -17,16 +19,20 @@ std::uint8_t greyOf(double lightness) {
 } // namespace
 
 std::shared_ptr<const DerivativeResult> DerivativeFeed::get(ViewContext& context, const std::string& jobKey,
-                                                            const volume::DerivativeQuery& query) {
+                                                            const volume::DerivativeQuery& query,
+                                                            const volume::TimePair& time) {
     return feed_.get(
-        context, jobKey, "Gradients", query,
-        [](const volume::BrickSource& source, const volume::DerivativeQuery& wish, const Progress& progress) {
+        context, jobKey, "Gradients", Wish{query, time},
+        [](const std::shared_ptr<const volume::BrickSource>& source, const Wish& wish, const Progress& progress) {
+            const volume::SourceAtTime shown = volume::sourceAt(source, wish.time);
+            volume::DerivativeQuery asked = wish.query;
+            asked.time = shown.time;
             DerivativeResult result;
-            result.histogram = volume::derivativeHistogram(source, wish, progress);
+            result.histogram = volume::derivativeHistogram(*shown.source, asked, progress);
             result.curves = volume::boundaryCurves(result.histogram);
             return result;
         },
-        [&](const volume::DerivativeQuery& answered) { return answered.channel == query.channel; });
+        [&](const Wish& answered) { return answered.query.channel == query.channel; });
 }
 
 std::vector<std::uint8_t> derivativeImage(const volume::DerivativeHistogram& histogram, bool dark) {

@@ -3,6 +3,7 @@
 #include "app/views/latest_feed.h"
 #include "vis/gl/plot_texture.h"
 #include "volume/boundary.h"
+#include "volume/time_pair.h"
 
 #include <cstdint>
 #include <memory>
@@ -21,15 +22,20 @@ struct DerivativeResult {
 /// The answers for one view, kept in its cache.
 class DerivativeFeed {
 public:
-    /// The answer to this query, else the last one of the same channel while it is being computed, else null; as
-    /// LatestFeed::get.
+    /// The answer to this query at a time (in place of its own), else the last one of the same channel while it is
+    /// being computed, else null; as LatestFeed::get.
     std::shared_ptr<const DerivativeResult> get(ViewContext& context, const std::string& jobKey,
-                                                const volume::DerivativeQuery& query);
+                                                const volume::DerivativeQuery& query, const volume::TimePair& time);
     /// Whether the data could not be read; the log has the message.
     bool failed() const { return feed_.failed(); }
 
 private:
-    LatestFeed<volume::DerivativeQuery, DerivativeResult> feed_;
+    struct Wish {
+        volume::DerivativeQuery query;
+        volume::TimePair time;
+        bool operator==(const Wish&) const = default;
+    };
+    LatestFeed<Wish, DerivativeResult> feed_;
 };
 
 /// The joint histogram as a picture, row 0 = the largest gradient: transparent where no sample is, else a grey whose

@@ -16,8 +16,9 @@ public:
     using Pointer = std::shared_ptr<const Result>;
 
     /// The answer to `wish`, else the last one while that is `alike` (called with the wish it answers), else null. Sets
-    /// context.busy while a better one is on its way; headless, computes to the end. `make(source, wish, progress)`
-    /// gives the Result and may throw Error, which is reported once and not tried again until the wish changes.
+    /// context.busy while a better one is on its way; headless, computes to the end. `make(shared source, wish,
+    /// progress)` gives the Result and may throw Error, which is reported once and not tried again until the wish
+    /// changes.
     template <class Make, class Alike>
     Pointer get(ViewContext& context, const std::string& jobKey, const char* title, const Wish& wish, Make make,
                 Alike alike, bool quiet = false) {
@@ -32,7 +33,7 @@ public:
         if (state.failed && *state.failed == wish) return usable;
         if (context.headless) {
             try {
-                state.last = std::make_shared<const Result>(make(*context.source, wish, Progress{}));
+                state.last = std::make_shared<const Result>(make(context.source, wish, Progress{}));
                 state.answers = wish;
                 return state.last;
             } catch (const Error&) {
@@ -52,7 +53,7 @@ public:
                 Pointer result;
                 std::string failure;
                 try {
-                    result = std::make_shared<const Result>(make(*source, wish, progress));
+                    result = std::make_shared<const Result>(make(source, wish, progress));
                 } catch (const Error& error) {
                     failure = error.what();
                 }

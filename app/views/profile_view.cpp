@@ -201,7 +201,10 @@ void drawProfileView(ViewContext& context, const std::string& pane, ProfileView&
     if (wish.over == ProfileOver::Line) wish.time = volume::timesAround(info.times, session.time);
     if (overTime) wish.corners = {session.cursor}, wish.samples = 1;
     const auto profile = cache.feed.get(
-        context, "profile " + pane, "Line profile", wish, readProfile,
+        context, "profile " + pane, "Line profile", wish,
+        [](const auto& source, const ProfileWish& asked, const Progress& progress) {
+            return readProfile(*source, asked, progress);
+        },
         [&](const ProfileWish& answered) { return answered.over == wish.over && answered.channels == wish.channels; },
         true);
     const bool usable = profile && (overTime || (profile->distance.size() > 1 && profile->distance.back() > 0));

@@ -1,14 +1,24 @@
 #include "app/views/tesseract_feed.h"
 
 #include "volume/error.h"
+#include "volume/source_at_time.h"
 
 namespace tessera::app {
 
+namespace {
+
+struct Asked {
+    volume::SamplesQuery query;
+    std::optional<volume::TimePair> time;
+    bool operator==(const Asked&) const = default;
+};
+
+} // namespace
+
 struct TesseractFeed::State {
     std::shared_ptr<const volume::Samples4> samples;
-    volume::SamplesQuery of;                    ///< what `samples` answers
-    bool coarse = false;                        ///< they are of the coarsest level only
-    std::optional<volume::SamplesQuery> failed; ///< not tried again every frame
+    std::optional<Asked> of, failed; ///< what `samples` answers; what is not tried again every frame
+    bool coarse = false;             ///< they are of the coarsest level only
     std::string failure;
 };
 
@@ -19,25 +29,31 @@ std::string TesseractFeed::failure() const {
 }
 
 std::shared_ptr<const volume::Samples4> TesseractFeed::get(ViewContext& context, const std::string& jobKey,
-                                                           const volume::SamplesQuery& query) {
+                                                           const volume::SamplesQuery& query,
+                                                           const std::optional<volume::TimePair>& time) {
     State& state = *state_;
-    const bool answered = state.samples && state.of == query;
-    if ((answered && !state.coarse) || state.failed == query) return state.samples;
+    const Asked asked{query, time};
+    const bool answered = state.samples && state.of == asked;
+    if ((answered && !state.coarse) || state.failed == asked) return state.samples;
     // Other values of the same samples come soon enough; nothing at all is worth a first picture.
     const bool coarse = !state.samples;
-    const auto take = [query](State& own, bool first, std::shared_ptr<const volume::Samples4> made,
+    const auto take = [asked](State& own, bool first, std::shared_ptr<const volume::Samples4> made,
                               const std::string& failure) {
         own.failure = failure;
         if (!made) {
-            own.failed = query;
+            own.failed = asked;
             return;
         }
         own.samples = std::move(made);
-        own.of = query;
+        own.of = asked;
         own.coarse = first;
     };
-    const auto gather = [source = context.source, query](bool first, const Progress& progress) {
-        return std::make_shared<const volume::Samples4>(volume::gatherSamples(*source, query, first, progress));
+    const auto gather = [source = context.source, asked](bool first, const Progress& progress) {
+        volume::SamplesQuery own = asked.query;
+        const volume::SourceAtTime shown =
+            asked.time ? volume::sourceAt(source, *asked.time) : volume::SourceAtTime{source, 0};
+        if (asked.time) own.times = {shown.time};
+        return std::make_shared<const volume::Samples4>(volume::gatherSamples(*shown.source, own, first, progress));
     };
     if (context.headless) {
         try {

@@ -3,6 +3,7 @@
 #include "app/views/view_context.h"
 #include "vis/model/cloud4.h"
 #include "volume/samples4.h"
+#include "volume/time_pair.h"
 
 #include <memory>
 #include <optional>
@@ -15,9 +16,11 @@ class TesseractFeed {
 public:
     TesseractFeed();
     /// The best samples so far for a query, or of the former one while nothing is here; null at first. Sets
-    /// context.busy while better ones are on their way; headless, reads to the end.
+    /// context.busy while better ones are on their way; headless, reads to the end. `time`: in place of the query's
+    /// times, between stored ones.
     std::shared_ptr<const volume::Samples4> get(ViewContext& context, const std::string& jobKey,
-                                                const volume::SamplesQuery& query);
+                                                const volume::SamplesQuery& query,
+                                                const std::optional<volume::TimePair>& time);
     /// Why the last query failed (damaged data), "" if it did not.
     std::string failure() const;
 

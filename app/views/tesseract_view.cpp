@@ -210,9 +210,9 @@ bool updateCloud(ViewContext& context, const std::string& pane, TesseractCache& 
         const auto found = info.findChannel(name);
         style.doiChannels.push_back(found ? position(*found) : -1);
     }
-    const int now = timeIndex(session, info);
-    for (int t = 0; t < static_cast<int>(info.times.size()); ++t)
-        if (!fourth || t == now) query.times.push_back(t);
+    std::optional<volume::TimePair> now;
+    if (fourth) now = volume::timesAround(info.times, session.time);
+    for (int t = 0; !fourth && t < static_cast<int>(info.times.size()); ++t) query.times.push_back(t);
 
     const volume::Channel& shown = channels[static_cast<std::size_t>(channel)];
     style.bounds = info.bounds;
@@ -225,7 +225,7 @@ bool updateCloud(ViewContext& context, const std::string& pane, TesseractCache& 
     style.selection = session.selection;
     style.density = static_cast<double>(view.density);
 
-    const auto samples = cache.feed.get(context, "tesseract " + pane, query);
+    const auto samples = cache.feed.get(context, "tesseract " + pane, query, now);
     if (!samples) return false;
     const bool fits = samples->channels == static_cast<int>(query.channels.size());
     if (!fits) return cache.style.has_value(); // of other parameters: what is drawn stays until the new ones come

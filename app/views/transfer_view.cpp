@@ -408,9 +408,10 @@ void drawTransferView(ViewContext& context, const std::string& pane, TransferVie
         drawHint("One value only", "There are no gradients to tell apart.");
         return;
     }
-    volume::DerivativeQuery query{.channel = now, .time = timeIndex(context.session, info)};
+    volume::DerivativeQuery query{.channel = now};
     query.gradientTop = double(function.gradientTop) * (range.hi - range.lo);
-    const auto result = cache.derivatives.get(context, "gradients " + pane, query);
+    const auto result = cache.derivatives.get(context, "gradients " + pane, query,
+                                              volume::timesAround(info.times, context.session.time));
     if (cache.derivatives.failed() && !result)
         drawHint("No gradients", "The data could not be read; the log says where.");
     else if (regions)

@@ -223,8 +223,4 @@ void addPicture(ImDrawList& draw, std::uint32_t texture, ImVec2 min, ImVec2 max)
     draw.AddImage(reinterpret_cast<ImTextureID>(static_cast<std::intptr_t>(texture)), min, max, {0, 1}, {1, 0});
 }
 
-int timeIndex(const Session& session, const volume::DatasetInfo& info) {
-    return info.nearestTime(session.time);
-}
-
 } // namespace tessera::app

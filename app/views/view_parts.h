@@ -79,7 +79,4 @@ vis::Scene themedScene(const Session& session);
 /// A picture of the renderer between two corners; its rows run upwards, as GL has them.
 void addPicture(ImDrawList& draw, std::uint32_t texture, ImVec2 min, ImVec2 max);
 
-/// Index into info.times of the session's time.
-int timeIndex(const Session& session, const volume::DatasetInfo& info);
-
 } // namespace tessera::app

@@ -1,6 +1,7 @@
 #include "app/views/visibility_feed.h"
 
 #include "app/views/view_parts.h"
+#include "volume/source_at_time.h"
 
 namespace tessera::app {
 
@@ -31,11 +32,12 @@ std::shared_ptr<const std::vector<double>> VisibilityFeed::get(ViewContext& cont
             if (!layer && entry.visible && volume->style == vis::VolumeStyle::Composite && volume->channel == name)
                 layer = volume;
     if (!layer || !(range.hi > range.lo)) return nullptr;
-    const GridWish wish{channel, timeIndex(session, info), coarseLevel(context.source->grid())};
+    const GridWish wish{channel, coarseLevel(context.source->grid()), volume::timesAround(info.times, session.time)};
     const auto grid = grids_.get(
         context, jobKey + ":samples", "Samples for visibility", wish,
-        [](const volume::BrickSource& source, const GridWish& w, const Progress& progress) {
-            return volume::readSamples(source, w.channel, w.time, w.level, progress);
+        [](const std::shared_ptr<const volume::BrickSource>& source, const GridWish& w, const Progress& progress) {
+            const volume::SourceAtTime shown = volume::sourceAt(source, w.time);
+            return volume::readSamples(*shown.source, w.channel, shown.time, w.level, progress);
         },
         [&](const GridWish& answered) { return answered.channel == channel; }, true);
     if (!grid) return nullptr;
@@ -49,8 +51,8 @@ std::shared_ptr<const std::vector<double>> VisibilityFeed::get(ViewContext& cont
     query.bins = bins;
     return histograms_.get(
         context, jobKey, "Visibility", Wish{wish, query},
-        [grid](const volume::BrickSource& source, const Wish& w, const Progress& progress) {
-            return vis::visibilityHistogram(*grid, source.info().bounds, w.query, progress);
+        [grid](const std::shared_ptr<const volume::BrickSource>& source, const Wish& w, const Progress& progress) {
+            return vis::visibilityHistogram(*grid, source->info().bounds, w.query, progress);
         },
         [&](const Wish& answered) { return answered.grid.channel == channel && answered.query.bins == bins; }, true);
 }

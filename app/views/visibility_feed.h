@@ -2,6 +2,7 @@
 
 #include "app/views/latest_feed.h"
 #include "vis/model/visibility.h"
+#include "volume/time_pair.h"
 
 #include <string>
 #include <vector>
@@ -18,7 +19,8 @@ public:
 
 private:
     struct GridWish {
-        int channel = 0, time = 0, level = 0;
+        int channel = 0, level = 0;
+        volume::TimePair time;
         bool operator==(const GridWish&) const = default;
     };
     struct Wish {

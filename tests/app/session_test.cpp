@@ -48,7 +48,8 @@ volume::DatasetInfo cellInfo() {
 SessionDocument edited() {
     SessionDocument document;
     document.session = defaultSession(
-        cellInfo(), {.files = {}, .model = "fuel-cell", .settings = {}, .derived = {}, .import = {}, .packed = {}});
+        cellInfo(),
+        {.files = {}, .model = "fuel-cell", .settings = {}, .derived = {}, .import = {}, .packed = {}, .timeAxis = {}});
     document.history.reset(document.session);
     document.session.camera.distance = 3;
     document.history.observe(document.session, false, 0);

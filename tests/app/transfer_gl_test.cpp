@@ -164,7 +164,7 @@ TEST_F(TransferPages, TheCurveFollowsTheEmphasisOfBoundaries) {
         ImGui::SetNextWindowPos({0, 0});
         ImGui::SetNextWindowSize({900, 500});
         ImGui::Begin("boundary", nullptr, ImGuiWindowFlags_NoDecoration);
-        result = feed.get(context, "gradients", {.channel = index});
+        result = feed.get(context, "gradients", {.channel = index}, {});
         drawBoundaryPage(context, page, function, info, index, result);
         ImGui::End();
         ImGui::Render();
