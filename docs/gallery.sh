@@ -107,6 +107,8 @@ tesseract tesseract-turned --set /views/tesseract/turn4=[35,0,-50] --set '/views
     --set /views/tesseract/lattice=3 --set /views/tesseract/eye=1.4
 tesseract tesseract-temperature --set '/views/tesseract/fourth="T"' --set /views/tesseract/turn4=[30,20,0] \
     --set /views/tesseract/density=0.5 --set /views/tesseract/radius=5
+picture time-along-z --set '/data={"model":"planted","settings":{"times":24},"timeAxis":{"axis":"z","place":0.3}}' \
+    --set "/layers=[$(volume H2 '"density":4')]" --set '/selection/brushes=[]' --set /camera/distance=1.9
 # Lenses
 lens() { # lens NAME EFFECT LAYERS [MORE]: one in the middle of the cell
     picture "lens-$1" --set "/layers=[$3]" --set /camera/distance=1.9 --set /views/volume/legend=false \

@@ -26,7 +26,8 @@ const HandledObject* findObject(const std::vector<HandledObject>& objects, const
     return found == objects.end() ? nullptr : &*found;
 }
 
-/// The dot nearest to a pixel, later ones first; an end rather than the middle where both are as near.
+/// The dot nearest to a pixel, later ones first; an end rather than the middle where both are as near, but for the end
+/// of a radius that points at the viewer: it lies on the middle and cannot be dragged along itself.
 void findHandle(HandleDrag& drag, const std::vector<HandledObject>& objects, const PixelOf& pixel, ImVec2 mouse) {
     drag.object.clear();
     float nearest = em() * 0.6f;
@@ -34,6 +35,9 @@ void findHandle(HandleDrag& drag, const std::vector<HandledObject>& objects, con
         for (std::size_t i = object->handles.size(); i-- > 0;) {
             const auto at = pixel(object->handles[i]);
             if (!at || pixelsApart(*at, mouse) >= nearest) continue;
+            const auto& first = object->handles.front();
+            const auto middle = first.whole && object->handles[i].axis >= 0 ? pixel(first) : std::nullopt;
+            if (middle && pixelsApart(*at, *middle) < 1) continue;
             nearest = pixelsApart(*at, mouse);
             drag.object = object->key;
             drag.handle = i;

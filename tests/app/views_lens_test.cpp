@@ -191,9 +191,9 @@ TEST_F(LensEdit, FollowsThePointerUntilItIsPinned) {
     session.lenses[0].followsPointer = true;
     follow = true;
     moveTo({150, 120});
-    moveTo({180, 140});
+    moveTo({180, 170});
     EXPECT_NEAR(handles().middle->x, 180, 0.1);
-    EXPECT_NEAR(handles().middle->y, 140, 0.1);
+    EXPECT_NEAR(handles().middle->y, 170, 0.1);
     EXPECT_EQ(lens().center.z, 0.5);
     EXPECT_TRUE(followed);
     const auto key = [&] {

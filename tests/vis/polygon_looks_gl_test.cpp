@@ -211,7 +211,7 @@ TEST(PolygonBrushes, ActAsOnASliceInTheSamePlace) {
             seen += slice[i].a > 0.1f;
         }
         EXPECT_GT(seen, 1000u) << int(effect);
-        EXPECT_LT(differ, 80u) << int(effect) << ": of the border alone";
+        EXPECT_LT(differ, 120u) << int(effect) << ": of the border alone, beyond which samples repeat";
     }
 }
 
