@@ -369,9 +369,9 @@ void Renderer::Impl::refine(ViewTarget& target, const Scene& scene, const FrameR
     if (!request.wait && !fast && (request.moving || !(target.reducedValid || target.fullValid))) {
         double shrink = 4, stepFactor = 2;
         if (target.msPerPixel > 0)
-            for (double candidate : {1.5, 2.0, 3.0, 4.0, 6.0}) {
+            for (double candidate : {1.5, 2.0, 3.0, 4.0, 6.0, 8.0, 11.0}) {
                 shrink = candidate;
-                stepFactor = candidate < 2 ? 1.5 : 2;
+                stepFactor = candidate < 2 ? 1.5 : candidate > 6 ? 3 : 2;
                 if (expected / (shrink * shrink * stepFactor) < left()) break;
             }
         drawReduced(shrink, stepFactor);

@@ -30,6 +30,17 @@ struct SavedState {
     }
 };
 
+/// Whether anything drawn moves with the linked cursor.
+bool liesAtCursor(const Scene& scene) {
+    return std::any_of(scene.layers.begin(), scene.layers.end(),
+                       [](const Layer& layer) {
+                           const auto* slice = std::get_if<SliceLayer>(&layer.technique);
+                           return slice && slice->atCursor && layer.visible;
+                       }) ||
+           std::any_of(scene.lenses.begin(), scene.lenses.end(),
+                       [](const Lens& lens) { return lens.enabled && lens.followsCursor; });
+}
+
 } // namespace
 
 Renderer::Renderer(const RendererOptions& options) : impl_(std::make_unique<Impl>(options)) {}
@@ -74,6 +85,7 @@ FrameStatus Renderer::render(ViewTarget& target, const Scene& scene, const Frame
         any = !plan.empty() && impl_->bind(target, scene, request, plan, status);
     }
     const std::uint64_t revision = impl_->residency.revision();
+    if (!liesAtCursor(scene)) target.scene.cursor = scene.cursor;
     if (!target.started || !(target.scene == scene) || target.revision != revision ||
         target.source != impl_->source.get()) {
         target.scene = scene;

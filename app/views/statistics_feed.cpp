@@ -1,6 +1,7 @@
 #include "app/views/statistics_feed.h"
 
 #include "app/views/view_parts.h"
+#include "volume/brick_cache.h"
 #include "volume/error.h"
 #include "volume/source_at_time.h"
 
@@ -13,6 +14,7 @@ namespace tessera::app {
 namespace {
 
 constexpr std::size_t kKept = 32; ///< results; one of six parameters and 96 bins is 2 MB
+constexpr std::size_t kCoarseBytes = std::size_t(64) << 20;
 
 /// The wish as a query but for its time: its brushes become one function of the values.
 volume::StatisticsQuery makeQuery(const StatisticsWish& wish, const volume::DatasetInfo& info, int level) {
@@ -76,6 +78,7 @@ struct StatisticsFeed::State {
     std::optional<StatisticsWish> running;
     int runningLevel = 0;
     const volume::BrickSource* source = nullptr;
+    std::shared_ptr<const volume::BrickSource> coarse; ///< its coarse bricks, kept while a brush is dragged
 };
 
 StatisticsFeed::StatisticsFeed() : state_(std::make_shared<State>()) {}
@@ -127,6 +130,7 @@ std::shared_ptr<const StatisticsResult> StatisticsFeed::get(ViewContext& context
         if (state.running) context.jobs.cancel(jobKey);
         state = {};
         state.source = context.source.get();
+        state.coarse = std::make_shared<volume::BrickCache>(context.source, kCoarseBytes);
     }
     const auto keep = [](State& into, std::shared_ptr<const StatisticsResult> result) {
         std::erase_if(into.kept, [&](const auto& old) { return old->wish == result->wish; });
@@ -172,7 +176,7 @@ std::shared_ptr<const StatisticsResult> StatisticsFeed::get(ViewContext& context
     state.runningLevel = level;
     context.jobs.start(
         jobKey, "Statistics",
-        [weak = std::weak_ptr(state_), source = context.source, wish, level,
+        [weak = std::weak_ptr(state_), source = level > 0 ? state.coarse : context.source, wish, level,
          keep](const Progress& progress) -> Jobs::Finish {
             std::shared_ptr<const StatisticsResult> result;
             std::string failure;

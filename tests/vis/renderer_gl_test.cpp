@@ -127,6 +127,32 @@ TEST_F(RendererTest, BricksAndOneTextureAgree) {
     }
 }
 
+// A finished still stays while the linked cursor moves, unless something drawn moves with it.
+TEST_F(RendererTest, TheCursorAloneCostsNothing) {
+    vis::Renderer renderer;
+    renderer.setSource(brickedSource(volume::LatticeKind::BCC));
+    const vis::ViewTargetPtr target = renderer.makeTarget();
+    Scene scene = richScene();
+    scene.render.samples = 16; // never done within a frame
+    std::erase_if(scene.layers,
+                  [](const vis::Layer& layer) { return std::holds_alternative<vis::SliceLayer>(layer.technique); });
+    const vis::FrameRequest quick{.size = {48, 40}, .budgetMs = 0.001};
+    const auto staysAsItIs = [&](const Scene& shown) {
+        test::renderAll(renderer, *target, shown, quick.size);
+        Scene moved = shown;
+        moved.cursor += 0.1;
+        return renderer.render(*target, moved, quick).complete;
+    };
+    EXPECT_TRUE(staysAsItIs(scene));
+    Scene lens = scene;
+    lens.lenses = {{.name = "here", .followsCursor = true}};
+    EXPECT_FALSE(staysAsItIs(lens));
+    scene.layers.push_back({"slice", true, vis::SliceLayer{.channel = "w"}});
+    EXPECT_FALSE(staysAsItIs(scene));
+    scene.layers.back().visible = false;
+    EXPECT_TRUE(staysAsItIs(scene));
+}
+
 // A budget for a handful of bricks does not change a picture that is waited for.
 TEST_F(RendererTest, TinyBudgetStillCompletes) {
     const auto source = brickedSource(volume::LatticeKind::BCC);

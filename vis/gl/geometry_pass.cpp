@@ -12,8 +12,9 @@ namespace tessera::vis {
 
 namespace {
 
-constexpr int kColors = 1024;                                     ///< entries of a colour table's row
-constexpr int kTableUnit = 42, kFormerUnit = 43, kGrainUnit = 45; ///< texture units that no plan of rays uses
+constexpr int kColors = 1024; ///< entries of a colour table's row
+/// Texture units that no plan of rays uses.
+constexpr int kTableUnit = 42, kFormerUnit = 43, kGrainUnit = 45, kFormerColorUnit = 46;
 
 Texture makeArray(glm::ivec2 size, int layers, GLenum format, const char* label) {
     GLuint name = 0;
@@ -77,6 +78,7 @@ void GeometryBuffer::resize(glm::ivec2 wanted, int wantedPeels) {
     size = wanted;
     peels = wantedPeels;
     framebuffers.clear();
+    shown.clear();
     color = makeArray(size, peels, GL_RGBA16F, "geometry colours");
     distance = makeArray(size, peels, GL_RG32F, "geometry distances");
     depth = makeTexture2D(size, GL_DEPTH_COMPONENT32F, GL_NEAREST, "geometry depth");
@@ -91,6 +93,8 @@ void GeometryBuffer::resize(glm::ivec2 wanted, int wantedPeels) {
         glNamedFramebufferDrawBuffers(name, 2, buffers);
         glObjectLabel(GL_FRAMEBUFFER, name, -1, "geometry");
         framebuffers.push_back(std::move(framebuffer));
+        glCreateQueries(GL_ANY_SAMPLES_PASSED, 1, &name);
+        shown.emplace_back(name);
     }
 }
 
@@ -178,6 +182,8 @@ void GeometryPass::draw(GeometryBuffer& buffer, const Scene& scene, const volume
     // A ray's ndc is its pixel's plus 2 jitter / size, so what is drawn moves the other way.
     const glm::dmat4 moved = glm::translate(glm::dmat4(1), glm::dvec3(-2.0 * jitter / glm::dvec2(size), 0));
     const glm::mat4 worldToClip(moved * projectionMatrix(scene.camera, aspect) * viewMatrix(scene.camera));
+    // Brushes take their share of the opacity later.
+    const bool covers = !scene.selection.active();
     const auto prepare = [&](const Program& program) {
         program.set("worldScale", glm::vec3(frame.scale));
         program.set("worldOffset", glm::vec3(frame.offset));
@@ -193,6 +199,8 @@ void GeometryPass::draw(GeometryBuffer& buffer, const Scene& scene, const volume
         program.set("pixels", glm::vec2(size));
         program.set("colors", kTableUnit);
         program.set("former", kFormerUnit);
+        program.set("formerColors", kFormerColorUnit);
+        program.set("covers", covers ? 1 : 0);
     };
     const std::vector<PlacedLens> placed = placeLenses(scene, frame);
     // What is drawn, each layer with its own variant.
@@ -219,6 +227,7 @@ void GeometryPass::draw(GeometryBuffer& buffer, const Scene& scene, const volume
     }
     glBindTextureUnit(kTableUnit, table_.name());
     glBindTextureUnit(kFormerUnit, buffer.distance.name());
+    glBindTextureUnit(kFormerColorUnit, buffer.color.name());
     glDisable(GL_BLEND);
     glDisable(GL_SCISSOR_TEST);
     glEnable(GL_DEPTH_TEST);
@@ -232,6 +241,9 @@ void GeometryPass::draw(GeometryBuffer& buffer, const Scene& scene, const volume
         glClearNamedFramebufferfv(framebuffer, GL_COLOR, 0, empty);
         glClearNamedFramebufferfv(framebuffer, GL_COLOR, 1, nowhere);
         glClearNamedFramebufferfv(framebuffer, GL_DEPTH, 0, &far);
+        // A peel that shows nothing is the last: what follows it is not drawn.
+        if (peel > 0) glBeginConditionalRender(buffer.shown[std::size_t(peel) - 1].name(), GL_QUERY_WAIT);
+        glBeginQuery(GL_ANY_SAMPLES_PASSED, buffer.shown[std::size_t(peel)].name());
         for (const Draw& each : draws) {
             const GeometryLayer& layer = scene.geometry[each.layer];
             const Program& own = *each.program;
@@ -253,6 +265,8 @@ void GeometryPass::draw(GeometryBuffer& buffer, const Scene& scene, const volume
             else
                 glDrawElements(GL_TRIANGLES, each.up->indexCount, GL_UNSIGNED_INT, nullptr);
         }
+        glEndQuery(GL_ANY_SAMPLES_PASSED);
+        if (peel > 0) glEndConditionalRender();
         glTextureBarrier(); // the next peel reads what this one wrote
     }
     glDisable(GL_DEPTH_TEST);

@@ -16,6 +16,7 @@ struct GeometryBuffer {
     Texture distance; ///< world units from the ray's origin, kNoGeometry: nothing; BrushEffect of the layer
     Texture depth;
     std::vector<Framebuffer> framebuffers; ///< one per layer
+    std::vector<Query> shown;              ///< whether a layer has anything
     glm::ivec2 size{0};
     int peels = 0;
     void resize(glm::ivec2 wanted, int wantedPeels);

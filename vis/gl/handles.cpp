@@ -16,6 +16,8 @@ void deleteObject(ObjectKind kind, GLuint name) {
         return glDeleteFramebuffers(1, &name);
     case ObjectKind::VertexArray:
         return glDeleteVertexArrays(1, &name);
+    case ObjectKind::Query:
+        return glDeleteQueries(1, &name);
     case ObjectKind::Program:
         return glDeleteProgram(name);
     }

@@ -10,7 +10,7 @@
 /// Owners of GL objects: move-only, made by a function, deleted by the destructor (the context must be current).
 namespace tessera::vis {
 
-enum class ObjectKind { Buffer, Texture, Framebuffer, VertexArray, Program };
+enum class ObjectKind { Buffer, Texture, Framebuffer, VertexArray, Query, Program };
 
 void deleteObject(ObjectKind kind, GLuint name);
 
@@ -37,6 +37,7 @@ using Buffer = Handle<ObjectKind::Buffer>;
 using Texture = Handle<ObjectKind::Texture>;
 using Framebuffer = Handle<ObjectKind::Framebuffer>;
 using VertexArray = Handle<ObjectKind::VertexArray>;
+using Query = Handle<ObjectKind::Query>;
 using ProgramObject = Handle<ObjectKind::Program>;
 
 /// A 2D texture of one level with immutable storage, clamped to its edges; `filter` is GL_NEAREST or GL_LINEAR.

@@ -64,11 +64,51 @@ private:
     glm::dvec3 stretch_;
 };
 
-/// The vertices of a line as drawn, without those that fall on the one before.
+/// The vertices of a line as drawn.
 struct Course {
     std::vector<glm::dvec3> places;
     std::vector<float> scalars;
 };
+
+/// Those that a course needs: between them none lies further than `apart` from the straight way, nor its scalar further
+/// than `step` from an even change. (Douglas and Peucker, Algorithms for the reduction of the number of points, 1973.)
+Course simplified(const Course& course, double apart, double step) {
+    const std::size_t n = course.places.size();
+    if (n < 3) return course;
+    std::vector<bool> kept(n, false);
+    kept.front() = kept.back() = true;
+    std::vector<std::pair<std::size_t, std::size_t>> parts{{0, n - 1}};
+    while (!parts.empty()) {
+        const auto [first, last] = parts.back();
+        parts.pop_back();
+        const glm::dvec3 from = course.places[first], way = course.places[last] - from;
+        const double length2 = glm::dot(way, way);
+        double worst = 1;
+        std::size_t at = first;
+        for (std::size_t i = first + 1; i < last; ++i) {
+            const glm::dvec3 to = course.places[i] - from;
+            const double t = length2 > 0 ? std::clamp(glm::dot(to, way) / length2, 0.0, 1.0) : 0;
+            const double even = (1 - t) * double(course.scalars[first]) + t * double(course.scalars[last]);
+            const double colour = std::abs(double(course.scalars[i]) - even);
+            double error = glm::length(to - t * way) / apart;
+            if (step > 0 && colour > error * step) error = colour / step;
+            if (error > worst) worst = error, at = i;
+        }
+        if (at == first) continue;
+        kept[at] = true;
+        parts.emplace_back(first, at);
+        parts.emplace_back(at, last);
+    }
+    Course out;
+    for (std::size_t i = 0; i < n; ++i) {
+        if (!kept[i]) continue;
+        out.places.push_back(course.places[i]);
+        out.scalars.push_back(course.scalars[i]);
+    }
+    return out;
+}
+
+/// A line of a set, without vertices that fall on the one before.
 Course courseOf(const LineSet& lines, std::uint32_t begin, std::uint32_t end, double apart, glm::dvec3 stretch) {
     Course out;
     for (std::uint32_t i = begin; i < end; ++i) {
@@ -246,10 +286,13 @@ LineSet particleWays(const volume::BrickSource& source, const FlowLayer& layer, 
 } // namespace
 
 volume::SurfaceMesh tubes(const LineSet& lines, double radius, glm::dvec3 stretch) {
+    constexpr double kColorSteps = 250; // that differ visibly
+    const auto [least, most] = std::minmax_element(lines.scalars.begin(), lines.scalars.end());
+    const double step = lines.scalars.empty() ? 0 : double(*most - *least) / kColorSteps;
     Rings rings(stretch);
     std::uint32_t begin = 0;
     for (const std::uint32_t end : lines.ends) {
-        const Course course = courseOf(lines, begin, end, radius * 0.05, stretch);
+        const Course course = simplified(courseOf(lines, begin, end, radius * 0.05, stretch), radius * 0.05, step);
         begin = end;
         const std::size_t n = course.places.size();
         if (n < 2) continue;

@@ -21,8 +21,9 @@ uniform vec3 plain;
 uniform float opacity;
 uniform int lens; // that it is drawn in, -1: everywhere
 uniform float brushEffect;
-uniform sampler2DArray former;
+uniform sampler2DArray former, formerColors;
 uniform int peel;
+uniform int covers; // what is opaque hides all that lies behind it
 
 layout(location = 0) out vec4 outColor;     // linear, premultiplied
 layout(location = 1) out vec2 outDistance; // along the ray; what brushes do to it
@@ -82,6 +83,7 @@ void main() {
     if (alpha <= 0.0) discard;
     float along = perspective == 1 ? distance(world, rayOrigin) : dot(world - rayOrigin, forward);
     if (peel > 0 && along <= texelFetch(former, ivec3(gl_FragCoord.xy, peel - 1), 0).r) discard;
+    if (peel > 0 && covers == 1 && texelFetch(formerColors, ivec3(gl_FragCoord.xy, peel - 1), 0).a > 0.998) discard;
     float entries = float(textureSize(colors, 0).x), place = clamp(value * map.x + map.y, 0.0, 1.0);
     vec3 color = isnan(value) ? plain : textureLod(colors, vec2((place * (entries - 1.0) + 0.5) / entries, row), 0.0).rgb;
     color = mix(vec3(luminance(color)), color, action.y);
