@@ -71,6 +71,38 @@ TEST(Tubes, LeaveOutWhatHasNoLength) {
     EXPECT_TRUE(tubes(lines, 0.1, glm::dvec3(1)).triangles.empty());
 }
 
+TEST(Tubes, KeepTheVerticesTheyNeed) {
+    // A long straight way, then a quarter of a circle, in two hundred steps each; the scalar rises evenly.
+    LineSet lines;
+    for (int i = 0; i <= 400; ++i) {
+        const double turn = i < 200 ? 0 : 0.5 * std::numbers::pi * (i - 200) / 200;
+        lines.positions.push_back(i < 200 ? glm::vec3(i * 0.01, 0, 0)
+                                          : glm::vec3(2 + std::sin(turn), 1 - std::cos(turn), 0));
+        lines.scalars.push_back(float(i));
+    }
+    lines.ends = {401};
+    const double radius = 0.1;
+    const volume::SurfaceMesh mesh = tubes(lines, radius, glm::dvec3(1));
+    const std::size_t perRing =
+        tubes({.positions = {glm::vec3(0), glm::vec3(1, 0, 0)}, .scalars = {0, 1}, .ends = {2}}, radius, glm::dvec3(1))
+            .positions.size() /
+        6; // two rings, and two for each end
+    EXPECT_LT(mesh.positions.size(), 40 * perRing);
+    EXPECT_GT(mesh.positions.size(), 8 * perRing);
+    for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+        const glm::dvec3 p = mesh.positions[v];
+        const double away = p.x < 2 ? std::hypot(p.y, p.z) : std::hypot(std::hypot(p.x - 2, p.y - 1) - 1, p.z);
+        EXPECT_LT(away, 1.2 * radius) << v;
+    }
+    // A scalar that jumps keeps its place although the way is straight.
+    for (std::size_t i = 0; i < lines.scalars.size(); ++i) lines.scalars[i] = i < 100 ? 0.0f : 1.0f;
+    const volume::SurfaceMesh jumps = tubes(lines, radius, glm::dvec3(1));
+    for (std::size_t v = 0; v < jumps.positions.size(); ++v)
+        if (std::abs(jumps.positions[v].x - 1) > 0.02f) {
+            EXPECT_EQ(jumps.scalars[v], jumps.positions[v].x < 1 ? 0.0f : 1.0f) << v;
+        }
+}
+
 TEST(Glyphs, PointAlongTheirVector) {
     const glm::dvec3 place(1, 2, 3), stretch(2, 1, 0.5);
     for (const glm::dvec3 vector : {glm::dvec3(0, 0, 3), glm::dvec3(1, -2, 0.5)}) {

@@ -18,7 +18,7 @@ struct Glyph {
 };
 
 /// Round tubes around polylines, closed at both ends, with the vertices' scalars. They are round as drawn, with the
-/// axes stretched: `radius` is measured there.
+/// axes stretched: `radius` is measured there. Vertices that the way and its colours can do without are left out.
 volume::SurfaceMesh tubes(const LineSet& lines, double radius, glm::dvec3 stretch);
 
 /// Arrows with a shaft, or cones, round as drawn.
