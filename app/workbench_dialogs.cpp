@@ -210,6 +210,12 @@ void Workbench::drawMissing() {
         ImGui::TextUnformatted(fs::path(wanted.path).filename().c_str());
         ImGui::TextDisabled("%s, was at %s", wanted.bytes > 0 ? textOfBytes(wanted.bytes).c_str() : "size not known",
                             wanted.absolutePath.empty() ? wanted.path.c_str() : wanted.absolutePath.c_str());
+        if (missing_->missing.size() == 1 && !missing_->document.session.transfer.empty()) {
+            std::string names;
+            for (const auto& [name, function] : missing_->document.session.transfer)
+                names += (names.empty() ? "with " : ", ") + name;
+            ImGui::TextDisabled("%s", names.c_str());
+        }
         if (ImGui::Button("Choose...")) {
             locating_ = i;
             ImGui::CloseCurrentPopup();

@@ -192,7 +192,8 @@ void runWindow(const OpenRequest& request, const std::string& screenshots) {
             window.freshFrames = 3;
         }
         if (window.minimised()) continue;
-        window.freshFrames = std::max(0, window.freshFrames - 1);
+        // Counted from the frame that takes the last event: what a click opens is drawn in the next ones.
+        window.freshFrames = window.input.empty() ? std::max(0, window.freshFrames - 1) : 3;
 
         float contentScale = 1, unused = 1;
         glfwGetWindowContentScale(window.handle, &contentScale, &unused);

@@ -162,11 +162,11 @@ void drawTimelineView(ViewContext& context, const std::string& pane, TimelineVie
     }
     ImGui::SameLine(0, em() * 1.5f);
     drawKeyframeButtons(context);
-    if (many) drawTrack(context, cache, info, std::clamp(ImGui::GetContentRegionAvail().y, em() * 1.4f, em() * 2.9f));
-    if (keyed) {
-        const float room = ImGui::GetContentRegionAvail().y;
-        if (room > em() * 2) drawKeyframes(context, std::min(room, keyframesHeight(session)));
-    }
+    // Rows of keys come before the numbers below the track; what has no room scrolls.
+    const float rows = keyed ? keyframesHeight(session) : 0;
+    if (many)
+        drawTrack(context, cache, info, std::clamp(ImGui::GetContentRegionAvail().y - rows, em() * 1.4f, em() * 2.9f));
+    if (keyed) drawKeyframes(context, std::clamp(ImGui::GetContentRegionAvail().y, std::min(rows, em() * 2.4f), rows));
 }
 
 } // namespace tessera::app

@@ -60,16 +60,19 @@ TEST_F(ScenariosGl, ASessionOpensOnAnotherMachine) {
     fs::create_directories(folder / "one");
     volume::Dataset cell = volume::makeModel("planted", {{"nx", 9}, {"ny", 9}, {"nz", 21}, {"times", 2}});
     codec::pack(cell, {}, in("one/cell.tsr"));
+    // Recorded by hand on such a file elsewhere; a lens is added.
+    SessionDocument recorded = loadSession(TESSERA_SOURCE_DIR "/tests/sessions/portable.tessera.json");
+    recorded.session.data.files = {describeFile(in("one/cell.tsr"))};
+    recorded.session.lenses = {{.name = "here", .center = recorded.session.cursor}};
+    recorded.session.render.samples = 1;
+    recorded.history.reset(recorded.session);
+    saveSession(recorded, in("one/figure.tessera.json"));
     OpenRequest request;
-    request.paths = {in("one/cell.tsr")};
-    Opened opened = open(request);
-    Session& session = opened.document.session;
-    session.selection.brushes = {vis::rangeBrush({{"O2", 0, 3, 0.2}}, "little")};
-    session.lenses = {{.name = "here", .center = session.cursor}};
-    session.camera.distance *= 0.8f;
-    session.render.samples = 1;
-    opened.document.history.reset(session);
-    saveSession(opened.document, in("one/figure.tessera.json"));
+    request.paths = {in("one/figure.tessera.json")};
+    const Opened opened = open(request);
+    ASSERT_TRUE(opened.missing.empty());
+    const Session& session = opened.document.session;
+    EXPECT_FALSE(session.selection.brushes.empty());
     PictureMaker maker;
     const PictureRequest picture{.pane = "", .size = {480, 320}, .scale = 1};
     const vis::Image first = maker.render(opened.document, opened.source, picture);
