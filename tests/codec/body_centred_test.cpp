@@ -4,7 +4,7 @@
 #include "codec/level_box.h"
 #include "codec/pack.h"
 #include "tests/codec/make_dataset.h"
-#include "tests/codec/plain_decoder.h"
+#include "tests/codec/plain/decoder.h"
 #include "volume/resample.h"
 
 #include <gtest/gtest.h>

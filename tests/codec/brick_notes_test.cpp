@@ -1,7 +1,7 @@
 #include "codec/archive.h"
 #include "codec/pack.h"
 #include "tests/codec/make_dataset.h"
-#include "tests/codec/plain_decoder.h"
+#include "tests/codec/plain/decoder.h"
 #include "volume/memory_source.h"
 
 #include <cmath>

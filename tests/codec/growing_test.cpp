@@ -3,7 +3,7 @@
 #include "codec/container.h"
 #include "codec/pack.h"
 #include "tests/codec/make_dataset.h"
-#include "tests/codec/plain_decoder.h"
+#include "tests/codec/plain/decoder.h"
 
 #include <cstring>
 #include <gtest/gtest.h>

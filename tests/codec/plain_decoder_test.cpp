@@ -1,4 +1,4 @@
-#include "tests/codec/plain_decoder.h"
+#include "tests/codec/plain/decoder.h"
 
 #include "codec/archive.h"
 #include "codec/pack.h"

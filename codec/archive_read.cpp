@@ -1,0 +1,167 @@
+#include "codec/archive_impl.h"
+#include "codec/brick_codec_v1.h"
+#include "volume/parallel.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+namespace tessera::codec {
+
+/// Bytes of a segment, once their checksum is found right.
+std::span<const std::byte> Archive::Impl::segment(const Segment& segment) const {
+    return checkedPart(file.bytes(), segment.offset, segment.length, segment.checksum, path, "a brick");
+}
+
+/// Flags of a brick at full resolution; empty where all samples are present.
+std::vector<std::uint8_t> Archive::Impl::flags(const FrameRecord& frame, std::size_t brick) const {
+    if (frame.mask < 0) return {};
+    const MaskBrick& record = index.masks[std::size_t(frame.mask)].bricks[brick];
+    const glm::ivec3 size = metadata.grid.brickSamples(brickIndex(metadata.grid, brick), 0);
+    const std::size_t count = std::size_t(size.x) * std::size_t(size.y) * std::size_t(size.z);
+    const std::uint64_t offset = record.segment.offset;
+    if (record.present > count) damaged(path, offset, "a mask counts more samples than its brick has");
+    const auto bytes = segment(record.segment);
+    if (record.present == 0 || record.present == count) {
+        if (!bytes.empty()) damaged(path, offset, "a uniform mask has bytes");
+        return record.present == 0 ? std::vector<std::uint8_t>(count, 0) : std::vector<std::uint8_t>();
+    }
+    if (bytes.empty()) damaged(path, offset, "a mask is missing");
+    const auto mode = static_cast<std::uint8_t>(bytes[0]);
+    const auto body = bytes.subspan(1);
+    Bytes bits((count + 7) / 8);
+    if (mode == 0 && body.size() == bits.size())
+        std::copy(body.begin(), body.end(), bits.begin());
+    else if (mode != 1 || decompress(body, bits) != DecodeStatus::Ok)
+        damaged(path, offset, "a mask cannot be decoded");
+    std::vector<std::uint8_t> flags(count);
+    std::size_t present = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+        flags[i] = static_cast<std::uint8_t>(static_cast<unsigned>(bits[i / 8]) >> (i % 8) & 1u);
+        present += flags[i];
+    }
+    if (present != record.present) damaged(path, offset, "a mask does not have the samples it counts");
+    return flags;
+}
+
+/// The decoder of a model, kept for the next brick.
+std::shared_ptr<const BandDecoder> Archive::Impl::decoder(std::int32_t model) const {
+    const std::lock_guard lock(decodersMutex);
+    for (auto at = decoders.begin(); at != decoders.end(); ++at)
+        if (at->first == model) {
+            decoders.splice(decoders.begin(), decoders, at);
+            return at->second;
+        }
+    const Block& record = index.models[std::size_t(model)];
+    const auto bytes = checkedPart(file.bytes(), record.offset, record.length, record.checksum, path, "a model");
+    Model parsed;
+    if (const DecodeStatus status = parseModel(bytes, metadata.grid.levels, parsed); status != DecodeStatus::Ok)
+        damaged(path, record.offset, std::string("a model cannot be read: ") + reason(status));
+    constexpr std::size_t kKept = 16;
+    decoders.emplace_front(model, std::make_shared<const BandDecoder>(std::move(parsed)));
+    if (decoders.size() > kKept) decoders.pop_back();
+    return decoders.front().second;
+}
+
+void Archive::Impl::decode(const FrameRecord& frame, const BrickFormat& format, std::size_t brick, int level,
+                           std::span<const std::uint8_t> present, DecodedBrick& out) const {
+    std::vector<std::span<const std::byte>> segments;
+    for (int s = 0; s < format.levels - level; ++s)
+        segments.push_back(segment(frame.segments[std::size_t(s) * bricks + brick]));
+    const DecodeStatus status = frame.model < 0
+                                    ? decodeBrickV1(format, segments, level, present, out)
+                                    : decodeBrick(format, segments, level, present, *decoder(frame.model), out);
+    if (status != DecodeStatus::Ok)
+        damaged(path, frame.segments[(segments.size() - 1) * bricks + brick].offset, reason(status));
+}
+
+volume::BrickSamples Archive::Impl::readComponent(int number, int component, const volume::BrickKey& key) const {
+    const std::size_t brick = brickNumber(metadata.grid, key.index);
+    const FrameRecord& record = holding(frame(number, component, key.time), brick);
+    const BrickFormat format = brickFormat(metadata.grid, key.index, parameter(number).type, record);
+    const std::vector<std::uint8_t> fine = flags(record, brick);
+    const Lent decoded(*this);
+    decode(record, format, brick, key.level, fine, *decoded);
+
+    volume::BrickSamples out;
+    out.size = decoded->size;
+    out.values.resize(countOf(out.size));
+    out.present = decoded->present;
+    decoded->forRows([&](std::size_t first, auto row) {
+        toValues(record.numbers, record.valueOffset, record.valueScale, row, out.values.data() + first);
+    });
+    for (const ExactSample& exact : decoded->exact)
+        out.values[exact.index] =
+            static_cast<float>(record.valueOffset + record.valueScale * double(std::bit_cast<float>(exact.bits)));
+
+    std::int32_t infinite = 0;
+    for (const float value : out.values)
+        infinite |= (std::bit_cast<std::int32_t>(value) & 0x7fffffff) > 0x7f7fffff ? 1 : 0;
+    if (infinite != 0 && out.present.empty()) out.present.assign(out.values.size(), 1);
+    for (std::size_t i = 0; infinite != 0 && i < out.values.size(); ++i)
+        if (!std::isfinite(out.values[i])) out.present[i] = 0, out.values[i] = 0;
+    const FrameBrick& range = record.bricks[brick];
+    if (key.level > 0 && range.min <= range.max)
+        for (float& value : out.values) value = std::clamp(value, range.min, range.max);
+    return out;
+}
+
+volume::BrickSamples Archive::read(const volume::BrickKey& key) const {
+    const volume::Channel& channel = impl_->channelOf(key);
+    if (!channel.magnitude) return impl_->readComponent(channel.parameter, channel.component, key);
+    const auto part = [&](int c) { return impl_->readComponent(channel.parameter, c, key); };
+    if (channel.component == 3) return volume::magnitude(part(0), part(1), part(2));
+    volume::BrickSamples sum = part(0), nothing;
+    nothing.size = sum.size;
+    nothing.values.resize(sum.values.size());
+    for (int c = 1; c < channel.component; ++c) sum = volume::magnitude(sum, part(c), nothing);
+    return sum;
+}
+
+volume::Field readField(const Archive& archive, int parameter, int component, int time) {
+    const Archive::Impl& impl = *archive.impl_;
+    const FrameRecord& shown = impl.frame(parameter, component, time);
+    volume::Field field = volume::makeField(impl.metadata.info.lattice, impl.parameter(parameter).type);
+    if (impl.metadata.alternating && time % 2 != 0) field.lattice.origin += 0.5 * field.lattice.spacing;
+    field.offset = shown.valueOffset;
+    field.scale = shown.valueScale;
+    volume::Mask mask(shown.mask < 0 ? 0 : field.count(), 1);
+    parallelFor(impl.bricks, [&](std::size_t brick) {
+        const FrameRecord& frame = impl.holding(shown, brick);
+        const glm::ivec3 at = brickIndex(impl.metadata.grid, brick);
+        const BrickFormat format = brickFormat(impl.metadata.grid, at, field.type, frame);
+        const std::vector<std::uint8_t> fine = impl.flags(frame, brick);
+        const Lent decoded(impl);
+        impl.decode(frame, format, brick, 0, fine, *decoded);
+        const glm::ivec3 begin = impl.metadata.grid.begin(at), size = decoded->size;
+        const auto placeOf = [&](std::size_t i) { // of a sample of the brick in the lattice
+            const std::size_t nx = std::size_t(size.x), ny = std::size_t(size.y);
+            return field.lattice.index(begin + glm::ivec3(int(i % nx), int(i / nx % ny), int(i / (nx * ny))));
+        };
+        volume::dispatch(field.type, [&]<class T>(T) {
+            const auto out = field.as<T>();
+            decoded->forRows(
+                [&](std::size_t first, auto row) { toSamples(frame.numbers, row, out.data() + placeOf(first)); });
+            const auto put = [&](std::size_t i, std::uint32_t bits) {
+                if constexpr (std::same_as<T, float>)
+                    out[placeOf(i)] = std::bit_cast<float>(bits);
+                else
+                    out[placeOf(i)] = static_cast<T>(bits);
+            };
+            for (const ExactSample& exact : decoded->exact) put(exact.index, exact.bits);
+            // Absent samples: as stored, else a value that cannot be mistaken for data.
+            std::size_t next = 0;
+            for (std::size_t i = 0; i < fine.size(); ++i)
+                if (fine[i] == 0)
+                    put(i, frame.keepsAbsent ? decoded->absent[next++] : sizeof(T) == 4 ? 0x7fc00000u : 0u);
+        });
+        if (!fine.empty() && !mask.empty())
+            forBrickRows(impl.metadata.grid, at, [&](std::size_t to, std::size_t from, std::size_t count) {
+                std::copy_n(fine.begin() + std::ptrdiff_t(from), count, mask.begin() + std::ptrdiff_t(to));
+            });
+    });
+    if (!mask.empty()) field.mask = std::make_shared<const volume::Mask>(std::move(mask));
+    return field;
+}
+
+} // namespace tessera::codec

@@ -1,0 +1,59 @@
+#include "codec/archive_state.h"
+
+#include "codec/archive_impl.h"
+#include "volume/parallel.h"
+
+#include <algorithm>
+
+namespace tessera::codec {
+
+ArchiveState stateOf(const Archive& archive, bool withFrames) {
+    const Archive::Impl& impl = *archive.impl_;
+    ArchiveState state{impl.header.header,
+                       impl.metadata.info.times.size(),
+                       impl.components,
+                       impl.index.models.size(),
+                       impl.index.masks.size(),
+                       {},
+                       {},
+                       {}};
+    for (std::size_t c = 0; c < impl.components; ++c) {
+        const std::int32_t number = impl.index.frames[(state.times - 1) * impl.components + c].model;
+        std::size_t t = 0;
+        while (impl.index.frames[t * impl.components + c].model != number) ++t;
+        const FrameRecord& frame = impl.index.frames[t * impl.components + c];
+        const Block& block = impl.index.models[std::size_t(number)];
+        KnownModel known{number, {}, frame.wavelet, frame.numbers.kind, frame.codeBits, frame.bodyCentred};
+        const auto bytes =
+            checkedPart(impl.file.bytes(), block.offset, block.length, block.checksum, impl.path, "a model");
+        if (const auto status = parseModel(bytes, impl.metadata.grid.levels, known.model); status != DecodeStatus::Ok)
+            damaged(impl.path, block.offset, std::string("a model cannot be read: ") + reason(status));
+        state.lastModels.push_back(std::move(known));
+        const FrameRecord& last = impl.index.frames[(state.times - 1) * impl.components + c];
+        const auto sameMask = [&](const auto& entry) { return entry.first == last.mask; };
+        if (last.mask < 0 || std::any_of(state.lastMasks.begin(), state.lastMasks.end(), sameMask)) continue;
+        volume::Mask mask(impl.metadata.info.lattice.count(), 1);
+        parallelFor(impl.bricks, [&](std::size_t brick) {
+            const std::vector<std::uint8_t> fine = impl.flags(last, brick);
+            if (fine.empty()) return;
+            forBrickRows(impl.metadata.grid, brickIndex(impl.metadata.grid, brick),
+                         [&](std::size_t to, std::size_t from, std::size_t count) {
+                             std::copy_n(fine.begin() + std::ptrdiff_t(from), count, mask.begin() + std::ptrdiff_t(to));
+                         });
+        });
+        state.lastMasks.emplace_back(last.mask, std::move(mask));
+    }
+    const std::size_t step = impl.metadata.alternating ? 2 : 1;
+    for (std::size_t t = state.times - std::min(state.times, step); withFrames && t < state.times; ++t)
+        for (std::size_t p = 0, c = 0; p < impl.metadata.info.parameters.size(); ++p)
+            for (int component = 0; component < impl.metadata.info.parameters[p].components; ++component, ++c) {
+                const FrameRecord& last = impl.index.frames[t * impl.components + c];
+                SeenFrame seen{
+                    int(t), last.keepsAbsent, readField(archive, int(p), component, int(t)), last.bricks, {}};
+                for (std::size_t b = 0; b < impl.bricks; ++b) seen.bytes.push_back(impl.bytesOf(last, b));
+                state.lastFrames.emplace_back(c, std::move(seen));
+            }
+    return state;
+}
+
+} // namespace tessera::codec

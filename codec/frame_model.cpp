@@ -1,0 +1,174 @@
+#include "codec/frame_model.h"
+
+#include "codec/brick_access.h"
+#include "codec/filter.h"
+#include "volume/parallel.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <glm/common.hpp>
+#include <limits>
+
+namespace tessera::codec {
+
+namespace {
+
+constexpr std::size_t kTrialBricks = 6, kModelBricks = 32;
+constexpr int kMostTables = 24;
+
+/// Tokens of some bricks of a frame, spread over it; kept in `taken`, if there is one.
+Histogram sampleTokens(const volume::BrickGrid& grid, const volume::Field& field, const FrameRecord& frame,
+                       std::size_t most, int shift, double maxError = 0, Taken* taken = nullptr) {
+    const std::size_t bricks = brickCount(grid), count = std::min(bricks, most);
+    std::vector<Histogram> parts(count, Histogram(grid.levels));
+    if (taken) {
+        *taken = {frame.wavelet, frame.bodyCentred, shift, maxError, {}};
+        taken->bricks.resize(bricks);
+    }
+    parallelRanges(count, [&](std::size_t begin, std::size_t end) {
+        BrickInput input;
+        SplitMemory memory;
+        for (std::size_t i = begin; i < end; ++i) {
+            const std::size_t number = i * bricks / count;
+            const glm::ivec3 brick = brickIndex(grid, number);
+            input.take(grid, brick, field, frame.mask >= 0);
+            PreparedBrick prepared = prepareBrick(brickFormat(grid, brick, field.type, frame), input.samples,
+                                                  input.present, maxError, shift, memory);
+            countBrick(prepared, parts[i]);
+            if (taken) taken->bricks[number] = std::move(prepared);
+        }
+    });
+    Histogram sum(grid.levels);
+    for (const Histogram& part : parts) sum.add(part);
+    return sum;
+}
+
+/// The same of the middles of some bricks, which is enough to compare filters.
+Histogram sampleMiddles(const volume::BrickGrid& grid, const volume::Field& field, const FrameRecord& frame,
+                        std::size_t most) {
+    constexpr int kMiddle = 32, kMiddleLevels = 3;
+    const std::size_t bricks = brickCount(grid), count = std::min(bricks, most);
+    const int levels = std::min(grid.levels, kMiddleLevels);
+    std::vector<Histogram> parts(count, Histogram(levels));
+    parallelFor(count, [&](std::size_t i) {
+        const glm::ivec3 brick = brickIndex(grid, i * bricks / count);
+        BrickFormat format = brickFormat(grid, brick, field.type, frame);
+        const int depth = kMiddle * format.sublattices();
+        const glm::ivec3 whole = format.size, size = glm::min(whole, glm::ivec3(kMiddle, kMiddle, depth));
+        glm::ivec3 first = (whole - size) / 2;
+        first.z -= first.z % format.sublattices(); // an even slice first
+        format.size = size;
+        format.levels = levels;
+        BrickInput input;
+        input.take(grid, grid.begin(brick) + first, size, field, frame.mask >= 0);
+        SplitMemory memory;
+        countBrick(prepareBrick(format, input.samples, input.present, 0, 0, memory), parts[i]);
+    });
+    Histogram sum(levels);
+    for (const Histogram& part : parts) sum.add(part);
+    return sum;
+}
+
+/// A shift that brings the typical detail of full resolution to some tens, where the contexts tell sizes apart.
+int shiftFor(const Histogram& histogram) {
+    double count = 0, octaves = 0;
+    for (std::size_t c = 0; c < std::size_t(kClasses) && c < histogram.counts.size(); ++c)
+        for (std::uint32_t t = 0; t < kTokens; ++t) {
+            count += histogram.counts[c][t];
+            octaves += histogram.counts[c][t] * double(std::bit_width(symbolBase(t) / 2));
+        }
+    constexpr double kWanted = 6;
+    return count == 0 ? 0 : std::max(0, int(std::lround(octaves / count - kWanted)));
+}
+
+/// The filter by trial on some bricks. Predictions alone alias in coarse levels: they have to be clearly better.
+Wavelet waveletFor(const volume::BrickGrid& grid, const volume::Field& field, FrameRecord frame) {
+    constexpr Wavelet kTried[] = {Wavelet::W22, Wavelet::W42, Wavelet::W44, Wavelet::N2, Wavelet::N4};
+    constexpr double kPredictionHandicap = 1.015;
+    if (frame.numbers.kind == NumberKind::Float) return Wavelet::W22; // only predicted anyway
+    double best = std::numeric_limits<double>::infinity();
+    Wavelet chosen = Wavelet::W22;
+    for (const Wavelet wavelet : kTried) {
+        frame.wavelet = wavelet;
+        double bits = sampleMiddles(grid, field, frame, kTrialBricks).bits();
+        if (!filterOf(wavelet).updates) bits *= kPredictionHandicap;
+        if (bits < best) best = bits, chosen = wavelet;
+    }
+    return chosen;
+}
+
+/// Whether one grid of BCC predicted from the other comes out shorter, by trial on some bricks.
+bool prefersBodyCentred(const volume::BrickGrid& grid, const volume::Field& field, FrameRecord frame) {
+    if (grid.lattice.kind != volume::LatticeKind::BCC || frame.numbers.kind == NumberKind::Float) return false;
+    const auto bits = [&](bool bodyCentred) {
+        frame.bodyCentred = bodyCentred;
+        double least = std::numeric_limits<double>::infinity();
+        for (const Wavelet wavelet : {Wavelet::W22, Wavelet::W44}) {
+            frame.wavelet = wavelet;
+            least = std::min(least, sampleMiddles(grid, field, frame, kTrialBricks).bits());
+        }
+        return least;
+    };
+    return bits(true) < bits(false);
+}
+
+} // namespace
+
+int codeBitsOf(const volume::Field& field, const NumberCoding& numbers) {
+    if (field.type != volume::ScalarType::F32) return codec::codeBitsOf(field.type);
+    if (numbers.kind == NumberKind::Float) return 32;
+    std::uint32_t all = 0;
+    const auto samples = field.as<float>();
+    for (std::size_t i = 0; i < samples.size(); ++i)
+        if (field.present(i)) {
+            const auto code = static_cast<std::int32_t>(codeOf(numbers, samples[i]));
+            all |= static_cast<std::uint32_t>(code < 0 ? ~code : code);
+        }
+    return std::max(1, int(std::bit_width(all)) + 1);
+}
+
+double boundOf(const FrameRecord& frame, const FrameOptions& options) {
+    return frame.numbers.kind == NumberKind::Quantised ? options.maxError : 0;
+}
+
+double estimateFrameBytes(const volume::BrickGrid& grid, const volume::Field& field, const FrameOptions& options,
+                          std::size_t bricks) {
+    FrameRecord frame;
+    frame.mask = field.mask ? 0 : -1;
+    frame.numbers = chooseCoding(field, options.maxError);
+    frame.wavelet = options.wavelet.value_or(Wavelet::W22);
+    frame.codeBits = codeBitsOf(field, frame.numbers);
+    const int shift = frame.codeBits > 16 ? shiftFor(sampleTokens(grid, field, frame, bricks, 0)) : 0;
+    const double all = double(brickCount(grid));
+    return sampleTokens(grid, field, frame, bricks, shift).bits() / 8 * all / std::min(all, double(bricks));
+}
+
+Model chooseModel(const volume::BrickGrid& grid, const volume::Field& field, const KnownModel* last, FrameRecord& frame,
+                  const FrameOptions& options, Taken& taken) {
+    constexpr double kStillAlike = 1.05;
+    const double maxError = boundOf(frame, options);
+    std::optional<Model> fresh;
+    if (last && last->resembles(frame)) {
+        const Model& model = last->model;
+        frame.wavelet = options.wavelet.value_or(last->wavelet);
+        frame.bodyCentred = options.bodyCentred.value_or(last->bodyCentred);
+        const Histogram histogram = sampleTokens(grid, field, frame, kModelBricks, model.shift, maxError, &taken);
+        fresh = makeModel(histogram, model.shift, kMostTables);
+        const double before = bitsWith(model, histogram), now = bitsWith(*fresh, histogram);
+        if (before <= now + 8.0 * double(serialise(*fresh).size())) {
+            frame.model = last->number;
+            return model;
+        }
+        if (before > kStillAlike * now) fresh.reset();
+    }
+    if (!fresh) {
+        frame.bodyCentred = options.bodyCentred ? *options.bodyCentred : prefersBodyCentred(grid, field, frame);
+        if (!options.wavelet) frame.wavelet = waveletFor(grid, field, frame);
+        const int shift = frame.codeBits > 16 ? shiftFor(sampleMiddles(grid, field, frame, kTrialBricks)) : 0;
+        fresh = makeModel(sampleTokens(grid, field, frame, kModelBricks, shift, maxError, &taken), shift, kMostTables);
+    }
+    return *fresh;
+}
+
+} // namespace tessera::codec

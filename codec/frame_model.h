@@ -1,0 +1,38 @@
+#pragma once
+
+#include "codec/archive_state.h"
+#include "codec/archive_writer.h"
+#include "codec/brick_codec.h"
+
+#include <optional>
+#include <vector>
+
+/// How a frame is to be coded, found by trial on some of its bricks: filter, sublattices, tables.
+namespace tessera::codec {
+
+/// Bricks of a frame that were taken apart for its model, to be coded without doing that again.
+struct Taken {
+    Wavelet wavelet{};
+    bool bodyCentred = false;
+    int shift = 0;
+    double maxError = 0;
+    std::vector<std::optional<PreparedBrick>> bricks; ///< by number
+
+    bool serves(const FrameRecord& frame, const Model& model) const {
+        return wavelet == frame.wavelet && bodyCentred == frame.bodyCentred && shift == model.shift;
+    }
+};
+
+/// Bits of |code| over the present samples of a frame of floats.
+int codeBitsOf(const volume::Field& field, const NumberCoding& numbers);
+
+/// The bound that samples of a frame are held to beside their codes.
+double boundOf(const FrameRecord& frame, const FrameOptions& options);
+
+/// The model of a frame: `last`, that of the component's frame before (or none), where its tables serve as well as new
+/// ones would, else a new one, not written yet (frame.model is -1). The filter is tried again only where the tables do
+/// not fit at all. Sets wavelet, bodyCentred and model of the frame.
+Model chooseModel(const volume::BrickGrid& grid, const volume::Field& field, const KnownModel* last, FrameRecord& frame,
+                  const FrameOptions& options, Taken& taken);
+
+} // namespace tessera::codec

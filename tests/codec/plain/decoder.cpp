@@ -1,0 +1,221 @@
+#include "tests/codec/plain/decoder.h"
+
+#include "tests/codec/plain/codes.h"
+
+#include <algorithm>
+#include <cstring>
+#include <xxhash.h>
+
+namespace tessera::codec::plain {
+
+/// 1.5
+Decoder::Model Decoder::parseModel(const Piece& piece) const {
+    const Octets bytes = checked(piece);
+    std::size_t at = 0;
+    const auto bits = [&](int count) {
+        std::uint32_t value = 0;
+        for (int i = 0; i < count; ++i, ++at) {
+            need(at < 8 * bytes.size(), "model");
+            value |= std::uint32_t(bytes[at / 8] >> (at % 8) & 1) << i;
+        }
+        return value;
+    };
+    Model model;
+    model.shift = bits(8);
+    const std::uint32_t tables = bits(8);
+    std::uint32_t last = 0;
+    for (int c = 0; c < 32 * levels_; ++c) {
+        if (bits(1) == 1) last = bits(8);
+        model.tableOf.push_back(last);
+    }
+    for (std::uint32_t t = 0; t < tables; ++t) {
+        std::vector<std::uint32_t> table(141);
+        std::uint32_t left = 4096;
+        const std::uint32_t used = bits(8);
+        for (std::uint32_t i = 0; i < used; ++i) {
+            const int width = int(bits(4));
+            if (width > 0) table[i] = (1u << (width - 1)) + bits(width - 1);
+            left -= table[i];
+        }
+        table[140] = left;
+        model.tables.push_back(table);
+    }
+    need((at + 7) / 8 == bytes.size(), "model");
+    return model;
+}
+
+Decoder::Decoder(std::vector<char> file) : file_(file.begin(), file.end()) {
+    // 1.1
+    need(file_.size() >= 80, "no header");
+    Piece parts[2];
+    const auto readHeader = [&](std::size_t at) {
+        const std::uint8_t magic[] = {0x89, 0x54, 0x53, 0x52, 0x0d, 0x0a, 0x1a, 0x0a};
+        if (file_.size() < at + 80 || std::memcmp(file_.data() + at, magic, 8) != 0) return false;
+        const Octets header(file_.begin() + std::ptrdiff_t(at), file_.begin() + std::ptrdiff_t(at) + 80);
+        Reader in(header);
+        (void)in.number(8);
+        const std::uint32_t version = in.u32();
+        const std::uint32_t features = in.u32();
+        const std::uint64_t end = in.number(8);
+        Piece found[2];
+        for (Piece& part : found) part = readPiece(in);
+        if (in.number(8) != XXH3_64bits(file_.data() + at, 72) || version < 1 || version > 3 ||
+            features > (version < 3 ? 0 : 1))
+            return false;
+        if (version < 3 ? at > 0 || end != file_.size() : end > file_.size()) return false;
+        if (end <= end_) return true; // the other copy is as good or better
+        version_ = version;
+        hasNotes_ = features == 1;
+        end_ = end;
+        std::copy(found, found + 2, parts);
+        return true;
+    };
+    const bool first = readHeader(0);
+    if (!first || version_ == 3) need(readHeader(80) || first, "header");
+    need(parts[1].offset + parts[1].length == end_, "parts");
+    if (version_ < 3) need(parts[0].offset + parts[0].length == parts[1].offset, "parts");
+
+    // 1.2, 1.3
+    Octets json = checked(parts[0]);
+    if (version_ == 3) {
+        Reader in(json);
+        const std::size_t length = in.u32();
+        json = in.take(std::size_t(in.end - in.at));
+        if (json.size() != length) json = unzstd(json, length);
+    }
+    metadata_ = nlohmann::json::parse(json.begin(), json.end());
+    const auto& lattice = metadata_["data"]["lattice"];
+    bcc_ = lattice["kind"] == "bcc";
+    size_ = lattice["size"].get<Size>();
+    brickSize_ = metadata_["grid"]["brickSize"];
+    levels_ = metadata_["grid"]["levels"];
+    for (std::size_t a = 0; a < 3; ++a) {
+        const int covered = brickSize_ * (a == 2 && bcc_ ? 2 : 1);
+        bricks_[a] = (size_[a] + covered - 1) / covered;
+    }
+    for (const auto& parameter : metadata_["data"]["parameters"])
+        for (int c = 0; c < parameter["components"].get<int>(); ++c) types_.push_back(parameter["type"]);
+
+    // 1.4: pages, the last one first
+    std::vector<Piece> covered{parts[0]};
+    std::vector<Octets> pages;
+    for (Piece page = parts[1];;) {
+        pages.insert(pages.begin(), checked(page));
+        covered.push_back(page);
+        if (version_ < 3) break;
+        Reader in(pages.front());
+        const Piece before = readPiece(in), formerMetadata = readPiece(in);
+        if (formerMetadata.offset > 0) {
+            (void)checked(formerMetadata);
+            covered.push_back(formerMetadata);
+        }
+        if (before.offset == 0) break;
+        need(before.offset + before.length <= page.offset, "pages");
+        page = before;
+    }
+    std::vector<double> times;
+    std::vector<std::pair<std::size_t, Frame>> frames;
+    for (const Octets& page : pages) readPage(page, times, frames, covered);
+    if (version_ == 3) metadata_["data"]["times"] = times;
+    need(frames.size() == types_.size() * metadata_["data"]["times"].size(), "frames");
+    frames_.resize(frames.size());
+    std::vector<bool> known(frames.size());
+    for (auto& [number, frame] : frames) {
+        need(number < frames.size() && !known[number], "frame number");
+        known[number] = true;
+        frames_[number] = std::move(frame);
+    }
+
+    // There are no gaps.
+    std::sort(covered.begin(), covered.end(), [](const Piece& a, const Piece& b) {
+        return std::pair(a.offset, a.length) < std::pair(b.offset, b.length);
+    });
+    std::size_t at = version_ < 3 ? 80 : 160;
+    for (const Piece& piece : covered) {
+        need(piece.offset == at, "gap");
+        at += piece.length;
+    }
+    need(at == end_, "gap");
+}
+
+Decoder::Piece Decoder::readPiece(Reader& in) {
+    const std::size_t offset = in.number(8), length = in.number(8);
+    return {offset, length, in.number(8)};
+}
+
+void Decoder::readPage(const Octets& page, std::vector<double>& times,
+                       std::vector<std::pair<std::size_t, Frame>>& frames, std::vector<Piece>& covered) {
+    Reader table(page);
+    if (version_ == 3) (void)table.take(48);
+    const std::size_t timeCount = version_ == 3 ? table.u32() : 0, maskCount = table.u32(), frameCount = table.u32();
+    const std::size_t modelCount = version_ > 1 ? table.u32() : 0;
+    const std::size_t bricks = std::size_t(bricks_[0]) * std::size_t(bricks_[1]) * std::size_t(bricks_[2]);
+    for (std::size_t t = 0; t < timeCount; ++t) times.push_back(table.f64());
+    for (std::size_t m = 0; m < modelCount; ++m) {
+        models_.push_back(readPiece(table));
+        covered.push_back(models_.back());
+    }
+    for (std::size_t m = 0; m < maskCount; ++m) {
+        Mask mask;
+        std::size_t at = table.number(8);
+        const std::size_t length = table.number(8), end = at + length;
+        covered.push_back({at, length, 0});
+        for (std::size_t b = 0; b < bricks; ++b) {
+            const std::size_t bytes = table.u32();
+            mask.present.push_back(table.u32());
+            mask.pieces.push_back({at, bytes, table.number(8)});
+            at += bytes;
+        }
+        need(at == end, "mask chunk");
+        masks_.push_back(mask);
+    }
+    for (std::size_t f = 0; f < frameCount; ++f) {
+        Frame frame;
+        std::size_t number = frames.size();
+        if (version_ == 3) {
+            const std::size_t time = table.u32();
+            number = time * types_.size() + table.u32();
+        }
+        std::size_t at = table.number(8);
+        const std::size_t length = table.number(8), end = at + length;
+        covered.push_back({at, length, 0});
+        frame.numbers = int(table.number(1));
+        frame.wavelet = int(table.number(1));
+        const auto kept = table.number(1);
+        frame.keepsAbsent = kept % 2 == 1;
+        frame.bodyCentred = kept / 2 == 1;
+        need(kept < (hasNotes_ ? 4u : 2u), "frame");
+        (void)table.number(1); // width of the codes: what a fast reader wants to know
+        need(frame.numbers < 4 && frame.wavelet < 12, "frame");
+        frame.mask = int(table.u32());
+        if (version_ > 1) frame.model = table.u32();
+        need(frame.mask < int(masks_.size()) && (version_ == 1 || frame.model < models_.size()), "frame");
+        frame.origin = table.f64();
+        frame.step = table.f64();
+        frame.valueOffset = table.f64();
+        frame.valueScale = table.f64();
+        for (std::size_t b = 0; b < bricks; ++b) {
+            (void)table.number(8); // min, max
+            if (!hasNotes_) continue;
+            (void)table.take(10); // importance, detail, change
+            frame.repeats.push_back(table.number(2));
+        }
+        for (std::size_t s = 0; s < bricks * std::size_t(levels_); ++s) {
+            const std::size_t bytes = table.u32();
+            frame.pieces.push_back({at, bytes, table.number(8)});
+            at += bytes;
+        }
+        need(at == end, "frame chunk");
+        frames.emplace_back(number, std::move(frame));
+    }
+    need(table.at == table.end, "index");
+}
+
+std::vector<std::uint8_t> Decoder::checked(const Piece& piece) const {
+    need(piece.offset <= file_.size() && piece.length <= file_.size() - piece.offset, "outside");
+    const std::uint8_t* at = file_.data() + piece.offset;
+    need(XXH3_64bits(at, piece.length) == piece.checksum, "checksum");
+    return {at, at + piece.length};
+}
+
+} // namespace tessera::codec::plain
