@@ -5,7 +5,7 @@ set -euo pipefail
 packages=(
     g++ cmake ninja-build pkg-config                                 # to build
     libglm-dev nlohmann-json3-dev libcli11-dev libtbb-dev            # headers and small libraries
-    libzstd-dev libxxhash-dev libpng-dev libmuparser-dev
+    libzstd-dev liblzma-dev libxxhash-dev libpng-dev libmuparser-dev
     libimgui-dev libstb-dev libfreetype-dev libglfw3-dev libepoxy-dev libegl-dev # the window
     libgl1-mesa-dri libegl1 libgl1 libglx-mesa0                      # GL without a GPU
     fonts-roboto-unhinted fonts-font-awesome                         # text and icons

@@ -2,6 +2,7 @@
 
 #include "codec/archive_impl.h"
 #include "volume/alternating_source.h"
+#include "volume/memory_source.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -80,7 +81,7 @@ Archive::Archive(const std::string& path) {
     const Header& header = impl.header.header;
     const auto block = checkedPart(bytes, header.metadata.offset, header.metadata.length, header.metadata.checksum,
                                    path, "the metadata");
-    impl.metadata = parseMetadata(block, header.version, path);
+    impl.metadata = parseMetadata(block, header.version, header.features, path);
     impl.channels = impl.metadata.info.channels();
     impl.components = componentCount(impl.metadata.info);
     const std::uint64_t bricks = checkedBrickCount(impl.metadata.grid, path);

@@ -1,5 +1,6 @@
 #include "codec/archive_impl.h"
 #include "codec/brick_codec_v1.h"
+#include "volume/memory_source.h"
 #include "volume/parallel.h"
 
 #include <algorithm>

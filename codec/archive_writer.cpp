@@ -66,7 +66,8 @@ struct ArchiveWriter::Impl {
     Impl(const std::string& path, const Header& last) : file(path, last), header(last) {}
 
     int maskFor(const volume::Field& field, int zstdLevel);
-    void writeModel(const Model& model, std::size_t component, FrameRecord& frame);
+    /// `idle`: no token of the frame is coded with it.
+    void writeModel(const Model& model, bool idle, std::size_t component, FrameRecord& frame);
     const SeenFrame* frameBefore(const FrameRecord& frame, const volume::Field& field) const;
     std::vector<std::uint8_t> repeated(const SeenFrame* before, const volume::Field& field, const FrameRecord& frame,
                                        double maxError) const;
@@ -120,12 +121,12 @@ int ArchiveWriter::Impl::maskFor(const volume::Field& field, int zstdLevel) {
 namespace {
 
 constexpr std::size_t kSmallFrame = 1 << 19; // samples
-constexpr int kMostEffort = 19;              // of zstd
 
 } // namespace
 
-void ArchiveWriter::Impl::writeModel(const Model& model, std::size_t component, FrameRecord& frame) {
-    const Bytes bytes = serialise(model);
+void ArchiveWriter::Impl::writeModel(const Model& chosen, bool idle, std::size_t component, FrameRecord& frame) {
+    const Model model = idle ? makeModel(Histogram(metadata.grid.levels), 0, 1) : chosen;
+    const Bytes bytes = idle && (header.features & kCompact) != 0 ? Bytes() : serialise(model);
     frame.model = static_cast<std::int32_t>(models++);
     page.models.push_back({file.position(), bytes.size(), checksum(bytes)});
     file.append(bytes);
@@ -177,7 +178,7 @@ ArchiveWriter::ArchiveWriter(const Archive& archive, const Metadata& metadata, b
     impl_ = std::make_unique<Impl>(archive.path(), state.header);
     impl_->metadata = metadata;
     impl_->keepsFrames = keepsFrames;
-    impl_->block = serialise(archive.metadata());
+    impl_->block = serialise(archive.metadata(), state.header.features);
     impl_->times = state.times;
     impl_->models = state.models;
     impl_->masks = state.masks;
@@ -203,7 +204,9 @@ void ArchiveWriter::addFrame(int parameter, int component, int time, const volum
     frame.time = static_cast<std::uint32_t>(time);
     frame.component = static_cast<std::uint32_t>(ofTime);
     frame.mask = impl_->maskFor(field, options.zstdLevel);
-    frame.numbers = options.numbers ? *options.numbers : chooseCoding(field, options.maxError);
+    const auto found = impl_->lastModel.find(ofTime);
+    const KnownModel* const lastModel = found == impl_->lastModel.end() ? nullptr : &found->second;
+    frame.numbers = options.numbers ? *options.numbers : chooseNumbers(grid, field, lastModel, options);
     frame.wavelet = options.wavelet.value_or(Wavelet::W22);
     frame.keepsAbsent = options.keepsAbsent && frame.mask >= 0;
     frame.valueOffset = field.offset;
@@ -215,9 +218,7 @@ void ArchiveWriter::addFrame(int parameter, int component, int time, const volum
     const std::vector<volume::BrickImportance> importance =
         volume::importanceOfBricks(grid, field, options.range, options.categorical, options.importance);
     Taken taken;
-    const auto lastModel = impl_->lastModel.find(ofTime);
-    const Model model = chooseModel(grid, field, lastModel == impl_->lastModel.end() ? nullptr : &lastModel->second,
-                                    frame, options, taken);
+    const Model model = chooseModel(grid, field, lastModel, frame, options, taken);
     const BandEncoder encoder(model);
     if (!taken.serves(frame, model)) taken.bricks.clear();
     taken.bricks.resize(brickCount(grid));
@@ -235,7 +236,7 @@ void ArchiveWriter::addFrame(int parameter, int component, int time, const volum
     for (std::size_t first = 0; first < bricks; first += kBatch) {
         const std::size_t count = std::min(kBatch, bricks - first);
         parallelRanges(count, [&](std::size_t begin, std::size_t end) {
-            Compressor compressor(effort);
+            Compressor compressor(effort, (impl_->header.features & kCompact) != 0);
             BrickInput input;
             SplitMemory memory;
             for (std::size_t b = first + begin; b < first + end; ++b) {
@@ -271,7 +272,7 @@ void ArchiveWriter::addFrame(int parameter, int component, int time, const volum
     for (std::size_t b = 0; b < bricks; ++b)
         allWhole = allWhole && (repeated[b] != 0 || (!coded[b][0].empty() && isWhole(coded[b][0][0])));
     // Nobody will look into the tables where there are no bands.
-    if (frame.model < 0) impl_->writeModel(allWhole ? makeModel(Histogram(grid.levels), 0, 1) : model, ofTime, frame);
+    if (frame.model < 0) impl_->writeModel(model, allWhole, ofTime, frame);
     GrowingFile& file = impl_->file;
     frame.offset = file.position();
     for (std::size_t s = 0; s < levels; ++s)
@@ -292,10 +293,10 @@ void ArchiveWriter::addFrame(int parameter, int component, int time, const volum
 }
 
 void ArchiveWriter::Impl::commit(const Metadata& now, std::size_t wholeTimes, bool always) {
-    constexpr std::size_t kWorthwhile = 64; // times the bytes a commit costs
-    Bytes text = serialise(now);
+    constexpr std::size_t kWorthwhile = 64, kPage = 256; // times the bytes a commit costs, those of a page included
+    Bytes text = serialise(now, header.features);
     const std::uint64_t last = std::max(header.fileSize, firstChunk(kFormatVersion));
-    if (!always && file.position() - last < kWorthwhile * text.size()) return;
+    if (!always && file.position() - last < kWorthwhile * (text.size() + kPage)) return;
     if (page.frames.empty() && text == block) return;
     const std::vector<double>& all = now.info.times;
     page.times.assign(all.begin() + std::ptrdiff_t(times), all.begin() + std::ptrdiff_t(wholeTimes));

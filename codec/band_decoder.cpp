@@ -356,15 +356,7 @@ DecodeStatus BandDecoder::decode(std::span<const std::byte> in, std::span<const 
         return DecodeStatus::Ok;
     }
     std::uint64_t rawBytes = 0;
-    std::size_t at = 0;
-    for (int shift = 0;; shift += 7, ++at) {
-        if (at >= in.size()) return DecodeStatus::Truncated;
-        if (shift > 28) return DecodeStatus::BadLength;
-        const auto byte = static_cast<std::uint64_t>(in[at]);
-        rawBytes |= (byte & 127u) << shift;
-        if (byte < 128) break;
-    }
-    in = in.subspan(at + 1);
+    if (const DecodeStatus status = takeLength(in, rawBytes); status != DecodeStatus::Ok) return status;
     const Lanes lanes(bands);
     const std::size_t statesBytes = 4 * static_cast<std::size_t>(lanes.used);
     if (in.size() < rawBytes || in.size() - rawBytes < statesBytes) return DecodeStatus::Truncated;

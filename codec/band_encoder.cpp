@@ -167,9 +167,7 @@ void BandEncoder::encode(const TokenRun& run, int level, Bytes& out, Cpu cpu) co
         codeTokens(run, tables, entries_, coded);
     (void)cpu;
     const Bytes raw = rawBits(run, coded.escaped);
-    auto length = static_cast<std::uint32_t>(raw.size());
-    for (; length >= 128; length >>= 7) out.push_back(static_cast<std::byte>(length | 128u));
-    out.push_back(static_cast<std::byte>(length));
+    appendLength(out, static_cast<std::uint32_t>(raw.size()));
     out.insert(out.end(), raw.begin(), raw.end());
     for (int lane = 0; lane < run.used; ++lane) appendU32(out, coded.states[lane]);
     const std::size_t begin = out.size(), count = coded.words.size() - coded.at;

@@ -24,8 +24,8 @@ constexpr std::byte kNothing{0};
 // Below these bits a sample the matches that zstd finds are worth a glance at so many samples.
 constexpr double kTryWhole = 3.0;
 constexpr std::size_t kGlance = 1 << 15;
-constexpr double kGlanceAsShort = 1.5, kNearlyAsShort = 1.15;
-constexpr double kSparse = 0.75; // bits a sample
+constexpr double kGlanceAsShort = 1.5, kNearlyAsShort = 1.15, kPerhapsAsShort = 1.6; // the last before LZMA
+constexpr double kSparse = 0.75;                                                     // bits a sample
 constexpr int kLeastEffort = 1, kSomeEffort = 3;
 
 /// Codes of the samples, and what is stored beside them.
@@ -144,7 +144,8 @@ void tryWhole(const BrickFormat& format, std::span<const std::byte> samples, std
         return double(whole.size()) <= nearly * double(bytes) * double(codes.size()) / double(count);
     };
     const bool sparse = 8.0 * double(bytes) < kSparse * double(count);
-    if (!sparse && present.empty() && volume::byteSize(format.type) == 1 && count > kGlance) {
+    if (!sparse && !compressor.triesLzma() && present.empty() && volume::byteSize(format.type) == 1 &&
+        count > kGlance) {
         Bytes glance;
         constexpr std::size_t kPieces = 4, kPiece = kGlance / kPieces;
         for (std::size_t i = 0; i < kPieces; ++i) {
@@ -163,7 +164,7 @@ void tryWhole(const BrickFormat& format, std::span<const std::byte> samples, std
     for (std::size_t i = 0; i < all.size(); ++i)
         if (present.empty() || present[i] != 0) codes.push_back(all[i]);
     // Where a quick search for matches does about as well as bands, a longer one is worth its time.
-    if (!tryEffort(codes, kSomeEffort, kNearlyAsShort)) return;
+    if (!tryEffort(codes, kSomeEffort, compressor.triesLzma() ? kPerhapsAsShort : kNearlyAsShort)) return;
     (void)tryEffort(codes, effort, 1);
     if (whole.size() >= bytes) return;
     for (Bytes& segment : segments) segment.clear();

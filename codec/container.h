@@ -22,7 +22,9 @@ inline constexpr std::uint32_t kFormatVersion = 3, kOldestVersion = 1, kGrowingV
 inline constexpr std::size_t kHeaderBytes = 80;
 /// Feature: the index says how important each brick is, how it changes, and which repeat an earlier one; frames may be
 /// coded body-centred, and integers in steps.
-inline constexpr std::uint32_t kBrickNotes = 1, kKnownFeatures = kBrickNotes;
+inline constexpr std::uint32_t kBrickNotes = 1;
+/// Feature: metadata and pages of the index are pieces (codec/lzma.h), streams may be LZMA, models may be empty.
+inline constexpr std::uint32_t kCompact = 2, kKnownFeatures = kBrickNotes | kCompact;
 
 /// Where the chunks of a version begin.
 constexpr std::uint64_t firstChunk(std::uint32_t version) {

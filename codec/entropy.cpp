@@ -1,5 +1,7 @@
 #include "codec/entropy.h"
 
+#include "codec/lzma.h"
+
 #include <algorithm>
 #include <bit>
 #include <cstring>
@@ -10,7 +12,10 @@ namespace tessera::codec {
 
 namespace {
 
-enum Mode : std::uint8_t { kZero = 0, kConstant = 1, kPlanes = 2, kPlanesZstd = 3 };
+enum Mode : std::uint8_t { kZero = 0, kConstant = 1, kPlanes = 2, kPlanesZstd = 3, kPlanesLzma = 7 };
+
+/// High bits of the byte before that LZMA may take as context: those worth a trial.
+constexpr int kLiteralBits[] = {3, 0, 4};
 
 /// Plane p holds byte p of every symbol.
 void toPlanes(std::span<const std::uint32_t> symbols, int width, std::byte* planes) {
@@ -38,11 +43,13 @@ bool take(std::span<const std::byte>& in, std::size_t count, std::span<const std
 struct Compressor::Impl {
     std::unique_ptr<ZSTD_CCtx, decltype(&ZSTD_freeCCtx)> context{ZSTD_createCCtx(), &ZSTD_freeCCtx};
     int level = 3;
+    bool thorough = false;
 };
 
-Compressor::Compressor(int zstdLevel) : impl_(std::make_unique<Impl>()) {
+Compressor::Compressor(int zstdLevel, bool thorough) : impl_(std::make_unique<Impl>()) {
     if (!impl_->context) throw std::bad_alloc();
     impl_->level = zstdLevel;
+    impl_->thorough = thorough;
 }
 Compressor::~Compressor() = default;
 Compressor::Compressor(Compressor&&) noexcept = default;
@@ -53,6 +60,9 @@ void Compressor::setLevel(int zstdLevel) {
 }
 int Compressor::level() const {
     return impl_->level;
+}
+bool Compressor::triesLzma() const {
+    return impl_->thorough && impl_->level >= kMostEffort;
 }
 
 Bytes Compressor::compress(std::span<const std::byte> in) {
@@ -80,6 +90,24 @@ std::uint32_t readU32(const std::byte* at) {
     return value;
 }
 
+void appendLength(Bytes& out, std::uint32_t length) {
+    for (; length >= 128; length >>= 7) out.push_back(static_cast<std::byte>(length | 128u));
+    out.push_back(static_cast<std::byte>(length));
+}
+
+DecodeStatus takeLength(std::span<const std::byte>& in, std::uint64_t& length) noexcept {
+    constexpr int kMostShift = 28;
+    length = 0;
+    for (int shift = 0;; shift += 7) {
+        if (in.empty()) return DecodeStatus::Truncated;
+        if (shift > kMostShift) return DecodeStatus::BadLength;
+        const auto byte = static_cast<std::uint64_t>(in[0]);
+        in = in.subspan(1);
+        length |= (byte & 127u) << shift;
+        if (byte < 128) return DecodeStatus::Ok;
+    }
+}
+
 void encodeStream(std::span<const std::uint32_t> symbols, Compressor& compressor, Bytes& out) {
     if (symbols.empty()) return;
     std::uint32_t bits = 0, differing = 0;
@@ -98,11 +126,25 @@ void encodeStream(std::span<const std::uint32_t> symbols, Compressor& compressor
     toPlanes(symbols, width, planes.data());
     const Bytes packed = compressor.compress(planes);
     const bool smaller = !packed.empty() && packed.size() + 4 < planes.size();
-    out.push_back(std::byte{smaller ? kPlanesZstd : kPlanes});
+    Bytes best = smaller ? packed : planes;
+    Mode mode = smaller ? kPlanesZstd : kPlanes;
+    int literalBits = 0;
+    for (const int tried : kLiteralBits) {
+        // Where one choice of context does not help, the others will not.
+        if (!compressor.triesLzma() || (tried != kLiteralBits[0] && mode != kPlanesLzma)) break;
+        Bytes lzma = encodeLzma(planes, tried);
+        if (lzma.size() + 1 >= best.size()) continue;
+        best = std::move(lzma), mode = kPlanesLzma, literalBits = tried;
+    }
+    out.push_back(std::byte{mode});
     out.push_back(static_cast<std::byte>(width));
-    if (smaller) appendU32(out, static_cast<std::uint32_t>(packed.size()));
-    const Bytes& body = smaller ? packed : planes;
-    out.insert(out.end(), body.begin(), body.end());
+    if (mode == kPlanesLzma) {
+        out.push_back(static_cast<std::byte>(literalBits));
+        appendLength(out, static_cast<std::uint32_t>(best.size()));
+    } else if (mode == kPlanesZstd) {
+        appendU32(out, static_cast<std::uint32_t>(best.size()));
+    }
+    out.insert(out.end(), best.begin(), best.end());
 }
 
 DecodeStatus decodeStream(std::span<const std::byte>& in, std::span<std::uint32_t> symbols) noexcept {
@@ -119,7 +161,7 @@ DecodeStatus decodeStream(std::span<const std::byte>& in, std::span<std::uint32_
         std::fill(symbols.begin(), symbols.end(), readU32(body.data()));
         return DecodeStatus::Ok;
     }
-    if (mode != kPlanes && mode != kPlanesZstd) return DecodeStatus::BadMode;
+    if (mode != kPlanes && mode != kPlanesZstd && mode != kPlanesLzma) return DecodeStatus::BadMode;
     if (!take(in, 1, head)) return DecodeStatus::Truncated;
     const int width = static_cast<int>(head[0]);
     if (width < 1 || width > 4) return DecodeStatus::BadLength;
@@ -129,11 +171,21 @@ DecodeStatus decodeStream(std::span<const std::byte>& in, std::span<std::uint32_
         fromPlanes(body.data(), width, symbols);
         return DecodeStatus::Ok;
     }
-    if (!take(in, 4, head)) return DecodeStatus::Truncated;
-    if (!take(in, readU32(head.data()), body)) return DecodeStatus::Truncated;
+    int literalBits = 0;
+    std::uint64_t length = 0;
+    if (mode == kPlanesLzma) {
+        if (!take(in, 1, head)) return DecodeStatus::Truncated;
+        literalBits = static_cast<int>(head[0]);
+        if (const DecodeStatus status = takeLength(in, length); status != DecodeStatus::Ok) return status;
+    } else {
+        if (!take(in, 4, head)) return DecodeStatus::Truncated;
+        length = readU32(head.data());
+    }
+    if (!take(in, length, body)) return DecodeStatus::Truncated;
     const std::unique_ptr<std::byte[]> planes(new (std::nothrow) std::byte[size]);
     if (!planes) return DecodeStatus::BadLength;
-    const DecodeStatus status = decompress(body, {planes.get(), size});
+    const std::span<std::byte> all(planes.get(), size);
+    const DecodeStatus status = mode == kPlanesLzma ? decodeLzma(body, literalBits, all) : decompress(body, all);
     if (status == DecodeStatus::Ok) fromPlanes(planes.get(), width, symbols);
     return status;
 }

@@ -8,15 +8,19 @@
 #include <span>
 #include <vector>
 
-/// Numbers to bytes: the shipped entropy coder is zstd over byte planes.
+/// Numbers to bytes: zstd or LZMA over byte planes.
 namespace tessera::codec {
 
 using Bytes = std::vector<std::byte>;
 
+/// The most effort of zstd that is of use.
+inline constexpr int kMostEffort = 19;
+
 /// Working memory of the encoder; one per thread. Holds no state that changes the output.
 class Compressor {
 public:
-    explicit Compressor(int zstdLevel);
+    /// `thorough`: streams try LZMA as well, where zstd is at its most effort.
+    explicit Compressor(int zstdLevel, bool thorough = false);
     ~Compressor();
     Compressor(Compressor&&) noexcept;
     Compressor& operator=(Compressor&&) noexcept;
@@ -26,6 +30,7 @@ public:
     /// The effort of the next frames.
     void setLevel(int zstdLevel);
     int level() const;
+    bool triesLzma() const;
 
 private:
     struct Impl;
@@ -43,8 +48,8 @@ constexpr std::uint32_t unzigzag(std::uint32_t symbol) {
     return (symbol >> 1) ^ (0u - (symbol & 1u));
 }
 
-/// Appends a stream of symbols to `out` by the smallest of: all zero, constant, byte planes, byte planes through zstd.
-/// No symbols: no bytes. (FORMAT.md "Streams".)
+/// Appends a stream of symbols to `out` by the smallest of: all zero, constant, byte planes, byte planes through zstd
+/// or LZMA. No symbols: no bytes. (FORMAT.md "Streams".)
 void encodeStream(std::span<const std::uint32_t> symbols, Compressor& compressor, Bytes& out);
 
 /// Reads a stream of symbols.size() symbols from the front of `in`, which then starts behind it.
@@ -53,5 +58,9 @@ DecodeStatus decodeStream(std::span<const std::byte>& in, std::span<std::uint32_
 /// Little-endian numbers.
 void appendU32(Bytes& out, std::uint32_t value);
 std::uint32_t readU32(const std::byte* at);
+/// Lengths: 7 bits a byte, lowest first, bit 7 set on all but the last; at most 5 bytes.
+void appendLength(Bytes& out, std::uint32_t length);
+/// Reads one from the front of `in`, which then starts behind it.
+DecodeStatus takeLength(std::span<const std::byte>& in, std::uint64_t& length) noexcept;
 
 } // namespace tessera::codec

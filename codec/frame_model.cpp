@@ -128,6 +128,22 @@ int codeBitsOf(const volume::Field& field, const NumberCoding& numbers) {
     return std::max(1, int(std::bit_width(all)) + 1);
 }
 
+NumberCoding chooseNumbers(const volume::BrickGrid& grid, const volume::Field& field, const KnownModel* last,
+                           const FrameOptions& options) {
+    constexpr int kBitsOfFloat = 25; // sign and 24 digits
+    FrameRecord frame;
+    frame.mask = field.mask ? 0 : -1;
+    frame.numbers = chooseCoding(field, options.maxError);
+    frame.codeBits = codeBitsOf(field, frame.numbers);
+    if (frame.numbers.kind != NumberKind::Scaled || frame.codeBits <= kBitsOfFloat) return frame.numbers;
+    const NumberCoding scaled = frame.numbers, bits{NumberKind::Float, 0, 1};
+    if (last && last->kind == NumberKind::Float) return bits;
+    const double asScaled = sampleMiddles(grid, field, frame, kTrialBricks).bits();
+    frame.numbers = bits;
+    frame.codeBits = codeBitsOf(field, bits);
+    return sampleMiddles(grid, field, frame, kTrialBricks).bits() < asScaled ? bits : scaled;
+}
+
 double boundOf(const FrameRecord& frame, const FrameOptions& options) {
     return frame.numbers.kind == NumberKind::Quantised ? options.maxError : 0;
 }
@@ -136,7 +152,7 @@ double estimateFrameBytes(const volume::BrickGrid& grid, const volume::Field& fi
                           std::size_t bricks) {
     FrameRecord frame;
     frame.mask = field.mask ? 0 : -1;
-    frame.numbers = chooseCoding(field, options.maxError);
+    frame.numbers = chooseNumbers(grid, field, nullptr, options);
     frame.wavelet = options.wavelet.value_or(Wavelet::W22);
     frame.codeBits = codeBitsOf(field, frame.numbers);
     const int shift = frame.codeBits > 16 ? shiftFor(sampleTokens(grid, field, frame, bricks, 0)) : 0;

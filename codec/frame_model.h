@@ -26,6 +26,11 @@ struct Taken {
 /// Bits of |code| over the present samples of a frame of floats.
 int codeBitsOf(const volume::Field& field, const NumberCoding& numbers);
 
+/// How the numbers of a frame are coded; `last` is the model of the frame before, or none. Where decimals or fractions
+/// have as many digits as floats have bits they are no disguise, and what is shorter by trial is taken.
+NumberCoding chooseNumbers(const volume::BrickGrid& grid, const volume::Field& field, const KnownModel* last,
+                           const FrameOptions& options);
+
 /// The bound that samples of a frame are held to beside their codes.
 double boundOf(const FrameRecord& frame, const FrameOptions& options);
 

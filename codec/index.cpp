@@ -1,5 +1,6 @@
 #include "codec/index.h"
 
+#include "codec/lzma.h"
 #include "volume/error.h"
 
 #include <algorithm>
@@ -172,7 +173,11 @@ std::vector<IndexPage> readPages(std::span<const std::byte> bytes, const Header&
         const auto part = bytes.subspan(at.offset, at.length);
         require(checksum(part) == at.checksum, "the index is damaged (checksum)", file);
         upTo.index = at; // what a page names lies before it
-        pages.push_back(RecordReader(part, upTo, shape, file).page());
+        Bytes records;
+        const bool compact = (header.features & kCompact) != 0;
+        require(!compact || decodePiece(part, records) == DecodeStatus::Ok, "a page of the index cannot be decoded",
+                file);
+        pages.push_back(RecordReader(compact ? records : part, upTo, shape, file).page());
         places.push_back(at);
         const Block before = pages.back().previousPage;
         if (before == Block{}) break;
@@ -284,7 +289,7 @@ Bytes serialise(const IndexPage& page, std::uint32_t features) {
             out.put(segment.checksum);
         }
     }
-    return out.bytes;
+    return (features & kCompact) != 0 ? encodePiece(out.bytes) : out.bytes;
 }
 
 Index readIndex(std::span<const std::byte> bytes, const Header& header, const IndexShape& shape,

@@ -1,6 +1,7 @@
 #include "codec/metadata.h"
 
 #include "codec/container.h"
+#include "codec/lzma.h"
 #include "codec/options_json.h"
 #include "volume/error.h"
 
@@ -205,11 +206,11 @@ Metadata metadataFromJson(std::string_view text, bool hasTimes, const std::strin
 
 } // namespace
 
-Bytes serialise(const Metadata& metadata) {
-    constexpr int kEffort = 19;
+Bytes serialise(const Metadata& metadata, std::uint32_t features) {
     const std::string text = toJson(metadata);
     const auto plain = std::as_bytes(std::span(text));
-    const Bytes packed = Compressor(kEffort).compress(plain);
+    if ((features & kCompact) != 0) return encodePiece(plain);
+    const Bytes packed = Compressor(kMostEffort).compress(plain);
     Bytes out;
     appendU32(out, static_cast<std::uint32_t>(text.size()));
     if (packed.empty())
@@ -219,11 +220,18 @@ Bytes serialise(const Metadata& metadata) {
     return out;
 }
 
-Metadata parseMetadata(std::span<const std::byte> block, std::uint32_t version, const std::string& file) {
+Metadata parseMetadata(std::span<const std::byte> block, std::uint32_t version, std::uint32_t features,
+                       const std::string& file) {
     const auto textOf = [](std::span<const std::byte> bytes) {
         return std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size());
     };
     if (version < kGrowingVersion) return metadataFromJson(textOf(block), true, file);
+    if ((features & kCompact) != 0) {
+        Bytes text;
+        if (decodePiece(block, text) != DecodeStatus::Ok)
+            throw Error("the metadata cannot be decoded", file, "metadata");
+        return metadataFromJson(textOf(text), false, file);
+    }
     constexpr std::size_t kMost = std::size_t(1) << 26, kLeastRatio = 4096; // no text shrinks more than that
     if (block.size() < 4) throw Error("the metadata is truncated", file, "metadata");
     const std::size_t length = readU32(block.data());

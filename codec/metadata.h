@@ -24,10 +24,11 @@ struct Metadata {
     bool operator==(const Metadata&) const = default;
 };
 
-/// A block of the file: the JSON of all but the times, through zstd.
-Bytes serialise(const Metadata& metadata);
+/// A block of the file: the JSON of all but the times, as short as the features of the header allow.
+Bytes serialise(const Metadata& metadata, std::uint32_t features);
 /// Reads that; of versions 1 and 2 plain JSON, times and all. Throws Error naming `file` and the JSON path when a key
 /// is missing, has the wrong type or an impossible value.
-Metadata parseMetadata(std::span<const std::byte> block, std::uint32_t version, const std::string& file);
+Metadata parseMetadata(std::span<const std::byte> block, std::uint32_t version, std::uint32_t features,
+                       const std::string& file);
 
 } // namespace tessera::codec

@@ -211,6 +211,10 @@ Bytes serialise(const Model& model) {
 }
 
 DecodeStatus parseModel(std::span<const std::byte> bytes, int levels, Model& model) {
+    if (bytes.empty()) {
+        model = makeModel(Histogram(levels), 0, 1);
+        return DecodeStatus::Ok;
+    }
     BitReader in(bytes);
     model = {};
     model.levels = levels;

@@ -66,7 +66,7 @@ Model makeModel(const Histogram& histogram, int shift, int mostTables);
 double bitsWith(const Model& model, const Histogram& histogram);
 
 Bytes serialise(const Model& model);
-/// Reads a model for `levels` levels; the bytes must end with it.
+/// Reads a model for `levels` levels; the bytes must end with it. No bytes at all are the model of no tokens.
 DecodeStatus parseModel(std::span<const std::byte> bytes, int levels, Model& model);
 
 /// The model laid out for decoding: entry [table << kProbabilityBits | slot] holds the token in bits 0..7, its

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <numeric>
 #include <optional>
 #include <vector>
 
@@ -35,8 +36,17 @@ bool isWhole(std::byte mode) {
 }
 
 Bytes encodeWhole(std::span<const std::uint32_t> codes, Compressor& compressor) {
-    const std::vector<std::int32_t> palette = paletteOf(codes);
+    std::vector<std::int32_t> palette = paletteOf(codes);
     std::vector<std::uint32_t> symbols(codes.size());
+    // With few gaps, a palette without any is shorter: all its steps are alike.
+    constexpr std::int64_t kMostGaps = 64;
+    if (palette.size() > 1) {
+        const auto colours = std::int64_t(palette.size()), range = std::int64_t(palette.back()) - palette.front() + 1;
+        if (range <= std::int64_t(kMostColours) && range - colours <= kMostGaps && range - colours > 0) {
+            palette.resize(std::size_t(range));
+            std::iota(palette.begin(), palette.end(), palette.front());
+        }
+    }
     if (palette.size() < 2) {
         for (std::size_t i = 0; i < codes.size(); ++i) symbols[i] = zigzag(codes[i]);
         Bytes whole{kWhole};

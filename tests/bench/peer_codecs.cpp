@@ -186,6 +186,9 @@ std::vector<std::string> absentCodecs() {
 #if !PEER_OPENJPEG
     names.push_back("OpenJPEG");
 #endif
+#if !PEER_FPZIP
+    names.push_back("fpzip");
+#endif
 #if !PEER_ZFP
     names.push_back("zfp");
 #endif

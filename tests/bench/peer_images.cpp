@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cstring>
+#if PEER_FPZIP
+#include <fpzip.h>
+#endif
 #if PEER_OPENJPEG
 #include <openjpeg.h>
 #endif
@@ -137,6 +140,44 @@ PeerCodec jpeg2000() {
 }
 #endif
 
+#if PEER_FPZIP
+PeerCodec fpzipCodec() {
+    const auto shaped = [](FPZ* stream, glm::ivec3 size) {
+        stream->type = FPZIP_TYPE_FLOAT;
+        stream->prec = 32;
+        stream->nx = size.x, stream->ny = size.y, stream->nz = size.z, stream->nf = 1;
+    };
+    return {"fpzip",
+            [shaped](const Samples& in) {
+                Bytes out;
+                for (std::size_t f = 0; f < in.frames() && in.type == volume::ScalarType::F32; ++f) {
+                    const std::size_t head = out.size() + sizeof(std::uint64_t);
+                    out.resize(head + 2 * in.frameBytes() + 4096);
+                    FPZ* stream = fpzip_write_to_buffer(out.data() + head, out.size() - head);
+                    shaped(stream, in.size);
+                    const std::uint64_t length = fpzip_write(stream, in.bytes.data() + f * in.frameBytes());
+                    fpzip_write_close(stream);
+                    std::memcpy(out.data() + head - sizeof length, &length, sizeof length);
+                    out.resize(head + length);
+                }
+                return out;
+            },
+            [shaped](std::span<const std::byte> coded, const Samples& like, std::span<std::byte> out) {
+                for (; !out.empty(); out = out.subspan(like.frameBytes())) {
+                    std::uint64_t length = 0;
+                    std::memcpy(&length, coded.data(), sizeof length);
+                    FPZ* stream = fpzip_read_from_buffer(coded.data() + sizeof length);
+                    shaped(stream, like.size);
+                    const bool whole = fpzip_read(stream, out.data()) != 0;
+                    fpzip_read_close(stream);
+                    if (!whole) return false;
+                    coded = coded.subspan(sizeof length + length);
+                }
+                return true;
+            }};
+}
+#endif
+
 #if PEER_ZFP
 /// One frame in the type zfp knows: floats, or whole numbers as 31 bits.
 struct ZfpFrame {
@@ -217,6 +258,9 @@ std::vector<PeerCodec> arrayCodecs() {
     std::vector<PeerCodec> codecs;
 #if PEER_OPENJPEG
     codecs.push_back(jpeg2000());
+#endif
+#if PEER_FPZIP
+    codecs.push_back(fpzipCodec());
 #endif
 #if PEER_ZFP
     codecs.push_back(zfpCodec(0));

@@ -28,7 +28,7 @@ volume::Dataset corpusDataset() {
 // Archives of every version stay readable: these files were written once; those without a number by version 1.
 TEST(Corpus, StoredArchivesStillDecode) {
     const volume::Dataset made = corpusDataset();
-    for (const char* version : {"", "-2", "-3"}) {
+    for (const char* version : {"", "-2", "-3", "-3-compact"}) {
         const Archive archive(corpus() + "fuzz_archive/cc-exact" + version + ".tsr");
         for (int p = 0; p < 3; ++p)
             for (int c = 0; c < made.info.parameters[std::size_t(p)].components; ++c) {
@@ -39,10 +39,12 @@ TEST(Corpus, StoredArchivesStillDecode) {
         for (const char* name : {"bcc-exact", "bcc-bounded", "cc-bounded"})
             EXPECT_EQ(verifyArchive(Archive(corpus() + "fuzz_archive/" + name + version + ".tsr")).damaged, 0u);
     }
-    const Archive grown(corpus() + "fuzz_archive/grown-3.tsr");
-    EXPECT_EQ(grown.commits(), 3);
-    EXPECT_EQ(grown.info().times, (std::vector<double>{0, 1.5}));
-    EXPECT_EQ(verifyArchive(grown).damaged, 0u);
+    for (const char* name : {"grown-3", "grown-3-compact"}) {
+        const Archive grown(corpus() + "fuzz_archive/" + name + ".tsr");
+        EXPECT_EQ(grown.commits(), 3);
+        EXPECT_EQ(grown.info().times, (std::vector<double>{0, 1.5}));
+        EXPECT_EQ(verifyArchive(grown).damaged, 0u);
+    }
 }
 
 /// Not a check: writes the seeds of fuzz_brick and fuzz_archive when the format changes
@@ -57,10 +59,10 @@ TEST(Corpus, DISABLED_WriteSeeds) {
             options.maxError = maxError;
             pack(made, options,
                  corpus() + "fuzz_archive/" + std::string(kStoredLatticeNames[std::size_t(lattice)]) +
-                     (maxError > 0 ? "-bounded-3.tsr" : "-exact-3.tsr"));
+                     (maxError > 0 ? "-bounded-3-compact.tsr" : "-exact-3-compact.tsr"));
         }
     // One that has grown twice.
-    const std::string grown = corpus() + "fuzz_archive/grown-3.tsr";
+    const std::string grown = corpus() + "fuzz_archive/grown-3-compact.tsr";
     for (int step = 0; step < 3; ++step) {
         const char* const name = step == 1 ? "p" : "T";
         volume::Dataset made = makeDataset({5, 4, 6}, {{name, ScalarType::F32, 1, Texture::Smooth, true, false}}, 1);
@@ -101,6 +103,18 @@ TEST(Corpus, DISABLED_WriteSeeds) {
             for (const std::byte byte : body) head.push_back(char(byte));
             writeFile(corpus() + "fuzz_brick/" + std::to_string(number++), head);
         }
+    { // all samples at once, through LZMA
+        std::vector<char> head{0, 15, 14, 13, 0, 5, char(ScalarType::U8), 0, 0, 0, 0, 1};
+        std::string digits;
+        for (int i = 0; digits.size() < std::size_t(16 * 15 * 14); ++i) digits += std::to_string(i * i / 7) + ";";
+        const std::vector<std::uint32_t> symbols(digits.begin(), digits.begin() + 16 * 15 * 14);
+        Compressor thorough(kMostEffort, true);
+        Bytes body{std::byte{5}};
+        encodeStream(symbols, thorough, body);
+        ASSERT_EQ(body[1], std::byte{7});
+        for (const std::byte byte : body) head.push_back(char(byte));
+        writeFile(corpus() + "fuzz_brick/" + std::to_string(number++), head);
+    }
     for (int seed = 0; seed < 4; ++seed) {
         std::mt19937 random(static_cast<unsigned>(seed));
         std::vector<std::int32_t> values(40 * 5 * 3);

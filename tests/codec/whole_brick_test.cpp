@@ -40,6 +40,18 @@ TEST(WholeBrick, FewWideCodesCostTheirIndices) {
     EXPECT_LE(double(encodeWhole(codes, compressor).size()), double(codes.size()) * 3 / 8);
 }
 
+TEST(WholeBrick, APaletteWithFewGapsIsWrittenWithoutAny) {
+    // Steps that are all alike cost next to nothing, whichever colours are not used.
+    std::vector<std::uint32_t> codes, gaps;
+    for (std::uint32_t i = 0; i < 20000; ++i) codes.push_back(100 + i % 200);
+    for (const std::uint32_t code : codes) gaps.push_back(code % 7 == 3 ? code + 1 : code);
+    Compressor compressor(3);
+    const Bytes bytes = encodeWhole(gaps, compressor);
+    EXPECT_EQ(bytes[0], std::byte{6});
+    EXPECT_GE(int(bytes[1]) + 1, 199);
+    EXPECT_EQ(decoded(bytes, gaps.size()), gaps);
+}
+
 TEST(WholeBrick, RefusesAnIndexBeyondThePalette) {
     // Two colours, 5 and 6; then four indices as they are.
     const auto bytes = [](std::uint8_t last) {

@@ -17,13 +17,7 @@ std::uint32_t classOf(std::uint32_t sum) {
 
 void decodeBands(const Octets& bytes, std::vector<Band>& bands, std::size_t level, const Decoder::Model& model) {
     Reader in(bytes);
-    std::size_t rawBytes = 0;
-    for (int shift = 0;; shift += 7) {
-        const auto byte = in.number(1);
-        rawBytes |= std::size_t(byte & 127) << shift;
-        if (byte < 128) break;
-    }
-    const Octets raw = in.take(rawBytes);
+    const Octets raw = in.take(in.length());
     std::size_t rawAt = 0;
     const auto takeBits = [&](int count) {
         std::uint32_t value = 0;

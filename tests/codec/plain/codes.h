@@ -30,6 +30,15 @@ struct Reader {
         return value;
     }
     std::uint32_t u32() { return std::uint32_t(number(4)); }
+    std::size_t length() { // 7 bits a byte
+        std::uint64_t value = 0;
+        for (int shift = 0;; shift += 7) {
+            need(shift < 35, "length");
+            const std::uint64_t byte = number(1);
+            value |= (byte & 127) << shift;
+            if (byte < 128) return std::size_t(value);
+        }
+    }
     double f64() { return std::bit_cast<double>(number(8)); }
     Octets take(std::size_t count) {
         need(std::size_t(end - at) >= count, "truncated");
@@ -40,6 +49,8 @@ struct Reader {
 };
 
 Octets unzstd(const Octets& packed, std::size_t size);
+/// 1.5
+Octets piece(const Octets& bytes);
 
 /// 4.2
 std::vector<std::uint32_t> stream(Reader& in, std::size_t count);

@@ -8,7 +8,7 @@
 
 namespace tessera::codec::plain {
 
-/// 1.5
+/// 4.6
 Decoder::Model Decoder::parseModel(const Piece& piece) const {
     const Octets bytes = checked(piece);
     std::size_t at = 0;
@@ -21,6 +21,12 @@ Decoder::Model Decoder::parseModel(const Piece& piece) const {
         return value;
     };
     Model model;
+    if (bytes.empty()) {
+        model.tableOf.assign(std::size_t(32 * levels_), 0);
+        model.tables.assign(1, std::vector<std::uint32_t>(141));
+        model.tables[0][0] = model.tables[0][140] = 2048;
+        return model;
+    }
     model.shift = bits(8);
     const std::uint32_t tables = bits(8);
     std::uint32_t last = 0;
@@ -60,12 +66,13 @@ Decoder::Decoder(std::vector<char> file) : file_(file.begin(), file.end()) {
         Piece found[2];
         for (Piece& part : found) part = readPiece(in);
         if (in.number(8) != XXH3_64bits(file_.data() + at, 72) || version < 1 || version > 3 ||
-            features > (version < 3 ? 0 : 1))
+            features > (version < 3 ? 0 : 3))
             return false;
         if (version < 3 ? at > 0 || end != file_.size() : end > file_.size()) return false;
         if (end <= end_) return true; // the other copy is as good or better
         version_ = version;
-        hasNotes_ = features == 1;
+        hasNotes_ = features % 2 == 1;
+        compact_ = features / 2 == 1;
         end_ = end;
         std::copy(found, found + 2, parts);
         return true;
@@ -77,7 +84,9 @@ Decoder::Decoder(std::vector<char> file) : file_(file.begin(), file.end()) {
 
     // 1.2, 1.3
     Octets json = checked(parts[0]);
-    if (version_ == 3) {
+    if (compact_) {
+        json = piece(json);
+    } else if (version_ == 3) {
         Reader in(json);
         const std::size_t length = in.u32();
         json = in.take(std::size_t(in.end - in.at));
@@ -100,7 +109,7 @@ Decoder::Decoder(std::vector<char> file) : file_(file.begin(), file.end()) {
     std::vector<Piece> covered{parts[0]};
     std::vector<Octets> pages;
     for (Piece page = parts[1];;) {
-        pages.insert(pages.begin(), checked(page));
+        pages.insert(pages.begin(), compact_ ? piece(checked(page)) : checked(page));
         covered.push_back(page);
         if (version_ < 3) break;
         Reader in(pages.front());

@@ -74,7 +74,7 @@ private:
     int brickSize_ = 0, levels_ = 0;
     std::vector<std::string> types_; ///< of the component of each frame within a time
     std::uint32_t version_ = 0;
-    bool hasNotes_ = false;
+    bool hasNotes_ = false, compact_ = false;
     std::size_t end_ = 0; ///< of the archive in the file
     std::vector<Piece> models_;
     std::vector<Mask> masks_;
