@@ -1,6 +1,7 @@
 #include "codec/brick_input.h"
 
 #include "codec/brick_access.h"
+#include "codec/extent.h"
 
 #include <algorithm>
 #include <bit>
@@ -73,11 +74,8 @@ FrameBrick rangeOf(const volume::Field& field, const BrickInput& decoded) {
         const std::size_t count = decoded.samples.size() / sizeof(T);
         if constexpr (!std::same_as<T, float>)
             if (decoded.present.empty() && count > 0) { // of the ends of the range only
-                const auto* from = reinterpret_cast<const T*>(decoded.samples.data());
-                T least = from[0], most = from[0];
-                for (std::size_t i = 0; i < count; ++i)
-                    least = std::min(least, from[i]), most = std::max(most, from[i]);
-                add(double(least)), add(double(most));
+                const Extent<T> extent = extentOf(std::span(reinterpret_cast<const T*>(decoded.samples.data()), count));
+                add(double(extent.least)), add(double(extent.most));
                 return;
             }
         for (std::size_t i = 0; i < count; ++i) {

@@ -34,7 +34,29 @@ template <class Word>
 void placeFlags(const BrickFormat& format, std::span<const std::uint8_t> present, int level, int sublattice, bool split,
                 LevelBox<Word>& out);
 
+/// The boxes of a level.
+template <class Word>
+std::span<LevelBox<Word>> boxesAt(BrickLevels<Word>& levels, const BrickFormat& format, int level) {
+    const std::size_t step = std::size_t(format.sublattices());
+    return std::span(levels).subspan(std::size_t(level) * step, step);
+}
+
 /// The seven bands of details of each box, or the boxes themselves where undivided or of the coarsest level.
 template <class Word> std::vector<Band<Word>> bandsOf(std::span<LevelBox<Word>> boxes, bool coarsest);
+
+/// How the coefficients of a segment are coded: as bands, or none is other than 0; the other modes are those of streams
+/// and of whole bricks.
+inline constexpr std::byte kBands{4}, kNothing{0};
+
+/// Calls `visit(word)` for the present coefficients, band by band.
+template <class Word, class Visit> void forCoefficients(std::span<const Band<Word>> bands, Visit&& visit) {
+    for (const Band<Word>& band : bands)
+        for (int z = 0; z < band.size.z; ++z)
+            for (int y = 0; y < band.size.y; ++y) {
+                const std::ptrdiff_t at = z * band.slicePitch + y * band.rowPitch;
+                for (int x = 0; x < band.size.x; ++x)
+                    if (!band.present || band.present[at + x] != 0) visit(band.values[at + x]);
+            }
+}
 
 } // namespace tessera::codec

@@ -1,9 +1,11 @@
 #include "codec/frame_feed.h"
 
+#include "codec/extent.h"
 #include "codec/stopwatch.h"
 
 #include <algorithm>
 #include <cmath>
+#include <concepts>
 #include <limits>
 #include <utility>
 
@@ -30,6 +32,12 @@ std::vector<Range> rangesOf(const std::vector<Field>& components) {
         Range range = kNothing;
         volume::dispatch(field.type, [&]<class T>(T) {
             const auto stored = field.as<T>();
+            if constexpr (!std::same_as<T, float>)
+                if (!field.mask && !stored.empty()) {
+                    const Extent<T> extent = extentOf(std::span<const T>(stored));
+                    range = {static_cast<double>(extent.least), static_cast<double>(extent.most)};
+                    return;
+                }
             for (std::size_t i = 0; i < stored.size(); ++i)
                 if (field.present(i)) include(range, static_cast<double>(stored[i]));
         });
