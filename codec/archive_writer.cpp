@@ -224,7 +224,10 @@ void ArchiveWriter::addFrame(int parameter, int component, int time, const volum
     taken.bricks.resize(brickCount(grid));
 
     const std::size_t bricks = brickCount(grid), levels = std::size_t(grid.levels);
-    SeenFrame seen{time, frame.keepsAbsent, impl_->keepsFrames ? field : volume::Field(), {}, {}};
+    // Of the last time nothing is wanted but how far it moved.
+    const bool isLast = std::size_t(time + impl_->step()) >= info.times.size();
+    const bool keeps = impl_->keepsFrames && (before || !isLast);
+    SeenFrame seen{time, frame.keepsAbsent, keeps ? field : volume::Field(), {}, {}};
     seen.bytes.resize(bricks);
     frame.bricks.resize(bricks);
     frame.segments.resize(bricks * levels);
@@ -261,7 +264,7 @@ void ArchiveWriter::addFrame(int parameter, int component, int time, const volum
                 }
                 taken.bricks[b].reset();
                 about.notes.importance = importance[b];
-                if (!impl_->keepsFrames) continue;
+                if (!keeps) continue;
                 putSamples(grid, brick, input.samples, seen.field);
                 if (before) about.notes.change = volume::changeOfBrick(grid, brick, before->field, seen.field);
             }
@@ -285,7 +288,7 @@ void ArchiveWriter::addFrame(int parameter, int component, int time, const volum
     frame.length = file.position() - frame.offset;
     for (std::size_t b = 0; b < bricks; ++b)
         if (repeated[b] != 0) impl_->repeats.bricks += 1, impl_->repeats.bytes += seen.bytes[b];
-    if (impl_->keepsFrames) {
+    if (keeps && !isLast) {
         seen.bricks = frame.bricks;
         impl_->lastFrames[{ofTime, time % impl_->step()}] = std::move(seen);
     }

@@ -1,7 +1,7 @@
 #include "codec/brick_input.h"
 
 #include "codec/brick_access.h"
-#include "codec/extent.h"
+#include "volume/number_extent.h"
 
 #include <algorithm>
 #include <bit>
@@ -74,7 +74,8 @@ FrameBrick rangeOf(const volume::Field& field, const BrickInput& decoded) {
         const std::size_t count = decoded.samples.size() / sizeof(T);
         if constexpr (!std::same_as<T, float>)
             if (decoded.present.empty() && count > 0) { // of the ends of the range only
-                const Extent<T> extent = extentOf(std::span(reinterpret_cast<const T*>(decoded.samples.data()), count));
+                const volume::NumberExtent<T> extent =
+                    volume::extentOfNumbers(std::span(reinterpret_cast<const T*>(decoded.samples.data()), count));
                 add(double(extent.least)), add(double(extent.most));
                 return;
             }

@@ -1,7 +1,7 @@
 #include "codec/frame_feed.h"
 
-#include "codec/extent.h"
 #include "codec/stopwatch.h"
+#include "volume/number_extent.h"
 
 #include <algorithm>
 #include <cmath>
@@ -34,7 +34,7 @@ std::vector<Range> rangesOf(const std::vector<Field>& components) {
             const auto stored = field.as<T>();
             if constexpr (!std::same_as<T, float>)
                 if (!field.mask && !stored.empty()) {
-                    const Extent<T> extent = extentOf(std::span<const T>(stored));
+                    const volume::NumberExtent<T> extent = volume::extentOfNumbers(std::span<const T>(stored));
                     range = {static_cast<double>(extent.least), static_cast<double>(extent.most)};
                     return;
                 }

@@ -1,5 +1,6 @@
 #include "volume/brick_importance.h"
 
+#include "volume/number_extent.h"
 #include "volume/parallel.h"
 
 #include <algorithm>
@@ -169,11 +170,37 @@ struct Sums {
     }
 };
 
+/// Sum of the squares of what is left of `count` samples when the means of those a step before and behind are taken.
+double squaresOfDetails(const float* row, std::ptrdiff_t step, int count) {
+    std::array<double, 4> sums{}; // by turns, as one would wait for the one before
+    for (int x = 0; x < count; ++x) {
+        const double detail = double(row[x]) - 0.5 * (double(row[x - step]) + double(row[x + step]));
+        sums[std::size_t(x % 4)] += detail * detail;
+    }
+    return (sums[0] + sums[1]) + (sums[2] + sums[3]);
+}
+
+/// Adds a row of a brick of which everything is there; `border`: all of it lies on a face.
+void addRow(const Smoothed& from, int begin, int end, int y, int z, bool border, double borderWeight, Sums& sums) {
+    const auto step = std::ptrdiff_t(from.size.x), slice = step * from.size.y;
+    const float* row = from.values.data() + from.index({begin, y, z});
+    const int count = end - begin, first = begin == 0 ? 1 : 0, last = end == from.size.x ? count - 1 : count;
+    if (last > first) sums.details += squaresOfDetails(row + first, 1, last - first), sums.axes += last - first;
+    if (y > 0 && y + 1 < from.size.y) sums.details += squaresOfDetails(row, step, count), sums.axes += count;
+    if (z > 0 && z + 1 < from.size.z) sums.details += squaresOfDetails(row, slice, count), sums.axes += count;
+    for (int x = 0; x < count; ++x) sums.add(double(row[x]), border || x == 0 || x == count - 1 ? borderWeight : 1);
+}
+
 /// Adds what a sublattice has of the brick whose samples are [begin, end) of the halved one.
 void addBrick(const Smoothed& from, glm::ivec3 begin, glm::ivec3 end, double borderWeight, Sums& sums) {
     const std::size_t steps[] = {1, std::size_t(from.size.x), std::size_t(from.size.x) * std::size_t(from.size.y)};
     for (int z = begin.z; z < end.z; ++z)
-        for (int y = begin.y; y < end.y; ++y)
+        for (int y = begin.y; y < end.y; ++y) {
+            if (from.coverage.empty()) {
+                const bool border = y == begin.y || y == end.y - 1 || z == begin.z || z == end.z - 1;
+                addRow(from, begin.x, end.x, y, z, border, borderWeight, sums);
+                continue;
+            }
             for (int x = begin.x; x < end.x; ++x) {
                 const glm::ivec3 at(x, y, z);
                 const std::size_t i = from.index(at);
@@ -191,6 +218,7 @@ void addBrick(const Smoothed& from, glm::ivec3 begin, glm::ivec3 end, double bor
                 }
                 sums.add(double(from.values[i]), border ? borderWeight : 1);
             }
+        }
 }
 
 /// Of labels: the entropy of their numbers.
@@ -230,7 +258,13 @@ Extent extentOf(const Field& field) {
         const auto samples = field.as<T>();
         T lo{}, hi{};
         bool any = false;
-        for (std::size_t i = 0; i < samples.size(); ++i) {
+        if constexpr (!std::same_as<T, float>)
+            if (!field.mask && !samples.empty()) {
+                const NumberExtent<T> all = extentOfNumbers(std::span<const T>(samples));
+                lo = all.least, hi = all.most, any = true;
+            }
+        const std::size_t seen = any ? samples.size() : 0;
+        for (std::size_t i = seen; i < samples.size(); ++i) {
             bool there = field.present(i);
             if constexpr (std::same_as<T, float>) there = there && std::isfinite(samples[i]);
             if (!there) {

@@ -4,12 +4,12 @@
 #include <cstddef>
 #include <span>
 
-namespace tessera::codec {
+namespace tessera::volume {
 
-template <class T> struct Extent { T least{}, most{}; };
+template <class T> struct NumberExtent { T least{}, most{}; };
 
 /// The least and the largest of numbers, of which there is at least one. In lanes that do not wait for each other.
-template <class T> Extent<T> extentOf(std::span<const T> numbers) {
+template <class T> NumberExtent<T> extentOfNumbers(std::span<const T> numbers) {
     constexpr std::size_t kLanes = 64 / sizeof(T);
     std::array<T, kLanes> least, most;
     least.fill(numbers[0]);
@@ -22,7 +22,7 @@ template <class T> Extent<T> extentOf(std::span<const T> numbers) {
             most[i] = from[i] > most[i] ? from[i] : most[i];
         }
     }
-    Extent<T> all{numbers[0], numbers[0]};
+    NumberExtent<T> all{numbers[0], numbers[0]};
     const auto include = [&all](T lo, T hi) {
         if (lo < all.least) all.least = lo;
         if (hi > all.most) all.most = hi;
@@ -32,4 +32,4 @@ template <class T> Extent<T> extentOf(std::span<const T> numbers) {
     return all;
 }
 
-} // namespace tessera::codec
+} // namespace tessera::volume
