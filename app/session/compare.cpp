@@ -80,19 +80,33 @@ GridShape gridFor(int count, double width, double height) {
     return best;
 }
 
+namespace {
+
+/// Text as a field of a CSV file.
+std::string csvField(const std::string& text) {
+    if (text.find_first_of(",\"\n") == std::string::npos) return text;
+    std::string quoted = "\"";
+    for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+    return quoted + "\"";
+}
+
+} // namespace
+
+std::string questionsCsv(const std::vector<CompareQuestion>& questions) {
+    std::string csv = "question,answer,seconds\n";
+    for (const CompareQuestion& each : questions)
+        csv += csvField(each.text) + "," + csvField(each.answer) + "," +
+               (each.seconds > 0 ? toJson(each.seconds).dump() : std::string()) + "\n";
+    return csv;
+}
+
 std::string compareCsv(const std::vector<CompareRow>& rows) {
-    const auto field = [](const std::string& text) {
-        if (text.find_first_of(",\"\n") == std::string::npos) return text;
-        std::string quoted = "\"";
-        for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-        return quoted + "\"";
-    };
     const auto number = [](double value) { return std::isfinite(value) ? toJson(value).dump() : std::string("inf"); };
     std::string csv = "variant,differs,reference,ms per frame,samples,texture bytes,stored bytes,"
                       "maximum (of 255),RMSE (of 255),PSNR (dB),SSIM,samples that differ,largest error of a sample,"
                       "RMSE of samples,failure\n";
     for (const CompareRow& row : rows) {
-        csv += field(row.name) + "," + field(row.changes) + "," + (row.reference ? "yes" : "no");
+        csv += csvField(row.name) + "," + csvField(row.changes) + "," + (row.reference ? "yes" : "no");
         for (const double value : {row.milliseconds, row.samples, row.bytes, row.storedBytes})
             csv += "," + number(value);
         for (const double value : {row.maximum, row.rmse, row.psnr, row.ssim})
@@ -100,7 +114,7 @@ std::string compareCsv(const std::vector<CompareRow>& rows) {
         for (const double value : {row.data ? double(row.data->differing) : 0, row.data ? row.data->largest : 0,
                                    row.data ? row.data->rms : 0})
             csv += "," + (row.data ? number(value) : std::string());
-        csv += "," + field(row.failure) + "\n";
+        csv += "," + csvField(row.failure) + "\n";
     }
     return csv;
 }

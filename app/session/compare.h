@@ -43,5 +43,7 @@ struct CompareRow {
     std::optional<volume::SourceDifference> data; ///< of the first layer's samples, where both have them
 };
 std::string compareCsv(const std::vector<CompareRow>& rows);
+/// Questions, answers and the seconds they took.
+std::string questionsCsv(const std::vector<CompareQuestion>& questions);
 
 } // namespace tessera::app

@@ -372,6 +372,18 @@ struct CompareVariant {
 };
 
 /// The 3D scene in several variants: cameras, time, cursor and brushes are those of the session.
+/// A question to whoever compares, and the answer.
+struct CompareQuestion {
+    std::string text, answer;
+    double seconds = 0; ///< from when it came on screen to the answer; 0 = not answered
+    bool operator==(const CompareQuestion&) const = default;
+    static void describe(auto& self, auto&& visit) {
+        visit(self.text, FieldInfo{.key = "text", .unit = "", .doc = "What is asked"});
+        visit(self.answer, FieldInfo{.key = "answer", .unit = "", .doc = "What was answered"});
+        visit(self.seconds, FieldInfo{.key = "seconds", .unit = "s", .doc = "How long that took"});
+    }
+};
+
 struct CompareView {
     static constexpr std::string_view kType = "compare";
     CompareMode mode = CompareMode::Grid;
@@ -382,6 +394,7 @@ struct CompareView {
     float blinkSeconds = 0.8f;
     float differenceTop = 0; ///< difference of 8-bit colours shown brightest; 0 = the largest there is
     bool showTable = true;
+    std::vector<CompareQuestion> questions;
     bool operator==(const CompareView&) const = default;
     static void describe(auto& self, auto&& visit) {
         visit(self.mode, FieldInfo{.key = "mode",
@@ -414,6 +427,10 @@ struct CompareView {
                                             .doc = "Difference of colours shown brightest; 0 = the largest that occurs",
                                             .range = Range{0, 255}});
         visit(self.showTable, FieldInfo{.key = "table", .unit = "", .doc = "List what differs, costs and errors"});
+        visit(self.questions, FieldInfo{.key = "questions",
+                                        .unit = "",
+                                        .doc = "Questions to whoever compares, with their answers",
+                                        .hidden = true});
     }
 };
 

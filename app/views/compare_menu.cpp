@@ -95,6 +95,10 @@ void drawCompareToolbar(ViewContext& context, CompareView& view) {
     }
     ImGui::SameLine(0, em() * 0.5f);
     ImGui::Checkbox("Table", &view.showTable);
+    ImGui::SameLine(0, em() * 0.5f);
+    if (ImGui::Button("Ask")) view.questions.emplace_back();
+    if (ImGui::IsItemHovered())
+        tooltip("Adds a question to whoever compares; the session keeps the answer and how long it took");
     if (view.mode == CompareMode::Blink) {
         ImGui::SameLine(0, em() * 0.8f);
         ImGui::SetNextItemWidth(em() * 6);

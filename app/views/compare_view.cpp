@@ -5,6 +5,7 @@
 #include "app/views/brush_list.h"
 #include "app/views/camera_hand.h"
 #include "app/views/compare_menu.h"
+#include "app/views/compare_questions.h"
 #include "app/views/figure.h"
 #include "app/views/view_parts.h"
 
@@ -20,6 +21,7 @@ struct CompareCache : ViewCache {
     std::vector<CameraHand> hands;
     CompareMenuState menu;
     std::vector<CompareRow> rows;
+    QuestionClock questions;
     bool swiping = false;
     double blinkStart = 0;
     std::size_t blinkShown = 0;
@@ -197,7 +199,8 @@ void drawCompareView(ViewContext& context, const std::string& pane, CompareView&
 
     const ImVec2 room = ImGui::GetContentRegionAvail(), at = ImGui::GetCursorScreenPos();
     const float table = view.showTable ? std::min(compareTableHeight(count), room.y * 0.5f) : 0;
-    const ImVec2 area{std::floor(room.x), std::floor(room.y - table)};
+    const float asked = std::min(questionsHeight(view), room.y * 0.3f);
+    const ImVec2 area{std::floor(room.x), std::floor(room.y - table - asked)};
     if (area.x < 24 || area.y < 24) return;
     const bool grid = view.mode == CompareMode::Grid || view.mode == CompareMode::Difference;
     const GridShape shape = grid ? gridFor(static_cast<int>(count), double(area.x), double(area.y)) : GridShape{};
@@ -233,6 +236,10 @@ void drawCompareView(ViewContext& context, const std::string& pane, CompareView&
         ImGui::SetCursorScreenPos({at.x, at.y + area.y});
         drawCompareTable(view, cache.rows);
     }
+    ImGui::SetCursorScreenPos({at.x, at.y + area.y + table});
+    std::vector<std::string> names;
+    for (std::size_t i = 0; i < count; ++i) names.push_back(nameOf(frame, i));
+    drawQuestions(view, cache.questions, names);
 }
 
 } // namespace tessera::app

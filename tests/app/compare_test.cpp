@@ -15,6 +15,12 @@ Session withLayer() {
     return session;
 }
 
+TEST(CompareQuestions, AnswersAreATable) {
+    EXPECT_EQ(questionsCsv({{.text = "Where, and \"why\"?", .answer = "volume", .seconds = 12.5},
+                            {.text = "Else?", .answer = "", .seconds = 0}}),
+              "question,answer,seconds\n\"Where, and \"\"why\"\"?\",volume,12.5\nElse?,,\n");
+}
+
 TEST(Compare, AVariantIsTheSessionWithItsChanges) {
     const Session session = withLayer();
     CompareVariant variant{"",

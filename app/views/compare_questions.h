@@ -1,0 +1,23 @@
+#pragma once
+
+#include "app/session/view_state.h"
+
+#include <string>
+#include <vector>
+
+/// Questions put to whoever compares pictures ("Which spot is hotter?"), answered below them. The session keeps the
+/// answers and how long each took.
+namespace tessera::app {
+
+/// When the questions came on screen.
+struct QuestionClock {
+    double shown = -1; ///< s, of ImGui's clock
+};
+
+/// Height in pixels of the questions of a view, 0 where there are none.
+float questionsHeight(const CompareView& view);
+
+/// A row for each: the question, the answer (one of the variants' names, or any words), the time it took.
+void drawQuestions(CompareView& view, QuestionClock& clock, const std::vector<std::string>& variants);
+
+} // namespace tessera::app
