@@ -192,7 +192,8 @@ void drawCompareTable(CompareView& view, const std::vector<CompareRow>& rows) {
     std::vector<const char*> names{"Variant", "What differs", "ms", "Samples", "Texture"};
     if (stored) names.push_back("File");
     if (compared) names.push_back("Differ");
-    if (!ImGui::BeginTable("compare", static_cast<int>(names.size()) + 4, kFlags)) return;
+    const float height = std::min(compareTableHeight(rows.size()), ImGui::GetContentRegionAvail().y);
+    if (!ImGui::BeginTable("compare", static_cast<int>(names.size()) + 4, kFlags, {0, height})) return;
     for (const char* name : {"Max.", "RMSE", "PSNR [dB]", "SSIM"}) names.push_back(name);
     ImGui::TableSetupScrollFreeze(1, 1);
     for (std::size_t i = 0; i < names.size(); ++i)
