@@ -83,13 +83,15 @@ ProgramRecipe Renderer::Impl::prepare(ViewTarget& target, const Scene& scene, Ra
     return recipe();
 }
 
-/// Rasterises the geometry for a picture of this size, unless that is what the target has.
+/// Rasterises the geometry for a picture of this size, unless that is what the target has; of a reduced one the two
+/// nearest surfaces.
 void Renderer::Impl::geometry(ViewTarget& target, const Scene& scene, const RayPlan& plan, glm::ivec2 size, int pass) {
     const int peels = peelsOf(scene);
     if (peels == 0) return;
+    const int most = size == target.size ? peels : std::min(peels, 2);
     if (target.geometrySize != size || target.geometryPass != pass) {
         target.geometry.resize(target.size, peels);
-        geometryPass.draw(target.geometry, scene, source->info(), size, target.size, rayUnits(plan).light, grain,
+        geometryPass.draw(target.geometry, scene, source->info(), size, target.size, most, rayUnits(plan).light, grain,
                           pixelJitter(pass));
         target.geometrySize = size;
         target.geometryPass = pass;
@@ -369,7 +371,7 @@ void Renderer::Impl::refine(ViewTarget& target, const Scene& scene, const FrameR
     if (!request.wait && !fast && (request.moving || !(target.reducedValid || target.fullValid))) {
         double shrink = 4, stepFactor = 2;
         if (target.msPerPixel > 0)
-            for (double candidate : {1.5, 2.0, 3.0, 4.0, 6.0, 8.0, 11.0}) {
+            for (double candidate : {1.5, 2.0, 3.0, 4.0, 6.0, 8.0}) {
                 shrink = candidate;
                 stepFactor = candidate < 2 ? 1.5 : candidate > 6 ? 3 : 2;
                 if (expected / (shrink * shrink * stepFactor) < left()) break;

@@ -172,8 +172,9 @@ void drawPlane(ViewContext& context, SlicesCache& cache, const SlicesView& view,
     if (!target) target = context.renderer.makeTarget();
     vis::FrameRequest request;
     request.size = pixels;
-    request.budgetMs = scene.render.limits.frameTime / 3.0; // three pictures share a frame
     request.moving = !context.headless && (context.interacting || session.animation.playing);
+    // Three pictures share a frame, and in motion leave half of it to those in space.
+    request.budgetMs = scene.render.limits.frameTime / (request.moving ? 6.0 : 3.0);
     request.wait = context.headless;
     const vis::FrameStatus status = context.renderer.render(*target, scene, request);
     if (!status.complete) context.busy = true;

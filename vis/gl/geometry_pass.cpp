@@ -172,7 +172,7 @@ const Program& GeometryPass::program(const Scene& scene, bool lines, int look) {
 }
 
 void GeometryPass::draw(GeometryBuffer& buffer, const Scene& scene, const volume::DatasetInfo& info, glm::ivec2 size,
-                        glm::ivec2 pictureSize, int lightUnit, GrainTexture& grain, glm::dvec2 jitter) {
+                        glm::ivec2 pictureSize, int most, int lightUnit, GrainTexture& grain, glm::dvec2 jitter) {
     const int peels = peelsOf(scene);
     if (peels == 0) return;
     table(scene, info);
@@ -241,6 +241,7 @@ void GeometryPass::draw(GeometryBuffer& buffer, const Scene& scene, const volume
         glClearNamedFramebufferfv(framebuffer, GL_COLOR, 0, empty);
         glClearNamedFramebufferfv(framebuffer, GL_COLOR, 1, nowhere);
         glClearNamedFramebufferfv(framebuffer, GL_DEPTH, 0, &far);
+        if (peel >= most) continue;
         // A peel that shows nothing is the last: what follows it is not drawn.
         if (peel > 0) glBeginConditionalRender(buffer.shown[std::size_t(peel) - 1].name(), GL_QUERY_WAIT);
         glBeginQuery(GL_ANY_SAMPLES_PASSED, buffer.shown[std::size_t(peel)].name());

@@ -30,9 +30,10 @@ public:
     /// Fills the buffer's lower left `size` pixels with what a picture of that size shows; every pixel's centre is
     /// moved by `jitter` pixels. Light is looked up in the texture units from `lightUnit` on (light_uniforms.h).
     /// Nothing is drawn, and no layer made, when the scene has no geometry. `pictureSize`: of the picture at rest, for
-    /// what looks measure in pixels; `grain`: called where one draws with it.
+    /// what looks measure in pixels; `most`: surfaces behind one another that are drawn, further layers stay empty;
+    /// `grain`: called where one draws with it.
     void draw(GeometryBuffer& buffer, const Scene& scene, const volume::DatasetInfo& info, glm::ivec2 size,
-              glm::ivec2 pictureSize, int lightUnit, GrainTexture& grain, glm::dvec2 jitter = glm::dvec2(0));
+              glm::ivec2 pictureSize, int most, int lightUnit, GrainTexture& grain, glm::dvec2 jitter = glm::dvec2(0));
 
 private:
     struct Uploaded {
