@@ -15,7 +15,7 @@ namespace {
 // Below these bits a sample the matches that zstd finds are worth a glance at so many samples.
 constexpr double kTryWhole = 3.0;
 constexpr std::size_t kGlance = 1 << 15;
-constexpr double kGlanceAsShort = 1.5, kNearlyAsShort = 1.15, kPerhapsAsShort = 1.6; // the last before LZMA
+constexpr double kGlanceAsShort = 1.5, kNearlyAsShort = 1.15, kPerhapsAsShort = 1.3; // the last before LZMA
 constexpr double kSparse = 0.75;                                                     // bits a sample
 constexpr int kLeastEffort = 1, kSomeEffort = 3;
 

@@ -60,5 +60,23 @@ TEST(RealVolumes, ComeBackBitForBitAndWithinTheBound) {
     }
 }
 
+// Headers and models, LZMA, and floats that only look like decimals: what these sizes stand and fall with.
+TEST(RealVolumes, ArchivesAreAsShortAsTheyWere) {
+    const TemporaryFolder folder;
+    const std::pair<const char*, double> ratios[] = {{"fuel", 76}, {"silicium", 7}, {"nucleon", 5.2}, {"isabel", 1.55}};
+    std::size_t found = 0;
+    for (const std::string& file : sidecars())
+        for (const auto& [name, least] : ratios) {
+            if (std::filesystem::path(file).filename().string().rfind(name, 0) != 0) continue;
+            volume::Dataset dataset = volume::openFiles({file}, {});
+            PackOptions options;
+            options.lattice = StoredLattice::CC;
+            const PackSummary summary = pack(dataset, options, folder / "exact.tsr");
+            EXPECT_GE(double(summary.sourceBytes) / double(summary.archiveBytes), least) << name;
+            ++found;
+        }
+    if (found == 0) GTEST_SKIP() << "no volumes under $TESSERA_DATA";
+}
+
 } // namespace
 } // namespace tessera::codec
