@@ -152,6 +152,7 @@ void Workbench::drawStatusBar(float height) {
             text += "   textures " + formatNumber(double(use.textureBytes) / kMebibyte, 0.1) + " of " +
                     formatNumber(double(use.textureBudget) / kMebibyte, 1) + " MiB, " +
                     formatCount(use.bricksResident) + " bricks";
+            if (use.bricksKept > 0) text += ", " + formatCount(use.bricksKept) + " kept from other times";
             if (use.bricksWanted > 0) text += ", " + formatCount(use.bricksWanted) + " to come";
         }
         ImGui::TextUnformatted(text.c_str());

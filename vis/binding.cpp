@@ -235,7 +235,7 @@ void Renderer::Impl::bindBetween(ViewTarget& target, RayPlan& plan, const std::v
 bool Renderer::Impl::bindField(BoundField& field, const ChannelKey& key) {
     const ChannelTexture* found = residency.find(key);
     const ChannelTexture& texture = found ? *found : residency.nothing();
-    field.texture = texture.texture.name();
+    field.texture = texture.texture ? texture.texture->name() : residency.nothing().texture->name();
     field.level = texture.level;
     field.encoding = texture.encoding;
     field.textureSize = texture.size;
@@ -246,7 +246,7 @@ bool Renderer::Impl::bindField(BoundField& field, const ChannelKey& key) {
         field.atlasSize = texture.atlas->size();
     } else if (residency.bricked()) {
         field.pages = residency.nothingPages();
-        field.atlas = texture.texture.name();
+        field.atlas = texture.texture->name();
     }
     return found != nullptr;
 }

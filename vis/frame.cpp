@@ -252,22 +252,38 @@ void Renderer::Impl::sayLimits(const Scene& scene) {
     limits = now;
 }
 
+namespace {
+
+/// What was drawn so far is out of date.
+void redraw(ViewTarget& target) {
+    target.reducedValid = target.fullValid = target.stillDone = false;
+    target.tilesDone = 0;
+    target.geometrySize = {0, 0};
+}
+
+} // namespace
+
 /// Brings cube maps and light volume up to date and binds them; false while a light volume is still being made.
 bool Renderer::Impl::bindLight(ViewTarget& target, const Scene& scene, const FrameRequest& request,
                                const RayPlan& plan) {
     sayLimits(scene);
+    bool surrounded = true;
     const GLuint first = GLuint(rayUnits(plan).light);
     if (usesMaps(scene.lighting)) {
-        target.lightMaps.update(scene.lighting, scene.camera);
+        const std::uint64_t former = target.lightMaps.version();
+        surrounded = target.lightMaps.update(scene.lighting, scene.camera, request.wait,
+                                             [&](const std::string& message) { messages.push_back(message); });
+        if (target.mapsPending && target.lightMaps.version() != former) redraw(target);
+        target.mapsPending = !surrounded;
         glBindTextureUnit(first, target.lightMaps.diffuse());
         glBindTextureUnit(first + 1, target.lightMaps.specular());
         glEnable(GL_TEXTURE_CUBE_MAP_SEAMLESS);
     }
-    if (!scene.lighting.shadows.any()) return true;
-    if (plan.layers.empty()) { // slices alone: nothing casts a shadow
+    if (!scene.lighting.shadows.any()) return surrounded;
+    if (plan.layers.empty() && (plan.peels == 0 || !scene.lighting.shadows.meshes)) { // slices alone cast no shadow
         glBindTextureUnit(first + 2, noShadow.name());
         glBindTextureUnit(first + 3, noLight.name());
-        return true;
+        return surrounded;
     }
     ProgramRecipe recipe = rayRecipe(plan, scene, source->grid(), false);
     recipe.vertex = "screen.vert.glsl";
@@ -280,17 +296,15 @@ bool Renderer::Impl::bindLight(ViewTarget& target, const Scene& scene, const Fra
     const auto setUniforms = [&](const Program& program) {
         setRayUniforms(program, plan, scene, source->info(), source->grid(), target.size, 1);
     };
-    target.light.update(scene, worldFrame(source->info().bounds, scene.stretch),
-                        {residency.revision(), target.lastTime.value_or(0)}, *answer.program, setUniforms,
-                        vertices.name(), request.budgetMs / 3, request.wait);
+    target.light.update(scene, source->info(), {residency.revision(), target.lastTime.value_or(0)}, *answer.program,
+                        setUniforms, vertices.name(), request.budgetMs / 3, request.wait);
     if (target.lightVersion != target.light.version()) {
         target.lightVersion = target.light.version();
-        target.reducedValid = target.fullValid = target.stillDone = false;
-        target.tilesDone = 0;
+        redraw(target);
     }
     glBindTextureUnit(first + 2, target.light.version() > 0 ? target.light.visible() : noShadow.name());
     glBindTextureUnit(first + 3, target.light.scattered() != 0 ? target.light.scattered() : noLight.name());
-    return target.light.ready();
+    return surrounded && target.light.ready();
 }
 
 /// The background alone: nothing is loaded, or the program does not compile.

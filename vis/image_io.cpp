@@ -163,21 +163,30 @@ void writePng(const std::string& path, const Image& image, const std::map<std::s
     file.commit();
 }
 
-Image readPng(const std::string& path, std::map<std::string, std::string>* texts) {
+std::vector<std::uint8_t> readBytes(const std::string& path) {
     std::error_code failed;
     if (std::filesystem::is_directory(path, failed)) throw Error("is a folder", path);
     std::ifstream in(path, std::ios::binary);
     if (!in) throw Error("cannot be opened", path);
+    return {std::istreambuf_iterator<char>(in), {}};
+}
+
+Image decodePng(std::span<const std::uint8_t> bytes, const std::string& name,
+                std::map<std::string, std::string>* texts) {
     Stream stream;
-    stream.bytes.assign(std::istreambuf_iterator<char>(in), {});
-    if (stream.bytes.size() < 8 || png_sig_cmp(stream.bytes.data(), 0, 8) != 0) throw Error("is not a PNG", path);
+    stream.bytes.assign(bytes.begin(), bytes.end());
+    if (stream.bytes.size() < 8 || png_sig_cmp(stream.bytes.data(), 0, 8) != 0) throw Error("is not a PNG", name);
     Image image;
     std::vector<png_bytep> rows;
     std::map<std::string, std::string> found;
     if (!decode(stream, image, rows, texts != nullptr ? &found : nullptr))
-        throw Error("damaged PNG: " + stream.error, path, "byte " + std::to_string(stream.at));
+        throw Error("damaged PNG: " + stream.error, name, "byte " + std::to_string(stream.at));
     if (texts != nullptr) *texts = std::move(found);
     return image;
+}
+
+Image readPng(const std::string& path, std::map<std::string, std::string>* texts) {
+    return decodePng(readBytes(path), path, texts);
 }
 
 } // namespace tessera::vis

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <glm/vec2.hpp>
 #include <map>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,13 @@ std::vector<std::uint8_t> encodePng(const Image& image, const std::map<std::stri
 /// Writes a PNG with compressed international text chunks (iTXt, UTF-8), atomically: a temporary file, then rename.
 /// Throws Error when the file cannot be written.
 void writePng(const std::string& path, const Image& image, const std::map<std::string, std::string>& texts = {});
+
+/// Decodes a PNG of any kind as RGBA, and its text chunks. Throws Error naming `name` when it is not a PNG or damaged.
+Image decodePng(std::span<const std::uint8_t> bytes, const std::string& name,
+                std::map<std::string, std::string>* texts = nullptr);
+
+/// The bytes of a file. Throws Error when it cannot be opened.
+std::vector<std::uint8_t> readBytes(const std::string& path);
 
 /// Reads a PNG of any kind as RGBA, and its text chunks. Throws Error when it is not a PNG or damaged.
 Image readPng(const std::string& path, std::map<std::string, std::string>* texts = nullptr);

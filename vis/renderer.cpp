@@ -79,6 +79,7 @@ FrameStatus Renderer::render(ViewTarget& target, const Scene& scene, const Frame
         const RenderLimits& limits = scene.render.limits;
         impl_->residency.setBudgets(std::min(impl_->options.textureBudget, std::size_t(limits.textureMemory) << 20),
                                     std::min(impl_->options.memoryBudget, std::size_t(limits.brickMemory) << 20));
+        impl_->residency.setKeptChange(double(limits.keptChange));
         impl_->residency.beginFrame();
         impl_->residency.update(request.wait ? ~std::size_t(0) : kUploadPerFrame);
         plan = planRays(scene, impl_->source->info());

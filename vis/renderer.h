@@ -20,7 +20,9 @@ struct RendererOptions {
     /// Largest channel, in texels, kept as one texture: cheapest to sample. Larger ones are cut into bricks.
     std::size_t denseTexels = std::size_t(32) << 20;
     bool exactTextures = false; ///< 32-bit float bricks instead of 16-bit: for comparison with the reference
-    bool countSamples = false;  ///< instead of colours, readLinear gives how often each ray reconstructed a layer (red)
+    /// Bytes of data textures that the driver is taken to have; more is refused as a driver does. For tests.
+    std::size_t driverMemory = ~std::size_t(0);
+    bool countSamples = false; ///< instead of colours, readLinear gives how often each ray reconstructed a layer (red)
 };
 
 /// How a picture is wanted now.
@@ -42,10 +44,11 @@ struct FrameStatus {
     std::size_t samples = 0, bytes = 0;
 };
 
-/// Bytes in use and allowed; bricks in textures, bricks that a view wants and that are not there yet, jobs under way.
+/// Bytes in use and allowed; bricks in textures, bricks that a view wants and that are not there yet, jobs under way;
+/// of this data set so far, bricks uploaded, and bricks of another time that were shown with texels that were there.
 struct ResidencyInfo {
     std::size_t textureBytes = 0, textureBudget = 0, memoryBytes = 0, memoryBudget = 0;
-    int bricksResident = 0, bricksWanted = 0, bricksQueued = 0;
+    int bricksResident = 0, bricksWanted = 0, bricksQueued = 0, bricksUploaded = 0, bricksKept = 0;
 };
 
 /// What lies under a pixel: the first sample along the ray with noticeable opacity.

@@ -6,6 +6,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/trigonometric.hpp>
+#include <glm/vec2.hpp>
+#include <numeric>
 #include <random>
 #include <vector>
 
@@ -37,40 +41,54 @@ template <class Value> std::vector<double> everySample(const Lattice& lattice, c
     return values;
 }
 
-} // namespace
-
-LatticeError latticeError(const std::function<double(glm::dvec3)>& signal, LatticeKind kind, double spacing,
-                          LatticeFilter filter, const Box& box, std::size_t points, unsigned seed) {
-    const int slices = kind == LatticeKind::BCC ? 2 : 1;
+/// The samples of a signal, filtered where the filter wants it.
+Piece samplesOf(const std::function<double(glm::dvec3)>& signal, LatticeKind kind, double spacing, LatticeFilter filter,
+                const Box& box) {
     Piece piece;
     piece.lattice.kind = kind;
     piece.lattice.spacing = glm::dvec3(spacing);
     piece.lattice.origin = box.lo - double(kMargin) * spacing;
     piece.lattice.size = glm::ivec3(glm::ceil(box.size() / spacing)) + 2 * kMargin + 1;
-    piece.lattice.size.z *= slices;
+    piece.lattice.size.z *= kind == LatticeKind::BCC ? 2 : 1;
     const Lattice& lattice = piece.lattice;
     piece.values = everySample(lattice, [&](glm::ivec3 at) { return signal(lattice.position(at)); });
-    const LevelGeometry geometry{kind, 1, 0};
     if (filter == LatticeFilter::Quasi || filter == LatticeFilter::Quintic) {
-        const Prefiltered filtered(piece, geometry);
+        const Prefiltered filtered(piece, LevelGeometry{kind, 1, 0});
         piece.values = everySample(lattice, [&](glm::ivec3 at) { return filtered(at).value; });
     }
+    return piece;
+}
 
+double reconstructed(const Piece& piece, LatticeFilter filter, glm::dvec3 cells) {
+    const LevelGeometry geometry{piece.lattice.kind, 1, 0};
+    const Blend blend = filter == LatticeFilter::Tetrahedral ? tetrahedral(geometry, piece, cells)
+                        : filter == LatticeFilter::Cosine    ? cosineWeighted(geometry, piece, cells)
+                        : filter == LatticeFilter::Quintic   ? quinticBox(geometry, piece, cells)
+                                                             : linear(geometry, piece, cells);
+    return blend.sum / blend.coverage;
+}
+
+std::vector<glm::dvec3> randomPoints(const Box& box, std::size_t points, unsigned seed) {
     std::mt19937_64 random(seed);
     std::vector<glm::dvec3> positions(points);
     for (glm::dvec3& p : positions)
         for (int axis = 0; axis < 3; ++axis)
             p[axis] = box.lo[axis] + box.size()[axis] * double(random() >> 11) * 0x1p-53;
+    return positions;
+}
+
+} // namespace
+
+LatticeError latticeError(const std::function<double(glm::dvec3)>& signal, LatticeKind kind, double spacing,
+                          LatticeFilter filter, const Box& box, std::size_t points, unsigned seed) {
+    const Piece piece = samplesOf(signal, kind, spacing, filter, box);
+    const std::vector<glm::dvec3> positions = randomPoints(box, points, seed);
     std::vector<double> errors(points);
     parallelFor(
         points,
         [&](std::size_t i) {
-            const glm::dvec3 cells = lattice.toCells(positions[i]);
-            const Blend blend = filter == LatticeFilter::Tetrahedral ? tetrahedral(geometry, piece, cells)
-                                : filter == LatticeFilter::Cosine    ? cosineWeighted(geometry, piece, cells)
-                                : filter == LatticeFilter::Quintic   ? quinticBox(geometry, piece, cells)
-                                                                     : linear(geometry, piece, cells);
-            errors[i] = std::abs(blend.sum / blend.coverage - signal(positions[i]));
+            errors[i] =
+                std::abs(reconstructed(piece, filter, piece.lattice.toCells(positions[i])) - signal(positions[i]));
         },
         1024);
     LatticeError out;
@@ -80,8 +98,30 @@ LatticeError latticeError(const std::function<double(glm::dvec3)>& signal, Latti
     }
     out.rms = std::sqrt(out.rms / double(points));
     const glm::dvec3 size = box.size();
-    out.samples = size.x * size.y * size.z / (spacing * spacing * spacing) * slices;
+    out.samples = size.x * size.y * size.z / (spacing * spacing * spacing) * (kind == LatticeKind::BCC ? 2 : 1);
     return out;
+}
+
+double latticeGradientError(const std::function<double(glm::dvec3)>& signal,
+                            const std::function<glm::dvec3(glm::dvec3)>& slope, LatticeKind kind, double spacing,
+                            LatticeFilter filter, GradientSpan span, const Box& box, std::size_t points,
+                            unsigned seed) {
+    const Piece piece = samplesOf(signal, kind, spacing, filter, box);
+    const std::vector<glm::dvec3> positions = randomPoints(box, points, seed);
+    const GradientStencil stencil = gradientStencil(kind, span);
+    std::vector<glm::dvec2> angles(points); // times weight; weight
+    parallelFor(
+        points,
+        [&](std::size_t i) {
+            const auto value = [&](glm::dvec3 cells) { return std::optional(reconstructed(piece, filter, cells)); };
+            const glm::dvec3 found = gradient(value, piece.lattice.toCells(positions[i]), stencil);
+            const glm::dvec3 wanted = slope(positions[i]);
+            const double angle = std::atan2(glm::length(glm::cross(found, wanted)), glm::dot(found, wanted));
+            angles[i] = glm::dvec2(angle, 1) * glm::length(wanted);
+        },
+        1024);
+    const glm::dvec2 sum = std::accumulate(angles.begin(), angles.end(), glm::dvec2(0));
+    return glm::degrees(sum.x / sum.y);
 }
 
 LatticeError latticeError4(const std::function<double(glm::dvec4)>& signal, LatticeKind4 kind, double spacing,

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "volume/gradient.h"
 #include "volume/lattice4.h"
 
 #include <cstddef>
@@ -24,7 +25,14 @@ struct LatticeError {
 LatticeError latticeError(const std::function<double(glm::dvec3)>& signal, LatticeKind kind, double spacing,
                           LatticeFilter filter, const Box& box, std::size_t points = 60000, unsigned seed = 1);
 
-/// The same in space and time, for a signal on the unit cube of space and time: reconstructed linearly between frames
+/// How far the directions of reconstructed gradients lie from those of `slope`, the gradient of the signal, in degrees:
+/// the mean over the same points, each counted by the length of its slope.
+double latticeGradientError(const std::function<double(glm::dvec3)>& signal,
+                            const std::function<glm::dvec3(glm::dvec3)>& slope, LatticeKind kind, double spacing,
+                            LatticeFilter filter, GradientSpan span, const Box& box, std::size_t points = 20000,
+                            unsigned seed = 1);
+
+/// The error of latticeError() in space and time, for a signal on the unit cube of space and time: reconstructed linearly between frames
 /// and samples, on D4* as the mean of both grids (volume/series.h), as they are or prefiltered. `spacing` is the cell
 /// edge of one grid along all four axes. Points lie a quarter inside the cube.
 LatticeError latticeError4(const std::function<double(glm::dvec4)>& signal, LatticeKind4 kind, double spacing,

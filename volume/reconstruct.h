@@ -251,28 +251,4 @@ template <class Samples> Sample nearest(const LevelGeometry& geometry, const Sam
     return best;
 }
 
-/// Half width of the central differences, in cells: at CC samples the usual difference of the two neighbours.
-inline constexpr double kGradientStep = 0.5;
-
-/// Gradient, per cell and axis, of `value(cells) -> std::optional<double>` by central differences; one-sided where one
-/// side is absent, 0 where both are. Divide by Lattice::spacing for physical units.
-template <class Value> glm::dvec3 gradient(const Value& value, glm::dvec3 cells, double step = kGradientStep) {
-    glm::dvec3 out(0);
-    std::optional<double> centre;
-    for (int axis = 0; axis < 3; ++axis) {
-        glm::dvec3 offset(0);
-        offset[axis] = step;
-        std::optional<double> lower = value(cells - offset), upper = value(cells + offset);
-        double width = 2 * step;
-        if (lower.has_value() != upper.has_value()) {
-            if (!centre) centre = value(cells);
-            if (!centre) continue;
-            (lower ? upper : lower) = centre;
-            width = step;
-        }
-        if (lower && upper) out[axis] = (*upper - *lower) / width;
-    }
-    return out;
-}
-
 } // namespace tessera::volume

@@ -43,8 +43,8 @@ void addRows4(BenchTable& table) {
         const auto error = volume::latticeError4(movingBlob, row.kind, row.spacing / 20, row.prefilter);
         if (row.kind == LatticeKind4::CC) quadrilinear = error;
         table.rows.push_back({"moving blob", row.name, decimals(100 * error.samples / quadrilinear.samples, 1),
-                              decimals(error.rms, 5), decimals(error.max, 4),
-                              decimals(error.rms / quadrilinear.rms, 2)});
+                              decimals(error.rms, 5), decimals(error.max, 4), decimals(error.rms / quadrilinear.rms, 2),
+                              "", ""});
     }
 }
 
@@ -69,7 +69,8 @@ BenchTable benchLattice() {
     };
     BenchTable table;
     table.name = "lattice";
-    table.columns = {"signal", "lattice and filter", "samples %", "RMS error", "largest error", "RMS / CC linear"};
+    table.columns = {"signal",        "lattice and filter", "samples %",   "RMS error",
+                     "largest error", "RMS / CC linear",    "normals deg", "wide deg"};
     // 41^3 samples over [-1, 1]^3; the corners beyond 0.8 are left out, where the rings pass the Nyquist frequency.
     const volume::Box box{glm::dvec3(-0.8), glm::dvec3(0.8)};
     const double cell = 2.0 / 40;
@@ -79,10 +80,17 @@ BenchTable benchLattice() {
         for (const LatticeRow& row : rows) {
             const auto error = volume::latticeError([&](glm::dvec3 p) { return signal(p); }, row.kind,
                                                     row.spacing * cell, row.filter, box);
+            const auto angle = [&](volume::GradientSpan span) {
+                return decimals(volume::latticeGradientError([&](glm::dvec3 p) { return signal(p); },
+                                                             [&](glm::dvec3 p) { return signal.gradient(p); }, row.kind,
+                                                             row.spacing * cell, row.filter, span, box),
+                                2);
+            };
             if (row.kind == LatticeKind::CC && row.filter == LatticeFilter::Linear) trilinear = error;
             table.rows.push_back({"Marschner-Lobb " + decimals(fM, 0), row.name,
                                   decimals(100 * error.samples / trilinear.samples, 1), decimals(error.rms, 5),
-                                  decimals(error.max, 4), decimals(error.rms / trilinear.rms, 2)});
+                                  decimals(error.max, 4), decimals(error.rms / trilinear.rms, 2),
+                                  angle(volume::GradientSpan::Neighbours), angle(volume::GradientSpan::Wide)});
         }
     }
     addRows4(table);

@@ -190,6 +190,9 @@ SessionDocument parseSession(std::string_view text, const std::string& file) {
     document.session = sessionFromJson(known, file, &document.unknown);
     for (const JsonIssue& issue : document.unknown)
         document.messages.push_back((file.empty() ? "" : file + ": ") + issue.path + ": unknown key, kept");
+    std::string& picture = document.session.lighting.environment.picture;
+    if (!picture.empty())
+        picture = absolutePath((absolutePath(file).parent_path() / picture).string()).generic_string();
     document.history.reset(document.session);
     if (const auto history = document.raw.find("history"); history != document.raw.end()) {
         try {
@@ -214,6 +217,11 @@ std::string printSession(const SessionDocument& document, const std::string& pat
         file.absolutePath = where.generic_string();
         const fs::path relative = where.lexically_relative(folder);
         file.path = relative.empty() ? where.generic_string() : relative.generic_string();
+    }
+    std::string& picture = session.lighting.environment.picture;
+    if (!picture.empty()) {
+        const fs::path relative = absolutePath(picture).lexically_relative(folder);
+        picture = relative.empty() ? absolutePath(picture).generic_string() : relative.generic_string();
     }
     session.animation.playing = false;
     Json json = toJson(session);

@@ -18,7 +18,8 @@ struct SessionDocument {
     Json raw;                          ///< as read, migrated: tells which keys a layout leaves out
 };
 
-/// Reads session text. Throws Error with `file` and the JSON path or line; nothing is half taken over.
+/// Reads session text. Throws Error with `file` and the JSON path or line; nothing is half taken over. The picture of
+/// the surroundings, relative to the file's folder, becomes absolute.
 SessionDocument parseSession(std::string_view text, const std::string& file);
 
 /// Reads a session file. Throws Error.
@@ -27,7 +28,7 @@ SessionDocument loadSession(const std::string& path);
 /// True when a JSON text is a session, not e.g. the sidecar of a raw file. Never throws.
 bool looksLikeSession(std::string_view text);
 
-/// Session text as it is saved at `path` (data files relative to its folder): sorted keys, one item per line.
+/// Session text as it is saved at `path` (files that it names relative to its folder): sorted keys, one item per line.
 std::string printSession(const SessionDocument& document, const std::string& path);
 
 /// Writes a session atomically (temporary file, then rename). Throws MachineError when it cannot.

@@ -92,6 +92,7 @@ struct TransferView {
     std::string channel; ///< "" = the channel of the first layer
     bool logHistogram = true;
     bool visibility = false;
+    bool boundaries = false; ///< of a function that is a curve
     bool operator==(const TransferView&) const = default;
     static void describe(auto& self, auto&& visit) {
         visit(self.channel, FieldInfo{.key = "channel",
@@ -103,6 +104,9 @@ struct TransferView {
         visit(self.visibility, FieldInfo{.key = "visibility",
                                          .unit = "",
                                          .doc = "Show how much of what one sees comes from which values"});
+        visit(self.boundaries, FieldInfo{.key = "boundaries",
+                                         .unit = "",
+                                         .doc = "Make the curve from boundaries: their emphasis is edited"});
     }
 };
 

@@ -229,7 +229,13 @@ bool drawText(const WidgetContext& context, const FieldInfo& info, std::string& 
         return chooseChannel(idOf(info).c_str(), context.info, value, "its own colour");
     if (info.refersTo == "optionalChannel") return chooseChannel(idOf(info).c_str(), context.info, value, "none");
     if (info.refersTo == "colormap") return chooseColormap(idOf(info).c_str(), value);
-    return ImGui::InputText(idOf(info).c_str(), &value);
+    if (info.refersTo != "path" || !context.browse) return ImGui::InputText(idOf(info).c_str(), &value);
+    ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x - ImGui::GetFrameHeight() -
+                            ImGui::GetStyle().ItemInnerSpacing.x);
+    const bool changed = ImGui::InputText(idOf(info).c_str(), &value);
+    ImGui::SameLine(0, ImGui::GetStyle().ItemInnerSpacing.x);
+    if (ImGui::Button(("..." + idOf(info)).c_str(), {ImGui::GetFrameHeight(), 0})) (*context.browse)();
+    return changed;
 }
 
 bool drawTexts(const WidgetContext& context, const FieldInfo& info, std::vector<std::string>& values) {

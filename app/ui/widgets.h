@@ -20,6 +20,7 @@ struct WidgetContext {
     float labelShare = 0.4f;                   ///< of the width
     std::string path = {};                     ///< of what is drawn, a JSON pointer into the session; "" = not in it
     const std::function<void(const std::string& path)>* menu = nullptr; ///< of a right click on a label with a path
+    const std::function<void()>* browse = nullptr;                      ///< asks for a file for a text that names one
 
     WidgetContext at(std::string place) const {
         WidgetContext out = *this;
@@ -42,7 +43,7 @@ bool drawBool(const WidgetContext& context, const FieldInfo& info, bool& value);
 bool drawNumber(const WidgetContext& context, const FieldInfo& info, std::optional<Range> scale, double* values,
                 int count, bool integer);
 bool drawChoice(const WidgetContext& context, const FieldInfo& info, int& index);
-/// Free text, or a choice of parameter or colour map.
+/// Free text, a choice of parameter or colour map, or a file.
 bool drawText(const WidgetContext& context, const FieldInfo& info, std::string& value);
 bool drawTexts(const WidgetContext& context, const FieldInfo& info, std::vector<std::string>& values);
 bool drawColor(const WidgetContext& context, const FieldInfo& info, float* rgb);

@@ -245,7 +245,17 @@ void drawLayersView(ViewContext& context, const std::string& pane, LayersView& v
         drawBrushList(context);
         drawContextStyles(context, widgets);
     }
-    if (ImGui::CollapsingHeader("Light")) drawDescribed(session.lighting, widgets.at("/lighting"));
+    if (ImGui::CollapsingHeader("Light")) {
+        const std::function<void()> browse = [&] {
+            context.askFile("Picture of the surroundings", [](Session& now, const std::string& file) {
+                now.lighting.environment.kind = vis::Environment::Picture;
+                now.lighting.environment.picture = file;
+            });
+        };
+        WidgetContext light = widgets.at("/lighting");
+        light.browse = &browse;
+        drawDescribed(session.lighting, light);
+    }
     if (ImGui::CollapsingHeader("Paper")) {
         bool paper = session.paper.has_value();
         if (drawBool(widgets, {.key = "paper", .unit = "", .doc = "Draw on paper of your own choice"}, paper)) {

@@ -26,10 +26,9 @@ struct TransferCache : ViewCache {
     VisibilityFeed visibility;
     RegionPage regions;
     BoundaryPage boundaries;
-    bool boundary = false; ///< the curve is made from boundaries: the page that edits their emphasis
-    std::string shown;     ///< function that the pages were last drawn for
-    int rangeEnd = 0;      ///< end of the range that is dragged: -1 low, 1 high
-    double grab = 0;       ///< from the mouse to that end, in values
+    std::string shown; ///< function that the pages were last drawn for
+    int rangeEnd = 0;  ///< end of the range that is dragged: -1 low, 1 high
+    double grab = 0;   ///< from the mouse to that end, in values
 };
 
 /// The layer whose own function a name is, null if none.
@@ -89,7 +88,7 @@ void drawRange(vis::TransferFunction& function, Range data, float width) {
 }
 
 /// What is edited: the curve over values, regions, or the emphasis of boundaries that makes the curve.
-void drawPages(TransferCache& cache, vis::TransferFunction& function) {
+void drawPages(TransferCache& cache, TransferView& view, vis::TransferFunction& function) {
     const auto page = [&](const char* name, bool chosen, const char* help) {
         if (chosen) ImGui::PushStyleColor(ImGuiCol_Button, ImGui::GetStyleColorVec4(ImGuiCol_ButtonActive));
         const bool pressed = ImGui::Button(name);
@@ -98,20 +97,20 @@ void drawPages(TransferCache& cache, vis::TransferFunction& function) {
         return pressed && !chosen;
     };
     const bool curve = function.kind == vis::TransferKind::Curve;
-    if (page("curve", curve && !cache.boundary, "Opacity from the value, by a curve drawn by hand")) {
+    if (page("curve", curve && !view.boundaries, "Opacity from the value, by a curve drawn by hand")) {
         function.kind = vis::TransferKind::Curve;
-        cache.boundary = false;
+        view.boundaries = false;
     }
     ImGui::SameLine(0, em() * 0.2f);
     if (page("regions", !curve, "Opacity from value and gradient magnitude, by regions of their plane")) {
         function.kind = vis::TransferKind::Regions;
-        cache.boundary = false;
+        view.boundaries = false;
     }
     ImGui::SameLine(0, em() * 0.2f);
-    if (page("boundary", curve && cache.boundary,
+    if (page("boundary", curve && view.boundaries,
              "Opacity from the distance to a boundary between materials; makes a new curve")) {
         function.kind = vis::TransferKind::Curve;
-        cache.boundary = cache.boundaries.apply = true;
+        view.boundaries = cache.boundaries.apply = true;
         cache.boundaries.from.reset();
     }
 }
@@ -199,13 +198,13 @@ void drawControls(ViewContext& context, TransferCache& cache, TransferView& view
     if (wide) ImGui::SameLine(0, em());
     drawRange(function, data, std::min(em() * 16, room));
     if (room > em() * 30) ImGui::SameLine(0, em());
-    drawPages(cache, function);
+    drawPages(cache, view, function);
     if (function.kind == vis::TransferKind::Regions) {
         if (room > em() * 30) ImGui::SameLine(0, em());
         drawGradientTop(function);
         return;
     }
-    if (cache.boundary) return;
+    if (view.boundaries) return;
     if (room > em() * 70) ImGui::SameLine(0, em());
     for (std::size_t i = 0; i < std::size(kOpacityPresetNames); ++i) {
         if (i > 0) ImGui::SameLine(0, em() * 0.2f);
@@ -394,7 +393,7 @@ void drawTransferView(ViewContext& context, const std::string& pane, TransferVie
     const std::string name = functionName(context.session, view, shown.name);
     vis::TransferFunction& function = transferOf(context.session, name);
     const bool regions = function.kind == vis::TransferKind::Regions;
-    if (!regions && !cache.boundary) {
+    if (!regions && !view.boundaries) {
         drawPlot(context, cache, view, info, now, pane);
         return;
     }

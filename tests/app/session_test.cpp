@@ -223,6 +223,18 @@ TEST_F(SessionFileTest, FindsDataAfterTheFolderMoved) {
     EXPECT_EQ(found.missing[0].wanted.bytes, 5);
 }
 
+TEST_F(SessionFileTest, ThePictureOfTheSurroundingsMovesWithTheSession) {
+    write("one/pictures/sky.hdr", "#?RADIANCE");
+    SessionDocument document;
+    document.session.lighting.environment.kind = vis::Environment::Picture;
+    document.session.lighting.environment.picture = in("one/pictures/sky.hdr");
+    saveSession(document, in("one/a.tessera.json"));
+    EXPECT_EQ(Json::parse(readText(in("one/a.tessera.json")))["lighting"]["environment"]["picture"],
+              "pictures/sky.hdr");
+    fs::rename(folder / "one", folder / "two");
+    EXPECT_EQ(loadSession(in("two/a.tessera.json")).session.lighting.environment.picture, in("two/pictures/sky.hdr"));
+}
+
 TEST(HistoryTest, UndoAllAndRedoAllOfRandomEdits) {
     std::mt19937 random(5);
     Session session = defaultSession(cellInfo(), {});

@@ -33,6 +33,12 @@ const Mode kModes[] = {
      [](Scene& s) {
          s.layers = {{"", true, VolumeLayer{.channel = "a", .density = 3}}};
      }},
+    {"wide gradients",
+     [](Scene& s) {
+         s.layers = {{"", true, VolumeLayer{.channel = "a", .density = 3}},
+                     {"", true, IsoLayer{.channel = "a", .value = 317, .opacity = 0.7f}}};
+         s.render.gradient = volume::GradientSpan::Wide;
+     }},
     {"iso",
      [](Scene& s) {
          s.layers = {{"", true, IsoLayer{.channel = "a", .value = 317, .opacity = 0.7f}}};
@@ -45,7 +51,8 @@ const Mode kModes[] = {
          s.lighting.lights = {
              Light{.color = {1, 0.9f, 0.7f}, .intensity = 1.5f},
              Light{.kind = LightKind::Point, .color = {0.4f, 0.6f, 1}, .position = {0.6f, 0.2f, -0.4f}}};
-     }},
+     },
+     kOutliers, 1.5 * kRmse}, // narrow highlights of normals whose differences span one sample distance
     {"many lights",
      [](Scene& s) {
          s.layers = {{"", true, IsoLayer{.channel = "a", .value = 317}}};
@@ -72,6 +79,16 @@ const Mode kModes[] = {
          s.lighting.roughness = 0.5f;
          s.lighting.metalness = 0.4f;
          s.lighting.environment = {.kind = Environment::Sky, .strength = 0.8f, .follows = true};
+     },
+     kCornerOutliers, 2 * kRmse},
+    {"lit by a picture",
+     [](Scene& s) {
+         s.layers = {{"", true, IsoLayer{.channel = "a", .value = 317, .opacity = 0.7f}},
+                     {"", true, VolumeLayer{.channel = "a", .density = 3}}};
+         s.lighting.environment = {.kind = Environment::Picture,
+                                   .picture = TESSERA_SOURCE_DIR "/tests/fuzz/corpus/fuzz_light_picture/runs.hdr",
+                                   .strength = 0.7f,
+                                   .turn = 50};
      },
      kCornerOutliers, 2 * kRmse},
     {"shadows",

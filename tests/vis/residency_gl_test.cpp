@@ -273,6 +273,122 @@ TEST_F(ResidencyTest, NextTimeIsPrefetched) {
     }
 }
 
+/// Waves of which one half of the box rises with time; every change is known.
+class Rising : public volume::BrickSource {
+public:
+    explicit Rising(std::shared_ptr<const volume::BrickSource> source) : source_(std::move(source)) {
+        info_ = source_->info();
+        info_.times = {0, 1, 2, 3};
+        info_.parameters[0].ranges = {{0, 1.2}};
+    }
+    static constexpr float kRise = 0.1f;
+    bool rises(const volume::BrickKey& key) const { return key.index.x >= grid().count().x / 2; }
+    const volume::DatasetInfo& info() const override { return info_; }
+    const volume::BrickGrid& grid() const override { return source_->grid(); }
+    volume::BrickStats stats(const volume::BrickKey& key) const override {
+        volume::BrickStats stats = source_->stats(key);
+        stats.min += rises(key) ? kRise * float(key.time) : 0;
+        stats.max += rises(key) ? kRise * float(key.time) : 0;
+        return stats;
+    }
+    std::optional<volume::BrickChange> change(const volume::BrickKey& key, int toTime) const override {
+        const float moved = rises(key) ? kRise * 1.001f * float(std::abs(toTime - key.time)) : 0;
+        return volume::BrickChange{moved, moved};
+    }
+    volume::BrickSamples read(const volume::BrickKey& key) const override {
+        volume::BrickSamples samples = source_->read(key);
+        if (rises(key))
+            for (float& value : samples.values) value += kRise * float(key.time);
+        return samples;
+    }
+
+private:
+    std::shared_ptr<const volume::BrickSource> source_;
+    volume::DatasetInfo info_;
+};
+
+// As time moves on, bricks that do not move are neither read nor uploaded again; the picture is that of the new time.
+TEST_F(ResidencyTest, BricksThatDoNotMoveKeepTheirTextures) {
+    const auto source = std::make_shared<Rising>(waves());
+    vis::Renderer renderer(bricks());
+    renderer.setSource(source);
+    const vis::ViewTargetPtr target = renderer.makeTarget();
+    Scene scene = volumeScene();
+    scene.render.detail = 0;
+    int before = 0, whole = 0;
+    for (const int time : {0, 1, 3, 2, 0}) {
+        scene.time = time;
+        test::renderAll(renderer, *target, scene, {48, 40});
+        const vis::ResidencyInfo now = renderer.residency();
+        EXPECT_LT(test::maxDifference(renderer.readLinear(*target), picture(source, {}, scene, {48, 40})), 1.0 / 255);
+        if (before > 0) {
+            EXPECT_LT(now.bricksUploaded - before, 3 * whole / 4) << "half of them, their neighbours, and coarse ones";
+        }
+        if (time == 0 && before > 0) {
+            EXPECT_EQ(now.bricksUploaded, before) << "everything was still there";
+        }
+        before = now.bricksUploaded;
+        if (whole == 0) whole = before;
+    }
+    EXPECT_GT(renderer.residency().bricksKept, 20);
+    // Less would do: nothing is uploaded for a small change, and the picture lags by no more than that.
+    vis::Renderer lazy(bricks());
+    lazy.setSource(source);
+    scene.render.limits.keptChange = 0.1f;
+    scene.time = 0;
+    test::renderAll(lazy, *target, scene, {48, 40});
+    const int first = lazy.residency().bricksUploaded;
+    scene.time = 1;
+    test::renderAll(lazy, *target, scene, {48, 40});
+    EXPECT_LT(lazy.residency().bricksUploaded - first, first / 4) << "coarse ones and the first";
+}
+
+// One texture: shared where nothing at all moves, else loaded.
+TEST_F(ResidencyTest, ChannelsThatDoNotMoveShareTheirTexture) {
+    const auto source = std::make_shared<Rising>(waves());
+    vis::Renderer renderer;
+    renderer.setSource(source);
+    const vis::ViewTargetPtr target = renderer.makeTarget();
+    Scene scene = volumeScene();
+    test::renderAll(renderer, *target, scene, {48, 40});
+    const vis::ResidencyInfo first = renderer.residency();
+    scene.time = 1;
+    scene.render.limits.keptChange = 0.1f;
+    test::renderAll(renderer, *target, scene, {48, 40});
+    EXPECT_EQ(renderer.residency().bricksUploaded, first.bricksUploaded);
+    EXPECT_EQ(renderer.residency().textureBytes, first.textureBytes);
+    EXPECT_GT(renderer.residency().bricksKept, 0);
+    scene.time = 2;
+    scene.render.limits.keptChange = 0.01f;
+    test::renderAll(renderer, *target, scene, {48, 40});
+    EXPECT_EQ(renderer.residency().bricksUploaded, 2 * first.bricksUploaded);
+}
+
+// A driver that refuses memory: the picture is coarser, a message says so, and it comes back with memory.
+TEST_F(ResidencyTest, RefusedMemoryMakesThePictureCoarser) {
+    const Scene scene = volumeScene();
+    const std::vector<glm::vec4> wanted = picture(waves(), {}, scene, {48, 40});
+    for (const bool dense : {true, false}) {
+        vis::RendererOptions options = dense ? vis::RendererOptions() : bricks();
+        for (const std::size_t memory : {std::size_t(1) << 20, std::size_t(400) << 10, std::size_t(1000)}) {
+            options.driverMemory = memory;
+            vis::Renderer renderer(options);
+            renderer.setSource(waves());
+            const vis::ViewTargetPtr target = renderer.makeTarget();
+            test::renderAll(renderer, *target, scene, {48, 40});
+            EXPECT_LE(renderer.residency().textureBytes, memory * 5 / 4) << "an atlas is rounded up to a box";
+            const double difference = test::maxDifference(renderer.readLinear(*target), wanted);
+            const bool said = !renderer.takeMessages().empty();
+            if (memory < 2000) {
+                EXPECT_TRUE(said);
+                continue; // nothing fits: an empty picture
+            }
+            EXPECT_LT(difference, 0.35) << dense << ' ' << memory;
+            EXPECT_TRUE(said || difference < 1.0 / 255) << dense << ' ' << memory;
+        }
+    }
+}
+
 // Minimised windows, odd sizes and a storm of them: no GL error, and the last one is drawn.
 TEST_F(ResidencyTest, SizesComeAndGo) {
     vis::Renderer renderer;

@@ -32,6 +32,7 @@ BrickAtlas::BrickAtlas(int brickSize, int components, bool exact, std::size_t sl
     capacity_ = std::size_t(count.x) * std::size_t(count.y) * std::size_t(count.z);
     bytes_ = capacity_ * std::size_t(edge) * std::size_t(edge) * std::size_t(edge) * std::size_t(components) *
              (exact ? 4 : 2);
+    holders_.assign(capacity_, 0);
     texture_ = makeTexture3D(size_, texelFormat(components, exact), GL_LINEAR, "brick atlas");
     for (int z = count.z - 1; z >= 0; --z)
         for (int y = count.y - 1; y >= 0; --y)
@@ -42,7 +43,17 @@ std::optional<glm::ivec3> BrickAtlas::allocate() {
     if (free_.empty()) return std::nullopt;
     const glm::ivec3 slot = free_.back();
     free_.pop_back();
+    holders_[number(slot)] = 1;
     return slot;
+}
+
+void BrickAtlas::release(glm::ivec3 slot) {
+    if (--holders_[number(slot)] == 0) free_.push_back(slot);
+}
+
+std::size_t BrickAtlas::number(glm::ivec3 slot) const {
+    const glm::ivec3 at = slot / edge_, count = size_ / edge_;
+    return (std::size_t(at.z) * std::size_t(count.y) + std::size_t(at.y)) * std::size_t(count.x) + std::size_t(at.x);
 }
 
 void BrickAtlas::upload(glm::ivec3 slot, const TexelBlock& block) {

@@ -18,9 +18,12 @@ public:
     /// Room for at least `slots` bricks as far as the driver's texture size allows. Throws MachineError when refused.
     BrickAtlas(int brickSize, int components, bool exact, std::size_t slots, int maxTextureSize);
 
-    /// First texel of a free slot; nullopt when full.
+    /// First texel of a free slot, which has one holder then; nullopt when full.
     std::optional<glm::ivec3> allocate();
-    void release(glm::ivec3 slot) { free_.push_back(slot); }
+    /// One holder more: several times of a channel may show the same texels.
+    void share(glm::ivec3 slot) { ++holders_[number(slot)]; }
+    /// One holder less; the last one frees the slot.
+    void release(glm::ivec3 slot);
     void upload(glm::ivec3 slot, const TexelBlock& block);
     /// Copies a slot of another atlas of the same kind.
     void copy(const BrickAtlas& from, glm::ivec3 fromSlot, glm::ivec3 slot);
@@ -34,10 +37,13 @@ public:
 private:
     Texture texture_;
     glm::ivec3 size_{0};
+    std::size_t number(glm::ivec3 slot) const;
+
     std::size_t capacity_ = 0, bytes_ = 0;
     bool exact_ = false;
     int edge_ = 0;
     std::vector<glm::ivec3> free_;
+    std::vector<int> holders_; ///< of each slot
 };
 
 /// Where the bricks of one channel are: per brick of full resolution the first texel of its part of a slot, then its

@@ -150,15 +150,31 @@ void BrickLevels::forget(const BrickId& id) {
     if (at(id).state == State::Asked) at(id).state = State::Away;
 }
 
-void BrickLevels::put(const BrickId& id, glm::ivec3 slot, const BlockRanges& blocks) {
+void BrickLevels::arrive(const BrickId& id, glm::ivec3 slot, int time) {
     Brick& brick = at(id);
     brick.state = State::Here;
     brick.slot = slot;
+    brick.time = time;
     ++resident_;
     if (brick.call == call_) missing_ = std::max(0, missing_ - 1);
     if (id.level == grid_.levels - 1) --coarsestMissing_;
     resolve(id);
+}
+
+void BrickLevels::put(const BrickId& id, glm::ivec3 slot, const BlockRanges& blocks, int time) {
+    arrive(id, slot, time);
     if (id.level == 0) setBlocks(id.index, &blocks);
+}
+
+void BrickLevels::putFrom(const BrickId& id, const BrickLevels& other) {
+    arrive(id, other.slot(id), other.time(id));
+    if (id.level != 0) return;
+    const glm::ivec3 first = id.index * blocksPerBrick_;
+    eachIndex(first, glm::min(first + blocksPerBrick_, blocks_.count), [&](glm::ivec3 block) {
+        const std::size_t i = linear(block, blocks_.count);
+        blocks_.min[i] = other.blocks_.min[i];
+        blocks_.max[i] = other.blocks_.max[i];
+    });
 }
 
 glm::ivec3 BrickLevels::take(const BrickId& id) {

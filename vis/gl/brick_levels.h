@@ -32,7 +32,12 @@ public:
     /// Whether a brick belongs here and is not here.
     bool lacks(const BrickId& id) const { return at(id).state == State::Away || at(id).state == State::Asked; }
     bool holds(const BrickId& id) const { return at(id).state == State::Here; }
-    void put(const BrickId& id, glm::ivec3 slot, const BlockRanges& blocks);
+    void put(const BrickId& id, glm::ivec3 slot, const BlockRanges& blocks, int time);
+    /// Shows what another time of the channel shows of a brick that is here there.
+    void putFrom(const BrickId& id, const BrickLevels& other);
+    /// The time that the texels of a brick here were made of.
+    int time(const BrickId& id) const { return at(id).time; }
+    glm::ivec3 slot(const BrickId& id) const { return at(id).slot; }
     /// Takes a brick away and gives its slot; a coarser one shows in its place.
     glm::ivec3 take(const BrickId& id);
     /// A brick that could make room: `stale` if no view wanted it since `frame`.
@@ -70,6 +75,7 @@ private:
         glm::ivec3 slot{0};
         float priority = 0;
         std::uint64_t wanted = 0, call = 0;
+        int time = 0;
     };
     struct Level {
         glm::ivec3 count{0};
@@ -79,6 +85,7 @@ private:
     Brick& at(const BrickId& id) { return levels_[std::size_t(id.level)].bricks[place(id)]; }
     const Brick& at(const BrickId& id) const { return levels_[std::size_t(id.level)].bricks[place(id)]; }
     void demand(const BrickId& id, float priority, std::uint64_t frame);
+    void arrive(const BrickId& id, glm::ivec3 slot, int time);
     void resolve(const BrickId& covered);
     void resolveFine(glm::ivec3 brick);
     void setBlocks(glm::ivec3 brick, const BlockRanges* from);

@@ -42,7 +42,10 @@ void load(LoadExchange& exchange, const LoadRequest& request, LoadedTexels& out,
     if (!out.summary)
         out.summary = std::make_shared<const ChannelSummary>(
             summarize(source, request.key.channel, request.key.time, request.brick.has_value()));
-    out.encoding = makeEncoding(out.summary->all, categorical, request.exact, request.key.prefiltered);
+    const ChannelStats& own = out.summary->all;
+    const bool many = source.info().times.size() > 1;
+    out.encoding = makeEncoding(many ? commonStats(own, source.info().channelRange(channel)) : own, categorical,
+                                request.exact, request.key.prefiltered);
     out.encoding.coverage = out.encoding.coverage || request.coverage;
 
     std::atomic<bool> damaged = false;

@@ -35,6 +35,7 @@ void Residency::setSource(std::shared_ptr<const volume::BrickSource> source) {
     guestsOf_ = nullptr;
     exchange_.reset();
     ++revision_;
+    uploaded_ = kept_ = 0;
     if (!source) return;
     exchange_ = std::make_shared<LoadExchange>();
     exchange_->source = source;
@@ -115,9 +116,10 @@ void Residency::want(const ChannelKey& key, double priority, bool coarseFirst,
         request.brick = glm::ivec3(0);
         entry.loading = true;
         add(priority - 1e6, std::move(request));
-    } else if (!entry.shown || entry.shown->level > level) {
+    } else if (const int finest = std::max(level, entry.finest); !entry.shown || entry.shown->level > finest) {
+        if (!entry.shown && reuseWhole(key, entry)) return;
         const bool coarse = !entry.shown && coarseFirst;
-        request.level = coarse ? grid.levels - 1 : level;
+        request.level = coarse ? grid.levels - 1 : finest;
         entry.loading = true;
         add(coarse ? priority - 1e6 : priority, std::move(request));
     }
@@ -125,17 +127,21 @@ void Residency::want(const ChannelKey& key, double priority, bool coarseFirst,
 
 void Residency::queueBricks(const ChannelKey& key, Entry& entry, double priority) {
     const ChannelTexture& shown = *entry.shown;
-    const int room = kBricksInFlight - entry.bricksInFlight;
-    if (room <= 0 || (shown.outOfRoom && (!waiting_ || entry.stuck))) return;
-    for (const BrickId& id : shown.bricks->ask(std::size_t(room))) {
-        ++entry.bricksInFlight;
-        LoadRequest request;
-        request.key = key;
-        request.level = id.level;
-        request.brick = id.index;
-        request.summary = entry.summary;
-        request.coverage = entry.coverage;
-        add(priority + double(shown.bricks->priority(id)), std::move(request));
+    if (shown.outOfRoom && (!waiting_ || entry.stuck)) return;
+    while (entry.bricksInFlight < kBricksInFlight) {
+        const std::vector<BrickId> asked = shown.bricks->ask(std::size_t(kBricksInFlight - entry.bricksInFlight));
+        if (asked.empty()) return;
+        for (const BrickId& id : asked) {
+            if (reuseBrick(key, entry, id)) continue;
+            ++entry.bricksInFlight;
+            LoadRequest request;
+            request.key = key;
+            request.level = id.level;
+            request.brick = id.index;
+            request.summary = entry.summary;
+            request.coverage = entry.coverage;
+            add(priority + double(shown.bricks->priority(id)), std::move(request));
+        }
     }
 }
 
@@ -157,9 +163,9 @@ const ChannelTexture* Residency::find(const ChannelKey& key) const {
 /// One texel, or one page, of nothing.
 void Residency::makeNothing() {
     nothing_ = {};
-    nothing_.texture = makeTexture3D(glm::ivec3(1), GL_RGBA16, GL_LINEAR, "nothing");
+    nothing_.texture = std::make_shared<const Texture>(makeTexture3D(glm::ivec3(1), GL_RGBA16, GL_LINEAR, "nothing"));
     const std::uint16_t zero[4] = {0, 0, 0, 0};
-    glTextureSubImage3D(nothing_.texture.name(), 0, 0, 0, 0, 1, 1, 1, GL_RGBA, GL_UNSIGNED_SHORT, zero);
+    glTextureSubImage3D(nothing_.texture->name(), 0, 0, 0, 0, 1, 1, 1, GL_RGBA, GL_UNSIGNED_SHORT, zero);
     nothing_.encoding.coverage = true;
     nothing_.size = glm::ivec3(1);
     nothing_.wholeBlocks = blockGrid(exchange_->source->grid());
@@ -172,7 +178,7 @@ bool Residency::settled(const ChannelKey& key) const {
     const Entry& entry = found->second;
     if (entry.failed) return true;
     if (!entry.shown) return false;
-    if (!entry.shown->bricks) return entry.shown->level <= textureLevel();
+    if (!entry.shown->bricks) return entry.shown->level <= std::max(textureLevel(), entry.finest);
     const bool stays = entry.shown->outOfRoom && (!waiting_ || entry.stuck);
     return stays || (entry.shown->bricks->drawable() && entry.shown->bricks->missing() == 0);
 }
@@ -188,10 +194,12 @@ int Residency::missing(const ChannelKey& key) const {
 bool Residency::uploadWhole(Upload& upload, Entry& entry, std::size_t& bytes) {
     LoadedTexels& item = upload.item;
     const TexelBlock& block = item.block;
-    if (!upload.texture)
+    if (!upload.texture) {
+        reserve(block.bytes());
         upload.texture = makeTexture3D(block.size, texelFormat(block.components, item.encoding.exact), GL_LINEAR,
                                        "channel " + std::to_string(item.key.channel) + " time " +
                                            std::to_string(item.key.time) + " level " + std::to_string(item.level));
+    }
     const std::size_t perSlice = block.bytes() / std::size_t(block.size.z);
     const int slices = int(std::clamp<std::size_t>(bytes / perSlice, 1, std::size_t(block.size.z - upload.slices)));
     glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
@@ -204,8 +212,9 @@ bool Residency::uploadWhole(Upload& upload, Entry& entry, std::size_t& bytes) {
     if (upload.slices < block.size.z) return false;
 
     ChannelTexture made;
-    made.texture = std::move(upload.texture);
+    made.texture = std::make_shared<const Texture>(std::move(upload.texture));
     made.level = item.level;
+    made.madeOf = item.key.time;
     made.encoding = item.encoding;
     made.size = block.size;
     made.bytes = block.bytes();
@@ -213,6 +222,7 @@ bool Residency::uploadWhole(Upload& upload, Entry& entry, std::size_t& bytes) {
         item.level == 0 ? std::move(item.block.blocks) : onBlockGrid(exchange_->source->grid(), item.block.blocks);
     entry.coverage = item.encoding.coverage;
     entry.shown = std::move(made);
+    if (item.level == 0) uploaded_ += int(texelCount(exchange_->source->grid().count()));
     return true;
 }
 
@@ -259,6 +269,12 @@ void Residency::update(std::size_t bytes) {
                 entry.summary = upload.item.summary;
                 entry.failed = upload.item.failed;
             }
+        } catch (const MachineError& error) {
+            if (refused(upload.item)) continue;
+            exchange_->say(error.what());
+            entry.loading = false;
+            entry.failed = !entry.shown;
+            if (entry.shown && entry.shown->bricks) entry.shown->outOfRoom = entry.stuck = true;
         } catch (const Error& error) {
             exchange_->say(error.what());
             entry.loading = false;
@@ -295,12 +311,9 @@ void Residency::drop(std::map<ChannelKey, Entry>::iterator entry) {
 
 void Residency::evict() {
     std::vector<std::pair<std::uint64_t, ChannelKey>> idle;
-    std::size_t total = 0;
-    for (const auto& [components, list] : atlases_)
-        for (const auto& atlas : list) total += atlas->bytes();
+    std::size_t total = textureBytes();
     for (const auto& [key, entry] : entries_) {
         if (!entry.shown) continue;
-        total += entry.shown->bytes;
         if (!entry.shown->bricks && entry.used + kFramesInUse < frame_ && !entry.loading)
             idle.emplace_back(entry.used, key);
     }
@@ -308,9 +321,47 @@ void Residency::evict() {
     for (const auto& [used, key] : idle) {
         if (total <= options_.textureBudget) return;
         const auto entry = entries_.find(key);
-        total -= entry->second.shown->bytes;
         drop(entry);
+        total = textureBytes();
     }
+}
+
+std::size_t Residency::textureBytes() const {
+    std::size_t total = 0;
+    for (const auto& [components, list] : atlases_)
+        for (const auto& atlas : list) total += atlas->bytes();
+    for (const auto& [key, entry] : entries_) // of a shared texture each counts its part
+        if (entry.shown && entry.shown->texture)
+            total += entry.shown->bytes / std::size_t(std::max(1L, entry.shown->texture.use_count()));
+    return total;
+}
+
+/// Refuses, as a driver does, what RendererOptions::driverMemory has no room for.
+void Residency::reserve(std::size_t bytes) const {
+    if (options_.driverMemory < bytes || textureBytes() > options_.driverMemory - bytes)
+        throw MachineError("the graphics driver has no memory for a texture of " + std::to_string(bytes >> 20) +
+                           " MiB");
+}
+
+/// The driver has no memory for a whole channel: channels that no view uses now give way, or it is shown coarser.
+/// True where that leaves something to try.
+bool Residency::refused(const LoadedTexels& item) {
+    if (item.brick) return false;
+    std::vector<ChannelKey> idle;
+    for (const auto& [key, entry] : entries_)
+        if (entry.shown && !entry.shown->bricks && entry.used + 1 < frame_ && !(key == item.key)) idle.push_back(key);
+    for (const ChannelKey& key : idle) drop(entries_.find(key));
+    if (!idle.empty()) return true; // once more
+    Entry& entry = entries_.at(item.key);
+    if (item.level + 1 >= exchange_->source->grid().levels) return false;
+    exchange_->say("the graphics driver has no memory for full resolution; " +
+                   exchange_->source->info().channels()[std::size_t(item.key.channel)].name + " is shown coarser");
+    entry.finest = item.level + 1;
+    entry.summary = item.summary;
+    entry.loading = false;
+    uploads_.pop_front();
+    ++revision_;
+    return true;
 }
 
 ResidencyInfo Residency::info() const {
@@ -320,12 +371,12 @@ ResidencyInfo Residency::info() const {
     if (!exchange_) return info;
     info.memoryBytes = exchange_->bricks->bytes();
     info.bricksQueued = jobs_.unfinished();
-    for (const auto& [components, list] : atlases_)
-        for (const auto& atlas : list) info.textureBytes += atlas->bytes();
+    info.textureBytes = textureBytes();
+    info.bricksUploaded = uploaded_;
+    info.bricksKept = kept_;
     const int bricks = int(texelCount(exchange_->source->grid().count()));
     for (const auto& [key, entry] : entries_)
         if (entry.shown) {
-            info.textureBytes += entry.shown->bytes;
             if (entry.used + kFramesInUse >= frame_) info.bricksWanted += missing(key);
             info.bricksResident += entry.shown->bricks ? entry.shown->bricks->resident() : bricks - missing(key);
         }

@@ -17,8 +17,9 @@ inline constexpr std::size_t kMaxTextureBytes = std::size_t(1) << 30; ///< softw
 
 /// One channel at one time on the GPU: a texture of the whole where that is small enough, else bricks in an atlas.
 struct ChannelTexture {
-    Texture texture;
-    int level = 0; ///< of the texture
+    std::shared_ptr<const Texture> texture; ///< several times may share it; null where there are bricks
+    int level = 0;                          ///< of the texture
+    int madeOf = 0;                         ///< time that it shows
     TexelEncoding encoding;
     glm::ivec3 size{0}; ///< texels with halo
     BlockRanges wholeBlocks;
@@ -40,6 +41,8 @@ public:
     /// Bytes of textures and of decoded bricks. A smaller atlas, or a larger one where bricks had no room, is filled
     /// anew, coarse first.
     void setBudgets(std::size_t texture, std::size_t memory);
+    /// Share of a parameter's range: bricks that move less from one time to another are drawn with the same texels.
+    void setKeptChange(double share) { keptChange_ = share; }
 
     /// A new frame begins: textures not wanted in one of the last few frames may leave if the budget asks for it.
     void beginFrame() { ++frame_; }
@@ -89,6 +92,7 @@ private:
         bool coverage = false; ///< a damaged brick asks for it
         int bricksInFlight = 0;
         bool stuck = false; ///< the atlas cannot grow either
+        int finest = 0;     ///< level of a whole channel for which the driver has memory
         std::uint64_t used = 0;
     };
     int textureLevel() const;
@@ -96,6 +100,13 @@ private:
     std::size_t slotBytes(int components) const;
     void add(double priority, LoadRequest request);
     void queueBricks(const ChannelKey& key, Entry& entry, double priority);
+    bool still(const ChannelKey& key, int madeOf, glm::ivec3 first, glm::ivec3 last, bool exactly) const;
+    bool keepsStill(const ChannelKey& key, int madeOf, const BrickId& id) const;
+    bool reuseBrick(const ChannelKey& key, Entry& entry, const BrickId& id);
+    bool reuseWhole(const ChannelKey& key, Entry& entry);
+    std::size_t textureBytes() const;
+    void reserve(std::size_t bytes) const;
+    bool refused(const LoadedTexels& item);
     bool uploadWhole(Upload& upload, Entry& entry, std::size_t& bytes);
     void makeNothing();
     void drop(std::map<ChannelKey, Entry>::iterator entry);
@@ -127,6 +138,8 @@ private:
     std::uint64_t frame_ = 1, revision_ = 0;
     bool waiting_ = false; ///< finish() runs: the budget may be exceeded
     int maxTextureSize_ = 0;
+    double keptChange_ = 0;
+    int uploaded_ = 0, kept_ = 0; ///< bricks
     std::vector<std::string> messages_;
     JobQueue jobs_; ///< last: its threads end before anything else goes
 };

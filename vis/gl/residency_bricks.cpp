@@ -3,12 +3,13 @@
 #include "volume/error.h"
 
 #include <algorithm>
+#include <array>
 
 namespace tessera::vis {
 
 namespace {
 
-constexpr std::size_t kFewSlots = 64;
+constexpr std::size_t kFewSlots = 16;
 constexpr float kMuchLess = 1.25f; ///< a brick in sight gives way only to one this many times as urgent
 
 } // namespace
@@ -43,7 +44,75 @@ void Residency::takeBrick(LoadedTexels& brick, Entry& entry) {
         return;
     }
     shown.atlas->upload(*slot, brick.block);
-    shown.bricks->put(id, *slot, brick.block.blocks);
+    shown.bricks->put(id, *slot, brick.block.blocks, brick.key.time);
+    ++uploaded_;
+}
+
+/// Whether no brick of [first, last) moves more between two times than is allowed; `exactly`: at all.
+bool Residency::still(const ChannelKey& key, int madeOf, glm::ivec3 first, glm::ivec3 last, bool exactly) const {
+    const volume::BrickSource& source = *exchange_->source;
+    const volume::Channel channel = source.info().channels()[std::size_t(key.channel)];
+    const Range range = source.info().channelRange(channel);
+    const bool labels = source.info().parameters[std::size_t(channel.parameter)].categorical;
+    const double most = exactly || labels ? 0 : keptChange_ * (range.hi - range.lo);
+    for (int z = first.z; z < last.z; ++z)
+        for (int y = first.y; y < last.y; ++y)
+            for (int x = first.x; x < last.x; ++x) {
+                const auto change = source.change({key.channel, madeOf, 0, {x, y, z}}, key.time);
+                if (!change || !(double(change->max) <= most)) return false;
+            }
+    return true;
+}
+
+/// Whether the texels of a brick made at one time will do for another: what of its neighbours is in its halo counts.
+/// Of coarser levels nothing is known but that they stay when nothing moves.
+bool Residency::keepsStill(const ChannelKey& key, int madeOf, const BrickId& id) const {
+    if (madeOf == key.time) return true;
+    const volume::BrickGrid& grid = exchange_->source->grid();
+    const int halo = (((kHalo + 1) << id.level) + grid.brickSize - 1) / grid.brickSize; // in bricks
+    return still(key, madeOf, glm::max((id.index << id.level) - halo, glm::ivec3(0)),
+                 glm::min(((id.index + 1) << id.level) + halo, grid.count()), id.level > 0);
+}
+
+/// Shows a brick with the texels of another time, if there are any that will do.
+bool Residency::reuseBrick(const ChannelKey& key, Entry& entry, const BrickId& id) {
+    for (const auto& [other, from] : entries_) {
+        if (other.channel != key.channel || other.prefiltered != key.prefiltered || other.time == key.time) continue;
+        if (!from.shown || !from.shown->bricks || from.shown->atlas != entry.shown->atlas ||
+            !(from.shown->encoding == entry.shown->encoding) || !from.shown->bricks->holds(id) ||
+            !keepsStill(key, from.shown->bricks->time(id), id))
+            continue;
+        entry.shown->atlas->share(from.shown->bricks->slot(id));
+        entry.shown->bricks->putFrom(id, *from.shown->bricks);
+        ++kept_;
+        ++revision_;
+        return true;
+    }
+    return false;
+}
+
+/// The same for a whole channel of one texture, none of whose bricks moves.
+bool Residency::reuseWhole(const ChannelKey& key, Entry& entry) {
+    const glm::ivec3 count = exchange_->source->grid().count();
+    for (const auto& [other, from] : entries_) {
+        if (other.channel != key.channel || other.prefiltered != key.prefiltered || other.time == key.time) continue;
+        if (!from.shown || from.shown->bricks || from.shown->level > textureLevel()) continue;
+        if (!still(key, from.shown->madeOf, glm::ivec3(0), count, false)) continue;
+        ChannelTexture made;
+        made.texture = from.shown->texture;
+        made.level = from.shown->level;
+        made.madeOf = from.shown->madeOf;
+        made.encoding = from.shown->encoding;
+        made.size = from.shown->size;
+        made.wholeBlocks = from.shown->wholeBlocks;
+        made.bytes = from.shown->bytes;
+        entry.shown = std::move(made);
+        entry.coverage = from.coverage;
+        kept_ += count.x * count.y * count.z;
+        ++revision_;
+        return true;
+    }
+    return false;
 }
 
 /// An atlas for a new channel: one with room, a further one if the budget allows, else the emptiest.
@@ -71,6 +140,7 @@ BrickAtlas& Residency::atlasFor(int components) {
 std::unique_ptr<BrickAtlas> Residency::makeAtlas(int components, std::size_t slots) {
     for (;; slots /= 2) {
         try {
+            reserve(slots * slotBytes(components));
             return std::make_unique<BrickAtlas>(exchange_->source->grid().brickSize, components, options_.exactTextures,
                                                 slots, maxTextureSize_);
         } catch (const MachineError&) {
@@ -134,14 +204,25 @@ bool Residency::grow(BrickAtlas* atlas) {
             if (each.get() != atlas) continue;
             const std::size_t slots = atlas->capacity() * 2;
             if (slots * slotBytes(components) > kMaxTextureBytes) return false;
-            std::unique_ptr<BrickAtlas> larger = makeAtlas(components, slots);
+            std::unique_ptr<BrickAtlas> larger;
+            try {
+                larger = makeAtlas(components, slots);
+            } catch (const MachineError&) {
+                return false;
+            }
             if (larger->capacity() <= atlas->capacity()) return false;
+            std::map<std::array<int, 3>, glm::ivec3> moved; // slots, which several times may share
             for (auto& [key, entry] : entries_) {
                 if (!entry.shown || entry.shown->atlas != atlas) continue;
                 entry.shown->bricks->eachSlot([&](glm::ivec3& slot) {
-                    const glm::ivec3 to = *larger->allocate();
-                    larger->copy(*atlas, slot, to);
-                    slot = to;
+                    const auto [at, first] = moved.try_emplace({slot.x, slot.y, slot.z}, glm::ivec3(0));
+                    if (first) {
+                        at->second = *larger->allocate();
+                        larger->copy(*atlas, slot, at->second);
+                    } else {
+                        larger->share(at->second);
+                    }
+                    slot = at->second;
                 });
                 entry.shown->bricks->resolveAll();
                 entry.shown->atlas = larger.get();

@@ -28,6 +28,17 @@ ChannelStats channelStats(std::span<const volume::BrickStats> bricks) {
     return stats;
 }
 
+ChannelStats commonStats(const ChannelStats& own, Range allTimes) {
+    constexpr double kFairShare = 1.0 / 16, kRounding = 1e-6;
+    const double width = allTimes.hi - allTimes.lo, beyond = kRounding * width;
+    const bool within = own.min >= allTimes.lo - beyond && own.max <= allTimes.hi + beyond;
+    if (own.allAbsent || !within || !(own.max - own.min >= kFairShare * width)) return own;
+    ChannelStats common = own;
+    common.min = allTimes.lo;
+    common.max = allTimes.hi;
+    return common;
+}
+
 TexelEncoding makeEncoding(const ChannelStats& stats, bool categorical, bool exact, bool prefiltered) {
     TexelEncoding encoding;
     encoding.coverage = stats.someAbsent;

@@ -29,6 +29,10 @@ struct ChannelStats {
 };
 ChannelStats channelStats(std::span<const volume::BrickStats> bricks);
 
+/// What a channel is encoded by: the range of all its times, so that bricks which do not move may stay as they are,
+/// where one time uses a fair share of it (a sixteenth); else its own.
+ChannelStats commonStats(const ChannelStats& own, Range allTimes);
+
 /// The encoding that holds a channel: unfiltered values in [0, 1] of the 16 bits minus headroom for the prefilter's
 /// overshoot (2/3 of the range on either side). Categorical values are stored as integers.
 TexelEncoding makeEncoding(const ChannelStats& stats, bool categorical, bool exact, bool prefiltered);

@@ -76,6 +76,7 @@ public:
     glm::ivec2 coveredSize{0};
 
     LightMapTextures lightMaps;
+    bool mapsPending = false; ///< the buffers show surroundings that are not read yet
     LightBaker light;
     std::uint64_t lightVersion = 0; ///< that the buffers show
 

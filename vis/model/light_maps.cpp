@@ -112,6 +112,7 @@ glm::dvec3 CubeMap::at(glm::dvec3 d) const {
 glm::dvec3 surroundings(Environment environment, glm::dvec3 d) {
     switch (environment) {
     case Environment::None:
+    case Environment::Picture:
         return glm::dvec3(0);
     case Environment::Sky: {
         const glm::dvec3 zenith(0.30, 0.52, 1.0), horizon(0.92, 0.95, 1.0), ground(0.24, 0.21, 0.18);
@@ -134,16 +135,22 @@ glm::dvec3 surroundings(Environment environment, glm::dvec3 d) {
 
 bool sameEnvironment(const Lighting& a, const Lighting& b) {
     const auto key = [](const Lighting& l) {
-        return std::tuple(l.environment.kind, l.environment.strength, l.environment.reflection, l.model,
-                          l.model == LightModel::Phong ? l.shininess : l.roughness);
+        return std::tuple(l.environment.kind, l.environment.picture, l.environment.strength, l.environment.reflection,
+                          l.model, l.model == LightModel::Phong ? l.shininess : l.roughness);
     };
     return key(a) == key(b);
 }
 
-LightMaps environmentMaps(const Lighting& lighting) {
+LightMaps environmentMaps(const Lighting& lighting, const CubeMap* picture) {
     LightMaps maps{makeMap(kDiffuseEdge), makeMap(kSpecularEdge), glm::dmat3(1)};
     const EnvironmentLight& environment = lighting.environment;
     if (environment.kind == Environment::None || environment.strength <= 0) return maps;
+    if (environment.kind == Environment::Picture && picture == nullptr) return maps;
+    const auto around = [&](glm::dvec3 d) {
+        return double(environment.strength) * (picture != nullptr && environment.kind == Environment::Picture
+                                                   ? picture->at(d)
+                                                   : surroundings(environment.kind, d));
+    };
     const CubeMap grid = makeMap(kSurroundingsEdge);
     struct Source {
         glm::dvec3 direction, light;
@@ -152,7 +159,7 @@ LightMaps environmentMaps(const Lighting& lighting) {
     std::vector<Source> sources;
     for (std::size_t i = 0; i < grid.texels.size(); ++i) {
         const glm::dvec3 d = grid.texelDirection(i);
-        sources.push_back({d, double(environment.strength) * surroundings(environment.kind, d), grid.solidAngle(i)});
+        sources.push_back({d, around(d), grid.solidAngle(i)});
     }
     parallelFor(maps.diffuse.texels.size(), [&](std::size_t i) {
         const glm::dvec3 normal = maps.diffuse.texelDirection(i);
@@ -168,7 +175,7 @@ LightMaps environmentMaps(const Lighting& lighting) {
     parallelFor(maps.specular.texels.size(), [&](std::size_t i) {
         const glm::dvec3 mirrored = maps.specular.texelDirection(i);
         // The lobe may be narrower than a texel of the surroundings: then they are taken straight.
-        glm::dvec3 sum = double(environment.strength) * surroundings(environment.kind, mirrored);
+        glm::dvec3 sum = around(mirrored);
         double weights = lobe(lighting, 1) * 1e-3;
         sum *= weights;
         for (const Source& source : sources) {

@@ -23,7 +23,7 @@ struct CubeMap {
 };
 
 /// Light of the built-in surroundings from a direction (length 1, y up), linear; white paper under an open one is
-/// about 1.
+/// about 1. A picture's is not built in: none.
 glm::dvec3 surroundings(Environment environment, glm::dvec3 direction);
 
 /// Both maps of a lighting, in the axes of the environment (`fromWorld` turns world directions into them).
@@ -43,13 +43,11 @@ inline constexpr int kDiffuseEdge = 12, kSpecularEdge = 32, kSurroundingsEdge = 
 /// Turns world directions into the axes of the maps.
 glm::dmat3 mapFromWorld(const Lighting& lighting, const Camera& camera);
 /// The part that only depends on the environment and the surface: costly (some ten milliseconds), to be kept.
-LightMaps environmentMaps(const Lighting& lighting);
-/// Whether two lightings have equal environmentMaps.
+/// `picture`: the surroundings of Environment::Picture, in world axes (vis/light_picture.h); null: dark.
+LightMaps environmentMaps(const Lighting& lighting, const CubeMap* picture = nullptr);
+/// Whether two lightings have equal environmentMaps, if their pictures are equal.
 bool sameEnvironment(const Lighting& a, const Lighting& b);
 /// With the lights added where the lighting wants them in maps.
 LightMaps lightMaps(const Lighting& lighting, const Camera& camera, LightMaps environment);
-inline LightMaps lightMaps(const Lighting& lighting, const Camera& camera) {
-    return lightMaps(lighting, camera, environmentMaps(lighting));
-}
 
 } // namespace tessera::vis

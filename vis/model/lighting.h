@@ -3,6 +3,7 @@
 #include "vis/model/camera.h"
 
 #include <optional>
+#include <string>
 #include <vector>
 
 /// How surfaces and samples of the ray caster are lit: the lights, the surface model, and the formulas, shared by the
@@ -52,12 +53,13 @@ struct Light {
     }
 };
 
-enum class Environment { None, Sky, Studio, SoftBox };
-inline constexpr std::string_view kEnvironmentNames[] = {"none", "sky", "studio", "softBox"};
+enum class Environment { None, Sky, Studio, SoftBox, Picture };
+inline constexpr std::string_view kEnvironmentNames[] = {"none", "sky", "studio", "softBox", "picture"};
 
 /// Light from all around (vis/model/light_maps.h).
 struct EnvironmentLight {
     Environment kind = Environment::None;
+    std::string picture = {}; ///< file of Environment::Picture (vis/light_picture.h)
     float strength = 1, reflection = 1;
     float turn = 0;       ///< degrees
     bool follows = false; ///< turns with the viewer
@@ -67,6 +69,12 @@ struct EnvironmentLight {
                                    .unit = "",
                                    .doc = "Surroundings that light and are mirrored",
                                    .names = kEnvironmentNames});
+        visit(self.picture,
+              FieldInfo{.key = "picture",
+                        .unit = "",
+                        .doc = "Picture of the surroundings for kind \"picture\", Radiance (.hdr) or PNG: "
+                               "2:1 all around, its middle behind the data, or a cross of 4:3 or 3:4",
+                        .refersTo = "path"});
         visit(self.strength,
               FieldInfo{.key = "strength", .unit = "", .doc = "Brightness of the surroundings", .range = Range{0, 5}});
         visit(self.reflection,
@@ -86,6 +94,7 @@ struct Shadows {
     float reach = 0.12f;    ///< world: how far occlusion looks
     float translucency = 0; ///< share of light that matter passes on, coloured
     float scatter = 0.5f;   ///< how soft that light becomes
+    bool meshes = true;     ///< surfaces of polygons cast them too
     int resolution = 64;    ///< cells along the longest edge
     bool any() const { return strength > 0 || occlusion > 0 || translucency > 0; }
     bool operator==(const Shadows&) const = default;
@@ -110,6 +119,9 @@ struct Shadows {
         visit(self.scatter,
               FieldInfo{
                   .key = "scatter", .unit = "", .doc = "How far that light spreads on its way", .range = Range{0, 1}});
+        visit(self.meshes, FieldInfo{.key = "meshes",
+                                     .unit = "",
+                                     .doc = "Surfaces of polygons cast shadows on volumes and on each other"});
         visit(self.resolution, FieldInfo{.key = "resolution",
                                          .unit = "",
                                          .doc = "Cells of the light volume along the longest edge",

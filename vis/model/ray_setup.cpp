@@ -44,10 +44,6 @@ double correctedOpacity(double opacity, double step, double density) {
     return 1 - std::pow(1 - std::clamp(opacity, 0.0, 1.0), density * step / kReferenceLength);
 }
 
-double gradientDelta(volume::LatticeKind kind) {
-    return kind == volume::LatticeKind::BCC ? 1 / volume::kBccSpacing : 1;
-}
-
 glm::dvec3 quantizedDirection(glm::dvec3 v, int bits) {
     const double sum = std::abs(v.x) + std::abs(v.y) + std::abs(v.z);
     if (!(sum > 0)) return glm::dvec3(0);

@@ -34,6 +34,9 @@
 ///   x-ray:   absorption A = 1 - prod(1 - a) of all samples' a = correctedOpacity(opacity of the curve * f) (Beer and
 ///            Lambert), colour of the place A, opacity A.
 ///
+/// Gradients are those of volume/gradient.h, by the scene's span; at coarser levels a cell is that of the level.
+/// Categorical channels have none.
+///
 /// The place of a sample is that of its value in the transfer function's range or, for layers that show the gradient,
 /// its magnitude over gradientTop: the change over one worldCell edge per axis (length of that vector), in ranges.
 ///
@@ -80,11 +83,6 @@ RaySamples raySamples(const RaySegment& segment, glm::dvec3 direction, glm::dvec
 
 /// Opacity of a sample that stands for `step` world units: 1 - (1 - opacity)^(density * step / kReferenceLength).
 double correctedOpacity(double opacity, double step, double density);
-
-/// Distance from the centre to either end of a central difference, in cells of the sublattice (toCells): 1 on CC,
-/// 1 / sqrt 2 on BCC. Where one end is absent, the difference to the centre is taken over half the distance; where both
-/// are, that component is 0. Categorical channels have no gradient.
-double gradientDelta(volume::LatticeKind kind);
 
 /// A direction (length 1) stored in two coordinates of `bits` each on the unfolded octahedron (Q. Meyer et al.: On
 /// floating-point normal vectors, 2010): what shading by quantised gradients sees. Zero stays zero.

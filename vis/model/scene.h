@@ -10,6 +10,7 @@
 #include "vis/model/selection.h"
 #include "vis/model/tone.h"
 #include "vis/model/transfer_function.h"
+#include "volume/gradient.h"
 
 #include <map>
 #include <optional>
@@ -32,9 +33,10 @@ struct RenderParams {
     float detail = 1;         ///< pixels; voxels of bricked data finer than this are shown at a coarser level
     RenderLimits limits;
     float stepVoxels = 0.5f; ///< distance between samples, in cells of the finest direction on screen at rest
-    int normalBits = 0;      ///< of either coordinate of a gradient's direction, 0: as they are
-    bool jitter = false;     ///< vis/model/jitter.h
-    int samples = 4;         ///< rays per pixel of a still
+    volume::GradientSpan gradient = volume::GradientSpan::Neighbours;
+    int normalBits = 0;  ///< of either coordinate of a gradient's direction, 0: as they are
+    bool jitter = false; ///< vis/model/jitter.h
+    int samples = 4;     ///< rays per pixel of a still
 
     Proxy proxy = Proxy::Rays;
 
@@ -54,6 +56,12 @@ struct RenderParams {
                                             "for one texture; 0 = full resolution",
                                      .range = Range{0, 8}});
         visit(self.limits, FieldInfo{.key = "limits", .unit = "", .doc = "Memory and time to use"});
+        visit(self.gradient, FieldInfo{.key = "gradient",
+                                       .unit = "",
+                                       .doc = "Differences that gradients are made of: between the nearest neighbours "
+                                              "of the lattice, on BCC along its diagonals (sharp), or over twice as "
+                                              "far along the axes (smooth)",
+                                       .names = volume::kGradientSpanNames});
         visit(self.normalBits,
               FieldInfo{.key = "normalBits",
                         .unit = "bit",

@@ -30,11 +30,12 @@ Reaching reaching(const Illumination& light, glm::dvec3 place) {
 
 } // namespace
 
-Illumination illuminate(const Lighting& lighting, const Camera& camera) {
+Illumination illuminate(const Lighting& lighting, const Camera& camera, const CubeMap* picture) {
     Illumination light;
     light.surface = lighting;
     if (!lighting.inMaps) light.lights = placeLights(lighting, camera);
-    if (usesMaps(lighting)) light.maps = std::make_shared<const LightMaps>(lightMaps(lighting, camera));
+    if (usesMaps(lighting))
+        light.maps = std::make_shared<const LightMaps>(lightMaps(lighting, camera, environmentMaps(lighting, picture)));
     return light;
 }
 

@@ -15,8 +15,8 @@ struct Illumination {
     std::shared_ptr<const LightMaps> maps; ///< null: none
     std::shared_ptr<const LightVolume<double>> volume; ///< null: none
 };
-/// Lights and maps of a lighting; the volume is for the caller to add.
-Illumination illuminate(const Lighting& lighting, const Camera& camera);
+/// Lights and maps of a lighting; the volume is for the caller to add. `picture`: as of environmentMaps().
+Illumination illuminate(const Lighting& lighting, const Camera& camera, const CubeMap* picture = nullptr);
 
 /// Shares of light in a sample without surface, its albedo lit evenly: of each of the first three lights (by luminance
 /// times 1 - a), of light from everywhere (a), and what is never hidden; they sum to 1. a = ambient / (ambient +

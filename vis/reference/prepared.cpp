@@ -1,5 +1,6 @@
 #include "vis/reference/prepared.h"
 
+#include "vis/model/mesh_matter.h"
 #include "volume/parallel.h"
 
 #include <algorithm>
@@ -38,7 +39,7 @@ Prepared::Prepared(const Scene& drawn, const volume::BrickSource& source, glm::i
     interestOf = DoiFunction(scene.selection, {lenses, frame});
     look = lookView(scene, frame.halfSize, cell, size);
     middle = cameraRay(scene.camera, 1, {0, 0}).direction;
-    light = illuminate(scene.lighting, scene.camera);
+    light = illuminate(scene.lighting, scene.camera, options.surroundings.get());
     const auto load = [&](const std::string& name, bool raw = false, double shift = 0) -> const Samples* {
         const std::optional<int> channel = info.findChannel(name);
         if (!channel) return nullptr;
@@ -81,8 +82,11 @@ Prepared::Prepared(const Scene& drawn, const volume::BrickSource& source, glm::i
     if (!scene.lighting.shadows.any()) return;
     const LightGrid grid = lightGrid(frame, scene.lighting.shadows);
     const std::vector<PlacedLight> lights = placeLights(scene.lighting, scene.camera);
-    light.volume = std::make_shared<const LightVolume<double>>(
-        spreadLight<double>(grid, matter(grid), lights, scene.lighting.shadows));
+    Matter<double> all = matter(grid);
+    const Matter<double> meshes = meshMatter<double>(grid, meshCasters(scene, info));
+    for (std::size_t i = 0; i < all.size(); ++i) all[i] += meshes[i];
+    light.volume =
+        std::make_shared<const LightVolume<double>>(spreadLight<double>(grid, all, lights, scene.lighting.shadows));
 }
 
 namespace {

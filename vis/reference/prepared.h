@@ -87,7 +87,8 @@ struct Prepared {
         const auto seen = [&](glm::dvec3 at) {
             return of.value(cells(frame.toWorld(lattice.origin + at * lattice.spacing)));
         };
-        return volume::gradient(seen, lattice.toCells(frame.toPhysical(world)), gradientDelta(lattice.kind));
+        return volume::gradient(seen, lattice.toCells(frame.toPhysical(world)),
+                                volume::gradientStencil(lattice.kind, scene.render.gradient));
     }
     LensAction lensAction(const DrawnLayer& layer, glm::dvec3 world) const {
         return vis::lensAction(lenses, layer.lens, world);

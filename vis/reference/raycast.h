@@ -1,5 +1,6 @@
 #pragma once
 
+#include "vis/model/light_maps.h"
 #include "vis/model/scene.h"
 #include "vis/reference/image.h"
 #include "vis/reference/samples.h"
@@ -10,7 +11,8 @@
 namespace tessera::vis::reference {
 
 struct Options {
-    Flaws flaws; ///< none, except in tests
+    Flaws flaws;                                      ///< none, except in tests
+    std::shared_ptr<const CubeMap> surroundings = {}; ///< of Environment::Picture
 };
 
 /// Renders the layers of a scene at full resolution. Lines (box, contours) are not drawn; layers of unknown channels

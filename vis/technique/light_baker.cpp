@@ -15,7 +15,8 @@ bool sameLenses(const Scene& a, const Scene& b) {
 /// Equal matter: everything that opacity and colour of a place depend on.
 bool sameMatter(const Scene& a, const Scene& b) {
     return a.layers == b.layers && a.transfer == b.transfer && a.selection == b.selection && a.clips == b.clips &&
-           sameLenses(a, b) && a.render.filter == b.render.filter && a.stretch == b.stretch;
+           sameLenses(a, b) && a.render.filter == b.render.filter && a.stretch == b.stretch &&
+           a.geometry == b.geometry && a.lighting.shadows.meshes == b.lighting.shadows.meshes;
 }
 
 bool sameSpread(const Shadows& a, const Shadows& b) {
@@ -33,10 +34,10 @@ bool LightBaker::ready() const {
     return version_ > 0 && same(wanted_, shown_);
 }
 
-void LightBaker::update(const Scene& scene, const WorldFrame& frame, const Matter& matter, const Program& program,
-                        const std::function<void(const Program&)>& setUniforms, GLuint vertices, double budgetMs,
-                        bool wait) {
-    const LightGrid grid = lightGrid(frame, scene.lighting.shadows);
+void LightBaker::update(const Scene& scene, const volume::DatasetInfo& info, const Matter& matter,
+                        const Program& program, const std::function<void(const Program&)>& setUniforms, GLuint vertices,
+                        double budgetMs, bool wait) {
+    const LightGrid grid = lightGrid(worldFrame(info.bounds, scene.stretch), scene.lighting.shadows);
     if (!scene_ || !(grid == grid_) || !(matter == matterKey_) || !sameMatter(*scene_, scene)) {
         scene_ = scene;
         grid_ = grid;
@@ -44,6 +45,8 @@ void LightBaker::update(const Scene& scene, const WorldFrame& frame, const Matte
         ++wanted_.matter;
         matterReady_ = false;
         rows_ = 0;
+        casters_ = meshCasters(scene, info);
+        casting_ = !casters_.casters.empty();
         worker_.request_stop();
         job_.reset();
     }
@@ -98,10 +101,17 @@ bool LightBaker::drawMatter(const Program& program, const std::function<void(con
 void LightBaker::start() {
     job_ = std::make_shared<Job>();
     job_->key = wanted_;
-    worker_ = std::jthread([job = job_, grid = grid_, matter = matter_](std::stop_token stop) {
-        job->result = spreadLight<float>(grid, *matter, job->key.lights, job->key.shadows, stop);
-        job->done = !stop.stop_requested();
-    });
+    job_->matter = matter_;
+    worker_ =
+        std::jthread([job = job_, grid = grid_, casters = casting_ ? casters_ : MeshCasters()](std::stop_token stop) {
+            if (!casters.casters.empty()) {
+                vis::Matter<float> sum = meshMatter<float>(grid, casters, stop);
+                for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += (*job->matter)[i];
+                job->matter = std::make_shared<const vis::Matter<float>>(std::move(sum));
+            }
+            job->result = spreadLight<float>(grid, *job->matter, job->key.lights, job->key.shadows, stop);
+            job->done = !stop.stop_requested();
+        });
 }
 
 /// The finished job's light becomes textures.
@@ -121,6 +131,8 @@ void LightBaker::take() {
     }
     shownGrid_ = light.grid;
     shown_ = job_->key;
+    matter_ = job_->matter;
+    casting_ = false;
     job_.reset();
     ++version_;
 }

@@ -2,8 +2,7 @@
 
 #include "vis/gl/handles.h"
 #include "vis/gl/program.h"
-#include "vis/model/light_volume.h"
-#include "vis/model/scene.h"
+#include "vis/model/mesh_matter.h"
 
 #include <atomic>
 #include <functional>
@@ -14,7 +13,8 @@
 namespace tessera::vis {
 
 /// Keeps the textures of a picture's light volume (vis/model/light_volume.h) up to date without holding up the window:
-/// matter is drawn some rows a call, light is spread by a thread of its own; until then the former volume shows.
+/// matter is drawn some rows a call, meshes are added and light is spread by a thread of its own; until then the former
+/// volume shows.
 class LightBaker {
 public:
     /// What the matter depends on besides the scene.
@@ -26,7 +26,7 @@ public:
 
     /// Goes on with the work. `setUniforms` sets those of the bound picture on the program
     /// of the matter. Changes the framebuffer, viewport and scissor. Works about `budgetMs`, or until ready if `wait`.
-    void update(const Scene& scene, const WorldFrame& frame, const Matter& matter, const Program& program,
+    void update(const Scene& scene, const volume::DatasetInfo& info, const Matter& matter, const Program& program,
                 const std::function<void(const Program&)>& setUniforms, GLuint vertices, double budgetMs, bool wait);
     /// The textures show what was last asked for.
     bool ready() const;
@@ -45,6 +45,7 @@ private:
     };
     struct Job {
         Spread key;
+        std::shared_ptr<const vis::Matter<float>> matter; ///< with the meshes
         LightVolume<float> result;
         std::atomic<bool> done = false;
     };
@@ -63,6 +64,8 @@ private:
     Texture atlas_;
     Framebuffer framebuffer_;
     glm::ivec2 atlasSize_{0};
+    MeshCasters casters_;
+    bool casting_ = false; ///< `casters_` are not in the matter yet
     std::shared_ptr<const vis::Matter<float>> matter_;
     std::shared_ptr<Job> job_;
     Texture visible_, scattered_;

@@ -1,5 +1,6 @@
 #include "vis/technique/light_uniforms.h"
 
+#include "vis/light_picture.h"
 #include "vis/model/shade.h"
 
 #include <algorithm>
@@ -65,15 +66,44 @@ void setLightUniforms(const Program& program, const Scene& scene, const WorldFra
     program.set("lightCell", float(std::max({cell.x, cell.y, cell.z})));
 }
 
-void LightMapTextures::update(const Lighting& lighting, const Camera& camera) {
+/// Whether the picture that a lighting names is here, or will never be.
+bool LightMapTextures::readPicture(const Lighting& lighting, bool wait,
+                                   const std::function<void(const std::string&)>& say) {
+    const EnvironmentLight& environment = lighting.environment;
+    if (environment.kind != Environment::Picture) return true;
+    if (path_ != environment.picture && !reading_.valid()) {
+        path_ = environment.picture;
+        picture_.reset();
+        madeFor_.reset();
+        if (path_.empty()) return true;
+        reading_ = std::async(std::launch::async, [path = path_] { return readSurroundings(path); });
+    }
+    if (!reading_.valid()) return true;
+    if (!wait && reading_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return false;
+    try {
+        picture_ = reading_.get();
+    } catch (const std::exception& error) {
+        say(std::string("The surroundings cannot be shown: ") + error.what());
+    }
+    madeFor_.reset();
+    return path_ == environment.picture || readPicture(lighting, wait, say); // another one was wanted meanwhile
+}
+
+bool LightMapTextures::update(const Lighting& lighting, const Camera& camera, bool wait,
+                              const std::function<void(const std::string&)>& say) {
+    const bool here = readPicture(lighting, wait, say);
+    if (!here && diffuse_) return false;
     const bool same = madeFor_ && *madeFor_ == lighting && camera_.orientation == camera.orientation;
-    if (same) return;
-    if (!madeFor_ || !sameEnvironment(*madeFor_, lighting)) environment_ = environmentMaps(lighting);
+    if (same) return here;
+    if (!madeFor_ || !sameEnvironment(*madeFor_, lighting))
+        environment_ = environmentMaps(lighting, picture_ ? &*picture_ : nullptr);
     const LightMaps maps = lightMaps(lighting, camera, environment_);
     upload(diffuse_, maps.diffuse, "diffuse light");
     upload(specular_, maps.specular, "mirrored light");
     madeFor_ = lighting;
     camera_ = camera;
+    ++version_;
+    return here;
 }
 
 } // namespace tessera::vis

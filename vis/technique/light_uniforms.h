@@ -5,6 +5,8 @@
 #include "vis/model/light_maps.h"
 #include "vis/model/scene.h"
 
+#include <functional>
+#include <future>
 #include <optional>
 
 /// What a program of the ray caster knows of light: its variant and its uniforms (vis/shaders/lib/bindings.glsl).
@@ -17,13 +19,24 @@ void setLightUniforms(const Program& program, const Scene& scene, const WorldFra
 /// The cube maps of a picture as textures.
 class LightMapTextures {
 public:
-    /// Makes what has changed; the environment's part only when that has.
-    void update(const Lighting& lighting, const Camera& camera);
+    /// Makes what has changed; the environment's part only when that has. A picture of the surroundings is read by a
+    /// thread of its own, until then the former maps show. `wait`: until it is there. False while something is on its
+    /// way. A picture that cannot be read gives no light; `say` is told why, once.
+    bool update(const Lighting& lighting, const Camera& camera, bool wait,
+                const std::function<void(const std::string&)>& say);
+    /// Counts the changes of the maps.
+    std::uint64_t version() const { return version_; }
     GLuint diffuse() const { return diffuse_.name(); }
     GLuint specular() const { return specular_.name(); }
 
 private:
+    bool readPicture(const Lighting& lighting, bool wait, const std::function<void(const std::string&)>& say);
+
+    std::string path_;               ///< of what `picture_` is or will be
+    std::future<CubeMap> reading_;   ///< valid while the file is being read
+    std::optional<CubeMap> picture_; ///< nullopt: none, or it cannot be read
     std::optional<Lighting> madeFor_;
+    std::uint64_t version_ = 0;
     Camera camera_;
     LightMaps environment_;
     Texture diffuse_, specular_;

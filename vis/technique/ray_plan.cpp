@@ -195,6 +195,7 @@ ProgramRecipe rayRecipe(const RayPlan& plan, const Scene& scene, const volume::B
                        : "0");
     define("CONTEXT_BLUR", blursContext(scene) ? "1" : "0");
     define("BCC", bcc ? "1" : "0");
+    define("GRADIENT_DIAGONAL", volume::gradientStencil(grid.lattice.kind, scene.render.gradient).diagonal ? "1" : "0");
     define("NORMAL_BITS", std::to_string(scene.render.normalBits));
     addLighting(recipe, scene);
     addClipping(recipe, scene);

@@ -144,8 +144,11 @@ void setRayUniforms(const Program& program, const RayPlan& plan, const Scene& sc
     program.set("stepVoxels", float(render.stepVoxels * stepFactor));
     program.set("cellsPerWorld", glm::vec3(cellsPerWorld));
     program.set("cellsOffset", glm::vec3((-frame.offset / frame.scale - grid.lattice.origin) / grid.lattice.spacing));
-    program.set("gradientDelta", float(gradientDelta(grid.lattice.kind)));
-    program.set("axisCount", 3);
+    const volume::GradientStencil stencil = volume::gradientStencil(grid.lattice.kind, render.gradient);
+    const double cell = grid.lattice.kind == volume::LatticeKind::BCC ? 1 / volume::kBccSpacing : 1; // worldCell's
+    program.set("gradientReach", float(stencil.reach));
+    program.set("gradientScale", float(cell / (stencil.reach * stencil.squares)));
+    program.set("gradientDirections", stencil.count);
     program.set("bisections", kBisections);
     program.set("latticeCorners", grid.lattice.kind == volume::LatticeKind::BCC ? 16 : 8);
     setLightUniforms(program, scene, frame, rayUnits(plan).light);

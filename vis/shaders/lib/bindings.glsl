@@ -14,6 +14,7 @@
 // These are chains of ?: and not constant arrays, since Mesa turns such arrays into uniforms before it unrolls loops
 // and then runs every style for every layer.
 //   CONTEXT_BLUR  1 where the picture tells its degree of interest
+//   GRADIENT_DIAGONAL  1 where differences go along the diagonals
 //   BCC       1 on that lattice; PRESENT_COVERAGE   kPresentCoverage of volume/reconstruct.h
 // Positions `p` are cells of the even sublattice at level 0 (Lattice::toCells); values are texel units.
 
@@ -35,9 +36,10 @@ uniform float rayBegin;           // 0 in perspective, very negative in parallel
 uniform vec3 worldCell;           // world edges of the cell that steps are measured in
 uniform float stepVoxels;
 uniform vec3 cellsPerWorld, cellsOffset; // p = world * cellsPerWorld + cellsOffset
-uniform float gradientDelta;
-// 3, kBisections and 8 or (BCC) 16: no constants, so that no compiler unrolls these loops (seconds of it on software GL).
-uniform int axisCount, bisections, latticeCorners;
+uniform float gradientReach, gradientScale; // of volume/gradient.h; from sums of differences to change over a worldCell
+// 3 or 4, kBisections and 8 or (BCC) 16: no constants, so that no compiler unrolls these loops (seconds of it on
+// software GL).
+uniform int gradientDirections, bisections, latticeCorners;
 
 // JITTER: 1 if rays start at random; the number of the pass of a supersampled still.
 uniform int passNumber;

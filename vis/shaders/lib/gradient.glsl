@@ -8,19 +8,26 @@ bool present(vec2 s) {
     return s.y >= PRESENT_COVERAGE;
 }
 
-// Change over one worldCell edge per axis, in texel units: central differences, one-sided at absent samples,
-// 0 where the value `centre` at p is then kUnknown. Zero unless `needed`: the loop then ends early, which is what software GL has in place of branches.
+// Change over one worldCell edge per axis, in texel units, by differences as volume/gradient.h has them: one-sided at
+// absent samples, 0 where the value `centre` at p is then kUnknown. Zero unless `needed`: the loop then ends early,
+// which is what software GL has in place of branches.
 vec3 cellGradient(int field, vec3 p, float centre, bool needed) {
     vec3 result = vec3(0.0);
-    for (int axis = 0; axis < (needed && FIELD_NEAREST(field) == 0 ? axisCount : 0); ++axis) {
-        vec3 offset = vec3(axis == 0, axis == 1, axis == 2) * gradientDelta;
+    float edge = cellEdge(field, dataCells(p));
+    for (int i = 0; i < (needed && FIELD_NEAREST(field) == 0 ? gradientDirections : 0); ++i) {
+#if GRADIENT_DIAGONAL
+        vec3 direction = vec3(i == 1 ? -1.0 : 1.0, i == 2 ? -1.0 : 1.0, i == 3 ? -1.0 : 1.0);
+#else
+        vec3 direction = vec3(i == 0, i == 1, i == 2);
+#endif
+        vec3 offset = direction * (gradientReach * edge);
         vec2 lower = reconstruct(field, p - offset), upper = reconstruct(field, p + offset);
         bool hasLower = present(lower), hasUpper = present(upper);
         float difference = (hasUpper ? upper.x : centre) - (hasLower ? lower.x : centre);
         float factor = hasLower && hasUpper ? 0.5 : centre > kUnknown ? 1.0 : 0.0;
-        result += offset / gradientDelta * factor * difference;
+        result += direction * factor * difference;
     }
-    return result; // gradientDelta cells are one worldCell edge on either lattice
+    return result * (gradientScale / edge);
 }
 
 // The gradient in world axes as shading uses it.

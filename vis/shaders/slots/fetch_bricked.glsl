@@ -43,6 +43,12 @@ bool fineAt(int field, vec3 p) {
     return scale == 0.0 || scale == 1.0;
 }
 
+// Edge of a cell of the level drawn at p, in cells of full resolution.
+float cellEdge(int field, vec3 p) {
+    float scale = pageAt(field, p).scale;
+    return scale > 0.0 ? 1.0 / scale : 1.0;
+}
+
 // The texel with (even) index `at` at the level drawn at p, which lies near it.
 vec4 fetchTexel(int field, ivec3 at, vec3 p) {
     ivec3 brick = brickAt(field, p);

@@ -13,6 +13,11 @@ bool fineAt(int field, vec3 p) {
     return fieldLevel[field] == 0;
 }
 
+// Edge of a cell of the level drawn at p, in cells of full resolution.
+float cellEdge(int field, vec3 p) {
+    return exp2(float(fieldLevel[field]));
+}
+
 // The texel with (even) index `at` at the level of the texture; p lies near it.
 vec4 fetchTexel(int field, ivec3 at, vec3 p) {
     return texelFetch(fieldTexture[field], clamp(at + HALO, ivec3(0), textureSize(fieldTexture[field], 0) - 1), 0);
