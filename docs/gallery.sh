@@ -93,14 +93,11 @@ signal light-physical --set "/layers=[$shape]" --set '/lighting/model="physical"
 signal light-studio --set "/layers=[$shape]" --set '/lighting/model="physical"' --set '/lighting/environment/kind="studio"' \
     --set /lighting/roughness=0.2
 signal light-shadows --set "/layers=[$shape]" --set /lighting/shadows/strength=0.8 --set /lighting/shadows/occlusion=0.8
-signal light-evening --set "/layers=[$shape]" --set '/lighting/model="physical"' --set /lighting/roughness=0.2 --set '/lighting/lights=[]' \
-    --set /lighting/metalness=0.35 --set '/lighting/environment={"kind":"picture","picture":"'"$here"'/layouts/evening.hdr"}'
-signal light-meshes --set "/layers=[$(volume rho '"density":2,"shaded":false'),$(surface rho 0.62 0.55,0.75,0.95 1 '"method":"polygons"')]" \
-    --set '/transfer/rho={"colormap":"gray","opacity":[[0,0],[0.02,0],[0.1,0.25],[0.25,0.25],[0.35,0],[1,0]]}' \
-    --set '/lighting/lights=[{"kind":"world","azimuth":-40,"elevation":60}]' --set '/lighting/shadows={"strength":0.9,"resolution":96}'
+"$tessera" render evening -o "$out/light-evening.png" --view volume --size "$size"
 for span in neighbours wide; do
-    signal "gradient-$span" --set "/layers=[$shape]" --set "/render/gradient=\"$span\"" --set /lighting/specular=0.6 \
-        --set '/data={"model":"marschner-lobb","settings":{"nx":40,"ny":40,"nz":40,"times":1}}'
+    "$tessera" render charcoal -o "$out/gradient-$span.png" --view volume --size "$size" --set '/layers/0/technique/look="plain"' \
+        --set '/layers/0/technique/color=[0.85,0.6,0.3]' --set '/appearance/theme="dark"' --set /lighting/specular=0.5 \
+        --set "/render/gradient=\"$span\"" --set '/data={"model":"marschner-lobb","settings":{"nx":48,"ny":48,"nz":48,"times":1}}'
 done
 signal clip-sphere --set "/layers=[$shape,$(volume rho '"density":0.5')]" \
     --set '/clips=[{"kind":"sphere","keep":"outside","center":[0.6,0.6,0.6],"radius":0.7}]'

@@ -180,19 +180,30 @@ void migrate(Json& document, const std::string& file) {
     document["schema"] = kSessionSchema;
 }
 
+namespace {
+
+/// The picture of the surroundings, relative to the folder of a document, gets its absolute path.
+void findPicture(Json& document, const std::string& file) {
+    const Json::json_pointer place("/lighting/environment/picture");
+    if (!document.contains(place) || !document[place].is_string()) return;
+    const std::string path = document[place].get<std::string>();
+    if (!path.empty())
+        document[place] = absolutePath((absolutePath(file).parent_path() / path).string()).generic_string();
+}
+
+} // namespace
+
 SessionDocument parseSession(std::string_view text, const std::string& file) {
     SessionDocument document;
     document.raw = parseJson(text, file);
     migrate(document.raw, file);
+    findPicture(document.raw, file);
     Json known = document.raw;
     known.erase("app");
     known.erase("history");
     document.session = sessionFromJson(known, file, &document.unknown);
     for (const JsonIssue& issue : document.unknown)
         document.messages.push_back((file.empty() ? "" : file + ": ") + issue.path + ": unknown key, kept");
-    std::string& picture = document.session.lighting.environment.picture;
-    if (!picture.empty())
-        picture = absolutePath((absolutePath(file).parent_path() / picture).string()).generic_string();
     document.history.reset(document.session);
     if (const auto history = document.raw.find("history"); history != document.raw.end()) {
         try {
