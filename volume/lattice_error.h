@@ -32,9 +32,9 @@ double latticeGradientError(const std::function<double(glm::dvec3)>& signal,
                             LatticeFilter filter, GradientSpan span, const Box& box, std::size_t points = 20000,
                             unsigned seed = 1);
 
-/// The error of latticeError() in space and time, for a signal on the unit cube of space and time: reconstructed linearly between frames
-/// and samples, on D4* as the mean of both grids (volume/series.h), as they are or prefiltered. `spacing` is the cell
-/// edge of one grid along all four axes. Points lie a quarter inside the cube.
+/// The error of latticeError() in space and time, for a signal on the unit cube of space and time: reconstructed
+/// linearly between frames and samples, on D4* as the mean of both grids (volume/series.h), as they are or prefiltered.
+/// `spacing` is the cell edge of one grid along all four axes. Points lie a quarter inside the cube.
 LatticeError latticeError4(const std::function<double(glm::dvec4)>& signal, LatticeKind4 kind, double spacing,
                            bool prefilter, std::size_t points = 60000, unsigned seed = 1);
 
