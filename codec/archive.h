@@ -6,8 +6,13 @@
 #include "volume/progress.h"
 
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
+
+namespace tessera::volume {
+struct MergedBrick;
+}
 
 namespace tessera::codec {
 
@@ -68,6 +73,8 @@ private:
     friend volume::Field readField(const Archive&, int, int, int);
     friend VerifyReport verifyArchive(const Archive&, const Progress&);
     friend struct Verifier;
+    friend std::vector<struct MergedBytes> bytesOfMerged(const Archive&, std::span<const volume::MergedBrick>,
+                                                         const Progress&);
     friend struct ArchiveState stateOf(const Archive&, bool);
     struct Impl;
     std::unique_ptr<Impl> impl_;

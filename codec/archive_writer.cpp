@@ -118,12 +118,6 @@ int ArchiveWriter::Impl::maskFor(const volume::Field& field, int zstdLevel) {
     return found->second;
 }
 
-namespace {
-
-constexpr std::size_t kSmallFrame = 1 << 19; // samples
-
-} // namespace
-
 void ArchiveWriter::Impl::writeModel(const Model& chosen, bool idle, std::size_t component, FrameRecord& frame) {
     const Model model = idle ? makeModel(Histogram(metadata.grid.levels), 0, 1) : chosen;
     const Bytes bytes = idle && (header.features & kCompact) != 0 ? Bytes() : serialise(model);
@@ -232,8 +226,7 @@ void ArchiveWriter::addFrame(int parameter, int component, int time, const volum
     frame.bricks.resize(bricks);
     frame.segments.resize(bricks * levels);
     std::vector<std::vector<Bytes>> coded(bricks);
-    // Small frames take no time worth saving.
-    const int effort = field.count() <= kSmallFrame ? kMostEffort : options.zstdLevel;
+    const int effort = effortFor(field, options.zstdLevel);
     // In batches, so that a cancel is noticed and the output does not depend on the number of cores.
     constexpr std::size_t kBatch = 64;
     for (std::size_t first = 0; first < bricks; first += kBatch) {

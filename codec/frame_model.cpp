@@ -144,6 +144,11 @@ NumberCoding chooseNumbers(const volume::BrickGrid& grid, const volume::Field& f
     return sampleMiddles(grid, field, frame, kTrialBricks).bits() < asScaled ? bits : scaled;
 }
 
+int effortFor(const volume::Field& field, int zstdLevel) {
+    constexpr std::size_t kSmallFrame = 1 << 19; // samples
+    return field.count() <= kSmallFrame ? kMostEffort : zstdLevel;
+}
+
 double boundOf(const FrameRecord& frame, const FrameOptions& options) {
     return frame.numbers.kind == NumberKind::Quantised ? options.maxError : 0;
 }

@@ -31,6 +31,9 @@ int codeBitsOf(const volume::Field& field, const NumberCoding& numbers);
 NumberCoding chooseNumbers(const volume::BrickGrid& grid, const volume::Field& field, const KnownModel* last,
                            const FrameOptions& options);
 
+/// Effort of zstd for the bricks of a frame: small frames take no time worth saving.
+int effortFor(const volume::Field& field, int zstdLevel);
+
 /// The bound that samples of a frame are held to beside their codes.
 double boundOf(const FrameRecord& frame, const FrameOptions& options);
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "volume/brick_source.h"
+#include "volume/describe.h"
 
 #include <span>
 #include <string_view>
@@ -23,6 +24,27 @@ struct MergeOptions {
     double alike = 0.1;      ///< most by which the importance of merged bricks differs
     int mostBricks = 4;      ///< along an axis
     MergeShape shape = MergeShape::Best;
+
+    bool operator==(const MergeOptions&) const = default;
+    static void describe(auto& self, auto&& visit) {
+        visit(self.discardBelow, FieldInfo{.key = "discardBelow",
+                                           .unit = "importance",
+                                           .doc = "Bricks less important than this are left out; 0 = none",
+                                           .range = Range{0, 1}});
+        visit(self.alike, FieldInfo{.key = "alike",
+                                    .unit = "importance",
+                                    .doc = "Most by which the importance of bricks that are merged differs",
+                                    .range = Range{0, 1}});
+        visit(self.mostBricks, FieldInfo{.key = "mostBricks",
+                                         .unit = "bricks",
+                                         .doc = "Edge of the largest merged brick",
+                                         .range = Range{1, 64}});
+        visit(self.shape, FieldInfo{.key = "shape",
+                                    .unit = "",
+                                    .doc = "Which merged bricks are listed: cubes (uniform), boxes along x, then y, "
+                                           "then z (mixed), boxes grown in all directions (best)",
+                                    .names = kMergeShapeNames});
+    }
 };
 
 /// A box of bricks [begin, end) of the grid.

@@ -1,6 +1,8 @@
 #include "app/command/command.h"
 #include "app/command/format.h"
 #include "app/command/import_options.h"
+#include "app/command/merge_layouts.h"
+#include "app/session/describe_cli.h"
 #include "app/session/import_memory.h"
 #include "app/session/session_file.h"
 #include "codec/archive.h"
@@ -223,25 +225,42 @@ void printBricks(const codec::Archive& archive) {
     });
 }
 
-void run(const std::vector<std::string>& paths, const volume::ImportOptions& import, bool asJson, bool bricks) {
+struct InfoRequest {
+    std::vector<std::string> paths;
+    volume::ImportOptions import;
+    volume::MergeOptions merging;
+    bool json = false, bricks = false, merge = false;
+};
+
+void describeArchive(const InfoRequest& request) {
+    const codec::Archive archive(request.paths[0]);
+    std::vector<MergeLayout> layouts;
+    if (request.merge) layouts = mergeLayouts(archive, request.merging, terminalProgress("info"));
+    if (request.json) {
+        Json document = archiveJson(archive);
+        if (request.bricks) document["bricks"] = bricksJson(archive);
+        if (request.merge) document["merged"] = layoutsJson(layouts, request.merging);
+        std::printf("%s\n", document.dump(1).c_str());
+        return;
+    }
+    printArchive(archive);
+    if (request.bricks) printBricks(archive);
+    if (request.merge) printLayouts(archive, layouts, request.merging);
+}
+
+void describe(const InfoRequest& request) {
+    const std::vector<std::string>& paths = request.paths;
+    const bool asJson = request.json;
     if (paths.size() == 1 && hasEnding(paths[0], ".tsr")) {
-        const codec::Archive archive(paths[0]);
-        if (asJson) {
-            Json document = archiveJson(archive);
-            if (bricks) document["bricks"] = bricksJson(archive);
-            std::printf("%s\n", document.dump(1).c_str());
-        } else {
-            printArchive(archive);
-            if (bricks) printBricks(archive);
-        }
-    } else if (bricks) {
+        describeArchive(request);
+    } else if (request.bricks || request.merge) {
         throw Error("only archives (.tsr) have bricks", paths[0]);
     } else if (paths.size() == 1 && (hasEnding(paths[0], ".png") ||
                                      (hasEnding(paths[0], ".json") && looksLikeSession(readText(paths[0]))))) {
         printSession(paths[0], asJson);
     } else {
         const volume::ImportPreview preview =
-            volume::previewFiles(paths, recallOptions(paths, import), terminalProgress("info"));
+            volume::previewFiles(paths, recallOptions(paths, request.import), terminalProgress("info"));
         std::printf("%s%s", (asJson ? describePreviewJson(preview) : describePreview(preview)).c_str(),
                     asJson ? "\n" : "");
     }
@@ -251,18 +270,18 @@ void run(const std::vector<std::string>& paths, const volume::ImportOptions& imp
 
 void addInfoCommand(CLI::App& app) {
     CLI::App* command = app.add_subcommand("info", "What is in a data file, an archive, a session or a picture");
-    const auto paths = std::make_shared<std::vector<std::string>>();
-    const auto import = std::make_shared<volume::ImportOptions>();
-    const auto asJson = std::make_shared<bool>(false);
-    command->add_option("FILE", *paths, "Archive, session, picture of ours, or data files that belong together")
+    const auto request = std::make_shared<InfoRequest>();
+    command->add_option("FILE", request->paths, "Archive, session, picture of ours, or data files that belong together")
         ->required();
-    const auto bricks = std::make_shared<bool>(false);
-    command->add_flag("--json", *asJson, "Print as JSON with stable keys");
-    command->add_flag("--bricks", *bricks,
+    command->add_flag("--json", request->json, "Print as JSON with stable keys");
+    command->add_flag("--bricks", request->bricks,
                       "Of an archive also every brick of every component and time: range, importance, change from the "
                       "time before, bytes");
-    addImportOptions(*command, *import);
-    command->callback([=] { run(*paths, *import, *asJson, *bricks); });
+    command->add_flag("--merge", request->merge,
+                      "Of an archive also how its bricks merge into larger ones, and the bytes those would take");
+    addDescribed(*command, request->merging, "merge.");
+    addImportOptions(*command, request->import);
+    command->callback([request] { describe(*request); });
 }
 
 } // namespace tessera::app

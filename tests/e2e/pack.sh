@@ -31,6 +31,14 @@ check "verify BCC" 0 "$tessera" verify bcc.tsr --json
 say '"ok": true' out.txt
 check "unpack BCC" 0 "$tessera" unpack bcc.tsr -o grid.raw
 
+# Bricks that are alike, put together.
+check "pack small bricks" 0 "$tessera" pack ramp.json -o bricks.tsr --lattice cc --brick-size 4
+check "info --merge" 0 "$tessera" info bricks.tsr --merge --merge.alike 1
+say "as one" out.txt
+check "info --merge --json" 0 "$tessera" info bricks.tsr --merge --merge.alike 1 --merge.shape mixed --json
+python3 -c 'import json; m=json.load(open("out.txt"))["merged"]; assert [l["shape"] for l in m["layouts"]]==["uniform","mixed","best"] and m["layouts"][2]["bricks"]==1 and m["layouts"][1]["sizes"]=={"3x2x2":1} and m["bricks"][0]["end"]==[3,2,2] and m["bricks"][0]["bytesAsOne"]>0, m' || failures=$((failures + 1))
+check "merging what is no archive" 2 "$tessera" info ramp.json --merge
+
 # Absent samples keep their stored numbers: a fill value of the sidecar, NaN, a rule, and 0 that is also data elsewhere.
 python3 - <<'EOF'
 import json, math, struct
