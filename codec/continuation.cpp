@@ -63,6 +63,12 @@ void Continuation::widen(const DatasetInfo& from, DatasetInfo& to) const {
     }
 }
 
+bool bringsTimes(const Archive& archive, const DatasetInfo& added) {
+    return std::any_of(added.parameters.begin(), added.parameters.end(), [&](const Parameter& parameter) {
+        return find(archive.metadata().info, parameter.name) != nullptr;
+    });
+}
+
 Continuation continuationOf(const Archive& archive, Metadata& metadata) {
     const std::string& path = archive.path();
     const Metadata& old = archive.metadata();
@@ -75,15 +81,13 @@ Continuation continuationOf(const Archive& archive, Metadata& metadata) {
         old.grid.phase != metadata.grid.phase)
         throw Error("the archive has other bricks than its options say", path);
 
-    std::size_t known = 0;
-    for (const Parameter& parameter : added.parameters) known += find(old.info, parameter.name) != nullptr ? 1 : 0;
     Continuation place;
     metadata.info = old.info;
     metadata.grid = old.grid;
     metadata.source = old.source;
     metadata.lossless = old.lossless && metadata.lossless;
     metadata.maxError = std::max(metadata.maxError, old.maxError);
-    if (known == 0) {
+    if (!bringsTimes(archive, added)) {
         if (added.times != old.info.times)
             throw Error("parameters can only be added at all times of the archive, " +
                             std::to_string(old.info.times.size()) + " of them",

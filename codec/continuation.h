@@ -19,6 +19,9 @@ struct Continuation {
     void widen(const volume::DatasetInfo& from, volume::DatasetInfo& to) const;
 };
 
+/// True if a data set brings later times of parameters of the archive, not further parameters.
+bool bringsTimes(const Archive& archive, const volume::DatasetInfo& added);
+
 /// How the data set of `metadata`, made as for an archive of its own, continues an archive; `metadata` becomes that of
 /// both together. Throws Error when lattice, bricks, parameters or times do not fit.
 Continuation continuationOf(const Archive& archive, Metadata& metadata);

@@ -251,8 +251,16 @@ PackSummary packInto(volume::Dataset& source, const PackOptions& asked, const st
     Metadata metadata;
     metadata.source = source.info.lattice;
     metadata.alternating = options.lattice == StoredLattice::D4;
-    if (metadata.alternating) metadata.sourceTimes = source.info.times;
-    volume::Dataset dataset = metadata.alternating ? volume::toD4(source, options.resample) : source;
+    volume::Dataset dataset = source;
+    if (metadata.alternating && grown && bringsTimes(*grown, source.info)) {
+        volume::ContinuedD4 later =
+            volume::continueD4(source, grown->metadata().sourceTimes, grown->info().times, options.resample);
+        metadata.sourceTimes = std::move(later.times);
+        dataset = std::move(later.frames);
+    } else if (metadata.alternating) {
+        metadata.sourceTimes = source.info.times;
+        dataset = volume::toD4(source, options.resample);
+    }
     volume::DatasetInfo& info = dataset.info;
     const bool toBcc = options.lattice == StoredLattice::BCC && info.lattice.kind == LatticeKind::CC;
     const bool resamples = toBcc || metadata.alternating;
@@ -292,10 +300,12 @@ PackSummary packInto(volume::Dataset& source, const PackOptions& asked, const st
         const double frames = double(times) * double(componentCount(info));
         double done = 0;
         // With the ranges known so far; a reader may come at any time.
-        const auto soFar = [&] {
+        const auto soFar = [&](std::size_t wholeTimes) {
             volume::DatasetInfo read = info;
             read.parameters = withRanges(info.parameters, ranges);
             Metadata now = metadata;
+            if (wholeTimes < now.info.times.size()) // of D4*: what the frames so far reach
+                std::erase_if(now.sourceTimes, [&](double time) { return time > now.info.times[wholeTimes - 1]; });
             place.widen(read, now.info);
             for (std::size_t p = 0; p < parameters; ++p) {
                 const double extent = extentOf(now.info.parameters[std::size_t(place.parameterOf[p])]);
@@ -362,9 +372,10 @@ PackSummary packInto(volume::Dataset& source, const PackOptions& asked, const st
                 writer.addFrame(place.parameterOf[p], int(c), int(place.firstTime + t), field, frame,
                                 work.part(done / frames, (done + 1) / frames));
             }
-            if (p + 1 < parameters || !place.wholeTimes || metadata.alternating) continue;
+            const std::size_t wholeTimes = place.firstTime + t + 1, least = metadata.alternating ? 2 : 1;
+            if (p + 1 < parameters || !place.wholeTimes || wholeTimes < least) continue;
             Stopwatch write(summary.writeSeconds);
-            writer.commit(soFar(), place.firstTime + t + 1);
+            writer.commit(soFar(wholeTimes), wholeTimes);
         }
         settleRanges(info, ranges);
         source.info.parameters = info.parameters;
@@ -373,7 +384,7 @@ PackSummary packInto(volume::Dataset& source, const PackOptions& asked, const st
             summary.notes.push_back("memory is too tight to keep frames: what changes from time to time is not noted");
         summary.repeatedBricks = writer.repeats().bricks;
         summary.repeatedBytes = writer.repeats().bytes;
-        const Metadata known = soFar();
+        const Metadata known = soFar(metadata.info.times.size());
         summary.maxError = known.maxError;
         summary.archiveBytes = writer.finish(known);
         summary.addedBytes = summary.archiveBytes - (grown ? grown->fileBytes() : 0);
@@ -402,8 +413,6 @@ PackSummary pack(volume::Dataset& source, const PackOptions& asked, const std::s
 
 PackSummary append(volume::Dataset& source, const std::string& path, double memoryMb, const Progress& progress) {
     const Archive grown(path);
-    if (grown.metadata().alternating)
-        throw Error("an archive of D4* frames does not grow: its last frames are made of all times to their end", path);
     PackOptions options = grown.metadata().options;
     options.memoryMb = memoryMb;
     return packInto(source, options, path, &grown, progress);

@@ -159,18 +159,18 @@ struct PackSummary {
     std::vector<std::string> notes; ///< what the user should know, one line each
 };
 
-/// Packs a data set into `path`, where it can be read from the first whole time on (with d4, at the end). Streams: one
-/// time of one parameter and its working copies are in memory; with d4, as many times of every parameter as the filter
-/// spans. Ranges, where
-/// unknown, are gathered on the way (with `maxError`, in a pass before). Categorical parameters are resampled to the
-/// nearest and only predicted, so that every level holds labels. Nothing is left behind when it throws: Error for bad
-/// input or options, MachineError when the file cannot be written, Cancelled.
+/// Packs a data set into `path`, where it can be read from the first whole time on (with d4, from the second frame).
+/// Streams: one time of one parameter and its working copies are in memory; with d4, as many times of every parameter
+/// as the filter spans. Ranges, where unknown, are gathered on the way (with `maxError`, in a pass before). Categorical
+/// parameters are resampled to the nearest and only predicted, so that every level holds labels. Nothing is left behind
+/// when it throws: Error for bad input or options, MachineError when the file cannot be written, Cancelled. (What
+/// exactly `memoryMb` bounds: codec/memory_plan.h.)
 PackSummary pack(volume::Dataset& source, const PackOptions& options, const std::string& path,
                  const Progress& progress = {});
 
-/// Appends a data set to an archive, with the options that was packed with: times later than its last of the same
-/// parameters, or further parameters at the same times. Every whole time that was appended stays when it throws; of
-/// parameters all or none. `memoryMb` as in the options. Error when the data does not continue the archive.
+/// Appends to an archive with its own options: times later than its last of the same parameters (with d4 the last times
+/// again before them, volume::continueD4), or further parameters at the same times. Whole times that were appended stay
+/// when it throws; of parameters all or none. `memoryMb` as in the options. Error when the data do not continue it.
 PackSummary append(volume::Dataset& source, const std::string& path, double memoryMb = 0,
                    const Progress& progress = {});
 

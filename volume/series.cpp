@@ -222,6 +222,13 @@ int framesSpanned(const ResampleOptions& options) {
     return tapCount(inTime(options), 1 << 20);
 }
 
+int firstFrameSpanned(double cells, int count, const ResampleOptions& options) {
+    const Tap tap = tapAt(cells, count, inTime(options));
+    int first = 0;
+    while (first + 1 < tap.count && tap.weight[std::size_t(first)] == 0) ++first;
+    return tap.first + first;
+}
+
 Field toD4Frame(const Series& cc, const Lattice4& d4, int frame, const ResampleOptions& options) {
     const double cells = (d4.time(frame) - cc.lattice.origin.w) / cc.lattice.spacing.w;
     const ResampleOptions labels{.filter = ResampleFilter::Nearest};

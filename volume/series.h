@@ -25,6 +25,9 @@ Series remembering(Series series, std::size_t frames);
 /// Frames that the time axis of `toD4Frame` spans: what `remembering` should keep.
 int framesSpanned(const ResampleOptions& options);
 
+/// The first frame of a CC series of `count` frames that a frame of D4* at `cells` of it is made of.
+int firstFrameSpanned(double cells, int count, const ResampleOptions& options);
+
 /// A float field in another type, rounded and held within it.
 Field converted(const Field& field, ScalarType type);
 

@@ -25,4 +25,17 @@ Series d4SeriesOf(const Dataset& frames, int parameter, int component);
 /// Throws Error when the source is not CC or has one time.
 Dataset toD4(Dataset source, const ResampleOptions& options);
 
+/// What a series that has been made into frames of D4* becomes when it goes on.
+struct ContinuedD4 {
+    Dataset frames;            ///< those behind the ones there are, as toD4() gives them
+    std::vector<double> times; ///< of the whole series
+};
+
+/// Goes on with a D4* lattice: `known` are the times of the series so far, `frames` those of the frames made of them,
+/// which stay as they are (those between the last two times were made without the times to come). `source` begins with
+/// the last of the known times, as many as the filter reaches back to, and has later ones. Throws Error when it has
+/// none or lacks one of those.
+ContinuedD4 continueD4(Dataset source, const std::vector<double>& known, const std::vector<double>& frames,
+                       const ResampleOptions& options);
+
 } // namespace tessera::volume

@@ -146,6 +146,65 @@ TEST_F(PackD4, ComesBackAtTheTimesAndOnTheGridItCameFrom) {
     EXPECT_EQ(gridDataset(archive_, 1).load(0, 0, 2).lattice.size, glm::ivec3(11, 10, 9));
 }
 
+/// Times [first, end) of the smooth data.
+volume::Dataset someTimes(std::size_t first, std::size_t end) {
+    volume::Dataset some = smoothDataset();
+    const std::vector<double> all = some.info.times;
+    some.info.times.assign(all.begin() + std::ptrdiff_t(first), all.begin() + std::ptrdiff_t(end));
+    some.load = [load = some.load, first](int p, int c, int t) { return load(p, c, t + int(first)); };
+    return some;
+}
+
+TEST_F(PackD4, GrowsByLaterTimesAndIsReadMeanwhile) {
+    const std::string path = path_ + ".grows.tsr";
+    PackOptions options;
+    options.lattice = StoredLattice::D4;
+    options.brickSize = 8;
+    volume::Dataset early = someTimes(0, 5);
+    pack(early, options, path);
+    const auto before = std::make_shared<const Archive>(path);
+    const volume::Dataset had = storedDataset(before);
+    volume::Dataset tooLate = someTimes(4, kTimes), late = someTimes(3, kTimes);
+    EXPECT_THROW(append(tooLate, path), Error); // the cubic filter reaches back to the time before the last
+    std::vector<std::size_t> seen;
+    const Progress progress{[&](double, const std::string&) {
+                                const auto source = openArchive(path);
+                                const std::size_t times = source->info().times.size();
+                                if (seen.empty() || seen.back() != times) seen.push_back(times);
+                            },
+                            {}};
+    append(late, path, 0, progress);
+    EXPECT_GT(seen.size(), 3u);
+
+    const auto archive = std::make_shared<const Archive>(path);
+    EXPECT_EQ(verifyArchive(*archive).damaged, 0u);
+    const volume::Dataset made = smoothDataset(), now = storedDataset(archive);
+    EXPECT_EQ(archive->metadata().sourceTimes, made.info.times);
+    EXPECT_NEAR(double(archive->info().times.size()), double(archive_->info().times.size()), 1);
+    const int known = int(had.info.times.size());
+    for (const int p : {0, 1, 2}) { // what was there stays, what came is made of the data alone
+        EXPECT_EQ(now.load(p, 0, known - 1).samples, had.load(p, 0, known - 1).samples);
+        const auto wanted = volume::continueD4(someTimes(3, kTimes), early.info.times, had.info.times, {});
+        for (int t = 0; t < int(wanted.frames.info.times.size()); ++t)
+            EXPECT_EQ(now.load(p, 0, known + t).samples, wanted.frames.load(p, 0, t).samples);
+    }
+    // As good as when packed at once, but for the last interval: there is one frame less behind it.
+    const volume::Dataset grid = gridDataset(archive, 0, volume::TimeFilter::Cubic);
+    ASSERT_EQ(grid.info.times, made.info.times);
+    double worst = 0;
+    for (int t = 1; t < kTimes - 2; ++t) {
+        const Field back = grid.load(0, 0, t), truth = made.load(0, 0, t);
+        for (int k = 3; k < kSize.z - 3; ++k)
+            for (int j = 3; j < kSize.y - 3; ++j)
+                for (int i = 3; i < kSize.x - 3; ++i) {
+                    const std::size_t at = back.lattice.index({i, j, k});
+                    worst = std::max(worst, std::abs(back.value(at) - truth.value(at)));
+                }
+    }
+    EXPECT_LT(worst, 0.05);
+    std::filesystem::remove(path);
+}
+
 TEST(PackD4Errors, OneTimeOrAnotherLatticeIsRefused) {
     volume::Dataset still = smoothDataset();
     still.info.times = {0};

@@ -3,6 +3,7 @@
 #include "tests/volume/fields.h"
 #include "volume/hyperplane.h"
 #include "volume/lattice_error.h"
+#include "volume/series_dataset.h"
 
 #include <cmath>
 #include <gtest/gtest.h>
@@ -92,6 +93,57 @@ TEST(Series, LinearFunctionsSurviveD4AndComeBackAtAnyTime) {
                 forInside(back, cc, 2.5,
                           [&](glm::dvec3 p, double value) { ASSERT_NEAR(value, plane(glm::dvec4(p, t)), 2e-4); });
             }
+    }
+}
+
+/// Times [first, first + count) of a plane in space and time, one a unit.
+Dataset planeTimes(int first, int count) {
+    Dataset dataset;
+    dataset.info.lattice = test::ccLattice({12, 11, 10});
+    dataset.info.times.clear();
+    for (int t = 0; t < count; ++t) dataset.info.times.push_back(10 + 0.5 * (first + t));
+    dataset.info.parameters = {Parameter{}};
+    dataset.load = [lattice = dataset.info.lattice, times = dataset.info.times](int, int, int t) {
+        return test::sampled<float>(
+            lattice, [&](glm::dvec3 p) { return p.x - 2 * p.y + 0.5 * p.z + 6 * times.at(std::size_t(t)); });
+    };
+    return dataset;
+}
+
+// Linear functions are continued without error beyond the ends of a series: all frames must be those of one plane.
+TEST(Series, D4GoesOnWithLaterTimes) {
+    for (const auto& [filter, reach] : {std::pair(ResampleFilter::Linear, 1), std::pair(ResampleFilter::Cubic, 2),
+                                        std::pair(ResampleFilter::Sinc, 5)}) {
+        const ResampleOptions options{.filter = filter};
+        Dataset shown = toD4(planeTimes(0, 6), options);
+        std::vector<double> times = planeTimes(0, 6).info.times, frames = shown.info.times;
+        const double step = frames[1] - frames[0];
+        for (const int added : {1, 1, 3}) {
+            const int known = int(times.size());
+            EXPECT_THROW((void)continueD4(planeTimes(known - reach + 1, added + reach - 1), times, frames, options),
+                         Error);
+            EXPECT_THROW((void)continueD4(planeTimes(0, known), times, frames, options), Error);
+            const ContinuedD4 later = continueD4(planeTimes(known - reach, added + reach), times, frames, options);
+            EXPECT_EQ(later.times, planeTimes(0, known + added).info.times);
+            EXPECT_EQ(later.frames.info.lattice, shown.info.lattice);
+            ASSERT_FALSE(later.frames.info.times.empty());
+            for (std::size_t t = 0; t < later.frames.info.times.size(); ++t) {
+                const double time = later.frames.info.times[t];
+                EXPECT_NEAR(time - frames.back(), step, 1e-9);
+                const Field frame = later.frames.load(0, 0, int(t));
+                const double moved = frames.size() % 2 == 0 ? 0 : 0.5;
+                EXPECT_NEAR(frame.lattice.origin.x, shown.info.lattice.origin.x + moved * frame.lattice.spacing.x,
+                            1e-12);
+                frames.push_back(time);
+                if (filter == ResampleFilter::Sinc) continue; // does not reproduce linear functions
+                forInside(frame, ccLattice4({12, 11, 10, 1}), 0, [&](glm::dvec3 p, double value) {
+                    ASSERT_NEAR(value, p.x - 2 * p.y + 0.5 * p.z + 6 * time, 1e-4);
+                });
+            }
+            times = later.times;
+            EXPECT_LE(frames.back(), times.back() + 1e-9);
+            EXPECT_GT(frames.back() + step, times.back());
+        }
     }
 }
 
