@@ -142,6 +142,7 @@ void Workbench::frame() {
         run();
     }
     followDerived();
+    followGrowth();
     std::erase_if(caches_, [&](const auto& entry) { return !session_.views.contains(entry.first); });
     // Also not in the frame whose Esc has just closed a menu: it would clear the brushes as well.
     const bool popup = ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopupId);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "app/growth_watch.h"
 #include "app/open.h"
 #include "app/session/state_dir.h"
 #include "app/ui/commands.h"
@@ -33,6 +34,8 @@ struct WorkbenchOptions {
     bool headless = false;   ///< pictures: no messages, dialogs or remembered files; every frame is finished
     std::string onlyPane;    ///< shows this pane alone, without its strip
     std::string stateFolder; ///< recent files and autosave; "" remembers nothing
+    /// How often an archive that is shown is looked at for new times.
+    std::chrono::milliseconds growthInterval = std::chrono::seconds(1);
     /// Called after each pane is drawn, for measurements: `behind` while it still shows an older state of the session.
     std::function<void(const std::string& pane, bool behind)> paneDrawn = {};
 };
@@ -126,6 +129,7 @@ private:
     void watchEdits();
     void autosave();
     void followDerived();
+    void followGrowth(); // workbench_growth.cpp
     void play();
     void step(int count);
     void closePane(const std::string& pane);
@@ -174,7 +178,8 @@ private:
     double lastAutosave_ = 0, lastFrame_ = 0;
     bool unsavedEdits_ = false;
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-    Jobs jobs_; ///< last: its threads end before what they refer to
+    std::unique_ptr<GrowthWatch> growth_; ///< of the archive that is shown
+    Jobs jobs_;                           ///< last: its threads end before what they refer to
 };
 
 } // namespace tessera::app

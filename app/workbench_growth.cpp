@@ -1,0 +1,72 @@
+#include "app/workbench.h"
+
+#include "codec/archive.h"
+#include "volume/error.h"
+
+#include <algorithm>
+#include <filesystem>
+
+namespace tessera::app {
+
+namespace {
+
+/// True if a data set is another one gone on: the same bricks, all its parameters and times, and more of them.
+bool goesOn(const volume::BrickSource& was, const volume::BrickSource& is) {
+    const volume::DatasetInfo &before = was.info(), &now = is.info();
+    if (was.grid() != is.grid() || now.times.size() < before.times.size() ||
+        now.parameters.size() < before.parameters.size() ||
+        !std::equal(before.times.begin(), before.times.end(), now.times.begin()))
+        return false;
+    const auto same = [](const volume::Parameter& a, const volume::Parameter& b) {
+        return a.name == b.name && a.components == b.components && a.type == b.type;
+    };
+    if (!std::equal(before.parameters.begin(), before.parameters.end(), now.parameters.begin(), same)) return false;
+    return now.times.size() > before.times.size() || now.parameters.size() > before.parameters.size();
+}
+
+} // namespace
+
+/// Takes over what has become whole in an archive that grows while it is shown; the view of the data stays as it is.
+void Workbench::followGrowth() {
+    const auto& files = session_.data.files;
+    const bool archive = source_ && !options_.headless && files.size() == 1 && files[0].absolutePath.ends_with(".tsr");
+    if (!archive) {
+        growth_.reset();
+        return;
+    }
+    const std::string path = files[0].absolutePath;
+    if (!growth_ || growth_->path() != path)
+        growth_ = std::make_unique<GrowthWatch>(path, jobs_.wake, options_.growthInterval);
+    if (!growth_->changed()) return;
+    jobs_.start(
+        "growth", "Reading what is new",
+        [this, path, from = source_, derived = derivedShown_](const Progress& progress) -> Jobs::Finish {
+            auto messages = std::make_shared<std::vector<std::string>>();
+            std::shared_ptr<const volume::BrickSource> made;
+            try {
+                made = codec::openArchive(path);
+            } catch (const Error&) {
+                return {}; // being replaced: what is shown stays good
+            }
+            if (!goesOn(*volume::underived(from), *made)) return {};
+            made = volume::deriveAll(made, derived, *messages, progress);
+            return [this, path, messages, made, from] {
+                if (source_ != from) { // other data, or derived anew from what was there: look again
+                    growth_.reset();
+                    return;
+                }
+                const std::size_t times = made->info().times.size(), more = times - source_->info().times.size();
+                source_ = made;
+                renderer_->setSource(source_);
+                caches_.clear();
+                fitSession(session_, source_->info(), *messages);
+                const std::string name = std::filesystem::path(path).filename().string();
+                message(name +
+                        (more > 0 ? " has grown to " + std::to_string(times) + " times" : " has more parameters"));
+                for (const std::string& text : *messages) message(text, true);
+            };
+        },
+        true);
+}
+
+} // namespace tessera::app

@@ -1,0 +1,94 @@
+#include "app/growth_watch.h"
+#include "app/platform/gui.h"
+#include "app/platform/headless.h"
+#include "codec/pack.h"
+#include "vis/gl/headless.h"
+#include "volume/synthetic/models.h"
+
+#include <filesystem>
+#include <fstream>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+namespace tessera::app {
+namespace {
+
+using namespace std::chrono_literals;
+
+struct GrowthGl : ::testing::Test {
+    std::string path = ::testing::TempDir() + "growth_" + std::to_string(::getpid()) + ".tsr";
+    void TearDown() override { std::filesystem::remove(path); }
+};
+
+/// Some times of a signal that moves.
+volume::Dataset moving(int first, int count) {
+    volume::Dataset whole =
+        volume::makeModel("marschner-lobb", {{"nx", 16}, {"ny", 16}, {"nz", 16}, {"times", 6}, {"bits", 8}});
+    volume::Dataset some;
+    some.info = whole.info;
+    some.info.times.assign(whole.info.times.begin() + first, whole.info.times.begin() + first + count);
+    some.load = [load = whole.load, first](int p, int c, int t) { return load(p, c, first + t); };
+    return some;
+}
+
+template <class Condition> bool comes(Condition&& condition) {
+    for (int turn = 0; turn < 1000; ++turn, std::this_thread::sleep_for(10ms))
+        if (condition()) return true;
+    return false;
+}
+
+TEST_F(GrowthGl, AWatchTellsOfWholeStatesOnly) {
+    volume::Dataset early = moving(0, 2), late = moving(2, 1);
+    codec::pack(early, {}, path);
+    std::atomic<int> woken = 0;
+    GrowthWatch watch(
+        path, [&] { ++woken; }, 1ms);
+    EXPECT_TRUE(watch.changed()); // whatever came before
+    EXPECT_FALSE(watch.changed());
+    std::ofstream(path, std::ios::app | std::ios::binary) << "not whole yet";
+    std::this_thread::sleep_for(100ms);
+    EXPECT_FALSE(watch.changed());
+    codec::append(late, path);
+    EXPECT_TRUE(comes([&] { return watch.changed(); }));
+    EXPECT_GT(woken, 0);
+    std::filesystem::remove(path);
+    std::this_thread::sleep_for(20ms);
+    EXPECT_FALSE(watch.changed());
+}
+
+TEST_F(GrowthGl, TheWorkbenchTakesNewTimesOver) {
+    volume::Dataset early = moving(0, 2), late = moving(2, 4);
+    codec::pack(early, {}, path);
+    OpenRequest request;
+    request.paths = {path};
+    const Opened opened = open(request);
+    const vis::HeadlessContext gl;
+    const Gui gui;
+    Workbench workbench({.renderer = nullptr,
+                         .render = {},
+                         .headless = false,
+                         .onlyPane = {},
+                         .stateFolder = {},
+                         .growthInterval = 1ms});
+    workbench.install(opened);
+    const vis::Image before = drawUntilDone(workbench, {600, 400}, 1);
+    const std::vector<double> times = workbench.source()->info().times;
+    ASSERT_EQ(times.size(), 2u);
+    const double shown = workbench.session().time;
+    const std::size_t layers = workbench.session().layers.size();
+
+    codec::append(late, path);
+    ASSERT_TRUE(comes([&] {
+        (void)drawUntilDone(workbench, {600, 400}, 1);
+        return workbench.source()->info().times.size() == 6;
+    }));
+    EXPECT_EQ(workbench.session().time, shown);
+    EXPECT_EQ(workbench.session().layers.size(), layers);
+    workbench.session().time = workbench.source()->info().times[5];
+    const vis::Image after = drawUntilDone(workbench, {600, 400}, 1);
+    EXPECT_NE(before.rgba, after.rgba);
+    EXPECT_FALSE(workbench.busy());
+}
+
+} // namespace
+} // namespace tessera::app
