@@ -16,10 +16,11 @@ struct NamedBench {
     BenchTable (*measureVolumes)(const std::string& volume) = nullptr;
 };
 constexpr NamedBench kBenches[] = {
-    {"lattice", benchLattice},     {"lattice", benchResample},     {"codec", benchCodec},
-    {"codec", benchLevels},        {"codec", benchPeers},          {"thesis", benchThesisSizes},
-    {"thesis", benchThesisCoding}, {"thesis", benchThesisFrames},  {"render", nullptr, benchRender},
-    {"styles", benchStyles},       {"modes", nullptr, benchModes}, {"link", benchLink},
+    {"lattice", benchLattice},      {"lattice", benchResample},     {"lattice", benchBccTransforms},
+    {"lattice", benchLatticeBytes}, {"codec", benchCodec},          {"codec", benchLevels},
+    {"codec", benchPeers},          {"thesis", benchThesisSizes},   {"thesis", benchBricks},
+    {"thesis", benchThesisCoding},  {"thesis", benchThesisFrames},  {"render", nullptr, benchRender},
+    {"styles", benchStyles},        {"modes", nullptr, benchModes}, {"link", benchLink},
     {"link", benchScatter}};
 
 /// Columns of texts to the left, of numbers to the right.

@@ -18,6 +18,10 @@ std::string decimals(double value, int digits);
 
 /// Reconstruction error of CC and BCC, with each filter, at equal and at 70.7 % of the samples, and of D4* at 50 %.
 BenchTable benchLattice();
+/// Archives on BCC with each grid taken apart by itself, as one array, and one grid predicted from the other.
+BenchTable benchBccTransforms();
+/// Archives on BCC and D4*, and those on CC that come as near to the samples of the source.
+BenchTable benchLatticeBytes();
 /// Seconds to resample a volume to BCC with each filter, and a series to D4*.
 BenchTable benchResample();
 /// Pack throughput and archive size against raw and against zstd -19 of the same bytes.
@@ -28,6 +32,8 @@ BenchTable benchPeers();
 BenchTable benchLevels();
 /// Tables 6.1 and 6.2, 6.4, 6.5 of the thesis, its numbers beside ours for the volumes at hand.
 BenchTable benchThesisSizes();
+/// Bricks by importance, merged in each way, and what coding merged ones as one would take.
+BenchTable benchBricks();
 BenchTable benchThesisCoding();
 BenchTable benchThesisFrames();
 /// CPU milliseconds of all threads per frame at 512x512 beside VTK's mappers where they are at hand, with geometric

@@ -1,89 +1,90 @@
 #include "app/command/bench.h"
+#include "app/command/bench_archives.h"
 
 #include "codec/archive.h"
 #include "codec/pack.h"
 #include "codec/thesis_coding.h"
-#include "volume/import/import.h"
-#include "volume/resample.h"
+#include "volume/synthetic/models.h"
 
 #include <algorithm>
-#include <chrono>
-#include <cmath>
-#include <cstdio>
-#include <cstdlib>
-#include <filesystem>
-#include <unistd.h>
+#include <glm/vec4.hpp>
+#include <map>
 
 namespace tessera::app {
 
 namespace {
 
-namespace fs = std::filesystem;
-
-template <class Body> double seconds(Body&& body) {
-    const auto start = std::chrono::steady_clock::now();
-    body();
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
 std::string sizeText(glm::ivec3 size) {
     return std::to_string(size.x) + "x" + std::to_string(size.y) + "x" + std::to_string(size.z);
 }
 
-/// A file that disappears with the object.
-struct Scratch {
-    std::string path = (fs::temp_directory_path() / ("tessera-thesis-" + std::to_string(::getpid()) + ".tsr")).string();
-    ~Scratch() { std::remove(path.c_str()); }
+/// A data set of Tables 6.1 and 6.2: sizes, and the seconds its machine took.
+struct ThesisData {
+    const char* name;
+    glm::ivec4 size;  ///< x, y, z, times
+    const char* bcc;  ///< its size on BCC or D4*
+    const char* file; ///< how the names of its files begin; "": not at hand, a made volume as large stands in
+    double resample, wavelet;
 };
+constexpr ThesisData kThesisData[] = {{"nucleon", {41, 41, 41, 1}, "29x29x58", "nucleon", 0.62, 0.02},
+                                      {"lobster", {301, 324, 56, 1}, "213x229x79", "lobster", 54.9, 8.5},
+                                      {"statue leg", {341, 341, 90, 1}, "241x241x127", "", 106.4, 5.7},
+                                      {"engine", {256, 256, 128, 1}, "181x181x181", "", 87.8, 5.2},
+                                      {"brain", {256, 256, 145, 1}, "181x181x205", "", 109.6, 5.9},
+                                      {"kidney", {90, 90, 80, 64}, "63x63x56x90", "", 967.9, 8.5}};
 
-/// The volumes at hand, by name, as single frames of whole numbers.
-std::vector<std::pair<std::string, volume::Dataset>> volumes() {
-    std::vector<std::pair<std::string, volume::Dataset>> found;
-    const char* data = std::getenv("TESSERA_DATA");
-    std::vector<fs::path> sidecars;
-    std::error_code missing;
-    if (data)
-        for (const auto& entry : fs::directory_iterator(fs::path(data) / "volumes", missing))
-            if (entry.path().extension() == ".json") sidecars.push_back(entry.path());
-    if (sidecars.empty())
-        std::fprintf(stderr, "bench thesis: volumes are looked for in $TESSERA_DATA/volumes; there are none\n");
-    std::sort(sidecars.begin(), sidecars.end());
-    for (const fs::path& sidecar : sidecars) {
-        volume::Dataset dataset = volume::openFiles({sidecar.string()}, {});
-        const volume::ScalarType type = dataset.info.parameters[0].type;
-        if (type != volume::ScalarType::F32 && type != volume::ScalarType::I32)
-            found.emplace_back(sidecar.stem().string(), std::move(dataset));
-    }
-    return found;
+/// Bytes as large as a data set of the thesis: a tomogram of three materials, or a signal that moves.
+volume::Dataset madeAsLarge(const ThesisData& row) {
+    std::map<std::string, double> settings{{"nx", row.size.x}, {"ny", row.size.y}, {"nz", row.size.z}};
+    if (row.size.w == 1) return volume::makeModel("casting", settings);
+    settings["times"] = row.size.w;
+    settings["bits"] = 8;
+    volume::Dataset made = volume::makeModel("marschner-lobb", settings);
+    std::vector<volume::Field> frames; // computed before anything is timed
+    for (int t = 0; t < row.size.w; ++t) frames.push_back(made.load(0, 0, t));
+    made.load = [frames = std::move(frames)](int, int, int time) { return frames[std::size_t(time)]; };
+    return made;
 }
-
-struct ThesisTimes {
-    const char* volume; ///< how the names of its files begin
-    const char* bccSize;
-    double resample, wavelet; ///< s, on its machine
-};
-constexpr ThesisTimes kThesisTimes[] = {{"nucleon", "29x29x58", 0.62, 0.02}, {"lobster", "213x229x79", 54.9, 8.5}};
 
 } // namespace
 
 BenchTable benchThesisSizes() {
     BenchTable table;
-    table.name = "thesis: tables 6.1 and 6.2, sizes on BCC and seconds of pre-processing";
-    table.columns = {
-        "data", "CC", "BCC", "BCC (thesis)", "resample s", "resample s (thesis)", "code s", "wavelet s (thesis)"};
-    for (auto& [name, dataset] : volumes()) {
-        const volume::Field field = dataset.load(0, 0, 0);
-        volume::Field bcc;
-        const double resample = seconds([&] { bcc = volume::toBcc(field, false); });
-        const Scratch file;
-        const codec::PackSummary summary = codec::pack(dataset, {}, file.path);
-        const auto of = [&, &known = name](const ThesisTimes& row) { return known.starts_with(row.volume); };
-        const auto row = std::find_if(std::begin(kThesisTimes), std::end(kThesisTimes), of);
-        const bool known = row != std::end(kThesisTimes);
-        table.rows.push_back({name, sizeText(field.lattice.size), sizeText(bcc.lattice.size), known ? row->bccSize : "",
-                              decimals(resample, 3), known ? decimals(row->resample, 2) : "",
-                              decimals(summary.codeSeconds, 3), known ? decimals(row->wavelet, 2) : ""});
+    table.name = "thesis: tables 6.1 and 6.2, sizes on BCC and D4* and seconds of pre-processing";
+    table.columns = {"data",       "CC",
+                     "BCC, D4*",   "BCC, D4* (thesis)",
+                     "resample s", "resample s (thesis)",
+                     "code s",     "wavelet s (thesis)"};
+    std::vector<std::pair<std::string, volume::Dataset>> atHand = thesisVolumes();
+    const auto add = [&](const std::string& name, volume::Dataset& dataset, const ThesisData* known) {
+        const BenchFile file;
+        codec::PackOptions options;
+        const bool moves = dataset.info.times.size() > 1;
+        if (moves) options.lattice = codec::StoredLattice::D4;
+        const codec::PackSummary summary = codec::pack(dataset, options, file.path);
+        const codec::Archive archive(file.path);
+        const std::string times = std::to_string(dataset.info.times.size());
+        table.rows.push_back(
+            {name, sizeText(dataset.info.lattice.size) + (moves ? "x" + times : ""),
+             sizeText(archive.info().lattice.size) + (moves ? "x" + std::to_string(archive.info().times.size()) : ""),
+             known ? known->bcc : "", decimals(summary.resampleSeconds + (moves ? summary.loadSeconds : 0), 3),
+             known ? decimals(known->resample, 2) : "", decimals(summary.codeSeconds, 3),
+             known ? decimals(known->wavelet, 2) : ""});
+    };
+    for (const ThesisData& row : kThesisData) {
+        const std::string begin = row.file;
+        const auto found = std::find_if(atHand.begin(), atHand.end(), [&](const auto& entry) {
+            return !begin.empty() && entry.first.starts_with(begin);
+        });
+        if (found != atHand.end()) {
+            add(found->first, found->second, &row);
+            atHand.erase(found);
+        } else {
+            volume::Dataset made = madeAsLarge(row);
+            add("as large as " + std::string(row.name), made, &row);
+        }
     }
+    for (auto& [name, dataset] : atHand) add(name, dataset, nullptr);
     return table;
 }
 
@@ -104,10 +105,10 @@ BenchTable benchThesisCoding() {
         table.rows.push_back({"frog", row.wavelet, row.threshold, "30900", row.frog, "", "", ""});
     for (const Row& row : rows)
         table.rows.push_back({"skull", row.wavelet, row.threshold, "16000", row.skull, "", "", ""});
-    for (auto& [name, dataset] : volumes()) {
+    for (auto& [name, dataset] : thesisVolumes()) {
         const volume::Field field = dataset.load(0, 0, 0);
         if (field.mask) continue;
-        const Scratch file;
+        const BenchFile file;
         codec::PackOptions options;
         options.lattice = codec::StoredLattice::CC;
         const codec::PackSummary summary = codec::pack(dataset, options, file.path);
@@ -122,57 +123,6 @@ BenchTable benchThesisCoding() {
                                       decimals(double(one.bytes) / 1e3, 1), decimals(double(three.bytes) / 1e3, 1),
                                       decimals(one.rms, 3), decimals(double(summary.archiveBytes) / 1e3, 1)});
             }
-    }
-    return table;
-}
-
-BenchTable benchThesisFrames() {
-    BenchTable table;
-    table.name = "thesis: table 6.5, seconds to change the frame of a series of 90x90x80";
-    table.columns = {"lattice", "frame s (median)", "frame s (thesis)"};
-    volume::Dataset series;
-    series.info.name = "moving blob";
-    series.info.lattice.size = {90, 90, 80};
-    series.info.bounds = {{0, 0, 0}, {89, 89, 79}};
-    series.info.times = {0, 1, 2, 3};
-    volume::Parameter parameter;
-    parameter.name = "x";
-    parameter.type = volume::ScalarType::U8;
-    series.info.parameters = {parameter};
-    series.load = [lattice = series.info.lattice](int, int, int time) {
-        volume::Field field = volume::makeField(lattice, volume::ScalarType::U8);
-        const auto samples = field.as<std::uint8_t>();
-        std::size_t i = 0;
-        for (int z = 0; z < lattice.size.z; ++z)
-            for (int y = 0; y < lattice.size.y; ++y)
-                for (int x = 0; x < lattice.size.x; ++x, ++i) {
-                    const glm::dvec3 apart = glm::dvec3(x, y, z) - glm::dvec3(30 + 8 * time, 45, 40);
-                    const double blob = std::exp(-glm::dot(apart, apart) / 500);
-                    samples[i] = static_cast<std::uint8_t>(230 * blob + 10 * std::sin(0.9 * x) * std::cos(0.7 * y + z));
-                }
-        return field;
-    };
-    const std::pair<codec::StoredLattice, const char*> lattices[] = {
-        {codec::StoredLattice::CC, "0.12"}, {codec::StoredLattice::BCC, ""}, {codec::StoredLattice::D4, "0.018"}};
-    for (const auto& [lattice, thesis] : lattices) {
-        const Scratch file;
-        codec::PackOptions options;
-        options.lattice = lattice;
-        volume::Dataset copy = series;
-        codec::pack(copy, options, file.path);
-        const auto source = codec::openArchive(file.path);
-        const glm::ivec3 count = source->grid().count();
-        std::vector<double> times;
-        for (int turn = 0; turn < 5; ++turn)
-            for (int time = 0; time < int(source->info().times.size()); ++time)
-                times.push_back(seconds([&] {
-                    for (int z = 0; z < count.z; ++z)
-                        for (int y = 0; y < count.y; ++y)
-                            for (int x = 0; x < count.x; ++x) (void)source->read({0, time, 0, {x, y, z}});
-                }));
-        std::sort(times.begin(), times.end());
-        table.rows.push_back({std::string(codec::kStoredLatticeNames[std::size_t(lattice)]),
-                              decimals(times[times.size() / 2], 4), thesis});
     }
     return table;
 }

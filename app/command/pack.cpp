@@ -11,6 +11,7 @@
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <sys/resource.h>
 
 namespace tessera::app {
 
@@ -87,6 +88,13 @@ void checkOutput(const PackRequest& request) {
         throw Error("there is no archive to append to", request.output);
 }
 
+/// The most memory this program has had so far, files it has mapped included.
+std::uint64_t peakMemory() {
+    rusage usage{};
+    constexpr std::uint64_t kKibi = 1024;
+    return ::getrusage(RUSAGE_SELF, &usage) == 0 ? std::uint64_t(usage.ru_maxrss) * kKibi : 0;
+}
+
 nlohmann::json toJson(const codec::PackSummary& summary, const std::string& path) {
     const auto stage = [](const char* name, double seconds, std::uint64_t bytes) {
         return nlohmann::json{{"name", name}, {"seconds", seconds}, {"bytes", bytes}};
@@ -107,6 +115,7 @@ nlohmann::json toJson(const codec::PackSummary& summary, const std::string& path
             {"seconds", summary.seconds},
             {"waitSeconds", summary.waitSeconds},
             {"trials", summary.trials},
+            {"peakMemory", peakMemory()},
             {"stages",
              {stage("read", summary.loadSeconds, summary.sourceBytes),
               stage("resample", summary.resampleSeconds, summary.storedBytes),
