@@ -18,15 +18,24 @@ double quarterOfRam() {
     return pages > 0 && bytes > 0 ? pages * bytes / 4 : 1e9;
 }
 
+/// What resampling has beside source and result, for each sample of the source.
+double workingBytes(const volume::ResampleOptions& options) {
+    const bool spline =
+        options.filter == volume::ResampleFilter::BSpline3 || options.filter == volume::ResampleFilter::BSpline5;
+    return (spline ? double(sizeof(double)) : 0) + (options.sharpen > 0 ? double(sizeof(float)) + 1 : 0);
+}
+
 } // namespace
 
 MemoryPlan planMemory(const Metadata& metadata, const volume::DatasetInfo& source, const PackOptions& options) {
     const double samples = double(source.lattice.count()),
                  stored = std::max(samples, double(metadata.info.lattice.count()));
+    const bool resampled = options.lattice != StoredLattice::CC && source.lattice.kind == volume::LatticeKind::CC;
+    const double working = resampled ? workingBytes(options.resample) * samples : 0;
     double step = 0, coding = 0, all = 0, last = 0;
     for (const volume::Parameter& parameter : source.parameters) {
         const double bytes = double(volume::byteSize(parameter.type)) + 1; // and a flag
-        step = std::max(step, parameter.components * samples * bytes + stored * bytes);
+        step = std::max(step, parameter.components * samples * bytes + stored * bytes + working);
         coding = std::max(coding, parameter.components * stored * bytes + 2 * stored * bytes);
         all += parameter.components * samples * bytes;
         last += parameter.components * stored * bytes;

@@ -92,6 +92,30 @@ EOF
 done
 check "a negative bound" 1 "$tessera" pack wave.json -o x.tsr --psnr -3
 
+# No more memory than was allowed: the least that packing says it needs, for noise, which does not shrink.
+python3 - <<'EOF'
+import array, json, random
+n = 128
+frame = [random.random() for _ in range(n * n * n)]
+with open("noise.raw", "wb") as file:
+    for t in range(4): array.array("f", frame[t:] + frame[:t]).tofile(file)
+json.dump({"dims": [n, n, n], "dtype": "float32", "times": [0, 1, 2, 3], "components": [{"name": "x"}]},
+          open("noise.json", "w"))
+EOF
+for how in "--lattice cc" "--lattice bcc" "--lattice bcc --resample.filter bspline5" "--lattice d4" \
+    "--lattice cc --max-error 0.001" "--lattice bcc --resample.sharpen 1"; do
+    # shellcheck disable=SC2086
+    check "too little memory, $how" 2 "$tessera" pack noise.json -o noise.tsr $how --memory 20
+    least=$(sed 's/.*takes about \([0-9]*\) MB.*/\1/' err.txt)
+    for memory in $((least + 1)) $((least + 40)); do
+        # shellcheck disable=SC2086
+        check "memory $memory, $how" 0 "$tessera" pack noise.json -o noise.tsr $how --memory $memory --json
+        python3 -c 'import json,sys; p=json.load(open("out.txt"))["peakMemory"]; sys.exit(not 0 < p <= 1e6 * float(sys.argv[1]))' $memory ||
+            fail "more than $memory MB with $how"
+    done
+done
+rm -f noise.raw noise.tsr
+
 # An archive that grows: later times, then another parameter, come to the same as everything at once.
 python3 - <<'EOF'
 import json, math, struct
