@@ -22,6 +22,8 @@ BenchTable benchLattice();
 BenchTable benchBccTransforms();
 /// Archives on BCC and D4*, and those on CC that come as near to the samples of the source.
 BenchTable benchLatticeBytes();
+/// Archives of the same signal on CC and BCC, with as many samples as show it with the same error.
+BenchTable benchSignalBytes();
 /// Seconds to resample a volume to BCC with each filter, and a series to D4*.
 BenchTable benchResample();
 /// Pack throughput and archive size against raw and against zstd -19 of the same bytes.

@@ -95,11 +95,11 @@ check "a negative bound" 1 "$tessera" pack wave.json -o x.tsr --psnr -3
 # No more memory than was allowed: the least that packing says it needs, for noise, which does not shrink.
 python3 - <<'EOF'
 import array, json, random
-n = 128
+n = 160
 frame = [random.random() for _ in range(n * n * n)]
 with open("noise.raw", "wb") as file:
-    for t in range(4): array.array("f", frame[t:] + frame[:t]).tofile(file)
-json.dump({"dims": [n, n, n], "dtype": "float32", "times": [0, 1, 2, 3], "components": [{"name": "x"}]},
+    for t in range(3): array.array("f", frame[t:] + frame[:t]).tofile(file)
+json.dump({"dims": [n, n, n], "dtype": "float32", "times": [0, 1, 2], "components": [{"name": "x"}]},
           open("noise.json", "w"))
 EOF
 for how in "--lattice cc" "--lattice bcc" "--lattice bcc --resample.filter bspline5" "--lattice d4" \
