@@ -16,9 +16,9 @@ struct MergedBytes {
     std::uint64_t together = 0; ///< if the box were coded as one brick
 };
 
-/// What merged bricks would gain, by coding each box with the filter of its frame and its tables, or new ones where they
-/// pay; those count to the first box. Where all bricks of a box repeat an earlier time, neither way takes bytes. Throws
-/// Error for archives of version 1 and damaged ones, Cancelled.
+/// What merged bricks would gain, by coding each box with the filter of its frame and its tables, or new ones where
+/// they pay; those count to the first box. Where all bricks of a box repeat an earlier time, neither way takes bytes.
+/// Throws Error for archives of version 1 and damaged ones, Cancelled.
 std::vector<MergedBytes> bytesOfMerged(const Archive& archive, std::span<const volume::MergedBrick> boxes,
                                        const Progress& progress = {});
 
