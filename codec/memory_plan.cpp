@@ -22,7 +22,8 @@ double quarterOfRam() {
 double workingBytes(const volume::ResampleOptions& options) {
     const bool spline =
         options.filter == volume::ResampleFilter::BSpline3 || options.filter == volume::ResampleFilter::BSpline5;
-    return (spline ? double(sizeof(double)) : 0) + (options.sharpen > 0 ? double(sizeof(float)) + 1 : 0);
+    constexpr double kLines = 1.25; // lines being filtered, and what the allocator keeps of them
+    return (spline ? kLines * double(sizeof(double)) : 0) + (options.sharpen > 0 ? double(sizeof(float)) + 1 : 0);
 }
 
 } // namespace

@@ -58,7 +58,7 @@ std::shared_ptr<const StatisticsResult> compute(const std::shared_ptr<const volu
 
 /// The level to begin with: coarse enough to answer within a few milliseconds.
 int firstLevel(const volume::BrickGrid& grid, std::size_t channels) {
-    const double most = 1e6;
+    const double most = 3e5;
     int level = 0;
     for (; level + 1 < grid.levels; ++level) {
         const glm::ivec3 size = grid.levelSamples(level);
