@@ -385,9 +385,11 @@ void Renderer::Impl::refine(ViewTarget& target, const Scene& scene, const FrameR
     if (!request.wait && !fast && (request.moving || !(target.reducedValid || target.fullValid))) {
         double shrink = 4, stepFactor = 2;
         if (target.msPerPixel > 0)
-            for (double candidate : {1.5, 2.0, 3.0, 4.0, 6.0, 8.0}) {
-                shrink = candidate;
-                stepFactor = candidate < 2 ? 1.5 : candidate > 6 ? 3 : 2;
+            // Not smaller than that: two processors would share one tile of software GL.
+            for (const auto& [smaller, longer] :
+                 {std::pair{1.5, 1.5}, {2.0, 2.0}, {3.0, 2.0}, {4.0, 2.0}, {6.0, 2.0}, {8.0, 3.0}, {8.0, 5.0}}) {
+                shrink = smaller;
+                stepFactor = longer;
                 if (expected / (shrink * shrink * stepFactor) < left()) break;
             }
         drawReduced(shrink, stepFactor);
