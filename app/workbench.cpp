@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <ctime>
 #include <filesystem>
 #include <imgui.h>
@@ -113,6 +114,8 @@ void Workbench::message(const std::string& text, bool failure) {
     if (localtime_r(&time, &local)) std::strftime(clock, sizeof clock, "%H:%M:%S", &local);
     messages_.push_back({text, clock, failure, now(), false});
     if (messages_.size() > kMessages) messages_.pop_front();
+    // Without a window nobody sees the log pane.
+    if (options_.headless && failure) std::fprintf(stderr, "tessera: %s\n", text.c_str());
 }
 
 bool Workbench::prepare(float contentScale) {

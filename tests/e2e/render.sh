@@ -73,4 +73,8 @@ mv cell.tsr elsewhere.tsr
 bad s.tessera.json
 grep -q 'not found' err || die "the missing data file is not named"
 ls ./*.part-* 2> /dev/null && die "something is left behind"
+# Surroundings that cannot be read: the picture is drawn without them, and one line says why.
+printf '#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 4 +X 8\nxx' >torn.hdr
+"$tessera" render evening -o torn.png --view volume --size 160x120 --set "/lighting/environment/picture=\"$PWD/torn.hdr\"" 2>err || die "a torn light picture ends the program"
+[ "$(grep -c 'torn.hdr' err)" = 1 ] || die "a torn light picture is not said once"
 echo "render: all good"
