@@ -1,23 +1,17 @@
 #include "app/command/bench.h"
+#include "app/command/bench_archives.h"
 
 #include "codec/archive.h"
 #include "codec/entropy.h"
 #include "codec/pack.h"
-#include "volume/import/import.h"
 #include "volume/synthetic/models.h"
 
 #include <algorithm>
-#include <cstdio>
-#include <cstdlib>
 #include <ctime>
-#include <filesystem>
-#include <unistd.h>
 
 namespace tessera::app {
 
 namespace {
-
-namespace fs = std::filesystem;
 
 /// CPU seconds of the process that `body` takes: on a busy machine what wall time hides.
 template <class Body> double cpuSeconds(Body&& body) {
@@ -32,12 +26,6 @@ template <class Visit> void forFrames(const volume::DatasetInfo& info, Visit&& v
         for (int p = 0; p < int(info.parameters.size()); ++p)
             for (int c = 0; c < info.parameters[std::size_t(p)].components; ++c) visit(p, c, t);
 }
-
-/// A file that disappears with the object.
-struct Scratch {
-    std::string path = (fs::temp_directory_path() / ("tessera-bench-" + std::to_string(::getpid()) + ".tsr")).string();
-    ~Scratch() { std::remove(path.c_str()); }
-};
 
 void measure(const std::string& name, volume::Dataset dataset, BenchTable& table) {
     codec::Bytes raw;
@@ -54,7 +42,7 @@ void measure(const std::string& name, volume::Dataset dataset, BenchTable& table
     const double zstdDecode = cpuSeconds([&] { (void)codec::decompress(packed, unpacked); });
 
     for (const codec::StoredLattice lattice : {codec::StoredLattice::CC, codec::StoredLattice::BCC}) {
-        const Scratch file;
+        const BenchFile file;
         codec::PackOptions options;
         options.lattice = lattice;
         codec::PackSummary summary;
@@ -87,17 +75,7 @@ BenchTable benchCodec() {
         "over zstd", "pack MB/CPU s", "decode MB/CPU s", "zstd decode", "decode over zstd"};
     const auto cubic = [](double n) { return std::map<std::string, double>{{"nx", n}, {"ny", n}, {"nz", n}}; };
     measure("marschner-lobb 64^3", volume::makeModel("marschner-lobb", cubic(64)), table);
-    const char* data = std::getenv("TESSERA_DATA");
-    std::vector<fs::path> sidecars;
-    std::error_code missing;
-    if (data)
-        for (const auto& entry : fs::directory_iterator(fs::path(data) / "volumes", missing))
-            if (entry.path().extension() == ".json") sidecars.push_back(entry.path());
-    if (sidecars.empty())
-        std::fprintf(stderr, "bench codec: real volumes are looked for in $TESSERA_DATA/volumes; there are none\n");
-    std::sort(sidecars.begin(), sidecars.end());
-    for (const fs::path& sidecar : sidecars)
-        measure(sidecar.stem().string(), volume::openFiles({sidecar.string()}, {}), table);
+    for (auto& [name, dataset] : volumeFiles()) measure(name, std::move(dataset), table);
     return table;
 }
 
