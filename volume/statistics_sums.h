@@ -3,6 +3,7 @@
 #include "volume/statistics.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -16,6 +17,52 @@ inline constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 inline constexpr int kFocusBits = 10;  // interest is summed in units of 2^-10: integers add up the same in any order
 inline constexpr int kCountShift = 36; // a packed bin: count above, focus below
 inline constexpr std::size_t kFlush = std::size_t(1) << (kCountShift - kFocusBits); // samples that fit a packed bin
+
+/// Values of one channel in one brick, ready to be summed.
+struct Column {
+    std::vector<float> value;       ///< physical; NaN where absent
+    std::vector<float> centred;     ///< less the channel's shift; 0 where absent
+    std::vector<float> present;     ///< 1 or 0
+    std::vector<std::uint16_t> bin; ///< the number of bins where absent or out of range
+    bool whole = true;              ///< every sample is present
+};
+
+/// Samples [begin, end) of a brick with their weights (null: 1).
+struct Stretch {
+    std::size_t begin, end;
+    const float* weight;
+    double weightOf(std::size_t i) const { return weight != nullptr ? double(weight[i]) : 1.0; }
+};
+
+/// N sums over a stretch. Of each eight side by side, so that the compiler can use vector instructions without
+/// changing the result; `addTo(i, lanes, lane)` adds sample i to lanes[n][lane].
+template <std::size_t N> std::array<double, N> laneSums(const Stretch& stretch, const auto& addTo) {
+    constexpr std::size_t kLanes = 8;
+    double lanes[N][kLanes] = {};
+    std::size_t i = stretch.begin;
+    for (; i + kLanes <= stretch.end; i += kLanes)
+        for (std::size_t lane = 0; lane < kLanes; ++lane) addTo(i + lane, lanes, lane);
+    for (; i < stretch.end; ++i) addTo(i, lanes, 0);
+    std::array<double, N> sums{};
+    for (std::size_t n = 0; n < N; ++n)
+        for (const double lane : lanes[n]) sums[n] += lane;
+    return sums;
+}
+
+/// Weight, sum and sum of squares of a column that is whole.
+struct Moments {
+    double n = 0, sum = 0, squares = 0;
+
+    static Moments of(const Column& column, const Stretch& stretch) {
+        const auto [n, sum, squares] = laneSums<3>(stretch, [&](std::size_t i, auto& lanes, std::size_t lane) {
+            const double w = stretch.weightOf(i), v = double(column.centred[i]);
+            lanes[0][lane] += w;
+            lanes[1][lane] += w * v;
+            lanes[2][lane] += w * (v * v);
+        });
+        return {n, sum, squares};
+    }
+};
 
 /// Weighted sums of one channel over a set of samples, relative to a shift so that close values keep their digits.
 struct Sums {
@@ -32,6 +79,23 @@ struct Sums {
         if (weight < 0.5) return;
         min = std::min(min, value);
         max = std::max(max, value);
+    }
+    /// All of a whole column with weight 1; `cells`: the volume of all of them together.
+    void add(const Column& column, double shift, double cells) {
+        const Stretch all{0, column.value.size(), nullptr};
+        const auto [first, second] = laneSums<2>(all, [&](std::size_t i, auto& lanes, std::size_t lane) {
+            const double v = double(column.value[i]) - shift;
+            lanes[0][lane] += v;
+            lanes[1][lane] += v * v;
+        });
+        n += double(column.value.size());
+        volume += cells;
+        sum += first;
+        squares += second;
+        for (const float value : column.value) {
+            min = std::min(min, value);
+            max = std::max(max, value);
+        }
     }
     void add(const Sums& other) {
         n += other.n;
@@ -50,26 +114,25 @@ struct Sums {
     }
 };
 
-/// Values of one channel in one brick, ready to be summed.
-struct Column {
-    std::vector<float> value;       ///< physical; NaN where absent
-    std::vector<float> centred;     ///< less the channel's shift; 0 where absent
-    std::vector<float> present;     ///< 1 or 0
-    std::vector<std::uint16_t> bin; ///< the number of bins where absent or out of range
-};
-
 /// Sums of a pair of channels over samples present in both.
 struct PairSums {
     double n = 0, x = 0, y = 0, xx = 0, yy = 0, xy = 0;
 
-    /// Adds all samples of a brick with their weights (null: 1). Eight sums side by side, so that
-    /// the compiler can use vector instructions without changing the result.
-    void add(const Column& a, const Column& b, const float* weight) {
-        constexpr std::size_t kLanes = 8;
-        double lanes[6][kLanes] = {};
-        const std::size_t count = a.value.size();
-        const auto addOne = [&](std::size_t i, std::size_t lane) {
-            const double w = weight != nullptr ? double(weight[i]) : 1.0;
+    /// Adds a stretch. Of whole columns only the products are new; the rest is in their moments.
+    void add(const Column& a, const Column& b, const Moments& ofA, const Moments& ofB, const Stretch& stretch) {
+        if (a.whole && b.whole) {
+            n += ofA.n;
+            x += ofA.sum;
+            y += ofB.sum;
+            xx += ofA.squares;
+            yy += ofB.squares;
+            xy += laneSums<1>(stretch, [&](std::size_t i, auto& lanes, std::size_t lane) {
+                lanes[0][lane] += stretch.weightOf(i) * (double(a.centred[i]) * double(b.centred[i]));
+            })[0];
+            return;
+        }
+        const auto sums = laneSums<6>(stretch, [&](std::size_t i, auto& lanes, std::size_t lane) {
+            const double w = stretch.weightOf(i);
             const double u = double(a.centred[i]), v = double(b.centred[i]);
             const double p = double(a.present[i]) * w, q = double(b.present[i]) * w;
             lanes[0][lane] += double(a.present[i]) * q;
@@ -78,14 +141,8 @@ struct PairSums {
             lanes[3][lane] += u * u * q;
             lanes[4][lane] += v * v * p;
             lanes[5][lane] += u * v * w;
-        };
-        std::size_t i = 0;
-        for (; i + kLanes <= count; i += kLanes)
-            for (std::size_t lane = 0; lane < kLanes; ++lane) addOne(i + lane, lane);
-        for (; i < count; ++i) addOne(i, 0);
-        double* const sums[] = {&n, &x, &y, &xx, &yy, &xy};
-        for (std::size_t sum = 0; sum < 6; ++sum)
-            for (const double lane : lanes[sum]) *sums[sum] += lane;
+        });
+        add({sums[0], sums[1], sums[2], sums[3], sums[4], sums[5]});
     }
     void add(const PairSums& other) {
         n += other.n;
