@@ -3,6 +3,7 @@
 #include "app/views/statistics_feed.h"
 #include "app/workbench.h"
 #include "vis/gl/headless.h"
+#include "volume/error.h"
 #include "volume/memory_source.h"
 #include "volume/synthetic/models.h"
 
@@ -104,6 +105,7 @@ struct Followed {
 Followed drag(const std::function<void(Session&, double)>& edit, OffscreenFrames& frames, Workbench& workbench,
               std::function<void(const std::string&, bool)>& paneDrawn) {
     Followed out;
+    frames.draw(workbench, 1);          // a click needs a window that was there before
     const auto held = [](ImGuiIO& io) { // on the status bar, where it does nothing but make every view draw at speed
         io.MousePos = {40, float(kWindow.y) - 6};
         io.MouseDown[0] = true;
@@ -132,6 +134,7 @@ Followed drag(const std::function<void(Session&, double)>& edit, OffscreenFrames
             OffscreenFrames::finish();
         }
         paneDrawn = nullptr;
+        if (!ImGui::IsAnyItemActive()) throw MachineError("the mouse holds nothing");
         if (step == 0) continue; // to warm up
         for (const auto& [pane, time] : first) out.shown[pane].push_back(time);
         out.all.push_back(milliseconds(begin));

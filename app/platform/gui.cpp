@@ -4,9 +4,11 @@
 #include "app/workbench.h"
 #include "volume/error.h"
 
+#include <algorithm>
 #include <backends/imgui_impl_opengl3.h>
 #include <epoxy/gl.h>
 #include <imgui.h>
+#include <iterator>
 #include <thread>
 
 namespace tessera::app {
@@ -113,6 +115,7 @@ void OffscreenFrames::draw(Workbench& workbench, float scale, const std::functio
     io.DisplaySize = {static_cast<float>(impl_->size.x), static_cast<float>(impl_->size.y)};
     io.DeltaTime = 1.0f / 60;
     io.MousePos = {-FLT_MAX, -FLT_MAX};
+    std::fill(std::begin(io.MouseDown), std::end(io.MouseDown), false);
     if (input) input(io);
     ImGui_ImplOpenGL3_NewFrame();
     ImGui::NewFrame();

@@ -43,7 +43,7 @@ public:
     OffscreenFrames(const OffscreenFrames&) = delete;
     OffscreenFrames& operator=(const OffscreenFrames&) = delete;
 
-    /// Draws one frame; `input` may set mouse and keys before it begins, else the mouse is nowhere.
+    /// Draws one frame; `input` may set mouse and keys before it begins, else the mouse is nowhere and nothing pressed.
     void draw(Workbench& workbench, float scale, const std::function<void(ImGuiIO&)>& input = {});
     vis::Image read() const;
     /// Waits until GL has drawn everything so far.
