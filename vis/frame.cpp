@@ -22,10 +22,11 @@ namespace {
 constexpr double kSkipOccupancy = 0.7; ///< above, leaping costs more than it saves
 constexpr int kSeenUnit = 44;          ///< beyond those of any plan
 
-std::vector<Tile> tilesOf(glm::ivec2 size, int edge) {
+std::vector<Tile> tilesOf(const Tile& whole, int edge) {
     std::vector<Tile> tiles;
-    for (int y = 0; y < size.y; y += edge)
-        for (int x = 0; x < size.x; x += edge) tiles.push_back({{x, y}, glm::min(glm::ivec2(x, y) + edge, size)});
+    for (int y = whole.begin.y; y < whole.end.y; y += edge)
+        for (int x = whole.begin.x; x < whole.end.x; x += edge)
+            tiles.push_back(intersection({{x, y}, glm::ivec2(x, y) + edge}, whole));
     return tiles;
 }
 
@@ -83,17 +84,20 @@ ProgramRecipe Renderer::Impl::prepare(ViewTarget& target, const Scene& scene, Ra
     return recipe();
 }
 
-/// Rasterises the geometry for a picture of this size, unless that is what the target has; of a reduced one the two
-/// nearest surfaces.
-void Renderer::Impl::geometry(ViewTarget& target, const Scene& scene, const RayPlan& plan, glm::ivec2 size, int pass) {
+/// Rasterises the geometry for a tile of a picture of this size, unless that is what the target has; of a reduced one
+/// the two nearest surfaces.
+void Renderer::Impl::geometry(ViewTarget& target, const Scene& scene, const RayPlan& plan, glm::ivec2 size,
+                              const Tile& tile, int pass) {
     const int peels = peelsOf(scene);
     if (peels == 0) return;
     const int most = size == target.size ? peels : std::min(peels, 2);
-    if (target.geometrySize != size || target.geometryPass != pass) {
+    if (target.geometrySize != size || target.geometryPass != pass ||
+        united(target.geometryTile, tile) != target.geometryTile) {
         target.geometry.resize(target.size, peels);
-        geometryPass.draw(target.geometry, scene, source->info(), size, target.size, most, rayUnits(plan).light, grain,
-                          pixelJitter(pass));
+        geometryPass.draw(target.geometry, scene, source->info(), size, tile, target.size, most, rayUnits(plan).light,
+                          grain, pixelJitter(pass));
         target.geometrySize = size;
+        target.geometryTile = tile;
         target.geometryPass = pass;
     }
     glBindTextureUnit(GLuint(RayUnits::kGeometry), target.geometry.color.name());
@@ -252,17 +256,6 @@ void Renderer::Impl::sayLimits(const Scene& scene) {
     limits = now;
 }
 
-namespace {
-
-/// What was drawn so far is out of date.
-void redraw(ViewTarget& target) {
-    target.reducedValid = target.fullValid = target.stillDone = false;
-    target.tilesDone = 0;
-    target.geometrySize = {0, 0};
-}
-
-} // namespace
-
 /// Brings cube maps and light volume up to date and binds them; false while a light volume is still being made.
 bool Renderer::Impl::bindLight(ViewTarget& target, const Scene& scene, const FrameRequest& request,
                                const RayPlan& plan) {
@@ -273,7 +266,7 @@ bool Renderer::Impl::bindLight(ViewTarget& target, const Scene& scene, const Fra
         const std::uint64_t former = target.lightMaps.version();
         surrounded = target.lightMaps.update(scene.lighting, scene.camera, request.wait,
                                              [&](const std::string& message) { messages.push_back(message); });
-        if (target.mapsPending && target.lightMaps.version() != former) redraw(target);
+        if (target.mapsPending && target.lightMaps.version() != former) target.redraw(target.everything());
         target.mapsPending = !surrounded;
         glBindTextureUnit(first, target.lightMaps.diffuse());
         glBindTextureUnit(first + 1, target.lightMaps.specular());
@@ -300,7 +293,7 @@ bool Renderer::Impl::bindLight(ViewTarget& target, const Scene& scene, const Fra
                         setUniforms, vertices.name(), request.budgetMs / 3, request.wait);
     if (target.lightVersion != target.light.version()) {
         target.lightVersion = target.light.version();
-        redraw(target);
+        target.redraw(target.everything());
     }
     glBindTextureUnit(first + 2, target.light.version() > 0 ? target.light.visible() : noShadow.name());
     glBindTextureUnit(first + 3, target.light.scattered() != 0 ? target.light.scattered() : noLight.name());
@@ -313,14 +306,14 @@ void Renderer::Impl::nothing(ViewTarget& target, const Scene& scene) {
     glDisable(GL_SCISSOR_TEST);
     glClearNamedFramebufferfv(target.full.framebuffer.name(), GL_COLOR, 0, empty);
     glClearNamedFramebufferfv(target.full.framebuffer.name(), GL_COLOR, 1, nowhere);
-    present(target, scene, false, {{0, 0}, target.size});
+    present(target, scene, false, target.everything());
     target.fullValid = target.stillDone = true;
 }
 
 /// Draws as much of the bound plan as the budget allows.
 void Renderer::Impl::refine(ViewTarget& target, const Scene& scene, const FrameRequest& request, RayPlan& plan,
                             Clock::time_point start) {
-    if (target.fullValid && (target.stillDone || request.moving)) return;
+    if (target.fullValid ? target.stillDone || request.moving : target.reducedValid && request.moving) return;
     const ProgramRecipe recipe = prepare(target, scene, plan);
     const ProgramAnswer answer = request.wait ? ProgramAnswer{programs.find(recipe), ProgramStage::Ready}
                                               : programs.request(recipe, request.budgetMs / 4);
@@ -347,8 +340,6 @@ void Renderer::Impl::refine(ViewTarget& target, const Scene& scene, const FrameR
         glBindTextureUnit(GLuint(units.grain), grain.get());
     glBindTextureUnit(GLuint(units.lassos), brushes.update(brushTests(plan, scene, info)));
     const bool lit = bindLight(target, scene, request, plan);
-    const double pixels = double(target.size.x) * target.size.y;
-    const Tile everything{{0, 0}, target.size};
 
     if (answer.stage == ProgramStage::Linked) {
         setRayUniforms(*rayProgram, plan, scene, info, source->grid(), target.size, 1);
@@ -358,39 +349,54 @@ void Renderer::Impl::refine(ViewTarget& target, const Scene& scene, const FrameR
     // Software GL compiles at the first draw: do that before any clock runs.
     if (programs.firstUse(*rayProgram)) {
         setRayUniforms(*rayProgram, plan, scene, info, source->grid(), target.size, 1);
-        geometry(target, scene, plan, target.size);
+        geometry(target, scene, plan, target.size, target.everything());
         rays(*rayProgram, scene, target.reduced, target.size, {target.size / 2, target.size / 2 + 1}, nullptr);
         glFinish();
         target.reducedValid = false;
     }
 
     const auto drawReduced = [&](double shrink, double stepFactor) {
-        const Clock::time_point begin = Clock::now();
         target.reducedSize = glm::max(glm::ivec2(glm::vec2(target.size) / float(shrink)), glm::ivec2(1));
+        target.reducedTile = target.changed;
+        // And what is blended with it when it is enlarged.
+        const glm::dvec2 scale = glm::dvec2(target.reducedSize) / glm::dvec2(target.size);
+        const Tile tile = intersection({glm::ivec2(glm::floor(glm::dvec2(target.changed.begin) * scale)) - 1,
+                                        glm::ivec2(glm::ceil(glm::dvec2(target.changed.end) * scale)) + 1},
+                                       {{0, 0}, target.reducedSize});
         setRayUniforms(*rayProgram, plan, scene, info, source->grid(), target.size, stepFactor);
-        geometry(target, scene, plan, target.reducedSize);
-        rays(*rayProgram, scene, target.reduced, target.reducedSize, {{0, 0}, target.reducedSize},
+        const Clock::time_point before = Clock::now();
+        geometry(target, scene, plan, target.reducedSize, tile);
+        if (plan.peels > 0) glFinish();
+        target.geometryMs = millisecondsSince(before);
+        const Clock::time_point begin = Clock::now();
+        rays(*rayProgram, scene, target.reduced, target.reducedSize, tile,
              covered(target, scene, plan, target.reducedSize), stepFactor);
         glFinish();
-        const double cost =
-            millisecondsSince(begin) * stepFactor / std::max(1.0, double(target.reducedSize.x) * target.reducedSize.y);
+        const double cost = millisecondsSince(begin) * stepFactor / std::max(1.0, tile.area());
         target.msPerPixel = target.msPerPixel > 0 ? 0.5 * (target.msPerPixel + cost) : cost;
         target.reducedValid = true;
-        present(target, scene, true, everything);
+        present(target, scene, true, target.changed);
+        target.changed = {};
         glBindTextureUnit(0, plan.fields[0].texture);
     };
     const auto left = [&] { return request.budgetMs - millisecondsSince(start); };
-    const double expected = target.msPerPixel * pixels;
-    const bool fast = target.msPerPixel > 0 && expected < std::max(left(), 1.0);
+    const double expected = target.msPerPixel * target.changed.area();
+    const bool fast = target.msPerPixel > 0 && target.msPerPixel * target.stale.area() < std::max(left(), 1.0);
     if (!request.wait && !fast && (request.moving || !(target.reducedValid || target.fullValid))) {
         double shrink = 4, stepFactor = 2;
         if (target.msPerPixel > 0)
             // Not smaller than that: two processors would share one tile of software GL.
-            for (const auto& [smaller, longer] :
-                 {std::pair{1.5, 1.5}, {2.0, 2.0}, {3.0, 2.0}, {4.0, 2.0}, {6.0, 2.0}, {8.0, 3.0}, {8.0, 5.0}}) {
+            for (const auto& [smaller, longer] : {std::pair{1.0, 1.0},
+                                                  {1.5, 1.5},
+                                                  {2.0, 2.0},
+                                                  {3.0, 2.0},
+                                                  {4.0, 2.0},
+                                                  {6.0, 2.0},
+                                                  {8.0, 3.0},
+                                                  {8.0, 5.0}}) {
                 shrink = smaller;
                 stepFactor = longer;
-                if (expected / (shrink * shrink * stepFactor) < left()) break;
+                if (target.geometryMs + expected / (shrink * shrink * stepFactor) < left()) break;
             }
         drawReduced(shrink, stepFactor);
         if (request.moving) return;
@@ -405,7 +411,7 @@ void Renderer::Impl::refine(ViewTarget& target, const Scene& scene, const FrameR
         while (target.tileEdge > 32 && target.msPerPixel * target.tileEdge * target.tileEdge > perTile)
             target.tileEdge /= 2;
     }
-    const std::vector<Tile> tiles = tilesOf(target.size, target.tileEdge);
+    const std::vector<Tile> tiles = tilesOf(target.stale, target.tileEdge);
     setRayUniforms(*rayProgram, plan, scene, info, source->grid(), target.size, 1);
     bool first = true;
     // The whole picture once, then again with rays elsewhere in the pixels for a supersampled still.
@@ -413,7 +419,7 @@ void Renderer::Impl::refine(ViewTarget& target, const Scene& scene, const FrameR
     while (target.tilesDone < wanted && (request.wait || first || left() > 0)) {
         const Tile& tile = tiles[std::size_t(target.tilesDone % perPass)];
         const int pass = target.tilesDone / perPass;
-        geometry(target, scene, plan, target.size, pass);
+        geometry(target, scene, plan, target.size, target.stale, pass);
         const Clock::time_point begin = Clock::now();
         if (pass == 0)
             rays(*rayProgram, scene, target.full, target.size, tile, covered(target, scene, plan, target.size));
@@ -427,13 +433,16 @@ void Renderer::Impl::refine(ViewTarget& target, const Scene& scene, const FrameR
         first = false;
         if (target.tilesDone == perPass) {
             target.fullValid = true;
-            target.msPerPixel = target.passMilliseconds / pixels;
+            target.changed = {};
+            target.msPerPixel = target.passMilliseconds / std::max(1.0, target.stale.area());
+            // As if all had been drawn.
+            target.passMilliseconds *= target.everything().area() / std::max(1.0, target.stale.area());
             if (request.moving) break;
         }
     }
     // What is out of focus spreads over the borders of tiles.
     if (blursContext(scene) && target.tilesDone >= perPass) {
-        present(target, scene, false, everything);
+        present(target, scene, false, target.everything());
         glBindTextureUnit(0, plan.fields[0].texture);
     }
     target.stillDone = target.tilesDone >= wanted && lit;

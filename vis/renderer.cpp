@@ -1,4 +1,5 @@
 #include "vis/renderer_impl.h"
+#include "vis/technique/changed_pixels.h"
 
 #include <algorithm>
 #include <cmath>
@@ -89,14 +90,17 @@ FrameStatus Renderer::render(ViewTarget& target, const Scene& scene, const Frame
     if (!liesAtCursor(scene)) target.scene.cursor = scene.cursor;
     if (!target.started || !(target.scene == scene) || target.revision != revision ||
         target.source != impl_->source.get()) {
+        const bool same = target.source == impl_->source.get();
+        std::optional<Tile> part;
+        if (impl_->source && target.started && target.shows && same && target.revision == revision)
+            part = changedPixels(target.scene, scene, worldFrame(impl_->source->info().bounds, scene.stretch),
+                                 target.size);
+        target.redraw(part.value_or(target.everything()));
         target.scene = scene;
         target.revision = revision;
-        target.shows = target.shows && target.source == impl_->source.get();
+        target.shows = target.shows && same;
         target.source = impl_->source.get();
         target.started = true;
-        target.reducedValid = target.fullValid = target.stillDone = false;
-        target.tilesDone = 0;
-        target.geometrySize = {0, 0};
     }
     if (any) {
         impl_->refine(target, scene, request, plan, start);
@@ -110,12 +114,14 @@ FrameStatus Renderer::render(ViewTarget& target, const Scene& scene, const Frame
 
 std::optional<Pick> Renderer::pick(ViewTarget& target, glm::ivec2 pixel) {
     if (!target.started || !impl_->source || pixel.x < 0 || pixel.y < 0 || pixel.x >= target.size.x ||
-        pixel.y >= target.size.y || !(target.fullValid || target.reducedValid))
+        pixel.y >= target.size.y)
         return std::nullopt;
-    const bool full = target.fullValid;
+    const glm::ivec2 place(pixel.x, target.size.y - 1 - pixel.y);
+    const bool full = target.fullValid || (target.shows && !target.stale.holds(place));
+    if (!full && !(target.reducedValid && target.reducedTile.holds(place))) return std::nullopt;
     const RayBuffer& from = full ? target.full : target.reduced;
     const glm::dvec2 size(target.size);
-    glm::dvec2 at(pixel.x + 0.5, target.size.y - 1 - pixel.y + 0.5);
+    glm::dvec2 at = glm::dvec2(place) + 0.5;
     const glm::ivec2 texel =
         full ? glm::ivec2(at)
              : glm::min(glm::ivec2(at / size * glm::dvec2(target.reducedSize)), target.reducedSize - 1);

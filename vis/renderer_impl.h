@@ -41,7 +41,8 @@ struct Renderer::Impl {
 
     // frame.cpp
     ProgramRecipe prepare(ViewTarget& target, const Scene& scene, RayPlan& plan);
-    void geometry(ViewTarget& target, const Scene& scene, const RayPlan& plan, glm::ivec2 size, int pass = 0);
+    void geometry(ViewTarget& target, const Scene& scene, const RayPlan& plan, glm::ivec2 size, const Tile& tile,
+                  int pass = 0);
     const std::vector<Tile>* covered(ViewTarget& target, const Scene& scene, const RayPlan& plan, glm::ivec2 size);
     void rays(const Program& program, const Scene& scene, const RayBuffer& buffer, glm::ivec2 size, const Tile& tile,
               const std::vector<Tile>* parts, double stepFactor = 1, int pass = 0);

@@ -172,7 +172,8 @@ const Program& GeometryPass::program(const Scene& scene, bool lines, int look) {
 }
 
 void GeometryPass::draw(GeometryBuffer& buffer, const Scene& scene, const volume::DatasetInfo& info, glm::ivec2 size,
-                        glm::ivec2 pictureSize, int most, int lightUnit, GrainTexture& grain, glm::dvec2 jitter) {
+                        const Tile& tile, glm::ivec2 pictureSize, int most, int lightUnit, GrainTexture& grain,
+                        glm::dvec2 jitter) {
     const int peels = peelsOf(scene);
     if (peels == 0) return;
     table(scene, info);
@@ -229,7 +230,8 @@ void GeometryPass::draw(GeometryBuffer& buffer, const Scene& scene, const volume
     glBindTextureUnit(kFormerUnit, buffer.distance.name());
     glBindTextureUnit(kFormerColorUnit, buffer.color.name());
     glDisable(GL_BLEND);
-    glDisable(GL_SCISSOR_TEST);
+    glEnable(GL_SCISSOR_TEST);
+    glScissor(tile.begin.x, tile.begin.y, tile.end.x - tile.begin.x, tile.end.y - tile.begin.y);
     glEnable(GL_DEPTH_TEST);
     glDepthMask(GL_TRUE);
     glDepthFunc(GL_LESS);
@@ -271,6 +273,7 @@ void GeometryPass::draw(GeometryBuffer& buffer, const Scene& scene, const volume
         glTextureBarrier(); // the next peel reads what this one wrote
     }
     glDisable(GL_DEPTH_TEST);
+    glDisable(GL_SCISSOR_TEST);
 }
 
 } // namespace tessera::vis

@@ -4,6 +4,7 @@
 #include "vis/gl/program.h"
 #include "vis/model/scene.h"
 #include "vis/technique/look_uniforms.h"
+#include "vis/technique/tile.h"
 #include "volume/dataset.h"
 
 #include <map>
@@ -27,13 +28,14 @@ inline constexpr float kNoGeometry = 1e9f;
 /// Keeps what it uploaded for as long as someone holds the geometry.
 class GeometryPass {
 public:
-    /// Fills the buffer's lower left `size` pixels with what a picture of that size shows; every pixel's centre is
-    /// moved by `jitter` pixels. Light is looked up in the texture units from `lightUnit` on (light_uniforms.h).
-    /// Nothing is drawn, and no layer made, when the scene has no geometry. `pictureSize`: of the picture at rest, for
-    /// what looks measure in pixels; `most`: surfaces behind one another that are drawn, further layers stay empty;
-    /// `grain`: called where one draws with it.
+    /// Fills a tile of the buffer's lower left `size` pixels with what a picture of that size shows; every pixel's
+    /// centre is moved by `jitter` pixels. Light is looked up in the texture units from `lightUnit` on
+    /// (light_uniforms.h). Nothing is drawn, and no layer made, when the scene has no geometry. `pictureSize`: of the
+    /// picture at rest, for what looks measure in pixels; `most`: surfaces behind one another that are drawn, further
+    /// layers stay empty; `grain`: called where one draws with it.
     void draw(GeometryBuffer& buffer, const Scene& scene, const volume::DatasetInfo& info, glm::ivec2 size,
-              glm::ivec2 pictureSize, int most, int lightUnit, GrainTexture& grain, glm::dvec2 jitter = glm::dvec2(0));
+              const Tile& tile, glm::ivec2 pictureSize, int most, int lightUnit, GrainTexture& grain,
+              glm::dvec2 jitter = glm::dvec2(0));
 
 private:
     struct Uploaded {

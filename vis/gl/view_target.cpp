@@ -17,8 +17,18 @@ void ViewTarget::resize(glm::ivec2 wanted, bool exact) {
     reduced.resize(wanted, exact, "reduced picture");
     output = makeTexture2D(wanted, GL_RGBA8, GL_LINEAR, "presented picture");
     outputFramebuffer = makeFramebuffer({output.name()}, "presented picture");
-    started = shows = reducedValid = fullValid = stillDone = false;
+    started = shows = stillDone = false;
+    changed = stale = {};
+    redraw(everything());
+}
+
+void ViewTarget::redraw(const Tile& part) {
+    if (part.empty()) return;
+    stale = stillDone ? part : united(stale, part);
+    changed = united(changed, part);
+    reducedValid = fullValid = stillDone = false;
     tilesDone = 0;
+    geometrySize = {0, 0};
 }
 
 void ViewTargetDeleter::operator()(ViewTarget* target) const {

@@ -31,6 +31,7 @@ public:
 
     GeometryBuffer geometry;
     glm::ivec2 geometrySize{0}; ///< of the picture it shows; 0: none of `scene`
+    Tile geometryTile;          ///< of it
     int geometryPass = 0;       ///< of a supersampled still
 
     // What the buffers show.
@@ -38,16 +39,20 @@ public:
     std::uint64_t revision = 0; ///< of what was resident
     bool started = false;       ///< the buffers hold something of `scene`
     bool shows = false;         ///< `output` holds a picture, of whatever scene
-    bool reducedValid = false;
-    int tilesDone = 0, ///< of all passes
+    Tile changed;               ///< what `output` does not show yet
+    bool reducedValid = false;  ///< `reduced` shows `reducedTile` (pixels of the picture) of `scene`
+    Tile reducedTile;
+    Tile stale;        ///< what `full` holds nothing of, or something else
+    int tilesDone = 0, ///< of all passes over it
         tileEdge = 256;
     const volume::BrickSource* source = nullptr;
-    bool fullValid = false; ///< every tile of `full` is done
+    bool fullValid = false; ///< `full` is done
     bool stillDone = false; ///< and every pass of a supersampled still
     double passMilliseconds = 0;
     std::optional<double> lastTime; ///< of the data shown
     std::vector<ChannelKey> shown;  ///< the frames of it
     double msPerPixel = 0;          ///< of a full pass; 0 = not measured
+    double geometryMs = 0;          ///< of a reduced picture
 
     // Bricks wanted, and what they were wanted for.
     std::vector<std::shared_ptr<const BrickDemand>> demands; ///< per field of the plan
@@ -81,6 +86,9 @@ public:
     std::uint64_t lightVersion = 0; ///< that the buffers show
 
     void resize(glm::ivec2 wanted, bool exact);
+    Tile everything() const { return {glm::ivec2(0), size}; }
+    /// Pixels of `part` are out of date.
+    void redraw(const Tile& part);
 };
 
 } // namespace tessera::vis

@@ -2,6 +2,7 @@
 
 #include "vis/model/camera.h"
 #include "vis/technique/ray_tables.h"
+#include "vis/technique/tile.h"
 #include "volume/brick_source.h"
 
 #include <span>
@@ -9,11 +10,6 @@
 
 /// Where in a picture anything can show: rays that meet no occupied block are not drawn at all.
 namespace tessera::vis {
-
-/// Pixels [begin, end) of a picture.
-struct Tile {
-    glm::ivec2 begin, end;
-};
 
 /// A box in world axes.
 struct OccupiedBox {

@@ -1,0 +1,14 @@
+#pragma once
+
+#include "vis/model/scene.h"
+#include "vis/technique/tile.h"
+
+/// Which part of a picture a change of its scene can touch, so that what is dragged over a finished picture does not
+/// cost the whole of it.
+namespace tessera::vis {
+
+/// Pixels that differ between the pictures, `size` pixels large, of two scenes of data with the same frame: of lenses
+/// that were moved, turned or made larger, what they cover before and after. nullopt: any pixel may.
+std::optional<Tile> changedPixels(const Scene& before, const Scene& after, const WorldFrame& frame, glm::ivec2 size);
+
+} // namespace tessera::vis
