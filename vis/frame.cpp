@@ -30,6 +30,16 @@ std::vector<Tile> tilesOf(const Tile& whole, int edge) {
     return tiles;
 }
 
+/// Where a reduced picture begins in a buffer so that the corner of four tiles of software GL, which are what its
+/// processors share, lies in the middle of what is drawn of it.
+glm::ivec2 sharedByProcessors(const Tile& drawn, glm::ivec2 picture, glm::ivec2 buffer) {
+    constexpr int kEdge = 64;
+    glm::ivec2 first = (kEdge - (drawn.begin + drawn.end) / 2 % kEdge) % kEdge;
+    for (int axis = 0; axis < 2; ++axis)
+        if (first[axis] + picture[axis] > buffer[axis]) first[axis] = 0;
+    return first;
+}
+
 } // namespace
 
 /// Tables of a bound plan and the program variant it wants.
@@ -94,8 +104,9 @@ void Renderer::Impl::geometry(ViewTarget& target, const Scene& scene, const RayP
     if (target.geometrySize != size || target.geometryPass != pass ||
         united(target.geometryTile, tile) != target.geometryTile) {
         target.geometry.resize(target.size, peels);
-        geometryPass.draw(target.geometry, scene, source->info(), size, tile, target.size, most, rayUnits(plan).light,
-                          grain, pixelJitter(pass));
+        const glm::ivec2 first = size == target.size ? glm::ivec2(0) : target.reduced.first;
+        geometryPass.draw(target.geometry, scene, source->info(), size, first, tile, target.size, most,
+                          rayUnits(plan).light, grain, pixelJitter(pass));
         target.geometrySize = size;
         target.geometryTile = tile;
         target.geometryPass = pass;
@@ -142,18 +153,22 @@ void Renderer::Impl::rays(const Program& rayProgram, const Scene& scene, const R
                           const Tile& tile, const std::vector<Tile>* parts, double stepFactor, int pass) {
     const float nothing[] = {0, 0, 0, 0}, nowhere[] = {-1e9f, 0, 0, 0};
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, buffer.framebuffer.name());
-    glViewport(0, 0, size.x, size.y);
+    glViewport(buffer.first.x, buffer.first.y, size.x, size.y);
     glEnable(GL_SCISSOR_TEST);
-    glScissor(tile.begin.x, tile.begin.y, tile.end.x - tile.begin.x, tile.end.y - tile.begin.y);
+    const auto within = [&](glm::ivec2 from, glm::ivec2 to) {
+        glScissor(buffer.first.x + from.x, buffer.first.y + from.y, to.x - from.x, to.y - from.y);
+    };
+    within(tile.begin, tile.end);
     glClearNamedFramebufferfv(buffer.framebuffer.name(), GL_COLOR, 0, nothing);
     glClearNamedFramebufferfv(buffer.framebuffer.name(), GL_COLOR, 1, nowhere);
     // Only where the box is.
     const glm::ivec4 box = boxPixels(scene.camera, worldFrame(source->info().bounds, scene.stretch).halfSize, size);
     const glm::ivec2 begin = glm::max(tile.begin, glm::ivec2(box)), end = glm::min(tile.end, glm::ivec2(box.z, box.w));
     if (begin.x >= end.x || begin.y >= end.y) return;
-    glScissor(begin.x, begin.y, end.x - begin.x, end.y - begin.y);
+    within(begin, end);
     rayProgram.set("ndcScale", 2.0f / glm::vec2(size));
-    rayProgram.set("ndcOffset", glm::vec2(pixelJitter(pass) * 2.0 / glm::dvec2(size) - 1.0));
+    rayProgram.set("ndcOffset",
+                   glm::vec2((pixelJitter(pass) - glm::dvec2(buffer.first)) * 2.0 / glm::dvec2(size) - 1.0));
     rayProgram.set("passNumber", pass);
     glBindVertexArray(vertices.name());
     if (drawnByProxy(scene)) return proxies(rayProgram, scene, buffer, stepFactor);
@@ -162,7 +177,7 @@ void Renderer::Impl::rays(const Program& rayProgram, const Scene& scene, const R
     for (const Tile& part : parts ? *parts : whole) {
         const glm::ivec2 from = glm::max(begin, part.begin), to = glm::min(end, part.end);
         if (from.x >= to.x || from.y >= to.y) continue;
-        glScissor(from.x, from.y, to.x - from.x, to.y - from.y);
+        within(from, to);
         glDrawArrays(GL_TRIANGLES, 0, 3);
     }
 }
@@ -174,6 +189,7 @@ void Renderer::Impl::accumulate(const Program& rayProgram, ViewTarget& target, c
     const Program* average = programs.find({"screen.vert.glsl", "accumulate.frag.glsl", {}, {}});
     if (!average) throw Error("the program that averages passes does not compile");
     target.reducedValid = false;
+    target.reduced.first = {0, 0};
     rays(rayProgram, scene, target.reduced, target.size, tile, parts, 1, pass);
     average->set("source", 0);
     glBindTextureUnit(0, target.reduced.color.name());
@@ -208,10 +224,11 @@ void Renderer::Impl::present(ViewTarget& target, const Scene& scene, bool reduce
     if (!found) throw Error("the program that presents pictures does not compile");
     const Program& resolve = *found;
     const RayBuffer& from = reduced ? target.reduced : target.full;
-    const glm::vec2 used(reduced ? target.reducedSize : target.size), whole(from.size);
+    const glm::vec2 used(reduced ? target.reducedSize : target.size), whole(from.size), first(from.first);
     resolve.set("source", 0);
     resolve.set("sourceScale", used / glm::vec2(target.size) / whole);
-    resolve.set("sourceLimit", (used - 0.5f) / whole);
+    resolve.set("sourceFirst", first / whole);
+    resolve.set("sourceLimit", (first + used - 0.5f) / whole);
     resolve.set("background", glm::vec3(linearFromSrgb(glm::dvec3(groundColor(scene)))));
     if (rough) {
         resolve.set("paper", glm::vec2(paper->tooth, kGrainTexels / double(paper->grain)));
@@ -350,6 +367,7 @@ void Renderer::Impl::refine(ViewTarget& target, const Scene& scene, const FrameR
     if (programs.firstUse(*rayProgram)) {
         setRayUniforms(*rayProgram, plan, scene, info, source->grid(), target.size, 1);
         geometry(target, scene, plan, target.size, target.everything());
+        target.reduced.first = {0, 0};
         rays(*rayProgram, scene, target.reduced, target.size, {target.size / 2, target.size / 2 + 1}, nullptr);
         glFinish();
         target.reducedValid = false;
@@ -363,6 +381,7 @@ void Renderer::Impl::refine(ViewTarget& target, const Scene& scene, const FrameR
         const Tile tile = intersection({glm::ivec2(glm::floor(glm::dvec2(target.changed.begin) * scale)) - 1,
                                         glm::ivec2(glm::ceil(glm::dvec2(target.changed.end) * scale)) + 1},
                                        {{0, 0}, target.reducedSize});
+        target.reduced.first = sharedByProcessors(tile, target.reducedSize, target.size);
         setRayUniforms(*rayProgram, plan, scene, info, source->grid(), target.size, stepFactor);
         const Clock::time_point before = Clock::now();
         geometry(target, scene, plan, target.reducedSize, tile);

@@ -124,8 +124,8 @@ std::optional<Pick> Renderer::pick(ViewTarget& target, glm::ivec2 pixel) {
     glm::dvec2 at = glm::dvec2(place) + 0.5;
     const glm::ivec2 texel =
         full ? glm::ivec2(at)
-             : glm::min(glm::ivec2(at / size * glm::dvec2(target.reducedSize)), target.reducedSize - 1);
-    if (!full) at = (glm::dvec2(texel) + 0.5) / glm::dvec2(target.reducedSize) * size;
+             : from.first + glm::min(glm::ivec2(at / size * glm::dvec2(target.reducedSize)), target.reducedSize - 1);
+    if (!full) at = (glm::dvec2(texel - from.first) + 0.5) / glm::dvec2(target.reducedSize) * size;
     float distance = 0;
     glGetTextureSubImage(from.pick.name(), 0, texel.x, texel.y, 0, 1, 1, 1, GL_RED, GL_FLOAT, sizeof distance,
                          &distance);

@@ -172,8 +172,8 @@ const Program& GeometryPass::program(const Scene& scene, bool lines, int look) {
 }
 
 void GeometryPass::draw(GeometryBuffer& buffer, const Scene& scene, const volume::DatasetInfo& info, glm::ivec2 size,
-                        const Tile& tile, glm::ivec2 pictureSize, int most, int lightUnit, GrainTexture& grain,
-                        glm::dvec2 jitter) {
+                        glm::ivec2 first, const Tile& tile, glm::ivec2 pictureSize, int most, int lightUnit,
+                        GrainTexture& grain, glm::dvec2 jitter) {
     const int peels = peelsOf(scene);
     if (peels == 0) return;
     table(scene, info);
@@ -231,11 +231,11 @@ void GeometryPass::draw(GeometryBuffer& buffer, const Scene& scene, const volume
     glBindTextureUnit(kFormerColorUnit, buffer.color.name());
     glDisable(GL_BLEND);
     glEnable(GL_SCISSOR_TEST);
-    glScissor(tile.begin.x, tile.begin.y, tile.end.x - tile.begin.x, tile.end.y - tile.begin.y);
+    glScissor(first.x + tile.begin.x, first.y + tile.begin.y, tile.end.x - tile.begin.x, tile.end.y - tile.begin.y);
     glEnable(GL_DEPTH_TEST);
     glDepthMask(GL_TRUE);
     glDepthFunc(GL_LESS);
-    glViewport(0, 0, size.x, size.y);
+    glViewport(first.x, first.y, size.x, size.y);
     const float empty[] = {0, 0, 0, 0}, nowhere[] = {kNoGeometry, 0, 0, 0}, far = 1;
     for (int peel = 0; peel < peels; ++peel) {
         const GLuint framebuffer = buffer.framebuffers[std::size_t(peel)].name();

@@ -28,13 +28,13 @@ inline constexpr float kNoGeometry = 1e9f;
 /// Keeps what it uploaded for as long as someone holds the geometry.
 class GeometryPass {
 public:
-    /// Fills a tile of the buffer's lower left `size` pixels with what a picture of that size shows; every pixel's
+    /// Fills a tile of a picture of `size` pixels, whose lower left one is texel `first` of the buffer; every pixel's
     /// centre is moved by `jitter` pixels. Light is looked up in the texture units from `lightUnit` on
     /// (light_uniforms.h). Nothing is drawn, and no layer made, when the scene has no geometry. `pictureSize`: of the
     /// picture at rest, for what looks measure in pixels; `most`: surfaces behind one another that are drawn, further
     /// layers stay empty; `grain`: called where one draws with it.
     void draw(GeometryBuffer& buffer, const Scene& scene, const volume::DatasetInfo& info, glm::ivec2 size,
-              const Tile& tile, glm::ivec2 pictureSize, int most, int lightUnit, GrainTexture& grain,
+              glm::ivec2 first, const Tile& tile, glm::ivec2 pictureSize, int most, int lightUnit, GrainTexture& grain,
               glm::dvec2 jitter = glm::dvec2(0));
 
 private:

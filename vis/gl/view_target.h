@@ -17,6 +17,7 @@ struct RayBuffer {
     Texture color, pick;
     Framebuffer framebuffer;
     glm::ivec2 size{0};
+    glm::ivec2 first{0}; ///< texel of the picture's lower left pixel
     void resize(glm::ivec2 wanted, bool exact, const char* label);
 };
 
@@ -24,7 +25,7 @@ class ViewTarget {
 public:
     glm::ivec2 size{0};
     RayBuffer full;    ///< at the size of the picture, filled tile by tile
-    RayBuffer reduced; ///< a quick picture; its lower left `reducedSize` is used
+    RayBuffer reduced; ///< a quick picture, of which `reducedSize` pixels are used
     glm::ivec2 reducedSize{0};
     Texture output;
     Framebuffer outputFramebuffer;

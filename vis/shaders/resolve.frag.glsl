@@ -5,8 +5,8 @@
 #include "lib/color.glsl"
 
 uniform sampler2D source;      // linear, premultiplied
-uniform vec2 sourceScale;      // texture coordinate = gl_FragCoord * sourceScale, at most sourceLimit
-uniform vec2 sourceLimit;
+uniform vec2 sourceScale;      // texture coordinate = sourceFirst + gl_FragCoord * sourceScale, at most sourceLimit
+uniform vec2 sourceFirst, sourceLimit;
 uniform vec3 background;       // linear
 #if PAPER
 #include "lib/paper.glsl"
@@ -36,7 +36,7 @@ uniform int blurTaps;     // kBlurTaps, no constant: not unrolled
 out vec4 outColor;
 
 vec2 place(vec2 pixel) {
-    return clamp(pixel * sourceScale, vec2(0.0), sourceLimit);
+    return clamp(sourceFirst + pixel * sourceScale, sourceFirst, sourceLimit);
 }
 
 // What a pixel shows before the background: what is not brushed is out of focus.
