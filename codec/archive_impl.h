@@ -72,6 +72,7 @@ struct Archive::Impl {
     const volume::Parameter& parameter(int number) const { return metadata.info.parameters[std::size_t(number)]; }
     std::span<const std::byte> segment(const Segment& segment) const;
     std::vector<std::uint8_t> flags(const FrameRecord& frame, std::size_t brick) const;
+    Model model(std::int32_t number) const;
     std::shared_ptr<const BandDecoder> decoder(std::int32_t model) const;
     void decode(const FrameRecord& frame, const BrickFormat& format, std::size_t brick, int level,
                 std::span<const std::uint8_t> present, DecodedBrick& out) const;

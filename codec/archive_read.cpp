@@ -45,6 +45,17 @@ std::vector<std::uint8_t> Archive::Impl::flags(const FrameRecord& frame, std::si
     return flags;
 }
 
+Model Archive::Impl::model(std::int32_t number) const {
+    const Block& record = index.models[std::size_t(number)];
+    const auto bytes = checkedPart(file.bytes(), record.offset, record.length, record.checksum, path, "a model");
+    Model parsed;
+    if (const DecodeStatus status = parseModel(bytes, metadata.grid.levels, parsed); status != DecodeStatus::Ok)
+        damaged(path, record.offset, std::string("a model cannot be read: ") + reason(status));
+    if (parsed.contexts.byBand && (header.header.features & kBandContexts) == 0)
+        damaged(path, record.offset, "a model has contexts that the archive does not know");
+    return parsed;
+}
+
 /// The decoder of a model, kept for the next brick.
 std::shared_ptr<const BandDecoder> Archive::Impl::decoder(std::int32_t model) const {
     const std::lock_guard lock(decodersMutex);
@@ -53,13 +64,8 @@ std::shared_ptr<const BandDecoder> Archive::Impl::decoder(std::int32_t model) co
             decoders.splice(decoders.begin(), decoders, at);
             return at->second;
         }
-    const Block& record = index.models[std::size_t(model)];
-    const auto bytes = checkedPart(file.bytes(), record.offset, record.length, record.checksum, path, "a model");
-    Model parsed;
-    if (const DecodeStatus status = parseModel(bytes, metadata.grid.levels, parsed); status != DecodeStatus::Ok)
-        damaged(path, record.offset, std::string("a model cannot be read: ") + reason(status));
     constexpr std::size_t kKept = 16;
-    decoders.emplace_front(model, std::make_shared<const BandDecoder>(std::move(parsed)));
+    decoders.emplace_front(model, std::make_shared<const BandDecoder>(this->model(model)));
     if (decoders.size() > kKept) decoders.pop_back();
     return decoders.front().second;
 }

@@ -22,13 +22,8 @@ ArchiveState stateOf(const Archive& archive, bool withFrames) {
         std::size_t t = 0;
         while (impl.index.frames[t * impl.components + c].model != number) ++t;
         const FrameRecord& frame = impl.index.frames[t * impl.components + c];
-        const Block& block = impl.index.models[std::size_t(number)];
-        KnownModel known{number, {}, frame.wavelet, frame.numbers.kind, frame.codeBits, frame.bodyCentred};
-        const auto bytes =
-            checkedPart(impl.file.bytes(), block.offset, block.length, block.checksum, impl.path, "a model");
-        if (const auto status = parseModel(bytes, impl.metadata.grid.levels, known.model); status != DecodeStatus::Ok)
-            damaged(impl.path, block.offset, std::string("a model cannot be read: ") + reason(status));
-        state.lastModels.push_back(std::move(known));
+        state.lastModels.push_back(
+            {number, impl.model(number), frame.wavelet, frame.numbers.kind, frame.codeBits, frame.bodyCentred});
         const FrameRecord& last = impl.index.frames[(state.times - 1) * impl.components + c];
         const auto sameMask = [&](const auto& entry) { return entry.first == last.mask; };
         if (last.mask < 0 || std::any_of(state.lastMasks.begin(), state.lastMasks.end(), sameMask)) continue;

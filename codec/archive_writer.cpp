@@ -119,7 +119,7 @@ int ArchiveWriter::Impl::maskFor(const volume::Field& field, int zstdLevel) {
 }
 
 void ArchiveWriter::Impl::writeModel(const Model& chosen, bool idle, std::size_t component, FrameRecord& frame) {
-    const Model model = idle ? makeModel(Histogram(metadata.grid.levels), 0, 1) : chosen;
+    const Model model = idle ? makeModel(Histogram(metadata.grid.levels, {}), 1) : chosen;
     const Bytes bytes = idle && (header.features & kCompact) != 0 ? Bytes() : serialise(model);
     frame.model = static_cast<std::int32_t>(models++);
     page.models.push_back({file.position(), bytes.size(), checksum(bytes)});
@@ -212,7 +212,8 @@ void ArchiveWriter::addFrame(int parameter, int component, int time, const volum
     const std::vector<volume::BrickImportance> importance =
         volume::importanceOfBricks(grid, field, options.range, options.categorical, options.importance);
     Taken taken;
-    const Model model = chooseModel(grid, field, lastModel, frame, options, taken);
+    const bool byBand = (impl_->header.features & kBandContexts) != 0;
+    const Model model = chooseModel(grid, field, lastModel, byBand, frame, options, taken);
     const BandEncoder encoder(model);
     if (!taken.serves(frame, model)) taken.bricks.clear();
     taken.bricks.resize(brickCount(grid));
@@ -249,7 +250,7 @@ void ArchiveWriter::addFrame(int parameter, int component, int time, const volum
                     input.take(grid, brick, field, frame.mask >= 0);
                     if (!taken.bricks[b])
                         taken.bricks[b] =
-                            prepareBrick(format, input.samples, input.present, maxError, model.shift, memory);
+                            prepareBrick(format, input.samples, input.present, maxError, model.contexts, memory);
                     coded[b] = encodeBrick(format, *taken.bricks[b], input.samples, input.present, compressor, encoder);
                     for (const Bytes& segment : coded[b]) seen.bytes[b] += segment.size();
                     roundAsDecoded(format, maxError, input);

@@ -15,9 +15,9 @@ struct Stream {
     const std::byte* raw = nullptr;                  ///< raw bits; words follow them
     std::uint64_t rawAt = 0, rawEnd = 0;             ///< in bits
     const std::uint32_t* table = nullptr;
-    alignas(64) std::uint32_t tableOf[kClasses]{}; ///< table number << kProbabilityBits
+    alignas(64) std::uint32_t tableOf[kBandKinds][kClasses]{}; ///< table number << kProbabilityBits
     unsigned group = 0, groupMask = 0;
-    int shift = 0;
+    Contexts contexts;
 };
 
 /// `bits` raw bits; the caller has checked that they are there. Words follow the raw bits, so that bytes beyond them
@@ -38,14 +38,16 @@ std::uint32_t takeRaw(Stream& in, int bits) {
 
 /// Sixteen symbols, one in each lane of `active`. False: the stream ends too early.
 template <class Word>
-bool decodeChunk(Stream& in, const Neighbours& near, int x0, std::uint32_t active, Word* values, std::uint16_t* sizes) {
+bool decodeChunk(Stream& in, const Neighbours& near, int kind, int x0, std::uint32_t active, Word* values,
+                 std::uint16_t* sizes) {
     std::uint32_t* states = in.states[in.group];
     in.group = (in.group + 1) & in.groupMask;
     for (int lane = 0; lane < kLanes; ++lane) {
         const int x = x0 + lane;
         if ((active >> lane & 1u) == 0) continue;
         const std::uint32_t state = states[lane];
-        const std::uint32_t entry = in.table[in.tableOf[classOf(near.sum(x))] | (state & kSlotMask)];
+        const std::uint32_t entry =
+            in.table[in.tableOf[kind][classOf(near.sum(x, in.contexts.byBand))] | (state & kSlotMask)];
         std::uint32_t token = entry & 255u;
         std::uint32_t after = (entry >> 8 & 4095u) * (state >> kProbabilityBits) + (entry >> 20);
         if (after < kLowestState) {
@@ -61,7 +63,7 @@ bool decodeChunk(Stream& in, const Neighbours& near, int x0, std::uint32_t activ
         }
         const auto value = static_cast<std::int32_t>(unzigzag(token));
         values[x] = static_cast<Word>(value);
-        sizes[x] = magnitudeOf(value, in.shift);
+        sizes[x] = magnitudeOf(value, in.contexts.shift);
     }
     return true;
 }
@@ -89,7 +91,7 @@ template <class Word> bool decodeRows(Stream& in, std::span<const Band<Word>> ba
         }
         for (int x0 = 0; x0 < band.size.x; x0 += kLanes) {
             const std::uint32_t active = activeLanes(band.present ? band.present + at : nullptr, x0, band.size.x);
-            if (!decodeChunk(in, near, x0, active, band.values + at, sizes)) return false;
+            if (!decodeChunk(in, near, band.kind, x0, active, band.values + at, sizes)) return false;
         }
         return true;
     });
@@ -131,6 +133,23 @@ TESSERA_AVX512 TESSERA_INLINE __m512i kept512(int value) {
     return vector;
 }
 
+/// The entries of sixteen slots. One load after the other: that takes processors no longer than their own gathering.
+TESSERA_AVX512 TESSERA_INLINE __m512i entries512(const std::uint32_t* table, __m512i slots) {
+    alignas(64) std::uint32_t at[kLanes];
+    _mm512_store_si512(at, slots);
+    __m128i quarters[4];
+    for (int i = 0; i < 4; ++i) {
+        const std::uint32_t* own = at + 4 * i;
+        quarters[i] = _mm_cvtsi32_si128(static_cast<int>(table[own[0]]));
+        quarters[i] = _mm_insert_epi32(quarters[i], static_cast<int>(table[own[1]]), 1);
+        quarters[i] = _mm_insert_epi32(quarters[i], static_cast<int>(table[own[2]]), 2);
+        quarters[i] = _mm_insert_epi32(quarters[i], static_cast<int>(table[own[3]]), 3);
+    }
+    const __m256i low = _mm256_inserti128_si256(_mm256_castsi128_si256(quarters[0]), quarters[1], 1);
+    const __m256i high = _mm256_inserti128_si256(_mm256_castsi128_si256(quarters[2]), quarters[3], 1);
+    return _mm512_inserti64x4(_mm512_castsi256_si512(low), high, 1);
+}
+
 /// What the loop over chunks reads and changes, in registers.
 struct Cursor512 {
     const std::byte *next, *end;
@@ -150,8 +169,7 @@ TESSERA_AVX512 TESSERA_INLINE bool tokens512(Cursor512& in, std::uint32_t (*stat
     std::uint32_t* own = states[in.group];
     in.group = (in.group + 1) & in.groupMask;
     const __m512i state = _mm512_load_si512(own);
-    const __m512i entry =
-        _mm512_i32gather_epi32(_mm512_or_si512(tables, _mm512_and_si512(state, in.slotMask)), in.table, 4);
+    const __m512i entry = entries512(in.table, _mm512_or_si512(tables, _mm512_and_si512(state, in.slotMask)));
     const __m512i frequency = _mm512_and_si512(_mm512_srli_epi32(entry, 8), in.slotMask); // as many bits
     __m512i after = _mm512_add_epi32(_mm512_mullo_epi32(frequency, _mm512_srli_epi32(state, kProbabilityBits)),
                                      _mm512_srli_epi32(entry, 20));
@@ -196,8 +214,9 @@ TESSERA_AVX512 bool rawChunk512(Stream& in, const std::uint8_t* tokens, __mmask1
     }
     const __m512i sign = _mm512_sub_epi32(_mm512_setzero_si512(), _mm512_and_si512(symbol, _mm512_set1_epi32(1)));
     const __m512i value = _mm512_xor_si512(_mm512_srli_epi32(symbol, 1), sign);
-    const __m512i size = _mm512_min_epu32(_mm512_srl_epi32(_mm512_abs_epi32(value), _mm_cvtsi32_si128(in.shift)),
-                                          _mm512_set1_epi32(static_cast<int>(kLargestMagnitude)));
+    const __m512i size =
+        _mm512_min_epu32(_mm512_srl_epi32(_mm512_abs_epi32(value), _mm_cvtsi32_si128(in.contexts.shift)),
+                         _mm512_set1_epi32(static_cast<int>(kLargestMagnitude)));
     _mm256_storeu_si256(reinterpret_cast<__m256i*>(sizes), _mm512_cvtepi32_epi16(size));
     if constexpr (sizeof(Word) == 2)
         _mm512_mask_cvtepi32_storeu_epi16(values, inside, value);
@@ -256,7 +275,7 @@ TESSERA_AVX512 TESSERA_INLINE bool halfRow512(Cursor512& in, std::uint32_t (*sta
 }
 
 /// The tokens of a row; those chunks that raw bits belong to are noted at `raw`, which then points behind them.
-template <bool kMasked>
+template <bool kMasked, bool kByBand>
 TESSERA_AVX512 TESSERA_INLINE bool tokenRow512(Cursor512& in, std::uint32_t (*states)[kLanes], const Neighbours& near,
                                                const std::uint8_t* present, int width, std::uint8_t* tokens,
                                                std::uint8_t**& raw) {
@@ -265,7 +284,10 @@ TESSERA_AVX512 TESSERA_INLINE bool tokenRow512(Cursor512& in, std::uint32_t (*st
         const __m512i sides =
             _mm512_add_epi16(_mm512_add_epi16(load512(near.north + x - 1), load512(near.north + x + 1)),
                              _mm512_add_epi16(load512(near.beforeNorth + x), load512(near.beforeSouth + x)));
-        const __m512i sums = _mm512_add_epi16(_mm512_add_epi16(doubled, doubled), sides);
+        __m512i sums = _mm512_add_epi16(_mm512_add_epi16(doubled, doubled), sides);
+        if constexpr (kByBand)
+            sums = _mm512_add_epi16(_mm512_add_epi16(sums, doubled),
+                                    _mm512_add_epi16(load512(near.before + x - 1), load512(near.before + x + 1)));
         const int left = width - x;
         const std::uint32_t inside = left >= 32 ? ~0u : (1u << left) - 1u;
         if (!halfRow512<kMasked>(in, states, _mm512_castsi512_si256(sums), x, static_cast<__mmask16>(inside), present,
@@ -280,7 +302,7 @@ TESSERA_AVX512 TESSERA_INLINE bool tokenRow512(Cursor512& in, std::uint32_t (*st
 }
 
 /// Tokens of all bands' rows at one place come first, then the few that raw bits belong to: nobody waits for those.
-template <class Word> TESSERA_AVX512 bool decodeRows512(Stream& in, std::span<const Band<Word>> bands) {
+template <class Word, bool kByBand> TESSERA_AVX512 bool decodeRows512(Stream& in, std::span<const Band<Word>> bands) {
     std::vector<BandRow> rows;
     rows.reserve(bands.size());
     std::size_t chunks = 0;
@@ -296,8 +318,8 @@ template <class Word> TESSERA_AVX512 bool decodeRows512(Stream& in, std::span<co
                      0,
                      in.groupMask,
                      in.table,
-                     _mm512_load_si512(in.tableOf),
-                     _mm512_load_si512(in.tableOf + 16),
+                     _mm512_load_si512(in.tableOf[0]),
+                     _mm512_load_si512(in.tableOf[0] + 16),
                      kept512(static_cast<int>(kSlotMask)),
                      kept512(static_cast<int>(kLowestState)),
                      kept512(1),
@@ -310,11 +332,16 @@ template <class Word> TESSERA_AVX512 bool decodeRows512(Stream& in, std::span<co
                 if (band.size.x < 1 || y >= band.size.y || z >= band.size.z) continue;
                 const Neighbours near(rows[b].magnitudes, z, y);
                 std::uint8_t* tokens = rows[b].tokens.data();
+                if constexpr (kByBand) {
+                    cursor.tablesLow = _mm512_load_si512(in.tableOf[band.kind]);
+                    cursor.tablesHigh = _mm512_load_si512(in.tableOf[band.kind] + 16);
+                }
                 const std::uint8_t* present =
                     band.present ? band.present + z * band.slicePitch + y * band.rowPitch : nullptr;
                 const bool whole =
-                    present ? tokenRow512<true>(cursor, in.states, near, present, band.size.x, tokens, rawEnd)
-                            : tokenRow512<false>(cursor, in.states, near, nullptr, band.size.x, tokens, rawEnd);
+                    present
+                        ? tokenRow512<true, kByBand>(cursor, in.states, near, present, band.size.x, tokens, rawEnd)
+                        : tokenRow512<false, kByBand>(cursor, in.states, near, nullptr, band.size.x, tokens, rawEnd);
                 if (!whole) return false;
                 rows[b].rawEnd = rawEnd;
             }
@@ -325,7 +352,7 @@ template <class Word> TESSERA_AVX512 bool decodeRows512(Stream& in, std::span<co
                 Word* values = band.values + z * band.slicePitch + y * band.rowPitch;
                 std::uint8_t* tokens = rows[b].tokens.data();
                 std::uint16_t* sizes = rows[b].magnitudes.row(z, y);
-                directRow512<Word>(tokens, band.size.x, in.shift, values, sizes);
+                directRow512<Word>(tokens, band.size.x, in.contexts.shift, values, sizes);
                 for (; nextRaw < rows[b].rawEnd; ++nextRaw) {
                     const std::ptrdiff_t x = *nextRaw - tokens;
                     const auto inside =
@@ -371,12 +398,16 @@ DecodeStatus BandDecoder::decode(std::span<const std::byte> in, std::span<const 
     stream.next = in.data() + statesBytes;
     stream.end = in.data() + in.size();
     stream.table = table_.data();
-    for (std::size_t c = 0; c < kClasses; ++c)
-        stream.tableOf[c] = std::uint32_t(model_.tableOf[std::size_t(level) * kClasses + c]) << kProbabilityBits;
+    for (int kind = 0; kind < kBandKinds; ++kind)
+        for (std::size_t c = 0; c < kClasses; ++c)
+            stream.tableOf[kind][c] = std::uint32_t(model_.tableOf[model_.contexts.first(level, kind) + c])
+                                      << kProbabilityBits;
     stream.groupMask = static_cast<unsigned>(lanes.groups - 1);
-    stream.shift = model_.shift;
+    stream.contexts = model_.contexts;
 #if TESSERA_X86
-    const bool whole = cpu == Cpu::Avx512 ? decodeRows512(stream, bands) : decodeRows(stream, bands);
+    const bool whole = cpu != Cpu::Avx512       ? decodeRows(stream, bands)
+                       : stream.contexts.byBand ? decodeRows512<Word, true>(stream, bands)
+                                                : decodeRows512<Word, false>(stream, bands);
 #else
     const bool whole = decodeRows(stream, bands);
     (void)cpu;

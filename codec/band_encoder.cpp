@@ -36,7 +36,8 @@ struct Coded {
     }
 };
 
-/// Tokens to states and words, the last one first: a decoder undoes it. `tables`: number of each class's table << 8.
+/// Tokens to states and words, the last one first: a decoder undoes it. `tables`: number of the table << 8 of each
+/// class of each kind of bands.
 void codeTokens(const TokenRun& run, const std::uint32_t* tables, std::span<const BandEncoder::Entry> entries,
                 Coded& out) {
     const std::size_t groups = std::size_t(run.groups);
@@ -66,14 +67,18 @@ void codeTokens(const TokenRun& run, const std::uint32_t* tables, std::span<cons
 /// As codeTokens, a chunk at a time.
 TESSERA_AVX512 void codeTokens512(const TokenRun& run, const std::uint32_t* tables, const std::uint32_t* packed,
                                   Coded& out) {
-    const __m512i tablesLow = _mm512_loadu_si512(tables), tablesHigh = _mm512_loadu_si512(tables + 16);
     const std::size_t mask = std::size_t(run.groups) - 1;
     std::uint16_t* words = out.words.data() + out.at;
     for (std::size_t chunk = run.tokens.size() / kLanes; chunk-- > 0;) {
         const __m512i both = _mm512_cvtepu16_epi32(
             _mm256_loadu_si256(reinterpret_cast<const __m256i*>(run.tokens.data() + chunk * kLanes)));
         const __mmask16 active = _mm512_cmpneq_epu32_mask(both, _mm512_set1_epi32(TokenRun::kNone));
-        const __m512i table = _mm512_permutex2var_epi32(tablesLow, _mm512_srli_epi32(both, 8), tablesHigh);
+        if (active == 0) continue;
+        // A chunk is of one band.
+        const std::uint32_t* own =
+            tables + (run.tokens[chunk * kLanes + std::size_t(__builtin_ctz(active))] >> 13) * kClasses;
+        const __m512i table =
+            _mm512_permutex2var_epi32(_mm512_load_si512(own), _mm512_srli_epi32(both, 8), _mm512_load_si512(own + 16));
         const __m512i index = _mm512_or_si512(table, _mm512_and_si512(both, _mm512_set1_epi32(255)));
         __m512i entry = _mm512_mask_i32gather_epi32(_mm512_set1_epi32(1), active, index, packed, 4);
         __m512i frequency = _mm512_and_si512(entry, _mm512_set1_epi32(0xffff));
@@ -155,9 +160,11 @@ BandEncoder::BandEncoder(Model model)
 
 void BandEncoder::encode(const TokenRun& run, int level, Bytes& out, Cpu cpu) const {
     if (run.zero) return;
-    std::uint32_t tables[kClasses];
-    for (std::size_t c = 0; c < kClasses; ++c)
-        tables[c] = std::uint32_t(model_.tableOf[std::size_t(level) * kClasses + c]) << 8;
+    alignas(64) std::uint32_t tables[kBandKinds * kClasses];
+    for (int kind = 0; kind < kBandKinds; ++kind)
+        for (std::size_t c = 0; c < kClasses; ++c)
+            tables[std::size_t(kind) * kClasses + c] =
+                std::uint32_t(model_.tableOf[model_.contexts.first(level, kind) + c]) << 8;
     Coded coded(run.tokens.size());
 #if TESSERA_X86
     if (cpu == Cpu::Avx512)

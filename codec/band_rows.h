@@ -13,7 +13,7 @@ namespace tessera::codec {
 
 inline constexpr int kLanes = 16, kMostGroups = 4;
 inline constexpr std::uint32_t kLowestState = 1u << 16;
-inline constexpr std::uint32_t kLargestMagnitude = 4095; // eight of them fit 16 bits
+inline constexpr std::uint32_t kLargestMagnitude = 4095; // twelve of them fit 16 bits
 
 /// Magnitudes of the two latest slices of a band, with zeros around:
 ///
@@ -37,9 +37,10 @@ struct Neighbours {
     Neighbours(Magnitudes& magnitudes, int z, int y)
         : north(magnitudes.row(z, y - 1)), before(magnitudes.row(z - 1, y)), beforeNorth(magnitudes.row(z - 1, y - 1)),
           beforeSouth(magnitudes.row(z - 1, y + 1)) {}
-    TESSERA_INLINE std::uint32_t sum(int x) const {
-        return std::uint32_t(north[x - 1]) + std::uint32_t(north[x + 1]) + 2u * north[x] + 2u * before[x] +
-               beforeNorth[x] + beforeSouth[x];
+    TESSERA_INLINE std::uint32_t sum(int x, bool byBand) const {
+        const std::uint32_t near = std::uint32_t(north[x - 1]) + std::uint32_t(north[x + 1]) + 2u * north[x] +
+                                   2u * before[x] + beforeNorth[x] + beforeSouth[x];
+        return byBand ? near + north[x] + before[x] + before[x - 1] + before[x + 1] : near;
     }
 };
 

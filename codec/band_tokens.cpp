@@ -10,9 +10,10 @@ namespace {
 
 /// One row: sixteen tokens a chunk to `tokens`, which points behind them then.
 template <class Word>
-void rowTokens(const Band<const Word>& band, std::ptrdiff_t at, const Neighbours& near, int shift, std::uint16_t* size,
-               std::uint16_t*& tokens, TokenRun& run) {
+void rowTokens(const Band<const Word>& band, std::ptrdiff_t at, const Neighbours& near, Contexts contexts,
+               std::uint16_t* size, std::uint16_t*& tokens, TokenRun& run) {
     const Word* values = band.values + at;
+    const std::uint32_t kind = contexts.byBand ? std::uint32_t(band.kind) << 13 : 0;
     for (int x0 = 0; x0 < band.size.x; x0 += kLanes)
         for (int x = x0; x < x0 + kLanes; ++x, ++tokens) {
             if (x >= band.size.x || (band.present && band.present[at + x] == 0)) {
@@ -20,10 +21,10 @@ void rowTokens(const Band<const Word>& band, std::ptrdiff_t at, const Neighbours
                 *tokens = TokenRun::kNone;
                 continue;
             }
-            size[x] = magnitudeOf(values[x], shift);
+            size[x] = magnitudeOf(values[x], contexts.shift);
             const std::uint32_t symbol = zigzag(static_cast<std::uint32_t>(std::int32_t(values[x])));
             const std::uint32_t token = tokenOf(symbol).token;
-            *tokens = static_cast<std::uint16_t>(classOf(near.sum(x)) << 8 | token);
+            *tokens = static_cast<std::uint16_t>(kind | classOf(near.sum(x, contexts.byBand)) << 8 | token);
             run.zero = run.zero && symbol == 0;
             if (token >= kDirect) run.large.push_back({static_cast<std::uint32_t>(tokens - run.tokens.data()), symbol});
         }
@@ -37,9 +38,10 @@ TESSERA_AVX512 inline __m256i load256(const std::uint16_t* from) {
 
 /// As rowTokens, sixteen at a time.
 template <class Word>
-TESSERA_AVX512 void rowTokens512(const Band<const Word>& band, std::ptrdiff_t at, const Neighbours& near, int shift,
-                                 std::uint16_t* sizes, std::uint16_t*& tokens, TokenRun& run) {
+TESSERA_AVX512 void rowTokens512(const Band<const Word>& band, std::ptrdiff_t at, const Neighbours& near,
+                                 Contexts contexts, std::uint16_t* sizes, std::uint16_t*& tokens, TokenRun& run) {
     const Word* values = band.values + at;
+    const __m512i kind = _mm512_set1_epi32(contexts.byBand ? band.kind << 13 : 0);
     __m512i any = _mm512_setzero_si512();
     for (int x = 0; x < band.size.x; x += kLanes, tokens += kLanes) {
         const auto inside = static_cast<__mmask16>((1u << std::min(kLanes, band.size.x - x)) - 1u);
@@ -52,7 +54,10 @@ TESSERA_AVX512 void rowTokens512(const Band<const Word>& band, std::ptrdiff_t at
         const __m256i sides =
             _mm256_add_epi16(_mm256_add_epi16(load256(near.north + x - 1), load256(near.north + x + 1)),
                              _mm256_add_epi16(load256(near.beforeNorth + x), load256(near.beforeSouth + x)));
-        const __m256i sums = _mm256_add_epi16(_mm256_add_epi16(doubled, doubled), sides);
+        __m256i sums = _mm256_add_epi16(_mm256_add_epi16(doubled, doubled), sides);
+        if (contexts.byBand)
+            sums = _mm256_add_epi16(_mm256_add_epi16(sums, doubled),
+                                    _mm256_add_epi16(load256(near.before + x - 1), load256(near.before + x + 1)));
         const __m512i sum = _mm512_add_epi32(_mm512_cvtepu16_epi32(sums), _mm512_set1_epi32(1));
         const __m512i context = _mm512_sub_epi32(_mm512_srli_epi32(_mm512_castps_si512(_mm512_cvtepi32_ps(sum)), 22),
                                                  _mm512_set1_epi32(254));
@@ -64,8 +69,9 @@ TESSERA_AVX512 void rowTokens512(const Band<const Word>& band, std::ptrdiff_t at
             value = _mm512_maskz_loadu_epi32(active, values + x);
         const __m512i symbol = _mm512_xor_si512(_mm512_slli_epi32(value, 1), _mm512_srai_epi32(value, 31));
         any = _mm512_or_si512(any, symbol);
-        const __m512i size = _mm512_min_epu32(_mm512_srl_epi32(_mm512_abs_epi32(value), _mm_cvtsi32_si128(shift)),
-                                              _mm512_set1_epi32(static_cast<int>(kLargestMagnitude)));
+        const __m512i size =
+            _mm512_min_epu32(_mm512_srl_epi32(_mm512_abs_epi32(value), _mm_cvtsi32_si128(contexts.shift)),
+                             _mm512_set1_epi32(static_cast<int>(kLargestMagnitude)));
         _mm256_storeu_si256(reinterpret_cast<__m256i*>(sizes + x), _mm512_cvtepi32_epi16(size));
 
         __m512i token = symbol;
@@ -84,7 +90,7 @@ TESSERA_AVX512 void rowTokens512(const Band<const Word>& band, std::ptrdiff_t at
                 run.large.push_back({first + lane, all[lane]});
             }
         }
-        const __m512i both = _mm512_or_si512(_mm512_slli_epi32(context, 8), token);
+        const __m512i both = _mm512_or_si512(_mm512_or_si512(_mm512_slli_epi32(context, 8), token), kind);
         _mm256_storeu_si256(reinterpret_cast<__m256i*>(tokens),
                             _mm512_cvtepi32_epi16(_mm512_mask_mov_epi32(_mm512_set1_epi32(0xffff), active, both)));
     }
@@ -95,7 +101,7 @@ TESSERA_AVX512 void rowTokens512(const Band<const Word>& band, std::ptrdiff_t at
 
 } // namespace
 
-template <class Word> TokenRun tokensOf(std::span<const Band<const Word>> bands, int shift, Cpu cpu) {
+template <class Word> TokenRun tokensOf(std::span<const Band<const Word>> bands, Contexts contexts, Cpu cpu) {
     const Lanes lanes(bands);
     TokenRun run;
     run.groups = lanes.groups;
@@ -110,10 +116,10 @@ template <class Word> TokenRun tokensOf(std::span<const Band<const Word>> bands,
         std::uint16_t* sizes = magnitudes[b].row(z, y);
 #if TESSERA_X86
         if (cpu == Cpu::Avx512)
-            rowTokens512<Word>(band, at, near, shift, sizes, next, run);
+            rowTokens512<Word>(band, at, near, contexts, sizes, next, run);
         else
 #endif
-            rowTokens<Word>(band, at, near, shift, sizes, next, run);
+            rowTokens<Word>(band, at, near, contexts, sizes, next, run);
         return true;
     });
     (void)cpu;
@@ -122,19 +128,19 @@ template <class Word> TokenRun tokensOf(std::span<const Band<const Word>> bands,
 
 void countTokens(const TokenRun& run, int level, Histogram& histogram) {
     // By turns into two tables, as the same token twice would wait for itself; kNone falls where no token is.
-    constexpr std::size_t kEntries = kClasses << 8;
-    std::vector<std::uint32_t> counts(2 * kEntries);
-    std::uint32_t *one = counts.data(), *two = one + kEntries;
+    const std::size_t kinds = std::size_t(histogram.contexts.kindsOf(level)), entries = kinds * kClasses << 8;
+    std::vector<std::uint32_t> counts(2 * entries);
+    std::uint32_t *one = counts.data(), *two = one + entries;
     for (std::size_t i = 0; i < run.tokens.size(); i += 2) {
-        ++one[run.tokens[i] % kEntries];
-        ++two[run.tokens[i + 1] % kEntries];
+        ++one[run.tokens[i] % entries];
+        ++two[run.tokens[i + 1] % entries];
     }
-    const std::size_t first = std::size_t(level) * kClasses;
-    for (std::size_t c = 0; c < kClasses; ++c)
+    const std::size_t first = histogram.contexts.first(level);
+    for (std::size_t c = 0; c < kinds * kClasses; ++c)
         for (std::size_t t = 0; t < kTokens; ++t) histogram.counts[first + c][t] += one[c << 8 | t] + two[c << 8 | t];
 }
 
-template TokenRun tokensOf(std::span<const Band<const std::int16_t>>, int, Cpu);
-template TokenRun tokensOf(std::span<const Band<const std::int32_t>>, int, Cpu);
+template TokenRun tokensOf(std::span<const Band<const std::int16_t>>, Contexts, Cpu);
+template TokenRun tokensOf(std::span<const Band<const std::int32_t>>, Contexts, Cpu);
 
 } // namespace tessera::codec

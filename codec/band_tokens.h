@@ -17,6 +17,7 @@ template <class Word> struct Band {
                                            ///< read; 0 when decoded
     glm::ivec3 size{0};
     std::ptrdiff_t rowPitch = 0, slicePitch = 0; ///< words
+    int kind = 0; ///< 0 an undivided box, else the bits of the axes along which it holds the high half
 };
 
 /// The tokens of bands in the order of coding, and the contexts they came in: what is counted, and what is coded.
@@ -28,16 +29,19 @@ struct TokenRun {
     };
     static constexpr std::uint16_t kNone = 0xffff;
 
-    std::vector<std::uint16_t> tokens; ///< sixteen a chunk: class << 8 | token, kNone where a lane has no coefficient
-    std::vector<Large> large;          ///< in order
-    int groups = 1, used = 0;          ///< of states, and how many states are stored
-    bool zero = true;                  ///< all coefficients are 0
+    /// Sixteen a chunk: kind << 13 | class << 8 | token, kNone where a lane has no coefficient. The kind is that of the
+    /// band where contexts ask for it, else 0.
+    std::vector<std::uint16_t> tokens;
+    std::vector<Large> large; ///< in order
+    int groups = 1, used = 0; ///< of states, and how many states are stored
+    bool zero = true;         ///< all coefficients are 0
 };
 
-/// Rows of all bands by turns; contexts see magnitudes divided by 2^shift. Every choice of `cpu` gives the same.
-template <class Word> TokenRun tokensOf(std::span<const Band<const Word>> bands, int shift, Cpu cpu = bestCpu());
+/// Rows of all bands by turns. Every choice of `cpu` gives the same.
+template <class Word>
+TokenRun tokensOf(std::span<const Band<const Word>> bands, Contexts contexts, Cpu cpu = bestCpu());
 
-/// Adds the tokens to a histogram, at the contexts of `level`.
+/// Adds the tokens to a histogram of the same contexts, at `level`.
 void countTokens(const TokenRun& run, int level, Histogram& histogram);
 
 } // namespace tessera::codec

@@ -67,14 +67,15 @@ struct SplitMemory {
 };
 
 /// Takes a brick apart. `samples` are numbers of format.type, x fastest; `present` one flag each, or empty: all.
-/// Quantised numbers off by more than `maxError` are stored exactly; contexts see magnitudes divided by 2^shift.
+/// Quantised numbers off by more than `maxError` are stored exactly.
 PreparedBrick prepareBrick(const BrickFormat& format, std::span<const std::byte> samples,
-                           std::span<const std::uint8_t> present, double maxError, int shift, SplitMemory& memory);
+                           std::span<const std::uint8_t> present, double maxError, Contexts contexts,
+                           SplitMemory& memory);
 /// Adds its tokens to the statistics a model is made of.
 void countBrick(const PreparedBrick& brick, Histogram& histogram);
 
 /// The coded brick: segment 0 holds the coarsest level, segment i what level `levels - 1 - i` adds. `brick` must be
-/// prepared from the same samples, with the shift of the model. Same input, same bytes.
+/// prepared from the same samples, with the contexts of the model. Same input, same bytes.
 std::vector<Bytes> encodeBrick(const BrickFormat& format, const PreparedBrick& brick,
                                std::span<const std::byte> samples, std::span<const std::uint8_t> present,
                                Compressor& compressor, const BandEncoder& bands);

@@ -72,20 +72,20 @@ template <class Word> void toDifferences(std::span<const Band<Word>> bands) {
 template <class Word> std::vector<Band<const Word>> constBands(std::span<const Band<Word>> bands) {
     std::vector<Band<const Word>> out;
     for (const Band<Word>& band : bands)
-        out.push_back({band.values, band.present, band.size, band.rowPitch, band.slicePitch});
+        out.push_back({band.values, band.present, band.size, band.rowPitch, band.slicePitch, band.kind});
     return out;
 }
 
 template <class Word>
 std::vector<TokenRun> levelTokens(const BrickFormat& format, const Numbers& numbers,
-                                  std::span<const std::uint8_t> present, int shift, BrickLevels<Word>& levels) {
+                                  std::span<const std::uint8_t> present, Contexts contexts, BrickLevels<Word>& levels) {
     splitBrick<Word>(format, numbers.codes, present, format.levels, levels);
     std::vector<TokenRun> runs;
     for (int level = 0; level < format.levels; ++level) {
         const bool coarsest = level == format.levels - 1;
         const auto bands = bandsOf<Word>(boxesAt(levels, format, level), coarsest);
         if (coarsest) toDifferences<Word>(bands);
-        runs.push_back(tokensOf<Word>(constBands<Word>(bands), shift));
+        runs.push_back(tokensOf<Word>(constBands<Word>(bands), contexts));
     }
     return runs;
 }
@@ -136,14 +136,15 @@ void tryWhole(const BrickFormat& format, std::span<const std::byte> samples, std
 } // namespace
 
 PreparedBrick prepareBrick(const BrickFormat& format, std::span<const std::byte> samples,
-                           std::span<const std::uint8_t> present, double maxError, int shift, SplitMemory& memory) {
+                           std::span<const std::uint8_t> present, double maxError, Contexts contexts,
+                           SplitMemory& memory) {
     assert(samples.size() == countOf(format.size) * volume::byteSize(format.type));
     assert(present.empty() || present.size() == countOf(format.size));
     Numbers numbers = numbersOf(format, samples, present, maxError);
     PreparedBrick brick;
     brick.levels = fitsInt16(format, !present.empty())
-                       ? levelTokens<std::int16_t>(format, numbers, present, shift, memory.boxes16)
-                       : levelTokens<std::int32_t>(format, numbers, present, shift, memory.boxes32);
+                       ? levelTokens<std::int16_t>(format, numbers, present, contexts, memory.boxes16)
+                       : levelTokens<std::int32_t>(format, numbers, present, contexts, memory.boxes32);
     brick.exactIndex = std::move(numbers.exactIndex);
     brick.exactBits = std::move(numbers.exactBits);
     brick.absentBits = std::move(numbers.absentBits);
@@ -183,7 +184,7 @@ std::vector<Bytes> encodeBrick(const BrickFormat& format, std::span<const std::b
                                std::span<const std::uint8_t> present, double maxError, Compressor& compressor,
                                const BandEncoder& bands) {
     SplitMemory memory;
-    const PreparedBrick brick = prepareBrick(format, samples, present, maxError, bands.model().shift, memory);
+    const PreparedBrick brick = prepareBrick(format, samples, present, maxError, bands.model().contexts, memory);
     return encodeBrick(format, brick, samples, present, compressor, bands);
 }
 

@@ -175,6 +175,7 @@ template <class Word> std::vector<Band<Word>> bandsOf(std::span<LevelBox<Word>> 
             one.size = size;
             one.rowPitch = box.pitch;
             one.slicePitch = std::ptrdiff_t(box.pitch) * box.size.y;
+            one.kind = band;
             bands.push_back(one);
         }
     }

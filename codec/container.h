@@ -24,7 +24,9 @@ inline constexpr std::size_t kHeaderBytes = 80;
 /// coded body-centred, and integers in steps.
 inline constexpr std::uint32_t kBrickNotes = 1;
 /// Feature: metadata and pages of the index are pieces (codec/lzma.h), streams may be LZMA, models may be empty.
-inline constexpr std::uint32_t kCompact = 2, kKnownFeatures = kBrickNotes | kCompact;
+inline constexpr std::uint32_t kCompact = 2;
+/// Feature: models may have contexts that tell bands apart.
+inline constexpr std::uint32_t kBandContexts = 4, kKnownFeatures = kBrickNotes | kCompact | kBandContexts;
 
 /// Where the chunks of a version begin.
 constexpr std::uint64_t firstChunk(std::uint32_t version) {

@@ -19,11 +19,11 @@ constexpr int kMostTables = 24;
 
 /// Tokens of some bricks of a frame, spread over it; kept in `taken`, if there is one.
 Histogram sampleTokens(const volume::BrickGrid& grid, const volume::Field& field, const FrameRecord& frame,
-                       std::size_t most, int shift, double maxError = 0, Taken* taken = nullptr) {
+                       std::size_t most, Contexts contexts, double maxError = 0, Taken* taken = nullptr) {
     const std::size_t bricks = brickCount(grid), count = std::min(bricks, most);
-    std::vector<Histogram> parts(count, Histogram(grid.levels));
+    std::vector<Histogram> parts(count, Histogram(grid.levels, contexts));
     if (taken) {
-        *taken = {frame.wavelet, frame.bodyCentred, shift, maxError, {}};
+        *taken = {frame.wavelet, frame.bodyCentred, contexts, maxError, {}};
         taken->bricks.resize(bricks);
     }
     parallelRanges(count, [&](std::size_t begin, std::size_t end) {
@@ -34,12 +34,12 @@ Histogram sampleTokens(const volume::BrickGrid& grid, const volume::Field& field
             const glm::ivec3 brick = brickIndex(grid, number);
             input.take(grid, brick, field, frame.mask >= 0);
             PreparedBrick prepared = prepareBrick(brickFormat(grid, brick, field.type, frame), input.samples,
-                                                  input.present, maxError, shift, memory);
+                                                  input.present, maxError, contexts, memory);
             countBrick(prepared, parts[i]);
             if (taken) taken->bricks[number] = std::move(prepared);
         }
     });
-    Histogram sum(grid.levels);
+    Histogram sum(grid.levels, contexts);
     for (const Histogram& part : parts) sum.add(part);
     return sum;
 }
@@ -50,7 +50,7 @@ Histogram sampleMiddles(const volume::BrickGrid& grid, const volume::Field& fiel
     constexpr int kMiddle = 32, kMiddleLevels = 3;
     const std::size_t bricks = brickCount(grid), count = std::min(bricks, most);
     const int levels = std::min(grid.levels, kMiddleLevels);
-    std::vector<Histogram> parts(count, Histogram(levels));
+    std::vector<Histogram> parts(count, Histogram(levels, {}));
     parallelFor(count, [&](std::size_t i) {
         const glm::ivec3 brick = brickIndex(grid, i * bricks / count);
         BrickFormat format = brickFormat(grid, brick, field.type, frame);
@@ -63,9 +63,9 @@ Histogram sampleMiddles(const volume::BrickGrid& grid, const volume::Field& fiel
         BrickInput input;
         input.take(grid, grid.begin(brick) + first, size, field, frame.mask >= 0);
         SplitMemory memory;
-        countBrick(prepareBrick(format, input.samples, input.present, 0, 0, memory), parts[i]);
+        countBrick(prepareBrick(format, input.samples, input.present, 0, {}, memory), parts[i]);
     });
-    Histogram sum(levels);
+    Histogram sum(levels, {});
     for (const Histogram& part : parts) sum.add(part);
     return sum;
 }
@@ -80,6 +80,11 @@ int shiftFor(const Histogram& histogram) {
         }
     constexpr double kWanted = 6;
     return count == 0 ? 0 : std::max(0, int(std::lround(octaves / count - kWanted)));
+}
+
+/// Bits of floats have no bands that are unlike: the low ones are noise in all of them.
+bool prefersByBand(const FrameRecord& frame) {
+    return frame.numbers.kind != NumberKind::Float;
 }
 
 /// The filter by trial on some bricks. Predictions alone alias in coarse levels: they have to be clearly better.
@@ -160,22 +165,24 @@ double estimateFrameBytes(const volume::BrickGrid& grid, const volume::Field& fi
     frame.numbers = chooseNumbers(grid, field, nullptr, options);
     frame.wavelet = options.wavelet.value_or(Wavelet::W22);
     frame.codeBits = codeBitsOf(field, frame.numbers);
-    const int shift = frame.codeBits > 16 ? shiftFor(sampleTokens(grid, field, frame, bricks, 0)) : 0;
+    const int shift = frame.codeBits > 16 ? shiftFor(sampleTokens(grid, field, frame, bricks, {})) : 0;
     const double all = double(brickCount(grid));
-    return sampleTokens(grid, field, frame, bricks, shift).bits() / 8 * all / std::min(all, double(bricks));
+    return sampleTokens(grid, field, frame, bricks, {shift, prefersByBand(frame)}).bits() / 8 * all /
+           std::min(all, double(bricks));
 }
 
-Model chooseModel(const volume::BrickGrid& grid, const volume::Field& field, const KnownModel* last, FrameRecord& frame,
-                  const FrameOptions& options, Taken& taken) {
+Model chooseModel(const volume::BrickGrid& grid, const volume::Field& field, const KnownModel* last, bool byBand,
+                  FrameRecord& frame, const FrameOptions& options, Taken& taken) {
     constexpr double kStillAlike = 1.05;
     const double maxError = boundOf(frame, options);
+    byBand = byBand && prefersByBand(frame);
     std::optional<Model> fresh;
-    if (last && last->resembles(frame)) {
+    if (last && last->resembles(frame) && last->model.contexts.byBand == byBand) {
         const Model& model = last->model;
         frame.wavelet = options.wavelet.value_or(last->wavelet);
         frame.bodyCentred = options.bodyCentred.value_or(last->bodyCentred);
-        const Histogram histogram = sampleTokens(grid, field, frame, kModelBricks, model.shift, maxError, &taken);
-        fresh = makeModel(histogram, model.shift, kMostTables);
+        const Histogram histogram = sampleTokens(grid, field, frame, kModelBricks, model.contexts, maxError, &taken);
+        fresh = makeModel(histogram, kMostTables);
         const double before = bitsWith(model, histogram), now = bitsWith(*fresh, histogram);
         if (before <= now + 8.0 * double(serialise(*fresh).size())) {
             frame.model = last->number;
@@ -187,7 +194,8 @@ Model chooseModel(const volume::BrickGrid& grid, const volume::Field& field, con
         frame.bodyCentred = options.bodyCentred ? *options.bodyCentred : prefersBodyCentred(grid, field, frame);
         if (!options.wavelet) frame.wavelet = waveletFor(grid, field, frame);
         const int shift = frame.codeBits > 16 ? shiftFor(sampleMiddles(grid, field, frame, kTrialBricks)) : 0;
-        fresh = makeModel(sampleTokens(grid, field, frame, kModelBricks, shift, maxError, &taken), shift, kMostTables);
+        const Contexts contexts{shift, byBand};
+        fresh = makeModel(sampleTokens(grid, field, frame, kModelBricks, contexts, maxError, &taken), kMostTables);
     }
     return *fresh;
 }

@@ -14,12 +14,12 @@ namespace tessera::codec {
 struct Taken {
     Wavelet wavelet{};
     bool bodyCentred = false;
-    int shift = 0;
+    Contexts contexts;
     double maxError = 0;
     std::vector<std::optional<PreparedBrick>> bricks; ///< by number
 
     bool serves(const FrameRecord& frame, const Model& model) const {
-        return wavelet == frame.wavelet && bodyCentred == frame.bodyCentred && shift == model.shift;
+        return wavelet == frame.wavelet && bodyCentred == frame.bodyCentred && contexts == model.contexts;
     }
 };
 
@@ -39,8 +39,8 @@ double boundOf(const FrameRecord& frame, const FrameOptions& options);
 
 /// The model of a frame: `last`, that of the component's frame before (or none), where its tables serve as well as new
 /// ones would, else a new one, not written yet (frame.model is -1). The filter is tried again only where the tables do
-/// not fit at all. Sets wavelet, bodyCentred and model of the frame.
-Model chooseModel(const volume::BrickGrid& grid, const volume::Field& field, const KnownModel* last, FrameRecord& frame,
-                  const FrameOptions& options, Taken& taken);
+/// not fit at all. Sets wavelet, bodyCentred and model of the frame. `byBand`: the archive knows such contexts.
+Model chooseModel(const volume::BrickGrid& grid, const volume::Field& field, const KnownModel* last, bool byBand,
+                  FrameRecord& frame, const FrameOptions& options, Taken& taken);
 
 } // namespace tessera::codec

@@ -37,21 +37,21 @@ struct BoxesOfFrame {
     Model modelFor(std::span<const volume::MergedBrick> boxes, const std::vector<std::uint8_t>& wanted,
                    const Model& known, std::uint64_t& bytes) const {
         constexpr int kMostTables = 24;
-        Histogram tokens(grid.levels);
+        Histogram tokens(grid.levels, known.contexts);
         std::mutex mutex;
         parallelRanges(boxes.size(), [&](std::size_t first, std::size_t last) {
-            Histogram own(grid.levels);
+            Histogram own(grid.levels, known.contexts);
             BrickInput input;
             SplitMemory memory;
             for (std::size_t b = first; b < last; ++b) {
                 if (wanted[b] == 0) continue;
                 const BrickFormat format = take(boxes[b], input);
-                countBrick(prepareBrick(format, input.samples, input.present, 0, known.shift, memory), own);
+                countBrick(prepareBrick(format, input.samples, input.present, 0, known.contexts, memory), own);
             }
             const std::lock_guard lock(mutex);
             tokens.add(own);
         });
-        Model fresh = makeModel(tokens, known.shift, kMostTables);
+        Model fresh = makeModel(tokens, kMostTables);
         const std::size_t own = serialise(fresh).size();
         if (bitsWith(fresh, tokens) + 8.0 * double(own) >= bitsWith(known, tokens)) return known;
         bytes += own;

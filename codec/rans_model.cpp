@@ -10,18 +10,31 @@ namespace tessera::codec {
 namespace {
 
 using Counts = std::array<std::uint32_t, kTokens>;
+using KindTables = std::array<std::uint8_t, kClasses>;
+
+constexpr std::uint32_t kByBand = 128; // beside the shift
 
 // Bits a table costs in the file: its place in the map and about this much for each token in use.
 constexpr double kTableBits = 24, kTokenBits = 8;
 
+/// n log2 n, at hand for small n.
+double nLogN(std::uint32_t n) {
+    static const std::array<double, 2048> kSmall = [] {
+        std::array<double, 2048> all{};
+        for (std::size_t i = 1; i < all.size(); ++i) all[i] = double(i) * std::log2(double(i));
+        return all;
+    }();
+    return n < kSmall.size() ? kSmall[n] : double(n) * std::log2(double(n));
+}
+
 /// Bits of the tokens of one context with their own ideal table, and of that table.
 double costOf(const Counts& counts) {
-    double total = 0, bits = 0, used = 0;
-    for (const std::uint32_t count : counts) total += count;
-    if (total == 0) return 0;
-    for (const std::uint32_t count : counts)
-        if (count > 0) bits += count * std::log2(total / count), used += 1;
-    return bits + kTableBits + used * kTokenBits;
+    double total = 0, own = 0, used = 0;
+    for (const std::uint32_t count : counts) {
+        if (count == 0) continue;
+        total += count, own += nLogN(count), used += 1;
+    }
+    return total == 0 ? 0 : total * std::log2(total) - own + kTableBits + used * kTokenBits;
 }
 
 /// Counts scaled to a sum of kProbabilityOne, nothing that occurs at 0, the escape always possible.
@@ -92,26 +105,7 @@ private:
     std::size_t at_ = 0;
 };
 
-} // namespace
-
-double Histogram::bits() const {
-    double sum = 0;
-    for (const Counts& context : counts) {
-        double total = 0;
-        for (const std::uint32_t count : context) total += count;
-        for (std::size_t t = 0; t < kTokens; ++t)
-            if (context[t] > 0)
-                sum += context[t] * (std::log2(total / context[t]) + rawBitsOf(static_cast<std::uint32_t>(t)));
-    }
-    return sum;
-}
-
-void Histogram::add(const Histogram& other) {
-    for (std::size_t c = 0; c < counts.size(); ++c)
-        for (std::size_t t = 0; t < kTokens; ++t) counts[c][t] += other.counts[c][t];
-}
-
-Model makeModel(const Histogram& histogram, int shift, int mostTables) {
+Model clustered(const Histogram& histogram, int mostTables) {
     struct Group {
         Counts counts{};
         std::vector<std::size_t> contexts;
@@ -153,8 +147,8 @@ Model makeModel(const Histogram& histogram, int shift, int mostTables) {
     }
 
     Model model;
-    model.levels = static_cast<int>(histogram.counts.size()) / kClasses;
-    model.shift = shift;
+    model.levels = histogram.levels;
+    model.contexts = histogram.contexts;
     constexpr std::uint8_t kNone = 255;
     model.tableOf.assign(histogram.counts.size(), kNone);
     for (std::size_t g = 0; g < groups.size(); ++g) {
@@ -164,11 +158,77 @@ Model makeModel(const Histogram& histogram, int shift, int mostTables) {
     if (model.tables.empty()) model.tables.push_back(normalised(Counts{}));
     // Contexts that were not seen take the table of the class below, which costs no bits in the map.
     std::uint8_t last = 0;
-    for (std::uint8_t& table : model.tableOf) {
+    for (std::size_t c = 0; c < model.tableOf.size(); ++c) {
+        std::uint8_t& table = model.tableOf[c];
+        const auto kind = model.tableOf.begin() + std::ptrdiff_t(c);
+        if (model.contexts.byBand && c % kClasses == 0 && std::count(kind, kind + kClasses, kNone) == kClasses) {
+            // A kind of bands that was not seen takes those of the kind before.
+            if (c == 0)
+                std::fill_n(kind, kClasses, std::uint8_t(0));
+            else
+                std::copy_n(kind - kClasses, kClasses, kind);
+            c += kClasses - 1;
+            continue;
+        }
         if (table == kNone) table = last;
         last = table;
     }
     return model;
+}
+
+/// The histogram in which all kinds of bands of a level are one.
+Histogram pooled(const Histogram& histogram) {
+    Histogram pool(histogram.levels, {histogram.contexts.shift, false});
+    for (int level = 0; level < histogram.levels; ++level)
+        for (int kind = 0; kind < histogram.contexts.kindsOf(level); ++kind)
+            for (std::size_t c = 0; c < kClasses; ++c)
+                for (std::size_t t = 0; t < kTokens; ++t)
+                    pool.counts[pool.contexts.first(level) + c][t] +=
+                        histogram.counts[histogram.contexts.first(level, kind) + c][t];
+    return pool;
+}
+
+/// The model of a pool, for contexts of which all kinds of bands of a level take the same tables.
+Model spread(const Model& pool, Contexts contexts) {
+    Model model{pool.levels, contexts, {}, pool.tables};
+    for (int level = 0; level < pool.levels; ++level)
+        for (int kind = 0; kind < contexts.kindsOf(level); ++kind) {
+            const auto from = pool.tableOf.begin() + std::ptrdiff_t(pool.contexts.first(level));
+            model.tableOf.insert(model.tableOf.end(), from, from + kClasses);
+        }
+    return model;
+}
+
+} // namespace
+
+double Histogram::bits() const {
+    double sum = 0;
+    for (const Counts& context : counts) {
+        double total = 0;
+        for (const std::uint32_t count : context) total += count;
+        for (std::size_t t = 0; t < kTokens; ++t)
+            if (context[t] > 0)
+                sum += context[t] * (std::log2(total / context[t]) + rawBitsOf(static_cast<std::uint32_t>(t)));
+    }
+    return sum;
+}
+
+void Histogram::add(const Histogram& other) {
+    for (std::size_t c = 0; c < counts.size(); ++c)
+        for (std::size_t t = 0; t < kTokens; ++t) counts[c][t] += other.counts[c][t];
+}
+
+Model makeModel(const Histogram& histogram, int mostTables) {
+    Model model = clustered(histogram, mostTables);
+    if (!histogram.contexts.byBand) return model;
+    // Of few samples the tables that bands of their own need are not worth their bytes.
+    constexpr double kFew = 1 << 20;
+    double count = 0;
+    for (const Counts& context : histogram.counts) count += std::accumulate(context.begin(), context.end(), 0.0);
+    if (count > kFew) return model;
+    Model shared = spread(clustered(pooled(histogram), mostTables), histogram.contexts);
+    const auto cost = [&](const Model& of) { return bitsWith(of, histogram) + 8.0 * double(serialise(of).size()); };
+    return cost(shared) < cost(model) ? shared : model;
 }
 
 double bitsWith(const Model& model, const Histogram& histogram) {
@@ -188,13 +248,21 @@ double bitsWith(const Model& model, const Histogram& histogram) {
 
 Bytes serialise(const Model& model) {
     BitWriter out;
-    out.put(static_cast<std::uint32_t>(model.shift), 8);
+    out.put(static_cast<std::uint32_t>(model.contexts.shift) | (model.contexts.byBand ? kByBand : 0), 8);
     out.put(static_cast<std::uint32_t>(model.tables.size()), 8);
     std::uint32_t last = 0;
-    for (const std::uint8_t table : model.tableOf) { // 0: as the class below
-        out.put(table == last ? 0 : 1, 1);
-        if (table != last) out.put(table, 8);
-        last = table;
+    KindTables before{};
+    for (auto at = model.tableOf.begin(); at != model.tableOf.end(); at += kClasses) {
+        if (model.contexts.byBand) { // 0: as the kind before
+            const bool other = !std::equal(before.begin(), before.end(), at);
+            out.put(other ? 1 : 0, 1);
+            if (!other) continue;
+            std::copy_n(at, kClasses, before.begin());
+        }
+        for (auto table = at; table != at + kClasses; last = *table++) { // 0: as the class below
+            out.put(*table == last ? 0 : 1, 1);
+            if (*table != last) out.put(*table, 8);
+        }
     }
     for (const Frequencies& table : model.tables) {
         int used = kTokens - 1; // the escape is what the others leave
@@ -212,23 +280,29 @@ Bytes serialise(const Model& model) {
 
 DecodeStatus parseModel(std::span<const std::byte> bytes, int levels, Model& model) {
     if (bytes.empty()) {
-        model = makeModel(Histogram(levels), 0, 1);
+        model = makeModel(Histogram(levels, {}), 1);
         return DecodeStatus::Ok;
     }
     BitReader in(bytes);
     model = {};
     model.levels = levels;
-    model.shift = static_cast<int>(in.get(8));
-    const std::uint32_t tables = in.get(8);
+    const std::uint32_t how = in.get(8), tables = in.get(8);
     if (in.failed) return DecodeStatus::Truncated;
-    if (tables == 0 || model.shift > 31) return DecodeStatus::BadLength;
+    model.contexts = {static_cast<int>(how & ~kByBand), (how & kByBand) != 0};
+    if (tables == 0 || model.contexts.shift > 31) return DecodeStatus::BadLength;
     std::uint32_t last = 0;
-    for (int c = 0; c < levels * kClasses; ++c) {
-        if (in.get(1) != 0) last = in.get(8);
-        if (in.failed) return DecodeStatus::Truncated;
-        if (last >= tables) return DecodeStatus::BadLength;
-        model.tableOf.push_back(static_cast<std::uint8_t>(last));
+    KindTables before{};
+    for (std::size_t first = 0; first < model.contexts.first(levels); first += kClasses) {
+        const bool other = !model.contexts.byBand || in.get(1) != 0;
+        for (std::size_t c = 0; other && c < kClasses; ++c) {
+            if (in.get(1) != 0) last = in.get(8);
+            if (in.failed) return DecodeStatus::Truncated;
+            if (last >= tables) return DecodeStatus::BadLength;
+            before[c] = static_cast<std::uint8_t>(last);
+        }
+        model.tableOf.insert(model.tableOf.end(), before.begin(), before.end());
     }
+    if (in.failed) return DecodeStatus::Truncated;
     for (std::uint32_t i = 0; i < tables; ++i) {
         const std::uint32_t used = in.get(8);
         if (used >= kTokens) return DecodeStatus::BadLength;

@@ -15,8 +15,10 @@ namespace tessera::codec {
 
 inline constexpr int kProbabilityBits = 12;
 inline constexpr std::uint32_t kProbabilityOne = 1u << kProbabilityBits;
-/// Contexts of a level: half octaves of the neighbours' magnitude.
+/// Classes of a place: half octaves of its neighbours' magnitude.
 inline constexpr int kClasses = 32;
+/// Kinds of bands: 0 an undivided box, else the bits of the axes along which it holds the high half.
+inline constexpr int kBandKinds = 8;
 /// A token is a symbol below 32, or an octave of four parts and so many raw bits, or the escape: all 32 bits raw.
 inline constexpr int kDirect = 32, kTokens = 141, kEscape = 140;
 
@@ -40,13 +42,30 @@ constexpr std::uint32_t symbolBase(std::uint32_t token) {
     return token == kEscape ? 0 : (4u + (token - kDirect) % 4u) << rawBitsOf(token);
 }
 
-/// How often each token came in each context of each level: what a model is made of.
+/// What the coder tells places apart by before it codes them.
+struct Contexts {
+    int shift = 0;       ///< magnitudes are divided by 2^shift
+    bool byBand = false; ///< one more neighbour to each side, and the two finest levels tell kinds of bands apart
+    bool operator==(const Contexts&) const = default;
+
+    static constexpr int kLevelsByBand = 2;
+    int kindsOf(int level) const { return byBand && level < kLevelsByBand ? kBandKinds : 1; }
+    /// The first of the contexts of the classes of a kind at a level; of all levels: the number of contexts.
+    std::size_t first(int level, int kind = 0) const {
+        const int kinds = byBand ? level + (kBandKinds - 1) * (level < kLevelsByBand ? level : kLevelsByBand) : level;
+        return static_cast<std::size_t>((kinds + (kindsOf(level) > 1 ? kind : 0)) * kClasses);
+    }
+};
+
+/// How often each token came in each context: what a model is made of.
 struct Histogram {
-    explicit Histogram(int levels) : counts(static_cast<std::size_t>(levels * kClasses)) {}
-    std::vector<std::array<std::uint32_t, kTokens>> counts; ///< [level * kClasses + class]
+    Histogram(int levelCount, Contexts of) : levels(levelCount), contexts(of), counts(of.first(levelCount)) {}
+    int levels = 0;
+    Contexts contexts;
+    std::vector<std::array<std::uint32_t, kTokens>> counts; ///< [contexts.first(level, kind) + class]
     /// Bits the tokens and their raw bits take with ideal tables of this histogram, without the model itself.
     double bits() const;
-    /// Adds those of the same levels.
+    /// Adds those of the same levels and contexts.
     void add(const Histogram& other);
 };
 
@@ -54,14 +73,14 @@ using Frequencies = std::array<std::uint16_t, kTokens>; ///< sum is kProbability
 
 struct Model {
     int levels = 0;
-    int shift = 0;                     ///< contexts see magnitudes divided by 2^shift
-    std::vector<std::uint8_t> tableOf; ///< [level * kClasses + class]
+    Contexts contexts;
+    std::vector<std::uint8_t> tableOf; ///< [contexts.first(level, kind) + class]
     std::vector<Frequencies> tables;
     bool operator==(const Model&) const = default;
 };
 
 /// A model of few tables: contexts of similar statistics share one, as long as that saves more than a table costs.
-Model makeModel(const Histogram& histogram, int shift, int mostTables);
+Model makeModel(const Histogram& histogram, int mostTables);
 /// Bits the histogram's tokens take with a model, raw bits included.
 double bitsWith(const Model& model, const Histogram& histogram);
 

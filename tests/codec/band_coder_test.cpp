@@ -14,7 +14,8 @@ template <class Word> struct MadeBands {
 
     std::vector<Band<const Word>> constant() const {
         std::vector<Band<const Word>> out;
-        for (const Band<Word>& b : bands) out.push_back({b.values, b.present, b.size, b.rowPitch, b.slicePitch});
+        for (const Band<Word>& b : bands)
+            out.push_back({b.values, b.present, b.size, b.rowPitch, b.slicePitch, b.kind});
         return out;
     }
 };
@@ -30,6 +31,7 @@ template <class Word> MadeBands<Word> randomBands(std::mt19937& random, bool mas
         band.size = {kWidths[random() % std::size(kWidths)], 1 + int(random() % 20), 1 + int(random() % 12)};
         band.rowPitch = band.size.x + int(random() % 5);
         band.slicePitch = band.rowPitch * band.size.y + int(random() % 5);
+        band.kind = int(random() % kBandKinds);
         std::vector<Word>& values = made.values.emplace_back(std::size_t(band.slicePitch * band.size.z));
         std::vector<std::uint8_t>& present = made.present.emplace_back(masked ? values.size() : 0);
         for (Word& value : values) {
@@ -52,21 +54,22 @@ template <class Word> void roundTrips(unsigned seed) {
     for (int trial = 0; trial < 300; ++trial) {
         const MadeBands<Word> made = randomBands<Word>(random, trial % 3 == 0);
         const auto source = made.constant();
-        const int shift = trial % 5 == 0 ? 6 : 0;
-        Histogram histogram(3);
+        const Contexts contexts{trial % 5 == 0 ? 6 : 0, trial % 2 == 0};
+        const int level = trial / 2 % 3;
+        Histogram histogram(3, contexts);
         // With tables of other data, too, everything can be coded.
         const MadeBands<Word> other = randomBands<Word>(random, false);
-        countTokens(tokensOf<Word>(trial % 4 == 0 ? other.constant() : source, shift), 1, histogram);
-        const BandEncoder encoder(makeModel(histogram, shift, 8));
+        countTokens(tokensOf<Word>(trial % 4 == 0 ? other.constant() : source, contexts), level, histogram);
+        const BandEncoder encoder(makeModel(histogram, 8));
         Bytes coded;
-        const TokenRun run = tokensOf<Word>(source, shift, Cpu::Portable);
-        encoder.encode(run, 1, coded, Cpu::Portable);
+        const TokenRun run = tokensOf<Word>(source, contexts, Cpu::Portable);
+        encoder.encode(run, level, coded, Cpu::Portable);
         if (bestCpu() == Cpu::Avx512) {
-            const TokenRun other512 = tokensOf<Word>(source, shift, Cpu::Avx512);
+            const TokenRun other512 = tokensOf<Word>(source, contexts, Cpu::Avx512);
             ASSERT_EQ(other512.tokens, run.tokens) << trial;
             ASSERT_EQ(other512.zero, run.zero);
             Bytes same;
-            encoder.encode(other512, 1, same, Cpu::Avx512);
+            encoder.encode(other512, level, same, Cpu::Avx512);
             ASSERT_EQ(same, coded) << trial;
         }
         const BandDecoder decoder(encoder.model());
@@ -76,7 +79,7 @@ template <class Word> void roundTrips(unsigned seed) {
             std::vector<Band<Word>> bands = made.bands;
             for (std::size_t b = 0; b < bands.size(); ++b) decoded.emplace_back(made.values[b].size(), Word(77));
             for (std::size_t b = 0; b < bands.size(); ++b) bands[b].values = decoded[b].data();
-            ASSERT_EQ(decoder.decode<Word>(coded, bands, 1, cpu), DecodeStatus::Ok) << trial;
+            ASSERT_EQ(decoder.decode<Word>(coded, bands, level, cpu), DecodeStatus::Ok) << trial;
             for (std::size_t b = 0; b < bands.size(); ++b)
                 for (std::ptrdiff_t i = 0; i < std::ptrdiff_t(decoded[b].size()); ++i) {
                     const Band<Word>& band = bands[b];
@@ -103,25 +106,58 @@ TEST(BandCoder, ComesNearTheEntropyOfItsContexts) {
     std::vector<std::int16_t> values(64 * 64 * 64);
     for (std::size_t i = 0; i < values.size(); ++i)
         values[i] = static_cast<std::int16_t>(std::normal_distribution(0.0, 1.0 + double(i / 4096 % 16))(random));
-    const Band<const std::int16_t> band{values.data(), nullptr, {64, 64, 64}, 64, 4096};
-    Histogram histogram(1);
-    const TokenRun run = tokensOf<std::int16_t>(std::span(&band, 1), 0);
+    const Band<const std::int16_t> band{values.data(), nullptr, {64, 64, 64}, 64, 4096, 5};
+    const Contexts contexts{0, true};
+    Histogram histogram(1, contexts);
+    const TokenRun run = tokensOf<std::int16_t>(std::span(&band, 1), contexts);
     countTokens(run, 0, histogram);
-    const Model model = makeModel(histogram, 0, 24);
+    const Model model = makeModel(histogram, 24);
     Bytes coded;
     BandEncoder(model).encode(run, 0, coded);
     EXPECT_LT(8.0 * double(coded.size()), bitsWith(model, histogram) * 1.001 + 64 * 32);
     EXPECT_LT(bitsWith(model, histogram), histogram.bits() * 1.01);
 }
 
+TEST(BandCoder, TellsBandsApart) {
+    // Coefficients of two kinds of bands, the same neighbours, other values: one bit each by band, half a bit more
+    // without.
+    std::mt19937 random(7);
+    std::vector<std::int16_t> ones(32 * 32 * 32), twos(ones.size());
+    for (std::size_t i = 0; i < ones.size(); ++i) {
+        ones[i] = random() % 2 == 0 ? 1 : -1;
+        twos[i] = random() % 2 == 0 ? 1 : 0;
+    }
+    std::vector<Band<const std::int16_t>> bands{{ones.data(), nullptr, {32, 32, 32}, 32, 1024, 1},
+                                                {twos.data(), nullptr, {32, 32, 32}, 32, 1024, 2}};
+    const auto bitsOf = [&](bool byBand) {
+        Histogram histogram(1, {8, byBand}); // so that all neighbours look like nothing
+        countTokens(tokensOf<std::int16_t>(bands, histogram.contexts), 0, histogram);
+        return bitsWith(makeModel(histogram, 8), histogram) / double(2 * ones.size());
+    };
+    EXPECT_NEAR(bitsOf(true), 1, 0.01);
+    EXPECT_NEAR(bitsOf(false), 1.5, 0.01);
+}
+
+TEST(RansModel, FewSamplesShareTheTablesOfAllBands) {
+    // The same statistics in all bands: nothing is gained by tables of their own.
+    Histogram histogram(4, {0, true});
+    for (std::size_t c = 0; c < histogram.counts.size(); ++c)
+        for (std::size_t t = 0; t < 30; ++t) histogram.counts[c][t] = std::uint32_t(1000 / (t + 1 + c % kClasses));
+    const Model model = makeModel(histogram, 24);
+    for (int kind = 1; kind < kBandKinds; ++kind)
+        for (std::size_t c = 0; c < kClasses; ++c)
+            EXPECT_EQ(model.tableOf[model.contexts.first(0, kind) + c], model.tableOf[model.contexts.first(0) + c]);
+}
+
 TEST(BandCoder, RefusesTruncatedAndLongerBytesAndSurvivesAnyFlip) {
     std::mt19937 random(4);
     for (int trial = 0; trial < 25; ++trial) {
         MadeBands<std::int32_t> made = randomBands<std::int32_t>(random, trial % 2 == 0);
-        Histogram histogram(1);
-        const TokenRun run = tokensOf<std::int32_t>(made.constant(), 0);
+        const Contexts contexts{0, trial % 3 == 0};
+        Histogram histogram(1, contexts);
+        const TokenRun run = tokensOf<std::int32_t>(made.constant(), contexts);
         countTokens(run, 0, histogram);
-        const BandEncoder encoder(makeModel(histogram, 0, 8));
+        const BandEncoder encoder(makeModel(histogram, 8));
         Bytes coded;
         encoder.encode(run, 0, coded);
         const BandDecoder decoder(encoder.model());
@@ -160,11 +196,13 @@ TEST(RansModel, ComesBackAndRefusesDamage) {
     std::mt19937 random(6);
     for (int trial = 0; trial < 200; ++trial) {
         const int levels = 1 + int(random() % 6);
-        Histogram histogram(levels);
+        Histogram histogram(levels, {int(random() % 32), trial % 2 == 0});
+        const unsigned most = trial % 3 == 0 ? 30 : 100000;
         for (auto& context : histogram.counts)
             for (std::size_t t = 0; t < std::size_t(1 + random() % kTokens); ++t)
-                context[t] = random() % 4 == 0 ? std::uint32_t(random() % 100000) : 0;
-        const Model model = makeModel(histogram, int(random() % 32), 1 + int(random() % 20));
+                context[t] = random() % 4 == 0 ? std::uint32_t(random() % most) : 0;
+        const Model model = makeModel(histogram, 1 + int(random() % 20));
+        ASSERT_EQ(model.tableOf.size(), histogram.counts.size());
         for (const Frequencies& table : model.tables) {
             std::uint32_t sum = 0;
             for (const std::uint16_t frequency : table) sum += frequency;

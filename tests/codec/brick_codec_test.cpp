@@ -57,12 +57,13 @@ MadeBrick randomBrick(std::mt19937& random) {
 }
 
 /// The model of the brick itself, or of another one: any brick must come back with any model.
-Model modelOf(const MadeBrick& made, bool own) {
-    Histogram histogram(made.format.levels);
+Model modelOf(const MadeBrick& made, bool own, bool byBand) {
+    const Contexts contexts{3, byBand};
+    Histogram histogram(made.format.levels, contexts);
     SplitMemory memory;
-    if (own) countBrick(prepareBrick(made.format, made.samples, made.present, 0, 3, memory), histogram);
+    if (own) countBrick(prepareBrick(made.format, made.samples, made.present, 0, contexts, memory), histogram);
     for (std::size_t t = 0; !own && t < 30; ++t) histogram.counts[5][t] = 100;
-    return makeModel(histogram, 3, 16);
+    return makeModel(histogram, 16);
 }
 
 std::vector<std::span<const std::byte>> views(const std::vector<Bytes>& segments, std::size_t count) {
@@ -74,7 +75,7 @@ TEST(BrickCodec, DecodesWhatItEncodes) {
     Compressor compressor(3);
     for (int trial = 0; trial < 1000; ++trial) {
         const MadeBrick made = randomBrick(random);
-        const Model model = modelOf(made, trial % 3 != 0);
+        const Model model = modelOf(made, trial % 3 != 0, trial % 2 == 0);
         const BandDecoder decoder(model);
         const std::vector<Bytes> segments =
             encodeBrick(made.format, made.samples, made.present, made.maxError, compressor, BandEncoder(model));
@@ -125,7 +126,7 @@ TEST(BrickCodec, RefusesEveryTruncationAndEveryTrailingByte) {
     Compressor compressor(3);
     for (int trial = 0; trial < 60; ++trial) {
         const MadeBrick made = randomBrick(random);
-        const Model model = modelOf(made, trial % 3 != 0);
+        const Model model = modelOf(made, trial % 3 != 0, trial % 2 == 0);
         const BandDecoder decoder(model);
         const std::vector<Bytes> segments =
             encodeBrick(made.format, made.samples, made.present, made.maxError, compressor, BandEncoder(model));
@@ -153,7 +154,7 @@ TEST(BrickCodec, SurvivesEveryFlippedBit) {
     Compressor compressor(3);
     for (int trial = 0; trial < 60; ++trial) {
         const MadeBrick made = randomBrick(random);
-        const Model model = modelOf(made, true);
+        const Model model = modelOf(made, true, true);
         const BandDecoder decoder(model);
         std::vector<Bytes> segments =
             encodeBrick(made.format, made.samples, made.present, made.maxError, compressor, BandEncoder(model));
@@ -173,7 +174,7 @@ TEST(BrickCodec, AConstantBrickCostsAFewBytes) {
     BrickFormat format{LatticeKind::BCC, {32, 32, 64}, 4, Wavelet::W22, ScalarType::U16, {}, false};
     Bytes samples(countOf(format.size) * 2);
     for (std::size_t i = 0; i < samples.size(); i += 2) samples[i] = std::byte{200};
-    const BandEncoder encoder(makeModel(Histogram(format.levels), 0, 1));
+    const BandEncoder encoder(makeModel(Histogram(format.levels, {}), 1));
     std::size_t bytes = 0;
     for (const Bytes& segment : encodeBrick(format, samples, {}, 0, compressor, encoder)) bytes += segment.size();
     EXPECT_LE(bytes, 8u);

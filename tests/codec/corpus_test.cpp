@@ -28,7 +28,7 @@ volume::Dataset corpusDataset() {
 // Archives of every version stay readable: these files were written once; those without a number by version 1.
 TEST(Corpus, StoredArchivesStillDecode) {
     const volume::Dataset made = corpusDataset();
-    for (const char* version : {"", "-2", "-3", "-3-compact"}) {
+    for (const char* version : {"", "-2", "-3", "-3-compact", "-3-bands"}) {
         const Archive archive(corpus() + "fuzz_archive/cc-exact" + version + ".tsr");
         for (int p = 0; p < 3; ++p)
             for (int c = 0; c < made.info.parameters[std::size_t(p)].components; ++c) {
@@ -39,7 +39,7 @@ TEST(Corpus, StoredArchivesStillDecode) {
         for (const char* name : {"bcc-exact", "bcc-bounded", "cc-bounded"})
             EXPECT_EQ(verifyArchive(Archive(corpus() + "fuzz_archive/" + name + version + ".tsr")).damaged, 0u);
     }
-    for (const char* name : {"grown-3", "grown-3-compact"}) {
+    for (const char* name : {"grown-3", "grown-3-compact", "grown-3-bands"}) {
         const Archive grown(corpus() + "fuzz_archive/" + name + ".tsr");
         EXPECT_EQ(grown.commits(), 3);
         EXPECT_EQ(grown.info().times, (std::vector<double>{0, 1.5}));
@@ -59,10 +59,10 @@ TEST(Corpus, DISABLED_WriteSeeds) {
             options.maxError = maxError;
             pack(made, options,
                  corpus() + "fuzz_archive/" + std::string(kStoredLatticeNames[std::size_t(lattice)]) +
-                     (maxError > 0 ? "-bounded-3-compact.tsr" : "-exact-3-compact.tsr"));
+                     (maxError > 0 ? "-bounded-3-bands.tsr" : "-exact-3-bands.tsr"));
         }
     // One that has grown twice.
-    const std::string grown = corpus() + "fuzz_archive/grown-3-compact.tsr";
+    const std::string grown = corpus() + "fuzz_archive/grown-3-bands.tsr";
     for (int step = 0; step < 3; ++step) {
         const char* const name = step == 1 ? "p" : "T";
         volume::Dataset made = makeDataset({5, 4, 6}, {{name, ScalarType::F32, 1, Texture::Smooth, true, false}}, 1);
@@ -115,18 +115,19 @@ TEST(Corpus, DISABLED_WriteSeeds) {
         for (const std::byte byte : body) head.push_back(char(byte));
         writeFile(corpus() + "fuzz_brick/" + std::to_string(number++), head);
     }
-    for (int seed = 0; seed < 4; ++seed) {
+    for (int seed = 0; seed < 5; ++seed) {
+        const bool byBand = seed == 4;
         std::mt19937 random(static_cast<unsigned>(seed));
         std::vector<std::int32_t> values(40 * 5 * 3);
         for (std::int32_t& value : values)
             value = seed == 3 ? static_cast<std::int32_t>(random())
-                              : static_cast<std::int32_t>(random() % (1u << (3 + 4 * seed)));
-        const Band<const std::int32_t> band{values.data(), nullptr, {40, 5, 3}, 40, 200};
-        const BandEncoder encoder(fuzzModel(1));
+                              : static_cast<std::int32_t>(random() % (1u << (3 + 4 * (seed % 4))));
+        const Band<const std::int32_t> band{values.data(), nullptr, {40, 5, 3}, 40, 200, byBand ? 3 : 0};
+        const BandEncoder encoder(fuzzModel(1, byBand));
         Bytes bytes = serialise(encoder.model());
         // The head of fuzz_bands.cpp.
-        std::vector<char> file{char(bytes.size() % 256), char(bytes.size() / 256), 39, 4, 2};
-        encoder.encode(tokensOf<std::int32_t>(std::span(&band, 1), encoder.model().shift), 0, bytes);
+        std::vector<char> file{char(bytes.size() % 256), char(bytes.size() / 256 + (byBand ? 4 * 3 : 0)), 39, 4, 2};
+        encoder.encode(tokensOf<std::int32_t>(std::span(&band, 1), encoder.model().contexts), 0, bytes);
         for (const std::byte byte : bytes) file.push_back(char(byte));
         writeFile(corpus() + "fuzz_bands/" + std::to_string(seed), file);
     }

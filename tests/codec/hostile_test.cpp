@@ -186,5 +186,13 @@ TEST(Hostile, OtherFilesAreRefusedWithAReason) {
     EXPECT_THROW(Archive(folder / "features.tsr"), Error);
 }
 
+TEST(Hostile, ContextsTheHeaderDoesNotNameAreRefused) {
+    const TemporaryFolder folder;
+    std::vector<char> bytes = smallArchive(folder, 0);
+    bytes[12] = char(bytes[12] & ~char(kBandContexts));
+    writeFile(folder / "bands.tsr", resealed(bytes));
+    EXPECT_EQ(outcome(folder / "bands.tsr"), Outcome::DamageReported);
+}
+
 } // namespace
 } // namespace tessera::codec

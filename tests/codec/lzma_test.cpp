@@ -104,7 +104,7 @@ TEST(Pieces, GoOnFromTheDictionary) {
 TEST(Pieces, AModelOfNoBytesIsThatOfNoTokens) {
     Model model;
     ASSERT_EQ(parseModel({}, 3, model), DecodeStatus::Ok);
-    EXPECT_EQ(model, makeModel(Histogram(3), 0, 1));
+    EXPECT_EQ(model, makeModel(Histogram(3, {}), 1));
     EXPECT_EQ(model.tables.size(), 1u);
     EXPECT_EQ(model.tables[0][0], 2048);
     EXPECT_EQ(model.tables[0][kEscape], 2048);

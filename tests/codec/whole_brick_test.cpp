@@ -73,10 +73,10 @@ TEST(WholeBrick, ASparseVolumeIsCodedAsOne) {
     Bytes samples(countOf(format.size));
     for (std::size_t i = 0; i < samples.size(); i += 97) samples[i] = std::byte(1 + i % 3);
     Compressor compressor(3);
-    Histogram histogram(format.levels);
+    Histogram histogram(format.levels, {});
     SplitMemory memory;
-    countBrick(prepareBrick(format, samples, {}, 0, 0, memory), histogram);
-    const Model model = makeModel(histogram, 0, 16);
+    countBrick(prepareBrick(format, samples, {}, 0, {}, memory), histogram);
+    const Model model = makeModel(histogram, 16);
     const std::vector<Bytes> segments = encodeBrick(format, samples, {}, 0, compressor, BandEncoder(model));
     ASSERT_FALSE(segments[0].empty());
     EXPECT_TRUE(isWhole(segments[0][0]));

@@ -23,7 +23,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const Cpu cpus[] = {Cpu::Portable, Cpu::Avx2, Cpu::Avx512};
     for (std::size_t i = 0; i < 3 && cpus[i] <= bestCpu(); ++i) {
         results[i].resize(count);
-        const Band<std::int32_t> band{results[i].data(), nullptr, shape, shape.x, std::ptrdiff_t(shape.x) * shape.y};
+        const Band<std::int32_t> band{
+            results[i].data(), nullptr, shape, shape.x, std::ptrdiff_t(shape.x) * shape.y, data[1] / 4 % kBandKinds};
         statuses[i] = decoder.decode<std::int32_t>(coded, std::span(&band, 1), 0, cpus[i]);
         if (statuses[i] != statuses[0]) std::abort();
         if (statuses[0] == DecodeStatus::Ok && results[i] != results[0]) std::abort();

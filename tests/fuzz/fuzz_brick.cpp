@@ -36,7 +36,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         segments.emplace_back(bytes.begin() + std::ptrdiff_t(begin), bytes.begin() + std::ptrdiff_t(end));
     }
     if (format.type != volume::ScalarType::F32) format.codeBits = codec::codeBitsOf(format.type);
-    const codec::BandDecoder decoder(codec::fuzzModel(format.levels));
+    const codec::BandDecoder decoder(codec::fuzzModel(format.levels, data[7] / 2 % 2 != 0));
     for (int level = 0; level < format.levels; ++level) {
         const std::vector<std::span<const std::byte>> parts(segments.begin(), segments.end() - level);
         codec::DecodedBrick decoded;

@@ -2,15 +2,17 @@
 
 #include "codec/band_coder.h"
 
-/// One model for the bricks of the fuzz targets, whose seeds were written with it.
+/// One model for the bricks of the fuzz targets, and one by band, whose seeds were written with them.
 namespace tessera::codec {
 
-inline Model fuzzModel(int levels) {
-    Histogram histogram(levels);
-    for (std::size_t c = 0; c < histogram.counts.size(); ++c)
+inline Model fuzzModel(int levels, bool byBand = false) {
+    Histogram histogram(levels, {0, byBand});
+    for (std::size_t c = 0; c < histogram.counts.size(); ++c) {
+        const std::size_t weight = (c + (byBand ? c / kClasses * 5 : 0)) % kClasses + 1;
         for (std::size_t t = 0; t < 60; ++t)
-            histogram.counts[c][t] = static_cast<std::uint32_t>(1000 * (c % kClasses + 1) / ((t + 1) * (t + 1)));
-    return makeModel(histogram, 0, 8);
+            histogram.counts[c][t] = static_cast<std::uint32_t>(1000 * weight / ((t + 1) * (t + 1)));
+    }
+    return makeModel(histogram, 8);
 }
 
 } // namespace tessera::codec

@@ -49,10 +49,14 @@ void decodeBands(const Octets& bytes, std::vector<Band>& bands, std::size_t leve
                     const std::size_t group = (chunk + std::size_t(x) / 16) % groups;
                     Cell& cell = band.box->at(band.lo[0] + x, band.lo[1] + y, band.lo[2] + z);
                     if (!cell) continue;
-                    const std::uint32_t sum = 2 * band.magnitude(x, y - 1, z) + band.magnitude(x - 1, y - 1, z) +
-                                              band.magnitude(x + 1, y - 1, z) + 2 * band.magnitude(x, y, z - 1) +
-                                              band.magnitude(x, y - 1, z - 1) + band.magnitude(x, y + 1, z - 1);
-                    const auto& table = model.tables[model.tableOf[level * 32 + classOf(sum)]];
+                    std::uint32_t sum = 2 * band.magnitude(x, y - 1, z) + band.magnitude(x - 1, y - 1, z) +
+                                        band.magnitude(x + 1, y - 1, z) + 2 * band.magnitude(x, y, z - 1) +
+                                        band.magnitude(x, y - 1, z - 1) + band.magnitude(x, y + 1, z - 1);
+                    if (model.byBand)
+                        sum += band.magnitude(x, y - 1, z) + band.magnitude(x, y, z - 1) +
+                               band.magnitude(x - 1, y, z - 1) + band.magnitude(x + 1, y, z - 1);
+                    const auto& tables = model.tableOf[8 * level + std::size_t(band.kind)];
+                    const auto& table = model.tables[tables[classOf(sum)]];
                     std::uint32_t& state = states[16 * group + std::size_t(x) % 16];
                     std::uint32_t slot = state % 4096, token = 0;
                     for (; slot >= table[token]; ++token) slot -= table[token];

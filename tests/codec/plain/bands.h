@@ -8,6 +8,7 @@ namespace tessera::codec::plain {
 struct Band {
     Box* box = nullptr;
     Size lo{}, hi{};
+    int kind = 0; ///< bits of the axes along which it is a high half
     std::vector<std::uint32_t> magnitudes{};
     int size(std::size_t axis) const { return hi[axis] - lo[axis]; }
     std::uint32_t magnitude(int x, int y, int z) const {

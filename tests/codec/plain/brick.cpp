@@ -84,7 +84,7 @@ Brick Decoder::brick(std::size_t frameNumber, int number, int level) const {
         for (Box& box : boxes) {
             if (centred && &box == &boxes[1]) { // undivided in the last segment, in no other
                 if (segment < levels_ - 1) continue;
-                bands.push_back({&box, {}, box.size});
+                bands.push_back({&box, {}, box.size, 0});
                 places({0, 0, 0}, box.size, [&](const Size& p) { order.push_back(&box.at(p)); });
                 continue;
             }
@@ -95,7 +95,7 @@ Brick Decoder::brick(std::size_t frameNumber, int number, int level) const {
                 Size lo{}, hi = segment == 0 ? part : low;
                 for (std::size_t a = 0; a < 3; ++a)
                     if ((band >> a & 1) != 0) lo[a] = low[a], hi[a] = part[a];
-                if (hi[0] > lo[0] && hi[1] > lo[1] && hi[2] > lo[2]) bands.push_back({&box, lo, hi});
+                if (hi[0] > lo[0] && hi[1] > lo[1] && hi[2] > lo[2]) bands.push_back({&box, lo, hi, band});
                 places(lo, hi, [&](const Size& p) {
                     if (box.at(p)) order.push_back(&box.at(p));
                 });

@@ -22,18 +22,27 @@ Decoder::Model Decoder::parseModel(const Piece& piece) const {
     };
     Model model;
     if (bytes.empty()) {
-        model.tableOf.assign(std::size_t(32 * levels_), 0);
+        model.tableOf.assign(std::size_t(8 * levels_), std::vector<std::uint32_t>(32));
         model.tables.assign(1, std::vector<std::uint32_t>(141));
         model.tables[0][0] = model.tables[0][140] = 2048;
         return model;
     }
-    model.shift = bits(8);
+    model.shift = bits(7);
+    model.byBand = bits(1) == 1;
+    need(!model.byBand || knowsBands_, "contexts by band");
     const std::uint32_t tables = bits(8);
     std::uint32_t last = 0;
-    for (int c = 0; c < 32 * levels_; ++c) {
-        if (bits(1) == 1) last = bits(8);
-        model.tableOf.push_back(last);
-    }
+    std::vector<std::uint32_t> ofClasses(32);
+    for (int level = 0; level < levels_; ++level)
+        for (int kind = 0; kind < 8; ++kind) {
+            const bool apart = kind == 0 || (model.byBand && level < 2);
+            if (apart && (!model.byBand || bits(1) == 1))
+                for (std::uint32_t& table : ofClasses) {
+                    if (bits(1) == 1) last = bits(8);
+                    table = last;
+                }
+            model.tableOf.push_back(ofClasses);
+        }
     for (std::uint32_t t = 0; t < tables; ++t) {
         std::vector<std::uint32_t> table(141);
         std::uint32_t left = 4096;
@@ -66,13 +75,14 @@ Decoder::Decoder(std::vector<char> file) : file_(file.begin(), file.end()) {
         Piece found[2];
         for (Piece& part : found) part = readPiece(in);
         if (in.number(8) != XXH3_64bits(file_.data() + at, 72) || version < 1 || version > 3 ||
-            features > (version < 3 ? 0 : 3))
+            features > (version < 3 ? 0 : 7))
             return false;
         if (version < 3 ? at > 0 || end != file_.size() : end > file_.size()) return false;
         if (end <= end_) return true; // the other copy is as good or better
         version_ = version;
         hasNotes_ = features % 2 == 1;
-        compact_ = features / 2 == 1;
+        compact_ = features / 2 % 2 == 1;
+        knowsBands_ = features / 4 == 1;
         end_ = end;
         std::copy(found, found + 2, parts);
         return true;

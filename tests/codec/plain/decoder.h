@@ -36,7 +36,8 @@ public:
 
     struct Model {
         std::uint32_t shift = 0;
-        std::vector<std::uint32_t> tableOf;
+        bool byBand = false;
+        std::vector<std::vector<std::uint32_t>> tableOf; ///< [8 level + kind] of each class
         std::vector<std::vector<std::uint32_t>> tables;
     };
 
@@ -74,7 +75,7 @@ private:
     int brickSize_ = 0, levels_ = 0;
     std::vector<std::string> types_; ///< of the component of each frame within a time
     std::uint32_t version_ = 0;
-    bool hasNotes_ = false, compact_ = false;
+    bool hasNotes_ = false, compact_ = false, knowsBands_ = false;
     std::size_t end_ = 0; ///< of the archive in the file
     std::vector<Piece> models_;
     std::vector<Mask> masks_;
