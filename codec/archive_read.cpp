@@ -147,8 +147,11 @@ volume::Field readField(const Archive& archive, int parameter, int component, in
         };
         volume::dispatch(field.type, [&]<class T>(T) {
             const auto out = field.as<T>();
-            decoded->forRows(
-                [&](std::size_t first, auto row) { toSamples(frame.numbers, row, out.data() + placeOf(first)); });
+            glm::ivec3 place = begin; // of the row
+            decoded->forRows([&](std::size_t, auto row) {
+                toSamples(frame.numbers, row, out.data() + field.lattice.index(place));
+                if (++place.y == begin.y + size.y) ++place.z, place.y = begin.y;
+            });
             const auto put = [&](std::size_t i, std::uint32_t bits) {
                 if constexpr (std::same_as<T, float>)
                     out[placeOf(i)] = std::bit_cast<float>(bits);

@@ -126,18 +126,18 @@ template <class Word> TokenRun tokensOf(std::span<const Band<const Word>> bands,
     return run;
 }
 
-void countTokens(const TokenRun& run, int level, Histogram& histogram) {
-    // By turns into two tables, as the same token twice would wait for itself; kNone falls where no token is.
-    const std::size_t kinds = std::size_t(histogram.contexts.kindsOf(level)), entries = kinds * kClasses << 8;
-    std::vector<std::uint32_t> counts(2 * entries);
-    std::uint32_t *one = counts.data(), *two = one + entries;
-    for (std::size_t i = 0; i < run.tokens.size(); i += 2) {
-        ++one[run.tokens[i] % entries];
-        ++two[run.tokens[i + 1] % entries];
-    }
+void countTokens(const TokenRun& run, int level, Histogram& histogram, int every) {
+    constexpr std::size_t kMany = 1024; // chunks
+    const std::size_t chunks = run.tokens.size() / kLanes, step = chunks < kMany ? 1 : std::size_t(every);
     const std::size_t first = histogram.contexts.first(level);
-    for (std::size_t c = 0; c < kinds * kClasses; ++c)
-        for (std::size_t t = 0; t < kTokens; ++t) histogram.counts[first + c][t] += one[c << 8 | t] + two[c << 8 | t];
+    const std::size_t kinds = std::size_t(histogram.contexts.kindsOf(level)); // 1: whatever the tokens say
+    for (std::size_t chunk = 0; chunk < chunks; chunk += step)
+        for (std::size_t i = chunk * kLanes; i < (chunk + 1) * kLanes; ++i) {
+            const std::size_t token = run.tokens[i];
+            if (token != TokenRun::kNone)
+                histogram.counts[first + (token >> 8) % (kinds * kClasses)][token & 255] +=
+                    static_cast<std::uint32_t>(step);
+        }
 }
 
 template TokenRun tokensOf(std::span<const Band<const std::int16_t>>, Contexts, Cpu);

@@ -41,7 +41,8 @@ struct TokenRun {
 template <class Word>
 TokenRun tokensOf(std::span<const Band<const Word>> bands, Contexts contexts, Cpu cpu = bestCpu());
 
-/// Adds the tokens to a histogram of the same contexts, at `level`.
-void countTokens(const TokenRun& run, int level, Histogram& histogram);
+/// Adds the tokens to a histogram of the same contexts, at `level`; of long runs `every` so many chunks, which stand
+/// for the others.
+void countTokens(const TokenRun& run, int level, Histogram& histogram, int every = 1);
 
 } // namespace tessera::codec

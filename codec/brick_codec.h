@@ -71,8 +71,8 @@ struct SplitMemory {
 PreparedBrick prepareBrick(const BrickFormat& format, std::span<const std::byte> samples,
                            std::span<const std::uint8_t> present, double maxError, Contexts contexts,
                            SplitMemory& memory);
-/// Adds its tokens to the statistics a model is made of.
-void countBrick(const PreparedBrick& brick, Histogram& histogram);
+/// Adds its tokens to the statistics a model is made of, or of long runs a part of them (countTokens).
+void countBrick(const PreparedBrick& brick, Histogram& histogram, int every = 1);
 
 /// The coded brick: segment 0 holds the coarsest level, segment i what level `levels - 1 - i` adds. `brick` must be
 /// prepared from the same samples, with the contexts of the model. Same input, same bytes.

@@ -14,7 +14,7 @@ namespace {
 
 // Below these bits a sample the matches that zstd finds are worth a glance at so many samples.
 constexpr double kTryWhole = 3.0;
-constexpr std::size_t kGlance = 1 << 15;
+constexpr std::size_t kGlance = 1 << 14;
 constexpr double kGlanceAsShort = 1.5, kNearlyAsShort = 1.15, kPerhapsAsShort = 1.3; // the last before LZMA
 constexpr double kSparse = 0.75;                                                     // bits a sample
 constexpr int kLeastEffort = 1, kSomeEffort = 3;
@@ -76,10 +76,9 @@ template <class Word> std::vector<Band<const Word>> constBands(std::span<const B
     return out;
 }
 
+/// The tokens of a brick that has been taken apart.
 template <class Word>
-std::vector<TokenRun> levelTokens(const BrickFormat& format, const Numbers& numbers,
-                                  std::span<const std::uint8_t> present, Contexts contexts, BrickLevels<Word>& levels) {
-    splitBrick<Word>(format, numbers.codes, present, format.levels, levels);
+std::vector<TokenRun> levelTokens(const BrickFormat& format, Contexts contexts, BrickLevels<Word>& levels) {
     std::vector<TokenRun> runs;
     for (int level = 0; level < format.levels; ++level) {
         const bool coarsest = level == format.levels - 1;
@@ -109,7 +108,7 @@ void tryWhole(const BrickFormat& format, std::span<const std::byte> samples, std
     if (!sparse && !compressor.triesLzma() && present.empty() && volume::byteSize(format.type) == 1 &&
         count > kGlance) {
         Bytes glance;
-        constexpr std::size_t kPieces = 4, kPiece = kGlance / kPieces;
+        constexpr std::size_t kPieces = 2, kPiece = kGlance / kPieces;
         for (std::size_t i = 0; i < kPieces; ++i) {
             const auto piece = samples.subspan((2 * i + 1) * (count - kPiece) / (2 * kPieces), kPiece);
             glance.insert(glance.end(), piece.begin(), piece.end());
@@ -140,20 +139,28 @@ PreparedBrick prepareBrick(const BrickFormat& format, std::span<const std::byte>
                            SplitMemory& memory) {
     assert(samples.size() == countOf(format.size) * volume::byteSize(format.type));
     assert(present.empty() || present.size() == countOf(format.size));
-    Numbers numbers = numbersOf(format, samples, present, maxError);
     PreparedBrick brick;
-    brick.levels = fitsInt16(format, !present.empty())
-                       ? levelTokens<std::int16_t>(format, numbers, present, contexts, memory.boxes16)
-                       : levelTokens<std::int32_t>(format, numbers, present, contexts, memory.boxes32);
+    Numbers numbers;
+    const bool plain = format.type != volume::ScalarType::F32 && present.empty();
+    if (!plain) numbers = numbersOf(format, samples, present, maxError);
+    const auto tokens = [&](auto& levels) {
+        using Word = std::remove_pointer_t<decltype(levels[0].box().values)>;
+        if (plain)
+            splitIntegers<Word>(format, samples, format.levels, levels);
+        else
+            splitBrick<Word>(format, numbers.codes, present, format.levels, levels);
+        brick.levels = levelTokens<Word>(format, contexts, levels);
+    };
+    fitsInt16(format, !present.empty()) ? tokens(memory.boxes16) : tokens(memory.boxes32);
     brick.exactIndex = std::move(numbers.exactIndex);
     brick.exactBits = std::move(numbers.exactBits);
     brick.absentBits = std::move(numbers.absentBits);
     return brick;
 }
 
-void countBrick(const PreparedBrick& brick, Histogram& histogram) {
+void countBrick(const PreparedBrick& brick, Histogram& histogram, int every) {
     for (std::size_t level = 0; level < brick.levels.size(); ++level)
-        countTokens(brick.levels[level], int(level), histogram);
+        countTokens(brick.levels[level], int(level), histogram, every);
 }
 
 std::vector<Bytes> encodeBrick(const BrickFormat& format, const PreparedBrick& brick,

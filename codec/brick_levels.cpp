@@ -3,6 +3,7 @@
 #include "codec/body_centred.h"
 
 #include <algorithm>
+#include <concepts>
 #include <type_traits>
 
 namespace tessera::codec {
@@ -57,9 +58,12 @@ bool fitsInt16(const BrickFormat& format, bool masked) {
     return format.codeBits <= kBitsOfInt16 && liftsFast(format, masked);
 }
 
-template <class Word>
-void takeSublattice(const BrickFormat& format, std::span<const std::uint32_t> codes,
-                    std::span<const std::uint8_t> present, int sublattice, LevelBox<Word>& out) {
+namespace {
+
+/// One sublattice of samples in storage order.
+template <class Word, class Number>
+void takeSublattice(const BrickFormat& format, const Number* numbers, std::span<const std::uint8_t> present,
+                    int sublattice, LevelBox<Word>& out) {
     const glm::ivec3 size = out.size();
     for (int z = 0; z < size.z; ++z)
         for (int y = 0; y < size.y; ++y) {
@@ -68,14 +72,14 @@ void takeSublattice(const BrickFormat& format, std::span<const std::uint32_t> co
                 std::size_t(size.x);
             Word* row = out.box().row(y, z);
             for (std::size_t x = 0; x < std::size_t(size.x); ++x)
-                row[x] = static_cast<Word>(static_cast<std::int32_t>(codes[from + x]));
+                row[x] = static_cast<Word>(static_cast<std::int32_t>(numbers[from + x]));
             if (out.masked()) std::copy_n(present.begin() + std::ptrdiff_t(from), size.x, out.flags().row(y, z));
         }
 }
 
-template <class Word>
-void splitBrick(const BrickFormat& format, std::span<const std::uint32_t> codes, std::span<const std::uint8_t> present,
-                int levels, BrickLevels<Word>& out) {
+template <class Word, class Number>
+void split(const BrickFormat& format, const Number* numbers, std::span<const std::uint8_t> present, int levels,
+           BrickLevels<Word>& out) {
     const bool masked = !present.empty();
     const int step = format.sublattices();
     const bool wide = format.codeBits > kBitsOfInt32;
@@ -87,12 +91,12 @@ void splitBrick(const BrickFormat& format, std::span<const std::uint32_t> codes,
         if (predicted && s == 1) break; // came with the other one
         LevelBox<Word>& whole = levels > 1 ? box(levels) : box(0);
         whole.reset(format.sublatticeSize(s), masked);
-        takeSublattice<Word>(format, codes, present, s, whole);
+        takeSublattice(format, numbers, present, s, whole);
         if (predicted) {
             LevelBox<Word>& odd = out[1];
             odd.reset(format.sublatticeSize(1), false);
             odd.setUndivided();
-            takeSublattice<Word>(format, codes, present, 1, odd);
+            takeSublattice(format, numbers, present, 1, odd);
             subtractPrediction<Word>(std::as_const(whole).box(), odd.box(), format.codeBits > kBitsOfPrediction);
             for (int level = 1; level < levels; ++level) out[std::size_t(level * step + 1)].reset(glm::ivec3(0), false);
         }
@@ -116,6 +120,22 @@ void splitBrick(const BrickFormat& format, std::span<const std::uint32_t> codes,
                     std::copy_n(details.flags().row(y, z), low.size().x, low.flags().row(y, z));
         }
     }
+}
+
+} // namespace
+
+template <class Word>
+void splitBrick(const BrickFormat& format, std::span<const std::uint32_t> codes, std::span<const std::uint8_t> present,
+                int levels, BrickLevels<Word>& out) {
+    split<Word>(format, codes.data(), present, levels, out);
+}
+
+template <class Word>
+void splitIntegers(const BrickFormat& format, std::span<const std::byte> samples, int levels, BrickLevels<Word>& out) {
+    volume::dispatch(format.type, [&]<class T>(T) {
+        if constexpr (!std::same_as<T, float>)
+            split<Word>(format, reinterpret_cast<const T*>(samples.data()), {}, levels, out);
+    });
 }
 
 template <class Word>
@@ -183,10 +203,9 @@ template <class Word> std::vector<Band<Word>> bandsOf(std::span<LevelBox<Word>> 
 }
 
 #define TESSERA_LEVELS(Word)                                                                                           \
-    template void takeSublattice(const BrickFormat&, std::span<const std::uint32_t>, std::span<const std::uint8_t>,    \
-                                 int, LevelBox<Word>&);                                                                \
     template void splitBrick(const BrickFormat&, std::span<const std::uint32_t>, std::span<const std::uint8_t>, int,   \
                              BrickLevels<Word>&);                                                                      \
+    template void splitIntegers(const BrickFormat&, std::span<const std::byte>, int, BrickLevels<Word>&);              \
     template void joinLevel(const BrickFormat&, const LevelBox<Word>&, LevelBox<Word>&, LevelBox<Word>&);              \
     template void placeFlags(const BrickFormat&, std::span<const std::uint8_t>, int, int, bool, LevelBox<Word>&);      \
     template std::vector<Band<Word>> bandsOf(std::span<LevelBox<Word>>, bool);

@@ -13,17 +13,15 @@ template <class Word> using BrickLevels = std::vector<LevelBox<Word>>;
 /// True when words of 16 bits do for a brick.
 bool fitsInt16(const BrickFormat& format, bool masked);
 
-/// One sublattice of samples in storage order.
-template <class Word>
-void takeSublattice(const BrickFormat& format, std::span<const std::uint32_t> codes,
-                    std::span<const std::uint8_t> present, int sublattice, LevelBox<Word>& out);
-
 /// Takes codes in storage order apart, down to `levels` levels in all. What `out` was before is used as memory. Of a
 /// brick that predicts its odd grid that is at level 0 what the prediction leaves, undivided, and at the others
 /// nothing.
 template <class Word>
 void splitBrick(const BrickFormat& format, std::span<const std::uint32_t> codes, std::span<const std::uint8_t> present,
                 int levels, BrickLevels<Word>& out);
+/// The same of integers that are all present, which are their own codes.
+template <class Word>
+void splitIntegers(const BrickFormat& format, std::span<const std::byte> samples, int levels, BrickLevels<Word>& out);
 
 /// The samples of a level from those of the coarser one and the details in `fine`, which are used up.
 template <class Word>

@@ -23,6 +23,45 @@ struct LiftFilter {
     bool updates = false;
 };
 
+constexpr bool isCubic(const LiftStep& step) {
+    return step.pairs == 2 && step.weight[0] == 9 && step.weight[1] == -1;
+}
+
+/// Which elements a sum takes: pairs of indices, incomplete ones replaced by the pair inside them.
+struct Pairs {
+    std::array<int, 3> left{}, right{};
+    bool none = false;
+};
+
+/// Predict: pair j of odd sample i is even (i - j, i + 1 + j) of `sources` even ones; update: details (i - 1 - j, i +
+/// j) of the `sources` that were predicted from two sides.
+constexpr Pairs pairsAt(int i, int count, int sources, bool update) {
+    Pairs pairs;
+    for (int j = 0; j < count; ++j) {
+        const int l = update ? i - 1 - j : i - j, r = update ? i + j : i + 1 + j;
+        const bool hasLeft = l >= 0 && l < sources, hasRight = r >= 0 && r < sources;
+        const auto at = static_cast<std::size_t>(j);
+        if (hasLeft && hasRight) {
+            pairs.left[at] = l, pairs.right[at] = r;
+        } else if (j == 0) {
+            pairs.none = !hasLeft && !hasRight;
+            pairs.left[0] = pairs.right[0] = hasLeft ? l : r;
+        } else {
+            for (int k = j; k < count; ++k) {
+                pairs.left[std::size_t(k)] = pairs.left[std::size_t(j - 1)];
+                pairs.right[std::size_t(k)] = pairs.right[std::size_t(j - 1)];
+            }
+            break;
+        }
+    }
+    return pairs;
+}
+
+/// Details that an update may use: those predicted from two sides; all for a mean of two.
+constexpr int usableDetails(int pairs, int evens, int odds) {
+    return pairs == 0 || evens > odds ? odds : evens - 1;
+}
+
 /// Predictions of N = 4 are the interpolating ones of Deslauriers and Dubuc (9, -1)/16, as in Calderbank et al. 1998,
 /// with the updates that give N~ moments: 1/4; (9, -1)/32; (306, -59, 9)/1024. The factorisation of the spline
 /// wavelets of that order starts with an update and halves the coarse samples along each axis, which integers cannot

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <glm/common.hpp>
 #include <limits>
+#include <mutex>
 
 namespace tessera::codec {
 
@@ -21,7 +22,11 @@ constexpr int kMostTables = 24;
 Histogram sampleTokens(const volume::BrickGrid& grid, const volume::Field& field, const FrameRecord& frame,
                        std::size_t most, Contexts contexts, double maxError = 0, Taken* taken = nullptr) {
     const std::size_t bricks = brickCount(grid), count = std::min(bricks, most);
-    std::vector<Histogram> parts(count, Histogram(grid.levels, contexts));
+    // Of many samples a part is enough; a step that goes through every place of a row in turn.
+    constexpr std::size_t kMany = 2 << 20;
+    const int every = field.count() / bricks * count < kMany ? 1 : 3;
+    Histogram sum(grid.levels, contexts);
+    std::mutex mutex;
     if (taken) {
         *taken = {frame.wavelet, frame.bodyCentred, contexts, maxError, {}};
         taken->bricks.resize(bricks);
@@ -29,44 +34,49 @@ Histogram sampleTokens(const volume::BrickGrid& grid, const volume::Field& field
     parallelRanges(count, [&](std::size_t begin, std::size_t end) {
         BrickInput input;
         SplitMemory memory;
+        Histogram part(grid.levels, contexts);
         for (std::size_t i = begin; i < end; ++i) {
             const std::size_t number = i * bricks / count;
             const glm::ivec3 brick = brickIndex(grid, number);
             input.take(grid, brick, field, frame.mask >= 0);
             PreparedBrick prepared = prepareBrick(brickFormat(grid, brick, field.type, frame), input.samples,
                                                   input.present, maxError, contexts, memory);
-            countBrick(prepared, parts[i]);
+            countBrick(prepared, part, every);
             if (taken) taken->bricks[number] = std::move(prepared);
         }
+        const std::lock_guard lock(mutex); // in any order: counts are whole numbers
+        sum.add(part);
     });
-    Histogram sum(grid.levels, contexts);
-    for (const Histogram& part : parts) sum.add(part);
     return sum;
 }
 
 /// The same of the middles of some bricks, which is enough to compare filters.
 Histogram sampleMiddles(const volume::BrickGrid& grid, const volume::Field& field, const FrameRecord& frame,
                         std::size_t most) {
-    constexpr int kMiddle = 32, kMiddleLevels = 3;
+    constexpr int kMiddle = 32, kMiddleLevels = 3, kEvery = 3;
     const std::size_t bricks = brickCount(grid), count = std::min(bricks, most);
     const int levels = std::min(grid.levels, kMiddleLevels);
-    std::vector<Histogram> parts(count, Histogram(levels, {}));
-    parallelFor(count, [&](std::size_t i) {
-        const glm::ivec3 brick = brickIndex(grid, i * bricks / count);
-        BrickFormat format = brickFormat(grid, brick, field.type, frame);
-        const int depth = kMiddle * format.sublattices();
-        const glm::ivec3 whole = format.size, size = glm::min(whole, glm::ivec3(kMiddle, kMiddle, depth));
-        glm::ivec3 first = (whole - size) / 2;
-        first.z -= first.z % format.sublattices(); // an even slice first
-        format.size = size;
-        format.levels = levels;
-        BrickInput input;
-        input.take(grid, grid.begin(brick) + first, size, field, frame.mask >= 0);
-        SplitMemory memory;
-        countBrick(prepareBrick(format, input.samples, input.present, 0, {}, memory), parts[i]);
-    });
     Histogram sum(levels, {});
-    for (const Histogram& part : parts) sum.add(part);
+    std::mutex mutex;
+    parallelRanges(count, [&](std::size_t begin, std::size_t end) {
+        BrickInput input;
+        SplitMemory memory;
+        Histogram part(levels, {});
+        for (std::size_t i = begin; i < end; ++i) {
+            const glm::ivec3 brick = brickIndex(grid, i * bricks / count);
+            BrickFormat format = brickFormat(grid, brick, field.type, frame);
+            const int depth = kMiddle * format.sublattices();
+            const glm::ivec3 whole = format.size, size = glm::min(whole, glm::ivec3(kMiddle, kMiddle, depth));
+            glm::ivec3 first = (whole - size) / 2;
+            first.z -= first.z % format.sublattices(); // an even slice first
+            format.size = size;
+            format.levels = levels;
+            input.take(grid, grid.begin(brick) + first, size, field, frame.mask >= 0);
+            countBrick(prepareBrick(format, input.samples, input.present, 0, {}, memory), part, kEvery);
+        }
+        const std::lock_guard lock(mutex);
+        sum.add(part);
+    });
     return sum;
 }
 
@@ -87,18 +97,26 @@ bool prefersByBand(const FrameRecord& frame) {
     return frame.numbers.kind != NumberKind::Float;
 }
 
-/// The filter by trial on some bricks. Predictions alone alias in coarse levels: they have to be clearly better.
+/// The filter by trial on some bricks: first how far it predicts, then how it updates. Predictions alone alias in
+/// coarse levels: they have to be clearly better.
 Wavelet waveletFor(const volume::BrickGrid& grid, const volume::Field& field, FrameRecord frame) {
-    constexpr Wavelet kTried[] = {Wavelet::W22, Wavelet::W42, Wavelet::W44, Wavelet::N2, Wavelet::N4};
     constexpr double kPredictionHandicap = 1.015;
     if (frame.numbers.kind == NumberKind::Float) return Wavelet::W22; // only predicted anyway
     double best = std::numeric_limits<double>::infinity();
     Wavelet chosen = Wavelet::W22;
-    for (const Wavelet wavelet : kTried) {
+    const auto tryOne = [&](Wavelet wavelet) {
         frame.wavelet = wavelet;
         double bits = sampleMiddles(grid, field, frame, kTrialBricks).bits();
         if (!filterOf(wavelet).updates) bits *= kPredictionHandicap;
         if (bits < best) best = bits, chosen = wavelet;
+    };
+    tryOne(Wavelet::W22);
+    tryOne(Wavelet::W42);
+    if (chosen == Wavelet::W22) {
+        tryOne(Wavelet::N2);
+    } else {
+        tryOne(Wavelet::W44);
+        tryOne(Wavelet::N4);
     }
     return chosen;
 }

@@ -1,45 +1,17 @@
 #include "codec/lift_box.h"
 
 #include "codec/filter.h"
+#include "codec/lift_lines.h"
 
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <optional>
 #include <type_traits>
 
 namespace tessera::codec {
 
 namespace {
-
-/// Which elements a sum takes: pairs of indices, incomplete ones replaced by the pair inside them.
-struct Pairs {
-    std::array<int, 3> left{}, right{};
-    bool none = false;
-};
-
-/// Predict: pair j of odd sample i is even (i - j, i + 1 + j) of `sources` even ones; update: details (i - 1 - j, i +
-/// j) of the `sources` that were predicted from two sides.
-TESSERA_INLINE Pairs pairsAt(int i, int count, int sources, bool update) {
-    Pairs pairs;
-    for (int j = 0; j < count; ++j) {
-        const int l = update ? i - 1 - j : i - j, r = update ? i + j : i + 1 + j;
-        const bool hasLeft = l >= 0 && l < sources, hasRight = r >= 0 && r < sources;
-        const auto at = static_cast<std::size_t>(j);
-        if (hasLeft && hasRight) {
-            pairs.left[at] = l, pairs.right[at] = r;
-        } else if (j == 0) {
-            pairs.none = !hasLeft && !hasRight;
-            pairs.left[0] = pairs.right[0] = hasLeft ? l : r;
-        } else {
-            for (int k = j; k < count; ++k) {
-                pairs.left[std::size_t(k)] = pairs.left[std::size_t(j - 1)];
-                pairs.right[std::size_t(k)] = pairs.right[std::size_t(j - 1)];
-            }
-            break;
-        }
-    }
-    return pairs;
-}
 
 template <class Word> struct Sources { std::array<const Word*, 3> left{}, right{}; };
 
@@ -49,9 +21,6 @@ constexpr LiftStep kHalf{1, 0, {}, false, 1}, kUpdate22{0, 1, {1}, false, 2}, kU
     kUpdate26{0, 3, {162, -39, 5}, false, 9}, kUpdate44{0, 2, {9, -1}, false, 5},
     kUpdate46{0, 3, {306, -59, 9}, false, 10};
 
-constexpr bool isCubic(const LiftStep& step) {
-    return step.pairs == 2 && step.weight[0] == 9 && step.weight[1] == -1;
-}
 constexpr bool isUpdate(const LiftStep& step) {
     return step != kSame && step != kMean && step != kCubic;
 }
@@ -138,6 +107,12 @@ template <class Word> struct Lines {
     alignas(64) Word odds[kRows * kWords]{};
     Word* even(int row) { return evens + row * kWords + kRoom; }
     Word* odd(int row) { return odds + row * kWords + kRoom; }
+};
+
+/// Room for lines that are lifted by blocks, whole and taken apart.
+template <class Word> struct Blocks {
+    Lines<Word> lines;
+    alignas(64) Word whole[Lines<Word>::kRows][2 * Lines<Word>::kWords]{};
 };
 
 /// The same along `rows` rows: even and odd samples lie in lines of Lines. Words beyond both ends complete the
@@ -270,11 +245,6 @@ template <class Word> Stage<Word> stageOf(const LiftStep& step, bool wide, Cpu c
     return stageFor<Word, kUpdate46>(wide, cpu);
 }
 
-/// Details that an update may use: those predicted from two sides; all for a mean of two.
-int usable(int pairs, int evens, int odds) {
-    return pairs == 0 ? odds : std::min(odds, evens - 1);
-}
-
 /// A transform ready to run.
 template <class Word> struct Plan {
     Stage<Word> predict, update;
@@ -295,7 +265,7 @@ template <class Word> struct Plan {
             Word *e = even + at, *o = odd + at;
             const auto predicts = [&] { predict.rows({o, odds, e, evens, count, stride}, !forward); };
             if (forward) predicts();
-            if (updates) update.rows({e, evens, o, usable(update.pairs, evens, odds), count, stride}, forward);
+            if (updates) update.rows({e, evens, o, usableDetails(update.pairs, evens, odds), count, stride}, forward);
             if (!forward) predicts();
         }
     }
@@ -304,7 +274,7 @@ template <class Word> struct Plan {
         Word *even = lines.even(0), *odd = lines.odd(0);
         const auto predicts = [&] { predict.lines({odd, odds, even, evens, rows}, !forward); };
         if (forward) predicts();
-        if (updates) update.lines({even, evens, odd, usable(update.pairs, evens, odds), rows}, forward);
+        if (updates) update.lines({even, evens, odd, usableDetails(update.pairs, evens, odds), rows}, forward);
         if (!forward) predicts();
     }
 };
@@ -342,11 +312,15 @@ void splitBox(const Box<const Word>& in, const Box<Word>& out, Wavelet wavelet, 
     const int ex = (size.x + 1) / 2, ey = (size.y + 1) / 2, ez = (size.z + 1) / 2;
     const int dx = size.x / 2, dy = size.y / 2, dz = size.z / 2;
     const auto row = std::size_t(in.pitch), slice = row * std::size_t(size.y);
-    Lines<Word> lines;
-    alignas(64) Word whole[2 * Lines<Word>::kWords];
+    const LineLifter<Word> lifter(wavelet, size.x, wide, cpu);
+    std::optional<Blocks<Word>> blocks;
+    if (!lifter.lifts()) blocks.emplace();
     for (int z = 0; z < size.z; ++z) {
         Word* to = out.row(0, placeOf(z, ez));
-        for (int y0 = 0; y0 < size.y; y0 += lines.kRows) {
+        if (!blocks) lifter.split({in.row(0, z), to, size.y, row});
+        for (int y0 = 0; blocks && y0 < size.y; y0 += Lines<Word>::kRows) {
+            auto& [lines, wholes] = *blocks;
+            Word* whole = wholes[0];
             const int rows = std::min(lines.kRows, size.y - y0);
             for (int y = 0; y < rows; ++y) partRow(in.row(y0 + y, z), in.pitch, lines.even(y), lines.odd(y));
             plan.lines(lines, ex, dx, rows, true);
@@ -368,12 +342,15 @@ template <class Word> void joinBox(const Box<Word>& in, const Box<Word>& out, Wa
     const int dx = size.x / 2, dy = size.y / 2, dz = size.z / 2;
     const auto row = std::size_t(in.pitch), slice = row * std::size_t(size.y);
     if (dz > 0) plan.rows(in.values, ez, in.row(0, ez), dz, slice, false);
-    Lines<Word> lines;
-    alignas(64) Word whole[Lines<Word>::kRows][2 * Lines<Word>::kWords]{};
+    const LineLifter<Word> lifter(wavelet, size.x, wide, cpu);
+    std::optional<Blocks<Word>> blocks;
+    if (!lifter.lifts()) blocks.emplace();
     for (int z = 0; z < size.z; ++z) {
         Word* from = in.row(0, placeOf(z, ez));
         plan.rows(from, ey, from + std::size_t(ey) * row, dy, row, false);
-        for (int y0 = 0; y0 < size.y; y0 += lines.kRows) {
+        if (!blocks) lifter.join({from, out.row(0, z), size.y, row});
+        for (int y0 = 0; blocks && y0 < size.y; y0 += Lines<Word>::kRows) {
+            auto& [lines, whole] = *blocks;
             const int rows = std::min(lines.kRows, size.y - y0);
             for (int y = 0; y < rows; ++y)
                 copyBlocks<Word>(from + std::size_t(placeOf(y0 + y, ey)) * row, in.pitch, whole[y]);

@@ -57,7 +57,7 @@ struct Contexts {
     }
 };
 
-/// How often each token came in each context: what a model is made of.
+/// How often each token came in each context, about: what a model is made of.
 struct Histogram {
     Histogram(int levelCount, Contexts of) : levels(levelCount), contexts(of), counts(of.first(levelCount)) {}
     int levels = 0;

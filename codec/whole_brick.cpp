@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <numeric>
 #include <optional>
 #include <vector>
 
@@ -13,21 +12,65 @@ namespace {
 constexpr std::byte kWhole{5}, kPalette{6};
 constexpr std::size_t kMostColours = 256;
 
-/// The distinct codes in ascending order, as signed; empty when there are too many for indices of one byte.
-std::vector<std::int32_t> paletteOf(std::span<const std::uint32_t> codes) {
-    std::vector<std::int32_t> palette;
-    std::optional<std::int32_t> before;
-    for (const std::uint32_t code : codes) {
-        const auto value = static_cast<std::int32_t>(code);
-        if (before == value) continue;
-        before = value;
-        const auto at = std::lower_bound(palette.begin(), palette.end(), value);
-        if (at != palette.end() && *at == value) continue;
-        if (palette.size() == kMostColours) return {};
-        palette.insert(at, value);
+/// The distinct codes in ascending order, as signed, and the place of each; none when there are too many for indices
+/// of one byte.
+class Palette {
+public:
+    explicit Palette(std::span<const std::uint32_t> codes) {
+        if (codes.empty()) return;
+        const auto [least, most] =
+            std::minmax_element(codes.begin(), codes.end(), [](std::uint32_t a, std::uint32_t b) {
+                return static_cast<std::int32_t>(a) < static_cast<std::int32_t>(b);
+            });
+        const auto first = static_cast<std::int32_t>(*least);
+        const std::int64_t range = std::int64_t(static_cast<std::int32_t>(*most)) - first + 1;
+        if (range > kLargestRange) {
+            gather(codes);
+            return;
+        }
+        first_ = *least;
+        places_.resize(std::size_t(range));
+        for (const std::uint32_t code : codes) places_[code - first_] = 1;
+        const auto distinct = std::count(places_.begin(), places_.end(), std::uint8_t(1));
+        if (distinct > std::ptrdiff_t(kMostColours)) return;
+        // With few gaps, a palette without any is shorter: all its steps are alike.
+        const bool whole = distinct > 1 && range <= std::int64_t(kMostColours) && range - distinct <= kMostGaps;
+        for (std::size_t i = 0; i < places_.size(); ++i) {
+            if (places_[i] == 0 && !whole) continue;
+            places_[i] = static_cast<std::uint8_t>(colours_.size());
+            colours_.push_back(first + static_cast<std::int32_t>(i));
+        }
     }
-    return palette;
-}
+    std::span<const std::int32_t> colours() const { return colours_; }
+    std::uint32_t placeOf(std::uint32_t code) const {
+        if (!places_.empty()) return places_[code - first_];
+        return static_cast<std::uint32_t>(
+            std::lower_bound(colours_.begin(), colours_.end(), static_cast<std::int32_t>(code)) - colours_.begin());
+    }
+
+private:
+    static constexpr std::int64_t kLargestRange = 1 << 16, kMostGaps = 64;
+
+    void gather(std::span<const std::uint32_t> codes) {
+        std::optional<std::int32_t> before;
+        for (const std::uint32_t code : codes) {
+            const auto value = static_cast<std::int32_t>(code);
+            if (before == value) continue;
+            before = value;
+            const auto at = std::lower_bound(colours_.begin(), colours_.end(), value);
+            if (at != colours_.end() && *at == value) continue;
+            if (colours_.size() == kMostColours) {
+                colours_.clear();
+                return;
+            }
+            colours_.insert(at, value);
+        }
+    }
+
+    std::vector<std::int32_t> colours_;
+    std::uint32_t first_ = 0;          ///< code of the first of `places_`
+    std::vector<std::uint8_t> places_; ///< by code from the least on; empty where those lie too far apart
+};
 
 } // namespace
 
@@ -36,26 +79,16 @@ bool isWhole(std::byte mode) {
 }
 
 Bytes encodeWhole(std::span<const std::uint32_t> codes, Compressor& compressor) {
-    std::vector<std::int32_t> palette = paletteOf(codes);
+    const Palette all(codes);
+    const std::span<const std::int32_t> palette = all.colours();
     std::vector<std::uint32_t> symbols(codes.size());
-    // With few gaps, a palette without any is shorter: all its steps are alike.
-    constexpr std::int64_t kMostGaps = 64;
-    if (palette.size() > 1) {
-        const auto colours = std::int64_t(palette.size()), range = std::int64_t(palette.back()) - palette.front() + 1;
-        if (range <= std::int64_t(kMostColours) && range - colours <= kMostGaps && range - colours > 0) {
-            palette.resize(std::size_t(range));
-            std::iota(palette.begin(), palette.end(), palette.front());
-        }
-    }
     if (palette.size() < 2) {
         for (std::size_t i = 0; i < codes.size(); ++i) symbols[i] = zigzag(codes[i]);
         Bytes whole{kWhole};
         encodeStream(symbols, compressor, whole);
         return whole;
     }
-    for (std::size_t i = 0; i < codes.size(); ++i)
-        symbols[i] = static_cast<std::uint32_t>(
-            std::lower_bound(palette.begin(), palette.end(), static_cast<std::int32_t>(codes[i])) - palette.begin());
+    for (std::size_t i = 0; i < codes.size(); ++i) symbols[i] = all.placeOf(codes[i]);
     std::vector<std::uint32_t> steps;
     for (std::size_t i = 0; i < palette.size(); ++i)
         steps.push_back(i == 0

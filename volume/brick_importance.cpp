@@ -71,19 +71,22 @@ std::vector<float> halved(glm::ivec3 size, const std::function<void(int slice, i
     const std::size_t nx = std::size_t(size.x), hx = std::size_t(half.x), slice = hx * std::size_t(half.y);
     std::vector<float> flat(slice * std::size_t(size.z)), out(countOf(half));
     parallelRanges(std::size_t(size.z), [&](std::size_t begin, std::size_t end) {
-        std::vector<float> row(nx), rows(hx * std::size_t(size.y));
+        std::vector<float> row(nx + 1), evens(hx), odds(hx), rows(hx * std::size_t(size.y));
+        // In the middle of a row all taps are inside.
+        const std::size_t first = 1, last = nx > 2 ? (nx - 3) / 2 + 1 : 0;
         for (std::size_t z = begin; z < end; ++z) {
             for (int y = 0; y < size.y; ++y) {
                 read(int(z), y, row.data());
                 float* to = rows.data() + std::size_t(y) * hx;
-                for (int x = 0; x < half.x; ++x) {
-                    const int at = 2 * x;
-                    if (at >= kReach && at + kReach < size.x) {
-                        const float* r = row.data() + at;
-                        to[x] = kBinomial[0] * (r[-2] + r[2]) + kBinomial[1] * (r[-1] + r[1]) + kBinomial[2] * r[0];
-                    } else {
-                        to[x] = smoothAt(x, size.x, [&](int i) { return row[std::size_t(i)]; });
-                    }
+                const float* from = row.data();
+                float *even = evens.data(), *odd = odds.data();
+                for (std::size_t x = 0; x < hx; ++x) even[x] = from[2 * x], odd[x] = from[2 * x + 1];
+                for (std::size_t x = first; x < last; ++x)
+                    to[x] = kBinomial[0] * (even[x - 1] + even[x + 1]) + kBinomial[1] * (odd[x - 1] + odd[x]) +
+                            kBinomial[2] * even[x];
+                for (std::size_t x = 0; x < hx; ++x) {
+                    if (x == first && last > first) x = last;
+                    if (x < hx) to[x] = smoothAt(int(x), size.x, [&](int i) { return from[i]; });
                 }
             }
             for (int y = 0; y < half.y; ++y) {
@@ -144,19 +147,35 @@ Smoothed smoothedHalf(const RowReader& reader, int sublattice) {
 struct Sums {
     double weight = 0, value = 0, square = 0, details = 0, axes = 0;
     int samples = 0;
-    std::array<double, kTones> tones{};
+    std::array<std::array<double, kTones>, 2> tones{}; ///< by turns, as one would wait for the one before
 
+    static std::size_t toneOf(double value01) { return std::size_t(std::min(int(value01 * kTones), kTones - 1)); }
     void add(double value01, double w) {
         weight += w;
         value += w * value01;
         square += w * value01 * value01;
-        tones[std::size_t(std::min(int(value01 * kTones), kTones - 1))] += w;
+        tones[0][toneOf(value01)] += w;
         ++samples;
+    }
+    /// The same of `count` values of one weight.
+    void add(const float* values, int count, double w) {
+        std::array<double, 4> first{}, second{};
+        for (int x = 0; x < count; ++x) {
+            const double value01 = double(values[x]);
+            first[std::size_t(x % 4)] += value01;
+            second[std::size_t(x % 4)] += value01 * value01;
+            tones[std::size_t(x % 2)][toneOf(value01)] += w;
+        }
+        weight += w * count;
+        value += w * ((first[0] + first[1]) + (first[2] + first[3]));
+        square += w * ((second[0] + second[1]) + (second[2] + second[3]));
+        samples += count;
     }
     double entropy() const {
         double bits = 0;
-        for (const double tone : tones)
-            if (tone > 0) bits -= tone / weight * std::log2(tone / weight);
+        for (std::size_t i = 0; i < kTones; ++i)
+            if (const double tone = tones[0][i] + tones[1][i]; tone > 0)
+                bits -= tone / weight * std::log2(tone / weight);
         return samples > 1 ? std::min(bits / std::log2(double(std::min(samples, kTones))), 1.0) : 0.0;
     }
     BrickImportance result() const {
@@ -188,7 +207,13 @@ void addRow(const Smoothed& from, int begin, int end, int y, int z, bool border,
     if (last > first) sums.details += squaresOfDetails(row + first, 1, last - first), sums.axes += last - first;
     if (y > 0 && y + 1 < from.size.y) sums.details += squaresOfDetails(row, step, count), sums.axes += count;
     if (z > 0 && z + 1 < from.size.z) sums.details += squaresOfDetails(row, slice, count), sums.axes += count;
-    for (int x = 0; x < count; ++x) sums.add(double(row[x]), border || x == 0 || x == count - 1 ? borderWeight : 1);
+    if (border || count < 2) {
+        sums.add(row, count, borderWeight);
+        return;
+    }
+    sums.add(double(row[0]), borderWeight);
+    sums.add(row + 1, count - 2, 1);
+    sums.add(double(row[count - 1]), borderWeight);
 }
 
 /// Adds what a sublattice has of the brick whose samples are [begin, end) of the halved one.
