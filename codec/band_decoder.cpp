@@ -1,6 +1,5 @@
 #include "codec/band_coder.h"
-#include "codec/band_rows.h"
-#include "codec/vector_intrinsics.h"
+#include "codec/band_rows512.h"
 
 namespace tessera::codec {
 
@@ -150,44 +149,63 @@ TESSERA_AVX512 TESSERA_INLINE __m512i entries512(const std::uint32_t* table, __m
     return _mm512_inserti64x4(_mm512_castsi256_si512(low), high, 1);
 }
 
-/// What the loop over chunks reads and changes, in registers.
-struct Cursor512 {
-    const std::byte *next, *end;
-    unsigned group, groupMask;
-    const std::uint32_t* table;
-    __m512i tablesLow, tablesHigh, slotMask, lowest, one, bias;
+/// The chunks of the rows of all bands at one place, in the order of coding.
+struct Chunks512 {
+    struct alignas(64) Sixteen {
+        std::uint32_t lanes[kLanes];
+    };
+    std::vector<Sixteen> tables;      ///< of the context of each place: number << kProbabilityBits
+    std::vector<__mmask16> active;    ///< lanes that hold a coefficient
+    std::vector<std::uint8_t> tokens; ///< sixteen a chunk, 0 where there is no coefficient
+    std::vector<std::uint32_t> raw;   ///< chunks that raw bits belong to
+    std::size_t count = 0, rawCount = 0;
+
+    explicit Chunks512(std::size_t most) : tables(most), active(most), tokens(most * kLanes), raw(most + 1) {}
 };
 
-/// Sixteen tokens, one in each lane of `active`, 0 in the others; `sums` are those of their contexts. False: the stream
-/// ends too early.
-TESSERA_AVX512 TESSERA_INLINE bool tokens512(Cursor512& in, std::uint32_t (*states)[kLanes], __m256i sums,
-                                             __mmask16 active, __m128i& tokens) {
-    const __m512i sum = _mm512_add_epi32(_mm512_cvtepu16_epi32(sums), in.one);
-    const __m512i context =
-        _mm512_sub_epi32(_mm512_srli_epi32(_mm512_castps_si512(_mm512_cvtepi32_ps(sum)), 22), in.bias);
-    const __m512i tables = _mm512_permutex2var_epi32(in.tablesLow, context, in.tablesHigh);
-    std::uint32_t* own = states[in.group];
-    in.group = (in.group + 1) & in.groupMask;
-    const __m512i state = _mm512_load_si512(own);
-    const __m512i entry = entries512(in.table, _mm512_or_si512(tables, _mm512_and_si512(state, in.slotMask)));
-    const __m512i frequency = _mm512_and_si512(_mm512_srli_epi32(entry, 8), in.slotMask); // as many bits
-    __m512i after = _mm512_add_epi32(_mm512_mullo_epi32(frequency, _mm512_srli_epi32(state, kProbabilityBits)),
-                                     _mm512_srli_epi32(entry, 20));
-    tokens = _mm512_maskz_cvtepi32_epi8(active, entry);
-    const __mmask16 low = _mm512_mask_cmplt_epu32_mask(active, after, in.lowest);
-    const int count = __builtin_popcount(low);
-    const std::ptrdiff_t left = in.end - in.next;
-    __m256i words;
-    if (left >= 32) [[likely]] {
-        words = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(in.next));
-    } else {
-        if (left < 2 * count) return false;
-        words = _mm256_maskz_loadu_epi16(static_cast<__mmask16>((1u << (left / 2)) - 1u), in.next);
+/// What the loop over chunks changes, in registers.
+struct Cursor512 {
+    const std::byte* next;
+    unsigned group;
+};
+
+/// The tokens of all chunks. False: the stream ends too early.
+TESSERA_AVX512 bool decodeTokens512(Stream& in, Cursor512& cursor, Chunks512& chunks) {
+    const std::uint32_t* const table = in.table;
+    const std::byte *next = cursor.next, *const end = in.end;
+    const __m512i slotMask = kept512(static_cast<int>(kSlotMask)), lowest = kept512(static_cast<int>(kLowestState));
+    unsigned group = cursor.group;
+    std::uint32_t* raw = chunks.raw.data();
+    for (std::size_t chunk = 0; chunk < chunks.count; ++chunk) {
+        std::uint32_t* own = in.states[group];
+        group = (group + 1) & in.groupMask;
+        const __mmask16 active = chunks.active[chunk];
+        const __m512i state = _mm512_load_si512(own), tables = _mm512_load_si512(chunks.tables[chunk].lanes);
+        const __m512i entry = entries512(table, _mm512_or_si512(tables, _mm512_and_si512(state, slotMask)));
+        const __m512i frequency = _mm512_and_si512(_mm512_srli_epi32(entry, 8), slotMask); // as many bits
+        __m512i after = _mm512_add_epi32(_mm512_mullo_epi32(frequency, _mm512_srli_epi32(state, kProbabilityBits)),
+                                         _mm512_srli_epi32(entry, 20));
+        const __mmask16 low = _mm512_mask_cmplt_epu32_mask(active, after, lowest);
+        const int count = __builtin_popcount(low);
+        const std::ptrdiff_t left = end - next;
+        __m256i words;
+        if (left >= 32) [[likely]] {
+            words = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(next));
+        } else {
+            if (left < 2 * count) return false;
+            words = _mm256_maskz_loadu_epi16(static_cast<__mmask16>((1u << (left / 2)) - 1u), next);
+        }
+        next += 2 * count;
+        const __m512i refill = _mm512_maskz_expand_epi32(low, _mm512_cvtepu16_epi32(words));
+        after = _mm512_mask_or_epi32(after, low, _mm512_slli_epi32(after, 16), refill);
+        _mm512_store_si512(own, _mm512_mask_mov_epi32(state, active, after));
+        const __m128i tokens = _mm512_maskz_cvtepi32_epi8(active, entry);
+        _mm_storeu_si128(reinterpret_cast<__m128i*>(chunks.tokens.data() + chunk * kLanes), tokens);
+        *raw = static_cast<std::uint32_t>(chunk);
+        raw += _mm_cmpge_epu8_mask(tokens, _mm_set1_epi8(kDirect)) != 0 ? 1 : 0;
     }
-    in.next += 2 * count;
-    const __m512i refill = _mm512_maskz_expand_epi32(low, _mm512_cvtepu16_epi32(words));
-    after = _mm512_mask_or_epi32(after, low, _mm512_slli_epi32(after, 16), refill);
-    _mm512_store_si512(own, _mm512_mask_mov_epi32(state, active, after));
+    chunks.rawCount = std::size_t(raw - chunks.raw.data());
+    cursor = {next, group};
     return true;
 }
 
@@ -225,13 +243,14 @@ TESSERA_AVX512 bool rawChunk512(Stream& in, const std::uint8_t* tokens, __mmask1
     return true;
 }
 
-/// A row of direct tokens to coefficients.
+/// A row of direct tokens to coefficients. 32 lanes at a time: magnitudes of those behind the row, which are 0, fall on
+/// the zeros before the next row.
 template <class Word>
 TESSERA_AVX512 inline void directRow512(const std::uint8_t* tokens, int width, int shift, Word* values,
                                         std::uint16_t* sizes) {
     for (int x = 0; x < width; x += 32) {
         const __mmask32 inside = width - x >= 32 ? ~__mmask32(0) : (__mmask32(1) << (width - x)) - 1;
-        const __m512i symbol = _mm512_cvtepu8_epi16(_mm256_loadu_si256(reinterpret_cast<const __m256i*>(tokens + x)));
+        const __m512i symbol = _mm512_cvtepu8_epi16(_mm256_maskz_loadu_epi8(inside, tokens + x));
         const __m512i sign = _mm512_sub_epi16(_mm512_setzero_si512(), _mm512_and_si512(symbol, _mm512_set1_epi16(1)));
         const __m512i value = _mm512_xor_si512(_mm512_srli_epi16(symbol, 1), sign);
         _mm512_storeu_si512(sizes + x, _mm512_srl_epi16(_mm512_abs_epi16(value), _mm_cvtsi32_si128(shift)));
@@ -246,119 +265,69 @@ TESSERA_AVX512 inline void directRow512(const std::uint8_t* tokens, int width, i
     }
 }
 
-TESSERA_AVX512 TESSERA_INLINE __m512i load512(const std::uint16_t* from) {
-    return _mm512_loadu_si512(from);
-}
-
-/// What a band needs while its rows are decoded. 32 lanes are computed at a time: where only 16 are coded, tokens
-/// beyond are 0, and their magnitudes, 0 too, fall on the zeros before the next row.
-struct BandRow {
-    Magnitudes magnitudes;
-    std::vector<std::uint8_t> tokens;
-    std::uint8_t** rawEnd = nullptr; ///< of the chunks with raw bits, up to this band
-    explicit BandRow(glm::ivec3 size)
-        : magnitudes(glm::max(size, glm::ivec3(0))), tokens(std::size_t(std::max(size.x, 0)) + 64) {}
-};
-
-/// One chunk of a row.
-template <bool kMasked>
-TESSERA_AVX512 TESSERA_INLINE bool halfRow512(Cursor512& in, std::uint32_t (*states)[kLanes], __m256i sums, int x,
-                                              __mmask16 lanes, const std::uint8_t* present, int width,
-                                              std::uint8_t* tokens, std::uint8_t**& raw) {
-    __m128i token;
-    if constexpr (kMasked) lanes = static_cast<__mmask16>(activeLanes(present, x, width));
-    if (!tokens512(in, states, sums, lanes, token)) return false;
-    _mm_storeu_si128(reinterpret_cast<__m128i*>(tokens + x), token);
-    *raw = tokens + x;
-    raw += _mm_cmpge_epu8_mask(token, _mm_set1_epi8(kDirect)) != 0 ? 1 : 0;
-    return true;
-}
-
-/// The tokens of a row; those chunks that raw bits belong to are noted at `raw`, which then points behind them.
-template <bool kMasked, bool kByBand>
-TESSERA_AVX512 TESSERA_INLINE bool tokenRow512(Cursor512& in, std::uint32_t (*states)[kLanes], const Neighbours& near,
-                                               const std::uint8_t* present, int width, std::uint8_t* tokens,
-                                               std::uint8_t**& raw) {
+/// Appends the chunks of a row: where their contexts look, and which lanes they have.
+template <bool kByBand>
+TESSERA_AVX512 TESSERA_INLINE void appendRow512(const Stream& in, const Neighbours& near, int kind,
+                                                const std::uint8_t* present, int width, Chunks512& chunks) {
+    const __m512i low = _mm512_load_si512(in.tableOf[kind]), high = _mm512_load_si512(in.tableOf[kind] + 16);
+    std::size_t count = chunks.count;
     for (int x = 0; x < width; x += 2 * kLanes) {
-        const __m512i doubled = _mm512_add_epi16(load512(near.north + x), load512(near.before + x));
-        const __m512i sides =
-            _mm512_add_epi16(_mm512_add_epi16(load512(near.north + x - 1), load512(near.north + x + 1)),
-                             _mm512_add_epi16(load512(near.beforeNorth + x), load512(near.beforeSouth + x)));
-        __m512i sums = _mm512_add_epi16(_mm512_add_epi16(doubled, doubled), sides);
-        if constexpr (kByBand)
-            sums = _mm512_add_epi16(_mm512_add_epi16(sums, doubled),
-                                    _mm512_add_epi16(load512(near.before + x - 1), load512(near.before + x + 1)));
-        const int left = width - x;
-        const std::uint32_t inside = left >= 32 ? ~0u : (1u << left) - 1u;
-        if (!halfRow512<kMasked>(in, states, _mm512_castsi512_si256(sums), x, static_cast<__mmask16>(inside), present,
-                                 width, tokens, raw))
-            return false;
-        if (left <= kLanes) break;
-        if (!halfRow512<kMasked>(in, states, _mm512_extracti64x4_epi64(sums, 1), x + kLanes,
-                                 static_cast<__mmask16>(inside >> 16), present, width, tokens, raw))
-            return false;
+        const __m512i sums = sums512<kByBand>(near, x, width);
+        const __m512i first = classes512(_mm512_castsi512_si256(sums));
+        _mm512_store_si512(chunks.tables[count].lanes, _mm512_permutex2var_epi32(low, first, high));
+        chunks.active[count++] = static_cast<__mmask16>(activeLanes(present, x, width));
+        if (width - x <= kLanes) break;
+        const __m512i second = classes512(_mm512_extracti64x4_epi64(sums, 1));
+        _mm512_store_si512(chunks.tables[count].lanes, _mm512_permutex2var_epi32(low, second, high));
+        chunks.active[count++] = static_cast<__mmask16>(activeLanes(present, x + kLanes, width));
     }
-    return true;
+    chunks.count = count;
 }
 
-/// Tokens of all bands' rows at one place come first, then the few that raw bits belong to: nobody waits for those.
+/// First the contexts of all bands' rows at one place, then their tokens, then coefficients, those with raw bits last:
+/// the loop over tokens waits for nothing else.
 template <class Word, bool kByBand> TESSERA_AVX512 bool decodeRows512(Stream& in, std::span<const Band<Word>> bands) {
-    std::vector<BandRow> rows;
-    rows.reserve(bands.size());
-    std::size_t chunks = 0;
-    glm::ivec3 most(0);
+    std::vector<Magnitudes> magnitudes = magnitudesFor(bands);
+    std::size_t most = 0;
+    glm::ivec3 largest(0);
     for (const Band<Word>& band : bands) {
-        rows.emplace_back(band.size);
-        chunks += std::size_t((std::max(band.size.x, 0) + kLanes - 1) / kLanes);
-        if (band.size.x > 0) most = glm::max(most, band.size);
+        most += std::size_t((std::max(band.size.x, 0) + kLanes - 1) / kLanes);
+        if (band.size.x > 0) largest = glm::max(largest, band.size);
     }
-    std::vector<std::uint8_t*> raw(chunks + 1);
-    Cursor512 cursor{in.next,
-                     in.end,
-                     0,
-                     in.groupMask,
-                     in.table,
-                     _mm512_load_si512(in.tableOf[0]),
-                     _mm512_load_si512(in.tableOf[0] + 16),
-                     kept512(static_cast<int>(kSlotMask)),
-                     kept512(static_cast<int>(kLowestState)),
-                     kept512(1),
-                     kept512(254)};
-    for (int z = 0; z < most.z; ++z)
-        for (int y = 0; y < most.y; ++y) {
-            std::uint8_t** rawEnd = raw.data();
+    Chunks512 chunks(most);
+    Cursor512 cursor{in.next, 0};
+    for (int z = 0; z < largest.z; ++z)
+        for (int y = 0; y < largest.y; ++y) {
+            const auto isHere = [&](const Band<Word>& band) {
+                return band.size.x > 0 && y < band.size.y && z < band.size.z;
+            };
+            chunks.count = 0;
             for (std::size_t b = 0; b < bands.size(); ++b) {
                 const Band<Word>& band = bands[b];
-                if (band.size.x < 1 || y >= band.size.y || z >= band.size.z) continue;
-                const Neighbours near(rows[b].magnitudes, z, y);
-                std::uint8_t* tokens = rows[b].tokens.data();
-                if constexpr (kByBand) {
-                    cursor.tablesLow = _mm512_load_si512(in.tableOf[band.kind]);
-                    cursor.tablesHigh = _mm512_load_si512(in.tableOf[band.kind] + 16);
-                }
+                if (!isHere(band)) continue;
                 const std::uint8_t* present =
                     band.present ? band.present + z * band.slicePitch + y * band.rowPitch : nullptr;
-                const bool whole =
-                    present
-                        ? tokenRow512<true, kByBand>(cursor, in.states, near, present, band.size.x, tokens, rawEnd)
-                        : tokenRow512<false, kByBand>(cursor, in.states, near, nullptr, band.size.x, tokens, rawEnd);
-                if (!whole) return false;
-                rows[b].rawEnd = rawEnd;
+                appendRow512<kByBand>(in, Neighbours(magnitudes[b], z, y), kByBand ? band.kind : 0, present,
+                                      band.size.x, chunks);
             }
-            std::uint8_t** nextRaw = raw.data();
+            if (!decodeTokens512(in, cursor, chunks)) return false;
+            std::size_t first = 0, raw = 0;
             for (std::size_t b = 0; b < bands.size(); ++b) {
                 const Band<Word>& band = bands[b];
-                if (band.size.x < 1 || y >= band.size.y || z >= band.size.z) continue;
+                if (!isHere(band)) continue;
                 Word* values = band.values + z * band.slicePitch + y * band.rowPitch;
-                std::uint8_t* tokens = rows[b].tokens.data();
-                std::uint16_t* sizes = rows[b].magnitudes.row(z, y);
+                const std::uint8_t* tokens = chunks.tokens.data() + first * kLanes;
+                std::uint16_t* sizes = magnitudes[b].row(z, y);
                 directRow512<Word>(tokens, band.size.x, in.contexts.shift, values, sizes);
-                for (; nextRaw < rows[b].rawEnd; ++nextRaw) {
-                    const std::ptrdiff_t x = *nextRaw - tokens;
+                const std::size_t own = std::size_t((band.size.x + kLanes - 1) / kLanes);
+                for (; raw < chunks.rawCount && chunks.raw[raw] < first + own; ++raw) {
+                    const std::size_t at = chunks.raw[raw] - first;
+                    const auto x = static_cast<std::ptrdiff_t>(at * kLanes);
                     const auto inside =
                         static_cast<__mmask16>((1u << std::min(kLanes, band.size.x - static_cast<int>(x))) - 1u);
-                    if (!rawChunk512<Word>(in, *nextRaw, inside, values + x, sizes + x)) return false;
+                    if (!rawChunk512<Word>(in, tokens + x, inside, values + x, sizes + x)) return false;
                 }
+                first += own;
             }
         }
     in.next = cursor.next;

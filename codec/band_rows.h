@@ -17,17 +17,22 @@ inline constexpr std::uint32_t kLargestMagnitude = 4095; // twelve of them fit 1
 
 /// Magnitudes of the two latest slices of a band, with zeros around:
 ///
-///     per slice: a row of zeros, size.y rows, a row of zeros; per row: kPad zeros, size.x rounded up to lanes
+///     per slice: a row of zeros, size.y rows, a row of zeros; per row: kPad zeros, size.x rounded up to kPad
+///
+/// Rows begin at multiples of 64 bytes.
 struct Magnitudes {
-    static constexpr int kPad = 16;
-    std::size_t pitch = 0, slice = 0;
+    static constexpr int kPad = 32;
+    std::size_t pitch = 0, slice = 0, first = 0;
     std::vector<std::uint16_t> values;
 
     explicit Magnitudes(glm::ivec3 size)
-        : pitch(std::size_t(kPad + (size.x + kLanes - 1) / kLanes * kLanes)), slice(pitch * std::size_t(size.y + 2)),
-          values(2 * slice + 2 * kPad) {}
+        : pitch(std::size_t(kPad + (size.x + kPad - 1) / kPad * kPad)), slice(pitch * std::size_t(size.y + 2)),
+          values(2 * slice + 3 * kPad) {
+        const std::size_t beyond = reinterpret_cast<std::uintptr_t>(values.data()) % (2 * kPad);
+        first = kPad + (2 * kPad - beyond) % (2 * kPad) / sizeof(std::uint16_t);
+    }
     std::uint16_t* row(int z, int y) {
-        return values.data() + std::size_t(z & 1) * slice + std::size_t(y + 1) * pitch + kPad;
+        return values.data() + first + std::size_t(z & 1) * slice + std::size_t(y + 1) * pitch;
     }
 };
 

@@ -1,8 +1,7 @@
 #include "codec/band_tokens.h"
 
-#include "codec/band_rows.h"
+#include "codec/band_rows512.h"
 #include "codec/entropy.h"
-#include "codec/vector_intrinsics.h"
 
 namespace tessera::codec {
 
@@ -32,17 +31,13 @@ void rowTokens(const Band<const Word>& band, std::ptrdiff_t at, const Neighbours
 
 #if TESSERA_X86
 
-TESSERA_AVX512 inline __m256i load256(const std::uint16_t* from) {
-    return _mm256_loadu_si256(reinterpret_cast<const __m256i*>(from));
-}
-
 /// As rowTokens, sixteen at a time.
-template <class Word>
+template <class Word, bool kByBand>
 TESSERA_AVX512 void rowTokens512(const Band<const Word>& band, std::ptrdiff_t at, const Neighbours& near,
                                  Contexts contexts, std::uint16_t* sizes, std::uint16_t*& tokens, TokenRun& run) {
     const Word* values = band.values + at;
-    const __m512i kind = _mm512_set1_epi32(contexts.byBand ? band.kind << 13 : 0);
-    __m512i any = _mm512_setzero_si512();
+    const __m512i kind = _mm512_set1_epi32(kByBand ? band.kind << 13 : 0);
+    __m512i any = _mm512_setzero_si512(), sums = any; // of 32 places
     for (int x = 0; x < band.size.x; x += kLanes, tokens += kLanes) {
         const auto inside = static_cast<__mmask16>((1u << std::min(kLanes, band.size.x - x)) - 1u);
         __mmask16 active = inside;
@@ -50,17 +45,9 @@ TESSERA_AVX512 void rowTokens512(const Band<const Word>& band, std::ptrdiff_t at
             const __m128i flags = _mm_maskz_loadu_epi8(inside, band.present + at + x);
             active = _mm_test_epi8_mask(flags, flags);
         }
-        const __m256i doubled = _mm256_add_epi16(load256(near.north + x), load256(near.before + x));
-        const __m256i sides =
-            _mm256_add_epi16(_mm256_add_epi16(load256(near.north + x - 1), load256(near.north + x + 1)),
-                             _mm256_add_epi16(load256(near.beforeNorth + x), load256(near.beforeSouth + x)));
-        __m256i sums = _mm256_add_epi16(_mm256_add_epi16(doubled, doubled), sides);
-        if (contexts.byBand)
-            sums = _mm256_add_epi16(_mm256_add_epi16(sums, doubled),
-                                    _mm256_add_epi16(load256(near.before + x - 1), load256(near.before + x + 1)));
-        const __m512i sum = _mm512_add_epi32(_mm512_cvtepu16_epi32(sums), _mm512_set1_epi32(1));
-        const __m512i context = _mm512_sub_epi32(_mm512_srli_epi32(_mm512_castps_si512(_mm512_cvtepi32_ps(sum)), 22),
-                                                 _mm512_set1_epi32(254));
+        if (x % (2 * kLanes) == 0) sums = sums512<kByBand>(near, x, band.size.x);
+        const __m512i context =
+            classes512(x % (2 * kLanes) == 0 ? _mm512_castsi512_si256(sums) : _mm512_extracti64x4_epi64(sums, 1));
 
         __m512i value;
         if constexpr (sizeof(Word) == 2)
@@ -115,8 +102,10 @@ template <class Word> TokenRun tokensOf(std::span<const Band<const Word>> bands,
         const std::ptrdiff_t at = z * band.slicePitch + y * band.rowPitch;
         std::uint16_t* sizes = magnitudes[b].row(z, y);
 #if TESSERA_X86
-        if (cpu == Cpu::Avx512)
-            rowTokens512<Word>(band, at, near, contexts, sizes, next, run);
+        if (cpu == Cpu::Avx512 && contexts.byBand)
+            rowTokens512<Word, true>(band, at, near, contexts, sizes, next, run);
+        else if (cpu == Cpu::Avx512)
+            rowTokens512<Word, false>(band, at, near, contexts, sizes, next, run);
         else
 #endif
             rowTokens<Word>(band, at, near, contexts, sizes, next, run);
