@@ -19,6 +19,23 @@ Session variantSession(const Session& session, const CompareVariant& variant) {
     return out;
 }
 
+namespace {
+
+/// Of several values those that are other than before: "charcoal contrast 0.6, part context".
+std::string differingText(const Json& now, const Json& before) {
+    std::string text;
+    for (const auto& [key, value] : now.items()) {
+        const Json was = before.is_object() ? before.value(key, Json()) : Json();
+        if (was == value) continue;
+        std::string shown = value.is_string() ? value.get<std::string>() : value.dump();
+        if (value.is_object()) shown = differingText(value, was);
+        text += (text.empty() ? "" : ", ") + key + (shown.empty() ? "" : " " + shown);
+    }
+    return text;
+}
+
+} // namespace
+
 std::string changesText(const Session& session, const CompareVariant& variant) {
     std::string text;
     for (const auto& [path, value] : variant.changes) {
@@ -29,16 +46,10 @@ std::string changesText(const Session& session, const CompareVariant& variant) {
         const Json parsed = Json::parse(value, nullptr, false);
         std::string shown = parsed.is_string() ? parsed.get<std::string>() : value;
         if (path == "/data/bcc") title = "lattice", shown = shown == "true" ? "BCC" : "CC";
-        // Of several values those that are other than the session's.
         if (parsed.is_object() && !parsed.empty()) {
             const Json base = toJson(session);
             const Json::json_pointer at(path);
-            const Json before = base.contains(at) ? base[at] : Json();
-            shown.clear();
-            for (const auto& [key, part] : parsed.items())
-                if (!before.is_object() || !before.contains(key) || before[key] != part)
-                    shown += (shown.empty() ? "" : ", ") + key + " " +
-                             (part.is_string() ? part.get<std::string>() : part.dump());
+            shown = differingText(parsed, base.contains(at) ? base[at] : Json());
             text += (text.empty() ? "" : ", ") + (shown.empty() ? title : shown);
             continue;
         }

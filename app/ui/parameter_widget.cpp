@@ -51,11 +51,13 @@ bool drawParameter(Session& session, const std::string& path, const WidgetContex
 
 bool chooseParameter(const char* id, const Session& session, std::string& search, std::string& path) {
     ImGui::PushID(id);
-    ImGui::SetNextItemWidth(-1);
+    // Menus take the width of what is in them, so it is said here.
+    const float width = ImGui::GetFontSize() * 22;
+    ImGui::SetNextItemWidth(width);
     if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
     ImGui::InputTextWithHint("##search", "Search a setting", &search);
     bool chosen = false;
-    if (ImGui::BeginChild("list", {0, ImGui::GetFontSize() * 12}, true)) {
+    if (ImGui::BeginChild("list", {width, ImGui::GetFontSize() * 12}, true)) {
         for (const std::string& each : parameterPaths(session)) {
             const std::string title = pathTitle(session, each);
             if (!matches(title + " " + each, search)) continue;

@@ -5,12 +5,14 @@
 #include "app/ui/keys.h"
 #include "app/ui/parameter_widget.h"
 #include "app/views/figure.h"
+#include "app/views/plot.h"
 #include "app/views/ticks.h"
 #include "app/views/view_parts.h"
 
 #include <algorithm>
 #include <cmath>
 #include <imgui_stdlib.h>
+#include <numeric>
 
 namespace tessera::app {
 
@@ -19,8 +21,8 @@ namespace {
 constexpr std::size_t kMostVariants = 16;
 constexpr const char* kRowHelp =
     "Click: swiped over the reference. Ctrl+click: the reference. Errors are of the 8-bit colours on screen; samples "
-    "and "
-    "bytes those of the parameters shown; \"Differ\" counts stored samples of the first layer's parameter that are not "
+    "and bytes those of the parameters shown; \"Differ\" counts stored samples of the first layer's parameter that are "
+    "not "
     "equal to the reference's, where both have the same ones.";
 
 /// The list to edit: what is shown becomes the view's own.
@@ -192,12 +194,20 @@ void drawCompareTable(CompareView& view, const std::vector<CompareRow>& rows) {
     std::vector<const char*> names{"Variant", "What differs", "ms", "Samples", "Texture"};
     if (stored) names.push_back("File");
     if (compared) names.push_back("Differ");
-    const float height = std::min(compareTableHeight(rows.size()), ImGui::GetContentRegionAvail().y);
+    const auto [room, below] = ImGui::GetContentRegionAvail();
+    const float height = std::min(compareTableHeight(rows.size()), below);
     if (!ImGui::BeginTable("compare", static_cast<int>(names.size()) + 4, kFlags, {0, height})) return;
     for (const char* name : {"Max.", "RMSE", "PSNR [dB]", "SSIM"}) names.push_back(name);
     ImGui::TableSetupScrollFreeze(1, 1);
+    // Where there is room numbers take what they need and names are whole; what differs has the rest.
+    std::vector<float> widths(names.size(), em() * 4.5f);
+    widths[0] = em() * 4, widths[1] = em() * 12;
+    for (const CompareRow& row : rows) widths[0] = std::max(widths[0], ImGui::CalcTextSize(row.name.c_str()).x);
+    const bool fits = std::accumulate(widths.begin(), widths.end(), 0.0f) + em() * 0.6f * float(names.size()) < room;
     for (std::size_t i = 0; i < names.size(); ++i)
-        ImGui::TableSetupColumn(names[i], 0, i == 0 ? 2.4f : i == 1 ? 3.0f : 1.0f);
+        ImGui::TableSetupColumn(names[i],
+                                fits && i != 1 ? ImGuiTableColumnFlags_WidthFixed : ImGuiTableColumnFlags_WidthStretch,
+                                widths[i]);
     ImGui::TableNextRow(ImGuiTableRowFlags_Headers);
     for (std::size_t i = 0; i < names.size(); ++i) {
         ImGui::TableNextColumn();
@@ -215,7 +225,8 @@ void drawCompareTable(CompareView& view, const std::vector<CompareRow>& rows) {
         ImGui::TableNextRow();
         ImGui::TableNextColumn();
         const bool other = view.mode == CompareMode::Swipe && static_cast<int>(i) == view.other;
-        if (ImGui::Selectable((row.name + "##row").c_str(), other, ImGuiSelectableFlags_SpanAllColumns)) {
+        const std::string name = fitText(row.name, ImGui::GetContentRegionAvail().x);
+        if (ImGui::Selectable((name + "##row").c_str(), other, ImGuiSelectableFlags_SpanAllColumns)) {
             if (ImGui::GetIO().KeyCtrl)
                 view.reference = static_cast<int>(i);
             else
@@ -227,7 +238,8 @@ void drawCompareTable(CompareView& view, const std::vector<CompareRow>& rows) {
             textRight(text, faint);
         };
         ImGui::TableNextColumn();
-        ImGui::TextDisabled("%s", row.failure.empty() ? row.changes.c_str() : row.failure.c_str());
+        const std::string& differs = row.failure.empty() ? row.changes : row.failure;
+        ImGui::TextDisabled("%s", fitText(differs, ImGui::GetContentRegionAvail().x).c_str());
         cell(row.milliseconds > 0 ? formatNumber(row.milliseconds, row.milliseconds < 10 ? 0.1 : 1) : "-");
         cell(row.samples > 0 ? formatCount(row.samples) : "-");
         cell(bytes(row.bytes));

@@ -60,6 +60,10 @@ TEST(Compare, ACaptionSaysWhatDiffers) {
     EXPECT_EQ(changesText(session, {"", {{"/render/filter", "average"}}}), "filter average");
     EXPECT_EQ(changesText(session, {"", {{"/data/bcc", "false"}}}), "lattice CC");
     EXPECT_EQ(changesText(session, {"", {{"/layers/0/technique/density", "2"}}}), "O2: density 2");
+    EXPECT_EQ(
+        changesText(session,
+                    {"", {{"/layers/0/technique/look", R"({"charcoal": {"contrast": 0.6}, "part": "context"})"}}}),
+        "charcoal contrast 0.6, part context");
     EXPECT_EQ(variantName(session, {"mine", {{"/render/filter", "average"}}}), "mine");
 }
 

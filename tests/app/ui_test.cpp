@@ -2,6 +2,7 @@
 #include "app/session/history.h"
 #include "app/ui/commands.h"
 #include "app/ui/dock.h"
+#include "app/ui/parameter_widget.h"
 #include "app/ui/theme.h"
 #include "app/ui/widgets.h"
 
@@ -218,6 +219,24 @@ TEST(CommandsTest, ThePaletteFindsByWordsAndLetters) {
     EXPECT_GT(matchScore("", "anything"), 0);
     EXPECT_EQ(textOf({.key = 'P', .ctrl = true, .shift = true}), "Ctrl+Shift+P");
     EXPECT_EQ(textOf({.key = key::kF12}), "F12");
+}
+
+TEST_F(UiTest, AMenuHasRoomForTheListOfSettings) {
+    Session session;
+    std::string search, path;
+    float width = 0;
+    const auto body = [&] {
+        ImGui::Begin("test");
+        if (ImGui::GetFrameCount() == 2) ImGui::OpenPopup("menu");
+        if (ImGui::BeginPopup("menu")) {
+            chooseParameter("settings", session, search, path);
+            width = ImGui::GetWindowWidth();
+            ImGui::EndPopup();
+        }
+        ImGui::End();
+    };
+    for (int i = 0; i < 6; ++i) frame(body);
+    EXPECT_GT(width, ImGui::GetFontSize() * 15);
 }
 
 TEST_F(UiTest, ShortcutsNeedExactlyTheirModifiers) {
