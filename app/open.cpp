@@ -13,10 +13,12 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <set>
 #include <unistd.h>
+#include <utility>
 
 namespace tessera::app {
 
@@ -197,6 +199,24 @@ std::shared_ptr<const volume::BrickSource> openStored(const DataRef& data, std::
     return volume::makeMemorySource(volume::withTimeAlong(source, *data.timeAxis), options);
 }
 
+/// Where time takes the place of an axis the cross-hair lies at the time that was shown, and the other way round; where
+/// it was along that axis is known from TimeAxis::place. `session` still refers to the data before, described by
+/// `from`.
+void carryTime(Session& session, const volume::DatasetInfo& from, const volume::DatasetInfo& to,
+               const std::optional<volume::TimeAxis>& wanted) {
+    const std::optional<volume::TimeAxis>& shown = session.data.timeAxis;
+    if (shown.has_value() == wanted.has_value()) return;
+    const int axis = int(wanted ? wanted->axis : shown->axis);
+    if (wanted) {
+        session.cursor[axis] = session.time / volume::timePerLength(to, *wanted);
+    } else {
+        session.time = session.cursor[axis] * volume::timePerLength(from, *shown);
+        for (const double stored : to.times)
+            if (std::abs(session.time - stored) < 1e-9 * (to.times.back() - to.times.front())) session.time = stored;
+        session.cursor[axis] = to.bounds.lo[axis] + shown->place * to.bounds.size()[axis];
+    }
+}
+
 } // namespace
 
 std::shared_ptr<const volume::BrickSource> openSource(const DataRef& data, std::vector<std::string>& messages,
@@ -210,7 +230,8 @@ std::shared_ptr<const volume::BrickSource> openSource(const DataRef& data, std::
 
 Opened openWith(Opened opened, const DataRef& data, const Progress& progress) {
     opened.missing.clear();
-    opened.source = openSource(data, opened.messages, progress);
+    const auto before = std::exchange(opened.source, openSource(data, opened.messages, progress));
+    if (before) carryTime(opened.document.session, before->info(), opened.source->info(), data.timeAxis);
     opened.document.session.data = data;
     opened.document.history.setData(data);
     fitSession(opened.document.session, opened.source->info(), opened.messages);

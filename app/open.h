@@ -33,7 +33,8 @@ struct Opened {
 /// and that cannot be found come back in `missing`, without a source. Throws Error, MachineError, Cancelled.
 Opened open(const OpenRequest& request, const Progress& progress = {});
 
-/// Opens a session document whose data are `data` (found by the user, or another data set).
+/// Opens a session document whose data are `data` (found by the user, or another data set). Where it was shown before
+/// (`opened.source`) with or without time along an axis, time and cross-hair go over into the other way.
 Opened openWith(Opened opened, const DataRef& data, const Progress& progress = {});
 
 /// A source of bricks for what a session names; ranges known. Throws Error.

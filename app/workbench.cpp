@@ -326,6 +326,7 @@ void Workbench::answerFile(const FileDialog::Answer& answer) {
 void Workbench::showAs(const DataRef& data, const std::string& title) {
     const auto opened = std::make_shared<Opened>();
     opened->document = document();
+    opened->source = source_;
     opened->sessionPath = sessionPath_;
     jobs_.start("open", title, [this, opened, data](const Progress& progress) -> Jobs::Finish {
         const auto done = std::make_shared<Opened>(openWith(*opened, data, progress));

@@ -14,6 +14,12 @@ constexpr glm::vec3 kColors[] = {{1.0f, 0.69f, 0.25f},  {0.36f, 0.8f, 0.98f}, {0
                                  {0.55f, 0.87f, 0.42f}, {0.74f, 0.62f, 1.0f}, {0.95f, 0.42f, 0.36f},
                                  {0.93f, 0.88f, 0.42f}, {0.35f, 0.86f, 0.74f}};
 
+/// A colour of the session on the theme's background: light ones vanish on white.
+ImU32 onTheme(glm::vec3 color, float alpha = 1) {
+    color *= darkTheme() ? 1.0f : 0.7f;
+    return ImGui::ColorConvertFloat4ToU32({color.r, color.g, color.b, alpha});
+}
+
 float reach() {
     return std::max(4.0f, em() * 0.35f);
 }
@@ -240,14 +246,18 @@ glm::vec3 newBrushColor(const vis::Selection& selection) {
 }
 
 ImU32 brushColor(const vis::Brush& brush, float alpha) {
-    const float dim = darkTheme() ? 1.0f : 0.7f; // light colours vanish on white
-    return ImGui::ColorConvertFloat4ToU32({brush.color.r * dim, brush.color.g * dim, brush.color.b * dim, alpha});
+    return onTheme(brush.color, alpha);
 }
 
-ImU32 focusColor(const vis::Selection& selection) {
-    for (auto brush = selection.brushes.rbegin(); brush != selection.brushes.rend(); ++brush)
-        if (brush->enabled && !brush->inverted && brush->combine != vis::BrushCombine::Minus) return brushColor(*brush);
-    return plotColors().focus;
+ImU32 focusColor(const Session& session) {
+    std::vector<glm::vec3> colors;
+    for (const vis::Brush& brush : session.selection.brushes)
+        if (brush.enabled && !brush.inverted && brush.combine != vis::BrushCombine::Minus)
+            colors.push_back(brush.color);
+    if (!session.selection.active())
+        for (const vis::Lens& lens : session.lenses)
+            if (lens.enabled && lens.marks) colors.push_back(lens.color);
+    return colors.size() == 1 ? onTheme(colors.front()) : plotColors().focus;
 }
 
 } // namespace tessera::app

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "app/session/view_state.h"
+#include "app/session/session.h"
 #include "app/views/plot.h"
 #include "vis/model/selection.h"
 
@@ -61,7 +61,8 @@ std::string newBrushName(const vis::Selection& selection, const std::string& bas
 glm::vec3 newBrushColor(const vis::Selection& selection);
 /// A brush's colour on the theme's background.
 ImU32 brushColor(const vis::Brush& brush, float alpha = 1);
-/// The colour that stands for the whole selection: of the last enabled brush that adds to it.
-ImU32 focusColor(const vis::Selection& selection);
+/// The colour that stands for what plots mark: that of the only brush that adds to the selection, of the only lens that
+/// marks where nothing is brushed, and a common one for several.
+ImU32 focusColor(const Session& session);
 
 } // namespace tessera::app

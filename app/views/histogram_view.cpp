@@ -106,7 +106,7 @@ void drawPlot(ViewContext& context, HistogramCache& cache, const HistogramView& 
                 focus.push_back(histogram.focus[i] > 0 ? static_cast<float>(height(histogram.focus[i]) / up.hi) : 0.0f);
         }
         drawBars(draw, frame, all, colors.bars);
-        if (result->brushed) drawBars(draw, frame, focus, focusColor(context.session.selection));
+        if (result->brushed) drawBars(draw, frame, focus, focusColor(context.session));
     }
     if (const auto value = cache.readout.value(channel.name)) drawCrosshair(draw, frame, *value, std::nan(""));
     draw.PopClipRect();

@@ -303,7 +303,9 @@ void drawLensList(ViewContext& context, const std::string& pane, LensStatistics&
     }
     if (!session.lenses.empty()) {
         ImGui::SameLine(0, em() * 0.8f);
+        ImGui::PushTextWrapPos(0);
         ImGui::TextDisabled("Alt+drag moves, Alt+wheel resizes, F follows the mouse");
+        ImGui::PopTextWrapPos();
     }
 }
 

@@ -107,9 +107,9 @@ void drawCurve(const std::string& title, Range range, const Profile& profile, st
     std::vector<ImVec2> run;
     const auto flush = [&] {
         if (run.size() > 1)
-            draw.AddPolyline(run.data(), static_cast<int>(run.size()), focusColor({}), 0, std::max(1.2f, em() * 0.11f));
+            draw.AddPolyline(run.data(), static_cast<int>(run.size()), colors.focus, 0, std::max(1.2f, em() * 0.11f));
         else if (run.size() == 1)
-            draw.AddCircleFilled(run.front(), em() * 0.12f, focusColor({}));
+            draw.AddCircleFilled(run.front(), em() * 0.12f, colors.focus);
         run.clear();
     };
     for (std::size_t i = 0; i < values.size(); ++i) {

@@ -60,7 +60,8 @@ void drawHistogram(ImDrawList& draw, const PlotFrame& frame, const volume::Histo
     if (brushed) drawBars(draw, frame, focus, focusShade);
 }
 
-void drawCorrelation(ImDrawList& draw, const PlotFrame& frame, const volume::JointHistogram& joint, bool brushed) {
+void drawCorrelation(ImDrawList& draw, const PlotFrame& frame, const volume::JointHistogram& joint, bool brushed,
+                     ImU32 focusShade) {
     const PlotColors colors = plotColors();
     const auto line = [&](double r, float centerY, float scale, ImU32 color, const char* prefix) {
         char text[48];
@@ -86,7 +87,7 @@ void drawCorrelation(ImDrawList& draw, const PlotFrame& frame, const volume::Joi
     const float middle = (frame.min.y + frame.max.y) / 2;
     const bool two = brushed && frame.height() > em() * 2.4f;
     line(joint.correlation, two ? middle - em() * 0.55f : middle, 1, colors.text, "");
-    if (two) line(joint.focusCorrelation, middle + em() * 0.6f, 0.9f, colors.focus, "");
+    if (two) line(joint.focusCorrelation, middle + em() * 0.6f, 0.9f, focusShade, "");
 }
 
 void drawNothingCommon(ImDrawList& draw, const PlotFrame& frame) {
@@ -143,13 +144,16 @@ void hoverText(const ScatterLayout& matrix, std::size_t column, std::size_t row,
     if (!text.empty()) ImGui::SetTooltip("%s", text.c_str());
 }
 
-void drawOutliers(ImDrawList& draw, const PlotFrame& frame, const volume::JointHistogram& joint, ImU32 color) {
+void drawOutliers(ImDrawList& draw, const PlotFrame& frame, const volume::JointHistogram& joint,
+                  const std::function<ImU32(std::size_t bin)>& colorOf) {
     const int bins = joint.bins;
     const double width = (joint.xRange.hi - joint.xRange.lo) / bins,
                  height = (joint.yRange.hi - joint.yRange.lo) / bins;
+    const auto place = [&](int x, int y) {
+        return static_cast<std::size_t>(y) * static_cast<std::size_t>(bins) + static_cast<std::size_t>(x);
+    };
     const auto count = [&](int x, int y) {
-        if (x < 0 || y < 0 || x >= bins || y >= bins) return std::uint64_t(0);
-        return joint.count[static_cast<std::size_t>(y) * static_cast<std::size_t>(bins) + static_cast<std::size_t>(x)];
+        return x < 0 || y < 0 || x >= bins || y >= bins ? std::uint64_t(0) : joint.count[place(x, y)];
     };
     std::size_t drawn = 0;
     const float radius = std::max(1.0f, em() * 0.09f);
@@ -162,9 +166,14 @@ void drawOutliers(ImDrawList& draw, const PlotFrame& frame, const volume::JointH
                 for (int dx = -1; dx <= 1; ++dx) empty += count(x + dx, y + dy) == 0;
             if (empty < 5) continue;
             draw.AddCircleFilled(frame.pixel(joint.xRange.lo + (x + 0.5) * width, joint.yRange.lo + (y + 0.5) * height),
-                                 radius, color, 6);
+                                 radius, colorOf(place(x, y)), 6);
             ++drawn;
         }
+}
+
+ImU32 meanColor(const vis::TransferFunction& function, Range range, double mean) {
+    const glm::dvec4 color = vis::evaluate(function, range, mean);
+    return toColor({color.r, color.g, color.b});
 }
 
 int meanImage(const volume::JointHistogram& joint, int merge, const vis::TransferFunction& function, Range range,
@@ -185,11 +194,10 @@ int meanImage(const volume::JointHistogram& joint, int merge, const vis::Transfe
         for (std::size_t column = 0; column < n; ++column) {
             const std::size_t from = row * n + column;
             if (weight[from] <= 0) continue;
-            const glm::dvec4 color = vis::evaluate(function, range, sum[from] / weight[from]);
+            const ImU32 color = meanColor(function, range, sum[from] / weight[from]);
             std::uint8_t* pixel = &rgba[((n - 1 - row) * n + column) * 4];
-            for (int k = 0; k < 3; ++k)
-                pixel[k] = static_cast<std::uint8_t>(std::lround(255 * std::clamp(color[k], 0.0, 1.0)));
-            pixel[3] = 255;
+            for (const int shift : {IM_COL32_R_SHIFT, IM_COL32_G_SHIFT, IM_COL32_B_SHIFT, IM_COL32_A_SHIFT})
+                *pixel++ = static_cast<std::uint8_t>(color >> shift & 255);
         }
     return static_cast<int>(n);
 }

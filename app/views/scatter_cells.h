@@ -3,6 +3,8 @@
 #include "app/views/scatter_layout.h"
 #include "app/views/statistics_feed.h"
 
+#include <functional>
+
 /// What stands in the cells of a scatterplot matrix, besides the density pictures.
 namespace tessera::app {
 
@@ -13,14 +15,19 @@ void drawHistogram(ImDrawList& draw, const PlotFrame& frame, const volume::Histo
                    bool logCounts, ImU32 focusShade);
 
 /// Correlation as a number on a tint: orange for rising together, blue for against each other.
-void drawCorrelation(ImDrawList& draw, const PlotFrame& frame, const volume::JointHistogram& joint, bool brushed);
+void drawCorrelation(ImDrawList& draw, const PlotFrame& frame, const volume::JointHistogram& joint, bool brushed,
+                     ImU32 focusShade);
 
 /// Parameters that never exist at the same point, like oxygen and hydrogen: said, so that the plot does not look
 /// broken.
 void drawNothingCommon(ImDrawList& draw, const PlotFrame& frame);
 
 /// A dot on every bin that holds few samples and has empty ones around it: one pixel there would not be seen.
-void drawOutliers(ImDrawList& draw, const PlotFrame& frame, const volume::JointHistogram& joint, ImU32 color);
+void drawOutliers(ImDrawList& draw, const PlotFrame& frame, const volume::JointHistogram& joint,
+                  const std::function<ImU32(std::size_t bin)>& colorOf);
+
+/// A mean's colour in a plot: opaque.
+ImU32 meanColor(const vis::TransferFunction& function, Range range, double mean);
 
 /// What is under the mouse in a cell.
 void hoverText(const ScatterLayout& matrix, std::size_t column, std::size_t row, const PlotFrame& frame,

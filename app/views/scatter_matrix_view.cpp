@@ -114,12 +114,12 @@ Enlarged enlargedPlot(const ScatterLayout& matrix, const ScatterMatrixView& view
 
 /// A correlation cell of the upper triangle.
 void drawUpperCell(const ScatterCache& cache, const ScatterLayout& matrix, std::size_t column, std::size_t row,
-                   const StatisticsResult* result) {
+                   const StatisticsResult* result, ImU32 focus) {
     ImDrawList& draw = *ImGui::GetWindowDrawList();
     const PlotFrame frame = matrix.cell(column, row);
     const int joint = result ? jointIndex(result->statistics, row, column) : -1;
     if (joint >= 0)
-        drawCorrelation(draw, frame, result->statistics.joint[static_cast<std::size_t>(joint)], result->brushed);
+        drawCorrelation(draw, frame, result->statistics.joint[static_cast<std::size_t>(joint)], result->brushed, focus);
     draw.AddRect(frame.min, frame.max, plotColors().frame);
     if (ImGui::IsMouseHoveringRect(frame.min, frame.max) && ImGui::IsWindowHovered() && !cache.drag.active && result)
         hoverText(matrix, column, row, frame, *result, {});
@@ -183,7 +183,7 @@ bool drawPlot(ViewContext& context, ScatterCache& cache, ScatterMatrixView& view
     draw.PushClipRect(frame.min, frame.max, true);
     if (result && histogram)
         drawHistogram(draw, frame, result->statistics.channels[column].histogram, result->brushed, view.logDensity,
-                      focusColor(session.selection));
+                      focusColor(session));
     const int joint = result ? jointIndex(result->statistics, column, row) : -1;
     if (joint >= 0 && texture) {
         if (result->statistics.joint[static_cast<std::size_t>(joint)].samples == 0) drawNothingCommon(draw, frame);
@@ -193,7 +193,16 @@ bool drawPlot(ViewContext& context, ScatterCache& cache, ScatterMatrixView& view
                      high = frame.pixel(counted.xRange.hi, counted.yRange.hi);
         draw.AddImage(reinterpret_cast<ImTextureID>(static_cast<std::intptr_t>(texture->name())), {low.x, high.y},
                       {high.x, low.y});
-        if (view.outliers) drawOutliers(draw, frame, counted, plotColors().faint);
+        if (view.outliers)
+            drawOutliers(draw, frame, counted, [&](std::size_t bin) {
+                if (!counted.mean.empty())
+                    return std::isnan(counted.mean[bin])
+                               ? colors.faint
+                               : meanColor(cache.shownColors.function, cache.shownColors.range, counted.mean[bin]);
+                if (!result->brushed) return colors.faint;
+                return counted.focus[bin] >= 0.5 * static_cast<double>(counted.count[bin]) ? cache.shownFocus
+                                                                                           : colors.frame;
+            });
     }
     draw.PopClipRect();
     draw.AddRect(frame.min, frame.max, colors.frame);
@@ -290,12 +299,12 @@ void drawScatterMatrixView(ViewContext& context, const std::string& pane, Scatte
     if (result)
         updateTextures(cache, result, view.logDensity, std::min(matrix.cellX, matrix.cellY),
                        large.cells > 0 ? jointIndex(result->statistics, large.column, large.row) : -1,
-                       focusColor(context.session.selection), meanColors(context.session, info, view.colorBy));
+                       focusColor(context.session), meanColors(context.session, info, view.colorBy));
     for (std::size_t row = 0; row < matrix.size(); ++row)
         for (std::size_t column = 0; column < matrix.size(); ++column) {
             if (large.covers(matrix, column, row)) continue;
             if (column > row) {
-                drawUpperCell(cache, matrix, column, row, result.get());
+                drawUpperCell(cache, matrix, column, row, result.get(), cache.shownFocus);
                 continue;
             }
             const int joint = result ? jointIndex(result->statistics, column, row) : -1;

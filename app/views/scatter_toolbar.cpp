@@ -137,7 +137,7 @@ void drawMore(ViewContext& context, ScatterMatrixView& view, const std::vector<i
     ImGui::SameLine();
     exportMenu(
         context, "scatterplots",
-        [info, result, logDensity = view.logDensity, focus = focusColor(context.session.selection)](const Progress&) {
+        [info, result, logDensity = view.logDensity, focus = focusColor(context.session)](const Progress&) {
             return matrixSvg(info, *result, logDensity, focus);
         },
         [info, result](const Progress&) { return matrixCsv(info, *result); });

@@ -110,7 +110,9 @@ StatisticsWish makeWish(const Session& session, const volume::DatasetInfo& info,
     }
     const bool marked = std::any_of(session.lenses.begin(), session.lenses.end(),
                                     [](const vis::Lens& lens) { return lens.enabled && lens.marks; });
-    if (marked) wish.selection.brushes.push_back({.name = "", .color = {}, .region = vis::LensRegion{}});
+    // Brushes have the word: what they select is the same in plots, tables and volumes.
+    if (marked && wish.selection.brushes.empty())
+        wish.selection.brushes.push_back({.name = "", .color = {}, .region = vis::LensRegion{}});
     if (vis::selectsLens(wish.selection)) wish.lenses = lensSpace(session, info);
     return wish;
 }

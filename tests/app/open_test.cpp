@@ -128,6 +128,32 @@ TEST_F(OpenTest, ASessionBringsItsDataAndItsImportOptions) {
     EXPECT_EQ(found.document.session.camera.distance, 4);
 }
 
+TEST_F(OpenTest, TimeAlongAnAxisTakesTheTimeWithItAndBack) {
+    OpenRequest request;
+    request.data = DataRef{};
+    request.data->model = "fuel-cell";
+    request.data->settings = {{"nx", 7}, {"ny", 9}, {"nz", 21}, {"times", 4}};
+    Opened opened = open(request);
+    const volume::DatasetInfo info = opened.source->info();
+    Session& session = opened.document.session;
+    session.time = info.times[2];
+    session.cursor = info.bounds.lo + glm::dvec3(0.5, 0.25, 0.75) * info.bounds.size();
+    const Session before = session;
+    DataRef data = session.data;
+    data.timeAxis = {volume::SpaceAxis::Z, 0.75};
+    Opened along = openWith(opened, data);
+    const double seconds = volume::timePerLength(along.source->info(), *data.timeAxis);
+    EXPECT_NEAR(along.document.session.cursor.z * seconds, info.times[2], 1e-12);
+    EXPECT_EQ(along.document.session.cursor.y, before.cursor.y);
+
+    const Opened back = openWith(along, before.data);
+    EXPECT_EQ(back.document.session.time, before.time);
+    EXPECT_NEAR(back.document.session.cursor.z, before.cursor.z, 1e-12);
+    // A cross-hair that was moved there goes to its time.
+    along.document.session.cursor.z = 0.4 * info.times[1] / seconds;
+    EXPECT_NEAR(openWith(along, before.data).document.session.time, 0.4 * info.times[1], 1e-9);
+}
+
 TEST_F(OpenTest, APictureCarriesItsSession) {
     const Opened opened = open(rawRequest(raw("a.raw")));
     vis::Image image;
