@@ -157,6 +157,8 @@ void drawTimelineView(ViewContext& context, const std::string& pane, TimelineVie
         ImGui::Text("t = %s", timeText(info, now).c_str());
         ImGui::SameLine(0, em());
         ImGui::TextDisabled("%s", placeText(info.times, now).c_str());
+    } else if (const auto& along = session.data.timeAxis) {
+        ImGui::TextDisabled("Time runs along %s.", volume::kSpaceAxisNames[std::size_t(along->axis)].data());
     } else {
         ImGui::TextDisabled("This data has one time.");
     }

@@ -48,12 +48,12 @@ private:
     mutable std::set<std::tuple<int, int, int, int, int>> read_;
 };
 
-std::shared_ptr<Watched> waves(int times = 1) {
+std::shared_ptr<Watched> waves(int times = 1, glm::ivec3 samples = {60, 52, 71}) {
     const auto v = [](glm::dvec3 p) -> std::optional<double> {
         return 0.5 + 0.4 * std::sin(0.2 * p.x) * std::cos(0.15 * p.y + 0.1 * p.z);
     };
     return std::make_shared<Watched>(
-        std::make_shared<vis::FunctionSource>(volume::LatticeKind::BCC, glm::ivec3(60, 52, 71), glm::dvec3(1),
+        std::make_shared<vis::FunctionSource>(volume::LatticeKind::BCC, samples, glm::dvec3(1),
                                               std::vector<vis::FunctionSource::Channel>{{"v", v}}, 8),
         times);
 }
@@ -168,6 +168,47 @@ TEST_F(ResidencyTest, DistantBricksAreCoarse) {
     double sum = 0;
     for (std::size_t i = 0; i < fine.size(); ++i) sum += glm::dot(fine[i] - coarse[i], fine[i] - coarse[i]);
     EXPECT_LT(std::sqrt(sum / (4 * double(fine.size()))), 0.03);
+}
+
+// A lens with a detail of its own: through its middle the picture is the fine one, away from it the coarse one.
+TEST_F(ResidencyTest, ALensIsFinerThanWhatIsAroundIt) {
+    Scene scene = volumeScene();
+    const glm::ivec2 size(48, 48);
+    // A slab seen from the front: few bricks behind each other, many beside the lens.
+    const glm::ivec3 samples(96, 96, 16);
+    const auto all = waves(1, samples), some = waves(1, samples), none = waves(1, samples);
+    scene.camera.orientation = {1, 0, 0, 0};
+    scene.render.detail = 0;
+    const std::vector<glm::vec4> fine = picture(all, bricks(), scene, size);
+    scene.render.detail = 100;
+    const std::vector<glm::vec4> coarse = picture(none, bricks(), scene, size);
+    ASSERT_EQ(none->count(0, 0), 0);
+    vis::Lens lens;
+    lens.shape = vis::LensShape::Disc;
+    lens.effect = vis::LensEffect::Focus; // without brushes it changes nothing else
+    const volume::Box& box = none->info().bounds;
+    lens.center = 0.5 * (box.lo + box.hi);
+    lens.size = glm::vec3(0.05f);
+    lens.detail = 0;
+    scene.lenses = {lens};
+    const std::vector<glm::vec4> mixed = picture(some, bricks(), scene, size);
+    EXPECT_GT(some->count(0, 0), 0);
+    EXPECT_LT(some->count(0, 0), all->count(0, 0) / 2);
+    const auto differ = [&](const std::vector<glm::vec4>& a, const std::vector<glm::vec4>& b, bool inside) {
+        float most = 0;
+        for (int y = 0; y < size.y; ++y)
+            for (int x = 0; x < size.x; ++x) {
+                const double off = glm::length(glm::dvec2(x, y) + 0.5 - 0.5 * glm::dvec2(size));
+                if (inside ? off > 2 : off < 14) continue;
+                const glm::vec4 way = glm::abs(a[std::size_t(y * size.x + x)] - b[std::size_t(y * size.x + x)]);
+                most = std::max({most, way.r, way.g, way.b, way.a});
+            }
+        return most;
+    };
+    ASSERT_GT(differ(fine, coarse, true), 0.005f);
+    ASSERT_GT(differ(fine, coarse, false), 0.01f);
+    EXPECT_LT(differ(mixed, fine, true), 0.001f);
+    EXPECT_LT(differ(mixed, coarse, false), 0.001f);
 }
 
 // Where bricks of different levels meet there is no more of a seam than the coarser one is wrong by itself: the error

@@ -81,10 +81,15 @@ void markShown(std::vector<std::uint8_t>& shown, const RayPlan& plan, int field,
         if (!blocks || i >= blocks->distance.size() || blocks->distance[i] == 0) shown[i] = 1;
 }
 
-/// Whether a box may reach into a lens: its radius changes by at most 1 over the shortest of its radii.
+/// Whether a box may reach into a lens.
 bool meets(const PlacedLens& lens, const WorldBox& box) {
-    const double steepest = glm::length(lens.toUnit[0]) + glm::length(lens.toUnit[1]) + glm::length(lens.toUnit[2]);
-    return lens.radius(box.centre) - steepest * glm::length(box.half) < 1;
+    // How far the unit shape's coordinates go within the box, each by itself.
+    glm::dvec3 reach(0);
+    for (int axis = 0; axis < 3; ++axis) reach += glm::abs(glm::dvec3(lens.toUnit[axis])) * box.half[axis];
+    if (lens.shape != LensShape::Disc) return lens.radius(box.centre) - glm::length(reach) < 1;
+    // A cone: |u_xy| < 1 + u_z.
+    const glm::dvec3 u = lens.toUnit * (box.centre - lens.center);
+    return glm::length(glm::dvec2(u)) - u.z < 1 + glm::length(glm::dvec2(reach)) + reach.z;
 }
 
 } // namespace
