@@ -42,11 +42,30 @@ int defaultLevels(const volume::Lattice& lattice, int brickSize) {
     return levels;
 }
 
-volume::BrickGrid gridFor(const volume::Lattice& lattice, const PackOptions& options) {
-    volume::BrickGrid grid{lattice, options.brickSize, options.levels,
+/// The edge of bricks, where options leave it to us: samples that repeat themselves, which only integers that were not
+/// resampled do, are found within a brick alone. What grows keeps its bricks.
+int brickSizeFor(const volume::Lattice& lattice, const volume::DatasetInfo& info, const PackOptions& options,
+                 const Archive* grown) {
+    constexpr int kUsual = 64, kLargest = 128;
+    constexpr std::size_t kSmall = 1 << 19; // samples
+    if (options.brickSize != 0) return options.brickSize;
+    if (grown) return grown->grid().brickSize;
+    const glm::ivec3 size = lattice.size;
+    const int longest = std::max({size.x, size.y, size.z});
+    const auto isInteger = [](const volume::Parameter& parameter) { return parameter.type != ScalarType::F32; };
+    const bool one = lattice.kind == LatticeKind::CC && lattice == info.lattice && info.times.size() == 1 &&
+                     lattice.count() <= kSmall && longest > kUsual && longest <= kLargest &&
+                     std::all_of(info.parameters.begin(), info.parameters.end(), isInteger);
+    return one ? kLargest : kUsual;
+}
+
+volume::BrickGrid gridFor(const volume::Lattice& lattice, const volume::DatasetInfo& info, const PackOptions& options,
+                          const Archive* grown = nullptr) {
+    const int brickSize = brickSizeFor(lattice, info, options, grown);
+    volume::BrickGrid grid{lattice, brickSize, options.levels,
                            levelPhase(waveletOf(options.wavelet).value_or(Wavelet::W22))};
-    if (options.brickSize < 4 || options.brickSize > 128 || !std::has_single_bit(unsigned(options.brickSize)))
-        throw Error("the brick size must be a power of two from 4 to 128, not " + std::to_string(options.brickSize));
+    if (brickSize < 4 || brickSize > 128 || !std::has_single_bit(unsigned(brickSize)))
+        throw Error("the brick size must be a power of two from 4 to 128, not " + std::to_string(brickSize));
     if (grid.levels == 0) grid.levels = defaultLevels(lattice, grid.brickSize);
     if (grid.levels < 1 || grid.levels > int(std::bit_width(unsigned(grid.brickSize))))
         throw Error(std::to_string(grid.levels) + " levels do not fit bricks of " + std::to_string(grid.brickSize));
@@ -266,7 +285,7 @@ PackSummary packInto(volume::Dataset& source, const PackOptions& asked, const st
     const bool resamples = toBcc || metadata.alternating;
     metadata.info = info;
     metadata.info.lattice = toBcc ? volume::bccFor(info.lattice) : info.lattice;
-    metadata.grid = gridFor(metadata.info.lattice, options);
+    metadata.grid = gridFor(metadata.info.lattice, source.info, options, grown);
     metadata.lossless = exact && options.discard == 0;
     metadata.program = "tessera";
     metadata.options = options;
@@ -406,7 +425,7 @@ PackSummary pack(volume::Dataset& source, const PackOptions& asked, const std::s
         gatherAllRanges(source, planMemory({}, source.info, options).readAhead, reading, part.part(0, 0.5));
         const bool toBcc = options.lattice == StoredLattice::BCC && source.info.lattice.kind == LatticeKind::CC;
         const volume::Lattice lattice = toBcc ? volume::bccFor(source.info.lattice) : source.info.lattice;
-        return estimateSizes(source, gridFor(lattice, options), options, toBcc, part.part(0.5, 1));
+        return estimateSizes(source, gridFor(lattice, source.info, options), options, toBcc, part.part(0.5, 1));
     };
     return packToSize(options, path, bytesAt, trial, progress);
 }

@@ -50,7 +50,7 @@ struct PackOptions {
     double discard = 0;
     WaveletChoice wavelet = WaveletChoice::Auto;
     BccTransform bccTransform = BccTransform::Auto;
-    int brickSize = 64;
+    int brickSize = 0;
     int levels = 0;
     int zstdLevel = 9;
     double memoryMb = 0;
@@ -116,8 +116,9 @@ struct PackOptions {
                                            .names = kBccTransformNames});
         visit(self.brickSize, FieldInfo{.key = "brickSize",
                                         .unit = "texel",
-                                        .doc = "Edge of a brick, a power of two",
-                                        .range = Range{4, 128}});
+                                        .doc = "Edge of a brick, a power of two; 0 = 64, of one small volume of "
+                                               "integers as much as it takes to be one brick",
+                                        .range = Range{0, 128}});
         visit(self.levels, FieldInfo{.key = "levels",
                                      .unit = "",
                                      .doc = "Levels of detail; 0 = until a brick is 4 texels wide",

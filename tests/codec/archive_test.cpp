@@ -296,6 +296,33 @@ TEST(Archive, NothingIsLeftBehindWhenPackingFails) {
     EXPECT_THROW(pack(made, bad, folder / "a.tsr"), Error);
 }
 
+TEST(Archive, OneSmallVolumeOfIntegersIsOneBrick) {
+    const TemporaryFolder folder;
+    const std::string path = folder / "a.tsr";
+    const auto edgeOf = [&](ScalarType type, glm::ivec3 size, int times, StoredLattice lattice, int asked) {
+        volume::Dataset made = makeDataset(size, {{"a", type, 1, Texture::Sparse, false, false}}, times);
+        PackOptions options;
+        options.lattice = lattice;
+        options.brickSize = asked;
+        pack(made, options, path);
+        return Archive(path).grid().brickSize;
+    };
+    EXPECT_EQ(edgeOf(ScalarType::F32, {98, 34, 34}, 1, StoredLattice::CC, 0), 64);
+    EXPECT_EQ(edgeOf(ScalarType::U8, {98, 34, 34}, 1, StoredLattice::BCC, 0), 64);
+    EXPECT_EQ(edgeOf(ScalarType::U8, {98, 34, 34}, 2, StoredLattice::CC, 0), 64);
+    EXPECT_EQ(edgeOf(ScalarType::U8, {130, 8, 8}, 1, StoredLattice::CC, 0), 64);
+    EXPECT_EQ(edgeOf(ScalarType::U8, {64, 34, 34}, 1, StoredLattice::CC, 0), 64);
+    EXPECT_EQ(edgeOf(ScalarType::U8, {98, 34, 34}, 1, StoredLattice::CC, 32), 32);
+    EXPECT_EQ(edgeOf(ScalarType::U8, {98, 34, 34}, 1, StoredLattice::CC, 0), 128);
+    EXPECT_EQ(Archive(path).grid().count(), glm::ivec3(1));
+    // What grows keeps its bricks.
+    volume::Dataset more = makeDataset({98, 34, 34}, {{"a", ScalarType::U8, 1, Texture::Sparse, false, false}}, 1);
+    more.info.times = {5};
+    append(more, path);
+    EXPECT_EQ(Archive(path).grid().brickSize, 128);
+    EXPECT_EQ(Archive(path).info().times.size(), 2u);
+}
+
 TEST(Archive, AKeyOutsideIsAnError) {
     const TemporaryFolder folder;
     volume::Dataset made = makeDataset({20, 20, 20}, {{"a", ScalarType::U8, 1, Texture::Smooth, false, false}}, 1);
