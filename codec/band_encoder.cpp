@@ -1,6 +1,7 @@
 #include "codec/band_coder.h"
-#include "codec/band_rows.h"
-#include "codec/vector_intrinsics.h"
+#include "codec/band_rows512.h"
+
+#include <memory>
 
 namespace tessera::codec {
 
@@ -27,11 +28,12 @@ private:
 /// What the backward pass makes: states, words from the end of their buffer on, and where it had to escape.
 struct Coded {
     alignas(64) std::uint32_t states[kMostGroups * kLanes];
-    std::vector<std::uint16_t> words;
-    std::size_t at = 0;
-    std::vector<std::uint32_t> escaped; ///< numbers of tokens, descending
+    std::size_t size = 0, at = 0;
+    std::unique_ptr<std::uint16_t[]> words; ///< `size` of them
+    std::vector<std::uint32_t> escaped;     ///< numbers of tokens, descending
 
-    explicit Coded(std::size_t tokens) : words(tokens + kLanes), at(words.size()) {
+    explicit Coded(std::size_t tokens)
+        : size(tokens + kLanes), at(size), words(std::make_unique_for_overwrite<std::uint16_t[]>(size)) {
         std::fill(std::begin(states), std::end(states), kLowestState);
     }
 };
@@ -68,7 +70,7 @@ void codeTokens(const TokenRun& run, const std::uint32_t* tables, std::span<cons
 TESSERA_AVX512 void codeTokens512(const TokenRun& run, const std::uint32_t* tables, const std::uint32_t* packed,
                                   Coded& out) {
     const std::size_t mask = std::size_t(run.groups) - 1;
-    std::uint16_t* words = out.words.data() + out.at;
+    std::uint16_t* words = out.words.get() + out.at;
     for (std::size_t chunk = run.tokens.size() / kLanes; chunk-- > 0;) {
         const __m512i both = _mm512_cvtepu16_epi32(
             _mm256_loadu_si256(reinterpret_cast<const __m256i*>(run.tokens.data() + chunk * kLanes)));
@@ -80,12 +82,12 @@ TESSERA_AVX512 void codeTokens512(const TokenRun& run, const std::uint32_t* tabl
         const __m512i table =
             _mm512_permutex2var_epi32(_mm512_load_si512(own), _mm512_srli_epi32(both, 8), _mm512_load_si512(own + 16));
         const __m512i index = _mm512_or_si512(table, _mm512_and_si512(both, _mm512_set1_epi32(255)));
-        __m512i entry = _mm512_mask_i32gather_epi32(_mm512_set1_epi32(1), active, index, packed, 4);
+        __m512i entry = _mm512_mask_mov_epi32(_mm512_set1_epi32(1), active, entries512(packed, index));
         __m512i frequency = _mm512_and_si512(entry, _mm512_set1_epi32(0xffff));
         const __mmask16 none = _mm512_mask_testn_epi32_mask(active, frequency, frequency);
         if (none != 0) [[unlikely]] {
             const __m512i escape = _mm512_or_si512(table, _mm512_set1_epi32(kEscape));
-            entry = _mm512_mask_i32gather_epi32(entry, none, escape, packed, 4);
+            entry = _mm512_mask_mov_epi32(entry, none, entries512(packed, escape));
             frequency = _mm512_and_si512(entry, _mm512_set1_epi32(0xffff));
             for (std::uint32_t lane = kLanes; lane-- > 0;)
                 if ((none >> lane & 1) != 0) out.escaped.push_back(static_cast<std::uint32_t>(chunk * kLanes + lane));
@@ -114,7 +116,7 @@ TESSERA_AVX512 void codeTokens512(const TokenRun& run, const std::uint32_t* tabl
                                                _mm512_add_epi32(rest, _mm512_srli_epi32(entry, 16)));
         _mm512_store_si512(states, _mm512_mask_mov_epi32(state, active, after));
     }
-    out.at = static_cast<std::size_t>(words - out.words.data());
+    out.at = static_cast<std::size_t>(words - out.words.get());
 }
 
 #endif
@@ -177,12 +179,13 @@ void BandEncoder::encode(const TokenRun& run, int level, Bytes& out, Cpu cpu) co
     appendLength(out, static_cast<std::uint32_t>(raw.size()));
     out.insert(out.end(), raw.begin(), raw.end());
     for (int lane = 0; lane < run.used; ++lane) appendU32(out, coded.states[lane]);
-    const std::size_t begin = out.size(), count = coded.words.size() - coded.at;
+    const std::size_t begin = out.size(), count = coded.size - coded.at;
     out.resize(begin + 2 * count);
-    for (std::size_t i = 0; i < count; ++i) {
-        const std::uint16_t word = coded.words[coded.at + i];
-        out[begin + 2 * i] = static_cast<std::byte>(word);
-        out[begin + 2 * i + 1] = static_cast<std::byte>(word >> 8);
+    const std::uint16_t* words = coded.words.get() + coded.at;
+    std::byte* to = out.data() + begin;
+    for (std::size_t i = 0; i < count; ++i, to += 2) {
+        to[0] = static_cast<std::byte>(words[i]);
+        to[1] = static_cast<std::byte>(words[i] >> 8);
     }
 }
 

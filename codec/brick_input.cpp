@@ -28,14 +28,15 @@ void BrickInput::take(const volume::BrickGrid& grid, glm::ivec3 brick, const vol
 void BrickInput::take(const volume::BrickGrid& grid, glm::ivec3 begin, glm::ivec3 size, const volume::Field& field,
                       bool masked) {
     const std::size_t sampleBytes = volume::byteSize(field.type), n = std::size_t(size.x);
-    samples.clear();
+    const std::size_t rowBytes = n * sampleBytes;
+    samples.resize(rowBytes * std::size_t(size.y) * std::size_t(size.z));
+    std::byte* to = samples.data();
     present.clear();
     bool mixed = false;
     for (int z = 0; z < size.z; ++z)
-        for (int y = 0; y < size.y; ++y) {
+        for (int y = 0; y < size.y; ++y, to += rowBytes) {
             const std::size_t from = grid.lattice.index(begin + glm::ivec3(0, y, z));
-            const auto row = field.samples.begin() + std::ptrdiff_t(from * sampleBytes);
-            samples.insert(samples.end(), row, row + std::ptrdiff_t(n * sampleBytes));
+            std::memcpy(to, field.samples.data() + from * sampleBytes, rowBytes);
             for (std::size_t i = from; masked && i < from + n; ++i) {
                 present.push_back(field.present(i) ? 1 : 0);
                 mixed = mixed || present.back() == 0;

@@ -24,7 +24,7 @@ Histogram sampleTokens(const volume::BrickGrid& grid, const volume::Field& field
     const std::size_t bricks = brickCount(grid), count = std::min(bricks, most);
     // Of many samples a part is enough; a step that goes through every place of a row in turn.
     constexpr std::size_t kMany = 2 << 20;
-    const int every = field.count() / bricks * count < kMany ? 1 : 3;
+    const int every = field.count() / bricks * count < kMany ? 1 : 5;
     Histogram sum(grid.levels, contexts);
     std::mutex mutex;
     if (taken) {

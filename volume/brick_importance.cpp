@@ -149,23 +149,31 @@ struct Sums {
     int samples = 0;
     std::array<std::array<double, kTones>, 2> tones{}; ///< by turns, as one would wait for the one before
 
-    static std::size_t toneOf(double value01) { return std::size_t(std::min(int(value01 * kTones), kTones - 1)); }
-    void add(double value01, double w) {
+    static std::size_t toneOf(float value01) { return std::size_t(std::min(int(value01 * kTones), kTones - 1)); }
+    void add(float sample01, double w) {
+        const double value01 = double(sample01);
         weight += w;
         value += w * value01;
         square += w * value01 * value01;
-        tones[0][toneOf(value01)] += w;
+        tones[0][toneOf(sample01)] += w;
         ++samples;
     }
     /// The same of `count` values of one weight.
     void add(const float* values, int count, double w) {
-        std::array<double, 4> first{}, second{};
-        for (int x = 0; x < count; ++x) {
-            const double value01 = double(values[x]);
-            first[std::size_t(x % 4)] += value01;
-            second[std::size_t(x % 4)] += value01 * value01;
-            tones[std::size_t(x % 2)][toneOf(value01)] += w;
+        constexpr int kTurns = 4; // as one sum would wait for the one before
+        std::array<double, kTurns> first{}, second{};
+        int x = 0;
+        for (; x + kTurns <= count; x += kTurns)
+            for (int i = 0; i < kTurns; ++i) {
+                const double value01 = double(values[x + i]);
+                first[std::size_t(i)] += value01;
+                second[std::size_t(i)] += value01 * value01;
+            }
+        for (; x < count; ++x) {
+            first[0] += double(values[x]);
+            second[0] += double(values[x]) * double(values[x]);
         }
+        for (x = 0; x < count; ++x) tones[std::size_t(x % 2)][toneOf(values[x])] += w;
         weight += w * count;
         value += w * ((first[0] + first[1]) + (first[2] + first[3]));
         square += w * ((second[0] + second[1]) + (second[2] + second[3]));
@@ -191,12 +199,21 @@ struct Sums {
 
 /// Sum of the squares of what is left of `count` samples when the means of those a step before and behind are taken.
 double squaresOfDetails(const float* row, std::ptrdiff_t step, int count) {
-    std::array<double, 4> sums{}; // by turns, as one would wait for the one before
-    for (int x = 0; x < count; ++x) {
-        const double detail = double(row[x]) - 0.5 * (double(row[x - step]) + double(row[x + step]));
-        sums[std::size_t(x % 4)] += detail * detail;
+    constexpr int kTurns = 8; // as one sum would wait for the one before
+    std::array<float, kTurns> sums{};
+    int x = 0;
+    for (; x + kTurns <= count; x += kTurns)
+        for (int i = 0; i < kTurns; ++i) {
+            const float detail = row[x + i] - 0.5f * (row[x + i - step] + row[x + i + step]);
+            sums[std::size_t(i)] += detail * detail;
+        }
+    double sum = 0;
+    for (; x < count; ++x) {
+        const float detail = row[x] - 0.5f * (row[x - step] + row[x + step]);
+        sum += double(detail * detail);
     }
-    return (sums[0] + sums[1]) + (sums[2] + sums[3]);
+    for (const float part : sums) sum += double(part);
+    return sum;
 }
 
 /// Adds a row of a brick of which everything is there; `border`: all of it lies on a face.
@@ -211,9 +228,9 @@ void addRow(const Smoothed& from, int begin, int end, int y, int z, bool border,
         sums.add(row, count, borderWeight);
         return;
     }
-    sums.add(double(row[0]), borderWeight);
+    sums.add(row[0], borderWeight);
     sums.add(row + 1, count - 2, 1);
-    sums.add(double(row[count - 1]), borderWeight);
+    sums.add(row[count - 1], borderWeight);
 }
 
 /// Adds what a sublattice has of the brick whose samples are [begin, end) of the halved one.
@@ -241,7 +258,7 @@ void addBrick(const Smoothed& from, glm::ivec3 begin, glm::ivec3 end, double bor
                     sums.details += detail * detail;
                     ++sums.axes;
                 }
-                sums.add(double(from.values[i]), border ? borderWeight : 1);
+                sums.add(from.values[i], border ? borderWeight : 1);
             }
         }
 }
