@@ -71,7 +71,7 @@ ProgramRecipe Renderer::Impl::prepare(ViewTarget& target, const Scene& scene, Ra
     target.opaque = opaqueIntervals(plan, table);
     const int rows = int(table.size()) / kTableSize;
     if (rows > 0 && rows != target.tableRows) {
-        target.table = makeTexture2D({kTableSize, rows}, GL_RGBA32F, GL_NEAREST, "transfer tables");
+        target.table = makeTexture1DArray(kTableSize, rows, GL_RGBA32F, GL_LINEAR, "transfer tables");
         target.tableRows = rows;
     }
     if (rows > 0) glTextureSubImage2D(target.table.name(), 0, 0, 0, kTableSize, rows, GL_RGBA, GL_FLOAT, table.data());

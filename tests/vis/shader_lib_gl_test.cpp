@@ -184,7 +184,7 @@ TEST_F(ShaderLib, TablesAreLookedUpAlike) {
         for (int x = 0; x < kSize; ++x) table.emplace_back(x % 7, row, float(x) / kSize, x > 1000 ? 0.5 : 0);
     for (int y = 0; y < 2 * kPlane; ++y)
         for (int x = 0; x < kPlane; ++x) planes.emplace_back(0.5f * glm::vec3(x, y % kPlane, y / kPlane), 0.5f);
-    const vis::Texture first = vis::makeTexture2D({kSize, 2}, GL_RGBA32F, GL_NEAREST, "table");
+    const vis::Texture first = vis::makeTexture1DArray(kSize, 2, GL_RGBA32F, GL_LINEAR, "table");
     const vis::Texture second = vis::makeTexture2D({kPlane, 2 * kPlane}, GL_RGBA32F, GL_LINEAR, "planes");
     glTextureSubImage2D(first.name(), 0, 0, 0, kSize, 2, GL_RGBA, GL_FLOAT, table.data());
     glTextureSubImage2D(second.name(), 0, 0, 0, kPlane, 2 * kPlane, GL_RGBA, GL_FLOAT, planes.data());
@@ -198,7 +198,7 @@ TEST_F(ShaderLib, TablesAreLookedUpAlike) {
         glBindTextureUnit(1, first.name());
         glBindTextureUnit(2, second.name());
     };
-    const std::string bindings = "#include \"lib/bindings.glsl\"\n";
+    const std::string bindings = "#include \"lib/bindings.glsl\"\n#include \"lib/tables.glsl\"\n";
     const auto row = evaluate(bindings, "transfer(0, 1.5 * a[i].x)", recipe, prepare);
     const auto opaque = evaluate(bindings, "vec4(opaqueAt(0, a[i].x) ? 1.0 : 0.0)", recipe, prepare);
     const auto plane = evaluate(bindings, "planeAt(1, 1.5 * a[i].xy)", recipe, prepare);

@@ -44,6 +44,15 @@ Texture makeTexture2D(glm::ivec2 size, GLenum format, GLenum filter, const std::
     return texture;
 }
 
+Texture makeTexture1DArray(int width, int rows, GLenum format, GLenum filter, const std::string& label) {
+    GLuint name = 0;
+    glCreateTextures(GL_TEXTURE_1D_ARRAY, 1, &name);
+    Texture texture(name);
+    glTextureStorage2D(name, 1, format, width, rows);
+    setUp(name, filter, label);
+    return texture;
+}
+
 Texture makeTexture3D(glm::ivec3 size, GLenum format, GLenum filter, const std::string& label) {
     GLuint name = 0;
     glCreateTextures(GL_TEXTURE_3D, 1, &name);

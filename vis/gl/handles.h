@@ -42,6 +42,8 @@ using ProgramObject = Handle<ObjectKind::Program>;
 
 /// A 2D texture of one level with immutable storage, clamped to its edges; `filter` is GL_NEAREST or GL_LINEAR.
 Texture makeTexture2D(glm::ivec2 size, GLenum format, GLenum filter, const std::string& label);
+/// Rows of texels, each filtered by itself.
+Texture makeTexture1DArray(int width, int rows, GLenum format, GLenum filter, const std::string& label);
 /// A 3D texture of one level, likewise. Throws MachineError when the driver refuses the size.
 Texture makeTexture3D(glm::ivec3 size, GLenum format, GLenum filter, const std::string& label);
 /// A 3D texture of one texel.

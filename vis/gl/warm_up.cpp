@@ -8,7 +8,8 @@ namespace tessera::vis {
 namespace {
 
 constexpr GLuint kUnits = 32;
-constexpr GLenum kTextureBindings[] = {GL_TEXTURE_BINDING_2D, GL_TEXTURE_BINDING_3D, GL_TEXTURE_BINDING_2D_ARRAY,
+constexpr GLenum kTextureBindings[] = {GL_TEXTURE_BINDING_2D,       GL_TEXTURE_BINDING_3D,
+                                       GL_TEXTURE_BINDING_1D_ARRAY, GL_TEXTURE_BINDING_2D_ARRAY,
                                        GL_TEXTURE_BINDING_CUBE_MAP, GL_TEXTURE_BINDING_BUFFER};
 
 bool isSampler(GLenum type) {
@@ -16,6 +17,7 @@ bool isSampler(GLenum type) {
     case GL_SAMPLER_2D:
     case GL_SAMPLER_3D:
     case GL_SAMPLER_CUBE:
+    case GL_SAMPLER_1D_ARRAY:
     case GL_SAMPLER_2D_ARRAY:
     case GL_SAMPLER_BUFFER:
     case GL_SAMPLER_2D_SHADOW:

@@ -1,6 +1,7 @@
 // Proxy geometry: one surface of a stack of planes or spheres, textured with composite layers; the frame buffer blends
 // the surfaces front to back. What a surface stands for is written down in vis/model/proxy.h.
 #include "lib/bindings.glsl"
+#include "lib/tables.glsl"
 #include "lib/color.glsl"
 #include "lib/clipping.glsl"
 #include "lib/ray.glsl"

@@ -6,6 +6,8 @@
 // values are taken anew (Mesa 22.3 miscompiles values that leave divergent nested loops). Where shading is cheap (FLAT)
 // there is no inner loop.
 #include "lib/bindings.glsl"
+#include "lib/kept.glsl"
+#include "lib/tables.glsl"
 #include "lib/color.glsl"
 #include "lib/clipping.glsl"
 #include "lib/jitter.glsl"
@@ -53,6 +55,7 @@ vec4 show(vec4 color, vec4 top, float doi) {
 #endif
 
 void main() {
+    keepUniforms();
     vec2 ndc = gl_FragCoord.xy * ndcScale + ndcOffset;
     vec3 origin = rayOrigin + ndc.x * rayOriginX + ndc.y * rayOriginY;
     vec3 direction = normalize(rayDirection + ndc.x * rayDirectionX + ndc.y * rayDirectionY);

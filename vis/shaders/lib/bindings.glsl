@@ -27,6 +27,9 @@ uniform vec3 fieldScale[FIELDS];
 uniform vec3 fieldOffset[FIELDS];
 uniform vec3 fieldOdd[FIELDS];
 uniform int fieldLevel[FIELDS];
+// Of an atlas: 1 / its size in texels; shift of level 1 in cells, of level l: levelPhase * (2^l - 1).
+uniform vec3 atlasInverse[FIELDS];
+uniform float levelPhase;
 
 // Rays: linear in normalised device coordinates x, y.
 uniform vec3 rayOrigin, rayOriginX, rayOriginY;
@@ -60,7 +63,7 @@ uniform int passNumber;
 
 // Layers. layerMap: transfer coordinate = value * x + y; z = density, or the iso value; w = opacity of an iso-surface.
 // Rows of the transfer table: layers, then slices; then for each layer whether it has opacity (opaqueAt).
-uniform sampler2D transferTable;
+uniform sampler1DArray transferTable;
 #if LAYERS > 0
 uniform vec4 layerMap[LAYERS];
 uniform vec3 layerColor[LAYERS];
@@ -93,31 +96,3 @@ uniform vec4 brushOwnColor[BRUSH_TESTS]; // of the test's brush, linear; 1, or 0
 uniform float brushColorShare;
 #endif
 uniform vec3 context; // opacity, saturation, lightness of what is not brushed
-
-const int kTableSize = TABLE_SIZE;
-
-// Colour (linear) and opacity of row `row` at x, clamped to 0..1: linear between the two nearest entries.
-vec4 transfer(int row, float x) {
-    float u = clamp(x, 0.0, 1.0) * float(kTableSize - 1);
-    int i = int(u);
-    return mix(texelFetch(transferTable, ivec2(i, row), 0),
-               texelFetch(transferTable, ivec2(min(i + 1, kTableSize - 1), row), 0), u - float(i));
-}
-
-#if PLANES > 0
-// Colour (linear) and opacity of a page of planeTable at 0..1 x 0..1, linear between its entries.
-vec4 planeAt(int page, vec2 at) {
-    vec2 place = clamp(at, 0.0, 1.0) * float(PLANE_SIZE - 1) + vec2(0.5, float(page * PLANE_SIZE) + 0.5);
-    vec4 c = textureLod(planeTable, place / vec2(PLANE_SIZE, PLANE_SIZE * PLANES), 0.0);
-    return vec4(c.rgb / max(c.a, 1e-12), c.a);
-}
-#endif
-
-// Whether transfer(row, x) can have opacity: entry i says it for both ends of what lies between i and i + 1.
-bool opaqueAt(int row, float x) {
-#if LAYERS > 0
-    if (LAYER_INTERVAL(row) == 1) return x > layerOpaque[row].x && x < layerOpaque[row].y;
-#endif
-    int i = int(clamp(x, 0.0, 1.0) * float(kTableSize - 1));
-    return texelFetch(transferTable, ivec2(i, LAYERS + SLICES + row), 0).a > 0.0;
-}

@@ -4,9 +4,12 @@ uniform vec3 blockScale, blockOffset; // block coordinate = p * scale + offset
 // Of this ray, since software GL computes in every round of a loop what stands in it: samples per block and axis, and
 // where the far wall of a block is.
 vec3 samplesPerBlock, farWall;
+vec3 blockPlace[2]; // scale and offset, see lib/kept.glsl
 
 void beginBlocks(vec3 cellsPerSample) {
-    vec3 step = cellsPerSample * blockScale;
+    blockPlace[0] = blockScale;
+    blockPlace[1] = blockOffset;
+    vec3 step = cellsPerSample * blockPlace[0];
     farWall = vec3(greaterThan(step, vec3(0.0)));
     samplesPerBlock = 1.0 / mix(min(step, -1e-9), max(step, 1e-9), farWall);
 }

@@ -3,8 +3,6 @@
 // either needs.
 uniform usampler3D pageTable[FIELDS];
 uniform sampler3D atlas[FIELDS];
-uniform vec3 atlasInverse[FIELDS]; // 1 / size in texels
-uniform float levelPhase;          // shift of level 1 in cells; of level l: levelPhase * (2^l - 1)
 
 const uint kDeepest = 15u; // greater numbers in place of a level: nothing there
 

@@ -5,7 +5,7 @@ uniform usampler3D blockDistance;
 
 // Samples from p on (the one at p among them) that lie in empty blocks.
 int emptySamples(vec3 p) {
-    vec3 q = p * blockScale + blockOffset, block = floor(q);
+    vec3 q = p * blockPlace[0] + blockPlace[1], block = floor(q);
     ivec3 at = clamp(ivec3(block), ivec3(0), textureSize(blockDistance, 0) - 1);
     // Blocks closer than `reach` are empty: the region from block - (reach - 1) to block + reach.
     float reach = float(texelFetch(blockDistance, at, 0).r);

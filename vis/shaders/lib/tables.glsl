@@ -1,0 +1,27 @@
+// Lookups in the tables of lib/bindings.glsl.
+
+const int kTableSize = TABLE_SIZE;
+
+// Colour (linear) and opacity of row `row` at x, clamped to 0..1: linear between the two nearest entries.
+vec4 transfer(int row, float x) {
+    float u = clamp(x, 0.0, 1.0) * float(kTableSize - 1) + 0.5;
+    return textureLod(transferTable, vec2(u / float(kTableSize), float(row)), 0.0);
+}
+
+#if PLANES > 0
+// Colour (linear) and opacity of a page of planeTable at 0..1 x 0..1, linear between its entries.
+vec4 planeAt(int page, vec2 at) {
+    vec2 place = clamp(at, 0.0, 1.0) * float(PLANE_SIZE - 1) + vec2(0.5, float(page * PLANE_SIZE) + 0.5);
+    vec4 c = textureLod(planeTable, place / vec2(PLANE_SIZE, PLANE_SIZE * PLANES), 0.0);
+    return vec4(c.rgb / max(c.a, 1e-12), c.a);
+}
+#endif
+
+// Whether transfer(row, x) can have opacity: entry i says it for both ends of what lies between i and i + 1.
+bool opaqueAt(int row, float x) {
+#if LAYERS > 0
+    if (LAYER_INTERVAL(row) == 1) return x > layerOpaque[row].x && x < layerOpaque[row].y;
+#endif
+    int i = int(clamp(x, 0.0, 1.0) * float(kTableSize - 1));
+    return texelFetch(transferTable, ivec2(i, LAYERS + SLICES + row), 0).a > 0.0;
+}
