@@ -1,6 +1,8 @@
 #include "vis/renderer_impl.h"
 #include "vis/technique/changed_pixels.h"
 
+#include "volume/error.h"
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -70,9 +72,17 @@ FrameStatus Renderer::render(ViewTarget& target, const Scene& scene, const Frame
         return status;
     }
     const SavedState saved;
-    target.resize(request.size, impl_->options.exactTextures);
-    status.texture = target.output.name();
     status.complete = true;
+    try {
+        target.resize(request.size, impl_->options.exactTextures);
+    } catch (const MachineError& error) {
+        if (request.wait) throw;
+        if (impl_->refusal != error.what()) impl_->messages.push_back(error.what());
+        impl_->refusal = error.what();
+        status.texture = target.output.name();
+        return status;
+    }
+    status.texture = target.output.name();
 
     RayPlan plan;
     bool any = false;

@@ -77,6 +77,8 @@ public:
     /// A new, empty target for a view.
     ViewTargetPtr makeTarget();
     /// Draws, or refines, the scene into the target. Repeated calls with an equal scene and request go on refining.
+    /// Where the driver has no memory for a picture so large the former one stays, and a message says so; a request
+    /// that waits throws MachineError.
     FrameStatus render(ViewTarget& target, const Scene& scene, const FrameRequest& request);
     /// What lies under a pixel (x right, y down, of the last request's size) of the target's last picture.
     std::optional<Pick> pick(ViewTarget& target, glm::ivec2 pixel);

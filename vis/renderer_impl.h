@@ -26,7 +26,8 @@ struct Renderer::Impl {
     BrushTables brushes;
     GeometryPass geometryPass;
     GrainTexture grain;
-    std::string limits; ///< said last about lights and clips that are left out
+    std::string limits;  ///< said last about lights and clips that are left out
+    std::string refusal; ///< said last about a picture that the driver has no memory for
     std::vector<std::string> messages;
     Texture noShadow = makeUniform3D(glm::vec4(1), "no shadow"), noLight = makeUniform3D(glm::vec4(0), "no light");
 

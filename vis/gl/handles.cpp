@@ -2,6 +2,7 @@
 
 #include "volume/error.h"
 
+#include <algorithm>
 #include <vector>
 
 namespace tessera::vis {
@@ -33,39 +34,48 @@ void setUp(GLuint name, GLenum filter, const std::string& label) {
     glObjectLabel(GL_TEXTURE, name, -1, label.c_str());
 }
 
-} // namespace
-
-Texture makeTexture2D(glm::ivec2 size, GLenum format, GLenum filter, const std::string& label) {
-    GLuint name = 0;
-    glCreateTextures(GL_TEXTURE_2D, 1, &name);
-    Texture texture(name);
-    glTextureStorage2D(name, 1, format, size.x, size.y);
-    setUp(name, filter, label);
-    return texture;
+int longestEdge(GLenum target) {
+    GLint edge = 0;
+    glGetIntegerv(target == GL_TEXTURE_3D         ? GL_MAX_3D_TEXTURE_SIZE
+                  : target == GL_TEXTURE_CUBE_MAP ? GL_MAX_CUBE_MAP_TEXTURE_SIZE
+                                                  : GL_MAX_TEXTURE_SIZE,
+                  &edge);
+    return edge;
 }
 
-Texture makeTexture1DArray(int width, int rows, GLenum format, GLenum filter, const std::string& label) {
+/// A texture whose storage `allocate` makes.
+template <class Allocate>
+Texture checked(GLenum target, glm::ivec3 size, GLenum filter, const std::string& label, Allocate&& allocate) {
     GLuint name = 0;
-    glCreateTextures(GL_TEXTURE_1D_ARRAY, 1, &name);
-    Texture texture(name);
-    glTextureStorage2D(name, 1, format, width, rows);
-    setUp(name, filter, label);
-    return texture;
-}
-
-Texture makeTexture3D(glm::ivec3 size, GLenum format, GLenum filter, const std::string& label) {
-    GLuint name = 0;
-    glCreateTextures(GL_TEXTURE_3D, 1, &name);
+    glCreateTextures(target, 1, &name);
     Texture texture(name);
     while (glGetError() != GL_NO_ERROR) {
     }
-    glTextureStorage3D(name, 1, format, size.x, size.y, size.z);
-    if (glGetError() != GL_NO_ERROR)
+    const bool fits = std::max({size.x, size.y, size.z}) <= longestEdge(target);
+    if (fits) allocate(name);
+    if (!fits || glGetError() != GL_NO_ERROR)
         throw MachineError("the graphics driver refuses a texture of " + std::to_string(size.x) + " x " +
                                std::to_string(size.y) + " x " + std::to_string(size.z) + " texels",
                            {}, label);
     setUp(name, filter, label);
     return texture;
+}
+
+} // namespace
+
+Texture makeTexture2D(glm::ivec2 size, GLenum format, GLenum filter, const std::string& label) {
+    return checked(GL_TEXTURE_2D, {size, 1}, filter, label,
+                   [&](GLuint name) { glTextureStorage2D(name, 1, format, size.x, size.y); });
+}
+
+Texture makeTexture1DArray(int width, int rows, GLenum format, GLenum filter, const std::string& label) {
+    return checked(GL_TEXTURE_1D_ARRAY, {width, rows, 1}, filter, label,
+                   [&](GLuint name) { glTextureStorage2D(name, 1, format, width, rows); });
+}
+
+Texture makeTexture3D(glm::ivec3 size, GLenum format, GLenum filter, const std::string& label) {
+    return checked(GL_TEXTURE_3D, size, filter, label,
+                   [&](GLuint name) { glTextureStorage3D(name, 1, format, size.x, size.y, size.z); });
 }
 
 Texture makeUniform3D(glm::vec4 value, const std::string& label) {
@@ -75,14 +85,8 @@ Texture makeUniform3D(glm::vec4 value, const std::string& label) {
 }
 
 Texture makeTextureCube(int edge, GLenum format, const std::string& label) {
-    GLuint name = 0;
-    glCreateTextures(GL_TEXTURE_CUBE_MAP, 1, &name);
-    Texture texture(name);
-    glTextureStorage2D(name, 1, format, edge, edge);
-    glTextureParameteri(name, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
-    glTextureParameteri(name, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
-    glObjectLabel(GL_TEXTURE, name, -1, label.c_str());
-    return texture;
+    return checked(GL_TEXTURE_CUBE_MAP, {edge, edge, 6}, GL_LINEAR, label,
+                   [&](GLuint name) { glTextureStorage2D(name, 1, format, edge, edge); });
 }
 
 Framebuffer makeFramebuffer(std::initializer_list<GLuint> colorTextures, const std::string& label) {

@@ -40,11 +40,11 @@ using VertexArray = Handle<ObjectKind::VertexArray>;
 using Query = Handle<ObjectKind::Query>;
 using ProgramObject = Handle<ObjectKind::Program>;
 
-/// A 2D texture of one level with immutable storage, clamped to its edges; `filter` is GL_NEAREST or GL_LINEAR.
+// Textures of one level with immutable storage, clamped to their edges; `filter` is GL_NEAREST or GL_LINEAR. Each
+// throws MachineError when the driver refuses the size, or has no memory for it.
 Texture makeTexture2D(glm::ivec2 size, GLenum format, GLenum filter, const std::string& label);
 /// Rows of texels, each filtered by itself.
 Texture makeTexture1DArray(int width, int rows, GLenum format, GLenum filter, const std::string& label);
-/// A 3D texture of one level, likewise. Throws MachineError when the driver refuses the size.
 Texture makeTexture3D(glm::ivec3 size, GLenum format, GLenum filter, const std::string& label);
 /// A 3D texture of one texel.
 Texture makeUniform3D(glm::vec4 value, const std::string& label);

@@ -1,22 +1,30 @@
 #include "vis/gl/view_target.h"
 
+#include <utility>
+
 namespace tessera::vis {
 
 void RayBuffer::resize(glm::ivec2 wanted, bool exact, const char* label) {
     if (size == wanted) return;
-    color = makeTexture2D(wanted, exact ? GL_RGBA32F : GL_RGBA16F, GL_LINEAR, label);
-    pick = makeTexture2D(wanted, GL_RG32F, GL_NEAREST, label);
-    framebuffer = makeFramebuffer({color.name(), pick.name()}, label);
-    size = wanted;
+    RayBuffer made;
+    made.color = makeTexture2D(wanted, exact ? GL_RGBA32F : GL_RGBA16F, GL_LINEAR, label);
+    made.pick = makeTexture2D(wanted, GL_RG32F, GL_NEAREST, label);
+    made.framebuffer = makeFramebuffer({made.color.name(), made.pick.name()}, label);
+    made.size = wanted;
+    *this = std::move(made);
 }
 
 void ViewTarget::resize(glm::ivec2 wanted, bool exact) {
     if (size == wanted) return;
+    RayBuffer whole, quick;
+    whole.resize(wanted, exact, "picture");
+    quick.resize(wanted, exact, "reduced picture");
+    Texture made = makeTexture2D(wanted, GL_RGBA8, GL_LINEAR, "presented picture");
+    outputFramebuffer = makeFramebuffer({made.name()}, "presented picture");
+    full = std::move(whole);
+    reduced = std::move(quick);
+    output = std::move(made);
     size = wanted;
-    full.resize(wanted, exact, "picture");
-    reduced.resize(wanted, exact, "reduced picture");
-    output = makeTexture2D(wanted, GL_RGBA8, GL_LINEAR, "presented picture");
-    outputFramebuffer = makeFramebuffer({output.name()}, "presented picture");
     started = shows = stillDone = false;
     changed = stale = {};
     redraw(everything());

@@ -86,6 +86,7 @@ public:
     LightBaker light;
     std::uint64_t lightVersion = 0; ///< that the buffers show
 
+    /// Throws MachineError, and is as it was, when the driver has no memory for it.
     void resize(glm::ivec2 wanted, bool exact);
     Tile everything() const { return {glm::ivec2(0), size}; }
     /// Pixels of `part` are out of date.
