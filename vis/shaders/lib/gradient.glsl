@@ -13,6 +13,7 @@ bool present(vec2 s) {
 // which is what software GL has in place of branches.
 vec3 cellGradient(int field, vec3 p, float centre, bool needed) {
     vec3 result = vec3(0.0);
+    holdPage(field, p);
     float edge = cellEdge(field, dataCells(p));
     for (int i = 0; i < (needed && FIELD_NEAREST(field) == 0 ? gradientDirections : 0); ++i) {
 #if GRADIENT_DIAGONAL
@@ -27,6 +28,7 @@ vec3 cellGradient(int field, vec3 p, float centre, bool needed) {
         float factor = hasLower && hasUpper ? 0.5 : centre > kUnknown ? 1.0 : 0.0;
         result += direction * factor * difference;
     }
+    releasePage();
     return result * (gradientScale / edge);
 }
 

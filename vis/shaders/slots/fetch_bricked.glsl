@@ -24,13 +24,35 @@ Page pageAt(int field, vec3 p) {
                 scale);
 }
 
+// Inside of a brick and its halo one page is enough: a place near p is found in the brick of p. (Not on BCC, where it
+// gained nothing.)
+Page heldPage = Page(vec3(0.0), 0.0);
+vec3 heldAt = vec3(0.0);
+bool held = false;
+
+void holdPage(int field, vec3 p) {
+#if LATER == 0 && !LENS_BENDS && !BCC
+    heldPage = pageAt(field, p);
+    heldAt = p;
+    held = true;
+#endif
+}
+void releasePage() {
+    held = false;
+}
+
+Page pageFor(int field, vec3 p) {
+    if (held) return Page(heldPage.texel + (p - heldAt) * heldPage.scale, heldPage.scale);
+    return pageAt(field, p);
+}
+
 vec4 fetchEven(int field, vec3 p) {
-    Page page = pageAt(field, p);
+    Page page = pageFor(field, p);
     vec4 texel = textureLod(atlas[field], page.texel * atlasInverse[field], 0.0);
     return page.scale > 0.0 ? texel : vec4(0.0);
 }
 vec4 fetchOdd(int field, vec3 p) {
-    Page page = pageAt(field, p);
+    Page page = pageFor(field, p);
     vec4 texel = textureLod(atlas[field], (page.texel - 0.5 * page.scale) * atlasInverse[field], 0.0);
     return page.scale > 0.0 ? texel : vec4(0.0);
 }
@@ -43,7 +65,7 @@ bool fineAt(int field, vec3 p) {
 
 // Edge of a cell of the level drawn at p, in cells of full resolution.
 float cellEdge(int field, vec3 p) {
-    float scale = pageAt(field, p).scale;
+    float scale = pageFor(field, p).scale;
     return scale > 0.0 ? 1.0 / scale : 1.0;
 }
 

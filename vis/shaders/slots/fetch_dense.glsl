@@ -8,6 +8,10 @@ vec4 fetchOdd(int field, vec3 p) {
     return textureLod(fieldTexture[field], p * fieldScale[field] + fieldOffset[field] + fieldOdd[field], 0.0);
 }
 
+// What is read from here on lies within two texels of p, until releasePage().
+void holdPage(int field, vec3 p) {}
+void releasePage() {}
+
 // Whether p is drawn at full resolution.
 bool fineAt(int field, vec3 p) {
     return fieldLevel[field] == 0;
