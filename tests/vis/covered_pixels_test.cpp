@@ -66,12 +66,12 @@ TEST(CoveredPixels, BoxesHoldTheOccupiedBlocks) {
     grid.lattice.spacing = {1, -1, 1};
     const vis::WorldFrame frame = vis::worldFrame({glm::dvec3(0), glm::dvec3(69, 39, 89)}, glm::dvec3(1));
     vis::BlockRanges blocks;
-    blocks.count = {9, 5, 12};
+    blocks.count = {18, 10, 23};
     vis::BlockDistances distances;
     distances.count = blocks.count;
-    distances.distance.assign(9 * 5 * 12, 3);
-    for (const glm::ivec3 block : {glm::ivec3(0, 0, 0), glm::ivec3(5, 2, 7), glm::ivec3(8, 4, 11)})
-        distances.distance[std::size_t((block.z * 5 + block.y) * 9 + block.x)] = 0;
+    distances.distance.assign(18 * 10 * 23, 3);
+    for (const glm::ivec3 block : {glm::ivec3(0, 0, 0), glm::ivec3(10, 5, 14), glm::ivec3(17, 9, 22)})
+        distances.distance[std::size_t((block.z * 10 + block.y) * 18 + block.x)] = 0;
     const std::vector<OccupiedBox> boxes = vis::occupiedBoxes(distances, blocks, grid, frame);
     ASSERT_EQ(boxes.size(), 3u);
     const auto inside = [&](glm::dvec3 cells) {
@@ -82,8 +82,8 @@ TEST(CoveredPixels, BoxesHoldTheOccupiedBlocks) {
         });
     };
     EXPECT_TRUE(inside({0, 0, 0}));
-    EXPECT_TRUE(inside({40.5, 16.5, 56.5}));
-    EXPECT_TRUE(inside({47.5, 23.5, 63.5}));
+    EXPECT_TRUE(inside({40.5, 20.5, 56.5}));
+    EXPECT_TRUE(inside({43.5, 23.5, 59.5}));
     EXPECT_TRUE(inside({69, 39, 89}));
     EXPECT_FALSE(inside({35, 5, 5}));
     EXPECT_FALSE(inside({69, 2, 89}));

@@ -50,7 +50,7 @@ TEST_F(RendererSkipping, WhatBrushesHideIsSkippedExactly) {
     const auto ramp = [](glm::dvec3 p) -> std::optional<double> { return p.x / 60; };
     const auto waves = [](glm::dvec3 p) -> std::optional<double> {
         if (p.y > 40) return std::nullopt;
-        return 0.5 + 0.5 * std::sin(0.3 * p.x) * std::sin(0.25 * p.z);
+        return 0.5 + 0.5 * std::sin(0.1 * p.x) * std::sin(0.08 * p.z);
     };
     for (const volume::LatticeKind kind : {volume::LatticeKind::CC, volume::LatticeKind::BCC}) {
         const auto source = std::make_shared<vis::FunctionSource>(
@@ -61,7 +61,7 @@ TEST_F(RendererSkipping, WhatBrushesHideIsSkippedExactly) {
         scene.camera.distance = 1.7f;
         scene.transfer["v"].opacity = {{0, 0.2f}, {1, 0.2f}};
         scene.selection.contextOpacity = 0;
-        scene.selection.brushes = {vis::rangeBrush({{"w", 0.94, 1, 0.02}}), vis::rangeBrush({{"v", 0.3, 0.5, 0.05}})};
+        scene.selection.brushes = {vis::rangeBrush({{"w", 0.94, 1, 0.02}}), vis::rangeBrush({{"v", 0.25, 0.75, 0.02}})};
         for (const bool outside : {false, true}) {
             scene.selection.brushes[1].inverted = outside;
             const glm::ivec2 size(56, 44);

@@ -137,11 +137,6 @@ BrickSamples gatherBox(const BrickGrid& grid, const BrickKey& which, const Texel
 
 namespace {
 
-void mergeRange(BlockRanges& blocks, std::size_t block, float value) {
-    blocks.min[block] = std::min(blocks.min[block], value);
-    blocks.max[block] = std::max(blocks.max[block], value);
-}
-
 /// Block ranges of packed texels: those of one texel more on every side belong to a block, since interpolation inside
 /// it reaches them.
 BlockRanges blockRanges(const std::vector<float>& row, glm::ivec3 size, int samples) {
@@ -157,12 +152,17 @@ BlockRanges blockRanges(const std::vector<float>& row, glm::ivec3 size, int samp
                             int(block / std::size_t(blocks.count.x) / std::size_t(blocks.count.y)));
         const glm::ivec3 lo = at * kBlockTexels + kHalo - 1;
         const glm::ivec3 hi = glm::min(lo + kBlockTexels + 2, size);
+        float least = blocks.min[block], most = blocks.max[block]; // NaN is neither
         for (int z = lo.z; z < hi.z; ++z)
             for (int y = lo.y; y < hi.y; ++y)
                 for (std::size_t i = linear({lo.x, y, z}, size) * std::size_t(samples),
                                  end = linear({hi.x - 1, y, z}, size) * std::size_t(samples) + std::size_t(samples);
-                     i < end; ++i)
-                    if (!std::isnan(row[i])) mergeRange(blocks, block, row[i]);
+                     i < end; ++i) {
+                    least = row[i] < least ? row[i] : least;
+                    most = row[i] > most ? row[i] : most;
+                }
+        blocks.min[block] = least;
+        blocks.max[block] = most;
     });
     return blocks;
 }

@@ -11,7 +11,7 @@
 namespace tessera::vis {
 
 inline constexpr int kHalo = 2;        ///< texels around what a texture covers: central differences reach that far
-inline constexpr int kBlockTexels = 8; ///< edge of a block of the empty-space map
+inline constexpr int kBlockTexels = 4; ///< edge of a block of the empty-space map
 
 /// How the numbers of a texture become values: physical = offset + scale * texel.
 struct TexelEncoding {

@@ -9,7 +9,7 @@ namespace tessera::vis {
 
 namespace {
 
-constexpr int kGroup = 4;       ///< blocks along an edge of a group
+constexpr int kGroup = 8;       ///< blocks along an edge of a group
 constexpr double kMargin = 1.5; ///< pixels
 
 } // namespace

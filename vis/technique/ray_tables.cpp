@@ -3,6 +3,7 @@
 #include "vis/model/preintegration.h"
 #include "vis/model/selection_bounds.h"
 #include "vis/technique/ray_field.h"
+#include "volume/parallel.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,6 +15,7 @@ namespace tessera::vis {
 namespace {
 
 constexpr double kLabelRoom = 0.25;
+constexpr int kFocusGroup = 2;       ///< blocks along an edge
 constexpr float kTexelSlack = 1e-4f; ///< rounding of the textures and of their interpolation
 
 /// Page of a function of regions.
@@ -109,42 +111,57 @@ std::vector<std::optional<glm::vec2>> opaqueIntervals(const RayPlan& plan, const
 
 namespace {
 
-/// Whether some texel value between lo and hi gets opacity from a transfer function; asks a running maximum free table.
-bool anyOpacity(const std::vector<float>& opacity, glm::dvec2 map, float lo, float hi) {
-    const auto place = [&](double texel) { return std::clamp(texel * map.x + map.y, 0.0, 1.0) * (kTableSize - 1); };
-    double a = place(lo), b = place(hi);
-    if (a > b) std::swap(a, b);
-    for (auto i = std::size_t(std::floor(a)); i <= std::size_t(std::ceil(b)); ++i)
-        if (opacity[i] > 0) return true;
-    return false;
+/// Answers whether some texel value between two gets opacity from a curve.
+class OpacityRanges {
+public:
+    /// `opacity`: of kTableSize places; `map`: from texels to places 0..1.
+    OpacityRanges(const std::vector<float>& opacity, glm::dvec2 map) : map_(map), before_(opacity.size() + 1, 0) {
+        for (std::size_t i = 0; i < opacity.size(); ++i) before_[i + 1] = before_[i] + (opacity[i] > 0);
+    }
+    bool any(float lo, float hi) const {
+        const auto place = [&](double texel) {
+            return std::clamp(texel * map_.x + map_.y, 0.0, 1.0) * (kTableSize - 1);
+        };
+        double a = place(lo), b = place(hi);
+        if (a > b) std::swap(a, b);
+        return before_[std::size_t(std::ceil(b)) + 1] > before_[std::size_t(std::floor(a))];
+    }
+
+private:
+    glm::dvec2 map_;
+    std::vector<int> before_; ///< how many entries before the i-th have opacity
+};
+
+/// out = min(out, min(in at x - 1, x, x + 1) + 1) along a row.
+void nearRow(const std::uint8_t* in, std::uint8_t* out, int count) {
+    const auto step = [&](int x, std::uint8_t least) {
+        out[x] = std::min(out[x], std::uint8_t(least + (least < 255)));
+    };
+    if (count == 1) return step(0, in[0]);
+    step(0, std::min(in[0], in[1]));
+    for (int x = 1; x + 1 < count; ++x) step(x, std::min(std::min(in[x - 1], in[x]), in[x + 1]));
+    step(count - 1, std::min(in[count - 2], in[count - 1]));
 }
 
-/// Chebyshev distance of every block to the nearest one whose distance is 0, in place.
+/// Chebyshev distance of every block to the nearest one whose distance is 0, in place: two chamfer sweeps over all 26
+/// neighbours are exact.
 void spread(std::vector<std::uint8_t>& distance, glm::ivec3 count) {
-    const std::size_t strides[] = {1, std::size_t(count.x), std::size_t(count.x) * std::size_t(count.y)};
-    // Two chamfer sweeps over all 26 neighbours give the exact Chebyshev distance.
-    const auto relax = [&](int x, int y, int z, bool forward) {
-        const std::size_t at = std::size_t(x) + strides[1] * std::size_t(y) + strides[2] * std::size_t(z);
-        int best = distance[at];
-        for (int dz = -1; dz <= 1 && best > 0; ++dz)
-            for (int dy = -1; dy <= 1; ++dy)
-                for (int dx = -1; dx <= 1; ++dx) {
-                    const int order = dz * 9 + dy * 3 + dx;
-                    if (forward ? order >= 0 : order <= 0) continue;
-                    const int nx = x + dx, ny = y + dy, nz = z + dz;
-                    if (nx < 0 || ny < 0 || nz < 0 || nx >= count.x || ny >= count.y || nz >= count.z) continue;
-                    best = std::min(
-                        best,
-                        1 + distance[std::size_t(nx) + strides[1] * std::size_t(ny) + strides[2] * std::size_t(nz)]);
-                }
-        distance[at] = std::uint8_t(std::min(best, 255));
+    const auto row = [&](int y, int z) {
+        return distance.data() + (std::size_t(z) * std::size_t(count.y) + std::size_t(y)) * std::size_t(count.x);
     };
-    for (int z = 0; z < count.z; ++z)
-        for (int y = 0; y < count.y; ++y)
-            for (int x = 0; x < count.x; ++x) relax(x, y, z, true);
-    for (int z = count.z - 1; z >= 0; --z)
-        for (int y = count.y - 1; y >= 0; --y)
-            for (int x = count.x - 1; x >= 0; --x) relax(x, y, z, false);
+    for (const int way : {1, -1}) {
+        const auto first = [&](int n) { return way > 0 ? 0 : n - 1; };
+        for (int z = first(count.z); z >= 0 && z < count.z; z += way)
+            for (int y = first(count.y); y >= 0 && y < count.y; y += way) {
+                std::uint8_t* const out = row(y, z);
+                if (z - way >= 0 && z - way < count.z)
+                    for (int near = std::max(y - 1, 0); near <= std::min(y + 1, count.y - 1); ++near)
+                        nearRow(row(near, z - way), out, count.x);
+                if (y - way >= 0 && y - way < count.y) nearRow(row(y - way, z), out, count.x);
+                for (int x = first(count.x) + way; x >= 0 && x < count.x; x += way)
+                    out[x] = std::min(out[x], std::uint8_t(out[x - way] + (out[x - way] < 255)));
+            }
+    }
 }
 
 /// Whether a layer shows nothing of what is out of focus.
@@ -166,18 +183,39 @@ std::vector<std::uint8_t> outOfFocus(const RayPlan& plan, const Scene& scene, co
         const BoundField& field = plan.fields[std::size_t(index)];
         if (field.blocks && field.blocks->count == grid.count) fields.push_back(&field);
     }
+    // Bounds take a while: groups of blocks share them.
     std::vector<std::uint8_t> out(grid.min.size());
-    std::map<std::string, Range> ranges;
-    for (std::size_t i = 0; i < out.size(); ++i) {
+    const int edge = grid.edge <= kBlockTexels ? kFocusGroup : 1;
+    const glm::ivec3 groups = (grid.count + edge - 1) / edge;
+    parallelFor(std::size_t(groups.x) * std::size_t(groups.y) * std::size_t(groups.z), [&](std::size_t group) {
+        const glm::ivec3 begin = edge * glm::ivec3(int(group % std::size_t(groups.x)),
+                                                   int(group / std::size_t(groups.x) % std::size_t(groups.y)),
+                                                   int(group / std::size_t(groups.x) / std::size_t(groups.y)));
+        const glm::ivec3 end = glm::min(begin + edge, grid.count);
+        const auto each = [&](const auto& visit) {
+            for (int z = begin.z; z < end.z; ++z)
+                for (int y = begin.y; y < end.y; ++y)
+                    for (int x = begin.x; x < end.x; ++x)
+                        visit((std::size_t(z) * std::size_t(grid.count.y) + std::size_t(y)) *
+                                  std::size_t(grid.count.x) +
+                              std::size_t(x));
+        };
+        std::map<std::string, Range> ranges;
         for (const BoundField* field : fields) {
+            float lo = std::numeric_limits<float>::infinity(), hi = -lo;
+            each([&](std::size_t block) {
+                lo = std::min(lo, field->blocks->min[block]);
+                hi = std::max(hi, field->blocks->max[block]);
+            });
             const double room = field->categorical ? kLabelRoom : 0; // as in brush_uniforms.cpp
             const TexelEncoding& encoding = field->encoding;
             ranges[channels[std::size_t(field->channel)].name] = {
-                encoding.offset + encoding.scale * double(field->blocks->min[i] - kTexelSlack) - room,
-                encoding.offset + encoding.scale * double(field->blocks->max[i] + kTexelSlack) + room};
+                encoding.offset + encoding.scale * double(lo - kTexelSlack) - room,
+                encoding.offset + encoding.scale * double(hi + kTexelSlack) + room};
         }
-        out[i] = interestBounds(scene.selection, ranges).hi == 0 ? 1 : 0;
-    }
+        const std::uint8_t hidden = interestBounds(scene.selection, ranges).hi == 0 ? 1 : 0;
+        each([&](std::size_t block) { out[block] = hidden; });
+    });
     return out;
 }
 
@@ -207,18 +245,24 @@ std::optional<BlockDistances> blockDistances(const RayPlan& plan, const Scene& s
             for (int i = 0; use.lookup != RayLookup::Plane && i < kTableSize; ++i)
                 opacity.push_back(float(evaluate(function, {0, 1}, double(i) / (kTableSize - 1)).a));
         }
-        for (std::size_t i = 0; i < total; ++i) {
-            if (!(blocks.min[i] <= blocks.max[i])) continue;
-            const float lo = blocks.min[i] - kTexelSlack, hi = blocks.max[i] + kTexelSlack;
-            bool shows = true;
-            if (use.style == RayStyle::Iso) shows = lo <= value && value <= hi;
-            // The gradient reaches beyond the block.
-            if (use.style == RayStyle::Composite && !use.gradient) shows = anyOpacity(opacity, map, lo, hi);
-            // Projections count what is out of focus.
-            if (use.style == RayStyle::Composite || use.style == RayStyle::Iso)
-                shows = shows && (hidden.empty() || hidden[i] == 0 || !hidesContext(use, scene.selection));
-            if (shows) out.distance[i] = 0;
-        }
+        const OpacityRanges opaque(opacity, map);
+        parallelRanges(
+            total,
+            [&](std::size_t begin, std::size_t end) {
+                for (std::size_t i = begin; i < end; ++i) {
+                    if (!(blocks.min[i] <= blocks.max[i])) continue;
+                    const float lo = blocks.min[i] - kTexelSlack, hi = blocks.max[i] + kTexelSlack;
+                    bool shows = true;
+                    if (use.style == RayStyle::Iso) shows = lo <= value && value <= hi;
+                    // The gradient reaches beyond the block.
+                    if (use.style == RayStyle::Composite && !use.gradient) shows = opaque.any(lo, hi);
+                    // Projections count what is out of focus.
+                    if (use.style == RayStyle::Composite || use.style == RayStyle::Iso)
+                        shows = shows && (hidden.empty() || hidden[i] == 0 || !hidesContext(use, scene.selection));
+                    if (shows) out.distance[i] = 0;
+                }
+            },
+            4096);
     }
     std::size_t occupied = 0;
     out.begin = out.count;
