@@ -93,6 +93,13 @@ signal light-physical --set "/layers=[$shape]" --set '/lighting/model="physical"
 signal light-studio --set "/layers=[$shape]" --set '/lighting/model="physical"' --set '/lighting/environment/kind="studio"' \
     --set /lighting/roughness=0.2
 signal light-shadows --set "/layers=[$shape]" --set /lighting/shadows/strength=0.8 --set /lighting/shadows/occlusion=0.8
+for cast in true false; do # tubes above the hot sheet
+    "$tessera" render flow -o "$out/light-meshes-$cast.png" --view volume --size "$size" --set /views/volume/cursor=false \
+        --set /views/volume/legend=false --set /camera/distance=1.5 --set /lighting/shadows/resolution=128 --set "/lighting/shadows/meshes=$cast" \
+        --set '/layers=[{"name":"air","technique":{"type":"flow","vector":"U","channel":"O2","count":24,"from":[0,0.75,0],"to":[1,1,1],"length":4,"radius":0.007}},{"name":"temperature","technique":{"type":"volume","channel":"T","shaded":false,"density":3}}]' \
+        --set '/transfer/T={"colormap":"inferno","opacity":[[0,0],[0.45,0],[0.6,0.3],[1,0.5]]}' \
+        --set '/lighting/lights=[{"kind":"world","azimuth":0,"elevation":80}]' --set /lighting/shadows/strength=0.95
+done
 "$tessera" render evening -o "$out/light-evening.png" --view volume --size "$size"
 for span in neighbours wide; do
     "$tessera" render charcoal -o "$out/gradient-$span.png" --view volume --size "$size" --set '/layers/0/technique/look="plain"' \
