@@ -35,7 +35,7 @@ template <class Word> void agrees(unsigned seed, std::uint32_t mask, bool wide) 
         MadeBox<Word> samples(size), details(size), back(size);
         std::vector<std::uint32_t> expected;
         forPlaces(size, [&](int x, int y, int z) {
-            const auto value = static_cast<std::int32_t>(random() & mask) - (wide ? std::int32_t(mask / 2) : 0);
+            const auto value = static_cast<std::int32_t>((std::uint32_t(random()) & mask) - (wide ? mask / 2 : 0));
             samples.box.row(y, z)[x] = static_cast<Word>(value);
             expected.push_back(static_cast<std::uint32_t>(value));
         });
