@@ -5,6 +5,7 @@
 #include "vis/model/jitter.h"
 #include "vis/model/proxy.h"
 #include "vis/technique/box_lines.h"
+#include "vis/technique/lens_pixels.h"
 #include "vis/technique/lens_uniforms.h"
 #include "vis/technique/look_uniforms.h"
 #include "vis/technique/ray_field.h"
@@ -42,13 +43,18 @@ glm::ivec2 sharedByProcessors(const Tile& drawn, glm::ivec2 picture, glm::ivec2 
 
 } // namespace
 
-/// Tables of a bound plan and the program variant it wants.
+/// The program variant that a bound plan wants.
+ProgramRecipe Renderer::Impl::variant(const ViewTarget& target, const Scene& scene, const RayPlan& plan) const {
+    ProgramRecipe made = rayRecipe(plan, scene, source->grid(), target.skip && !lensesBend(scene));
+    if (options.countSamples) made.defines.emplace_back("COUNT_SAMPLES", "1");
+    return made;
+}
+
+/// Tables of a bound plan and its program variant.
 ProgramRecipe Renderer::Impl::prepare(ViewTarget& target, const Scene& scene, RayPlan& plan) {
     const auto recipe = [&] {
         for (std::size_t i = 0; i < plan.layers.size(); ++i) plan.layers[i].opaque = target.opaque[i];
-        ProgramRecipe made = rayRecipe(plan, scene, source->grid(), target.skip && !lensesBend(scene));
-        if (options.countSamples) made.defines.emplace_back("COUNT_SAMPLES", "1");
-        return made;
+        return variant(target, scene, plan);
     };
     // Tables depend on these alone; a camera that moves keeps them.
     if (target.tablesFor && target.tablesRevision == residency.revision() && target.tablesFor->layers == scene.layers &&
@@ -149,7 +155,7 @@ const std::vector<Tile>* Renderer::Impl::covered(ViewTarget& target, const Scene
 }
 
 /// Draws a tile with the rays of a pass; of it what lies in one of `parts`.
-void Renderer::Impl::rays(const Program& rayProgram, const Scene& scene, const RayBuffer& buffer, glm::ivec2 size,
+void Renderer::Impl::rays(const RayPrograms& rayPrograms, const Scene& scene, const RayBuffer& buffer, glm::ivec2 size,
                           const Tile& tile, const std::vector<Tile>* parts, double stepFactor, int pass) {
     const float nothing[] = {0, 0, 0, 0}, nowhere[] = {-1e9f, 0, 0, 0};
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, buffer.framebuffer.name());
@@ -166,31 +172,43 @@ void Renderer::Impl::rays(const Program& rayProgram, const Scene& scene, const R
     const glm::ivec2 begin = glm::max(tile.begin, glm::ivec2(box)), end = glm::min(tile.end, glm::ivec2(box.z, box.w));
     if (begin.x >= end.x || begin.y >= end.y) return;
     within(begin, end);
-    rayProgram.set("ndcScale", 2.0f / glm::vec2(size));
-    rayProgram.set("ndcOffset",
-                   glm::vec2((pixelJitter(pass) - glm::dvec2(buffer.first)) * 2.0 / glm::dvec2(size) - 1.0));
-    rayProgram.set("passNumber", pass);
-    glBindVertexArray(vertices.name());
-    if (drawnByProxy(scene)) return proxies(rayProgram, scene, buffer, stepFactor);
-    glUseProgram(rayProgram.name());
     const std::vector<Tile> whole{{begin, end}};
-    for (const Tile& part : parts ? *parts : whole) {
-        const glm::ivec2 from = glm::max(begin, part.begin), to = glm::min(end, part.end);
-        if (from.x >= to.x || from.y >= to.y) continue;
-        within(from, to);
-        glDrawArrays(GL_TRIANGLES, 0, 3);
-    }
+    glBindVertexArray(vertices.name());
+    const auto prepare = [&](const Program& program) {
+        program.set("ndcScale", 2.0f / glm::vec2(size));
+        program.set("ndcOffset",
+                    glm::vec2((pixelJitter(pass) - glm::dvec2(buffer.first)) * 2.0 / glm::dvec2(size) - 1.0));
+        program.set("passNumber", pass);
+        glUseProgram(program.name());
+    };
+    prepare(*rayPrograms.program);
+    if (drawnByProxy(scene)) return proxies(*rayPrograms.program, scene, buffer, stepFactor);
+    const auto draw = [&](std::span<const Tile> where) {
+        for (const Tile& part : parts ? *parts : whole)
+            for (const Tile& each : where) {
+                const Tile drawn = intersection(whole.front(), intersection(part, each));
+                if (drawn.empty()) continue;
+                within(drawn.begin, drawn.end);
+                glDrawArrays(GL_TRIANGLES, 0, 3);
+            }
+    };
+    const std::optional<std::vector<Tile>> lensed =
+        rayPrograms.beyond ? lensTiles(scene, worldFrame(source->info().bounds, scene.stretch), size) : std::nullopt;
+    if (!lensed) return draw(whole);
+    draw(*lensed);
+    prepare(*rayPrograms.beyond);
+    draw(remainder(whole.front(), *lensed));
 }
 
 /// Draws pass n > 0 of a supersampled still, beside, and makes it one n + 1-th of the picture. (Not by blending the
 /// rays themselves: software GL would compile their program anew. What a pixel picks stays that of its middle.)
-void Renderer::Impl::accumulate(const Program& rayProgram, ViewTarget& target, const Scene& scene, const Tile& tile,
-                                const std::vector<Tile>* parts, int pass) {
+void Renderer::Impl::accumulate(const RayPrograms& rayPrograms, ViewTarget& target, const Scene& scene,
+                                const Tile& tile, const std::vector<Tile>* parts, int pass) {
     const Program* average = programs.find({"screen.vert.glsl", "accumulate.frag.glsl", {}, {}});
     if (!average) throw Error("the program that averages passes does not compile");
     target.reducedValid = false;
     target.reduced.first = {0, 0};
-    rays(rayProgram, scene, target.reduced, target.size, tile, parts, 1, pass);
+    rays(rayPrograms, scene, target.reduced, target.size, tile, parts, 1, pass);
     average->set("source", 0);
     glBindTextureUnit(0, target.reduced.color.name());
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, target.full.framebuffer.name());
@@ -340,7 +358,6 @@ void Renderer::Impl::refine(ViewTarget& target, const Scene& scene, const FrameR
         target.fullValid = target.stillDone = answer.stage == ProgramStage::Failed || request.wait;
         return;
     }
-    const Program* rayProgram = answer.program;
     const RayUnits units = rayUnits(plan);
     for (std::size_t i = 0; i < plan.fields.size(); ++i) {
         const BoundField& field = plan.fields[i];
@@ -358,20 +375,43 @@ void Renderer::Impl::refine(ViewTarget& target, const Scene& scene, const FrameR
     glBindTextureUnit(GLuint(units.lassos), brushes.update(brushTests(plan, scene, info)));
     const bool lit = bindLight(target, scene, request, plan);
 
-    if (answer.stage == ProgramStage::Linked) {
-        setRayUniforms(*rayProgram, plan, scene, info, source->grid(), target.size, 1);
-        programs.warmUp(recipe, target.full.framebuffer);
-        return;
-    }
-    // Software GL compiles at the first draw: do that before any clock runs.
-    if (programs.firstUse(*rayProgram)) {
-        setRayUniforms(*rayProgram, plan, scene, info, source->grid(), target.size, 1);
+    // Brings a program to where it can draw; false while that is on its way.
+    const auto ready = [&](const ProgramAnswer& program, const ProgramRecipe& made, const RayPlan& drawn,
+                           const Scene& shown) {
+        if (!program.program) return false;
+        const bool linked = program.stage == ProgramStage::Linked;
+        if (!linked && !programs.firstUse(*program.program)) return true;
+        setRayUniforms(*program.program, drawn, shown, info, source->grid(), target.size, 1);
+        if (linked) {
+            programs.warmUp(made, target.full.framebuffer);
+            return false;
+        }
+        // Software GL compiles at the first draw: do that before any clock runs.
         geometry(target, scene, plan, target.size, target.everything());
         target.reduced.first = {0, 0};
-        rays(*rayProgram, scene, target.reduced, target.size, {target.size / 2, target.size / 2 + 1}, nullptr);
+        rays({program.program}, scene, target.reduced, target.size, {target.size / 2, target.size / 2 + 1}, nullptr);
         glFinish();
         target.reducedValid = false;
+        return true;
+    };
+    if (!ready(answer, recipe, plan, scene)) return;
+    RayPrograms rayPrograms{answer.program};
+    RayPlan beyond = beyondLenses(plan);
+    Scene lensless;
+    if (!beyond.empty() && !drawnByProxy(scene) &&
+        !lensTiles(scene, worldFrame(info.bounds, scene.stretch), target.size).value_or(std::vector<Tile>()).empty()) {
+        lensless = scene;
+        lensless.lenses.clear();
+        const ProgramRecipe other = variant(target, lensless, beyond);
+        const ProgramAnswer found =
+            request.wait ? ProgramAnswer{programs.find(other), ProgramStage::Ready} : programs.request(other, 0);
+        if (ready(found, other, beyond, lensless)) rayPrograms.beyond = found.program;
     }
+    const auto setUniforms = [&](double stepFactor) {
+        setRayUniforms(*rayPrograms.program, plan, scene, info, source->grid(), target.size, stepFactor);
+        if (rayPrograms.beyond)
+            setRayUniforms(*rayPrograms.beyond, beyond, lensless, info, source->grid(), target.size, stepFactor);
+    };
 
     const auto drawReduced = [&](double shrink, double stepFactor) {
         target.reducedSize = glm::max(glm::ivec2(glm::vec2(target.size) / float(shrink)), glm::ivec2(1));
@@ -382,13 +422,13 @@ void Renderer::Impl::refine(ViewTarget& target, const Scene& scene, const FrameR
                                         glm::ivec2(glm::ceil(glm::dvec2(target.changed.end) * scale)) + 1},
                                        {{0, 0}, target.reducedSize});
         target.reduced.first = sharedByProcessors(tile, target.reducedSize, target.size);
-        setRayUniforms(*rayProgram, plan, scene, info, source->grid(), target.size, stepFactor);
+        setUniforms(stepFactor);
         const Clock::time_point before = Clock::now();
         geometry(target, scene, plan, target.reducedSize, tile);
         if (plan.peels > 0) glFinish();
         target.geometryMs = millisecondsSince(before);
         const Clock::time_point begin = Clock::now();
-        rays(*rayProgram, scene, target.reduced, target.reducedSize, tile,
+        rays(rayPrograms, scene, target.reduced, target.reducedSize, tile,
              covered(target, scene, plan, target.reducedSize), stepFactor);
         glFinish();
         const double cost = millisecondsSince(begin) * stepFactor / std::max(1.0, tile.area());
@@ -431,7 +471,7 @@ void Renderer::Impl::refine(ViewTarget& target, const Scene& scene, const FrameR
             target.tileEdge /= 2;
     }
     const std::vector<Tile> tiles = tilesOf(target.stale, target.tileEdge);
-    setRayUniforms(*rayProgram, plan, scene, info, source->grid(), target.size, 1);
+    setUniforms(1);
     bool first = true;
     // The whole picture once, then again with rays elsewhere in the pixels for a supersampled still.
     const int perPass = int(tiles.size()), wanted = perPass * std::max(scene.render.samples, 1);
@@ -441,9 +481,9 @@ void Renderer::Impl::refine(ViewTarget& target, const Scene& scene, const FrameR
         geometry(target, scene, plan, target.size, target.stale, pass);
         const Clock::time_point begin = Clock::now();
         if (pass == 0)
-            rays(*rayProgram, scene, target.full, target.size, tile, covered(target, scene, plan, target.size));
+            rays(rayPrograms, scene, target.full, target.size, tile, covered(target, scene, plan, target.size));
         else
-            accumulate(*rayProgram, target, scene, tile, covered(target, scene, plan, target.size), pass);
+            accumulate(rayPrograms, target, scene, tile, covered(target, scene, plan, target.size), pass);
         glFinish();
         if (pass == 0) target.passMilliseconds += millisecondsSince(begin);
         present(target, scene, false, tile);

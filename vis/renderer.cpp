@@ -68,7 +68,7 @@ FrameStatus Renderer::render(ViewTarget& target, const Scene& scene, const Frame
     FrameRequest request = wanted;
     if (request.budgetMs <= 0) request.budgetMs = scene.render.limits.frameTime;
     if (request.size.x <= 0 || request.size.y <= 0) {
-        status.complete = true;
+        status.complete = status.current = true;
         return status;
     }
     const SavedState saved;
@@ -118,6 +118,7 @@ FrameStatus Renderer::render(ViewTarget& target, const Scene& scene, const Frame
         impl_->nothing(target, scene);
     }
     status.complete = status.complete && target.fullValid && target.stillDone;
+    status.current = status.complete || target.changed.empty();
     status.milliseconds = target.passMilliseconds;
     return status;
 }

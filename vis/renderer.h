@@ -37,6 +37,7 @@ struct FrameRequest {
 /// What came of it. The texture stays the property of the target and is valid until its next frame.
 struct FrameStatus {
     std::uint32_t texture = 0; ///< GL name, RGBA8, `request.size` large (upscaled while reduced), sRGB encoded, opaque
+    bool current = false;      ///< the texture shows this scene, however coarse
     bool complete = false;   ///< full resolution, all bricks at the level wanted: nothing to do until the scene changes
     int bricksMissing = 0;   ///< bricks still shown at a coarser level
     double milliseconds = 0; ///< of the last full pass

@@ -17,6 +17,12 @@ inline double millisecondsSince(Clock::time_point start) {
     return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
 
+/// The variants of the ray caster that one picture is drawn with.
+struct RayPrograms {
+    const Program* program = nullptr;
+    const Program* beyond = nullptr; ///< beyond all lenses; null: that of the whole picture
+};
+
 struct Renderer::Impl {
     RendererOptions options;
     Residency residency;
@@ -41,15 +47,16 @@ struct Renderer::Impl {
     bool bind(ViewTarget& target, const Scene& scene, const FrameRequest& request, RayPlan& plan, FrameStatus& status);
 
     // frame.cpp
+    ProgramRecipe variant(const ViewTarget& target, const Scene& scene, const RayPlan& plan) const;
     ProgramRecipe prepare(ViewTarget& target, const Scene& scene, RayPlan& plan);
     void geometry(ViewTarget& target, const Scene& scene, const RayPlan& plan, glm::ivec2 size, const Tile& tile,
                   int pass = 0);
     const std::vector<Tile>* covered(ViewTarget& target, const Scene& scene, const RayPlan& plan, glm::ivec2 size);
-    void rays(const Program& program, const Scene& scene, const RayBuffer& buffer, glm::ivec2 size, const Tile& tile,
-              const std::vector<Tile>* parts, double stepFactor = 1, int pass = 0);
+    void rays(const RayPrograms& rayPrograms, const Scene& scene, const RayBuffer& buffer, glm::ivec2 size,
+              const Tile& tile, const std::vector<Tile>* parts, double stepFactor = 1, int pass = 0);
     void proxies(const Program& program, const Scene& scene, const RayBuffer& buffer, double stepFactor);
     void present(ViewTarget& target, const Scene& scene, bool reduced, const Tile& tile);
-    void accumulate(const Program& program, ViewTarget& target, const Scene& scene, const Tile& tile,
+    void accumulate(const RayPrograms& rayPrograms, ViewTarget& target, const Scene& scene, const Tile& tile,
                     const std::vector<Tile>* parts, int pass);
     void sayLimits(const Scene& scene);
     bool bindLight(ViewTarget& target, const Scene& scene, const FrameRequest& request, const RayPlan& plan);

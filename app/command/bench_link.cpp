@@ -25,6 +25,7 @@ using Clock = std::chrono::steady_clock;
 constexpr glm::ivec2 kWindow{1500, 950};
 constexpr int kSteps = 9;       // of a drag, of which the median counts
 constexpr int kMostFrames = 60; // until every view has followed
+constexpr int kMostAtRest = 2000;
 
 double milliseconds(Clock::time_point since) {
     return std::chrono::duration<double, std::milli>(Clock::now() - since).count();
@@ -105,7 +106,8 @@ struct Followed {
 Followed drag(const std::function<void(Session&, double)>& edit, OffscreenFrames& frames, Workbench& workbench,
               std::function<void(const std::string&, bool)>& paneDrawn) {
     Followed out;
-    frames.draw(workbench, 1);          // a click needs a window that was there before
+    for (int frame = 0; frame == 0 || (workbench.busy() && frame < kMostAtRest); ++frame)
+        frames.draw(workbench, 1);      // as one begins to drag: all is there
     const auto held = [](ImGuiIO& io) { // on the status bar, where it does nothing but make every view draw at speed
         io.MousePos = {40, float(kWindow.y) - 6};
         io.MouseDown[0] = true;

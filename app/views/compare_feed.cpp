@@ -137,7 +137,7 @@ void CompareFeed::drawCell(ViewContext& context, const std::string& pane, std::s
     cell.shows = cell.status.complete || cell.status.milliseconds > 0;
     cell.drawn = true;
     if (!cell.status.complete || own.busy) context.busy = true;
-    context.behind = context.behind || own.behind;
+    context.behind = context.behind || own.behind || !cell.status.current;
     if (!cell.status.complete || own.busy || request.moving) return;
     const volume::BrickSource* source = own.source.get();
     if (cell.image && cell.image->size == size && cell.imageSource == source && cell.imageOf == scene) return;

@@ -57,7 +57,8 @@ void drawSlice(ViewContext& context, vis::ViewTargetPtr& target, const std::stri
     request.moving = !context.headless && (context.interacting || context.session.animation.playing);
     request.wait = context.headless;
     const vis::FrameStatus status = context.renderer.render(*target, scene, request);
-    if (!status.complete) context.busy = true;
+    context.busy = context.busy || !status.complete;
+    context.behind = context.behind || !status.current;
     const ImVec2 max{min.x + static_cast<float>(pixels.x), min.y + static_cast<float>(pixels.y)};
     addPicture(*ImGui::GetWindowDrawList(), status.texture, min, max);
     ImGui::GetWindowDrawList()->AddRect(min, max, plotColors().frame);

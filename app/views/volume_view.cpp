@@ -125,7 +125,8 @@ void drawVolumeView(ViewContext& context, const std::string& pane, VolumeView& v
     vis::Scene scene = cache.scene.get(context, pane, request.moving);
     scene.showBox = view.showBox;
     const vis::FrameStatus status = context.renderer.render(*cache.target, scene, request);
-    if (!status.complete) context.busy = true;
+    context.busy = context.busy || !status.complete;
+    context.behind = context.behind || !status.current;
 
     const InkOnPaper ink(scene);
     ImDrawList& draw = *ImGui::GetWindowDrawList();

@@ -189,8 +189,8 @@ TEST_F(ShaderLib, TablesAreLookedUpAlike) {
     glTextureSubImage2D(first.name(), 0, 0, 0, kSize, 2, GL_RGBA, GL_FLOAT, table.data());
     glTextureSubImage2D(second.name(), 0, 0, 0, kPlane, 2 * kPlane, GL_RGBA, GL_FLOAT, planes.data());
     vis::ProgramRecipe recipe;
-    recipe.defines = {{"FIELDS", "1"}, {"LAYERS", "1"},       {"SLICES", "0"},
-                      {"PLANES", "2"}, {"PLANE_SIZE", "256"}, {"TABLE_SIZE", "2048"}};
+    recipe.defines = {{"FIELDS", "1"},       {"LAYERS", "1"},        {"SLICES", "0"},     {"PLANES", "2"},
+                      {"PLANE_SIZE", "256"}, {"TABLE_SIZE", "2048"}, {"TABLE_ROWS", "1"}, {"TABLE_ROW(i)", "(i)"}};
     recipe.defines.emplace_back("LAYER_INTERVAL(i)", "0");
     const auto prepare = [&](const vis::Program& program) {
         program.set("transferTable", 1);

@@ -96,11 +96,13 @@ RayPlan planRays(const Scene& scene, const volume::DatasetInfo& info) {
                                    .shaded = true,
                                    .look = lookBits(surface->look)});
         else
-            plan.slices.push_back({int(i), fieldOf(plan, info, *channel, false, layer), *lens, layer.brushes});
+            plan.slices.push_back({int(i), fieldOf(plan, info, *channel, false, layer), *lens, layer.brushes, 0});
         if (std::holds_alternative<SliceLayer>(layer.technique)) continue;
         plan.layers.back().lens = *lens;
         plan.layers.back().brushes = layer.brushes;
     }
+    for (RayLayer& layer : plan.layers) layer.row = plan.rows++;
+    for (SliceUse& slice : plan.slices) slice.row = plan.rows++;
     plan.brushDefines = brushDefines({}, scene);
     plan.peels = peelsOf(scene);
     if (plan.peels > 0 && plan.fields.empty() && !info.channels().empty()) fieldOf(plan, info, 0); // samplers need one
@@ -201,7 +203,12 @@ ProgramRecipe rayRecipe(const RayPlan& plan, const Scene& scene, const volume::B
     addClipping(recipe, scene);
     addLenses(recipe, scene);
     define("JITTER", scene.render.jitter ? "1" : "0");
+    std::vector<int> rows;
+    for (const RayLayer& layer : plan.layers) rows.push_back(layer.row);
+    for (const SliceUse& slice : plan.slices) rows.push_back(slice.row);
     define("TABLE_SIZE", std::to_string(kTableSize));
+    define("TABLE_ROWS", std::to_string(plan.rows));
+    define("TABLE_ROW(i)", choice(rows, [](int row) { return row; }));
     define("HALO", std::to_string(kHalo));
     define("PRESENT_COVERAGE", std::to_string(volume::kPresentCoverage));
     define("REFERENCE_LENGTHS", std::to_string(1 / kReferenceLength));

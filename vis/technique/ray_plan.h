@@ -39,6 +39,7 @@ enum class RayLookup { Curve, Plane, Lattice, Slab };
 
 struct RayLayer {
     int layer = 0; ///< index into Scene::layers
+    int row = 0;   ///< of the transfer tables
     RayStyle style = RayStyle::Composite;
     int field = 0; ///< index into RayPlan::fields
     bool shaded = false;
@@ -55,6 +56,7 @@ struct RayLayer {
 struct SliceUse {
     int layer = 0, field = 0, lens = -1;
     BrushEffect brushes = BrushEffect::Fade;
+    int row = 0; ///< of the transfer tables
 };
 
 /// What a scene needs, independent of what is resident.
@@ -67,6 +69,7 @@ struct RayPlan {
     std::vector<std::pair<std::string, std::string>> brushDefines; ///< which tests of brushes the program needs
     int peels = 0; ///< layers of rasterised geometry that lie among the samples
     int pages = 0; ///< of the plane tables
+    int rows = 0;  ///< of the transfer tables: of layers, then of slices
     bool empty() const { return layers.empty() && slices.empty() && peels == 0; }
 };
 

@@ -62,7 +62,8 @@ uniform int passNumber;
 #define LOOKUP_SLAB 3
 
 // Layers. layerMap: transfer coordinate = value * x + y; z = density, or the iso value; w = opacity of an iso-surface.
-// Rows of the transfer table: layers, then slices; then for each layer whether it has opacity (opaqueAt).
+// Rows of the transfer table: TABLE_ROW(i) of layer i, of slice i - LAYERS; TABLE_ROWS further on whether a layer has
+// opacity (opaqueAt).
 uniform sampler1DArray transferTable;
 #if LAYERS > 0
 uniform vec4 layerMap[LAYERS];

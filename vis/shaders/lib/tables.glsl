@@ -2,10 +2,11 @@
 
 const int kTableSize = TABLE_SIZE;
 
-// Colour (linear) and opacity of row `row` at x, clamped to 0..1: linear between the two nearest entries.
-vec4 transfer(int row, float x) {
+// Colour (linear) and opacity of a layer, or of slice `use` - LAYERS, at x, clamped to 0..1: linear between the two
+// nearest entries.
+vec4 transfer(int use, float x) {
     float u = clamp(x, 0.0, 1.0) * float(kTableSize - 1) + 0.5;
-    return textureLod(transferTable, vec2(u / float(kTableSize), float(row)), 0.0);
+    return textureLod(transferTable, vec2(u / float(kTableSize), float(TABLE_ROW(use))), 0.0);
 }
 
 #if PLANES > 0
@@ -17,11 +18,11 @@ vec4 planeAt(int page, vec2 at) {
 }
 #endif
 
-// Whether transfer(row, x) can have opacity: entry i says it for both ends of what lies between i and i + 1.
-bool opaqueAt(int row, float x) {
+// Whether transfer(layer, x) can have opacity: entry i says it for both ends of what lies between i and i + 1.
+bool opaqueAt(int layer, float x) {
 #if LAYERS > 0
-    if (LAYER_INTERVAL(row) == 1) return x > layerOpaque[row].x && x < layerOpaque[row].y;
+    if (LAYER_INTERVAL(layer) == 1) return x > layerOpaque[layer].x && x < layerOpaque[layer].y;
 #endif
     int i = int(clamp(x, 0.0, 1.0) * float(kTableSize - 1));
-    return texelFetch(transferTable, ivec2(i, LAYERS + SLICES + row), 0).a > 0.0;
+    return texelFetch(transferTable, ivec2(i, TABLE_ROWS + TABLE_ROW(layer)), 0).a > 0.0;
 }

@@ -1,0 +1,75 @@
+#include "vis/technique/lens_pixels.h"
+
+#include "vis/technique/box_lines.h"
+
+#include <algorithm>
+
+namespace tessera::vis {
+
+namespace {
+
+constexpr double kBeside = 1.5; ///< pixels around
+
+} // namespace
+
+std::optional<Tile> lensPixels(const PlacedLens& lens, const Camera& camera, glm::ivec2 size) {
+    const double aspect = double(size.x) / std::max(size.y, 1);
+    const glm::dmat4 view = viewMatrix(camera), projection = projectionMatrix(camera, aspect);
+    glm::dvec2 lo(1e9), hi(-1e9);
+    for (int corner = 0; corner < 8; ++corner) {
+        const glm::dvec3 unit(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1);
+        const glm::dvec4 eye = view * glm::dvec4(lens.center + lens.fromUnit * unit, 1);
+        if (camera.projection == Projection::Perspective && eye.z > -kNear) return std::nullopt;
+        const glm::dvec4 clip = projection * eye;
+        const glm::dvec2 pixel = (glm::dvec2(clip) / clip.w * 0.5 + 0.5) * glm::dvec2(size);
+        lo = glm::min(lo, pixel);
+        hi = glm::max(hi, pixel);
+    }
+    const glm::dvec2 most(size);
+    return Tile{glm::ivec2(glm::floor(glm::clamp(lo - kBeside, glm::dvec2(0), most))),
+                glm::ivec2(glm::ceil(glm::clamp(hi + kBeside, glm::dvec2(0), most)))};
+}
+
+std::optional<std::vector<Tile>> lensTiles(const Scene& scene, const WorldFrame& frame, glm::ivec2 size) {
+    if (selectsLens(scene.selection)) return std::nullopt;
+    std::vector<Tile> tiles;
+    for (const PlacedLens& lens : placeLenses(scene, frame)) {
+        const bool local = !lens.inverted && lens.outside == 1 && lens.focus == 0;
+        const std::optional<Tile> tile = local ? lensPixels(lens, scene.camera, size) : std::nullopt;
+        if (!tile) return std::nullopt;
+        const std::vector<Tile> rest = remainder(*tile, tiles);
+        tiles.insert(tiles.end(), rest.begin(), rest.end());
+    }
+    return tiles;
+}
+
+std::vector<Tile> remainder(const Tile& whole, std::span<const Tile> cut) {
+    std::vector<Tile> left;
+    if (!whole.empty()) left.push_back(whole);
+    for (const Tile& hole : cut) {
+        std::vector<Tile> next;
+        for (const Tile& tile : left) {
+            const Tile common = intersection(tile, hole);
+            if (common.empty()) {
+                next.push_back(tile);
+                continue;
+            }
+            // Below and above it, and in its rows at the left and right.
+            for (const Tile& part :
+                 {Tile{tile.begin, {tile.end.x, common.begin.y}}, Tile{{tile.begin.x, common.end.y}, tile.end},
+                  Tile{{tile.begin.x, common.begin.y}, {common.begin.x, common.end.y}},
+                  Tile{{common.end.x, common.begin.y}, {tile.end.x, common.end.y}}})
+                if (!part.empty()) next.push_back(part);
+        }
+        left = std::move(next);
+    }
+    return left;
+}
+
+RayPlan beyondLenses(RayPlan plan) {
+    std::erase_if(plan.layers, [](const RayLayer& layer) { return layer.lens >= 0; });
+    std::erase_if(plan.slices, [](const SliceUse& slice) { return slice.lens >= 0; });
+    return plan;
+}
+
+} // namespace tessera::vis
