@@ -47,6 +47,8 @@ BenchTable benchStyles();
 BenchTable benchLink();
 /// Milliseconds until a scatterplot matrix shows its first counts and all of them, and until it follows a brush.
 BenchTable benchScatter();
+/// From an archive of 250x250x1000 samples to the first picture, to every view refined, and what dragging costs then.
+BenchTable benchLarge();
 /// Every mode of the ray caster on small, 256^3 and full-model volumes: CPU milliseconds of all threads per frame at
 /// 512x512, samples taken, bytes in textures, error against the double-precision reference. `volume` as above.
 BenchTable benchModes(const std::string& volume);
