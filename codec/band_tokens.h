@@ -2,6 +2,7 @@
 
 #include "codec/cpu.h"
 #include "codec/rans_model.h"
+#include "codec/uncleared.h"
 
 #include <cstddef>
 #include <glm/vec3.hpp>
@@ -31,7 +32,7 @@ struct TokenRun {
 
     /// Sixteen a chunk: kind << 13 | class << 8 | token, kNone where a lane has no coefficient. The kind is that of the
     /// band where contexts ask for it, else 0.
-    std::vector<std::uint16_t> tokens;
+    Uncleared<std::uint16_t> tokens;
     std::vector<Large> large; ///< in order
     int groups = 1, used = 0; ///< of states, and how many states are stored
     bool zero = true;         ///< all coefficients are 0

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "codec/lift_box.h"
+#include "codec/uncleared.h"
 
 #include <vector>
 
@@ -31,7 +32,7 @@ public:
 
 private:
     glm::ivec3 size_{0};
-    std::vector<Word> values_;
+    Uncleared<Word> values_;
     std::vector<std::uint8_t> present_;
     bool undivided_ = false;
 };

@@ -111,17 +111,19 @@ Model clustered(const Histogram& histogram, int mostTables) {
         std::vector<std::size_t> contexts;
         double mean = 0, cost = 0;
     };
-    std::vector<Group> groups;
+    std::vector<Group> all;
     for (std::size_t c = 0; c < histogram.counts.size(); ++c) {
         double total = 0, sum = 0;
         for (std::size_t t = 0; t < kTokens; ++t) {
             total += histogram.counts[c][t];
             sum += double(histogram.counts[c][t]) * double(t);
         }
-        if (total > 0) groups.push_back({histogram.counts[c], {c}, sum / total, costOf(histogram.counts[c])});
+        if (total > 0) all.push_back({histogram.counts[c], {c}, sum / total, costOf(histogram.counts[c])});
     }
     // Similar contexts have similar means: only neighbours in that order are ever joined.
-    std::sort(groups.begin(), groups.end(), [](const Group& a, const Group& b) { return a.mean < b.mean; });
+    std::vector<Group*> groups;
+    for (Group& group : all) groups.push_back(&group);
+    std::sort(groups.begin(), groups.end(), [](const Group* a, const Group* b) { return a->mean < b->mean; });
     const auto joined = [](const Group& a, const Group& b) {
         Counts counts = a.counts;
         for (std::size_t t = 0; t < kTokens; ++t) counts[t] += b.counts[t];
@@ -129,17 +131,17 @@ Model clustered(const Histogram& histogram, int mostTables) {
     };
     std::vector<double> loss(groups.empty() ? 0 : groups.size() - 1);
     const auto weigh = [&](std::size_t i) {
-        loss[i] = costOf(joined(groups[i], groups[i + 1])) - groups[i].cost - groups[i + 1].cost;
+        loss[i] = costOf(joined(*groups[i], *groups[i + 1])) - groups[i]->cost - groups[i + 1]->cost;
     };
     for (std::size_t i = 0; i + 1 < groups.size(); ++i) weigh(i);
     while (groups.size() > 1) {
         const auto best = std::min_element(loss.begin(), loss.end());
         if (*best >= 0 && int(groups.size()) <= mostTables) break;
         const auto i = static_cast<std::size_t>(best - loss.begin());
-        groups[i].counts = joined(groups[i], groups[i + 1]);
-        groups[i].cost = costOf(groups[i].counts);
-        groups[i].contexts.insert(groups[i].contexts.end(), groups[i + 1].contexts.begin(),
-                                  groups[i + 1].contexts.end());
+        Group &one = *groups[i], &other = *groups[i + 1];
+        one.counts = joined(one, other);
+        one.cost = costOf(one.counts);
+        one.contexts.insert(one.contexts.end(), other.contexts.begin(), other.contexts.end());
         groups.erase(groups.begin() + std::ptrdiff_t(i) + 1);
         loss.erase(best);
         if (i > 0) weigh(i - 1);
@@ -152,8 +154,8 @@ Model clustered(const Histogram& histogram, int mostTables) {
     constexpr std::uint8_t kNone = 255;
     model.tableOf.assign(histogram.counts.size(), kNone);
     for (std::size_t g = 0; g < groups.size(); ++g) {
-        model.tables.push_back(normalised(groups[g].counts));
-        for (const std::size_t c : groups[g].contexts) model.tableOf[c] = static_cast<std::uint8_t>(g);
+        model.tables.push_back(normalised(groups[g]->counts));
+        for (const std::size_t c : groups[g]->contexts) model.tableOf[c] = static_cast<std::uint8_t>(g);
     }
     if (model.tables.empty()) model.tables.push_back(normalised(Counts{}));
     // Contexts that were not seen take the table of the class below, which costs no bits in the map.
