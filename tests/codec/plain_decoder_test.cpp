@@ -1,6 +1,7 @@
 #include "tests/codec/plain/decoder.h"
 
 #include "codec/archive.h"
+#include "codec/brick_codec.h"
 #include "codec/pack.h"
 #include "tests/codec/make_dataset.h"
 
@@ -66,6 +67,59 @@ TEST(PlainDecoder, AgreesOnEveryBrickAtEveryLevel) {
                     }
                 }
             ++frame;
+        }
+    }
+}
+
+TEST(PlainDecoder, AgreesWhereBandsHaveTablesOfTheirOwn) {
+    // Details along x are 1 or -1, those along z 0 or 2: the neighbours look alike, the values do not.
+    const glm::ivec3 size{40, 36, 32};
+    volume::Dataset made = makeDataset(size, {{"a", ScalarType::U16, 1, Texture::Smooth, false, false}}, 1);
+    volume::Field field = made.load(0, 0, 0);
+    std::mt19937 random(1);
+    std::vector<std::uint16_t> samples(field.count());
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+        const int x = int(i) % size.x, z = int(i) / (size.x * size.y);
+        samples[i] = std::uint16_t(x % 2 == 0 && z % 2 == 0 ? 500 + random() % 300 : 0);
+    }
+    for (int z = 0; z < size.z; ++z)
+        for (int y = 0; y < size.y; ++y)
+            for (int x = 0; x < size.x; ++x) {
+                const auto at = [&](int i, int k) -> std::uint16_t& {
+                    return samples[(std::size_t(k) * std::size_t(size.y) + std::size_t(y)) * std::size_t(size.x) +
+                                   std::size_t(i)];
+                };
+                const bool odd = x % 2 == 1;
+                if (odd) at(x, z) = std::uint16_t(at(x - 1, z) + (random() % 2 == 0 ? 1 : -1));
+                if (z % 2 == 1) at(x, z) = std::uint16_t(at(x, z - 1) + (odd ? 0 : random() % 2 * 2));
+            }
+    std::memcpy(field.samples.data(), samples.data(), field.samples.size());
+    made.load = [field](int, int, int) { return field; };
+    const TemporaryFolder folder;
+    PackOptions options;
+    options.lattice = StoredLattice::CC;
+    options.wavelet = WaveletChoice::N1;
+    pack(made, options, folder / "a.tsr");
+    const Archive archive(folder / "a.tsr");
+    const BrickFormat format{
+        volume::LatticeKind::CC,    size, archive.grid().levels, Wavelet::N1, ScalarType::U16, {}, false,
+        codeBitsOf(ScalarType::U16)};
+    Histogram histogram(format.levels, {0, true});
+    SplitMemory memory;
+    countBrick(prepareBrick(format, field.samples, {}, 0, histogram.contexts, memory), histogram);
+    const Model model = makeModel(histogram, 24);
+    const auto tablesOf = [&](int kind) {
+        return model.tableOf.begin() + std::ptrdiff_t(model.contexts.first(0, kind));
+    };
+    ASSERT_FALSE(std::equal(tablesOf(1), tablesOf(1) + kClasses, tablesOf(4)));
+    const plain::Decoder decoder(readFile(folder / "a.tsr"));
+    for (int level = 0; level < decoder.levels(); ++level) {
+        const volume::BrickSamples expected = archive.read({0, 0, level, {0, 0, 0}});
+        const plain::Brick brick = decoder.brick(0, 0, level);
+        ASSERT_EQ(brick.values.size(), expected.values.size());
+        for (std::size_t i = 0; i < brick.values.size(); ++i) {
+            ASSERT_EQ(float(brick.values[i]), expected.values[i]) << "level " << level;
+            ASSERT_TRUE(level > 0 || brick.values[i] == double(samples[i]));
         }
     }
 }
