@@ -123,6 +123,8 @@ void drawVolumeView(ViewContext& context, const std::string& pane, VolumeView& v
     request.moving = (moving || context.interacting || session.animation.playing) && !context.headless;
     request.wait = context.headless;
     vis::Scene scene = cache.scene.get(context, pane, request.moving);
+    // In motion a third of the frame is left to what else is drawn.
+    if (request.moving) request.budgetMs = double(scene.render.limits.frameTime) * 2 / 3;
     scene.showBox = view.showBox;
     const vis::FrameStatus status = context.renderer.render(*cache.target, scene, request);
     context.busy = context.busy || !status.complete;
