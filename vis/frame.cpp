@@ -447,7 +447,7 @@ void Renderer::Impl::refine(ViewTarget& target, const Scene& scene, const FrameR
     const double expected = target.msPerPixel * target.changed.area();
     const bool fast = target.msPerPixel > 0 && target.msPerPixel * target.stale.area() < std::max(left(), 1.0);
     if (!request.wait && !fast && (request.moving || !(target.reducedValid || target.fullValid))) {
-        double shrink = 4, stepFactor = 2;
+        double shrink = 6, stepFactor = 2;
         if (target.msPerPixel > 0)
             // Not smaller than that: two processors would share one tile of software GL.
             for (const auto& [smaller, longer] : {std::pair{1.0, 1.0},
