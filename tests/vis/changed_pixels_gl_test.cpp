@@ -1,4 +1,4 @@
-#include "tests/vis/raycast_compare.h"
+#include "tests/vis/lens_scene.h"
 #include "vis/technique/changed_pixels.h"
 
 #include <functional>
@@ -9,22 +9,13 @@ namespace {
 
 constexpr glm::dvec3 kStep{-3.5, 2.5, 3};
 
-/// A volume, another one and a line in a lens, and a lens that magnifies.
-Scene lensScene(bool perspective) {
-    Scene scene = baseScene(perspective);
-    scene.layers = {{"", true, VolumeLayer{.channel = "a", .density = 3}},
-                    {"", true, IsoLayer{.channel = "b", .value = 0.55, .opacity = 0.7f}, "inner"},
-                    {"", true, VolumeLayer{.channel = "b", .shaded = false}, "inner"}};
+/// With a line through the data.
+Scene draggedScene(bool perspective) {
+    Scene scene = lensScene(perspective);
     auto line = std::make_shared<Geometry>();
     line->lines.positions = {{0, 0, 0}, {18, 16, 24}};
     line->lines.ends = {2};
     scene.geometry = {{.geometry = line, .lineWidth = 6}};
-    scene.lenses = {{.name = "inner", .center = scene.cursor, .size = glm::vec3(0.13f)},
-                    {.name = "larger",
-                     .shape = LensShape::Disc,
-                     .effect = LensEffect::Magnify,
-                     .center = scene.cursor + 4.0,
-                     .size = glm::vec3(0.1f)}};
     return scene;
 }
 
@@ -70,7 +61,7 @@ INSTANTIATE_TEST_SUITE_P(Cameras, ChangedPixels, testing::Bool(),
                          [](const auto& each) { return each.param ? "perspective" : "parallel"; });
 
 TEST_P(ChangedPixels, HoldEveryDifferenceOfMovedLenses) {
-    const Scene before = lensScene(GetParam());
+    const Scene before = draggedScene(GetParam());
     const Linear was = drawing.draw(before);
     for (const Move& move : kMoves) {
         Scene after = before;
@@ -93,7 +84,7 @@ TEST_P(ChangedPixels, HoldEveryDifferenceOfMovedLenses) {
 }
 
 TEST_P(ChangedPixels, AreAllOfThemWhereALensReachesFurther) {
-    const Scene before = lensScene(GetParam());
+    const Scene before = draggedScene(GetParam());
     const auto everywhere = [&](const std::function<void(Scene&)>& always, const std::function<void(Scene&)>& change) {
         Scene was = before;
         always(was);
@@ -123,7 +114,7 @@ TEST_P(ChangedPixels, AreAllOfThemWhereALensReachesFurther) {
 }
 
 TEST_P(ChangedPixels, AloneAreDrawnAndMakeTheSamePicture) {
-    const Scene before = lensScene(GetParam());
+    const Scene before = draggedScene(GetParam());
     for (const int samples : {1, 3})
         for (const Move& move : kMoves) {
             Scene scene = before;
@@ -139,7 +130,7 @@ TEST_P(ChangedPixels, AloneAreDrawnAndMakeTheSamePicture) {
 }
 
 TEST_P(ChangedPixels, AreCoarseWhileALensIsDraggedTheOthersStay) {
-    const Scene before = lensScene(GetParam());
+    const Scene before = draggedScene(GetParam());
     draw(before);
     const std::vector<std::uint8_t> was = presented();
     std::vector<std::pair<glm::ivec2, glm::dvec3>> picks;

@@ -1,4 +1,4 @@
-#include "tests/vis/raycast_compare.h"
+#include "tests/vis/lens_scene.h"
 #include "vis/technique/lens_pixels.h"
 
 #include <random>
@@ -35,17 +35,8 @@ INSTANTIATE_TEST_SUITE_P(Cameras, LensPixelsGl, testing::Bool(),
                          [](const auto& each) { return each.param ? "perspective" : "parallel"; });
 
 Scene lensedScene(bool perspective) {
-    Scene scene = baseScene(perspective);
-    scene.layers = {{"", true, VolumeLayer{.channel = "a", .density = 3}},
-                    {"", true, IsoLayer{.channel = "b", .value = 0.55, .opacity = 0.7f}, "inner"},
-                    {"", true, VolumeLayer{.channel = "b", .shaded = false}, "inner"},
-                    {"", true, SliceLayer{.channel = "b", .orientation = SliceOrientation::Y, .opacity = 0.5f}}};
-    scene.lenses = {{.name = "inner", .center = scene.cursor, .size = glm::vec3(0.15f)},
-                    {.name = "larger",
-                     .shape = LensShape::Disc,
-                     .effect = LensEffect::Magnify,
-                     .center = scene.cursor + 4.0,
-                     .size = glm::vec3(0.1f)}};
+    Scene scene = lensScene(perspective);
+    scene.layers.push_back({"", true, SliceLayer{.channel = "b", .orientation = SliceOrientation::Y, .opacity = 0.5f}});
     return scene;
 }
 
