@@ -70,7 +70,7 @@ public:
     std::uint64_t brickBytes(const volume::BrickKey& key) const;
 
 private:
-    friend volume::Field readField(const Archive&, int, int, int);
+    friend volume::Field readLayers(const Archive&, int, int, int, int, int);
     friend VerifyReport verifyArchive(const Archive&, const Progress&);
     friend struct Verifier;
     friend std::vector<struct MergedBytes> bytesOfMerged(const Archive&, std::span<const volume::MergedBrick>,
@@ -87,6 +87,8 @@ std::shared_ptr<const volume::BrickSource> openArchive(const std::string& path);
 /// The stored samples of one component of a parameter at a time index, in their type: bit for bit what was packed when
 /// the archive is lossless. An odd frame of D4* lies on its moved grid. Throws Error when the data is damaged.
 volume::Field readField(const Archive& archive, int parameter, int component, int time);
+/// The same of the slices that the layers [layer, end) of bricks hold.
+volume::Field readLayers(const Archive& archive, int parameter, int component, int time, int layer, int end);
 
 /// Computes every checksum and decodes every brick at every level, on all cores. Throws Cancelled.
 VerifyReport verifyArchive(const Archive& archive, const Progress& progress = {});

@@ -2,6 +2,7 @@
 #include "codec/brick_codec_v1.h"
 #include "volume/memory_source.h"
 #include "volume/parallel.h"
+#include "volume/slices.h"
 
 #include <algorithm>
 #include <bit>
@@ -126,21 +127,32 @@ volume::BrickSamples Archive::read(const volume::BrickKey& key) const {
 }
 
 volume::Field readField(const Archive& archive, int parameter, int component, int time) {
+    return readLayers(archive, parameter, component, time, 0, archive.grid().count().z);
+}
+
+volume::Field readLayers(const Archive& archive, int parameter, int component, int time, int layer, int end) {
     const Archive::Impl& impl = *archive.impl_;
+    const volume::BrickGrid& grid = impl.metadata.grid;
     const FrameRecord& shown = impl.frame(parameter, component, time);
-    volume::Field field = volume::makeField(impl.metadata.info.lattice, impl.parameter(parameter).type);
+    const int first = grid.begin({0, 0, layer}).z, last = grid.end({0, 0, end - 1}).z;
+    const std::size_t firstBrick = brickNumber(grid, {0, 0, layer}),
+                      bricks = brickNumber(grid, {0, 0, end}) - firstBrick;
+    volume::Field field =
+        volume::makeField(volume::slicesOf(grid.lattice, first, last - first), impl.parameter(parameter).type);
+    const volume::BrickGrid own{field.lattice, grid.brickSize, grid.levels, grid.phase}; // of those layers
     if (impl.metadata.alternating && time % 2 != 0) field.lattice.origin += 0.5 * field.lattice.spacing;
     field.offset = shown.valueOffset;
     field.scale = shown.valueScale;
     volume::Mask mask(shown.mask < 0 ? 0 : field.count(), 1);
-    parallelFor(impl.bricks, [&](std::size_t brick) {
+    parallelFor(bricks, [&](std::size_t number) {
+        const std::size_t brick = firstBrick + number;
         const FrameRecord& frame = impl.holding(shown, brick);
-        const glm::ivec3 at = brickIndex(impl.metadata.grid, brick);
-        const BrickFormat format = brickFormat(impl.metadata.grid, at, field.type, frame);
+        const glm::ivec3 index = brickIndex(own, number);
+        const BrickFormat format = brickFormat(own, index, field.type, frame);
         const std::vector<std::uint8_t> fine = impl.flags(frame, brick);
         const Lent decoded(impl);
         impl.decode(frame, format, brick, 0, fine, *decoded);
-        const glm::ivec3 begin = impl.metadata.grid.begin(at), size = decoded->size;
+        const glm::ivec3 begin = own.begin(index), size = decoded->size;
         const auto placeOf = [&](std::size_t i) { // of a sample of the brick in the lattice
             const std::size_t nx = std::size_t(size.x), ny = std::size_t(size.y);
             return field.lattice.index(begin + glm::ivec3(int(i % nx), int(i / nx % ny), int(i / (nx * ny))));
@@ -166,7 +178,7 @@ volume::Field readField(const Archive& archive, int parameter, int component, in
                     put(i, frame.keepsAbsent ? decoded->absent[next++] : sizeof(T) == 4 ? 0x7fc00000u : 0u);
         });
         if (!fine.empty() && !mask.empty())
-            forBrickRows(impl.metadata.grid, at, [&](std::size_t to, std::size_t from, std::size_t count) {
+            forBrickRows(own, index, [&](std::size_t to, std::size_t from, std::size_t count) {
                 std::copy_n(fine.begin() + std::ptrdiff_t(from), count, mask.begin() + std::ptrdiff_t(to));
             });
     });

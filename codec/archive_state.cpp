@@ -7,6 +7,27 @@
 
 namespace tessera::codec {
 
+namespace {
+
+/// Which samples of a layer of bricks are present.
+volume::Mask flagsOfLayer(const auto& impl, const FrameRecord& frame, int layer) {
+    const volume::BrickGrid& grid = impl.metadata.grid;
+    const glm::ivec3 count = grid.count(), last(count.x - 1, count.y - 1, layer);
+    const std::size_t begin = grid.lattice.index({0, 0, grid.begin({0, 0, layer}).z}),
+                      end = grid.lattice.index({0, 0, grid.end(last).z}), first = brickNumber(grid, {0, 0, layer});
+    volume::Mask mask(end - begin, 1);
+    parallelFor(std::size_t(count.x) * std::size_t(count.y), [&](std::size_t i) {
+        const std::vector<std::uint8_t> fine = impl.flags(frame, first + i);
+        if (fine.empty()) return;
+        forBrickRows(grid, brickIndex(grid, first + i), [&](std::size_t to, std::size_t from, std::size_t n) {
+            std::copy_n(fine.begin() + std::ptrdiff_t(from), n, mask.begin() + std::ptrdiff_t(to - begin));
+        });
+    });
+    return mask;
+}
+
+} // namespace
+
 ArchiveState stateOf(const Archive& archive, bool withFrames) {
     const Archive::Impl& impl = *archive.impl_;
     ArchiveState state{impl.header.header,
@@ -27,16 +48,9 @@ ArchiveState stateOf(const Archive& archive, bool withFrames) {
         const FrameRecord& last = impl.index.frames[(state.times - 1) * impl.components + c];
         const auto sameMask = [&](const auto& entry) { return entry.first == last.mask; };
         if (last.mask < 0 || std::any_of(state.lastMasks.begin(), state.lastMasks.end(), sameMask)) continue;
-        volume::Mask mask(impl.metadata.info.lattice.count(), 1);
-        parallelFor(impl.bricks, [&](std::size_t brick) {
-            const std::vector<std::uint8_t> fine = impl.flags(last, brick);
-            if (fine.empty()) return;
-            forBrickRows(impl.metadata.grid, brickIndex(impl.metadata.grid, brick),
-                         [&](std::size_t to, std::size_t from, std::size_t count) {
-                             std::copy_n(fine.begin() + std::ptrdiff_t(from), count, mask.begin() + std::ptrdiff_t(to));
-                         });
-        });
-        state.lastMasks.emplace_back(last.mask, std::move(mask));
+        MaskHash hash;
+        for (int layer = 0; layer < impl.metadata.grid.count().z; ++layer) hash.add(flagsOfLayer(impl, last, layer));
+        state.lastMasks.emplace_back(last.mask, hash.value());
     }
     const std::size_t step = impl.metadata.alternating ? 2 : 1;
     for (std::size_t t = state.times - std::min(state.times, step); withFrames && t < state.times; ++t)

@@ -3,6 +3,7 @@
 #include "codec/archive.h"
 #include "codec/brick_input.h"
 #include "codec/index.h"
+#include "codec/mask_hash.h"
 #include "codec/rans_model.h"
 
 #include <utility>
@@ -29,7 +30,7 @@ struct ArchiveState {
     Header header;
     std::size_t times = 0, components = 0, models = 0, masks = 0;
     std::vector<KnownModel> lastModels;                        ///< by component
-    std::vector<std::pair<int, volume::Mask>> lastMasks;       ///< those of the last time
+    std::vector<std::pair<int, MaskHash::Value>> lastMasks;    ///< those of the last time
     std::vector<std::pair<std::size_t, SeenFrame>> lastFrames; ///< by component, of D4* two of each
 };
 

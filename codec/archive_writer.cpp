@@ -3,8 +3,10 @@
 #include "codec/archive_state.h"
 #include "codec/brick_access.h"
 #include "codec/brick_input.h"
+#include "codec/coded_bricks.h"
 #include "codec/frame_model.h"
 #include "codec/growing_file.h"
+#include "codec/mask_hash.h"
 #include "codec/whole_brick.h"
 #include "volume/parallel.h"
 
@@ -12,15 +14,10 @@
 #include <array>
 #include <cassert>
 #include <map>
-#include <xxhash.h>
 
 namespace tessera::codec {
 
 namespace {
-
-std::span<const std::byte> bytesOf(const volume::Mask& mask) {
-    return std::as_bytes(std::span(mask));
-}
 
 struct CodedMaskBrick {
     Bytes bytes;
@@ -53,7 +50,7 @@ struct ArchiveWriter::Impl {
     Bytes block;                                  ///< the metadata of the last commit
     std::size_t times = 0, models = 0, masks = 0; ///< written so far; times: committed
     IndexPage page;                               ///< what the next commit adds
-    std::map<std::array<std::uint64_t, 2>, int> maskByHash;
+    std::map<MaskHash::Value, int> maskByHash;
     std::map<std::size_t, KnownModel> lastModel; ///< by component
     bool keepsFrames = true;
     Archive::Repeats repeats;
@@ -65,55 +62,52 @@ struct ArchiveWriter::Impl {
     explicit Impl(const std::string& path) : file(path) {}
     Impl(const std::string& path, const Header& last) : file(path, last), header(last) {}
 
-    int maskFor(const volume::Field& field, int zstdLevel);
+    int maskFor(const FrameSamples& samples, int zstdLevel);
     /// `idle`: no token of the frame is coded with it.
     void writeModel(const Model& model, bool idle, std::size_t component, FrameRecord& frame);
-    const SeenFrame* frameBefore(const FrameRecord& frame, const volume::Field& field) const;
-    std::vector<std::uint8_t> repeated(const SeenFrame* before, const volume::Field& field, const FrameRecord& frame,
+    const SeenFrame* frameBefore(const FrameRecord& frame, const FrameSamples& samples) const;
+    std::vector<std::uint8_t> repeated(const SeenFrame* before, const FrameSamples& samples, const FrameRecord& frame,
                                        double maxError) const;
     void commit(const Metadata& now, std::size_t wholeTimes, bool always);
 };
 
-namespace {
-
-std::array<std::uint64_t, 2> hashOf(const volume::Mask& mask) {
-    const auto bytes = bytesOf(mask);
-    const XXH128_hash_t hash = XXH3_128bits(bytes.data(), bytes.size());
-    return {hash.low64, hash.high64};
-}
-
-} // namespace
-
-/// Index of the record of a field's mask, written when it is new; -1 where everything is present.
-int ArchiveWriter::Impl::maskFor(const volume::Field& field, int zstdLevel) {
-    if (!field.mask || std::find(field.mask->begin(), field.mask->end(), std::uint8_t(0)) == field.mask->end())
-        return -1;
-    const auto [found, isNew] = maskByHash.try_emplace(hashOf(*field.mask), int(masks));
+/// Index of the record of a frame's mask, written when it is new; -1 where everything is present.
+int ArchiveWriter::Impl::maskFor(const FrameSamples& samples, int zstdLevel) {
+    if (!samples.masked()) return -1;
+    MaskHash hash;
+    samples.forSlabs([&](const volume::Field& part, Slab) {
+        hash.add(part);
+        return true;
+    });
+    if (!hash.gaps()) return -1;
+    const auto [found, isNew] = maskByHash.try_emplace(hash.value(), int(masks));
     if (!isNew) return found->second;
 
-    const std::size_t bricks = brickCount(metadata.grid);
-    std::vector<CodedMaskBrick> coded(bricks);
-    parallelRanges(bricks, [&](std::size_t begin, std::size_t end) {
-        Compressor compressor(zstdLevel);
-        std::vector<std::uint8_t> flags;
-        for (std::size_t b = begin; b < end; ++b) {
-            flags.clear();
-            forBrickRows(metadata.grid, brickIndex(metadata.grid, b),
-                         [&](std::size_t from, std::size_t, std::size_t n) {
-                             for (std::size_t i = from; i < from + n; ++i)
-                                 flags.push_back((*field.mask)[i] != 0 ? 1 : 0);
-                         });
-            coded[b] = encodeMask(flags, compressor);
-        }
-    });
     ++masks;
     MaskRecord& record = page.masks.emplace_back();
     record.offset = file.position();
-    for (const CodedMaskBrick& brick : coded) {
-        record.bricks.push_back(
-            {{file.position(), static_cast<std::uint32_t>(brick.bytes.size()), checksum(brick.bytes)}, brick.present});
-        file.append(brick.bytes);
-    }
+    samples.forSlabs([&](const volume::Field& part, Slab slab) {
+        const volume::BrickGrid own = slab.grid(metadata.grid);
+        std::vector<CodedMaskBrick> coded(brickCount(own));
+        parallelRanges(coded.size(), [&](std::size_t begin, std::size_t end) {
+            Compressor compressor(zstdLevel);
+            std::vector<std::uint8_t> flags;
+            for (std::size_t b = begin; b < end; ++b) {
+                flags.clear();
+                forBrickRows(own, brickIndex(own, b), [&](std::size_t from, std::size_t, std::size_t n) {
+                    for (std::size_t i = from; i < from + n; ++i) flags.push_back(part.present(i) ? 1 : 0);
+                });
+                coded[b] = encodeMask(flags, compressor);
+            }
+        });
+        for (const CodedMaskBrick& brick : coded) {
+            record.bricks.push_back(
+                {{file.position(), static_cast<std::uint32_t>(brick.bytes.size()), checksum(brick.bytes)},
+                 brick.present});
+            file.append(brick.bytes);
+        }
+        return true;
+    });
     record.length = file.position() - record.offset;
     return found->second;
 }
@@ -128,16 +122,16 @@ void ArchiveWriter::Impl::writeModel(const Model& chosen, bool idle, std::size_t
 }
 
 /// The last frame of the component on the same grid, if it is here and its numbers mean the same.
-const SeenFrame* ArchiveWriter::Impl::frameBefore(const FrameRecord& frame, const volume::Field& field) const {
+const SeenFrame* ArchiveWriter::Impl::frameBefore(const FrameRecord& frame, const FrameSamples& samples) const {
     const int time = int(frame.time);
     const auto found = lastFrames.find({frame.component, time % step()});
     if (found == lastFrames.end() || found->second.time != time - step()) return nullptr;
     const volume::Field& before = found->second.field;
-    return before.offset == field.offset && before.scale == field.scale ? &found->second : nullptr;
+    return before.offset == samples.offset() && before.scale == samples.scale() ? &found->second : nullptr;
 }
 
 /// Flags of the bricks that need not be stored again.
-std::vector<std::uint8_t> ArchiveWriter::Impl::repeated(const SeenFrame* before, const volume::Field& field,
+std::vector<std::uint8_t> ArchiveWriter::Impl::repeated(const SeenFrame* before, const FrameSamples& samples,
                                                         const FrameRecord& frame, double maxError) const {
     constexpr int kFurthest = 65535;
     std::vector<std::uint8_t> flags(brickCount(metadata.grid), 0);
@@ -148,10 +142,10 @@ std::vector<std::uint8_t> ArchiveWriter::Impl::repeated(const SeenFrame* before,
             if (before->bricks[b].notes.repeats + step() > kFurthest) continue;
             const glm::ivec3 brick = brickIndex(metadata.grid, b);
             was.take(metadata.grid, brick, before->field, before->field.mask != nullptr);
-            is.take(metadata.grid, brick, field, frame.mask >= 0);
+            is.take(metadata.grid, brick, samples, frame.mask >= 0);
             const bool absentToo = frame.keepsAbsent && !is.present.empty();
             if (absentToo && !before->keepsAbsent) continue;
-            flags[b] = mayStandFor(field.type, was, is, maxError, absentToo) ? 1 : 0;
+            flags[b] = mayStandFor(samples.type(), was, is, maxError, absentToo) ? 1 : 0;
         }
     });
     return flags;
@@ -176,7 +170,7 @@ ArchiveWriter::ArchiveWriter(const Archive& archive, const Metadata& metadata, b
     impl_->times = state.times;
     impl_->models = state.models;
     impl_->masks = state.masks;
-    for (const auto& [number, mask] : state.lastMasks) impl_->maskByHash.emplace(hashOf(mask), number);
+    for (const auto& [number, hash] : state.lastMasks) impl_->maskByHash.emplace(hash, number);
     for (std::size_t c = 0; c < state.lastModels.size(); ++c)
         impl_->lastModel.emplace(c, std::move(state.lastModels[c]));
     for (auto& [component, frame] : state.lastFrames)
@@ -185,35 +179,36 @@ ArchiveWriter::ArchiveWriter(const Archive& archive, const Metadata& metadata, b
 
 ArchiveWriter::~ArchiveWriter() = default;
 
-void ArchiveWriter::addFrame(int parameter, int component, int time, const volume::Field& field,
+void ArchiveWriter::addFrame(int parameter, int component, int time, const FrameSamples& samples,
                              const FrameOptions& options, const Progress& progress) {
     const volume::BrickGrid& grid = impl_->metadata.grid;
     const volume::DatasetInfo& info = impl_->metadata.info;
     const std::size_t ofTime = firstComponent(info, parameter) + std::size_t(component);
-    assert(field.lattice.size == grid.lattice.size && field.lattice.kind == grid.lattice.kind);
-    assert(field.type == info.parameters[std::size_t(parameter)].type);
+    assert(samples.lattice().size == grid.lattice.size && samples.lattice().kind == grid.lattice.kind);
+    assert(samples.type() == info.parameters[std::size_t(parameter)].type);
+    assert(samples.whole() || !impl_->keepsFrames);
     progress.advance(0);
 
     FrameRecord frame;
     frame.time = static_cast<std::uint32_t>(time);
     frame.component = static_cast<std::uint32_t>(ofTime);
-    frame.mask = impl_->maskFor(field, options.zstdLevel);
+    frame.mask = impl_->maskFor(samples, options.zstdLevel);
     const auto found = impl_->lastModel.find(ofTime);
     const KnownModel* const lastModel = found == impl_->lastModel.end() ? nullptr : &found->second;
-    frame.numbers = options.numbers ? *options.numbers : chooseNumbers(grid, field, lastModel, options);
+    frame.numbers = options.numbers ? *options.numbers : chooseNumbers(grid, samples, lastModel, options);
     frame.wavelet = options.wavelet.value_or(Wavelet::W22);
     frame.keepsAbsent = options.keepsAbsent && frame.mask >= 0;
-    frame.valueOffset = field.offset;
-    frame.valueScale = field.scale;
-    frame.codeBits = codeBitsOf(field, frame.numbers);
+    frame.valueOffset = samples.offset();
+    frame.valueScale = samples.scale();
+    frame.codeBits = codeBitsOf(samples, frame.numbers);
     const double maxError = boundOf(frame, options);
-    const SeenFrame* const before = impl_->frameBefore(frame, field);
-    const std::vector<std::uint8_t> repeated = impl_->repeated(before, field, frame, maxError);
+    const SeenFrame* const before = impl_->frameBefore(frame, samples);
+    const std::vector<std::uint8_t> repeated = impl_->repeated(before, samples, frame, maxError);
     const std::vector<volume::BrickImportance> importance =
-        volume::importanceOfBricks(grid, field, options.range, options.categorical, options.importance);
+        importanceOfBricks(grid, samples, options.range, options.categorical, options.importance);
     Taken taken;
     const bool byBand = (impl_->header.features & kBandContexts) != 0;
-    const Model model = chooseModel(grid, field, lastModel, byBand, frame, options, taken);
+    const Model model = chooseModel(grid, samples, lastModel, byBand, frame, options, taken);
     const BandEncoder encoder(model);
     if (!taken.serves(frame, model)) taken.bricks.clear();
     taken.bricks.resize(brickCount(grid));
@@ -222,59 +217,70 @@ void ArchiveWriter::addFrame(int parameter, int component, int time, const volum
     // Of the last time nothing is wanted but how far it moved.
     const bool isLast = std::size_t(time + impl_->step()) >= info.times.size();
     const bool keeps = impl_->keepsFrames && (before || !isLast);
-    SeenFrame seen{time, frame.keepsAbsent, keeps ? field : volume::Field(), {}, {}};
+    SeenFrame seen{time, frame.keepsAbsent, keeps ? *samples.whole() : volume::Field(), {}, {}};
     seen.bytes.resize(bricks);
     frame.bricks.resize(bricks);
     frame.segments.resize(bricks * levels);
-    std::vector<std::vector<Bytes>> coded(bricks);
-    const int effort = effortFor(field, options.zstdLevel);
-    // In batches, so that a cancel is noticed and the output does not depend on the number of cores.
-    constexpr std::size_t kBatch = 64;
-    for (std::size_t first = 0; first < bricks; first += kBatch) {
-        const std::size_t count = std::min(kBatch, bricks - first);
-        parallelRanges(count, [&](std::size_t begin, std::size_t end) {
-            Compressor compressor(effort, (impl_->header.features & kCompact) != 0);
-            BrickInput input;
-            SplitMemory memory;
-            for (std::size_t b = first + begin; b < first + end; ++b) {
-                const glm::ivec3 brick = brickIndex(grid, b);
-                FrameBrick& about = frame.bricks[b];
-                if (repeated[b] != 0) {
-                    about = before->bricks[b];
-                    about.notes.repeats += impl_->step();
-                    coded[b].resize(levels);
-                    seen.bytes[b] = before->bytes[b];
-                    input.take(grid, brick, before->field, false);
-                } else {
-                    const BrickFormat format = brickFormat(grid, brick, field.type, frame);
-                    input.take(grid, brick, field, frame.mask >= 0);
-                    if (!taken.bricks[b])
-                        taken.bricks[b] =
-                            prepareBrick(format, input.samples, input.present, maxError, model.contexts, memory);
-                    coded[b] = encodeBrick(format, *taken.bricks[b], input.samples, input.present, compressor, encoder);
-                    for (const Bytes& segment : coded[b]) seen.bytes[b] += segment.size();
-                    roundAsDecoded(format, maxError, input);
-                    about = rangeOf(field, input);
-                }
-                taken.bricks[b].reset();
-                about.notes.importance = importance[b];
-                if (!keeps) continue;
-                putSamples(grid, brick, input.samples, seen.field);
-                if (before) about.notes.change = volume::changeOfBrick(grid, brick, before->field, seen.field);
-            }
-        });
-        progress.advance(double(first + count) / double(bricks));
-    }
+    CodedBricks coded(bricks, levels, samples.store() ? &samples.store()->folder : nullptr);
     bool allWhole = levels > 1;
-    for (std::size_t b = 0; b < bricks; ++b)
-        allWhole = allWhole && (repeated[b] != 0 || (!coded[b][0].empty() && isWhole(coded[b][0][0])));
+    const int effort = effortFor(samples, options.zstdLevel);
+    const std::size_t perBatch = batchOf(brickBytes(grid, samples.type()));
+    samples.forSlabs([&](const volume::Field& part, Slab slab) {
+        const volume::BrickGrid own = slab.grid(grid);
+        const std::size_t firstBrick = slab.bricks(grid).first, endBrick = slab.bricks(grid).second;
+        // In batches, so that a cancel is noticed and the output does not depend on the number of cores.
+        for (std::size_t first = firstBrick; first < endBrick; first += perBatch) {
+            const std::size_t count = std::min(perBatch, endBrick - first);
+            std::vector<std::vector<Bytes>> batch(count);
+            parallelRanges(count, [&](std::size_t begin, std::size_t end) {
+                Compressor compressor(effort, (impl_->header.features & kCompact) != 0);
+                BrickInput input;
+                SplitMemory memory;
+                for (std::size_t b = first + begin; b < first + end; ++b) {
+                    const glm::ivec3 brick = brickIndex(grid, b);
+                    std::vector<Bytes>& segments = batch[b - first];
+                    FrameBrick& about = frame.bricks[b];
+                    if (repeated[b] != 0) {
+                        about = before->bricks[b];
+                        about.notes.repeats += impl_->step();
+                        segments.resize(levels);
+                        seen.bytes[b] = before->bytes[b];
+                        input.take(grid, brick, before->field, false);
+                    } else {
+                        const BrickFormat format = brickFormat(grid, brick, part.type, frame);
+                        input.take(own, brickIndex(own, b - firstBrick), part, frame.mask >= 0);
+                        if (!taken.bricks[b])
+                            taken.bricks[b] =
+                                prepareBrick(format, input.samples, input.present, maxError, model.contexts, memory);
+                        segments =
+                            encodeBrick(format, *taken.bricks[b], input.samples, input.present, compressor, encoder);
+                        for (const Bytes& segment : segments) seen.bytes[b] += segment.size();
+                        roundAsDecoded(format, maxError, input);
+                        about = rangeOf(part, input);
+                    }
+                    taken.bricks[b].reset();
+                    about.notes.importance = importance[b];
+                    if (!keeps) continue;
+                    putSamples(grid, brick, input.samples, seen.field);
+                    if (before) about.notes.change = volume::changeOfBrick(grid, brick, before->field, seen.field);
+                }
+            });
+            for (std::size_t b = first; b < first + count; ++b) {
+                std::vector<Bytes>& segments = batch[b - first];
+                allWhole = allWhole && (repeated[b] != 0 || (!segments[0].empty() && isWhole(segments[0][0])));
+                coded.put(b, std::move(segments));
+            }
+            progress.advance(double(first + count) / double(bricks));
+        }
+        return true;
+    });
     // Nobody will look into the tables where there are no bands.
     if (frame.model < 0) impl_->writeModel(model, allWhole, ofTime, frame);
     GrowingFile& file = impl_->file;
     frame.offset = file.position();
     for (std::size_t s = 0; s < levels; ++s)
         for (std::size_t b = 0; b < bricks; ++b) {
-            const Bytes& bytes = coded[b][s];
+            const Bytes bytes = coded.take(b, s);
             frame.segments[s * bricks + b] = {file.position(), static_cast<std::uint32_t>(bytes.size()),
                                               checksum(bytes)};
             file.append(bytes);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "codec/archive.h"
+#include "codec/frame_samples.h"
 #include "codec/lifting.h"
 #include "codec/metadata.h"
 #include "codec/numbers.h"
@@ -27,13 +28,14 @@ struct FrameOptions {
 };
 
 /// About how many bytes a frame is coded in, from the tokens of at most `bricks` of its bricks.
-double estimateFrameBytes(const volume::BrickGrid& grid, const volume::Field& field, const FrameOptions& options,
+double estimateFrameBytes(const volume::BrickGrid& grid, const FrameSamples& samples, const FrameOptions& options,
                           std::size_t bricks);
 
 /// Writes an archive frame by frame, whole times at a time: what is committed stays readable whatever happens later.
-/// One frame and its coded bytes are in memory at a time, and if frames are kept the last one of each component (of D4*
-/// the last two): then bricks that did not change are stored as repeats of earlier ones, and it is noted how far the
-/// others move. Whoever keeps none saves the memory.
+/// One frame and its coded bytes are in memory at a time (of one in a scratch file a slab of it, its coded bytes in
+/// another), and if frames are kept the last one of each component (of D4* the last two): then bricks that did not
+/// change are stored as repeats of earlier ones, and it is noted how far the others move. Whoever keeps none saves the
+/// memory.
 ///
 /// A new archive is made under a temporary name beside `path`; with its first commit it takes its name, where readers
 /// see it grow, and disappears if finish() is not reached. A file that is there already is replaced by finish() only.
@@ -51,10 +53,11 @@ public:
     ArchiveWriter(const ArchiveWriter&) = delete;
     ArchiveWriter& operator=(const ArchiveWriter&) = delete;
 
-    /// Codes and writes one component of a parameter at a time index; each once, in any order. The field must lie on
-    /// the lattice of the metadata and have the parameter's type. Bricks are coded on all cores; the bytes do not
+    /// Codes and writes one component of a parameter at a time index; each once, in any order. The samples must lie on
+    /// the lattice of the metadata and have the parameter's type; frames in scratch files go with a writer that keeps
+    /// none. Bricks are coded on all cores; the bytes do not
     /// depend on how many there are.
-    void addFrame(int parameter, int component, int time, const volume::Field& field, const FrameOptions& options,
+    void addFrame(int parameter, int component, int time, const FrameSamples& samples, const FrameOptions& options,
                   const Progress& progress = {});
 
     /// Makes all that was added readable, in a new archive and an appended one: the first `times` times of the

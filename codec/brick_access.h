@@ -4,6 +4,7 @@
 #include "codec/index.h"
 #include "volume/brick_source.h"
 
+#include <algorithm>
 #include <cstring>
 
 /// Small pieces shared by the writer and the reader of an archive.
@@ -23,6 +24,13 @@ inline glm::ivec3 brickIndex(const volume::BrickGrid& grid, std::size_t number) 
     const glm::ivec3 count = grid.count();
     const std::size_t nx = std::size_t(count.x), ny = std::size_t(count.y);
     return {int(number % nx), int(number / nx % ny), int(number / (nx * ny))};
+}
+
+/// Bytes of the samples of a whole brick.
+inline std::size_t brickBytes(const volume::BrickGrid& grid, volume::ScalarType type) {
+    const std::size_t edge = std::size_t(grid.brickSize),
+                      sublattices = grid.lattice.kind == volume::LatticeKind::BCC ? 2 : 1;
+    return std::min(edge * edge * edge * sublattices, grid.lattice.count()) * volume::byteSize(type);
 }
 
 inline BrickFormat brickFormat(const volume::BrickGrid& grid, glm::ivec3 brick, volume::ScalarType type,

@@ -20,29 +20,33 @@ template <class T> T sampleAt(const Bytes& samples, std::size_t i) {
 
 } // namespace
 
-void BrickInput::take(const volume::BrickGrid& grid, glm::ivec3 brick, const volume::Field& field, bool masked) {
+void BrickInput::take(const volume::BrickGrid& grid, glm::ivec3 brick, const FrameSamples& frame, bool masked) {
     const glm::ivec3 begin = grid.begin(brick);
-    take(grid, begin, grid.end(brick) - begin, field, masked);
+    take(grid, begin, grid.end(brick) - begin, frame, masked);
 }
 
-void BrickInput::take(const volume::BrickGrid& grid, glm::ivec3 begin, glm::ivec3 size, const volume::Field& field,
+void BrickInput::take(const volume::BrickGrid& grid, glm::ivec3 begin, glm::ivec3 size, const FrameSamples& frame,
                       bool masked) {
-    const std::size_t sampleBytes = volume::byteSize(field.type), n = std::size_t(size.x);
-    const std::size_t rowBytes = n * sampleBytes;
-    samples.resize(rowBytes * std::size_t(size.y) * std::size_t(size.z));
+    const std::size_t sampleBytes = volume::byteSize(frame.type()), n = std::size_t(size.x);
+    const std::size_t count = n * std::size_t(size.y) * std::size_t(size.z);
+    samples.resize(count * sampleBytes);
+    present.resize(masked ? count : 0);
+    const volume::Field* const field = frame.whole();
     std::byte* to = samples.data();
-    present.clear();
-    bool mixed = false;
+    std::uint8_t* flags = masked ? present.data() : nullptr;
     for (int z = 0; z < size.z; ++z)
-        for (int y = 0; y < size.y; ++y, to += rowBytes) {
+        for (int y = 0; y < size.y; ++y) {
             const std::size_t from = grid.lattice.index(begin + glm::ivec3(0, y, z));
-            std::memcpy(to, field.samples.data() + from * sampleBytes, rowBytes);
-            for (std::size_t i = from; masked && i < from + n; ++i) {
-                present.push_back(field.present(i) ? 1 : 0);
-                mixed = mixed || present.back() == 0;
+            if (!field) {
+                frame.read(from, n, to, flags);
+            } else {
+                std::memcpy(to, field->samples.data() + from * sampleBytes, n * sampleBytes);
+                for (std::size_t i = 0; masked && i < n; ++i) flags[i] = field->present(from + i) ? 1 : 0;
             }
+            to += n * sampleBytes;
+            if (flags) flags += n;
         }
-    if (!mixed) present.clear();
+    if (std::find(present.begin(), present.end(), std::uint8_t(0)) == present.end()) present.clear();
 }
 
 void putSamples(const volume::BrickGrid& grid, glm::ivec3 brick, std::span<const std::byte> samples,

@@ -13,10 +13,9 @@ struct BrickInput {
     Bytes samples;
     std::vector<std::uint8_t> present; ///< empty: all
 
-    void take(const volume::BrickGrid& grid, glm::ivec3 brick, const volume::Field& field, bool masked);
+    void take(const volume::BrickGrid& grid, glm::ivec3 brick, const FrameSamples& frame, bool masked);
     /// Any box of the lattice.
-    void take(const volume::BrickGrid& grid, glm::ivec3 begin, glm::ivec3 size, const volume::Field& field,
-              bool masked);
+    void take(const volume::BrickGrid& grid, glm::ivec3 begin, glm::ivec3 size, const FrameSamples& frame, bool masked);
 };
 
 /// Writes the samples of a brick into a field.

@@ -2,6 +2,7 @@
 
 #include "codec/stopwatch.h"
 #include "volume/number_extent.h"
+#include "volume/resample.h"
 
 #include <algorithm>
 #include <cmath>
@@ -58,10 +59,8 @@ std::vector<Range> rangesOf(const std::vector<Field>& components) {
     return ranges;
 }
 
-Field loadChecked(volume::Dataset& dataset, int parameter, int component, int time) {
-    Field field = dataset.load(parameter, component, time);
-    const volume::Parameter& about = dataset.info.parameters[std::size_t(parameter)];
-    if (field.lattice.size != dataset.info.lattice.size || field.type != about.type)
+Field checked(Field field, const volume::Parameter& about, glm::ivec3 size, std::size_t time) {
+    if (field.lattice.size != size || field.type != about.type)
         throw Error("frame " + std::to_string(time) + " of " + about.name + " has another size or type");
     return field;
 }
@@ -76,12 +75,64 @@ void widenRanges(std::vector<Range>& ranges, const std::vector<Range>& more) {
     }
 }
 
-FrameFeed::FrameFeed(volume::Dataset& dataset, const Resampling& resampling, bool ahead, std::stop_token stop)
-    : dataset_(dataset), info_(dataset.info), resampling_(resampling), ahead_(ahead), stop_(std::move(stop)),
+FrameFeed::FrameFeed(volume::Dataset& dataset, FeedOptions options, std::stop_token stop)
+    : dataset_(dataset), info_(dataset.info), options_(std::move(options)), stop_(std::move(stop)),
       steps_(info_.times.size() * info_.parameters.size()) {}
 
 FrameFeed::~FrameFeed() {
     if (coming_.valid()) coming_.wait();
+}
+
+void FrameFeed::readWhole(FeedStep& step, const volume::Parameter& parameter) {
+    std::vector<Field> fields;
+    {
+        Stopwatch load(step.loadSeconds);
+        for (int c = 0; c < parameter.components; ++c)
+            fields.push_back(
+                checked(dataset_.load(step.parameter, c, int(step.time)), parameter, info_.lattice.size, step.time));
+        if (parameter.ranges.empty()) step.ranges = rangesOf(fields);
+    }
+    Stopwatch resample(step.resampleSeconds);
+    for (Field& field : fields) {
+        if (options_.toBcc) field = volume::toBcc(field, parameter.categorical, options_.resample, Progress{{}, stop_});
+        step.frames.emplace_back(std::move(field));
+    }
+}
+
+/// Reads the frame once for what has to be known of it as a whole, and again slab by slab.
+void FrameFeed::readSlabs(FeedStep& step, const volume::Parameter& parameter) {
+    const auto slicesOf = [&](int component, int first, int count) {
+        if (stop_.stop_requested()) throw Cancelled();
+        glm::ivec3 size = info_.lattice.size;
+        size.z = count;
+        return checked(options_.slabs.load(step.parameter, component, int(step.time), first, count), parameter, size,
+                       step.time);
+    };
+    const int slices = info_.lattice.size.z;
+    std::vector<volume::StoredExtent> extents(std::size_t(parameter.components));
+    if (parameter.ranges.empty() || options_.toBcc) {
+        Stopwatch load(step.loadSeconds);
+        for (int first = 0; first < slices; first += options_.slabs.step) {
+            std::vector<Field> parts;
+            for (int c = 0; c < parameter.components; ++c) {
+                parts.push_back(slicesOf(c, first, std::min(options_.slabs.step, slices - first)));
+                extents[std::size_t(c)].add(parts.back());
+            }
+            if (parameter.ranges.empty()) widenRanges(step.ranges, rangesOf(parts));
+        }
+    }
+    if (options_.rangesOnly) return;
+    const Progress progress{{}, stop_};
+    Stopwatch rest(options_.toBcc ? step.resampleSeconds : step.loadSeconds);
+    for (int c = 0; c < parameter.components; ++c) {
+        volume::SlicedFrame frame{info_.lattice, [&, c](int first, int count) { return slicesOf(c, first, count); },
+                                  extents[std::size_t(c)]};
+        if (options_.toBcc)
+            frame = volume::resampled(frame, options_.grid.lattice,
+                                      volume::optionsFor(parameter.categorical, options_.resample), options_.slabs.step,
+                                      options_.slabs.store.folder, progress);
+        step.frames.emplace_back(frame, options_.grid, options_.slabs.store, progress);
+    }
 }
 
 FeedStep FrameFeed::read(std::size_t number) {
@@ -90,26 +141,19 @@ FeedStep FrameFeed::read(std::size_t number) {
     step.parameter = int(number % info_.parameters.size());
     step.time = number / info_.parameters.size();
     const volume::Parameter& parameter = info_.parameters[std::size_t(step.parameter)];
-    {
-        Stopwatch load(step.loadSeconds);
-        for (int c = 0; c < parameter.components; ++c)
-            step.fields.push_back(loadChecked(dataset_, step.parameter, c, int(step.time)));
-        if (parameter.ranges.empty()) step.ranges = rangesOf(step.fields);
-    }
-    Stopwatch resample(step.resampleSeconds);
-    for (Field& field : step.fields) {
-        step.sourceSamples += field.count();
-        step.sourceBytes += field.samples.size();
-        if (resampling_.toBcc)
-            field = volume::toBcc(field, parameter.categorical, resampling_.options, Progress{{}, stop_});
-    }
+    step.sourceSamples = info_.lattice.count() * std::uint64_t(parameter.components);
+    step.sourceBytes = step.sourceSamples * volume::byteSize(parameter.type);
+    if (options_.slabs.load)
+        readSlabs(step, parameter);
+    else
+        readWhole(step, parameter);
     return step;
 }
 
 FeedStep FrameFeed::next() {
     FeedStep step = coming_.valid() ? coming_.get() : read(taken_);
     ++taken_;
-    if (ahead_ && taken_ < steps_)
+    if (options_.ahead && taken_ < steps_)
         coming_ = std::async(std::launch::async, [this, number = taken_] { return read(number); });
     return step;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "codec/frame_samples.h"
 #include "volume/dataset.h"
 #include "volume/progress.h"
 #include "volume/resample.h"
@@ -14,8 +15,8 @@ namespace tessera::codec {
 struct FeedStep {
     int parameter = 0;
     std::size_t time = 0;
-    std::vector<volume::Field> fields; ///< of each component
-    std::vector<Range> ranges;         ///< of what was read, components, then magnitude; empty where they were known
+    std::vector<FrameSamples> frames; ///< of each component
+    std::vector<Range> ranges;        ///< of what was read, components, then magnitude; empty where they were known
     std::uint64_t sourceSamples = 0, sourceBytes = 0;
     double loadSeconds = 0, resampleSeconds = 0;
 };
@@ -23,18 +24,29 @@ struct FeedStep {
 /// Widens ranges by those of one more time; empty ranges begin with them.
 void widenRanges(std::vector<Range>& ranges, const std::vector<Range>& more);
 
+/// How frames larger than memory are read: never whole.
+struct SlabReading {
+    volume::SliceLoad load; ///< null: frames are read whole
+    int step = 0;           ///< slices of all components of the source in memory at a time
+    SlabStore store;
+};
+
+/// What is done on the way.
+struct FeedOptions {
+    bool toBcc = false; ///< frames are resampled to the lattice of the grid
+    volume::ResampleOptions resample;
+    volume::BrickGrid grid;
+    SlabReading slabs;
+    bool ahead = false;      ///< the next step is read while the last one is in use, for memory of two
+    bool rangesOnly = false; ///< of slabs: no frames are made
+};
+
 /// Reads a data set time by time, in each parameter by parameter, and resamples it: while one step is coded, the next
 /// one is read.
 class FrameFeed {
 public:
-    /// What is done to fields on the way: nothing, or resampling to BCC.
-    struct Resampling {
-        bool toBcc = false;
-        volume::ResampleOptions options;
-    };
-    /// `ahead`: read the next step while the last one is in use, for memory of two. A stop is noticed at the next
-    /// step.
-    FrameFeed(volume::Dataset& dataset, const Resampling& resampling, bool ahead, std::stop_token stop);
+    /// A stop is noticed at the next step, or slab.
+    FrameFeed(volume::Dataset& dataset, FeedOptions options, std::stop_token stop);
     ~FrameFeed();
     FrameFeed(const FrameFeed&) = delete;
     FrameFeed& operator=(const FrameFeed&) = delete;
@@ -44,11 +56,12 @@ public:
 
 private:
     FeedStep read(std::size_t number);
+    void readWhole(FeedStep& step, const volume::Parameter& parameter);
+    void readSlabs(FeedStep& step, const volume::Parameter& parameter);
 
     volume::Dataset& dataset_;
     volume::DatasetInfo info_; ///< as it was at first
-    Resampling resampling_;
-    bool ahead_;
+    FeedOptions options_;
     std::stop_token stop_;
     std::size_t steps_, taken_ = 0;
     std::future<FeedStep> coming_;

@@ -19,12 +19,12 @@ constexpr std::size_t kTrialBricks = 6, kModelBricks = 32;
 constexpr int kMostTables = 24;
 
 /// Tokens of some bricks of a frame, spread over it; kept in `taken`, if there is one.
-Histogram sampleTokens(const volume::BrickGrid& grid, const volume::Field& field, const FrameRecord& frame,
+Histogram sampleTokens(const volume::BrickGrid& grid, const FrameSamples& samples, const FrameRecord& frame,
                        std::size_t most, Contexts contexts, double maxError = 0, Taken* taken = nullptr) {
     const std::size_t bricks = brickCount(grid), count = std::min(bricks, most);
     // Of many samples a part is enough; a step that goes through every place of a row in turn.
     constexpr std::size_t kMany = 2 << 20;
-    const int every = field.count() / bricks * count < kMany ? 1 : 5;
+    const int every = samples.count() / bricks * count < kMany ? 1 : 5;
     Histogram sum(grid.levels, contexts);
     std::mutex mutex;
     if (taken) {
@@ -38,8 +38,8 @@ Histogram sampleTokens(const volume::BrickGrid& grid, const volume::Field& field
         for (std::size_t i = begin; i < end; ++i) {
             const std::size_t number = i * bricks / count;
             const glm::ivec3 brick = brickIndex(grid, number);
-            input.take(grid, brick, field, frame.mask >= 0);
-            PreparedBrick prepared = prepareBrick(brickFormat(grid, brick, field.type, frame), input.samples,
+            input.take(grid, brick, samples, frame.mask >= 0);
+            PreparedBrick prepared = prepareBrick(brickFormat(grid, brick, samples.type(), frame), input.samples,
                                                   input.present, maxError, contexts, memory);
             countBrick(prepared, part, every);
             if (taken) taken->bricks[number] = std::move(prepared);
@@ -51,7 +51,7 @@ Histogram sampleTokens(const volume::BrickGrid& grid, const volume::Field& field
 }
 
 /// The same of the middles of some bricks, which is enough to compare filters.
-Histogram sampleMiddles(const volume::BrickGrid& grid, const volume::Field& field, const FrameRecord& frame,
+Histogram sampleMiddles(const volume::BrickGrid& grid, const FrameSamples& samples, const FrameRecord& frame,
                         std::size_t most) {
     constexpr int kMiddle = 32, kMiddleLevels = 3, kEvery = 3;
     const std::size_t bricks = brickCount(grid), count = std::min(bricks, most);
@@ -64,14 +64,14 @@ Histogram sampleMiddles(const volume::BrickGrid& grid, const volume::Field& fiel
         Histogram part(levels, {});
         for (std::size_t i = begin; i < end; ++i) {
             const glm::ivec3 brick = brickIndex(grid, i * bricks / count);
-            BrickFormat format = brickFormat(grid, brick, field.type, frame);
+            BrickFormat format = brickFormat(grid, brick, samples.type(), frame);
             const int depth = kMiddle * format.sublattices();
             const glm::ivec3 whole = format.size, size = glm::min(whole, glm::ivec3(kMiddle, kMiddle, depth));
             glm::ivec3 first = (whole - size) / 2;
             first.z -= first.z % format.sublattices(); // an even slice first
             format.size = size;
             format.levels = levels;
-            input.take(grid, grid.begin(brick) + first, size, field, frame.mask >= 0);
+            input.take(grid, grid.begin(brick) + first, size, samples, frame.mask >= 0);
             countBrick(prepareBrick(format, input.samples, input.present, 0, {}, memory), part, kEvery);
         }
         const std::lock_guard lock(mutex);
@@ -99,14 +99,14 @@ bool prefersByBand(const FrameRecord& frame) {
 
 /// The filter by trial on some bricks: first how far it predicts, then how it updates. Predictions alone alias in
 /// coarse levels: they have to be clearly better.
-Wavelet waveletFor(const volume::BrickGrid& grid, const volume::Field& field, FrameRecord frame) {
+Wavelet waveletFor(const volume::BrickGrid& grid, const FrameSamples& samples, FrameRecord frame) {
     constexpr double kPredictionHandicap = 1.015;
     if (frame.numbers.kind == NumberKind::Float) return Wavelet::W22; // only predicted anyway
     double best = std::numeric_limits<double>::infinity();
     Wavelet chosen = Wavelet::W22;
     const auto tryOne = [&](Wavelet wavelet) {
         frame.wavelet = wavelet;
-        double bits = sampleMiddles(grid, field, frame, kTrialBricks).bits();
+        double bits = sampleMiddles(grid, samples, frame, kTrialBricks).bits();
         if (!filterOf(wavelet).updates) bits *= kPredictionHandicap;
         if (bits < best) best = bits, chosen = wavelet;
     };
@@ -122,14 +122,14 @@ Wavelet waveletFor(const volume::BrickGrid& grid, const volume::Field& field, Fr
 }
 
 /// Whether one grid of BCC predicted from the other comes out shorter, by trial on some bricks.
-bool prefersBodyCentred(const volume::BrickGrid& grid, const volume::Field& field, FrameRecord frame) {
+bool prefersBodyCentred(const volume::BrickGrid& grid, const FrameSamples& samples, FrameRecord frame) {
     if (grid.lattice.kind != volume::LatticeKind::BCC || frame.numbers.kind == NumberKind::Float) return false;
     const auto bits = [&](bool bodyCentred) {
         frame.bodyCentred = bodyCentred;
         double least = std::numeric_limits<double>::infinity();
         for (const Wavelet wavelet : {Wavelet::W22, Wavelet::W44}) {
             frame.wavelet = wavelet;
-            least = std::min(least, sampleMiddles(grid, field, frame, kTrialBricks).bits());
+            least = std::min(least, sampleMiddles(grid, samples, frame, kTrialBricks).bits());
         }
         return least;
     };
@@ -138,68 +138,72 @@ bool prefersBodyCentred(const volume::BrickGrid& grid, const volume::Field& fiel
 
 } // namespace
 
-int codeBitsOf(const volume::Field& field, const NumberCoding& numbers) {
-    if (field.type != volume::ScalarType::F32) return codec::codeBitsOf(field.type);
+int codeBitsOf(const FrameSamples& samples, const NumberCoding& numbers) {
+    if (samples.type() != volume::ScalarType::F32) return codec::codeBitsOf(samples.type());
     if (numbers.kind == NumberKind::Float) return 32;
     std::uint32_t all = 0;
-    const auto samples = field.as<float>();
-    for (std::size_t i = 0; i < samples.size(); ++i)
-        if (field.present(i)) {
-            const auto code = static_cast<std::int32_t>(codeOf(numbers, samples[i]));
-            all |= static_cast<std::uint32_t>(code < 0 ? ~code : code);
-        }
+    samples.forSlabs([&](const volume::Field& part, Slab) {
+        const auto values = part.as<float>();
+        for (std::size_t i = 0; i < values.size(); ++i)
+            if (part.present(i)) {
+                const auto code = static_cast<std::int32_t>(codeOf(numbers, values[i]));
+                all |= static_cast<std::uint32_t>(code < 0 ? ~code : code);
+            }
+        return true;
+    });
     return std::max(1, int(std::bit_width(all)) + 1);
 }
 
-NumberCoding chooseNumbers(const volume::BrickGrid& grid, const volume::Field& field, const KnownModel* last,
+NumberCoding chooseNumbers(const volume::BrickGrid& grid, const FrameSamples& samples, const KnownModel* last,
                            const FrameOptions& options) {
     constexpr int kBitsOfFloat = 25; // sign and 24 digits
     FrameRecord frame;
-    frame.mask = field.mask ? 0 : -1;
-    frame.numbers = chooseCoding(field, options.maxError);
-    frame.codeBits = codeBitsOf(field, frame.numbers);
+    frame.mask = samples.masked() ? 0 : -1;
+    frame.numbers = chooseCoding(samples, options.maxError);
+    frame.codeBits = codeBitsOf(samples, frame.numbers);
     if (frame.numbers.kind != NumberKind::Scaled || frame.codeBits <= kBitsOfFloat) return frame.numbers;
     const NumberCoding scaled = frame.numbers, bits{NumberKind::Float, 0, 1};
     if (last && last->kind == NumberKind::Float) return bits;
-    const double asScaled = sampleMiddles(grid, field, frame, kTrialBricks).bits();
+    const double asScaled = sampleMiddles(grid, samples, frame, kTrialBricks).bits();
     frame.numbers = bits;
-    frame.codeBits = codeBitsOf(field, bits);
-    return sampleMiddles(grid, field, frame, kTrialBricks).bits() < asScaled ? bits : scaled;
+    frame.codeBits = codeBitsOf(samples, bits);
+    return sampleMiddles(grid, samples, frame, kTrialBricks).bits() < asScaled ? bits : scaled;
 }
 
-int effortFor(const volume::Field& field, int zstdLevel) {
+int effortFor(const FrameSamples& samples, int zstdLevel) {
     constexpr std::size_t kSmallFrame = 1 << 19; // samples
-    return field.count() <= kSmallFrame ? kMostEffort : zstdLevel;
+    return samples.count() <= kSmallFrame ? kMostEffort : zstdLevel;
 }
 
 double boundOf(const FrameRecord& frame, const FrameOptions& options) {
     return frame.numbers.kind == NumberKind::Quantised ? options.maxError : 0;
 }
 
-double estimateFrameBytes(const volume::BrickGrid& grid, const volume::Field& field, const FrameOptions& options,
+double estimateFrameBytes(const volume::BrickGrid& grid, const FrameSamples& samples, const FrameOptions& options,
                           std::size_t bricks) {
     FrameRecord frame;
-    frame.mask = field.mask ? 0 : -1;
-    frame.numbers = chooseNumbers(grid, field, nullptr, options);
+    frame.mask = samples.masked() ? 0 : -1;
+    frame.numbers = chooseNumbers(grid, samples, nullptr, options);
     frame.wavelet = options.wavelet.value_or(Wavelet::W22);
-    frame.codeBits = codeBitsOf(field, frame.numbers);
-    const int shift = frame.codeBits > 16 ? shiftFor(sampleTokens(grid, field, frame, bricks, {})) : 0;
+    frame.codeBits = codeBitsOf(samples, frame.numbers);
+    const int shift = frame.codeBits > 16 ? shiftFor(sampleTokens(grid, samples, frame, bricks, {})) : 0;
     const double all = double(brickCount(grid));
-    return sampleTokens(grid, field, frame, bricks, {shift, prefersByBand(frame)}).bits() / 8 * all /
+    return sampleTokens(grid, samples, frame, bricks, {shift, prefersByBand(frame)}).bits() / 8 * all /
            std::min(all, double(bricks));
 }
 
-Model chooseModel(const volume::BrickGrid& grid, const volume::Field& field, const KnownModel* last, bool byBand,
+Model chooseModel(const volume::BrickGrid& grid, const FrameSamples& samples, const KnownModel* last, bool byBand,
                   FrameRecord& frame, const FrameOptions& options, Taken& taken) {
     constexpr double kStillAlike = 1.05;
     const double maxError = boundOf(frame, options);
     byBand = byBand && prefersByBand(frame);
+    Taken* const kept = samples.whole() ? &taken : nullptr;
     std::optional<Model> fresh;
     if (last && last->resembles(frame) && last->model.contexts.byBand == byBand) {
         const Model& model = last->model;
         frame.wavelet = options.wavelet.value_or(last->wavelet);
         frame.bodyCentred = options.bodyCentred.value_or(last->bodyCentred);
-        const Histogram histogram = sampleTokens(grid, field, frame, kModelBricks, model.contexts, maxError, &taken);
+        const Histogram histogram = sampleTokens(grid, samples, frame, kModelBricks, model.contexts, maxError, kept);
         fresh = makeModel(histogram, kMostTables);
         const double before = bitsWith(model, histogram), now = bitsWith(*fresh, histogram);
         if (before <= now + 8.0 * double(serialise(*fresh).size())) {
@@ -209,11 +213,11 @@ Model chooseModel(const volume::BrickGrid& grid, const volume::Field& field, con
         if (before > kStillAlike * now) fresh.reset();
     }
     if (!fresh) {
-        frame.bodyCentred = options.bodyCentred ? *options.bodyCentred : prefersBodyCentred(grid, field, frame);
-        if (!options.wavelet) frame.wavelet = waveletFor(grid, field, frame);
-        const int shift = frame.codeBits > 16 ? shiftFor(sampleMiddles(grid, field, frame, kTrialBricks)) : 0;
+        frame.bodyCentred = options.bodyCentred ? *options.bodyCentred : prefersBodyCentred(grid, samples, frame);
+        if (!options.wavelet) frame.wavelet = waveletFor(grid, samples, frame);
+        const int shift = frame.codeBits > 16 ? shiftFor(sampleMiddles(grid, samples, frame, kTrialBricks)) : 0;
         const Contexts contexts{shift, byBand};
-        fresh = makeModel(sampleTokens(grid, field, frame, kModelBricks, contexts, maxError, &taken), kMostTables);
+        fresh = makeModel(sampleTokens(grid, samples, frame, kModelBricks, contexts, maxError, kept), kMostTables);
     }
     return *fresh;
 }

@@ -24,15 +24,15 @@ struct Taken {
 };
 
 /// Bits of |code| over the present samples of a frame of floats.
-int codeBitsOf(const volume::Field& field, const NumberCoding& numbers);
+int codeBitsOf(const FrameSamples& samples, const NumberCoding& numbers);
 
 /// How the numbers of a frame are coded; `last` is the model of the frame before, or none. Where decimals or fractions
 /// have as many digits as floats have bits they are no disguise, and what is shorter by trial is taken.
-NumberCoding chooseNumbers(const volume::BrickGrid& grid, const volume::Field& field, const KnownModel* last,
+NumberCoding chooseNumbers(const volume::BrickGrid& grid, const FrameSamples& samples, const KnownModel* last,
                            const FrameOptions& options);
 
 /// Effort of zstd for the bricks of a frame: small frames take no time worth saving.
-int effortFor(const volume::Field& field, int zstdLevel);
+int effortFor(const FrameSamples& samples, int zstdLevel);
 
 /// The bound that samples of a frame are held to beside their codes.
 double boundOf(const FrameRecord& frame, const FrameOptions& options);
@@ -40,7 +40,7 @@ double boundOf(const FrameRecord& frame, const FrameOptions& options);
 /// The model of a frame: `last`, that of the component's frame before (or none), where its tables serve as well as new
 /// ones would, else a new one, not written yet (frame.model is -1). The filter is tried again only where the tables do
 /// not fit at all. Sets wavelet, bodyCentred and model of the frame. `byBand`: the archive knows such contexts.
-Model chooseModel(const volume::BrickGrid& grid, const volume::Field& field, const KnownModel* last, bool byBand,
+Model chooseModel(const volume::BrickGrid& grid, const FrameSamples& samples, const KnownModel* last, bool byBand,
                   FrameRecord& frame, const FrameOptions& options, Taken& taken);
 
 } // namespace tessera::codec

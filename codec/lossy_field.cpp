@@ -117,17 +117,20 @@ double largestError(volume::ScalarType type, const BrickInput& before, const Bri
     return largest;
 }
 
-/// The coding of a field to threshold: finer than the bound, so that something of it is left for the details.
-NumberCoding codingFor(const volume::Field& field, double maxError) {
-    if (field.type != volume::ScalarType::F32) return {};
-    if (maxError > 0) return chooseCoding(field, maxError / 2);
+/// The coding of a frame to threshold: finer than the bound, so that something of it is left for the details.
+NumberCoding codingFor(const FrameSamples& samples, double maxError) {
+    if (samples.type() != volume::ScalarType::F32) return {};
+    if (maxError > 0) return chooseCoding(samples, maxError / 2);
     double lo = std::numeric_limits<double>::infinity(), hi = -lo;
-    const auto samples = field.as<float>();
-    for (std::size_t i = 0; i < samples.size(); ++i)
-        if (field.present(i) && std::isfinite(samples[i]))
-            lo = std::min(lo, double(samples[i])), hi = std::max(hi, double(samples[i]));
+    samples.forSlabs([&](const volume::Field& part, Slab) {
+        const auto values = part.as<float>();
+        for (std::size_t i = 0; i < values.size(); ++i)
+            if (part.present(i) && std::isfinite(values[i]))
+                lo = std::min(lo, double(values[i])), hi = std::max(hi, double(values[i]));
+        return true;
+    });
     constexpr double kParts = 65536;
-    return chooseCoding(field, lo < hi ? (hi - lo) / kParts / 2 : 0.0);
+    return chooseCoding(samples, lo < hi ? (hi - lo) / kParts / 2 : 0.0);
 }
 
 /// A threshold in codes.
@@ -169,43 +172,43 @@ volume::Field inSteps(volume::Field field, double maxError) {
     return field;
 }
 
-Thresholded thresholded(const volume::BrickGrid& grid, volume::Field field, Wavelet wavelet, Threshold kind,
-                        double value, std::span<const float> strength, double maxError) {
+Thresholded giveUpDetails(const volume::BrickGrid& grid, FrameSamples& samples, Wavelet wavelet, Threshold kind,
+                          double value, std::span<const float> strength, double maxError) {
     constexpr int kTries = 10;
     Thresholded out;
-    out.numbers = codingFor(field, maxError);
-    if (out.numbers.kind == NumberKind::Float) {
-        out.field = std::move(field);
-        return out;
-    }
-    out.field = field;
+    out.numbers = codingFor(samples, maxError);
+    if (out.numbers.kind == NumberKind::Float) return out;
     FrameRecord frame;
     frame.numbers = out.numbers;
     frame.wavelet = wavelet;
     const double most = kind == Threshold::Quantile ? value : inCodes(out.numbers, value);
     const double rounding = maxError > 0 ? maxError : std::numeric_limits<double>::infinity();
     std::mutex mutex;
-    parallelRanges(brickCount(grid), [&](std::size_t begin, std::size_t end) {
-        BrickInput original, left;
-        for (std::size_t b = begin; b < end; ++b) {
-            const glm::ivec3 brick = brickIndex(grid, b);
-            const BrickFormat format = brickFormat(grid, brick, field.type, frame);
-            original.take(grid, brick, field, field.mask != nullptr);
-            BrickInput rounded = original;
-            roundAsDecoded(format, rounding, rounded);
-            double own = most * double(strength[b]), error = 0;
-            int tries = 0;
-            for (;; ++tries, own /= 2) {
-                left = rounded;
-                if (tries < kTries) thresholdBrick(format, kind, own, left);
-                error = largestError(field.type, original, left);
-                if (maxError <= 0 || error <= maxError || tries == kTries) break;
+    samples.change([&](volume::Field& part, Slab slab) {
+        const volume::BrickGrid own = slab.grid(grid);
+        const std::size_t firstBrick = slab.bricks(grid).first;
+        parallelRanges(brickCount(own), [&](std::size_t begin, std::size_t end) {
+            BrickInput original, left;
+            for (std::size_t b = begin; b < end; ++b) {
+                const glm::ivec3 brick = brickIndex(own, b);
+                const BrickFormat format = brickFormat(own, brick, part.type, frame);
+                original.take(own, brick, part, part.mask != nullptr);
+                BrickInput rounded = original;
+                roundAsDecoded(format, rounding, rounded);
+                double strongest = most * double(strength[firstBrick + b]), error = 0;
+                int tries = 0;
+                for (;; ++tries, strongest /= 2) {
+                    left = rounded;
+                    if (tries < kTries) thresholdBrick(format, kind, strongest, left);
+                    error = largestError(part.type, original, left);
+                    if (maxError <= 0 || error <= maxError || tries == kTries) break;
+                }
+                putSamples(own, brick, left.samples, part);
+                const std::lock_guard lock(mutex);
+                out.maxError = std::max(out.maxError, error);
+                out.weakened += tries > 0 ? 1 : 0;
             }
-            putSamples(grid, brick, left.samples, out.field);
-            const std::lock_guard lock(mutex);
-            out.maxError = std::max(out.maxError, error);
-            out.weakened += tries > 0 ? 1 : 0;
-        }
+        });
     });
     return out;
 }

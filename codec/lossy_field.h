@@ -20,17 +20,16 @@ volume::Field inSteps(volume::Field field, double maxError);
 int stepWithin(volume::ScalarType type, double maxError);
 
 struct Thresholded {
-    volume::Field field;
     NumberCoding numbers;     ///< that code it exactly
     double maxError = 0;      ///< largest |difference| of a sample, in stored numbers
     std::size_t weakened = 0; ///< bricks whose threshold was lowered to keep the bound
 };
 
-/// Gives up details of every brick. `value`: in stored numbers, of a quantile the part of the details; a brick gets
-/// `strength` (0..1, by brick) of it. Where `maxError` is above 0 no sample moves further: the threshold of a brick is
-/// halved until it does not. Without a bound floats are rounded to 1/65536 of the range of the field first. Absent
-/// samples, and floats no rounded number stands for, stay as they are.
-Thresholded thresholded(const volume::BrickGrid& grid, volume::Field field, Wavelet wavelet, Threshold kind,
-                        double value, std::span<const float> strength, double maxError);
+/// Gives up details of every brick of a frame. `value`: in stored numbers, of a quantile the part of the details; a
+/// brick gets `strength` (0..1, by brick) of it. Where `maxError` is above 0 no sample moves further: the threshold of
+/// a brick is halved until it does not. Without a bound floats are rounded to 1/65536 of the range of the field first.
+/// Absent samples, and floats no rounded number stands for, stay as they are.
+Thresholded giveUpDetails(const volume::BrickGrid& grid, FrameSamples& samples, Wavelet wavelet, Threshold kind,
+                          double value, std::span<const float> strength, double maxError);
 
 } // namespace tessera::codec

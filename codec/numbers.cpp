@@ -20,16 +20,20 @@ std::uint32_t clampedCode(double k) {
 }
 
 /// Calls `visit` for every present sample, or every n-th of them, until it returns false.
-template <class Visit> bool all(const volume::Field& field, std::size_t stride, Visit&& visit) {
-    const auto samples = field.as<float>();
-    for (std::size_t i = 0; i < samples.size(); i += stride)
-        if (field.present(i) && !visit(samples[i])) return false;
-    return true;
+template <class Visit> bool all(const FrameSamples& frame, std::size_t stride, Visit&& visit) {
+    std::size_t begin = 0, next = 0; // of the slab, of the samples to visit
+    return frame.forSlabs([&](const volume::Field& part, Slab) {
+        const auto samples = part.as<float>();
+        for (; next < begin + samples.size(); next += stride)
+            if (part.present(next - begin) && !visit(samples[next - begin])) return false;
+        begin += samples.size();
+        return true;
+    });
 }
 
-bool reproduces(const volume::Field& field, const NumberCoding& coding, std::size_t stride) {
+bool reproduces(const FrameSamples& samples, const NumberCoding& coding, std::size_t stride) {
     std::size_t seen = 0, failed = 0;
-    const bool within = all(field, stride, [&](float sample) {
+    const bool within = all(samples, stride, [&](float sample) {
         ++seen;
         if (!close(coding, 0, sample, sampleOf<float>(coding, codeOf(coding, sample)))) ++failed;
         return failed * 64 <= seen + 4096;
@@ -38,9 +42,9 @@ bool reproduces(const volume::Field& field, const NumberCoding& coding, std::siz
 }
 
 /// k / 2^m: m from the lowest bit set in any finite sample, if the largest then stays below 2^29.
-std::optional<NumberCoding> binaryFractions(const volume::Field& field) {
+std::optional<NumberCoding> binaryFractions(const FrameSamples& samples) {
     int lowest = std::numeric_limits<int>::max(), highest = std::numeric_limits<int>::min();
-    const bool fits = all(field, 1, [&](float sample) {
+    const bool fits = all(samples, 1, [&](float sample) {
         if (sample == 0 || !std::isfinite(sample)) return true;
         int exponent = 0;
         const auto mantissa = static_cast<std::uint32_t>(std::ldexp(std::frexp(std::abs(sample), &exponent), 24));
@@ -53,21 +57,21 @@ std::optional<NumberCoding> binaryFractions(const volume::Field& field) {
 }
 
 /// Of k / 10^d and k / 2^m the one with the smaller numbers k: any float has its decimals, if enough of them.
-NumberCoding chooseLossless(const volume::Field& field) {
-    const std::size_t stride = std::max<std::size_t>(1, field.count() / 4096);
-    std::optional<NumberCoding> best = binaryFractions(field);
-    if (best && !reproduces(field, *best, 1)) best.reset();
+NumberCoding chooseLossless(const FrameSamples& samples) {
+    const std::size_t stride = std::max<std::size_t>(1, samples.count() / 4096);
+    std::optional<NumberCoding> best = binaryFractions(samples);
+    if (best && !reproduces(samples, *best, 1)) best.reset();
     double power = 1;
     for (int digits = 0; digits <= 7 && (!best || power < best->step); ++digits, power *= 10) {
         const NumberCoding decimal{NumberKind::Scaled, 0, power};
-        if (reproduces(field, decimal, stride) && reproduces(field, decimal, 1)) return decimal;
+        if (reproduces(samples, decimal, stride) && reproduces(samples, decimal, 1)) return decimal;
     }
     return best.value_or(NumberCoding{NumberKind::Float, 0, 1});
 }
 
-std::optional<NumberCoding> chooseQuantised(const volume::Field& field, double maxError) {
+std::optional<NumberCoding> chooseQuantised(const FrameSamples& samples, double maxError) {
     double lo = std::numeric_limits<double>::infinity(), hi = -lo;
-    all(field, 1, [&](float sample) {
+    all(samples, 1, [&](float sample) {
         if (std::isfinite(sample)) lo = std::min(lo, double(sample)), hi = std::max(hi, double(sample));
         return true;
     });
@@ -83,11 +87,11 @@ std::optional<NumberCoding> chooseQuantised(const volume::Field& field, double m
 
 } // namespace
 
-NumberCoding chooseCoding(const volume::Field& field, double maxError) {
-    if (field.type != volume::ScalarType::F32) return {};
+NumberCoding chooseCoding(const FrameSamples& samples, double maxError) {
+    if (samples.type() != volume::ScalarType::F32) return {};
     if (maxError > 0)
-        if (const auto quantised = chooseQuantised(field, maxError)) return *quantised;
-    return chooseLossless(field);
+        if (const auto quantised = chooseQuantised(samples, maxError)) return *quantised;
+    return chooseLossless(samples);
 }
 
 std::uint32_t codeOf(const NumberCoding&, std::uint8_t sample) {

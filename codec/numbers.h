@@ -1,6 +1,6 @@
 #pragma once
 
-#include "volume/field.h"
+#include "codec/frame_samples.h"
 
 #include <cstdint>
 #include <span>
@@ -24,10 +24,10 @@ struct NumberCoding {
     bool operator==(const NumberCoding&) const = default;
 };
 
-/// The coding for a field. Integer types: Integer. f32 with `maxError` 0: Scaled if (almost) all present samples are
+/// The coding for a frame. Integer types: Integer. f32 with `maxError` 0: Scaled if (almost) all present samples are
 /// k / 10^d or k / 2^m with |k| <= 2^29, else Float. f32 with `maxError` > 0 (absolute, in stored units): Quantised,
 /// with a step that leaves room for the rounding to float; lossless where the bound is below what a float resolves.
-NumberCoding chooseCoding(const volume::Field& field, double maxError);
+NumberCoding chooseCoding(const FrameSamples& samples, double maxError);
 
 /// Code of one sample.
 std::uint32_t codeOf(const NumberCoding& coding, std::uint8_t sample);

@@ -3,9 +3,11 @@
 #include "codec/archive_writer.h"
 #include "codec/brick_access.h"
 #include "codec/continuation.h"
+#include "codec/error_bound.h"
 #include "codec/frame_feed.h"
 #include "codec/lossy_field.h"
 #include "codec/memory_plan.h"
+#include "codec/pack_passes.h"
 #include "codec/pack_size.h"
 #include "codec/stopwatch.h"
 #include "volume/resample.h"
@@ -14,7 +16,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <limits>
+#include <filesystem>
 
 namespace tessera::codec {
 
@@ -23,16 +25,6 @@ namespace {
 using volume::Field;
 using volume::LatticeKind;
 using volume::ScalarType;
-
-void settleRanges(volume::DatasetInfo& info, const std::vector<std::vector<Range>>& gathered) {
-    for (std::size_t p = 0; p < info.parameters.size(); ++p) {
-        std::vector<Range>& ranges = info.parameters[p].ranges;
-        if (!ranges.empty() || gathered[p].empty()) continue; // known, or not read yet
-        ranges = gathered[p];
-        for (Range& range : ranges)
-            if (range.lo > range.hi) range = {0, 0}; // no sample is present anywhere
-    }
-}
 
 int defaultLevels(const volume::Lattice& lattice, int brickSize) {
     const glm::ivec3 texels = lattice.texels();
@@ -72,369 +64,297 @@ volume::BrickGrid gridFor(const volume::Lattice& lattice, const volume::DatasetI
     return grid;
 }
 
-/// Extent of all components of a parameter: what an error bound refers to.
-double extentOf(const volume::Parameter& parameter) {
-    double extent = 0;
-    for (std::size_t c = 0; c < std::min(parameter.ranges.size(), std::size_t(parameter.components)); ++c)
-        extent = std::max(extent, parameter.ranges[c].hi - parameter.ranges[c].lo);
-    return extent;
+bool hasThreshold(const PackOptions& options) {
+    return options.threshold.kind != ThresholdChoice::None && options.threshold.value > 0;
 }
 
-/// The same for integers, whose step is 1 at least.
-double integerBoundForPsnr(const Field& field, double wanted) {
-    double bound = std::sqrt(3.0) * wanted;
-    for (int step = stepWithin(field.type, bound); step > 1; step = stepWithin(field.type, bound)) {
-        const double squares = volume::dispatch(field.type, [&]<class T>(T) {
-            double sum = 0;
-            const auto samples = field.as<T>();
-            for (std::size_t i = 0; i < samples.size(); ++i) {
-                if (!field.present(i)) continue;
-                const double apart = std::remainder(double(samples[i]), double(step));
-                sum += apart * apart;
-            }
-            return sum;
-        });
-        std::size_t count = 0;
-        for (std::size_t i = 0; i < field.count(); ++i) count += field.present(i) ? 1 : 0;
-        if (std::sqrt(squares / double(std::max<std::size_t>(count, 1))) <= wanted) return bound;
-        bound = step / 2 - 0.5;
-    }
-    return 0;
+/// No sample that is kept changes.
+bool isExact(const PackOptions& options) {
+    return options.maxError == 0 && options.absError == 0 && options.psnr == 0 && !hasThreshold(options);
 }
 
-/// A bound on the error of stored numbers that gives at least `psnr` dB, found by trial on the frame itself: the error
-/// of a quantised number is spread about evenly, so the first guess is rarely far off.
-double boundForPsnr(const Field& field, double extent, double psnr) {
-    const double wanted = extent * std::pow(10.0, -psnr / 20);
-    if (field.type != ScalarType::F32) return integerBoundForPsnr(field, wanted);
-    double bound = std::sqrt(3.0) * wanted;
-    const auto samples = field.as<float>();
-    for (int trial = 0; trial < 200; ++trial, bound *= 0.97) {
-        const NumberCoding numbers = chooseCoding(field, bound);
-        if (numbers.kind != NumberKind::Quantised) return bound;
-        double squares = 0, count = 0;
-        for (std::size_t i = 0; i < samples.size(); ++i) {
-            if (!field.present(i) || !std::isfinite(samples[i])) continue;
-            const double error = double(sampleOf<float>(numbers, codeOf(numbers, samples[i]))) - double(samples[i]);
-            squares += error * error, ++count;
-        }
-        if (count == 0 || std::sqrt(squares / count) <= wanted) return bound;
-    }
-    return 0;
+/// A bound relative to the range of all times needs a pass of its own; one time is read once.
+bool isRelative(const PackOptions& options) {
+    return options.maxError > 0 || options.psnr > 0 || hasThreshold(options) || options.discard > 0;
 }
 
-/// The strictest of the bounds asked for, in stored numbers; 0: exact.
-double boundFor(const PackOptions& options, const volume::Parameter& parameter, const Field& field) {
-    if (parameter.categorical) return 0;
-    double bound = std::numeric_limits<double>::infinity();
-    const double scale = std::abs(field.scale), extent = extentOf(parameter);
-    if (options.maxError > 0) bound = std::min(bound, options.maxError * extent / scale);
-    if (options.absError > 0) bound = std::min(bound, options.absError / scale);
-    if (options.psnr > 0) bound = std::min(bound, boundForPsnr(field, extent / scale, options.psnr));
-    return std::isfinite(bound) ? bound : 0;
+void check(const volume::DatasetInfo& source, const PackOptions& options) {
+    if (source.parameters.empty() || source.times.empty()) throw Error("there is nothing to pack");
+    if (!(options.maxError >= 0 && options.maxError < 1)) throw Error("the error bound must be from 0 to below 1");
+    if (!(options.absError >= 0) || !(options.psnr >= 0)) throw Error("error bounds must not be negative");
+    if (hasThreshold(options) && (options.psnr > 0 || options.sizeMb > 0))
+        throw Error("a threshold goes with a bound on the error of samples, not with a PSNR or a size");
+    if (!options.lossless && isExact(options) && options.discard == 0)
+        throw Error("without lossless an error bound, a threshold or a part to discard is needed");
+    if (options.lattice == StoredLattice::CC && source.lattice.kind == LatticeKind::BCC)
+        throw Error("the data lies on BCC; it cannot be packed as CC");
+}
+
+/// The slabs of a plan; none where frames are read whole.
+SlabReading slabsOf(const MemoryPlan& plan, const SlabInput& slabs, const std::string& path) {
+    if (plan.slabLayers == 0) return {};
+    return {slabs.slices, plan.slabStep, {plan.slabLayers, std::filesystem::path(path).parent_path().string()}};
 }
 
 /// Gives up details of a frame, of the least important bricks the most.
-Thresholded giveUp(Field field, const volume::BrickGrid& grid, const FrameOptions& frame,
+Thresholded giveUp(FrameSamples& samples, const volume::BrickGrid& grid, const FrameOptions& frame,
                    const ThresholdOptions& options, double extent) {
     std::vector<float> strength(brickCount(grid), 1);
     if (options.byImportance) {
-        const auto importance =
-            volume::importanceOfBricks(grid, field, frame.range, frame.categorical, frame.importance);
+        const auto importance = importanceOfBricks(grid, samples, frame.range, frame.categorical, frame.importance);
         float most = 0;
         for (const volume::BrickImportance& brick : importance) most = std::max(most, brick.importance);
         for (std::size_t b = 0; b < strength.size() && most > 0; ++b) strength[b] = 1 - importance[b].importance / most;
     }
     const auto kind = static_cast<Threshold>(static_cast<int>(options.kind) - 1);
-    const double value = kind == Threshold::Quantile ? options.value : options.value * extent / std::abs(field.scale);
-    return thresholded(grid, std::move(field), frame.wavelet.value_or(Wavelet::W22), kind, value, strength,
-                       frame.maxError);
+    const double value =
+        kind == Threshold::Quantile ? options.value : options.value * extent / std::abs(samples.scale());
+    return giveUpDetails(grid, samples, frame.wavelet.value_or(Wavelet::W22), kind, value, strength, frame.maxError);
 }
 
 /// Makes every sample of the bricks that are left out absent.
-void leaveOut(Field& field, const volume::BrickGrid& grid, const std::vector<std::uint8_t>& discarded) {
+void leaveOut(FrameSamples& samples, const volume::BrickGrid& grid, const std::vector<std::uint8_t>& discarded) {
     if (std::find(discarded.begin(), discarded.end(), std::uint8_t(1)) == discarded.end()) return;
-    volume::Mask mask = field.mask ? *field.mask : volume::Mask(field.count(), 1);
-    for (std::size_t b = 0; b < discarded.size(); ++b)
-        if (discarded[b] != 0)
-            forBrickRows(grid, brickIndex(grid, b), [&](std::size_t from, std::size_t, std::size_t n) {
-                std::fill_n(mask.begin() + std::ptrdiff_t(from), n, std::uint8_t(0));
-            });
-    field.mask = std::make_shared<const volume::Mask>(std::move(mask));
+    samples.change([&](Field& part, Slab slab) {
+        const volume::BrickGrid own = slab.grid(grid);
+        const auto [first, end] = slab.bricks(grid);
+        volume::Mask mask = part.mask ? *part.mask : volume::Mask(part.count(), 1);
+        for (std::size_t b = first; b < end; ++b)
+            if (discarded[b] != 0)
+                forBrickRows(own, brickIndex(own, b - first), [&](std::size_t from, std::size_t, std::size_t n) {
+                    std::fill_n(mask.begin() + std::ptrdiff_t(from), n, std::uint8_t(0));
+                });
+        part.mask = std::make_shared<const volume::Mask>(std::move(mask));
+    });
 }
 
-/// The parameters with the ranges known so far.
-std::vector<volume::Parameter> withRanges(std::vector<volume::Parameter> parameters,
-                                          const std::vector<std::vector<Range>>& gathered) {
-    volume::DatasetInfo info;
-    info.parameters = std::move(parameters);
-    settleRanges(info, gathered);
-    return std::move(info.parameters);
-}
-
-} // namespace
-
-PackOptions resolved(PackOptions options) {
-    const PackOptions defaults;
-    const auto set = [](auto& value, const auto& before, const auto& wanted) {
-        if (value == before) value = wanted;
-    };
-    switch (options.preset) {
-    case PackPreset::None:
-        break;
-    case PackPreset::Lossless:
-        set(options.lattice, defaults.lattice, StoredLattice::CC);
-        break;
-    case PackPreset::Visual:
-        set(options.maxError, defaults.maxError, 1e-3);
-        break;
-    case PackPreset::Small:
-        set(options.maxError, defaults.maxError, 1e-2);
-        set(options.zstdLevel, defaults.zstdLevel, 19);
-        break;
-    case PackPreset::Thesis:
-        set(options.wavelet, defaults.wavelet, WaveletChoice::W22);
-        set(options.brickSize, defaults.brickSize, 16);
-        set(options.levels, defaults.levels, 3);
-        set(options.bccTransform, defaults.bccTransform, BccTransform::Separable);
-        set(options.threshold, defaults.threshold, ThresholdOptions{ThresholdChoice::Soft, 1.5 / 255, true});
-        break;
-    }
-    options.preset = PackPreset::None;
-    return options;
-}
-
-namespace {
-
-/// The ranges of every parameter where they are not known yet, by reading everything once.
-void gatherAllRanges(volume::Dataset& dataset, bool ahead, PackSummary& summary, const Progress& progress) {
-    volume::DatasetInfo& info = dataset.info;
-    const auto isKnown = [](const volume::Parameter& parameter) { return !parameter.ranges.empty(); };
-    if (std::all_of(info.parameters.begin(), info.parameters.end(), isKnown)) return;
-    std::vector<std::vector<Range>> ranges(info.parameters.size());
-    FrameFeed feed(dataset, {}, ahead, progress.stop);
-    const std::size_t steps = info.parameters.size() * info.times.size();
-    for (std::size_t step = 0; step < steps; ++step) {
-        progress.advance(double(step) / double(steps), "ranges");
-        const FeedStep fed = feed.next();
-        summary.loadSeconds += fed.loadSeconds;
-        widenRanges(ranges[std::size_t(fed.parameter)], fed.ranges);
-    }
-    settleRanges(info, ranges);
-}
-
-/// Flags of bricks that are not important enough in any parameter at any time. Ranges must be known.
-std::vector<std::uint8_t> bricksToDiscard(volume::Dataset& dataset, const volume::BrickGrid& grid,
-                                          const FrameFeed::Resampling& resampling, const PackOptions& options,
-                                          bool ahead, const Progress& progress, PackSummary& summary) {
-    const volume::DatasetInfo& info = dataset.info;
-    std::vector<float> most(brickCount(grid), 0);
-    FrameFeed feed(dataset, resampling, ahead, progress.stop);
-    const std::size_t steps = info.parameters.size() * info.times.size();
-    for (std::size_t step = 0; step < steps; ++step) {
-        progress.advance(double(step) / double(steps), "importance");
-        const FeedStep fed = feed.next();
-        const volume::Parameter& parameter = info.parameters[std::size_t(fed.parameter)];
-        for (std::size_t c = 0; c < fed.fields.size(); ++c) {
-            const std::vector<Range>& known = parameter.ranges.empty() ? fed.ranges : parameter.ranges;
-            const auto importance =
-                volume::importanceOfBricks(grid, fed.fields[c], c < known.size() ? known[c] : Range{1, 0},
-                                           parameter.categorical, options.importance);
-            for (std::size_t b = 0; b < most.size(); ++b) most[b] = std::max(most[b], importance[b].largest());
+/// One run of pack or append.
+class Packing {
+public:
+    /// Into a new archive, or behind what is in `grown`, whose options `options` are then.
+    Packing(volume::Dataset& source, const SlabInput& slabs, const PackOptions& options, const std::string& path,
+            const Archive* grown)
+        : source_(source), dataset_(source), options_(options), path_(path), grown_(grown) {
+        check(source.info, options);
+        metadata_.source = source.info.lattice;
+        metadata_.alternating = options.lattice == StoredLattice::D4;
+        if (metadata_.alternating && grown && bringsTimes(*grown, source.info)) {
+            volume::ContinuedD4 later =
+                volume::continueD4(source, grown->metadata().sourceTimes, grown->info().times, options.resample);
+            metadata_.sourceTimes = std::move(later.times);
+            dataset_ = std::move(later.frames);
+        } else if (metadata_.alternating) {
+            metadata_.sourceTimes = source.info.times;
+            dataset_ = volume::toD4(source, options.resample);
         }
+        const volume::DatasetInfo& info = dataset_.info;
+        const bool toBcc = options.lattice == StoredLattice::BCC && info.lattice.kind == LatticeKind::CC;
+        metadata_.info = info;
+        metadata_.info.lattice = toBcc ? volume::bccFor(info.lattice) : info.lattice;
+        metadata_.grid = gridFor(metadata_.info.lattice, source.info, options, grown);
+        metadata_.lossless = isExact(options) && options.discard == 0;
+        metadata_.program = "tessera";
+        metadata_.options = options;
+        metadata_.options.memoryMb = 0; // of this machine, not of the archive
+        place_ = grown ? continuationOf(*grown, metadata_) : Continuation(info);
+        ranges_.resize(info.parameters.size());
+        errors_.assign(info.parameters.size(), 0);
+        memory_ = planMemory(metadata_, source.info, options, slabs);
+        reading_ = {.toBcc = toBcc,
+                    .resample = options.resample,
+                    .grid = metadata_.grid,
+                    .slabs = slabsOf(memory_, slabs, path),
+                    .ahead = memory_.readAhead,
+                    .rangesOnly = false};
     }
-    std::vector<std::uint8_t> discarded;
-    for (const float importance : most) discarded.push_back(double(importance) < options.discard ? 1 : 0);
-    summary.discardedBricks = std::uint64_t(std::count(discarded.begin(), discarded.end(), std::uint8_t(1)));
-    if (summary.discardedBricks == discarded.size()) throw Error("no brick is important enough to be kept");
-    return discarded;
+
+    PackSummary run(const Progress& progress);
+
+private:
+    std::size_t times() const { return dataset_.info.times.size(); }
+    void gather(const Progress& progress);
+    void addStep(ArchiveWriter& writer, FeedStep fed, const Progress& progress);
+    void addFrame(ArchiveWriter& writer, FrameSamples& samples, int parameter, int component, std::size_t time,
+                  const Progress& progress);
+    Metadata soFar(std::size_t wholeTimes) const;
+
+    volume::Dataset& source_;
+    volume::Dataset dataset_; ///< what is stored, but for BCC
+    PackOptions options_;
+    std::string path_;
+    const Archive* grown_;
+    Metadata metadata_;
+    Continuation place_;
+    MemoryPlan memory_;
+    FeedOptions reading_;
+    std::vector<std::vector<Range>> ranges_; ///< gathered on the way, by parameter
+    std::vector<double> errors_;             ///< largest of a sample, by parameter, in its unit
+    std::vector<std::uint8_t> discarded_;    ///< by brick
+    PackSummary summary_;
+};
+
+/// What has to be known of all times before the first is coded.
+void Packing::gather(const Progress& progress) {
+    if (isRelative(options_) && (times() > 1 || grown_)) {
+        gatherAllRanges(dataset_, reading_, summary_, progress);
+        if (grown_) place_.widen(dataset_.info, metadata_.info);
+    }
+    if (options_.discard > 0)
+        discarded_ = bricksToDiscard(dataset_, reading_, options_, summary_, progress.part(0.8, 1));
 }
 
-/// Packs into a new archive, or behind what is in `grown`, whose options `asked` are then.
-PackSummary packInto(volume::Dataset& source, const PackOptions& asked, const std::string& path, const Archive* grown,
-                     const Progress& progress) {
-    const PackOptions options = resolved(asked);
-    PackSummary summary;
-    if (source.info.parameters.empty() || source.info.times.empty()) throw Error("there is nothing to pack");
-    if (!(options.maxError >= 0 && options.maxError < 1)) throw Error("the error bound must be from 0 to below 1");
-    if (!(options.absError >= 0) || !(options.psnr >= 0)) throw Error("error bounds must not be negative");
-    const bool thresholds = options.threshold.kind != ThresholdChoice::None && options.threshold.value > 0;
-    if (thresholds && (options.psnr > 0 || options.sizeMb > 0))
-        throw Error("a threshold goes with a bound on the error of samples, not with a PSNR or a size");
-    const bool exact = options.maxError == 0 && options.absError == 0 && options.psnr == 0 && !thresholds;
-    if (!options.lossless && exact && options.discard == 0)
-        throw Error("without lossless an error bound, a threshold or a part to discard is needed");
-    if (options.lattice == StoredLattice::CC && source.info.lattice.kind == LatticeKind::BCC)
-        throw Error("the data lies on BCC; it cannot be packed as CC");
-
-    Metadata metadata;
-    metadata.source = source.info.lattice;
-    metadata.alternating = options.lattice == StoredLattice::D4;
-    volume::Dataset dataset = source;
-    if (metadata.alternating && grown && bringsTimes(*grown, source.info)) {
-        volume::ContinuedD4 later =
-            volume::continueD4(source, grown->metadata().sourceTimes, grown->info().times, options.resample);
-        metadata.sourceTimes = std::move(later.times);
-        dataset = std::move(later.frames);
-    } else if (metadata.alternating) {
-        metadata.sourceTimes = source.info.times;
-        dataset = volume::toD4(source, options.resample);
+/// With the ranges known so far; a reader may come at any time.
+Metadata Packing::soFar(std::size_t wholeTimes) const {
+    volume::DatasetInfo read = dataset_.info;
+    settleRanges(read, ranges_);
+    Metadata now = metadata_;
+    if (wholeTimes < now.info.times.size()) // of D4*: what the frames so far reach
+        std::erase_if(now.sourceTimes, [&](double time) { return time > now.info.times[wholeTimes - 1]; });
+    place_.widen(read, now.info);
+    for (std::size_t p = 0; p < errors_.size(); ++p) {
+        const double extent = extentOf(now.info.parameters[std::size_t(place_.parameterOf[p])]);
+        if (extent > 0) now.maxError = std::max(now.maxError, errors_[p] / extent);
     }
-    volume::DatasetInfo& info = dataset.info;
-    const bool toBcc = options.lattice == StoredLattice::BCC && info.lattice.kind == LatticeKind::CC;
-    const bool resamples = toBcc || metadata.alternating;
-    metadata.info = info;
-    metadata.info.lattice = toBcc ? volume::bccFor(info.lattice) : info.lattice;
-    metadata.grid = gridFor(metadata.info.lattice, source.info, options, grown);
-    metadata.lossless = exact && options.discard == 0;
-    metadata.program = "tessera";
-    metadata.options = options;
-    metadata.options.memoryMb = 0; // of this machine, not of the archive
-    const Continuation place = grown ? continuationOf(*grown, metadata) : Continuation(info);
+    return now;
+}
 
-    const std::size_t parameters = info.parameters.size(), times = info.times.size();
-    std::vector<std::vector<Range>> ranges(parameters);
-    std::vector<double> errors(parameters, 0); ///< largest of a sample, in the unit of the parameter
-    const FrameFeed::Resampling resampling{toBcc, options.resample};
-    const MemoryPlan memory = planMemory(metadata, source.info, options);
-    Progress work = progress;
+void Packing::addFrame(ArchiveWriter& writer, FrameSamples& samples, int parameter, int component, std::size_t time,
+                       const Progress& progress) {
+    const auto p = std::size_t(parameter), c = std::size_t(component);
+    const volume::Parameter& about = dataset_.info.parameters[p];
+    const bool exact = isExact(options_), resamples = reading_.toBcc || metadata_.alternating;
+    FrameOptions frame;
+    frame.wavelet = about.categorical ? Wavelet::N1 : waveletOf(options_.wavelet);
+    frame.zstdLevel = options_.zstdLevel;
+    frame.keepsAbsent = exact && !resamples && options_.discard == 0;
+    frame.categorical = about.categorical;
+    frame.importance = options_.importance;
+    if (options_.bccTransform != BccTransform::Auto)
+        frame.bodyCentred = options_.bccTransform == BccTransform::BodyCentred;
+    // Bounds refer to the range of the whole archive, where that is known by now.
+    const volume::Parameter& whole =
+        grown_ && isRelative(options_) ? metadata_.info.parameters[std::size_t(place_.parameterOf[p])] : about;
+    const std::vector<Range>& known = whole.ranges.empty() ? ranges_[p] : whole.ranges;
+    frame.range = c < known.size() ? known[c] : Range{1, 0};
+
+    leaveOut(samples, metadata_.grid, discarded_);
+    frame.maxError = exact ? 0 : boundFor(options_, whole, samples);
+    double error = frame.maxError * std::abs(samples.scale());
+    if (hasThreshold(options_) && !about.categorical) {
+        const double scale = std::abs(samples.scale());
+        const Thresholded left = giveUp(samples, metadata_.grid, frame, options_.threshold, extentOf(whole));
+        error = left.maxError * scale;
+        summary_.weakenedBricks += left.weakened;
+        frame.numbers = left.numbers;
+        frame.maxError = std::max(frame.maxError, left.maxError);
+    } else if (frame.maxError > 0 && samples.type() != ScalarType::F32) {
+        samples.change([&](Field& part, Slab) { part = inSteps(std::move(part), frame.maxError); });
+        frame.maxError = 0;
+    }
+    errors_[p] = std::max(errors_[p], error);
+    Stopwatch code(summary_.codeSeconds);
+    writer.addFrame(place_.parameterOf[p], component, int(place_.firstTime + time), samples, frame, progress);
+}
+
+void Packing::addStep(ArchiveWriter& writer, FeedStep fed, const Progress& progress) {
+    const auto p = std::size_t(fed.parameter);
+    const volume::Parameter& parameter = dataset_.info.parameters[p];
+    summary_.loadSeconds += fed.loadSeconds;
+    summary_.resampleSeconds += fed.resampleSeconds;
+    widenRanges(ranges_[p], fed.ranges);
+    if (times() == 1) settleRanges(dataset_.info, ranges_);
+    if (!metadata_.alternating) {
+        summary_.sourceSamples += fed.sourceSamples;
+        summary_.sourceBytes += fed.sourceBytes;
+    } else if (fed.time < source_.info.times.size()) { // as many times as the source has
+        const std::uint64_t samples = source_.info.lattice.count() * fed.frames.size();
+        summary_.sourceSamples += samples;
+        summary_.sourceBytes += samples * volume::byteSize(parameter.type);
+    }
+    const double frames = double(fed.frames.size());
+    for (std::size_t c = 0; c < fed.frames.size(); ++c) {
+        summary_.storedSamples += fed.frames[c].count();
+        summary_.storedBytes += fed.frames[c].count() * volume::byteSize(parameter.type);
+        addFrame(writer, fed.frames[c], fed.parameter, int(c), fed.time,
+                 progress.part(double(c) / frames, double(c + 1) / frames));
+    }
+    const std::size_t wholeTimes = place_.firstTime + fed.time + 1, least = metadata_.alternating ? 2 : 1;
+    if (p + 1 < dataset_.info.parameters.size() || !place_.wholeTimes || wholeTimes < least) return;
+    Stopwatch write(summary_.writeSeconds);
+    writer.commit(soFar(wholeTimes), wholeTimes);
+}
+
+PackSummary Packing::run(const Progress& progress) {
     {
-        Stopwatch all(summary.seconds);
-        // A bound relative to the range of all times needs a pass of its own; one time is read once.
-        const bool relative = options.maxError > 0 || options.psnr > 0 || thresholds || options.discard > 0;
-        if (relative && (times > 1 || grown)) {
-            work = progress.part(0.3, 1);
-            gatherAllRanges(dataset, memory.readAhead, summary, progress.part(0, 0.3));
-            if (grown) place.widen(info, metadata.info);
-        }
-
-        const std::vector<std::uint8_t> discarded =
-            options.discard > 0 ? bricksToDiscard(dataset, metadata.grid, resampling, options, memory.readAhead,
-                                                  progress.part(0.25, 0.3), summary)
-                                : std::vector<std::uint8_t>();
-        summary.bricks = brickCount(metadata.grid);
-        const auto opened = grown ? std::make_unique<ArchiveWriter>(*grown, metadata, memory.keepFrames)
-                                  : std::make_unique<ArchiveWriter>(path, metadata, memory.keepFrames);
-        ArchiveWriter& writer = *opened;
-        const double frames = double(times) * double(componentCount(info));
+        Stopwatch all(summary_.seconds);
+        const bool passes = isRelative(options_) && (times() > 1 || grown_ || options_.discard > 0);
+        const double begin = passes ? 0.3 : 0;
+        gather(progress.part(0, begin));
+        const Progress work = progress.part(begin, 1);
+        summary_.bricks = brickCount(metadata_.grid);
+        const auto writer = grown_ ? std::make_unique<ArchiveWriter>(*grown_, metadata_, memory_.keepFrames)
+                                   : std::make_unique<ArchiveWriter>(path_, metadata_, memory_.keepFrames);
+        FrameFeed feed(dataset_, reading_, progress.stop);
+        const std::vector<volume::Parameter>& parameters = dataset_.info.parameters;
+        const std::size_t steps = times() * parameters.size();
+        const double frames = double(times()) * double(componentCount(dataset_.info));
         double done = 0;
-        // With the ranges known so far; a reader may come at any time.
-        const auto soFar = [&](std::size_t wholeTimes) {
-            volume::DatasetInfo read = info;
-            read.parameters = withRanges(info.parameters, ranges);
-            Metadata now = metadata;
-            if (wholeTimes < now.info.times.size()) // of D4*: what the frames so far reach
-                std::erase_if(now.sourceTimes, [&](double time) { return time > now.info.times[wholeTimes - 1]; });
-            place.widen(read, now.info);
-            for (std::size_t p = 0; p < parameters; ++p) {
-                const double extent = extentOf(now.info.parameters[std::size_t(place.parameterOf[p])]);
-                if (extent > 0) now.maxError = std::max(now.maxError, errors[p] / extent);
-            }
-            return now;
-        };
-        FrameFeed feed(dataset, resampling, memory.readAhead, progress.stop);
-        for (std::size_t step = 0; step < times * parameters; ++step) {
-            work.advance(done / frames, info.parameters[step % parameters].name);
+        for (std::size_t step = 0; step < steps; ++step) {
+            work.advance(done / frames, parameters[step % parameters.size()].name);
             FeedStep fed = [&] {
-                Stopwatch wait(summary.waitSeconds);
+                Stopwatch wait(summary_.waitSeconds);
                 return feed.next();
             }();
-            const std::size_t t = fed.time, p = std::size_t(fed.parameter);
-            const volume::Parameter& parameter = info.parameters[p];
-            summary.loadSeconds += fed.loadSeconds;
-            summary.resampleSeconds += fed.resampleSeconds;
-            widenRanges(ranges[p], fed.ranges);
-            if (times == 1) settleRanges(info, ranges);
-            if (!metadata.alternating) {
-                summary.sourceSamples += fed.sourceSamples;
-                summary.sourceBytes += fed.sourceBytes;
-            } else if (t < source.info.times.size()) { // as many times as the source has
-                const std::uint64_t samples = source.info.lattice.count() * fed.fields.size();
-                summary.sourceSamples += samples;
-                summary.sourceBytes += samples * volume::byteSize(parameter.type);
-            }
-            FrameOptions frame;
-            frame.wavelet = parameter.categorical ? Wavelet::N1 : waveletOf(options.wavelet);
-            frame.zstdLevel = options.zstdLevel;
-            frame.keepsAbsent = exact && !resamples && options.discard == 0;
-            frame.categorical = parameter.categorical;
-            frame.importance = options.importance;
-            if (options.bccTransform != BccTransform::Auto)
-                frame.bodyCentred = options.bccTransform == BccTransform::BodyCentred;
-            for (std::size_t c = 0; c < fed.fields.size(); ++c, ++done) {
-                Field field = std::move(fed.fields[c]);
-                leaveOut(field, metadata.grid, discarded);
-                summary.storedSamples += field.count();
-                summary.storedBytes += field.samples.size();
-                // Bounds refer to the range of the whole archive, where that is known by now.
-                const volume::Parameter& whole =
-                    grown && relative ? metadata.info.parameters[std::size_t(place.parameterOf[p])] : parameter;
-                frame.maxError = exact ? 0 : boundFor(options, whole, field);
-                frame.numbers.reset();
-                const std::vector<Range>& known = whole.ranges.empty() ? ranges[p] : whole.ranges;
-                frame.range = c < known.size() ? known[c] : Range{1, 0};
-                const double extent = extentOf(whole);
-                double error = frame.maxError * std::abs(field.scale);
-                if (thresholds && !parameter.categorical) {
-                    Thresholded left = giveUp(std::move(field), metadata.grid, frame, options.threshold, extent);
-                    field = std::move(left.field);
-                    error = left.maxError * std::abs(field.scale);
-                    summary.weakenedBricks += left.weakened;
-                    frame.numbers = left.numbers;
-                    frame.maxError = std::max(frame.maxError, left.maxError);
-                } else if (frame.maxError > 0 && field.type != ScalarType::F32) {
-                    field = inSteps(std::move(field), frame.maxError);
-                    frame.maxError = 0;
-                }
-                errors[p] = std::max(errors[p], error);
-                Stopwatch code(summary.codeSeconds);
-                writer.addFrame(place.parameterOf[p], int(c), int(place.firstTime + t), field, frame,
-                                work.part(done / frames, (done + 1) / frames));
-            }
-            const std::size_t wholeTimes = place.firstTime + t + 1, least = metadata.alternating ? 2 : 1;
-            if (p + 1 < parameters || !place.wholeTimes || wholeTimes < least) continue;
-            Stopwatch write(summary.writeSeconds);
-            writer.commit(soFar(wholeTimes), wholeTimes);
+            const double more = double(fed.frames.size());
+            addStep(*writer, std::move(fed), work.part(done / frames, (done + more) / frames));
+            done += more;
         }
-        settleRanges(info, ranges);
-        source.info.parameters = info.parameters;
-        Stopwatch write(summary.writeSeconds);
-        if (!memory.keepFrames && times > 1)
-            summary.notes.push_back("memory is too tight to keep frames: what changes from time to time is not noted");
-        summary.repeatedBricks = writer.repeats().bricks;
-        summary.repeatedBytes = writer.repeats().bytes;
-        const Metadata known = soFar(metadata.info.times.size());
-        summary.maxError = known.maxError;
-        summary.archiveBytes = writer.finish(known);
-        summary.addedBytes = summary.archiveBytes - (grown ? grown->fileBytes() : 0);
+        settleRanges(dataset_.info, ranges_);
+        source_.info.parameters = dataset_.info.parameters;
+        Stopwatch write(summary_.writeSeconds);
+        if (!memory_.keepFrames && times() > 1)
+            summary_.notes.push_back("memory is too tight to keep frames: what changes from time to time is not noted");
+        if (memory_.slabLayers > 0)
+            summary_.notes.push_back("frames are larger than the memory: they were packed in slabs of " +
+                                     std::to_string(memory_.slabLayers) + " layers of bricks");
+        summary_.repeatedBricks = writer->repeats().bricks;
+        summary_.repeatedBytes = writer->repeats().bytes;
+        const Metadata known = soFar(metadata_.info.times.size());
+        summary_.maxError = known.maxError;
+        summary_.archiveBytes = writer->finish(known);
+        summary_.addedBytes = summary_.archiveBytes - (grown_ ? grown_->fileBytes() : 0);
     }
     progress.advance(1);
-    return summary;
+    return summary_;
 }
 
 } // namespace
 
-PackSummary pack(volume::Dataset& source, const PackOptions& asked, const std::string& path, const Progress& progress) {
+PackSummary pack(volume::Dataset& source, const PackOptions& asked, const std::string& path, const Progress& progress,
+                 const SlabInput& slabs) {
     const PackOptions options = resolved(asked);
-    if (options.sizeMb == 0) return packInto(source, options, path, nullptr, progress);
+    if (options.sizeMb == 0) return Packing(source, slabs, options, path, nullptr).run(progress);
     const auto trial = [&](const PackOptions& with, const std::string& to, const Progress& part) {
-        return packInto(source, with, to, nullptr, part);
+        return Packing(source, {}, with, to, nullptr).run(part);
     };
     const auto bytesAt = [&](const Progress& part) {
         PackSummary reading;
-        gatherAllRanges(source, planMemory({}, source.info, options).readAhead, reading, part.part(0, 0.5));
         const bool toBcc = options.lattice == StoredLattice::BCC && source.info.lattice.kind == LatticeKind::CC;
         const volume::Lattice lattice = toBcc ? volume::bccFor(source.info.lattice) : source.info.lattice;
+        FeedOptions whole;
+        whole.ahead = planMemory({}, source.info, options, {}).readAhead;
+        gatherAllRanges(source, whole, reading, part.part(0, 0.5));
         return estimateSizes(source, gridFor(lattice, source.info, options), options, toBcc, part.part(0.5, 1));
     };
     return packToSize(options, path, bytesAt, trial, progress);
 }
 
-PackSummary append(volume::Dataset& source, const std::string& path, double memoryMb, const Progress& progress) {
+PackSummary append(volume::Dataset& source, const std::string& path, double memoryMb, const Progress& progress,
+                   const SlabInput& slabs) {
     const Archive grown(path);
     PackOptions options = grown.metadata().options;
     options.memoryMb = memoryMb;
-    return packInto(source, options, path, &grown, progress);
+    return Packing(source, slabs, resolved(options), path, &grown).run(progress);
 }
 
 } // namespace tessera::codec

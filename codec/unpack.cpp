@@ -87,6 +87,16 @@ volume::Dataset storedDataset(std::shared_ptr<const Archive> archive) {
     return dataset;
 }
 
+volume::SliceLoad storedSlices(std::shared_ptr<const Archive> archive) {
+    return [archive](int parameter, int component, int time, int first, int count) {
+        const volume::BrickGrid& grid = archive->grid();
+        const int slices = grid.end(glm::ivec3(0)).z; // of a layer of bricks
+        const int layer = first / slices, end = (first + count + slices - 1) / slices;
+        const Field layers = readLayers(*archive, parameter, component, time, layer, end);
+        return volume::slicesOf(layers, first - grid.begin({0, 0, layer}).z, count);
+    };
+}
+
 volume::Series storedSeries(std::shared_ptr<const Archive> archive, int parameter, int component) {
     if (archive->metadata().alternating)
         return volume::d4SeriesOf(storedDataset(std::move(archive)), parameter, component);

@@ -3,6 +3,7 @@
 #include "codec/archive.h"
 #include "volume/dataset.h"
 #include "volume/series.h"
+#include "volume/slices.h"
 
 #include <memory>
 
@@ -10,6 +11,8 @@ namespace tessera::codec {
 
 /// An archive as a data set of frames: on the lattice it is stored on, samples in their type.
 volume::Dataset storedDataset(std::shared_ptr<const Archive> archive);
+/// Reads slices of its frames: the layers of bricks that hold them are decoded.
+volume::SliceLoad storedSlices(std::shared_ptr<const Archive> archive);
 
 /// An archive as a data set on a CC grid, for other programs. Level 0 of a CC archive: the stored samples. Of a BCC
 /// archive: resampled to the grid it came from (labels nearest). Of a D4* archive: the same at the times it came from,

@@ -292,6 +292,11 @@ BrickImportance importanceOfLabels(const BrickGrid& grid, const Field& field, gl
 struct Extent {
     Range range{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
     bool gaps = false;
+
+    void add(const Extent& part) {
+        range = {std::min(range.lo, part.range.lo), std::max(range.hi, part.range.hi)};
+        gaps = gaps || part.gaps;
+    }
 };
 
 Extent extentOf(const Field& field) {
@@ -349,6 +354,48 @@ std::vector<BrickImportance> withNeighbours(const std::vector<BrickImportance>& 
     return out;
 }
 
+/// Bricks on their own, without what they get of their neighbours.
+struct OwnImportance {
+    const BrickGrid& grid;
+    Range range;
+    bool gaps;
+    double borderWeight;
+    std::vector<BrickImportance>& bricks; ///< of the whole grid
+
+    std::size_t perLayer() const { return std::size_t(grid.count().x) * std::size_t(grid.count().y); }
+    int slices() const { return grid.lattice.kind == LatticeKind::BCC ? 2 : 1; } ///< of a texel
+
+    /// The layers [layer, end) of bricks from a part of the frame: its slices from texel `first` (an even one) on,
+    /// kMargin texels more than those layers on both sides where there are so many.
+    void take(const Field& part, int first, int layer, int end) const {
+        const RowReader reader{part, range.lo, 1 / (range.hi - range.lo), gaps};
+        std::vector<Smoothed> halves;
+        for (int s = 0; s < slices(); ++s) halves.push_back(smoothedHalf(reader, s));
+        const glm::ivec3 shift(0, 0, first / 2);
+        parallelFor(perLayer() * std::size_t(end - layer), [&](std::size_t i) {
+            const std::size_t number = perLayer() * std::size_t(layer) + i;
+            const glm::ivec3 brick = brickAt(grid.count(), number);
+            Sums sums;
+            for (const Smoothed& half : halves) {
+                const glm::ivec3 lo = (brick * grid.brickSize + 1) / 2 - shift,
+                                 hi = glm::min((brick * grid.brickSize + grid.brickSize + 1) / 2 - shift, half.size);
+                addBrick(half, lo, hi, borderWeight, sums);
+            }
+            bricks[number] = sums.result();
+        });
+    }
+    /// The same of labels, whose parts have no margins.
+    void takeLabels(const Field& part, int layer, int end) const {
+        BrickGrid own = grid;
+        own.lattice = part.lattice;
+        parallelFor(perLayer() * std::size_t(end - layer), [&](std::size_t i) {
+            bricks[perLayer() * std::size_t(layer) + i] = importanceOfLabels(own, part, brickAt(own.count(), i));
+        });
+    }
+
+    static constexpr int kMargin = 4; ///< reach of the details of smoothed samples
+};
+
 } // namespace
 
 std::vector<BrickImportance> importanceOfBricks(const BrickGrid& grid, const Field& field, Range range,
@@ -356,26 +403,43 @@ std::vector<BrickImportance> importanceOfBricks(const BrickGrid& grid, const Fie
     const glm::ivec3 count = grid.count();
     std::vector<BrickImportance> own(countOf(count));
     if (categorical) {
-        parallelFor(own.size(), [&](std::size_t i) { own[i] = importanceOfLabels(grid, field, brickAt(count, i)); });
+        OwnImportance{grid, range, false, 1, own}.takeLabels(field, 0, count.z);
         return withNeighbours(own, count, options.neighbours);
     }
     const Extent extent = extentOf(field);
     if (!(range.lo <= range.hi)) range = extent.range;
     if (!(range.lo < range.hi)) return own; // one value, or nothing
-    const RowReader reader{field, range.lo, 1 / (range.hi - range.lo), extent.gaps};
-    const int sublattices = grid.lattice.kind == LatticeKind::BCC ? 2 : 1;
-    std::vector<Smoothed> parts;
-    for (int s = 0; s < sublattices; ++s) parts.push_back(smoothedHalf(reader, s));
-    parallelFor(own.size(), [&](std::size_t i) {
-        const glm::ivec3 brick = brickAt(count, i);
-        Sums sums;
-        for (const Smoothed& part : parts) {
-            const glm::ivec3 begin = (brick * grid.brickSize + 1) / 2,
-                             end = glm::min((brick * grid.brickSize + grid.brickSize + 1) / 2, part.size);
-            addBrick(part, begin, end, options.borderWeight, sums);
+    OwnImportance{grid, range, extent.gaps, options.borderWeight, own}.take(field, 0, 0, count.z);
+    return withNeighbours(own, count, options.neighbours);
+}
+
+std::vector<BrickImportance> importanceOfBricks(const BrickGrid& grid, const SliceReader& read, int layers, Range range,
+                                                bool categorical, const ImportanceOptions& options) {
+    const glm::ivec3 count = grid.count();
+    std::vector<BrickImportance> own(countOf(count));
+    const OwnImportance plain{grid, range, false, 1, own};
+    const int texels = grid.lattice.texels().z;
+    /// Calls `visit(part, first texel, layer, end)`.
+    const auto forParts = [&](int margin, auto&& visit) {
+        for (int layer = 0; layer < count.z; layer += layers) {
+            const int end = std::min(layer + layers, count.z);
+            const int first = std::max(layer * grid.brickSize - margin, 0),
+                      last = std::min(end * grid.brickSize + margin, texels);
+            const int from = first * plain.slices(), to = std::min(last * plain.slices(), grid.lattice.size.z);
+            visit(read(from, to - from), first, layer, end);
         }
-        own[i] = sums.result();
-    });
+    };
+    if (categorical) {
+        forParts(0, [&](const Field& part, int, int layer, int end) { plain.takeLabels(part, layer, end); });
+        return withNeighbours(own, count, options.neighbours);
+    }
+    Extent extent;
+    forParts(0, [&](const Field& part, int, int, int) { extent.add(extentOf(part)); });
+    if (!(range.lo <= range.hi)) range = extent.range;
+    if (!(range.lo < range.hi)) return own;
+    const OwnImportance smooth{grid, range, extent.gaps, options.borderWeight, own};
+    forParts(OwnImportance::kMargin,
+             [&](const Field& part, int first, int layer, int end) { smooth.take(part, first, layer, end); });
     return withNeighbours(own, count, options.neighbours);
 }
 

@@ -3,6 +3,7 @@
 #include "volume/brick_source.h"
 #include "volume/describe.h"
 #include "volume/field.h"
+#include "volume/slices.h"
 
 #include <vector>
 
@@ -37,6 +38,10 @@ struct ImportanceOptions {
 /// `categorical` both are the entropy alone. Absent samples and floats that are not finite take no part; a brick
 /// without samples, or of one value among such, has 0. A range of nothing: that of the samples.
 std::vector<BrickImportance> importanceOfBricks(const BrickGrid& grid, const Field& field, Range range,
+                                                bool categorical, const ImportanceOptions& options = {});
+
+/// The same of a frame that is read in slices, `layers` layers of bricks at a time and a few slices around them.
+std::vector<BrickImportance> importanceOfBricks(const BrickGrid& grid, const SliceReader& read, int layers, Range range,
                                                 bool categorical, const ImportanceOptions& options = {});
 
 /// How far the samples of one brick move from one frame to another, as a reader sees them.

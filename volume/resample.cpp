@@ -1,7 +1,9 @@
 #include "volume/resample.h"
 
-#include "volume/parallel.h"
+#include "volume/for_slices.h"
 #include "volume/reconstruct.h"
+#include "volume/resample_cc.h"
+#include "volume/resample_slices.h"
 #include "volume/slice_filter.h"
 #include "volume/spline_prefilter.h"
 
@@ -11,91 +13,23 @@
 #include <limits>
 #include <type_traits>
 
-// Target lattices are one or two axis-aligned grids, so a CC source is filtered axis by axis: z and y over whole rows,
-// then x.
-
 namespace tessera::volume {
 
 namespace {
 
-/// Runs `slice(k)` for every slice of the target in parallel, with progress between groups of them.
-template <class Body> void forSlices(const Lattice& target, const Progress& progress, const Body& slice) {
-    constexpr int kGroup = 32; // slices between two looks at the stop token
-    for (int first = 0; first < target.size.z; first += kGroup) {
-        progress.advance(double(first) / target.size.z, "resample");
-        const int count = std::min(kGroup, target.size.z - first);
-        parallelFor(std::size_t(count), [&](std::size_t i) { slice(first + int(i)); });
-    }
-    progress.advance(1, "resample");
-}
-
-template <class T, class Value>
-void fromCc(const Field& source, std::span<const Value> values, Field& out, Mask* mask, const ResampleOptions& options,
-            const Progress& progress) {
-    const Lattice& target = out.lattice;
-    const int sublattices = target.kind == LatticeKind::BCC ? 2 : 1;
-    std::vector<AxisTaps> taps;
-    for (int s = 0; s < sublattices; ++s) taps.push_back(tapsFor(source.lattice, target, s, options));
-    const StoredRange<T> range(source);
-    const std::size_t sliceSize = std::size_t(target.size.x) * std::size_t(target.size.y);
-    T* const samples = out.as<T>().data();
-    forSlices(target, progress, [&](int k) {
-        const AxisTaps& own = taps[std::size_t(k % sublattices)];
-        const std::size_t first = std::size_t(k) * sliceSize;
-        SliceFilter<T, Value>(source, values, own, range)
-            .run(own.z[std::size_t(k / sublattices)], samples + first,
-                 mask != nullptr ? mask->data() + first : nullptr);
-    });
-}
-
-template <class T>
-void fromCc(const Field& source, Field& out, Mask* mask, const ResampleOptions& options, const Progress& progress) {
-    const bool cubic = options.filter == ResampleFilter::BSpline3;
-    if (cubic || options.filter == ResampleFilter::BSpline5) {
-        const auto coefficients = splineCoefficients<SumOf<T>>(source, cubic ? 3 : 5);
-        fromCc<T>(source, std::span<const SumOf<T>>(coefficients), out, mask, options, progress);
-    } else {
-        fromCc<T>(source, source.as<T>(), out, mask, options, progress);
-    }
-}
-
-/// A gap of one absent CC sample can lie between two samples of a BCC sublattice, whose cells are sqrt 2 wide: both
-/// sides of the gap would then be neighbours, and reconstruction would mix them. Where that happens along an axis, the
-/// sample nearer to the gap becomes absent.
-template <class T> void keepGaps(const Field& source, Field& out, Mask& mask, const Progress& progress) {
-    const Lattice& target = out.lattice;
-    const Mask before = mask;
-    const glm::ivec3 steps[] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 2}}; // to the next sample of the same sublattice
-    std::array<std::vector<Tap>, 3> taps[2];
-    for (int s = 0; s < 2; ++s) {
-        AxisTaps all = tapsFor(source.lattice, target, s, {.filter = ResampleFilter::Nearest});
-        taps[s] = {std::move(all.x), std::move(all.y), std::move(all.z)};
-    }
-    const auto removed = [&](glm::ivec3 at, int axis, int side) {
-        const glm::ivec3 other = at + side * steps[axis];
-        if (other[axis] < 0 || other[axis] >= target.size[axis] || before[target.index(other)] == 0) return false;
-        const auto& [x, y, z] = taps[at.z & 1];
-        const std::vector<Tap>& along = taps[at.z & 1][std::size_t(axis)];
-        const Tap& own = along[std::size_t(axis == 2 ? at.z / 2 : at[axis])];
-        const Tap& next = along[std::size_t(axis == 2 ? other.z / 2 : other[axis])];
-        if (side * (next.nearest - own.nearest) < 2) return false;
-        glm::ivec3 between(x[std::size_t(at.x)].nearest, y[std::size_t(at.y)].nearest,
-                           z[std::size_t(at.z / 2)].nearest);
-        between[axis] += side;
-        if (source.present(source.lattice.index(between))) return false;
-        const double mine = std::abs(own.cell[0] + own.fraction - between[axis]);
-        const double theirs = std::abs(next.cell[0] + next.fraction - between[axis]);
-        return mine < theirs || (mine == theirs && side > 0);
+/// A CC source, all of it at once.
+Field fromCc(const Field& source, const Lattice& target, const ResampleOptions& options, const Progress& progress) {
+    const CcTaps taps(source.lattice, target, options);
+    StoredExtent extent;
+    extent.add(source);
+    const auto run = [&](const void* coefficients) {
+        return resampleCc(taps, {source, 0, coefficients}, extent, 0, target.size.z, progress);
     };
-    forSlices(target, progress, [&](int k) {
-        std::size_t index = target.index({0, 0, k});
-        for (int j = 0; j < target.size.y; ++j)
-            for (int i = 0; i < target.size.x; ++i, ++index)
-                for (int axis = 0; axis < 3 && mask[index] != 0; ++axis)
-                    if (removed({i, j, k}, axis, -1) || removed({i, j, k}, axis, 1)) {
-                        mask[index] = 0;
-                        out.as<T>()[index] = T{};
-                    }
+    const int degree = splineDegree(options.filter);
+    if (degree == 0) return run(nullptr);
+    return dispatch(source.type, [&]<class T>(T) {
+        const auto coefficients = splineCoefficients<SumOf<T>>(source, degree);
+        return run(coefficients.data());
     });
 }
 
@@ -207,13 +141,19 @@ template <class T> void fromBcc(const Field& source, Field& out, Mask* mask, con
 
 } // namespace
 
-Field sharpened(const Field& source, double amount) {
+void checkOrder(const ResampleOptions& options) {
+    if (options.order < kLeastOrder || options.order > kMostOrder)
+        throw Error("the order of a filter must be from " + std::to_string(kLeastOrder) + " to " +
+                    std::to_string(kMostOrder));
+}
+
+Field sharpened(const Field& source, double amount, const StoredExtent& extent) {
     const Lattice& lattice = source.lattice;
     Field out = source;
     dispatch(source.type, [&]<class T>(T) {
         const auto stored = source.as<T>();
         const auto to = out.as<T>();
-        const StoredRange<T> range(source);
+        const StoredRange<T> range(extent);
         forSlices(lattice, {}, [&](int k) {
             std::size_t index = lattice.index({0, 0, k});
             for (int j = 0; j < lattice.size.y; ++j)
@@ -245,10 +185,14 @@ Field sharpened(const Field& source, double amount) {
     return out;
 }
 
+Field sharpened(const Field& source, double amount) {
+    StoredExtent extent;
+    extent.add(source);
+    return sharpened(source, amount, extent);
+}
+
 Field resample(const Field& source, const Lattice& target, const ResampleOptions& options, const Progress& progress) {
-    if (options.order < kLeastOrder || options.order > kMostOrder)
-        throw Error("the order of a filter must be from " + std::to_string(kLeastOrder) + " to " +
-                    std::to_string(kMostOrder));
+    checkOrder(options);
     if (options.sharpen > 0) {
         ResampleOptions plain = options;
         plain.sharpen = 0;
@@ -260,30 +204,30 @@ Field resample(const Field& source, const Lattice& target, const ResampleOptions
         progress.advance(1, "resample");
         return source;
     }
-    Field out = makeField(target, source.type);
-    out.offset = source.offset;
-    out.scale = source.scale;
-    std::shared_ptr<Mask> mask;
-    if (source.mask) mask = std::make_shared<Mask>(target.count(), std::uint8_t(1));
-    dispatch(source.type, [&]<class T>(T) {
-        if (source.lattice.kind == LatticeKind::CC)
-            fromCc<T>(source, out, mask.get(), options, progress);
-        else if (options.filter == ResampleFilter::Nearest)
-            fromNearest<T>(source, out, mask.get(), progress);
-        else
-            fromBcc<T>(source, out, mask.get(), progress);
-        if (mask && source.lattice.kind == LatticeKind::CC && target.kind == LatticeKind::BCC)
-            keepGaps<T>(source, out, *mask, Progress{{}, progress.stop});
-    });
-    if (mask && !std::all_of(mask->begin(), mask->end(), [](std::uint8_t p) { return p != 0; }))
+    Field out;
+    if (source.lattice.kind == LatticeKind::CC) {
+        out = fromCc(source, target, options, progress);
+    } else {
+        out = makeField(target, source.type);
+        out.offset = source.offset;
+        out.scale = source.scale;
+        std::shared_ptr<Mask> mask;
+        if (source.mask) mask = std::make_shared<Mask>(target.count(), std::uint8_t(1));
+        dispatch(source.type, [&]<class T>(T) {
+            if (options.filter == ResampleFilter::Nearest)
+                fromNearest<T>(source, out, mask.get(), progress);
+            else
+                fromBcc<T>(source, out, mask.get(), progress);
+        });
         out.mask = std::move(mask);
+    }
+    if (out.mask && std::find(out.mask->begin(), out.mask->end(), std::uint8_t(0)) == out.mask->end()) out.mask.reset();
     return out;
 }
 
 Field toBcc(const Field& source, bool categorical, const ResampleOptions& options, const Progress& progress) {
     if (source.lattice.kind == LatticeKind::BCC) return source;
-    const ResampleOptions labels{.filter = ResampleFilter::Nearest};
-    return resample(source, bccFor(source.lattice), categorical ? labels : options, progress);
+    return resample(source, bccFor(source.lattice), optionsFor(categorical, options), progress);
 }
 
 } // namespace tessera::volume

@@ -75,6 +75,11 @@ inline Field resample(const Field& source, const Lattice& target, ResampleFilter
 /// neighbours (6 on CC, 8 on BCC), within the range of the field.
 Field sharpened(const Field& source, double amount);
 
+/// How samples of a parameter are resampled: labels to the nearest.
+inline ResampleOptions optionsFor(bool categorical, const ResampleOptions& options) {
+    return categorical ? ResampleOptions{.filter = ResampleFilter::Nearest} : options;
+}
+
 /// The field on bccFor(its lattice); nearest for categorical parameters.
 Field toBcc(const Field& source, bool categorical, const ResampleOptions& options, const Progress& progress = {});
 inline Field toBcc(const Field& source, bool categorical, const Progress& progress = {}) {

@@ -2,6 +2,7 @@
 
 #include "volume/reconstruct.h"
 #include "volume/resample_taps.h"
+#include "volume/stored_range.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,32 +11,8 @@
 #include <type_traits>
 #include <vector>
 
-/// Filtering of a CC field onto slices of another grid, axis by axis: inside of volume/resample.cpp.
+/// Filtering of a CC field onto slices of another grid, axis by axis: inside of volume/resample_cc.cpp.
 namespace tessera::volume {
-
-/// Range of the present samples of a source, as stored. Results are clamped to it: kernels with negative weights
-/// overshoot at steps, and a concentration below 0 or a value outside the known range helps nobody.
-template <class T> struct StoredRange {
-    double lo = 0, hi = 0;
-
-    explicit StoredRange(const Field& source) {
-        const auto stored = source.as<T>();
-        T least = std::numeric_limits<T>::max(), most = std::numeric_limits<T>::lowest();
-        for (std::size_t i = 0; i < stored.size(); ++i) {
-            if (!source.present(i)) continue;
-            least = std::min(least, stored[i]);
-            most = std::max(most, stored[i]);
-        }
-        lo = double(least);
-        hi = std::max(lo, double(most)); // nothing present: never used
-    }
-    T store(double value) const {
-        if constexpr (std::is_floating_point_v<T>)
-            return static_cast<T>(std::clamp(value, lo, hi));
-        else
-            return static_cast<T>(std::nearbyint(std::clamp(value, lo, hi)));
-    }
-};
 
 /// Precision that sums over samples of a stored type need: a rounded 8 or 16 bit number comes out of float sums.
 template <class T> using SumOf = std::conditional_t<(sizeof(T) < 4), float, double>;

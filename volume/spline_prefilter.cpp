@@ -44,36 +44,6 @@ void filterOdd(std::span<double> c, double pole) {
     c[0] = 0;
 }
 
-/// Runs `line` over every line along an axis, in parallel over planes across another.
-template <class Real> void filterAxis(const Field& field, std::vector<Real>& values, int axis, int degree) {
-    const glm::ivec3 size = field.lattice.size;
-    const std::size_t steps[] = {1, std::size_t(size.x), std::size_t(size.x) * std::size_t(size.y)};
-    const int across = axis == 2 ? 1 : 2, along = 3 - axis - across;
-    parallelFor(std::size_t(size[across]), [&](std::size_t plane) {
-        std::vector<double> run;
-        run.reserve(std::size_t(size[axis]));
-        for (int row = 0; row < size[along]; ++row) {
-            const std::size_t first = plane * steps[across] + std::size_t(row) * steps[along];
-            const auto finish = [&](std::size_t end) {
-                if (run.size() > 2) {
-                    splinePrefilter(run, degree);
-                    for (std::size_t i = 0; i < run.size(); ++i)
-                        values[first + (end - run.size() + i) * steps[axis]] = Real(run[i]);
-                }
-                run.clear();
-            };
-            for (std::size_t i = 0; i < std::size_t(size[axis]); ++i) {
-                const std::size_t at = first + i * steps[axis];
-                if (field.present(at))
-                    run.push_back(double(values[at]));
-                else
-                    finish(i);
-            }
-            finish(std::size_t(size[axis]));
-        }
-    });
-}
-
 } // namespace
 
 void splinePrefilter(std::span<double> line, int degree) {
@@ -94,17 +64,60 @@ void splinePrefilter(std::span<double> line, int degree) {
     for (std::size_t i = 0; i < n; ++i) line[i] += first + slope * double(i);
 }
 
-template <class Real> std::vector<Real> splineCoefficients(const Field& field, int degree) {
+template <class Real> std::vector<Real> splineValues(const Field& field) {
     std::vector<Real> values(field.count());
     dispatch(field.type, [&]<class T>(T) {
         const auto stored = field.as<T>();
         for (std::size_t i = 0; i < values.size(); ++i) values[i] = field.present(i) ? Real(stored[i]) : Real(0);
     });
-    for (int axis = 0; axis < 3; ++axis) filterAxis(field, values, axis, degree);
     return values;
 }
 
-template std::vector<float> splineCoefficients<float>(const Field&, int);
-template std::vector<double> splineCoefficients<double>(const Field&, int);
+template <class Real>
+void splineFilterAxis(glm::ivec3 size, std::span<const std::uint8_t> present, std::vector<Real>& values, int axis,
+                      int degree) {
+    const std::size_t steps[] = {1, std::size_t(size.x), std::size_t(size.x) * std::size_t(size.y)};
+    // In parallel over planes across another axis.
+    const int across = axis == 2 ? 1 : 2, along = 3 - axis - across;
+    parallelFor(std::size_t(size[across]), [&](std::size_t plane) {
+        std::vector<double> run;
+        run.reserve(std::size_t(size[axis]));
+        for (int row = 0; row < size[along]; ++row) {
+            const std::size_t first = plane * steps[across] + std::size_t(row) * steps[along];
+            const auto finish = [&](std::size_t end) {
+                if (run.size() > 2) {
+                    splinePrefilter(run, degree);
+                    for (std::size_t i = 0; i < run.size(); ++i)
+                        values[first + (end - run.size() + i) * steps[axis]] = Real(run[i]);
+                }
+                run.clear();
+            };
+            for (std::size_t i = 0; i < std::size_t(size[axis]); ++i) {
+                const std::size_t at = first + i * steps[axis];
+                if (present.empty() || present[at] != 0)
+                    run.push_back(double(values[at]));
+                else
+                    finish(i);
+            }
+            finish(std::size_t(size[axis]));
+        }
+    });
+}
+
+template <class Real> std::vector<Real> splineCoefficients(const Field& field, int degree) {
+    std::vector<Real> values = splineValues<Real>(field);
+    const std::span<const std::uint8_t> present =
+        field.mask ? std::span<const std::uint8_t>(*field.mask) : std::span<const std::uint8_t>();
+    for (int axis = 0; axis < 3; ++axis) splineFilterAxis(field.lattice.size, present, values, axis, degree);
+    return values;
+}
+
+#define TESSERA_COEFFICIENTS(Real)                                                                                     \
+    template std::vector<Real> splineValues<Real>(const Field&);                                                       \
+    template void splineFilterAxis(glm::ivec3, std::span<const std::uint8_t>, std::vector<Real>&, int, int);           \
+    template std::vector<Real> splineCoefficients<Real>(const Field&, int);
+TESSERA_COEFFICIENTS(float)
+TESSERA_COEFFICIENTS(double)
+#undef TESSERA_COEFFICIENTS
 
 } // namespace tessera::volume

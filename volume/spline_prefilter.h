@@ -1,6 +1,7 @@
 #pragma once
 
 #include "volume/field.h"
+#include "volume/resample.h"
 
 #include <span>
 #include <vector>
@@ -13,8 +14,21 @@ namespace tessera::volume {
 /// samples and coefficients continue by point reflection (-i is twice the first minus i), which keeps linear functions.
 void splinePrefilter(std::span<double> line, int degree);
 
-/// Coefficients of a CC field's stored values, axis after axis. Every run of present samples along an axis is a signal
-/// of its own, so no value crosses an absent sample. Absent ones give 0. `Real`: float or double.
+/// Degree of the spline of a filter; 0: it is none.
+constexpr int splineDegree(ResampleFilter filter) {
+    return filter == ResampleFilter::BSpline3 ? 3 : filter == ResampleFilter::BSpline5 ? 5 : 0;
+}
+
+/// The stored values of a field, 0 where absent.
+template <class Real> std::vector<Real> splineValues(const Field& field);
+
+/// Runs splinePrefilter over every line of a box along an axis, x fastest; `present`: one flag each, empty: all are.
+/// Every run of present samples is a signal of its own, so no value crosses an absent sample.
+template <class Real>
+void splineFilterAxis(glm::ivec3 size, std::span<const std::uint8_t> present, std::vector<Real>& values, int axis,
+                      int degree);
+
+/// Coefficients of a CC field's stored values, axis after axis; of absent ones 0. `Real`: float or double.
 template <class Real> std::vector<Real> splineCoefficients(const Field& field, int degree);
 
 } // namespace tessera::volume

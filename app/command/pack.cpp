@@ -5,6 +5,7 @@
 #include "app/session/describe_cli.h"
 #include "app/session/import_memory.h"
 #include "codec/unpack.h"
+#include "volume/import/sliced.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -55,11 +56,14 @@ codec::StoredLattice latticeOf(const PackRequest& request) {
     return request.append ? storedLattice(request.output) : request.options.lattice;
 }
 
-volume::Dataset open(const PackRequest& request, const Progress& progress) {
+volume::SlicedDataset open(const PackRequest& request, const Progress& progress) {
     if (request.inputs.size() == 1 && hasEnding(request.inputs[0], ".tsr")) {
         const auto archive = std::make_shared<const codec::Archive>(request.inputs[0]);
         const bool asGrid = latticeOf(request) != codec::StoredLattice::BCC || archive->metadata().alternating;
-        return asGrid ? codec::gridDataset(archive, 0) : codec::storedDataset(archive);
+        const bool asStored =
+            !asGrid || (archive->info().lattice.kind == volume::LatticeKind::CC && !archive->metadata().alternating);
+        if (asStored) return {codec::storedDataset(archive), codec::storedSlices(archive)};
+        return {codec::gridDataset(archive, 0), {}};
     }
     const volume::ImportOptions options = recallOptions(request.inputs, request.import, progress);
     for (const std::string& rule : options.absent)
@@ -68,9 +72,9 @@ volume::Dataset open(const PackRequest& request, const Progress& progress) {
     for (const auto& [from, to] : options.rename)
         if (!request.import.rename.contains(from))
             std::fprintf(stderr, "tessera: remembered: --rename %s=%s\n", from.c_str(), to.c_str());
-    volume::Dataset dataset = volume::openFiles(request.inputs, options, progress);
-    rememberStated(request.import, dataset.info.name);
-    return dataset;
+    volume::SlicedDataset data = volume::openSliced(request.inputs, options, progress);
+    rememberStated(request.import, data.dataset.info.name);
+    return data;
 }
 
 void checkOutput(const PackRequest& request) {
@@ -128,11 +132,11 @@ void run(PackRequest request) {
     if (request.keepsLattice) request.options.lattice = storedLattice(request.inputs[0]);
     const Progress terminal = terminalProgress("pack");
     const Progress progress = request.progressJson ? jsonProgress(terminal) : terminal;
-    volume::Dataset dataset = open(request, progress.part(0, 0.02));
+    auto [dataset, slices] = open(request, progress.part(0, 0.02));
     const Progress rest = progress.part(0.02, 1);
-    const codec::PackSummary summary = request.append
-                                           ? codec::append(dataset, request.output, request.options.memoryMb, rest)
-                                           : codec::pack(dataset, request.options, request.output, rest);
+    const codec::PackSummary summary =
+        request.append ? codec::append(dataset, request.output, request.options.memoryMb, rest, {slices, 0})
+                       : codec::pack(dataset, request.options, request.output, rest, {slices, 0});
     if (request.json || request.progressJson) {
         std::printf("%s\n", toJson(summary, request.output).dump(request.progressJson ? -1 : 1).c_str());
         return;

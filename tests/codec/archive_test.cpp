@@ -1,6 +1,7 @@
 #include "codec/archive.h"
 
 #include "codec/pack.h"
+#include "tests/codec/compare_fields.h"
 #include "tests/codec/make_dataset.h"
 #include "volume/resample.h"
 
@@ -15,34 +16,6 @@ using volume::BrickKey;
 using volume::Field;
 using volume::LatticeKind;
 using volume::ScalarType;
-
-/// Same type, samples and mask, bit for bit, absent samples too.
-void expectSame(const Field& a, const Field& b, bool absentToo) {
-    ASSERT_EQ(a.type, b.type);
-    ASSERT_EQ(a.lattice.size, b.lattice.size);
-    EXPECT_EQ(a.offset, b.offset);
-    EXPECT_EQ(a.scale, b.scale);
-    const std::size_t bytes = volume::byteSize(a.type);
-    for (std::size_t i = 0; i < a.count(); ++i) {
-        ASSERT_EQ(a.present(i), b.present(i)) << "sample " << i;
-        if (!absentToo && !a.present(i)) continue;
-        ASSERT_EQ(std::memcmp(&a.samples[i * bytes], &b.samples[i * bytes], bytes), 0) << "sample " << i;
-    }
-}
-
-std::vector<MadeParameter> everyKind() {
-    return {{"a", ScalarType::U8, 1, Texture::Smooth, false, false},
-            {"b", ScalarType::U8, 1, Texture::Nasty, true, false},
-            {"c", ScalarType::I16, 1, Texture::Nasty, false, false},
-            {"d", ScalarType::U16, 1, Texture::Smooth, true, false},
-            {"e", ScalarType::I32, 1, Texture::Nasty, true, false},
-            {"f", ScalarType::F32, 3, Texture::Smooth, true, false},
-            {"g", ScalarType::F32, 1, Texture::Nasty, false, false},
-            {"h", ScalarType::F32, 1, Texture::Decimals, false, false},
-            {"i", ScalarType::F32, 1, Texture::Constant, false, false},
-            {"j", ScalarType::F32, 2, Texture::Noise, false, false},
-            {"region", ScalarType::U8, 1, Texture::Noise, false, true}};
-}
 
 TEST(Archive, GivesBackEverySampleBitForBit) {
     const TemporaryFolder folder;

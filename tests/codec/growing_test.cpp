@@ -2,6 +2,7 @@
 #include "codec/archive_writer.h"
 #include "codec/container.h"
 #include "codec/pack.h"
+#include "tests/codec/compare_fields.h"
 #include "tests/codec/make_dataset.h"
 #include "tests/codec/plain/decoder.h"
 
@@ -121,12 +122,7 @@ TEST(Growing, RelativeBoundsHoldForTheRangeOfTheWhole) {
     append(rest, folder / "a.tsr");
     const Archive archive(folder / "a.tsr");
     const Range range = archive.info().parameters[0].ranges[0];
-    double largest = 0;
-    for (int t = 0; t < 3; ++t) {
-        const volume::Field original = made.load(0, 0, t), decoded = readField(archive, 0, 0, t);
-        for (std::size_t i = 0; i < original.count(); ++i)
-            largest = std::max(largest, std::abs(original.value(i) - decoded.value(i)));
-    }
+    const double largest = largestError(archive, made, 0);
     EXPECT_LE(largest, 1e-3 * (range.hi - range.lo));
     EXPECT_GT(largest, 0.5e-3 * (range.hi - range.lo));
     EXPECT_EQ(archive.metadata().maxError, 1e-3);

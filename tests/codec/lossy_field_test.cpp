@@ -1,6 +1,7 @@
 #include "codec/archive.h"
 #include "codec/lossy_field.h"
 #include "codec/pack.h"
+#include "tests/codec/compare_fields.h"
 #include "tests/codec/make_dataset.h"
 
 #include <gtest/gtest.h>
@@ -33,22 +34,6 @@ TEST(InSteps, KeepsItsBoundAndNothingLeavesTheType) {
         }
 }
 
-/// Largest |difference| of an archive from its data, in stored numbers of the data, over present finite samples.
-double errorOf(const Archive& archive, const volume::Dataset& made, int parameter) {
-    double largest = 0;
-    for (int c = 0; c < made.info.parameters[std::size_t(parameter)].components; ++c)
-        for (int t = 0; t < int(made.info.times.size()); ++t) {
-            const volume::Field stored = readField(archive, parameter, c, t), wanted = made.load(parameter, c, t);
-            for (std::size_t i = 0; i < wanted.count(); ++i) {
-                if (!wanted.present(i)) continue;
-                EXPECT_TRUE(stored.present(i));
-                if (!std::isfinite(wanted.value(i))) continue;
-                largest = std::max(largest, std::abs(stored.value(i) - wanted.value(i)));
-            }
-        }
-    return largest;
-}
-
 std::vector<MadeParameter> boundedKinds() {
     return {{"a", ScalarType::U8, 1, Texture::Noise, true, false},
             {"b", ScalarType::U16, 1, Texture::Nasty, false, false},
@@ -71,11 +56,11 @@ TEST(LossyIntegers, NoBoundIsViolated) {
         const PackSummary summary = pack(made, options, folder / "a.tsr");
         const Archive archive(folder / "a.tsr");
         EXPECT_GT(summary.maxError, 0);
-        for (int p = 0; p < 7; ++p) EXPECT_LE(errorOf(archive, made, p), bound) << p;
-        EXPECT_EQ(errorOf(archive, made, 7), 0);
+        for (int p = 0; p < 7; ++p) EXPECT_LE(largestError(archive, made, p), bound) << p;
+        EXPECT_EQ(largestError(archive, made, 7), 0);
         EXPECT_EQ(verifyArchive(archive).damaged, 0u);
         if (bound == 17.5) {
-            EXPECT_GT(errorOf(archive, made, 1), 1);
+            EXPECT_GT(largestError(archive, made, 1), 1);
         }
     }
 }
@@ -102,9 +87,9 @@ TEST(Thresholds, BoundsHoldAndWithoutOneTheErrorIsNoted) {
                     for (int c = 0; c < archive.info().parameters[std::size_t(p)].components; ++c)
                         extent = std::max(extent, ranges[std::size_t(c)].hi - ranges[std::size_t(c)].lo);
                     const double limit = bound > 0 ? bound : archive.metadata().maxError * extent * (1 + 1e-6);
-                    EXPECT_LE(errorOf(archive, made, p), limit) << p << " " << int(kind);
+                    EXPECT_LE(largestError(archive, made, p), limit) << p << " " << int(kind);
                 }
-                EXPECT_EQ(errorOf(archive, made, 7), 0);
+                EXPECT_EQ(largestError(archive, made, 7), 0);
                 EXPECT_EQ(summary.weakenedBricks > 0, bound > 0);
             }
 }

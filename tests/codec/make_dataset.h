@@ -115,6 +115,21 @@ inline volume::Dataset makeDataset(glm::ivec3 size, const std::vector<MadeParame
     return made;
 }
 
+/// One of every type and texture, some with absent samples, and a label.
+inline std::vector<MadeParameter> everyKind() {
+    return {{"a", volume::ScalarType::U8, 1, Texture::Smooth, false, false},
+            {"b", volume::ScalarType::U8, 1, Texture::Nasty, true, false},
+            {"c", volume::ScalarType::I16, 1, Texture::Nasty, false, false},
+            {"d", volume::ScalarType::U16, 1, Texture::Smooth, true, false},
+            {"e", volume::ScalarType::I32, 1, Texture::Nasty, true, false},
+            {"f", volume::ScalarType::F32, 3, Texture::Smooth, true, false},
+            {"g", volume::ScalarType::F32, 1, Texture::Nasty, false, false},
+            {"h", volume::ScalarType::F32, 1, Texture::Decimals, false, false},
+            {"i", volume::ScalarType::F32, 1, Texture::Constant, false, false},
+            {"j", volume::ScalarType::F32, 2, Texture::Noise, false, false},
+            {"region", volume::ScalarType::U8, 1, Texture::Noise, false, true}};
+}
+
 /// A folder of its own that disappears with the object.
 class TemporaryFolder {
 public:

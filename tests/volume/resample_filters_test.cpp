@@ -31,13 +31,9 @@ std::string nameOf(const ResampleOptions& options) {
     return std::string(kResampleFilterNames[std::size_t(options.filter)]) + " " + std::to_string(options.order);
 }
 
-int splineDegree(const ResampleOptions& options) {
-    return options.filter == ResampleFilter::BSpline3 ? 3 : options.filter == ResampleFilter::BSpline5 ? 5 : 0;
-}
-
 /// The line as the filter weighs it.
 std::vector<double> weighed(std::vector<double> line, const ResampleOptions& options) {
-    if (const int degree = splineDegree(options)) splinePrefilter(line, degree);
+    if (const int degree = splineDegree(options.filter)) splinePrefilter(line, degree);
     return line;
 }
 
@@ -104,7 +100,7 @@ double polynomialError(int degree, const ResampleOptions& options, int margin) {
 TEST(ResampleFilters, PolynomialsOfTheirDegreeAreReproducedAndNoOthers) {
     for (const ResampleOptions& options : everyFilter()) {
         if (options.filter == ResampleFilter::Nearest || options.filter == ResampleFilter::Sinc) continue;
-        const int spline = splineDegree(options);
+        const int spline = splineDegree(options.filter);
         const int degree = spline > 0                                   ? spline
                            : options.filter == ResampleFilter::Lagrange ? options.order
                            : options.filter == ResampleFilter::Cubic    ? 2

@@ -219,8 +219,8 @@ void findLabels(Dataset& dataset) {
     }
 }
 
-Dataset withAbsent(Dataset dataset, const std::vector<AbsentRule>& rules) {
-    const DatasetInfo& info = dataset.info;
+SlicedDataset withAbsent(SlicedDataset data, const std::vector<AbsentRule>& rules) {
+    const DatasetInfo& info = data.dataset.info;
     std::vector<std::vector<Resolved>> byParameter(info.parameters.size());
     for (const AbsentRule& rule : rules) {
         if (rule.nothing || rule.values.empty()) continue;
@@ -244,10 +244,10 @@ Dataset withAbsent(Dataset dataset, const std::vector<AbsentRule>& rules) {
     }
     std::vector<int> components;
     for (const Parameter& parameter : info.parameters) components.push_back(parameter.components);
-    auto pool = std::make_shared<MaskPool>();
-    dataset.load = [inner = std::move(dataset.load), byParameter, components, pool](int parameter, int component,
-                                                                                    int time) {
-        Field field = inner(parameter, component, time);
+    const auto pool = std::make_shared<MaskPool>();
+    // `read(parameter, component)` gives the samples of one time, or a part of them.
+    const auto apply = [byParameter, components, pool](int parameter, int component, const auto& read) {
+        Field field = read(parameter, component);
         const auto p = static_cast<std::size_t>(parameter);
         Mask mask = field.mask ? *field.mask : Mask(field.count(), 1);
         bool any = field.mask != nullptr;
@@ -255,7 +255,7 @@ Dataset withAbsent(Dataset dataset, const std::vector<AbsentRule>& rules) {
         for (const Resolved& rule : byParameter[p]) {
             any = true;
             if (rule.label >= 0) {
-                markValues(inner(rule.label, 0, time), rule.values, mask);
+                markValues(read(rule.label, 0), rule.values, mask);
                 continue;
             }
             if (components[p] == 1) {
@@ -266,7 +266,7 @@ Dataset withAbsent(Dataset dataset, const std::vector<AbsentRule>& rules) {
             Mask kept(field.count(), 0);
             for (int c = 0; c < components[p]; ++c) {
                 Mask own(field.count(), 1);
-                markValues(c == component ? field : inner(parameter, c, time), rule.values, own);
+                markValues(c == component ? field : read(parameter, c), rule.values, own);
                 for (std::size_t i = 0; i < own.size(); ++i) kept[i] |= own[i];
             }
             for (std::size_t i = 0; i < kept.size(); ++i) mask[i] &= kept[i];
@@ -275,7 +275,19 @@ Dataset withAbsent(Dataset dataset, const std::vector<AbsentRule>& rules) {
         field.mask = any ? pool->share(std::move(mask)) : nullptr;
         return field;
     };
-    return dataset;
+    data.dataset.load = [inner = std::move(data.dataset.load), apply](int parameter, int component, int time) {
+        return apply(parameter, component, [&](int p, int c) { return inner(p, c, time); });
+    };
+    if (data.slices)
+        data.slices = [inner = std::move(data.slices), apply](int parameter, int component, int time, int first,
+                                                              int count) {
+            return apply(parameter, component, [&](int p, int c) { return inner(p, c, time, first, count); });
+        };
+    return data;
+}
+
+Dataset withAbsent(Dataset dataset, const std::vector<AbsentRule>& rules) {
+    return withAbsent(SlicedDataset{std::move(dataset), {}}, rules).dataset;
 }
 
 } // namespace tessera::volume

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "volume/dataset.h"
+#include "volume/import/sliced.h"
 #include "volume/progress.h"
 
 #include <string>
@@ -33,6 +33,7 @@ void findLabels(Dataset& dataset);
 /// The data set with NaN and the samples that rules name absent; equal masks are one. Throws Error for a parameter or
 /// label that does not exist.
 Dataset withAbsent(Dataset dataset, const std::vector<AbsentRule>& rules);
+SlicedDataset withAbsent(SlicedDataset data, const std::vector<AbsentRule>& rules);
 
 /// True for names under which files keep labels: region, material, label, id, zone, ... (also "regionId", "mat_id").
 bool isLabelName(std::string_view name);

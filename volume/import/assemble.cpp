@@ -216,10 +216,25 @@ struct Assembly {
         return &group.files[frame.file]->pieces[from.piece];
     }
 
+    bool canSlice() const {
+        for (const std::vector<Contribution>& feed : feeds)
+            if (feed.empty()) return false;
+        for (const OpenedFile& file : files)
+            for (const Piece& piece : file.pieces)
+                if (!piece.slices || piece.lattice.size != lattice.size) return false;
+        return true;
+    }
+
     Field load(int parameter, int component, int timeIndex) const {
+        return load(parameter, component, timeIndex, 0, lattice.size.z);
+    }
+
+    /// Slices [first, first + count); of what cannot be sliced all.
+    Field load(int parameter, int component, int timeIndex, int first, int count) const {
+        const Lattice part = slicesOf(lattice, first, count);
         const auto p = static_cast<std::size_t>(parameter);
         if (feeds[p].empty()) {
-            Field field = makeField(lattice, ScalarType::U8);
+            Field field = makeField(part, ScalarType::U8);
             std::copy(label.begin(), label.end(), field.as<std::uint8_t>().begin());
             field.mask = labelMask;
             return field;
@@ -230,14 +245,16 @@ struct Assembly {
             int local = 0;
             const Piece* piece = pieceAt(from, times[static_cast<std::size_t>(timeIndex)], local);
             if (piece == nullptr) continue;
-            Field field = inType(piece->load(from.array, component, local, lattice), parameters[p].type);
-            field.lattice = lattice;
+            Field field = count == lattice.size.z ? piece->load(from.array, component, local, part)
+                                                  : piece->slices(from.array, component, local, first, count);
+            field = inType(std::move(field), parameters[p].type);
+            field.lattice = part;
             if (merged.samples.empty())
                 merged = std::move(field);
             else
                 fillFrom(merged, field);
         }
-        return merged.samples.empty() ? allAbsent(lattice, parameters[p].type) : merged;
+        return merged.samples.empty() ? allAbsent(part, parameters[p].type) : merged;
     }
 
     /// Labels each sample with the set of blocks that cover it. A block that covers every sample tells nothing and is
@@ -424,6 +441,10 @@ Assembled assemble(std::vector<OpenedFile> files, glm::ivec3 gridSize, bool read
     all->parameters = info.parameters;
     result.dataset = {std::move(info),
                       [all](int parameter, int component, int time) { return all->load(parameter, component, time); }};
+    if (all->canSlice())
+        result.slices = [all](int parameter, int component, int time, int first, int count) {
+            return all->load(parameter, component, time, first, count);
+        };
     return result;
 }
 

@@ -16,7 +16,8 @@ struct OpenedFile {
 
 /// Files put together.
 struct Assembled {
-    Dataset dataset; ///< with the file's own array names
+    Dataset dataset;  ///< with the file's own array names
+    SliceLoad slices; ///< of its frames; null where one of the files can only be read whole
     std::vector<std::string> notes;
     bool mesh = false;      ///< samples are found in cells, which costs time
     bool madeLabel = false; ///< the last parameter is a label made from blocks

@@ -6,6 +6,7 @@
 #include "volume/import/foreign.h"
 #include "volume/import/nrrd.h"
 #include "volume/import/raw.h"
+#include "volume/import/sliced.h"
 
 #include <algorithm>
 #include <cmath>
@@ -20,14 +21,13 @@ namespace tessera::volume {
 namespace {
 
 struct Opened {
-    Dataset dataset;
+    SlicedDataset data;
     std::string format;
     std::vector<std::string> notes;
 };
 
 /// Final names, units and choice of parameters.
-Dataset withNames(Dataset dataset, const ImportOptions& options) {
-    DatasetInfo& info = dataset.info;
+void nameParameters(DatasetInfo& info, const ImportOptions& options) {
     std::set<std::string> names;
     for (const auto& [from, to] : options.rename)
         if (std::none_of(info.parameters.begin(), info.parameters.end(),
@@ -52,12 +52,12 @@ Dataset withNames(Dataset dataset, const ImportOptions& options) {
             throw Error("must increase", {}, "--times");
         info.times = options.times;
     }
-    return dataset;
 }
 
 /// Only the parameters asked for; the rest stays loadable for rules until here.
-Dataset withParameters(Dataset dataset, const std::vector<std::string>& wanted) {
-    if (wanted.empty()) return dataset;
+SlicedDataset withParameters(SlicedDataset data, const std::vector<std::string>& wanted) {
+    if (wanted.empty()) return data;
+    Dataset& dataset = data.dataset;
     std::vector<int> kept;
     for (const std::string& name : wanted) {
         const auto at = std::find_if(dataset.info.parameters.begin(), dataset.info.parameters.end(),
@@ -72,34 +72,49 @@ Dataset withParameters(Dataset dataset, const std::vector<std::string>& wanted) 
     dataset.load = [inner = std::move(dataset.load), kept](int parameter, int component, int time) {
         return inner(kept[std::size_t(parameter)], component, time);
     };
-    return dataset;
+    if (data.slices)
+        data.slices = [inner = std::move(data.slices), kept](int parameter, int component, int time, int first,
+                                                             int count) {
+            return inner(kept[std::size_t(parameter)], component, time, first, count);
+        };
+    return data;
+}
+
+/// A label stored as floating point in whole numbers.
+Field inWholeNumbers(const Field& field) {
+    Field whole = makeField(field.lattice, ScalarType::I32);
+    const auto values = whole.as<std::int32_t>();
+    Mask mask = field.mask ? *field.mask : Mask(field.count(), 1);
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        const double value = field.value(i);
+        if (std::abs(value) < 2e9)
+            values[i] = static_cast<std::int32_t>(std::lround(value));
+        else
+            mask[i] = 0;
+    }
+    whole.mask = std::make_shared<const Mask>(std::move(mask));
+    return whole;
 }
 
 /// Labels stored as floating point become whole numbers, so that a mask or a name finds them.
-Dataset withLabels(Dataset dataset) {
+SlicedDataset withLabels(SlicedDataset data) {
     std::vector<bool> rounded;
-    for (Parameter& parameter : dataset.info.parameters) {
+    for (Parameter& parameter : data.dataset.info.parameters) {
         rounded.push_back(parameter.categorical && parameter.type == ScalarType::F32);
         if (rounded.back()) parameter.type = ScalarType::I32;
     }
-    if (std::find(rounded.begin(), rounded.end(), true) == rounded.end()) return dataset;
-    dataset.load = [inner = std::move(dataset.load), rounded](int parameter, int component, int time) {
+    if (std::find(rounded.begin(), rounded.end(), true) == rounded.end()) return data;
+    data.dataset.load = [inner = std::move(data.dataset.load), rounded](int parameter, int component, int time) {
         Field field = inner(parameter, component, time);
-        if (!rounded[std::size_t(parameter)]) return field;
-        Field whole = makeField(field.lattice, ScalarType::I32);
-        const auto values = whole.as<std::int32_t>();
-        Mask mask = field.mask ? *field.mask : Mask(field.count(), 1);
-        for (std::size_t i = 0; i < values.size(); ++i) {
-            const double value = field.value(i);
-            if (std::abs(value) < 2e9)
-                values[i] = static_cast<std::int32_t>(std::lround(value));
-            else
-                mask[i] = 0;
-        }
-        whole.mask = std::make_shared<const Mask>(std::move(mask));
-        return whole;
+        return rounded[std::size_t(parameter)] ? inWholeNumbers(field) : field;
     };
-    return dataset;
+    if (data.slices)
+        data.slices = [inner = std::move(data.slices), rounded](int parameter, int component, int time, int first,
+                                                                int count) {
+            Field field = inner(parameter, component, time, first, count);
+            return rounded[std::size_t(parameter)] ? inWholeNumbers(field) : field;
+        };
+    return data;
 }
 
 /// Arrays named like labels are taken as such if they are whole numbers with few distinct values. Integer arrays at
@@ -190,20 +205,23 @@ Opened open(const std::vector<std::string>& paths, const ImportOptions& options,
     Opened opened;
     opened.format = files.front().pieces.empty() ? "" : files.front().pieces.front().format;
     Assembled assembled = assemble(std::move(files), options.gridSize, readSamples, progress.part(0.3, 0.7));
-    opened.dataset = std::move(assembled.dataset);
+    Dataset& dataset = opened.data.dataset;
+    dataset = std::move(assembled.dataset);
+    opened.data.slices = std::move(assembled.slices);
     opened.notes = std::move(assembled.notes);
     // A look at the header may read a little, if that is quick.
     constexpr double kQuickBytes = 64e6;
-    const DatasetInfo& info = opened.dataset.info;
+    const DatasetInfo& info = dataset.info;
     const double times = double(info.times.size());
     if (!assembled.mesh && bytesOf(info) / times * std::min(3.0, times) <= kQuickBytes) readSamples = true;
-    markLabels(opened.dataset, readSamples);
-    opened.dataset = withNames(withLabels(std::move(opened.dataset)), options);
-    if (readSamples) findLabels(opened.dataset);
+    markLabels(dataset, readSamples);
+    opened.data = withLabels(std::move(opened.data));
+    nameParameters(dataset.info, options);
+    if (readSamples) findLabels(dataset);
     std::vector<AbsentRule> rules = stated;
     // A label made from blocks says nothing new: outside its block a field is absent anyway.
     if (options.autoAbsent && readSamples && !assembled.madeLabel) {
-        for (AbsentRule& rule : suggestAbsentRules(opened.dataset, progress.part(0.7, 1))) {
+        for (AbsentRule& rule : suggestAbsentRules(dataset, progress.part(0.7, 1))) {
             const bool ruled = std::any_of(stated.begin(), stated.end(), [&](const AbsentRule& own) {
                 return own.parameter == rule.parameter || (own.parameter == "*" && own.nothing);
             });
@@ -213,7 +231,7 @@ Opened open(const std::vector<std::string>& paths, const ImportOptions& options,
             rules.push_back(std::move(rule));
         }
     }
-    opened.dataset = withParameters(withAbsent(std::move(opened.dataset), rules), options.parameters);
+    opened.data = withParameters(withAbsent(std::move(opened.data), rules), options.parameters);
     return opened;
 }
 
@@ -223,13 +241,18 @@ ImportPreview previewFiles(const std::vector<std::string>& paths, const ImportOp
                            const Progress& progress) {
     Opened opened = open(paths, options, false, progress);
     ImportPreview preview{opened.format, {}, 0, std::move(opened.notes)};
-    preview.bytes = bytesOf(opened.dataset.info);
-    preview.info = std::move(opened.dataset.info);
+    preview.bytes = bytesOf(opened.data.dataset.info);
+    preview.info = std::move(opened.data.dataset.info);
     return preview;
 }
 
 Dataset openFiles(const std::vector<std::string>& paths, const ImportOptions& options, const Progress& progress) {
-    return open(paths, options, true, progress).dataset;
+    return openSliced(paths, options, progress).dataset;
+}
+
+SlicedDataset openSliced(const std::vector<std::string>& paths, const ImportOptions& options,
+                         const Progress& progress) {
+    return open(paths, options, true, progress).data;
 }
 
 void scanRanges(Dataset& dataset, const Progress& progress) {

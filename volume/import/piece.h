@@ -1,6 +1,7 @@
 #pragma once
 
 #include "volume/dataset.h"
+#include "volume/slices.h"
 
 #include <functional>
 #include <string>
@@ -37,6 +38,8 @@ struct Piece {
     /// One component of one array at the piece's own time index, sampled on `target` (equal to `lattice` for grids;
     /// samples outside a mesh are absent).
     std::function<Field(int array, int component, int time, const Lattice& target)> load;
+    /// The same of slices [first, first + count) of a grid; null where it can only be read whole.
+    SliceLoad slices;
 };
 
 } // namespace tessera::volume

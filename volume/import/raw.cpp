@@ -35,18 +35,19 @@ template <class To, class From> void convert(std::span<const char> bytes, std::s
     }
 }
 
-/// Reads one component at one time.
-Field readComponent(const std::string& path, const RawForm& form, std::size_t component, std::size_t time) {
+/// Reads slices [first, first + count) of one component at one time.
+Field readComponent(const std::string& path, const RawForm& form, std::size_t component, std::size_t time, int first,
+                    int count) {
     std::size_t at = form.skip, frame = 0;
     for (std::size_t c = 0; c < form.components.size(); ++c) {
         const std::size_t size = form.lattice.count() * storedBytes(form.components[c].type);
         if (c < component) at += size;
         frame += size;
     }
-    at += time * frame;
     const RawForm::Component& what = form.components[component];
-    const std::size_t size = form.lattice.count() * storedBytes(what.type);
-    Field field = makeField(form.lattice, loadedType(what.type));
+    Field field = makeField(slicesOf(form.lattice, first, count), loadedType(what.type));
+    const std::size_t size = field.count() * storedBytes(what.type);
+    at += time * frame + size / std::size_t(count) * std::size_t(first);
     field.scale = what.scale;
     field.offset = what.offset;
 
@@ -180,16 +181,20 @@ Piece openForm(const RawForm& form, const std::string& path, const std::string& 
         c += vector ? 3 : 1;
     }
     if (piece.arrays.empty()) throw Error("holds no parameter", path);
-    piece.load = [form, firstComponent, presence, data](int array, int component, int time, const Lattice&) {
+    piece.slices = [form, firstComponent, presence, data](int array, int component, int time, int first, int count) {
         const auto a = static_cast<std::size_t>(array), t = static_cast<std::size_t>(time);
-        Field field = readComponent(data, form, firstComponent[a] + static_cast<std::size_t>(component), t);
+        Field field =
+            readComponent(data, form, firstComponent[a] + static_cast<std::size_t>(component), t, first, count);
         if (presence[a] != 0) {
-            const Field flags = readComponent(data, form, presence[a] - 1, t);
+            const Field flags = readComponent(data, form, presence[a] - 1, t, first, count);
             Mask mask(field.count());
             for (std::size_t i = 0; i < mask.size(); ++i) mask[i] = field.present(i) && flags.value(i) != 0 ? 1 : 0;
             field.mask = std::make_shared<const Mask>(std::move(mask));
         }
         return field;
+    };
+    piece.load = [slices = piece.slices](int array, int component, int time, const Lattice& whole) {
+        return slices(array, component, time, 0, whole.size.z);
     };
     return piece;
 }

@@ -1,0 +1,185 @@
+#include "codec/archive.h"
+#include "codec/pack.h"
+#include "codec/unpack.h"
+#include "tests/codec/compare_fields.h"
+#include "tests/codec/make_dataset.h"
+#include "volume/error.h"
+
+#include <filesystem>
+#include <gtest/gtest.h>
+
+namespace tessera::codec {
+namespace {
+
+using namespace testing;
+using volume::ScalarType;
+
+/// Reads parts of a data set; counts the most slices asked for at once.
+struct PartReader {
+    std::shared_ptr<int> most = std::make_shared<int>(0);
+    SlabInput input(const volume::Dataset& made, int layers) const {
+        return {[load = made.load, most = most](int p, int c, int t, int first, int count) {
+                    *most = std::max(*most, count);
+                    return volume::slicesOf(load(p, c, t), first, count);
+                },
+                layers};
+    }
+};
+
+PackOptions slabOptions(StoredLattice lattice) {
+    PackOptions options;
+    options.lattice = lattice;
+    options.brickSize = 8;
+    return options;
+}
+
+std::vector<PackOptions> everyWayToPack() {
+    std::vector<PackOptions> all;
+    for (const StoredLattice lattice : {StoredLattice::CC, StoredLattice::BCC}) {
+        const PackOptions plain = slabOptions(lattice);
+        all.push_back(plain);
+        all.push_back(plain), all.back().absError = 0.7;
+        all.push_back(plain), all.back().maxError = 0.01;
+        all.push_back(plain), all.back().psnr = 40;
+        all.push_back(plain), all.back().threshold = {ThresholdChoice::Soft, 0.01, true};
+        all.push_back(plain), all.back().discard = 0.3;
+    }
+    PackOptions filtered = slabOptions(StoredLattice::BCC);
+    filtered.resample.filter = volume::ResampleFilter::BSpline5;
+    all.push_back(filtered);
+    filtered.resample.filter = volume::ResampleFilter::Sinc;
+    filtered.resample.sharpen = 0.5;
+    all.push_back(filtered);
+    return all;
+}
+
+// In whatever slabs a frame goes through, the archive is the same to the byte.
+TEST(PackSlabs, GiveTheArchiveThatWholeFramesGive) {
+    const TemporaryFolder folder;
+    int number = 0;
+    for (const PackOptions& options : everyWayToPack()) {
+        std::vector<MadeParameter> kinds = everyKind();
+        if (options.lattice == StoredLattice::BCC) // which bits a NaN has is not settled where it is a sum
+            std::erase_if(kinds, [](const MadeParameter& kind) {
+                return kind.type == ScalarType::F32 && kind.texture == Texture::Nasty;
+            });
+        volume::Dataset whole = makeDataset({19, 17, 45}, kinds, 1), parts = whole;
+        const PackSummary expected = pack(whole, options, folder / "whole.tsr");
+        const int layers = 1 + number++ % 3;
+        const PackSummary summary = pack(parts, options, folder / "parts.tsr", {}, PartReader{}.input(parts, layers));
+        EXPECT_TRUE(readFile(folder / "whole.tsr") == readFile(folder / "parts.tsr")) << number << " layers " << layers;
+        EXPECT_EQ(summary.maxError, expected.maxError);
+        EXPECT_EQ(summary.sourceBytes, expected.sourceBytes);
+        EXPECT_EQ(summary.storedBytes, expected.storedBytes);
+        EXPECT_EQ(summary.discardedBricks, expected.discardedBricks);
+        EXPECT_EQ(whole.info.parameters, parts.info.parameters);
+        ASSERT_FALSE(summary.notes.empty());
+        EXPECT_NE(summary.notes.back().find("slabs"), std::string::npos);
+    }
+}
+
+void expectSameFrames(const Archive& a, const Archive& b) {
+    ASSERT_EQ(a.info(), b.info());
+    for (int p = 0; p < int(a.info().parameters.size()); ++p)
+        for (int t = 0; t < int(a.info().times.size()); ++t)
+            expectSame(readField(a, p, 0, t), readField(b, p, 0, t), true);
+}
+
+volume::Dataset timesFrom(const volume::Dataset& all, int first, int count) {
+    volume::Dataset some = all;
+    some.info.times.assign(all.info.times.begin() + first, all.info.times.begin() + first + count);
+    some.load = [load = all.load, first](int p, int c, int t) { return load(p, c, first + t); };
+    return some;
+}
+
+// Times, too, of which each is appended: the masks of the archive so far are found again.
+TEST(PackSlabs, AppendToo) {
+    const TemporaryFolder folder;
+    const std::vector<MadeParameter> kinds{{"a", ScalarType::U8, 1, Texture::Noise, true, false},
+                                           {"f", ScalarType::F32, 1, Texture::Smooth, false, false}};
+    for (const StoredLattice lattice : {StoredLattice::CC, StoredLattice::BCC}) {
+        const volume::Dataset all = makeDataset({18, 20, 37}, kinds, 3);
+        volume::Dataset whole = all, early = timesFrom(all, 0, 2), late = timesFrom(all, 2, 1);
+        PackOptions options = slabOptions(lattice);
+        options.absError = 0.3;
+        pack(whole, options, folder / "whole.tsr");
+        pack(early, options, folder / "parts.tsr", {}, PartReader{}.input(early, 1));
+        append(late, folder / "parts.tsr", 0, {}, PartReader{}.input(late, 2));
+        const Archive archive(folder / "whole.tsr"), grown(folder / "parts.tsr");
+        expectSameFrames(archive, grown);
+        EXPECT_EQ(grown.maskCount(), archive.maskCount());
+        EXPECT_EQ(archive.maskCount(), 1);
+        EXPECT_TRUE(verifyArchive(grown).damage.empty());
+    }
+}
+
+// Without a word about layers it is the memory that decides: frames that fit are read whole.
+TEST(PackSlabs, AreTakenWhereFramesDoNotFit) {
+    const TemporaryFolder folder;
+    volume::Dataset made;
+    made.info.lattice = {volume::LatticeKind::CC, {160, 160, 640}, {1, 1, 1}, {0, 0, 0}};
+    made.info.parameters = {{"v", "", 1, ScalarType::U8, false, {}, {}}};
+    const auto slices = [lattice = made.info.lattice](int, int, int, int first, int count) {
+        volume::Field field = volume::makeField(volume::slicesOf(lattice, first, count), ScalarType::U8);
+        std::size_t i = std::size_t(first) * 160 * 160;
+        for (std::uint8_t& sample : field.as<std::uint8_t>()) sample = std::uint8_t(i * i >> 16), ++i;
+        return field;
+    };
+    int wholes = 0, most = 0;
+    made.load = [&](int p, int c, int t) {
+        ++wholes;
+        return slices(p, c, t, 0, 640);
+    };
+    const SlabInput input{[&](int p, int c, int t, int first, int count) {
+                              most = std::max(most, count);
+                              return slices(p, c, t, first, count);
+                          },
+                          0};
+    PackOptions options;
+    options.brickSize = 16;
+    pack(made, options, folder / "whole.tsr", {}, input);
+    EXPECT_EQ(wholes, 1);
+    EXPECT_EQ(most, 0);
+    made.info.parameters[0].ranges.clear();
+    options.memoryMb = 1;
+    double least = 0;
+    try {
+        pack(made, options, folder / "parts.tsr", {}, input);
+        FAIL() << "packed with 1 MB";
+    } catch (const Error& error) {
+        std::sscanf(error.what(), "packing frames of this size takes about %lf", &least);
+    }
+    options.memoryMb = least + 1;
+    pack(made, options, folder / "parts.tsr", {}, input);
+    EXPECT_EQ(wholes, 1);
+    EXPECT_GT(most, 0);
+    EXPECT_LT(most, 320);
+    EXPECT_TRUE(readFile(folder / "whole.tsr") == readFile(folder / "parts.tsr"));
+    made.info.parameters[0].ranges.clear();
+    EXPECT_THROW(pack(made, options, folder / "parts.tsr"), Error); // whole frames need more
+}
+
+// Slices of an archive are those of its frames.
+TEST(PackSlabs, ArchivesAreReadInSlices) {
+    const TemporaryFolder folder;
+    for (const StoredLattice lattice : {StoredLattice::CC, StoredLattice::BCC}) {
+        volume::Dataset made = makeDataset({18, 11, 41}, everyKind(), 1);
+        pack(made, slabOptions(lattice), folder / "a.tsr");
+        const auto archive = std::make_shared<const Archive>(folder / "a.tsr");
+        const volume::SliceLoad slices = storedSlices(archive);
+        const int size = archive->info().lattice.size.z;
+        for (int p = 0; p < int(made.info.parameters.size()); ++p) {
+            const volume::Field whole = readField(*archive, p, 0, 0);
+            for (const auto& [first, count] :
+                 std::vector<std::pair<int, int>>{{0, 1}, {2, 20}, {6, 9}, {size - 3, 3}, {0, size}}) {
+                const volume::Field part = slices(p, 0, 0, first - first % 2, count);
+                const volume::Field wanted = volume::slicesOf(whole, first - first % 2, count);
+                SCOPED_TRACE(std::to_string(p) + " from " + std::to_string(first));
+                expectSame(part, wanted, true);
+            }
+        }
+    }
+}
+
+} // namespace
+} // namespace tessera::codec
