@@ -10,6 +10,17 @@ namespace tessera::app {
 
 namespace {
 
+/// What an archive that has grown has of what it was: everything, but where frames of D4* are shown as BCC the last
+/// times were made without the frames that have come.
+vis::SameSamples sameSamples(const volume::BrickSource& was, const volume::BrickSource& is) {
+    const std::vector<volume::Channel> before = was.info().channels(), now = is.info().channels();
+    if (now.size() < before.size() || !std::equal(before.begin(), before.end(), now.begin())) return {};
+    constexpr int kMadeOfOthers = 2;
+    const int times = int(was.info().times.size());
+    const bool stored = dynamic_cast<const codec::Archive*>(&is) != nullptr;
+    return {int(before.size()), stored ? times : std::max(times - kMadeOfOthers, 0)};
+}
+
 /// True if a data set is another one gone on: the same bricks, all its parameters and times, and more of them.
 bool goesOn(const volume::BrickSource& was, const volume::BrickSource& is) {
     const volume::DatasetInfo &before = was.info(), &now = is.info();
@@ -49,15 +60,16 @@ void Workbench::followGrowth() {
                 return {}; // being replaced: what is shown stays good
             }
             if (!goesOn(*volume::underived(from), *made)) return {};
+            const vis::SameSamples same = sameSamples(*volume::underived(from), *made);
             made = volume::deriveAll(made, derived, *messages, progress);
-            return [this, path, messages, made, from] {
+            return [this, path, messages, made, from, same] {
                 if (source_ != from) { // other data, or derived anew from what was there: look again
                     growth_.reset();
                     return;
                 }
                 const std::size_t times = made->info().times.size(), more = times - source_->info().times.size();
                 source_ = made;
-                renderer_->setSource(source_);
+                renderer_->setSource(source_, same);
                 caches_.clear();
                 fitSession(session_, source_->info(), *messages);
                 const std::string name = std::filesystem::path(path).filename().string();

@@ -121,7 +121,8 @@ bool Renderer::Impl::demandBricks(ViewTarget& target, const Scene& scene, const 
     std::vector<ChannelKey> state;
     for (const ChannelKey& key : keys)
         if (const ChannelTexture* channel = residency.known(key); channel && channel->bricks) state.push_back(key);
-    DemandSettings settings{request.size, scene.render.detail * (request.moving ? kMovingDetail : 1)};
+    const DemandSettings settings{request.size, scene.render.detail * (request.moving ? kMovingDetail : 1),
+                                  scene.render.importance};
     if (target.demandsFor && *target.demandsFor == scene && target.demandSettings == settings &&
         target.demandsKnown == state && target.demands.size() == keys.size())
         return false;
@@ -134,13 +135,15 @@ bool Renderer::Impl::demandBricks(ViewTarget& target, const Scene& scene, const 
         known.later = 0;
         known.fields.resize(count);
         std::vector<const BlockRanges*> ranges(count, nullptr);
+        std::vector<std::span<const float>> importance(count);
         for (std::size_t i = 0; i < count; ++i) {
             const ChannelTexture* channel = residency.known(keys[first + i]);
             if (!channel || !channel->bricks) continue;
             ranges[i] = &channel->bricks->brickRanges();
+            importance[i] = channel->bricks->importance();
             known.fields[i].encoding = channel->encoding;
         }
-        return brickDemands(std::move(known), scene, source->info(), source->grid(), ranges, settings);
+        return brickDemands(std::move(known), scene, source->info(), source->grid(), ranges, importance, settings);
     };
     std::vector<std::shared_ptr<const BrickDemand>> demands = demandsOf(0);
     if (plan.later > 0) {

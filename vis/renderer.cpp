@@ -49,9 +49,10 @@ bool liesAtCursor(const Scene& scene) {
 Renderer::Renderer(const RendererOptions& options) : impl_(std::make_unique<Impl>(options)) {}
 Renderer::~Renderer() = default;
 
-void Renderer::setSource(std::shared_ptr<const volume::BrickSource> source) {
+void Renderer::setSource(std::shared_ptr<const volume::BrickSource> source, SameSamples same) {
+    impl_->formerSource = same.channels > 0 && same.times > 0 ? impl_->source.get() : nullptr;
     impl_->source = source;
-    impl_->residency.setSource(std::move(source));
+    impl_->residency.setSource(std::move(source), same);
 }
 
 const volume::BrickSource* Renderer::source() const {
@@ -108,7 +109,7 @@ FrameStatus Renderer::render(ViewTarget& target, const Scene& scene, const Frame
         target.redraw(part.value_or(target.everything()));
         target.scene = scene;
         target.revision = revision;
-        target.shows = target.shows && same;
+        target.shows = target.shows && (same || target.source == impl_->formerSource);
         target.source = impl_->source.get();
         target.started = true;
     }

@@ -25,6 +25,12 @@ struct RendererOptions {
     bool countSamples = false; ///< instead of colours, readLinear gives how often each ray reconstructed a layer (red)
 };
 
+/// What a data set has in common with the one that was shown before it: its first channels, at the first times, have
+/// the same samples in the same bricks.
+struct SameSamples {
+    int channels = 0, times = 0;
+};
+
 /// How a picture is wanted now.
 struct FrameRequest {
     glm::ivec2 size{512, 512};
@@ -71,8 +77,9 @@ public:
     Renderer(const Renderer&) = delete;
     Renderer& operator=(const Renderer&) = delete;
 
-    /// Shows another data set; drops every brick of the former one. Null shows nothing.
-    void setSource(std::shared_ptr<const volume::BrickSource> source);
+    /// Shows another data set; drops every brick of the former one but for those they have in common. Null shows
+    /// nothing.
+    void setSource(std::shared_ptr<const volume::BrickSource> source, SameSamples same = {});
     const volume::BrickSource* source() const;
 
     /// A new, empty target for a view.

@@ -27,6 +27,8 @@ struct Renderer::Impl {
     RendererOptions options;
     Residency residency;
     std::shared_ptr<const volume::BrickSource> source;
+    const volume::BrickSource* formerSource =
+        nullptr; ///< what `source` goes on with: its pictures stay until there are new
     VertexArray vertices = makeVertexArray("no vertices");
     ProgramCache programs;
     BrushTables brushes;

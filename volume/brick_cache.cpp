@@ -47,6 +47,10 @@ std::shared_ptr<const BrickSamples> BrickCache::get(const BrickKey& key) const {
     return impl_->bricks.get(key);
 }
 
+void BrickCache::adopt(const BrickCache& other, const std::function<bool(const BrickKey&)>& keep) {
+    impl_->bricks.adopt(other.impl_->bricks, keep);
+}
+
 bool BrickCache::has(const BrickKey& key) const {
     return impl_->bricks.has(key);
 }

@@ -2,6 +2,7 @@
 
 #include "volume/brick_source.h"
 
+#include <functional>
 #include <memory>
 
 namespace tessera::volume {
@@ -22,6 +23,8 @@ public:
 
     /// The brick itself, shared with the cache.
     std::shared_ptr<const BrickSamples> get(const BrickKey& key) const;
+    /// Takes over the bricks for which `keep` is true from the cache of another source that gives the same ones.
+    void adopt(const BrickCache& other, const std::function<bool(const BrickKey&)>& keep);
     /// True when the brick is here already, so that get() is quick.
     bool has(const BrickKey& key) const;
     std::size_t bytes() const;

@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <future>
+#include <iterator>
 #include <list>
 #include <memory>
 #include <mutex>
@@ -59,6 +60,19 @@ public:
         const std::lock_guard lock(mutex_);
         const auto found = entries_.find(key);
         return found != entries_.end() && found->second.loaded;
+    }
+
+    /// Takes over what another one has loaded of the keys for which `keep` is true, as recently used as it was there.
+    template <class Keep> void adopt(const LoadOnce& other, Keep&& keep) {
+        const std::scoped_lock lock(mutex_, other.mutex_);
+        for (const Key& key : other.recent_) {
+            const Entry& entry = other.entries_.at(key);
+            if (!entry.loaded || !keep(key) || entries_.contains(key)) continue;
+            recent_.push_back(key);
+            entries_[key] = {entry.value, std::prev(recent_.end()), entry.bytes, true};
+            used_ += entry.bytes;
+        }
+        trim(nullptr);
     }
 
     std::size_t used() const {

@@ -150,6 +150,12 @@ void BrickLevels::forget(const BrickId& id) {
     if (at(id).state == State::Asked) at(id).state = State::Away;
 }
 
+void BrickLevels::forgetAsked() {
+    for (Level& level : levels_)
+        for (Brick& brick : level.bricks)
+            if (brick.state == State::Asked) brick.state = State::Away;
+}
+
 void BrickLevels::arrive(const BrickId& id, glm::ivec3 slot, int time) {
     Brick& brick = at(id);
     brick.state = State::Here;

@@ -28,6 +28,8 @@ public:
     std::vector<BrickId> ask(std::size_t count);
     /// A brick that was asked for will not come: it may be asked for again.
     void forget(const BrickId& id);
+    /// The same of all that were asked for.
+    void forgetAsked();
 
     /// Whether a brick belongs here and is not here.
     bool lacks(const BrickId& id) const { return at(id).state == State::Away || at(id).state == State::Asked; }
@@ -49,6 +51,8 @@ public:
     };
     std::vector<Guest> guests(std::uint64_t frame) const;
     float priority(const BrickId& id) const { return at(id).priority; }
+    /// Of bricks of full resolution, 0..1; empty: not known.
+    const std::vector<float>& importance() const { return importance_; }
     /// Every resident slot, to release or to move.
     template <class Function> void eachSlot(Function&& change) {
         for (Level& level : levels_)

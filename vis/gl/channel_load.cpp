@@ -44,8 +44,10 @@ void load(LoadExchange& exchange, const LoadRequest& request, LoadedTexels& out,
             summarize(source, request.key.channel, request.key.time, request.brick.has_value()));
     const ChannelStats& own = out.summary->all;
     const bool many = source.info().times.size() > 1;
-    out.encoding = makeEncoding(many ? commonStats(own, source.info().channelRange(channel)) : own, categorical,
-                                request.exact, request.key.prefiltered);
+    // Bricks of a channel stay alike though the range of all times may have grown since the first one.
+    out.encoding = request.encoding ? *request.encoding
+                                    : makeEncoding(many ? commonStats(own, source.info().channelRange(channel)) : own,
+                                                   categorical, request.exact, request.key.prefiltered);
     out.encoding.coverage = out.encoding.coverage || request.coverage;
 
     std::atomic<bool> damaged = false;

@@ -56,6 +56,7 @@ struct LoadRequest {
     int level = 0;
     std::optional<glm::ivec3> brick;
     std::shared_ptr<const ChannelSummary> summary; ///< null: find out
+    std::optional<TexelEncoding> encoding;         ///< of the channel's other bricks; none: find out
     bool exact = false;
     bool coverage = false; ///< wanted even if no sample is known to be absent
 };

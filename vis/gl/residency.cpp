@@ -25,22 +25,46 @@ Residency::Residency(const RendererOptions& options) : options_(options), jobs_(
 
 Residency::~Residency() = default;
 
-void Residency::setSource(std::shared_ptr<const volume::BrickSource> source) {
+void Residency::setSource(std::shared_ptr<const volume::BrickSource> source, SameSamples same) {
     jobs_.cancel(); // jobs that still run write into the former exchange
     for (std::string& message : takeMessages()) messages_.push_back(std::move(message));
-    entries_.clear();
     uploads_.clear();
+    ++revision_;
+    const std::shared_ptr<LoadExchange> former = std::exchange(exchange_, nullptr);
+    if (source) {
+        exchange_ = std::make_shared<LoadExchange>();
+        exchange_->source = source;
+        exchange_->bricks = std::make_unique<volume::BrickCache>(source, options_.memoryBudget);
+    }
+    if (former && source && same.channels > 0 && same.times > 0 && source->grid() == former->source->grid()) {
+        keepSame(*former, same);
+        return;
+    }
+    entries_.clear();
     atlases_.clear();
     guests_.clear();
     guestsOf_ = nullptr;
-    exchange_.reset();
-    ++revision_;
     uploaded_ = kept_ = 0;
-    if (!source) return;
-    exchange_ = std::make_shared<LoadExchange>();
-    exchange_->source = source;
-    exchange_->bricks = std::make_unique<volume::BrickCache>(source, options_.memoryBudget);
-    makeNothing();
+    if (source) makeNothing();
+}
+
+/// Drops what the source has not in common with the former one, on the same grid. What was under way is asked for
+/// again.
+void Residency::keepSame(const LoadExchange& former, SameSamples same) {
+    exchange_->bricks->adopt(*former.bricks, [&](const volume::BrickKey& key) {
+        return key.channel < same.channels && key.time < same.times;
+    });
+    for (auto it = entries_.begin(); it != entries_.end();) {
+        const auto at = it++;
+        Entry& entry = at->second;
+        if (at->first.channel >= same.channels || at->first.time >= same.times || entry.failed) {
+            drop(at);
+            continue;
+        }
+        entry.loading = false;
+        entry.bricksInFlight = 0;
+        if (entry.shown && entry.shown->bricks) entry.shown->bricks->forgetAsked();
+    }
 }
 
 void Residency::setBudgets(std::size_t texture, std::size_t memory) {
@@ -139,6 +163,7 @@ void Residency::queueBricks(const ChannelKey& key, Entry& entry, double priority
             request.level = id.level;
             request.brick = id.index;
             request.summary = entry.summary;
+            request.encoding = shown.encoding;
             request.coverage = entry.coverage;
             add(priority + double(shown.bricks->priority(id)), std::move(request));
         }

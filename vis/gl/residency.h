@@ -37,7 +37,8 @@ public:
     explicit Residency(const RendererOptions& options);
     ~Residency();
 
-    void setSource(std::shared_ptr<const volume::BrickSource> source);
+    /// Textures and decoded bricks of the samples that the former source has too stay.
+    void setSource(std::shared_ptr<const volume::BrickSource> source, SameSamples same = {});
     /// Bytes of textures and of decoded bricks. A smaller atlas, or a larger one where bricks had no room, is filled
     /// anew, coarse first.
     void setBudgets(std::size_t texture, std::size_t memory);
@@ -98,6 +99,7 @@ private:
     int textureLevel() const;
     int componentsOf(bool coverage) const;
     std::size_t slotBytes(int components) const;
+    void keepSame(const LoadExchange& former, SameSamples same);
     void add(double priority, LoadRequest request);
     void queueBricks(const ChannelKey& key, Entry& entry, double priority);
     bool still(const ChannelKey& key, int madeOf, glm::ivec3 first, glm::ivec3 last, bool exactly) const;

@@ -31,6 +31,7 @@ struct RenderParams {
     Filter filter =
         Filter::AverageQuasi; ///< reconstruction; on CC "quasi" is prefiltered trilinear, the others trilinear
     float detail = 1;         ///< pixels; voxels of bricked data finer than this are shown at a coarser level
+    float importance = 1;     ///< levels by which bricks with nothing to show may be coarser
     RenderLimits limits;
     float stepVoxels = 0.5f; ///< distance between samples, in cells of the finest direction on screen at rest
     volume::GradientSpan gradient = volume::GradientSpan::Neighbours;
@@ -55,6 +56,12 @@ struct RenderParams {
                                      .doc = "Voxels smaller than this are shown at a coarser level, in data too large "
                                             "for one texture; 0 = full resolution",
                                      .range = Range{0, 8}});
+        visit(self.importance, FieldInfo{.key = "importance",
+                                         .unit = "level",
+                                         .doc = "Levels by which bricks with nothing to show may be coarser than the "
+                                                "most important one, those between by their share; 0 = levels "
+                                                "by size on screen alone",
+                                         .range = Range{0, 4}});
         visit(self.limits, FieldInfo{.key = "limits", .unit = "", .doc = "Memory and time to use"});
         visit(self.gradient, FieldInfo{.key = "gradient",
                                        .unit = "",

@@ -15,6 +15,8 @@ std::size_t countOf(glm::ivec3 size) {
     return std::size_t(size.x) * std::size_t(size.y) * std::size_t(size.z);
 }
 
+constexpr double kInLens = 0.5; ///< bricks in a lens are as urgent as those half as far away
+
 /// An axis-aligned box in world space.
 struct WorldBox {
     glm::dvec3 centre, half;
@@ -81,6 +83,29 @@ void markShown(std::vector<std::uint8_t>& shown, const RayPlan& plan, int field,
         if (!blocks || i >= blocks->distance.size() || blocks->distance[i] == 0) shown[i] = 1;
 }
 
+/// The coarsest level whose voxels, of `pixels` at full resolution, are no larger than `detail`.
+std::uint8_t levelOf(double pixels, double detail, int levels) {
+    int level = 0;
+    while (level + 1 < levels && pixels * double(2 << level) <= detail) ++level;
+    return std::uint8_t(level);
+}
+
+/// How many times as large voxels may be where there is little to show.
+class Coarser {
+public:
+    Coarser(std::span<const float> importance, double levels) : importance_(importance), levels_(levels) {
+        for (const float each : importance) most_ = std::max(most_, each);
+    }
+    double operator()(std::size_t brick) const {
+        return most_ > 0 ? std::exp2(levels_ * (1 - double(importance_[brick]) / double(most_))) : 1;
+    }
+
+private:
+    std::span<const float> importance_;
+    double levels_;
+    float most_ = 0;
+};
+
 /// Whether a box may reach into a lens.
 bool meets(const PlacedLens& lens, const WorldBox& box) {
     // How far the unit shape's coordinates go within the box, each by itself.
@@ -96,7 +121,8 @@ bool meets(const PlacedLens& lens, const WorldBox& box) {
 
 std::vector<std::shared_ptr<const BrickDemand>>
 brickDemands(RayPlan plan, const Scene& scene, const volume::DatasetInfo& info, const volume::BrickGrid& grid,
-             const std::vector<const BlockRanges*>& ranges, const DemandSettings& settings) {
+             const std::vector<const BlockRanges*>& ranges, const std::vector<std::span<const float>>& importance,
+             const DemandSettings& settings) {
     const glm::ivec3 count = grid.count();
     const std::size_t total = countOf(count), fields = plan.fields.size();
     const WorldFrame frame = worldFrame(info.bounds, scene.stretch);
@@ -121,6 +147,8 @@ brickDemands(RayPlan plan, const Scene& scene, const volume::DatasetInfo& info, 
     none.level.assign(total, BrickDemand::kNotWanted);
     none.priority.assign(total, 0);
     std::vector<BrickDemand> demands(fields, none);
+    std::vector<Coarser> coarser;
+    for (std::size_t f = 0; f < fields; ++f) coarser.emplace_back(importance[f], settings.importance);
     std::size_t i = 0;
     for (int z = 0; z < count.z; ++z)
         for (int y = 0; y < count.y; ++y)
@@ -134,13 +162,16 @@ brickDemands(RayPlan plan, const Scene& scene, const volume::DatasetInfo& info, 
                 const WorldBox box{0.5 * (world(lo) + world(hi)), 0.5 * glm::abs(cellWorld) * (hi - lo)};
                 if (!sight.sees(box)) continue;
                 const double depth = sight.depth(box), pixels = voxel / sight.pixel(depth);
-                int level = 0;
                 double detail = settings.detail;
-                for (std::size_t l = 0; l < lenses.size(); ++l)
-                    if (lenses[l].detail != 1 && meets(lenses[l], box)) detail = settings.detail * lenses[l].detail;
-                while (level + 1 < grid.levels && pixels * double(2 << level) <= detail) ++level;
+                bool inLens = false;
+                for (const PlacedLens& lens : lenses) {
+                    if (!meets(lens, box)) continue;
+                    inLens = true;
+                    if (lens.detail != 1) detail = settings.detail * lens.detail;
+                }
                 const double toCursor = glm::length(glm::max(glm::abs(cursor - box.centre) - box.half, 0.0));
-                const double priority = depth + 0.5 * sight.aside(box.centre) + 0.25 * toCursor;
+                const double priority =
+                    (depth + 0.5 * sight.aside(box.centre) + 0.25 * toCursor) * (inLens ? kInLens : 1);
                 bool any = false;
                 for (std::size_t s = 0; s < planes.size(); ++s) {
                     const double offset = planes[s].offset;
@@ -152,7 +183,7 @@ brickDemands(RayPlan plan, const Scene& scene, const volume::DatasetInfo& info, 
                     if (any) shown[std::size_t(brush)][i] = 1;
                 for (std::size_t f = 0; f < fields; ++f)
                     if (shown[f][i]) {
-                        demands[f].level[i] = std::uint8_t(level);
+                        demands[f].level[i] = levelOf(pixels, detail * coarser[f](i), grid.levels);
                         demands[f].priority[i] = float(priority);
                     }
             }

@@ -4,6 +4,7 @@
 #include "vis/technique/ray_plan.h"
 
 #include <memory>
+#include <span>
 
 /// Which bricks a picture needs, and how finely.
 namespace tessera::vis {
@@ -12,15 +13,23 @@ namespace tessera::vis {
 struct DemandSettings {
     glm::ivec2 size{512, 512}; ///< of the picture
     double detail = 1;         ///< pixels: voxels smaller than this are wanted at a coarser level; 0 = full resolution
+    double importance = 0;     ///< levels: RenderParams::importance
     bool operator==(const DemandSettings&) const = default;
 };
 
 /// One demand per field of a plan. `ranges`: per field, texel ranges of bricks (edge = brickSize); null: not known yet,
 /// that field's demand is null. Not wanted are bricks outside the picture and those where no layer that uses the field
-/// shows anything: transparent under its transfer function, away from its iso-value or slice plane. Near ones, those
-/// in the middle of the picture and those near the cursor come first.
+/// shows anything: transparent under its transfer function, away from its iso-value or slice plane.
+///
+/// The level of a brick is the coarsest at which a voxel is no larger on screen than
+///
+///     detail * lens's detail * 2^(settings.importance * (1 - importance / that of the most important brick))
+///
+/// pixels; `importance`: per field, of its bricks, empty: not known, all alike. Near ones, those in the middle of the
+/// picture, near the cursor and in lenses come first.
 std::vector<std::shared_ptr<const BrickDemand>>
 brickDemands(RayPlan plan, const Scene& scene, const volume::DatasetInfo& info, const volume::BrickGrid& grid,
-             const std::vector<const BlockRanges*>& ranges, const DemandSettings& settings);
+             const std::vector<const BlockRanges*>& ranges, const std::vector<std::span<const float>>& importance,
+             const DemandSettings& settings);
 
 } // namespace tessera::vis

@@ -1,0 +1,107 @@
+#include "tests/vis/residency_fixture.h"
+
+namespace tessera {
+namespace {
+
+using test::bricks;
+using test::picture;
+using test::ResidencyTest;
+using test::volumeScene;
+using test::waves;
+using vis::Scene;
+
+// A budget that holds only some of the bricks: no hole while bricks come and go, and it says so.
+TEST_F(ResidencyTest, NoHolesWithinTheBudget) {
+    vis::RendererOptions options = bricks();
+    options.textureBudget = std::size_t(1) << 20; // half of it for bricks: about 70 of 400
+    vis::Renderer renderer(options);
+    renderer.setSource(waves());
+    const vis::ViewTargetPtr target = renderer.makeTarget();
+    Scene scene = volumeScene();
+    scene.render.detail = 0;
+    scene.transfer["v"].opacity = {{0, 0.5f}, {1, 0.5f}}; // opaque wherever there is something
+    std::vector<std::string> said;
+    for (int view = 0; view < 4; ++view) {
+        vis::orbit(scene.camera, {0, 0}, {0.4f, 0.1f});
+        refine(renderer, *target, scene, {24, 24});
+        EXPECT_GT(renderer.readLinear(*target)[12 * 24 + 12].a, 0.9);
+        for (std::string& message : renderer.takeMessages()) said.push_back(std::move(message));
+        const vis::ResidencyInfo info = renderer.residency();
+        EXPECT_LE(info.textureBytes, options.textureBudget);
+        EXPECT_GT(info.bricksResident, 20);
+    }
+    ASSERT_EQ(said.size(), 1u);
+    EXPECT_NE(said[0].find("budget"), std::string::npos);
+}
+
+// Texture memory that is taken away: bricks go, coarser ones stay, no hole; given back, the picture is what it was.
+TEST_F(ResidencyTest, BudgetMayShrinkAndGrow) {
+    vis::Renderer renderer(bricks());
+    renderer.setSource(waves());
+    const vis::ViewTargetPtr target = renderer.makeTarget();
+    Scene scene = volumeScene();
+    scene.render.detail = 0;
+    scene.transfer["v"].opacity = {{0, 0.5f}, {1, 0.5f}};
+    refine(renderer, *target, scene, {24, 24});
+    const std::vector<glm::vec4> first = renderer.readLinear(*target);
+    const vis::ResidencyInfo full = renderer.residency();
+
+    scene.render.limits.textureMemory = 1; // MiB
+    refine(renderer, *target, scene, {24, 24});
+    const std::vector<glm::vec4> coarse = renderer.readLinear(*target);
+    EXPECT_LE(renderer.residency().textureBytes, std::size_t(1) << 20);
+    EXPECT_LT(renderer.residency().bricksResident, full.bricksResident / 2);
+    for (std::size_t i = 0; i < first.size(); ++i) EXPECT_NEAR(coarse[i].a, first[i].a, 0.02) << i;
+    EXPECT_LT(test::maxDifference(coarse, first), 0.2);
+
+    scene.render.limits.textureMemory = 1024;
+    refine(renderer, *target, scene, {24, 24});
+    // Bricks lie elsewhere in the atlas now: the last bit of a coordinate may differ.
+    EXPECT_LT(test::maxDifference(renderer.readLinear(*target), first), 1e-3);
+    EXPECT_EQ(renderer.residency().bricksResident, full.bricksResident);
+}
+
+// A driver that refuses memory: the picture is coarser, a message says so, and it comes back with memory.
+TEST_F(ResidencyTest, RefusedMemoryMakesThePictureCoarser) {
+    const Scene scene = volumeScene();
+    const std::vector<glm::vec4> wanted = picture(waves(), {}, scene, {48, 40});
+    for (const bool dense : {true, false}) {
+        vis::RendererOptions options = dense ? vis::RendererOptions() : bricks();
+        for (const std::size_t memory : {std::size_t(1) << 20, std::size_t(400) << 10, std::size_t(1000)}) {
+            options.driverMemory = memory;
+            vis::Renderer renderer(options);
+            renderer.setSource(waves());
+            const vis::ViewTargetPtr target = renderer.makeTarget();
+            test::renderAll(renderer, *target, scene, {48, 40});
+            EXPECT_LE(renderer.residency().textureBytes, memory * 5 / 4) << "an atlas is rounded up to a box";
+            const double difference = test::maxDifference(renderer.readLinear(*target), wanted);
+            const bool said = !renderer.takeMessages().empty();
+            if (memory < 2000) {
+                EXPECT_TRUE(said);
+                continue; // nothing fits: an empty picture
+            }
+            EXPECT_LT(difference, 0.35) << dense << ' ' << memory;
+            EXPECT_TRUE(said || difference < 1.0 / 255) << dense << ' ' << memory;
+        }
+    }
+}
+
+// Minimised windows, odd sizes and a storm of them: no GL error, and the last one is drawn.
+TEST_F(ResidencyTest, SizesComeAndGo) {
+    vis::Renderer renderer;
+    renderer.setSource(waves());
+    const vis::ViewTargetPtr target = renderer.makeTarget();
+    const Scene scene = volumeScene();
+    vis::FrameRequest request;
+    for (const glm::ivec2 size : {glm::ivec2(0, 0), glm::ivec2(1, 1), glm::ivec2(300, 1), glm::ivec2(-1, 5),
+                                  glm::ivec2(64, 48), glm::ivec2(0, 48), glm::ivec2(65, 47), glm::ivec2(64, 48)}) {
+        request.size = size;
+        request.moving = size.x % 2 == 0;
+        const vis::FrameStatus status = renderer.render(*target, scene, request);
+        EXPECT_EQ(status.texture != 0, size.x > 0 && size.y > 0);
+    }
+    test::renderAll(renderer, *target, scene, {64, 48});
+    EXPECT_TRUE(renderer.takeMessages().empty());
+}
+} // namespace
+} // namespace tessera
