@@ -1,5 +1,6 @@
 #include "volume/alternating_source.h"
 
+#include "volume/brick_cache.h"
 #include "volume/memory_source.h"
 #include "volume/reconstruct.h"
 #include "volume/resample_taps.h"
@@ -11,6 +12,8 @@
 namespace tessera::volume {
 
 namespace {
+
+constexpr std::size_t kFrameBudget = std::size_t(64) << 20; ///< bytes of bricks of frames
 
 struct WeightedTime {
     int time = 0;
@@ -26,34 +29,43 @@ BrickStats unionOf(const BrickStats& a, const BrickStats& b) {
     return {std::min(a.min, b.min), std::max(a.max, b.max), 0.5f * (a.presentFraction + b.presentFraction)};
 }
 
-/// One brick from that of several frames; `range` holds what overshoots.
-BrickSamples blendBricks(const std::vector<BrickSamples>& bricks, const std::vector<WeightedTime>& times,
-                         const BrickStats& range) {
-    if (bricks.size() == 1) return bricks.front();
-    BrickSamples out = bricks.front();
+/// Weighted sums of the values of several bricks, held within a range.
+void blendValues(const std::vector<std::shared_ptr<const BrickSamples>>& bricks, const std::vector<WeightedTime>& times,
+                 const BrickStats& range, std::vector<float>& out) {
+    constexpr std::size_t kRun = 1024; // sums that stay in the cache
+    std::array<double, kRun> sums;
+    for (std::size_t first = 0; first < out.size(); first += kRun) {
+        const std::size_t n = std::min(kRun, out.size() - first);
+        for (std::size_t b = 0; b < bricks.size(); ++b) {
+            const float* from = bricks[b]->values.data() + first;
+            const double weight = times[b].weight;
+            for (std::size_t i = 0; i < n; ++i) sums[i] = (b == 0 ? 0 : sums[i]) + weight * double(from[i]);
+        }
+        for (std::size_t i = 0; i < n; ++i) out[first + i] = std::min(std::max(float(sums[i]), range.min), range.max);
+    }
+}
+
+/// One brick from that of several frames, all of the same size; `range` holds what overshoots.
+BrickSamples blendBricks(const std::vector<std::shared_ptr<const BrickSamples>>& bricks,
+                         const std::vector<WeightedTime>& times, const BrickStats& range) {
+    BrickSamples out = *bricks.front();
+    blendValues(bricks, times, range, out.values);
+    const auto isWhole = [](const auto& brick) { return brick->present.empty(); };
+    if (std::all_of(bricks.begin(), bricks.end(), isWhole)) return out;
     std::vector<std::uint8_t> present(out.values.size(), 1);
     const auto has = [](const BrickSamples& brick, std::size_t i) {
         return brick.present.empty() || brick.present[i] != 0;
     };
     for (std::size_t i = 0; i < out.values.size(); ++i) {
-        double sum = 0;
-        bool all = true;
-        for (std::size_t b = 0; b < bricks.size(); ++b) {
-            all = all && has(bricks[b], i);
-            sum += times[b].weight * double(bricks[b].values[i]);
-        }
-        if (all) {
-            out.values[i] = std::clamp(float(sum), range.min, range.max);
-            continue;
-        }
+        if (std::all_of(bricks.begin(), bricks.end(), [&](const auto& brick) { return has(*brick, i); })) continue;
         Blend blend;
         for (std::size_t b = 0; b < bricks.size(); ++b)
-            blend.add(times[b].linear, {double(bricks[b].values[i]), has(bricks[b], i)});
+            blend.add(times[b].linear, {double(bricks[b]->values[i]), has(*bricks[b], i)});
         const std::optional<double> value = blend.value();
         present[i] = value ? 1 : 0;
         out.values[i] = value ? float(*value) : 0.0f;
     }
-    const bool whole = std::all_of(present.begin(), present.end(), [](std::uint8_t p) { return p != 0; });
+    const bool whole = std::find(present.begin(), present.end(), std::uint8_t(0)) == present.end();
     out.present = whole ? std::vector<std::uint8_t>() : std::move(present);
     return out;
 }
@@ -76,7 +88,8 @@ BrickSamples interleaved(const BrickSamples& even, const BrickSamples& odd) {
 class AlternatingSource final : public BrickSource {
 public:
     AlternatingSource(std::shared_ptr<const BrickSource> frames, TimeFilter filter)
-        : frames_(std::move(frames)), info_(frames_->info()), grid_(frames_->grid()), channels_(info_.channels()) {
+        : frames_(std::make_shared<const BrickCache>(std::move(frames), kFrameBudget)), info_(frames_->info()),
+          grid_(frames_->grid()), channels_(info_.channels()) {
         if (info_.lattice.kind != LatticeKind::CC || info_.times.size() < 2)
             throw Error("frames of a D4* lattice are regular grids at two times or more", info_.name);
         info_.lattice.kind = LatticeKind::BCC;
@@ -128,7 +141,7 @@ public:
         if (channel.magnitude && channel.component == 3)
             return magnitude(read(componentKey(key, channel, 0)), read(componentKey(key, channel, 1)),
                              read(componentKey(key, channel, 2)));
-        return interleaved(readParity(key, 0), readParity(key, 1));
+        return interleaved(*readParity(key, 0), *readParity(key, 1));
     }
 
 private:
@@ -175,18 +188,19 @@ private:
         return range;
     }
 
-    BrickSamples readParity(BrickKey key, int parity) const {
+    std::shared_ptr<const BrickSamples> readParity(BrickKey key, int parity) const {
         const std::vector<WeightedTime> times = timesOf(key, parity);
         const BrickStats range = times.size() > 1 ? rangeOf(key, times) : BrickStats{};
-        std::vector<BrickSamples> bricks;
+        std::vector<std::shared_ptr<const BrickSamples>> bricks;
         for (const WeightedTime& time : times) {
             key.time = time.time;
-            bricks.push_back(frames_->read(key));
+            bricks.push_back(frames_->get(key));
         }
-        return blendBricks(bricks, times, range);
+        if (bricks.size() == 1) return bricks.front();
+        return std::make_shared<const BrickSamples>(blendBricks(bricks, times, range));
     }
 
-    std::shared_ptr<const BrickSource> frames_;
+    std::shared_ptr<const BrickCache> frames_; ///< every frame is wanted for that before and behind it too
     DatasetInfo info_;
     BrickGrid grid_;
     std::vector<Channel> channels_;

@@ -1,0 +1,257 @@
+#include "volume/derived_bricks.h"
+
+#include "volume/brick_cache.h"
+#include "volume/derived_names.h"
+#include "volume/expression.h"
+#include "volume/load_once.h"
+#include "volume/memory_source.h"
+#include "volume/sample_position.h"
+#include "volume/stencil.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+namespace tessera::volume {
+
+namespace {
+
+using Bricks = DerivedBricks::Bricks;
+
+constexpr std::size_t kInputBudget = std::size_t(96) << 20, kResultBudget = std::size_t(96) << 20;
+
+/// Channels of the components of a vector.
+std::vector<int> componentsOf(const DatasetInfo& info, const std::string& vector) {
+    std::vector<int> out;
+    for (const char* suffix : {".x", ".y", ".z"}) out.push_back(info.findChannel(vector + suffix).value_or(0));
+    return out;
+}
+
+std::size_t bytesOf(const Bricks& bricks) {
+    std::size_t bytes = 0;
+    for (const BrickSamples& brick : bricks) bytes += brick.values.size() * 4 + brick.present.size();
+    return bytes;
+}
+
+void setAbsent(BrickSamples& samples, std::size_t i) {
+    if (samples.present.empty()) samples.present.assign(samples.values.size(), 1);
+    samples.present[i] = 0;
+    samples.values[i] = 0;
+}
+/// No number: absent.
+void set(BrickSamples& samples, std::size_t i, double value) {
+    const auto narrow = float(value);
+    if (std::isfinite(narrow))
+        samples.values[i] = narrow;
+    else
+        setAbsent(samples, i);
+}
+
+} // namespace
+
+struct DerivedBricks::Impl {
+    Impl(std::shared_ptr<const BrickSource> source, DerivedRecipe recipe)
+        : source_(std::move(source)), inputs_(source_, kInputBudget), recipe_(std::move(recipe)),
+          names_(source_->info()),
+          results_(
+              kResultBudget, [this](const BrickKey& key) { return std::make_shared<const Bricks>(compute(key)); },
+              bytesOf),
+          means_(
+              kResultBudget, [this](const BrickKey& key) { return std::make_shared<const Bricks>(moments(key)); },
+              bytesOf) {
+        if (const auto* formula = std::get_if<ExpressionRecipe>(&recipe_))
+            expression_.emplace(formula->formula, names_.names);
+    }
+
+    /// A channel of the source below, at a brick.
+    BrickSamples input(int channel, BrickKey key) const {
+        key.channel = channel;
+        return inputs_.read(key);
+    }
+    int channelOf(const std::string& name) const { return *source_->info().findChannel(name); }
+
+    BrickSamples empty(const BrickKey& key) const {
+        BrickSamples out;
+        out.size = source_->grid().brickSamples(key.index, key.level);
+        out.values.resize(std::size_t(out.size.x) * std::size_t(out.size.y) * std::size_t(out.size.z));
+        return out;
+    }
+    Bricks compute(const BrickKey& key) const {
+        return std::visit([&](const auto& recipe) { return make(recipe, key); }, recipe_);
+    }
+
+    Bricks make(const ExpressionRecipe&, const BrickKey& key) const {
+        BrickSamples out = empty(key);
+        const std::size_t count = out.values.size();
+        std::vector<BrickSamples> samples;
+        std::vector<std::vector<double>> values;
+        for (const int name : expression_->used()) {
+            const int channel = names_.channel[std::size_t(name)];
+            std::vector<double>& of = values.emplace_back(count);
+            if (channel >= 0) {
+                samples.push_back(input(channel, key));
+                std::copy(samples.back().values.begin(), samples.back().values.end(), of.begin());
+            } else if (channel == -4) {
+                std::fill(of.begin(), of.end(), source_->info().times[std::size_t(key.time)]);
+            } else {
+                SamplePositions position(source_->grid(), key.index, key.level);
+                for (std::size_t i = 0; i < count; ++i, position.next()) of[i] = position.at()[-1 - channel];
+            }
+        }
+        std::vector<double> results(count);
+        expression_->evaluate(values, results);
+        for (std::size_t i = 0; i < count; ++i) {
+            const bool present =
+                std::all_of(samples.begin(), samples.end(), [&](const BrickSamples& of) { return presentAt(of, i); });
+            if (present)
+                set(out, i, results[i]);
+            else
+                setAbsent(out, i);
+        }
+        return {std::move(out)};
+    }
+
+    Bricks make(const MagnitudeRecipe& recipe, const BrickKey& key) const {
+        return {magnitude(input(channelOf(recipe.x), key), input(channelOf(recipe.y), key),
+                          input(channelOf(recipe.z), key))};
+    }
+
+    /// Calls `body(place, index)` for the samples of a brick that are present in all neighbourhoods; the others become
+    /// absent in every brick of `out`.
+    template <class Body>
+    void everywhere(const std::vector<Neighbourhood>& around, Bricks& out, const Body& body) const {
+        const glm::ivec3 size = around.front().size();
+        std::size_t i = 0;
+        for (int z = 0; z < size.z; ++z)
+            for (int y = 0; y < size.y; ++y)
+                for (int x = 0; x < size.x; ++x, ++i) {
+                    const glm::ivec3 at(x, y, z);
+                    if (std::all_of(around.begin(), around.end(),
+                                    [&](const Neighbourhood& n) { return n.at(at).has_value(); }))
+                        body(at, i);
+                    else
+                        for (BrickSamples& brick : out) setAbsent(brick, i);
+                }
+    }
+    std::vector<Neighbourhood> around(const std::vector<int>& channels, const BrickKey& key) const {
+        std::vector<Neighbourhood> out;
+        for (const int channel : channels) {
+            BrickKey own = key;
+            own.channel = channel;
+            out.emplace_back(source_->grid(), own, 1, [&](const BrickKey& near) { return inputs_.read(near); });
+        }
+        return out;
+    }
+
+    Bricks make(const GradientRecipe& recipe, const BrickKey& key) const {
+        Bricks out(3, empty(key));
+        const auto near = around({channelOf(recipe.channel)}, key);
+        everywhere(near, out, [&](glm::ivec3 at, std::size_t i) {
+            for (int axis = 0; axis < 3; ++axis) set(out[std::size_t(axis)], i, near[0].derivative(at, axis));
+        });
+        return out;
+    }
+
+    Bricks make(const DivergenceRecipe& recipe, const BrickKey& key) const {
+        Bricks out(1, empty(key));
+        const auto near = around(componentsOf(source_->info(), recipe.vector), key);
+        everywhere(near, out, [&](glm::ivec3 at, std::size_t i) {
+            set(out[0], i, near[0].derivative(at, 0) + near[1].derivative(at, 1) + near[2].derivative(at, 2));
+        });
+        return out;
+    }
+
+    Bricks make(const VorticityRecipe& recipe, const BrickKey& key) const {
+        Bricks out(3, empty(key));
+        const auto near = around(componentsOf(source_->info(), recipe.vector), key);
+        everywhere(near, out, [&](glm::ivec3 at, std::size_t i) {
+            for (int axis = 0; axis < 3; ++axis) {
+                const int next = (axis + 1) % 3, last = (axis + 2) % 3;
+                set(out[std::size_t(axis)], i,
+                    near[std::size_t(last)].derivative(at, next) - near[std::size_t(next)].derivative(at, last));
+            }
+        });
+        return out;
+    }
+
+    /// Mean and standard deviation over the times at which a sample is present.
+    Bricks moments(const BrickKey& key) const {
+        const int channel = channelOf(std::get<DeviationRecipe>(recipe_).channel);
+        Bricks out(2, empty(key));
+        const std::size_t count = out[0].values.size();
+        std::vector<double> n(count), mean(count), squares(count);
+        for (int time = 0; time < int(source_->info().times.size()); ++time) {
+            BrickKey own = key;
+            own.time = time;
+            own.channel = channel;
+            const BrickSamples samples = source_->read(own);
+            for (std::size_t i = 0; i < count; ++i) {
+                if (!presentAt(samples, i)) continue;
+                // Welford: close values keep their digits.
+                const double value = double(samples.values[i]), before = value - mean[i];
+                n[i] += 1;
+                mean[i] += before / n[i];
+                squares[i] += before * (value - mean[i]);
+            }
+        }
+        for (std::size_t i = 0; i < count; ++i) {
+            set(out[0], i, mean[i]);
+            set(out[1], i, n[i] > 0 ? std::sqrt(squares[i] / n[i]) : 0);
+        }
+        return out;
+    }
+
+    Bricks make(const DeviationRecipe& recipe, const BrickKey& key) const {
+        BrickKey overTime = key;
+        overTime.time = 0;
+        const auto both = means_.get(overTime);
+        BrickSamples out = input(channelOf(recipe.channel), key);
+        for (std::size_t i = 0; i < out.values.size(); ++i) {
+            if (!presentAt(out, i)) continue;
+            if (recipe.measure == TimeMeasure::FromMean)
+                set(out, i, double(out.values[i]) - double((*both)[0].values[i]));
+            else
+                set(out, i, double((*both)[1].values[i]));
+        }
+        return {std::move(out)};
+    }
+
+    Bricks make(const SmoothRecipe& recipe, const BrickKey& key) const {
+        BrickKey own = key;
+        own.channel = channelOf(recipe.channel);
+        return {smoothed(source_->grid(), own, recipe.width, [&](const BrickKey& near) { return inputs_.read(near); })};
+    }
+
+    Bricks make(const PositionRecipe&, const BrickKey& key) const {
+        Bricks out(3, empty(key));
+        SamplePositions position(source_->grid(), key.index, key.level);
+        for (std::size_t i = 0; i < out[0].values.size(); ++i, position.next())
+            for (int axis = 0; axis < 3; ++axis) set(out[std::size_t(axis)], i, position.at()[axis]);
+        return out;
+    }
+
+    Bricks make(const TimeRecipe&, const BrickKey& key) const {
+        Bricks out(1, empty(key));
+        std::fill(out[0].values.begin(), out[0].values.end(), float(source_->info().times[std::size_t(key.time)]));
+        return out;
+    }
+
+    std::shared_ptr<const BrickSource> source_;
+    BrickCache inputs_;
+    DerivedRecipe recipe_;
+    FormulaNames names_;
+    std::optional<Expression> expression_;
+    mutable LoadOnce<BrickKey, Bricks, BrickKeyHash> results_, means_;
+};
+
+DerivedBricks::DerivedBricks(std::shared_ptr<const BrickSource> source, DerivedRecipe recipe)
+    : impl_(std::make_unique<Impl>(std::move(source), std::move(recipe))) {}
+
+DerivedBricks::~DerivedBricks() = default;
+
+std::shared_ptr<const DerivedBricks::Bricks> DerivedBricks::get(BrickKey key) const {
+    key.channel = 0;
+    return impl_->results_.get(key);
+}
+
+} // namespace tessera::volume

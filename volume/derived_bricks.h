@@ -1,0 +1,35 @@
+#pragma once
+
+#include "volume/derived.h"
+
+#include <memory>
+#include <vector>
+
+/// Bricks computed by a recipe: inside of volume/derived.cpp.
+namespace tessera::volume {
+
+/// Computes bricks of a derived parameter from those of a source, and keeps the latest.
+class DerivedBricks {
+public:
+    /// Components of a brick.
+    using Bricks = std::vector<BrickSamples>;
+
+    /// The recipe fits the source (derivedProblem).
+    DerivedBricks(std::shared_ptr<const BrickSource> source, DerivedRecipe recipe);
+    ~DerivedBricks();
+    DerivedBricks(const DerivedBricks&) = delete;
+    DerivedBricks& operator=(const DerivedBricks&) = delete;
+
+    /// A brick of every component; key.channel counts for nothing. From any thread.
+    std::shared_ptr<const Bricks> get(BrickKey key) const;
+
+private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+inline bool presentAt(const BrickSamples& samples, std::size_t i) {
+    return samples.present.empty() || samples.present[i] != 0;
+}
+
+} // namespace tessera::volume
