@@ -44,6 +44,17 @@ double Workbench::now() const {
 }
 
 void Workbench::open(OpenRequest request) {
+    leave([this, request = std::move(request)] { start(request); });
+}
+
+void Workbench::leave(std::function<void()> go) {
+    if (dirty() && source_ && !options_.headless)
+        leaving_ = std::move(go);
+    else
+        go();
+}
+
+void Workbench::start(const OpenRequest& request) {
     std::string title = "Opening the built-in fuel cell";
     if (!request.paths.empty())
         title = "Opening " + fs::path(request.paths.front()).filename().string();
@@ -279,11 +290,11 @@ void Workbench::save(const std::string& path) {
         if (autosave_) autosave_->remove();
         addRecentFile(options_.stateFolder, path);
         message("Saved " + fs::path(path).filename().string());
-        if (quitAfterSave_) quit_ = true;
+        if (const auto go = std::exchange(afterSave_, nullptr)) go();
     } catch (const Error& error) {
         message(error.what(), true);
     }
-    quitAfterSave_ = false;
+    afterSave_ = nullptr;
 }
 
 void Workbench::answerFile(const FileDialog::Answer& answer) {
@@ -330,8 +341,15 @@ void Workbench::showAs(const DataRef& data, const std::string& title) {
     opened->sessionPath = sessionPath_;
     jobs_.start("open", title, [this, opened, data](const Progress& progress) -> Jobs::Finish {
         const auto done = std::make_shared<Opened>(openWith(*opened, data, progress));
-        return [this, done] { install(std::move(*done)); };
+        return [this, done] { reinstall(std::move(*done)); };
     });
+}
+
+void Workbench::reinstall(Opened opened) {
+    const Session saved = saved_;
+    install(std::move(opened));
+    saved_ = saved;
+    unsavedEdits_ = dirty();
 }
 
 bool Workbench::showsDataFiles() const {
@@ -354,15 +372,12 @@ void Workbench::pack(const std::string& path) {
                     DataRef data = dataOf({path}, {});
                     data.derived = packed->document.session.data.derived;
                     auto done = std::make_shared<Opened>(openWith(*packed, data, progress.part(0.95, 1)));
-                    return [this, done] { install(std::move(*done)); };
+                    return [this, done] { reinstall(std::move(*done)); };
                 });
 }
 
 void Workbench::requestQuit() {
-    if (dirty() && source_)
-        askQuit_ = true;
-    else
-        quit_ = true;
+    leave([this] { quit_ = true; });
 }
 
 void Workbench::afterFrame() {

@@ -47,7 +47,8 @@ public:
     Workbench(const Workbench&) = delete;
     Workbench& operator=(const Workbench&) = delete;
 
-    /// Opens in the background; what is shown stays until the new data are ready.
+    /// Opens in the background, after asking whether to save what has changed; what is shown stays until the new data
+    /// are ready.
     void open(OpenRequest request);
     /// Takes over what open() returned, at once.
     void install(Opened opened);
@@ -103,12 +104,17 @@ private:
     };
 
     void makeCommands();                            // workbench_commands.cpp
+    void addFileCommands();                         // workbench_commands.cpp
+    void addEditCommands();                         // workbench_commands.cpp
+    void addHelpCommands();                         // workbench_commands.cpp
+    void addViewCommands();                         // workbench_view_commands.cpp
+    void addLayoutCommands();                       // workbench_view_commands.cpp
     void drawMenus();                               // workbench_commands.cpp
     void drawDialogs();                             // workbench_dialogs.cpp
     void drawMissing();                             // workbench_dialogs.cpp
     void drawRecovery();                            // workbench_dialogs.cpp
     void drawExport();                              // workbench_dialogs.cpp
-    void drawQuit();                                // workbench_dialogs.cpp
+    void drawLeaving();                             // workbench_dialogs.cpp
     void drawHelp();                                // workbench_dialogs.cpp
     void drawToasts();                              // workbench_dialogs.cpp
     void drawImportOptions();                       // workbench_dialogs.cpp
@@ -118,6 +124,10 @@ private:
     void drawHistoryPane();                         // workbench_panes.cpp
     void drawLogPane();                             // workbench_panes.cpp
 
+    /// Does what gives the session up: at once, or after asking whether to save what has changed.
+    void leave(std::function<void()> go);
+    void start(const OpenRequest& request);
+    void reinstall(Opened opened); ///< the same session on other data: what was not saved still is not
     void answerFile(const FileDialog::Answer& answer);
     void save(const std::string& path);
     void pack(const std::string& path);
@@ -172,9 +182,11 @@ private:
     std::function<std::string(const Progress&)> exportText_;     ///< what the next answer of "export" writes
     std::function<void(Session&, const std::string&)> takeFile_; ///< what the next answer of "take" does
     PictureRequest picture_;
-    bool askPicture_ = false, askQuit_ = false, askHelp_ = false, askAbout_ = false;
-    bool quit_ = false, busy_ = true, quitAfterSave_ = false, interacting_ = false;
-    bool popupShown_ = false; ///< at the start of the last frame
+    bool askPicture_ = false, askHelp_ = false, askAbout_ = false;
+    bool quit_ = false, busy_ = true, interacting_ = false;
+    std::function<void()> leaving_;   ///< waits for the answer whether to save
+    std::function<void()> afterSave_; ///< waits for the session to be saved
+    bool popupShown_ = false;         ///< at the start of the last frame
     double lastAutosave_ = 0, lastFrame_ = 0;
     bool unsavedEdits_ = false;
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();

@@ -175,10 +175,11 @@ void Workbench::drawImportOptions() {
 void Workbench::drawDialogs() {
     if (const auto answer = files_.draw()) answerFile(*answer);
     if (!files_.shown()) {
+        afterSave_ = nullptr; // no place was chosen
         drawMissing();
         drawRecovery();
         drawExport();
-        drawQuit();
+        drawLeaving();
         drawHelp();
     }
 }
@@ -306,22 +307,27 @@ void Workbench::drawExport() {
     endDialog(askPicture_);
 }
 
-void Workbench::drawQuit() {
-    if (!askQuit_) return;
-    if (!beginDialog("Save the session?", askQuit_, ImGui::GetFontSize() * 28)) return;
+void Workbench::drawLeaving() {
+    if (!leaving_) return;
+    bool open = true;
+    if (!beginDialog("Save the session?", open, ImGui::GetFontSize() * 28)) {
+        if (!open) leaving_ = nullptr;
+        return;
+    }
     ImGui::TextWrapped("The session has changed since it was %s.", sessionPath_.empty() ? "opened" : "saved");
     const int button = dialogButtons({"Discard", "Cancel", "Save"});
-    if (button >= 0) askQuit_ = false;
-    if (button == 0) quit_ = true;
+    if (button >= 0) open = false;
     if (button == 2) {
-        quitAfterSave_ = true;
+        afterSave_ = std::exchange(leaving_, nullptr);
         if (!sessionPath_.empty())
             save(sessionPath_);
         else
             files_.show(FileMode::Save, "Save session", "save", files_.folder(), "session.tessera.json",
                         ".tessera.json");
     }
-    endDialog(askQuit_);
+    endDialog(open);
+    if (open) return;
+    if (const auto go = std::exchange(leaving_, nullptr); button == 0 && go) go();
 }
 
 void Workbench::drawHelp() {

@@ -26,6 +26,7 @@ void Workbench::drawPane(const std::string& pane) {
                         .iconFont = fonts_.icons,
                         .scale = scale_,
                         .headless = options_.headless,
+                        .figure = options_.headless && !options_.onlyPane.empty(),
                         .runCommand =
                             [this](const std::string& name) {
                                 for (const Command& command : commands_)

@@ -6,113 +6,16 @@
 #include <algorithm>
 #include <cmath>
 #include <imgui_internal.h> // BringWindowToDisplayBack: the host lies behind every pane, also later ones
-#include <optional>
 
 namespace tessera::app {
 
 namespace {
 
-constexpr float kGap = 4;          // design pixels between panes
-constexpr float kSmallest = 90;    // design pixels a pane keeps, if there is room
 constexpr float kDragDistance = 6; // design pixels until a press on a tab is a drag
 
 constexpr ImGuiWindowFlags kPaneFlags = ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove |
                                         ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoCollapse |
                                         ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoBringToFrontOnFocus;
-
-float length(const DockRect& rect, bool row) {
-    return row ? rect.hi.x - rect.lo.x : rect.hi.y - rect.lo.y;
-}
-
-bool inside(const DockRect& rect, ImVec2 at) {
-    return at.x >= rect.lo.x && at.x < rect.hi.x && at.y >= rect.lo.y && at.y < rect.hi.y;
-}
-
-struct Splitter {
-    DockNode* node;
-    DockRect whole, strip;
-};
-
-struct Layout {
-    float scale;
-    std::map<int, DockRect> rects;
-    std::vector<DockNode*> stacks;
-    std::vector<Splitter> splitters;
-
-    /// Size of the first part of a split in pixels: the ratio, kept from squeezing either part.
-    float firstPart(const DockNode& node, float room) const {
-        const float least = std::min(kSmallest * scale, room / 2);
-        return std::round(std::clamp(node.ratio * room, least, room - least));
-    }
-
-    void place(DockNode& node, DockRect rect) {
-        if (node.kind == DockKind::Tabs) {
-            rects[node.id] = rect;
-            stacks.push_back(&node);
-            return;
-        }
-        const bool row = node.kind == DockKind::Row;
-        const float gap = std::round(kGap * scale);
-        const float room = std::max(0.0f, length(rect, row) - gap);
-        const float first = firstPart(node, room);
-        DockRect a = rect, b = rect, strip = rect;
-        (row ? a.hi.x : a.hi.y) = (row ? strip.lo.x : strip.lo.y) = (row ? rect.lo.x : rect.lo.y) + first;
-        (row ? b.lo.x : b.lo.y) = (row ? strip.hi.x : strip.hi.y) = (row ? rect.lo.x : rect.lo.y) + first + gap;
-        splitters.push_back({&node, rect, strip});
-        place(node.children[0], a);
-        place(node.children[1], b);
-    }
-};
-
-Layout layoutOf(DockTree& tree, DockRect rect, float scale) {
-    Layout layout{scale, {}, {}, {}};
-    layout.place(tree.root, rect);
-    return layout;
-}
-
-/// Where a dragged tab would go.
-struct Drop {
-    int node = 0;
-    DockSide side = DockSide::Center;
-    DockRect preview;
-};
-
-DockRect sideOf(const DockRect& rect, DockSide side, float share) {
-    DockRect part = rect;
-    const float w = (rect.hi.x - rect.lo.x) * share, h = (rect.hi.y - rect.lo.y) * share;
-    if (side == DockSide::Left) part.hi.x = rect.lo.x + w;
-    if (side == DockSide::Right) part.lo.x = rect.hi.x - w;
-    if (side == DockSide::Top) part.hi.y = rect.lo.y + h;
-    if (side == DockSide::Bottom) part.lo.y = rect.hi.y - h;
-    return part;
-}
-
-std::optional<Drop> dropAt(const Layout& layout, const DockNode& root, const DockRect& whole, ImVec2 at, float strip) {
-    if (!inside(whole, at)) return {};
-    // The outer rim puts the pane beside everything.
-    const float rim = 14 * layout.scale;
-    if (root.kind != DockKind::Tabs) {
-        const std::pair<DockSide, float> distances[] = {{DockSide::Left, at.x - whole.lo.x},
-                                                        {DockSide::Right, whole.hi.x - at.x},
-                                                        {DockSide::Bottom, whole.hi.y - at.y}};
-        for (const auto& [side, distance] : distances)
-            if (distance < rim) return Drop{root.id, side, sideOf(whole, side, 0.25f)};
-    }
-    for (const DockNode* stack : layout.stacks) {
-        const DockRect& rect = layout.rects.at(stack->id);
-        if (!inside(rect, at)) continue;
-        if (at.y < rect.lo.y + strip || stack->tabs.empty()) return Drop{stack->id, DockSide::Center, rect};
-        const float x = (at.x - rect.lo.x) / (rect.hi.x - rect.lo.x);
-        const float y = (at.y - rect.lo.y) / (rect.hi.y - rect.lo.y);
-        const std::pair<DockSide, float> distances[] = {
-            {DockSide::Left, x}, {DockSide::Right, 1 - x}, {DockSide::Top, y}, {DockSide::Bottom, 1 - y}};
-        const auto nearest = std::min_element(std::begin(distances), std::end(distances),
-                                              [](const auto& a, const auto& b) { return a.second < b.second; });
-        if (nearest->second > 0.28f) return Drop{stack->id, DockSide::Center, rect};
-        return Drop{stack->id, nearest->first, sideOf(rect, nearest->first, 0.5f)};
-    }
-    return {};
-}
 
 struct TabEvent {
     enum Kind { None, Front, Close, Float, Dock, Maximise } kind = None;
@@ -225,8 +128,8 @@ public:
 };
 
 /// Applies what a tab asked for, after everything is drawn.
-void apply(DockTree& tree, const TabEvent& event, const Layout& layout, const DockRect& whole, const DockPanes& panes,
-           DockHand& hand) {
+void apply(DockTree& tree, const TabEvent& event, const DockLayout& layout, const DockRect& whole,
+           const DockPanes& panes, DockHand& hand) {
     switch (event.kind) {
     case TabEvent::None:
         break;
@@ -263,10 +166,10 @@ void apply(DockTree& tree, const TabEvent& event, const Layout& layout, const Do
     }
 }
 
-void drawSplitters(Layout& layout, DockTree& tree, DockHand& hand, const DockRect& whole) {
+void drawSplitters(DockLayout& layout, DockTree& tree, DockHand& hand, const DockRect& whole) {
     const ImVec2 mouse = ImGui::GetIO().MousePos;
     bool moved = false;
-    for (const Splitter& splitter : layout.splitters) {
+    for (const DockSplitter& splitter : layout.splitters) {
         const bool row = splitter.node->kind == DockKind::Row;
         ImGui::PushID(splitter.node->id);
         ImGui::SetCursorScreenPos(splitter.strip.lo);
@@ -275,7 +178,7 @@ void drawSplitters(Layout& layout, DockTree& tree, DockHand& hand, const DockRec
         const float at = row ? mouse.x : mouse.y;
         const float begin = row ? splitter.whole.lo.x : splitter.whole.lo.y;
         const float edge = row ? splitter.strip.lo.x : splitter.strip.lo.y;
-        const float room = length(splitter.whole, row) - length(splitter.strip, row);
+        const float room = splitter.whole.length(row) - splitter.strip.length(row);
         if (ImGui::IsItemActivated()) {
             hand.splitter = splitter.node->id;
             hand.grabOffset = at - edge;
@@ -298,7 +201,7 @@ void drawSplitters(Layout& layout, DockTree& tree, DockHand& hand, const DockRec
         }
         ImGui::PopID();
     }
-    if (moved) layout = layoutOf(tree, whole, layout.scale);
+    if (moved) layout = layoutDock(tree, whole, layout.scale);
 }
 
 void drawFloating(Drawing& drawing, const DockRect& whole) {
@@ -343,10 +246,6 @@ void drawFloating(Drawing& drawing, const DockRect& whole) {
 
 } // namespace
 
-std::map<int, DockRect> layoutDock(DockTree& tree, ImVec2 origin, ImVec2 size, float scale) {
-    return layoutOf(tree, {origin, {origin.x + size.x, origin.y + size.y}}, scale).rects;
-}
-
 void drawDock(DockTree& tree, DockHand& hand, const DockPanes& panes, ImVec2 origin, ImVec2 size, float scale,
               bool bare) {
     const DockRect whole{origin, {origin.x + size.x, origin.y + size.y}};
@@ -356,7 +255,7 @@ void drawDock(DockTree& tree, DockHand& hand, const DockPanes& panes, ImVec2 ori
             drawing.window(tree.maximised, whole.lo, whole.hi, kPaneFlags | ImGuiWindowFlags_NoScrollbar);
         return;
     }
-    Layout layout = layoutOf(tree, whole, scale);
+    DockLayout layout = layoutDock(tree, whole, scale);
 
     ImGui::SetNextWindowPos(whole.lo);
     ImGui::SetNextWindowSize(size);
@@ -402,7 +301,7 @@ void drawDock(DockTree& tree, DockHand& hand, const DockPanes& panes, ImVec2 ori
     if (!maximised) drawFloating(drawing, whole);
 
     // A tab being dragged.
-    std::optional<Drop> drop;
+    std::optional<DockDrop> drop;
     const ImVec2 mouse = ImGui::GetIO().MousePos;
     if (!hand.dragged.empty() && !maximised) {
         const float distance = std::hypot(mouse.x - hand.grabbed.x, mouse.y - hand.grabbed.y);

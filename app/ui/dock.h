@@ -1,10 +1,9 @@
 #pragma once
 
-#include "app/session/dock_tree.h"
+#include "app/ui/dock_layout.h"
 
 #include <functional>
 #include <imgui.h>
-#include <map>
 #include <string>
 
 /// Draws a dock tree: strips of tabs, splitters, panes; lets tabs be dragged to any side of any pane.
@@ -32,11 +31,5 @@ struct DockHand {
 /// Draws the tree into the rectangle; edits the tree. `bare` shows the maximised pane alone, without its strip.
 void drawDock(DockTree& tree, DockHand& hand, const DockPanes& panes, ImVec2 origin, ImVec2 size, float scale,
               bool bare = false);
-
-/// Rectangles of every stack of a tree, strips included, as drawDock places them. Whole pixels, no gaps but splitters.
-struct DockRect {
-    ImVec2 lo, hi;
-};
-std::map<int, DockRect> layoutDock(DockTree& tree, ImVec2 origin, ImVec2 size, float scale);
 
 } // namespace tessera::app

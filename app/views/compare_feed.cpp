@@ -117,6 +117,7 @@ void CompareFeed::drawCell(ViewContext& context, const std::string& pane, std::s
                     .iconFont = context.iconFont,
                     .scale = context.scale,
                     .headless = context.headless,
+                    .figure = context.figure,
                     .interacting = context.interacting};
     if (!cell.target) cell.target = own.renderer.makeTarget();
     vis::FrameRequest request;

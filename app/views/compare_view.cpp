@@ -189,8 +189,10 @@ void drawCompareView(ViewContext& context, const std::string& pane, CompareView&
         return;
     }
     CompareCache& cache = cacheOf<CompareCache>(context, pane);
-    drawCompareToolbar(context, view);
-    exportMenu(context, "comparison", {}, [rows = cache.rows](const Progress&) { return compareCsv(rows); });
+    if (!context.figure) {
+        drawCompareToolbar(context, view);
+        exportMenu(context, "comparison", {}, [rows = cache.rows](const Progress&) { return compareCsv(rows); });
+    }
     Frame frame{context, view, cache, shownVariants(view)};
     const std::size_t count = frame.variants.size();
     frame.reference = std::min(static_cast<std::size_t>(std::max(view.reference, 0)), count - 1);
@@ -199,7 +201,7 @@ void drawCompareView(ViewContext& context, const std::string& pane, CompareView&
 
     const ImVec2 room = ImGui::GetContentRegionAvail(), at = ImGui::GetCursorScreenPos();
     const float table = view.showTable ? std::min(compareTableHeight(count), room.y * 0.5f) : 0;
-    const float asked = std::min(questionsHeight(view), room.y * 0.3f);
+    const float asked = context.figure ? 0 : std::min(questionsHeight(view), room.y * 0.3f);
     const ImVec2 area{std::floor(room.x), std::floor(room.y - table - asked)};
     if (area.x < 24 || area.y < 24) return;
     const bool grid = view.mode == CompareMode::Grid || view.mode == CompareMode::Difference;
@@ -236,6 +238,7 @@ void drawCompareView(ViewContext& context, const std::string& pane, CompareView&
         ImGui::SetCursorScreenPos({at.x, at.y + area.y});
         drawCompareTable(view, cache.rows);
     }
+    if (context.figure) return;
     ImGui::SetCursorScreenPos({at.x, at.y + area.y + table});
     std::vector<std::string> names;
     for (std::size_t i = 0; i < count; ++i) names.push_back(nameOf(frame, i));

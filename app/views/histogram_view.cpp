@@ -116,28 +116,11 @@ void drawPlot(ViewContext& context, HistogramCache& cache, const HistogramView& 
     if (hovered && !cache.drag.active && result) hover(channel, *result, frame);
 }
 
-} // namespace
-
-void drawHistogramView(ViewContext& context, const std::string& pane, HistogramView& view) {
-    if (!context.source) {
-        drawHint("No data", "How often each value of a parameter occurs is shown here.");
-        return;
-    }
-    const volume::DatasetInfo& info = context.source->info();
-    const auto index = resolveChannel(info, context.session, view.channel);
-    if (!index) {
-        drawHint("No parameters", "This data set has nothing to count.");
-        return;
-    }
-    HistogramCache& cache = cacheOf<HistogramCache>(context, pane);
-    const volume::Channel channel = info.channels()[static_cast<std::size_t>(*index)];
-    const Range range = paddedRange(info.channelRange(channel), 0.02);
-    const auto result = cache.feed.get(context, "histogram " + pane,
-                                       makeWish(context.session, info, {*index}, {range}, view.bins, false));
-    updateReadout(context, cache.readout);
+void drawToolbar(ViewContext& context, HistogramView& view, const volume::Channel& channel,
+                 const std::shared_ptr<const StatisticsResult>& result) {
     std::string name = channel.name;
     ImGui::SetNextItemWidth(std::min(em() * 11, ImGui::GetContentRegionAvail().x * 0.4f));
-    if (chooseChannel("##channel", &info, name)) view.channel = name;
+    if (chooseChannel("##channel", &context.source->info(), name)) view.channel = name;
     if (ImGui::IsItemHovered()) tooltip("Parameter whose values are counted");
     continueLine(em() * 3.5f);
     ImGui::Checkbox("log", &view.logCounts);
@@ -158,6 +141,28 @@ void drawHistogramView(ViewContext& context, const std::string& pane, HistogramV
         continueLine(ImGui::CalcTextSize("drag to brush").x);
         ImGui::TextDisabled("drag to brush");
     }
+}
+
+} // namespace
+
+void drawHistogramView(ViewContext& context, const std::string& pane, HistogramView& view) {
+    if (!context.source) {
+        drawHint("No data", "How often each value of a parameter occurs is shown here.");
+        return;
+    }
+    const volume::DatasetInfo& info = context.source->info();
+    const auto index = resolveChannel(info, context.session, view.channel);
+    if (!index) {
+        drawHint("No parameters", "This data set has nothing to count.");
+        return;
+    }
+    HistogramCache& cache = cacheOf<HistogramCache>(context, pane);
+    const volume::Channel channel = info.channels()[static_cast<std::size_t>(*index)];
+    const Range range = paddedRange(info.channelRange(channel), 0.02);
+    const auto result = cache.feed.get(context, "histogram " + pane,
+                                       makeWish(context.session, info, {*index}, {range}, view.bins, false));
+    updateReadout(context, cache.readout);
+    if (!context.figure) drawToolbar(context, view, channel, result);
     drawPlot(context, cache, view, channel, range, result.get());
     if (!cache.feed.failure().empty() && !result) ImGui::TextWrapped("%s", cache.feed.failure().c_str());
 }

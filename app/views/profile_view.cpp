@@ -208,7 +208,7 @@ void drawProfileView(ViewContext& context, const std::string& pane, ProfileView&
         [&](const ProfileWish& answered) { return answered.over == wish.over && answered.channels == wish.channels; },
         true);
     const bool usable = profile && (overTime || (profile->distance.size() > 1 && profile->distance.back() > 0));
-    drawToolbar(context, usable ? profile : nullptr, view, shown);
+    if (!context.figure) drawToolbar(context, usable ? profile : nullptr, view, shown);
     if (!usable) {
         if (cache.feed.failed()) return drawHint("The data cannot be read here", "The log says why.");
         if (!profile) return ImGui::TextDisabled("Reading...");

@@ -281,7 +281,7 @@ void drawScatterMatrixView(ViewContext& context, const std::string& pane, Scatte
     wish.meanOf = meanChannel(wish, info, view.colorBy);
     const std::shared_ptr<const StatisticsResult> result = cache.feed.get(context, "statistics " + pane, wish);
 
-    drawScatterToolbar(context, view, matrix.channels, result);
+    if (!context.figure) drawScatterToolbar(context, view, matrix.channels, result);
     const ImVec2 origin = ImGui::GetCursorScreenPos(), room = ImGui::GetContentRegionAvail();
     const auto n = static_cast<float>(matrix.size());
     const MatrixTitles titles = matrixTitles(matrix, (room.x - em() * 4) / n, (room.y - em() * 3) / n);

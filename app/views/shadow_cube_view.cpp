@@ -256,7 +256,7 @@ void drawShadowCubeView(ViewContext& context, const std::string& pane, ShadowCub
     ShadowCubeCache& cache = cacheOf<ShadowCubeCache>(context, pane);
     const volume::DatasetInfo& info = context.source->info();
     Session& session = context.session;
-    drawToolbar(context, info, view);
+    if (!context.figure) drawToolbar(context, info, view);
     const ImVec2 room = ImGui::GetContentRegionAvail();
     CubeFrame frame{.info = info,
                     .min = ImGui::GetCursorScreenPos(),

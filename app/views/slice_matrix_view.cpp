@@ -157,6 +157,12 @@ std::string sliceSvg(const volume::BrickSource& source, const Session& session, 
     return figureSvg(panels, planes);
 }
 
+/// With the unit where there is room for both.
+std::string rowTitle(const volume::Channel& channel, float room) {
+    const std::string whole = titleWithUnit(channel.name, channel.unit);
+    return ImGui::CalcTextSize(whole.c_str()).x <= room ? whole : fitText(channel.name, room);
+}
+
 void drawToolbar(ViewContext& context, SliceMatrixView& view, const std::vector<int>& shown, const PlaneAxes& axes) {
     const volume::DatasetInfo& info = context.source->info();
     const AxisLabels labels = axisLabels(context.session, info);
@@ -203,7 +209,7 @@ void drawSliceMatrixView(ViewContext& context, const std::string& pane, SliceMat
     const vis::WorldFrame world = vis::worldFrame(info.bounds, context.session.stretch);
     const PlaneAxes axes = axesOf(view.axis, world);
     view.planes = std::clamp(view.planes, 1, 12);
-    drawToolbar(context, view, shown, axes);
+    if (!context.figure) drawToolbar(context, view, shown, axes);
     if (shown.empty()) return drawHint("No parameters", "This data set holds only labels.");
     const double worldX = world.halfSize[axes.right], worldY = world.halfSize[axes.up];
     if (!(worldX > 0) || !(worldY > 0)) return drawHint("No extent", "The data are flat along this axis' planes.");
@@ -240,9 +246,8 @@ void drawSliceMatrixView(ViewContext& context, const std::string& pane, SliceMat
             if (plane > 0) continue;
             drawLegendColumn(draw, {origin.x + title + pitch * static_cast<float>(view.planes), y},
                              static_cast<float>(pixels.y), legendOf(context.session, info, shown[row]));
-            addTextUpwards(
-                draw, {origin.x + em() * 0.6f, y + static_cast<float>(pixels.y) / 2}, colors.text,
-                fitText(titleWithUnit(channel.name, channel.unit), static_cast<float>(pixels.y) + gap).c_str());
+            addTextUpwards(draw, {origin.x + em() * 0.6f, y + static_cast<float>(pixels.y) / 2}, colors.text,
+                           rowTitle(channel, static_cast<float>(pixels.y) + gap).c_str());
         }
     }
     // A click moves the linked cursor there.

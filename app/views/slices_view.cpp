@@ -210,16 +210,18 @@ void drawSlicesView(ViewContext& context, const std::string& pane, SlicesView& v
     }
     SlicesCache& cache = cacheOf<SlicesCache>(context, pane);
     std::string name = info.channels()[static_cast<std::size_t>(*channel)].name;
-    ImGui::SetNextItemWidth(std::min(em() * 11, ImGui::GetContentRegionAvail().x * 0.4f));
-    if (chooseChannel("##channel", &info, name)) view.channel = name;
-    if (ImGui::IsItemHovered()) tooltip("Parameter that colours the slices");
-    ImGui::SameLine();
-    ImGui::SetNextItemWidth(em() * 8);
-    ImGui::SliderInt("##contours", &view.contours, 0, 50, view.contours == 0 ? "no contours" : "%d contours");
-    if (ImGui::IsItemHovered()) tooltip("Contour lines over the colour range");
+    if (!context.figure) {
+        ImGui::SetNextItemWidth(std::min(em() * 11, ImGui::GetContentRegionAvail().x * 0.4f));
+        if (chooseChannel("##channel", &info, name)) view.channel = name;
+        if (ImGui::IsItemHovered()) tooltip("Parameter that colours the slices");
+        ImGui::SameLine();
+        ImGui::SetNextItemWidth(em() * 8);
+        ImGui::SliderInt("##contours", &view.contours, 0, 50, view.contours == 0 ? "no contours" : "%d contours");
+        if (ImGui::IsItemHovered()) tooltip("Contour lines over the colour range");
+    }
     if (const std::string text = stretchText(context.session.stretch); !text.empty()) {
         const float width = ImGui::CalcTextSize(text.c_str()).x;
-        ImGui::SameLine();
+        if (!context.figure) ImGui::SameLine();
         if (ImGui::GetContentRegionAvail().x > width + em()) {
             ImGui::SameLine(ImGui::GetContentRegionMax().x - width);
             ImGui::AlignTextToFramePadding();

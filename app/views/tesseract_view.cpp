@@ -324,9 +324,9 @@ void drawTesseractView(ViewContext& context, const std::string& pane, TesseractV
     const std::optional<int> channel = resolveChannel(info, context.session, view.channel);
     if (!channel) return drawHint("No parameters", "This data set holds nothing to show.");
     TesseractCache& cache = cacheOf<TesseractCache>(context, pane);
-    drawToolbar(context, cache, view, info.channels()[static_cast<std::size_t>(*channel)].name);
+    if (!context.figure) drawToolbar(context, cache, view, info.channels()[static_cast<std::size_t>(*channel)].name);
     const ImVec2 room = ImGui::GetContentRegionAvail();
-    const float below = view.showControls && room.y > em() * 14 && room.x > em() * 12
+    const float below = view.showControls && !context.figure && room.y > em() * 14 && room.x > em() * 12
                             ? slidersHeight(room.x) + ImGui::GetStyle().ItemSpacing.y
                             : 0;
     const ImVec2 min = ImGui::GetCursorScreenPos(), size{std::floor(room.x), std::floor(room.y - below)};

@@ -31,6 +31,7 @@ struct ViewContext {
     ImFont* iconFont = nullptr; ///< Font Awesome glyphs; null where the package is missing
     float scale = 1;            ///< pixels per design pixel
     bool headless = false;      ///< finish everything before the frame ends: no budget, no progressive states
+    bool figure = false;        ///< a picture of this view alone: without the controls, which nobody can press there
     /// Asks the workbench to run a command of its table, by name, after this frame; null in tests.
     std::function<void(const std::string& command)> runCommand = {};
     /// Asks where to save, then writes what `make` returns, in the background; null in tests.

@@ -163,17 +163,17 @@ TEST_F(DockTest, EscapeEndsADrag) {
 TEST_F(DockTest, ASplitterFollowsTheMouseInTheSameFrame) {
     insertPane(tree, "c", tree.root.id, DockSide::Right);
     step(2);
-    const float edge = layoutDock(tree, {0, 0}, {800, 600}, 1).at(tree.root.children[0].id).hi.x;
+    const float edge = layoutDock(tree, {{0, 0}, {800, 600}}, 1).rects.at(tree.root.children[0].id).hi.x;
     mouse = {edge + 2, 300};
     step(2);
     held = true;
     step();
     mouse.x += 200;
     step();
-    EXPECT_EQ(layoutDock(tree, {0, 0}, {800, 600}, 1).at(tree.root.children[0].id).hi.x, edge + 200);
+    EXPECT_EQ(layoutDock(tree, {{0, 0}, {800, 600}}, 1).rects.at(tree.root.children[0].id).hi.x, edge + 200);
     mouse.x = 5000; // into the limit: the stored ratio is what is shown
     step();
-    const auto rects = layoutDock(tree, {0, 0}, {800, 600}, 1);
+    const auto rects = layoutDock(tree, {{0, 0}, {800, 600}}, 1).rects;
     const float shown = rects.at(tree.root.children[0].id).hi.x;
     EXPECT_NEAR(tree.root.ratio, shown / (800 - (rects.at(tree.root.children[1].id).lo.x - shown)), 1e-3);
     held = false;
@@ -185,7 +185,7 @@ TEST_F(DockTest, RectanglesTileTheWindow) {
     for (int i = 0; i < 200; ++i) {
         insertPane(tree, std::string(1, char('a' + i % 3)), 1 + int(random() % 6), static_cast<DockSide>(random() % 5));
         const ImVec2 size{float(50 + random() % 1900), float(50 + random() % 1100)};
-        for (const auto& [id, rect] : layoutDock(tree, {0, 0}, size, 1)) {
+        for (const auto& [id, rect] : layoutDock(tree, {{0, 0}, size}, 1).rects) {
             ASSERT_GE(rect.hi.x, rect.lo.x);
             ASSERT_GE(rect.hi.y, rect.lo.y);
             ASSERT_EQ(rect.lo.x, std::round(rect.lo.x));

@@ -1,5 +1,6 @@
 #include "app/platform/gui.h"
 #include "app/platform/headless.h"
+#include "app/ui/keys.h"
 #include "vis/gl/headless.h"
 #include "volume/error.h"
 
@@ -170,6 +171,52 @@ TEST(WorkbenchGl, DerivedParametersComeAndGo) {
     EXPECT_FALSE(known("twice"));
     while (!(workbench.session() == derived)) ASSERT_TRUE(run("Redo"));
     EXPECT_TRUE(known("twice"));
+}
+
+// Opening something else, as a dropped file does, asks before it gives up what was not saved; so does the end, also
+// after the same data have been shown in another way.
+TEST(WorkbenchGl, WhatIsNotSavedIsNotGivenUpUnasked) {
+    const vis::HeadlessContext gl;
+    const Gui gui;
+    Workbench workbench({.renderer = nullptr, .render = {}, .headless = false, .onlyPane = {}, .stateFolder = {}});
+    workbench.install(smallData());
+    OffscreenFrames frames({400, 300});
+    const auto settle = [&] {
+        do {
+            workbench.jobs().wait();
+            frames.draw(workbench, 1);
+        } while (workbench.busy());
+        for (int i = 0; i < 4; ++i) frames.draw(workbench, 1);
+    };
+    settle();
+    OpenRequest other;
+    other.data.emplace();
+    other.data->model = "marschner-lobb";
+    other.data->settings = {{"nx", 16}, {"ny", 16}, {"nz", 16}};
+    workbench.session().selection.brushes.push_back({});
+    settle();
+    const Session edited = workbench.session();
+    workbench.open(other);
+    settle();
+    EXPECT_TRUE(workbench.session() == edited);
+    // Esc is no answer: all stays, and the next time it is asked again.
+    for (const bool down : {true, false})
+        frames.draw(workbench, 1, [&](ImGuiIO& io) { io.KeysDown[key::kEscape] = down; });
+    settle();
+    EXPECT_TRUE(workbench.session() == edited);
+    for (const Command& command : workbench.commands())
+        if (command.title() == "Show on BCC lattice") command.run();
+    settle();
+    ASSERT_NE(workbench.session().data.bcc, edited.data.bcc);
+    workbench.requestQuit();
+    settle();
+    EXPECT_FALSE(workbench.finished());
+
+    workbench.install(smallData());
+    settle();
+    workbench.open(other);
+    settle();
+    EXPECT_EQ(workbench.session().data.settings, other.data->settings) << "nothing to save, nothing asked";
 }
 
 TEST(WorkbenchGl, CommandNamesAndKeysAreUnique) {

@@ -2,7 +2,7 @@
 # Drives the real window: opens the built-in data, brushes, undoes, saves by shortcut and quits; then checks the saved
 # session and that it renders without a window to the picture the window showed.
 # usage: window.sh TESSERA SOURCE_DIR
-tessera=$1
+tessera=$1 source=$2
 for tool in Xvfb xdotool; do
     command -v $tool >/dev/null || { echo "skipped: no $tool"; exit 77; }
 done
@@ -105,6 +105,20 @@ await 60 fresh || fail "a lasso draws nothing"
 xdotool key ctrl+s
 lassoed() { grep -q '"type": "lasso"' session.tessera.json; }
 await 30 lassoed || fail "the saved session holds no lasso"
+# Files dropped on the window: a broken one is told of and changes nothing, a session opens.
+if command -v python3 >/dev/null; then
+    drop() { python3 "$source/tests/e2e/drop_files.py" "$window" "$1"; }
+    printf 'no archive' >"$work/broken.tsr"
+    mark
+    drop "$work/broken.tsr" || fail "the window takes no dropped file"
+    await 30 fresh || fail "a broken file dropped draws nothing"
+    title() { xdotool getwindowname "$window" | grep -q "$1"; }
+    title session || fail "a broken file dropped replaces the session"
+    drop "$work/brushed.tessera.json"
+    await 30 title brushed || fail "a session dropped does not open"
+    drop "$work/session.tessera.json"
+    await 30 title session || fail "the other session dropped does not open"
+fi
 xdotool key ctrl+q
 for ((i = 0; i < 100; ++i)); do kill -0 "$app" 2>/dev/null || break; sleep 0.2; done
 kill -0 "$app" 2>/dev/null && fail "Ctrl+Q does not end the program"

@@ -1,0 +1,93 @@
+#pragma once
+
+#include "volume/describe.h"
+
+#include <map>
+#include <string>
+#include <vector>
+
+/// The saved state of the comparison of variants of the scene.
+namespace tessera::app {
+
+/// How variants of the scene are put beside each other.
+enum class CompareMode { Grid, Swipe, Blink, Difference };
+inline constexpr std::string_view kCompareModeNames[] = {"grid", "swipe", "blink", "difference"};
+
+/// The session with some settings changed.
+struct CompareVariant {
+    std::string name;                           ///< "" = made of the changes
+    std::map<std::string, std::string> changes; ///< JSON pointer into the session -> JSON, or text
+    bool operator==(const CompareVariant&) const = default;
+    static void describe(auto& self, auto&& visit) {
+        visit(self.name, FieldInfo{.key = "name", .unit = "", .doc = "Name over the picture; none: what differs"});
+        visit(self.changes, FieldInfo{.key = "changes",
+                                      .unit = "",
+                                      .doc = "Settings that differ: a place in the session as in --set, and its value",
+                                      .hidden = true});
+    }
+};
+
+/// A question to whoever compares, and the answer.
+struct CompareQuestion {
+    std::string text, answer;
+    double seconds = 0; ///< from when it came on screen to the answer; 0 = not answered
+    bool operator==(const CompareQuestion&) const = default;
+    static void describe(auto& self, auto&& visit) {
+        visit(self.text, FieldInfo{.key = "text", .unit = "", .doc = "What is asked"});
+        visit(self.answer, FieldInfo{.key = "answer", .unit = "", .doc = "What was answered"});
+        visit(self.seconds, FieldInfo{.key = "seconds", .unit = "s", .doc = "How long that took"});
+    }
+};
+
+/// The 3D scene in several variants: cameras, time, cursor and brushes are those of the session.
+struct CompareView {
+    static constexpr std::string_view kType = "compare";
+    CompareMode mode = CompareMode::Grid;
+    std::vector<CompareVariant> variants; ///< one without changes is the session as it is
+    int reference = 0;                    ///< index of the variant that the others are measured against
+    int other = 1;                        ///< index of the one swiped over the reference
+    float swipe = 0.5f;                   ///< place of the line, share of the width
+    float blinkSeconds = 0.8f;
+    float differenceTop = 0; ///< difference of 8-bit colours shown brightest; 0 = the largest there is
+    bool showTable = true;
+    std::vector<CompareQuestion> questions;
+    bool operator==(const CompareView&) const = default;
+    static void describe(auto& self, auto&& visit) {
+        visit(self.mode, FieldInfo{.key = "mode",
+                                   .unit = "",
+                                   .doc = "Beside each other, either side of a line, in turns, or their difference "
+                                          "from the reference",
+                                   .names = kCompareModeNames});
+        visit(self.variants, FieldInfo{.key = "variants",
+                                       .unit = "",
+                                       .doc = "What is compared: the session with settings changed",
+                                       .hidden = true});
+        visit(self.reference, FieldInfo{.key = "reference",
+                                        .unit = "",
+                                        .doc = "Variant that the others are measured against, counted from 0",
+                                        .range = Range{0, 15},
+                                        .hidden = true});
+        visit(self.other, FieldInfo{.key = "other",
+                                    .unit = "",
+                                    .doc = "Variant swiped over the reference, counted from 0",
+                                    .range = Range{0, 15},
+                                    .hidden = true});
+        visit(self.swipe,
+              FieldInfo{.key = "swipe", .unit = "", .doc = "Place of the line between two", .range = Range{0, 1}});
+        visit(self.blinkSeconds, FieldInfo{.key = "blinkSeconds",
+                                           .unit = "s",
+                                           .doc = "How long each is shown in turn",
+                                           .range = Range{0.1, 10}});
+        visit(self.differenceTop, FieldInfo{.key = "differenceTop",
+                                            .unit = "of 255",
+                                            .doc = "Difference of colours shown brightest; 0 = the largest that occurs",
+                                            .range = Range{0, 255}});
+        visit(self.showTable, FieldInfo{.key = "table", .unit = "", .doc = "List what differs, costs and errors"});
+        visit(self.questions, FieldInfo{.key = "questions",
+                                        .unit = "",
+                                        .doc = "Questions to whoever compares, with their answers",
+                                        .hidden = true});
+    }
+};
+
+} // namespace tessera::app

@@ -1,0 +1,174 @@
+#pragma once
+
+#include "volume/describe.h"
+
+#include <glm/gtc/quaternion.hpp>
+#include <glm/vec3.hpp>
+#include <string>
+#include <vector>
+
+/// The saved state of views of the scene and of the data in space and time.
+namespace tessera::app {
+
+struct VolumeView {
+    static constexpr std::string_view kType = "volume";
+    bool showBox = true, showAxes = true, showLegend = true, showCursor = true, showGizmo = true, showScaleBar = true,
+         showLenses = true;
+    bool operator==(const VolumeView&) const = default;
+    static void describe(auto& self, auto&& visit) {
+        visit(self.showBox, FieldInfo{.key = "box", .unit = "", .doc = "Draw the box around the data"});
+        visit(self.showAxes, FieldInfo{.key = "axes", .unit = "", .doc = "Draw axes with ticks and units"});
+        visit(self.showLegend, FieldInfo{.key = "legend", .unit = "", .doc = "Draw colour legends"});
+        visit(self.showCursor, FieldInfo{.key = "cursor", .unit = "", .doc = "Draw the linked cross-hair"});
+        visit(self.showGizmo,
+              FieldInfo{.key = "gizmo", .unit = "", .doc = "Draw the axis triad; a click on an end looks along it"});
+        visit(self.showScaleBar, FieldInfo{.key = "scaleBar", .unit = "", .doc = "Draw a bar of a round length"});
+        visit(self.showLenses,
+              FieldInfo{.key = "lenses", .unit = "", .doc = "Draw outlines of lenses, and handles under the mouse"});
+    }
+};
+
+struct SlicesView {
+    static constexpr std::string_view kType = "slices";
+    std::string channel; ///< "" = the channel of the first layer
+    int contours = 0;
+    bool showReadout = true;
+    bool operator==(const SlicesView&) const = default;
+    static void describe(auto& self, auto&& visit) {
+        visit(self.channel, FieldInfo{.key = "channel", .unit = "", .doc = "Parameter shown", .refersTo = "channel"});
+        visit(self.contours,
+              FieldInfo{
+                  .key = "contours", .unit = "", .doc = "Number of contour lines, 0 = none", .range = Range{0, 50}});
+        visit(self.showReadout, FieldInfo{.key = "readout", .unit = "", .doc = "List every parameter at the cursor"});
+    }
+};
+
+/// What a face of the cube shows of its parameter, along the axis that the face stands on.
+enum class WallKind { Slice, Mean, Maximum, XRay, Shadow };
+inline constexpr std::string_view kWallKindNames[] = {"slice", "mean", "maximum", "xray", "shadow"};
+
+struct Wall {
+    std::string channel = {}; ///< "" = the channel of the first layer
+    WallKind kind = WallKind::Mean;
+    bool operator==(const Wall&) const = default;
+    static void describe(auto& self, auto&& visit) {
+        visit(self.channel, FieldInfo{.key = "channel", .unit = "", .doc = "Parameter shown", .refersTo = "channel"});
+        visit(self.kind, FieldInfo{.key = "kind",
+                                   .unit = "",
+                                   .doc = "At the cursor, mean or maximum along the axis, absorption by the transfer "
+                                          "function, or the shadow that the selection casts",
+                                   .names = kWallKindNames});
+    }
+};
+
+/// The scene in a cube on whose inner faces, those turned to the viewer, parameters are projected.
+struct ShadowCubeView {
+    static constexpr std::string_view kType = "shadowCube";
+    Wall left, right{.kind = WallKind::Slice}, bottom, top{.kind = WallKind::Slice}, back,
+        front{.kind = WallKind::Slice}; ///< at the lower and upper end of x, y and z
+    float gap = 0.22f;
+    bool together = true;
+    glm::quat orientation{1, 0, 0, 0};
+    bool brushing = false;
+    bool operator==(const ShadowCubeView&) const = default;
+    static void describe(auto& self, auto&& visit) {
+        visit(self.left, FieldInfo{.key = "left", .unit = "", .doc = "Face at the lower end of x"});
+        visit(self.right, FieldInfo{.key = "right", .unit = "", .doc = "Face at the upper end of x"});
+        visit(self.bottom, FieldInfo{.key = "bottom", .unit = "", .doc = "Face at the lower end of y"});
+        visit(self.top, FieldInfo{.key = "top", .unit = "", .doc = "Face at the upper end of y"});
+        visit(self.back, FieldInfo{.key = "back", .unit = "", .doc = "Face at the lower end of z"});
+        visit(self.front, FieldInfo{.key = "front", .unit = "", .doc = "Face at the upper end of z"});
+        visit(self.gap, FieldInfo{.key = "gap",
+                                  .unit = "",
+                                  .doc = "From the data to the faces, longest edge = 1",
+                                  .range = Range{0, 1}});
+        visit(self.together, FieldInfo{.key = "together",
+                                       .unit = "",
+                                       .doc = "The cube turns with the object; else each is turned by itself"});
+        visit(
+            self.orientation,
+            FieldInfo{.key = "orientation", .unit = "", .doc = "Of the cube while it turns by itself", .hidden = true});
+        visit(self.brushing,
+              FieldInfo{.key = "brushing", .unit = "", .doc = "Dragging on a face selects the prism behind it"});
+    }
+};
+
+/// What colours the points of a tesseract.
+enum class TesseractColor { Value, Fourth };
+inline constexpr std::string_view kTesseractColorNames[] = {"value", "fourth"};
+
+/// The field in four dimensions, turned in six planes: splatted samples in a wire tesseract.
+struct TesseractView {
+    static constexpr std::string_view kType = "tesseract";
+    std::string channel; ///< "" = the channel of the first layer
+    std::string fourth;  ///< parameter along the fourth axis at the session's time; "" = time itself
+    TesseractColor colorBy = TesseractColor::Value;
+    glm::vec3 turn{0, -32, 22}, turn4{0, 0, 0};
+    float eye = 1.8f, zoom = 1;
+    float radius = 3;
+    float density = 1;
+    int points = 150000;
+    bool cube = true;
+    bool showWire = true, showNow = true, showLegend = true, showControls = true;
+    int lattice = 0;
+    bool tour = false;
+    float tourSpeed = 12;
+    bool operator==(const TesseractView&) const = default;
+    static void describe(auto& self, auto&& visit) {
+        visit(self.channel, FieldInfo{.key = "channel", .unit = "", .doc = "Parameter shown", .refersTo = "channel"});
+        visit(self.fourth, FieldInfo{.key = "fourth",
+                                     .unit = "",
+                                     .doc = "Parameter along the fourth axis, at the time shown; none: time itself",
+                                     .refersTo = "optionalChannel"});
+        visit(self.colorBy, FieldInfo{.key = "colorBy",
+                                      .unit = "",
+                                      .doc = "Points coloured by their value or by the fourth axis",
+                                      .names = kTesseractColorNames});
+        const Range turn{-180, 180};
+        visit(self.turn, FieldInfo{.key = "turn",
+                                   .unit = "deg",
+                                   .doc = "Rotation in the planes xy, xz, yz, in this order",
+                                   .range = turn});
+        visit(self.turn4, FieldInfo{.key = "turn4",
+                                    .unit = "deg",
+                                    .doc = "Rotation in the planes xw, yw, zw, after the others; w is the fourth axis",
+                                    .range = turn});
+        visit(self.eye, FieldInfo{.key = "eye",
+                                  .unit = "radius",
+                                  .doc = "Distance of the eye along the fourth axis, in radii of the tesseract",
+                                  .range = Range{1.1, 20},
+                                  .logScale = true});
+        visit(self.zoom, FieldInfo{.key = "zoom",
+                                   .unit = "",
+                                   .doc = "Magnification; at 1 the tesseract fits at any angle",
+                                   .range = Range{0.2, 10},
+                                   .logScale = true});
+        visit(self.radius,
+              FieldInfo{.key = "radius", .unit = "pixel", .doc = "Radius of a splat", .range = Range{0.5, 20}});
+        visit(self.density, FieldInfo{.key = "density",
+                                      .unit = "",
+                                      .doc = "Opacity of the points",
+                                      .range = Range{0.01, 20},
+                                      .logScale = true});
+        visit(self.points, FieldInfo{.key = "points",
+                                     .unit = "",
+                                     .doc = "Samples drawn at most",
+                                     .range = Range{1000, 2000000},
+                                     .logScale = true});
+        visit(self.cube,
+              FieldInfo{.key = "cube", .unit = "", .doc = "All axes equally long; else the proportions as shown"});
+        visit(self.showWire, FieldInfo{.key = "wire", .unit = "", .doc = "Draw the edges of the tesseract"});
+        visit(self.showNow, FieldInfo{.key = "now", .unit = "", .doc = "Draw the cell of the time shown"});
+        visit(self.showLegend, FieldInfo{.key = "legend", .unit = "", .doc = "Draw colour legends"});
+        visit(self.showControls, FieldInfo{.key = "controls", .unit = "", .doc = "Show a slider for each plane"});
+        visit(self.lattice, FieldInfo{.key = "lattice",
+                                      .unit = "",
+                                      .doc = "Cells of the lattice drawn along each axis, 0 = none",
+                                      .range = Range{0, 8}});
+        visit(self.tour, FieldInfo{.key = "tour", .unit = "", .doc = "Keep turning in two planes at once"});
+        visit(self.tourSpeed,
+              FieldInfo{.key = "tourSpeed", .unit = "deg/s", .doc = "Speed of the tour", .range = Range{1, 90}});
+    }
+};
+
+} // namespace tessera::app

@@ -1,0 +1,82 @@
+#include "app/ui/dock_layout.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tessera::app {
+
+namespace {
+
+constexpr float kGap = 4;       // design pixels between panes
+constexpr float kSmallest = 90; // design pixels a pane keeps, if there is room
+
+DockRect sideOf(const DockRect& rect, DockSide side, float share) {
+    DockRect part = rect;
+    const float w = (rect.hi.x - rect.lo.x) * share, h = (rect.hi.y - rect.lo.y) * share;
+    if (side == DockSide::Left) part.hi.x = rect.lo.x + w;
+    if (side == DockSide::Right) part.lo.x = rect.hi.x - w;
+    if (side == DockSide::Top) part.hi.y = rect.lo.y + h;
+    if (side == DockSide::Bottom) part.lo.y = rect.hi.y - h;
+    return part;
+}
+
+} // namespace
+
+float DockLayout::firstPart(const DockNode& node, float room) const {
+    const float least = std::min(kSmallest * scale, room / 2);
+    return std::round(std::clamp(node.ratio * room, least, room - least));
+}
+
+void DockLayout::place(DockNode& node, DockRect rect) {
+    if (node.kind == DockKind::Tabs) {
+        rects[node.id] = rect;
+        stacks.push_back(&node);
+        return;
+    }
+    const bool row = node.kind == DockKind::Row;
+    const float gap = std::round(kGap * scale);
+    const float room = std::max(0.0f, rect.length(row) - gap);
+    const float first = firstPart(node, room);
+    DockRect a = rect, b = rect, strip = rect;
+    (row ? a.hi.x : a.hi.y) = (row ? strip.lo.x : strip.lo.y) = (row ? rect.lo.x : rect.lo.y) + first;
+    (row ? b.lo.x : b.lo.y) = (row ? strip.hi.x : strip.hi.y) = (row ? rect.lo.x : rect.lo.y) + first + gap;
+    splitters.push_back({&node, rect, strip});
+    place(node.children[0], a);
+    place(node.children[1], b);
+}
+
+DockLayout layoutDock(DockTree& tree, DockRect whole, float scale) {
+    DockLayout layout{scale, {}, {}, {}};
+    layout.place(tree.root, whole);
+    return layout;
+}
+
+std::optional<DockDrop> dropAt(const DockLayout& layout, const DockNode& root, const DockRect& whole, ImVec2 at,
+                               float strip) {
+    if (!whole.contains(at)) return {};
+    // The outer rim puts the pane beside everything.
+    const float rim = 14 * layout.scale;
+    if (root.kind != DockKind::Tabs) {
+        const std::pair<DockSide, float> distances[] = {{DockSide::Left, at.x - whole.lo.x},
+                                                        {DockSide::Right, whole.hi.x - at.x},
+                                                        {DockSide::Bottom, whole.hi.y - at.y}};
+        for (const auto& [side, distance] : distances)
+            if (distance < rim) return DockDrop{root.id, side, sideOf(whole, side, 0.25f)};
+    }
+    for (const DockNode* stack : layout.stacks) {
+        const DockRect& rect = layout.rects.at(stack->id);
+        if (!rect.contains(at)) continue;
+        if (at.y < rect.lo.y + strip || stack->tabs.empty()) return DockDrop{stack->id, DockSide::Center, rect};
+        const float x = (at.x - rect.lo.x) / (rect.hi.x - rect.lo.x);
+        const float y = (at.y - rect.lo.y) / (rect.hi.y - rect.lo.y);
+        const std::pair<DockSide, float> distances[] = {
+            {DockSide::Left, x}, {DockSide::Right, 1 - x}, {DockSide::Top, y}, {DockSide::Bottom, 1 - y}};
+        const auto nearest = std::min_element(std::begin(distances), std::end(distances),
+                                              [](const auto& a, const auto& b) { return a.second < b.second; });
+        if (nearest->second > 0.28f) return DockDrop{stack->id, DockSide::Center, rect};
+        return DockDrop{stack->id, nearest->first, sideOf(rect, nearest->first, 0.5f)};
+    }
+    return {};
+}
+
+} // namespace tessera::app

@@ -1,0 +1,46 @@
+#pragma once
+
+#include "app/session/dock_tree.h"
+
+#include <imgui.h>
+#include <map>
+#include <optional>
+#include <vector>
+
+/// Where the parts of a dock tree lie in a window. Whole pixels, no gaps but splitters.
+namespace tessera::app {
+
+struct DockRect {
+    ImVec2 lo, hi;
+    float length(bool row) const { return row ? hi.x - lo.x : hi.y - lo.y; }
+    bool contains(ImVec2 at) const { return at.x >= lo.x && at.x < hi.x && at.y >= lo.y && at.y < hi.y; }
+};
+
+struct DockSplitter {
+    DockNode* node;
+    DockRect whole, strip;
+};
+
+struct DockLayout {
+    float scale;                   ///< pixels per design pixel
+    std::map<int, DockRect> rects; ///< of every stack, its strip of tabs included
+    std::vector<DockNode*> stacks;
+    std::vector<DockSplitter> splitters;
+
+    /// Size of the first part of a split in pixels: the ratio, kept from squeezing either part.
+    float firstPart(const DockNode& node, float room) const;
+    void place(DockNode& node, DockRect rect);
+};
+DockLayout layoutDock(DockTree& tree, DockRect whole, float scale);
+
+/// Where a dragged tab would go.
+struct DockDrop {
+    int node = 0;
+    DockSide side = DockSide::Center;
+    DockRect preview;
+};
+/// `strip`: height of the tabs, pixels.
+std::optional<DockDrop> dropAt(const DockLayout& layout, const DockNode& root, const DockRect& whole, ImVec2 at,
+                               float strip);
+
+} // namespace tessera::app
