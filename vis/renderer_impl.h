@@ -8,7 +8,8 @@
 #include "vis/technique/look_uniforms.h"
 #include "vis/technique/ray_plan.h"
 
-/// Inside the renderer: renderer.cpp has what is public, binding.cpp asks for textures, frame.cpp draws with them.
+/// Inside the renderer: renderer.cpp has what is public, binding.cpp asks for textures, light_binding.cpp for light,
+/// ray_pass.cpp draws with them, present.cpp shows it, frame.cpp does as much of all this as there is time for.
 namespace tessera::vis {
 
 using Clock = std::chrono::steady_clock;
@@ -48,7 +49,7 @@ struct Renderer::Impl {
     void bindBetween(ViewTarget& target, RayPlan& plan, const std::vector<ChannelKey>& keys);
     bool bind(ViewTarget& target, const Scene& scene, const FrameRequest& request, RayPlan& plan, FrameStatus& status);
 
-    // frame.cpp
+    // ray_pass.cpp
     ProgramRecipe variant(const ViewTarget& target, const Scene& scene, const RayPlan& plan) const;
     ProgramRecipe prepare(ViewTarget& target, const Scene& scene, RayPlan& plan);
     void geometry(ViewTarget& target, const Scene& scene, const RayPlan& plan, glm::ivec2 size, const Tile& tile,
@@ -57,12 +58,18 @@ struct Renderer::Impl {
     void rays(const RayPrograms& rayPrograms, const Scene& scene, const RayBuffer& buffer, glm::ivec2 size,
               const Tile& tile, const std::vector<Tile>* parts, double stepFactor = 1, int pass = 0);
     void proxies(const Program& program, const Scene& scene, const RayBuffer& buffer, double stepFactor);
-    void present(ViewTarget& target, const Scene& scene, bool reduced, const Tile& tile);
     void accumulate(const RayPrograms& rayPrograms, ViewTarget& target, const Scene& scene, const Tile& tile,
                     const std::vector<Tile>* parts, int pass);
+
+    // present.cpp
+    void present(ViewTarget& target, const Scene& scene, bool reduced, const Tile& tile);
+    void nothing(ViewTarget& target, const Scene& scene);
+
+    // light_binding.cpp
     void sayLimits(const Scene& scene);
     bool bindLight(ViewTarget& target, const Scene& scene, const FrameRequest& request, const RayPlan& plan);
-    void nothing(ViewTarget& target, const Scene& scene);
+
+    // frame.cpp
     void refine(ViewTarget& target, const Scene& scene, const FrameRequest& request, RayPlan& plan,
                 Clock::time_point start);
 };
