@@ -1,3 +1,4 @@
+#include "tests/vis/ball_silhouette.h"
 #include "tests/vis/raycast_compare.h"
 
 #include "vis/model/look_shading.h"
@@ -128,26 +129,9 @@ constexpr glm::ivec2 kPicture{120, 120};
 TEST(LooksOfABall, SilhouettesAreTheRim) {
     Ball ball;
     IsoLayer& layer = ball.surface();
-    layer.opacity = 0.3f;
-    layer.look.silhouette = SilhouetteEnhancement{.retained = 0.1f, .strength = 2.5f, .exponent = 2};
-    const std::vector<glm::vec4> picture = ball.draw(kPicture);
-    int rim = 0, inner = 0;
-    for (int y = 0; y < kPicture.y; ++y)
-        for (int x = 0; x < kPicture.x; ++x) {
-            const double r = glm::length(ball.place(x, y, kPicture));
-            const double alpha = double(picture[std::size_t(y * kPicture.x + x)].a);
-            if (r > 1.03) {
-                EXPECT_EQ(alpha, 0);
-            }
-            if (r > 0.95) continue;
-            // Front and back of the ball, each a' = 0.3 (0.1 + 2.5 (1 - |n.v|)^2).
-            const double own = 0.3 * (0.1 + 2.5 * std::pow(1 - std::sqrt(1 - r * r), 2));
-            EXPECT_NEAR(alpha, 1 - (1 - own) * (1 - own), 0.02) << r;
-            rim += r > 0.9 && alpha > 0.3;
-            inner += r < 0.5 && alpha < 0.1;
-        }
-    EXPECT_GT(rim, 50);
-    EXPECT_GT(inner, 500);
+    layer.opacity = kSilhouetteOpacity;
+    layer.look.silhouette = kSilhouette;
+    expectSilhouette(ball.draw(kPicture), kPicture, [&](int x, int y) { return ball.place(x, y, kPicture); });
 }
 
 TEST(LooksOfABall, ToneRunsFromWarmToCool) {

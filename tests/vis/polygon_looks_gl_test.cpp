@@ -1,3 +1,4 @@
+#include "tests/vis/ball_silhouette.h"
 #include "tests/vis/raycast_compare.h"
 
 #include "vis/model/look_shading.h"
@@ -123,25 +124,9 @@ TEST(PolygonLooks, PresetsFollowTheFormulas) {
 
 TEST(PolygonLooks, SilhouettesAreTheRim) {
     MeshBall ball;
-    ball.scene.geometry[0].opacity = 0.3f;
-    ball.scene.geometry[0].look.silhouette = SilhouetteEnhancement{.retained = 0.1f, .strength = 2.5f, .exponent = 2};
-    const std::vector<glm::vec4> picture = ball.draw();
-    int rim = 0, inner = 0;
-    for (int y = 0; y < kBallPicture.y; ++y)
-        for (int x = 0; x < kBallPicture.x; ++x) {
-            const double r = glm::length(ball.place(x, y)),
-                         alpha = double(picture[std::size_t(y * kBallPicture.x + x)].a);
-            if (r > 1.02) {
-                EXPECT_EQ(alpha, 0);
-            }
-            if (r > 0.95) continue;
-            const double own = 0.3 * (0.1 + 2.5 * std::pow(1 - std::sqrt(1 - r * r), 2));
-            EXPECT_NEAR(alpha, 1 - (1 - own) * (1 - own), 0.02) << r;
-            rim += r > 0.9 && alpha > 0.3;
-            inner += r < 0.5 && alpha < 0.1;
-        }
-    EXPECT_GT(rim, 50);
-    EXPECT_GT(inner, 500);
+    ball.scene.geometry[0].opacity = kSilhouetteOpacity;
+    ball.scene.geometry[0].look.silhouette = kSilhouette;
+    expectSilhouette(ball.draw(), kBallPicture, [&](int x, int y) { return ball.place(x, y); });
 }
 
 /// On a plane across the view lines of width w lie every s along x and y: 1 - (1 - w / s)^2 of it is line.
