@@ -3,7 +3,6 @@
 #include "vis/model/context_blur.h"
 #include "vis/model/proxy.h"
 #include "vis/technique/lens_pixels.h"
-
 #include "vis/technique/look_uniforms.h"
 #include "vis/technique/ray_uniforms.h"
 
