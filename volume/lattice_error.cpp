@@ -19,8 +19,8 @@ namespace {
 
 constexpr int kMargin = 4; // cells beyond the box: two for the filter, one for the prefilter, one for rounding
 
-/// Samples on a piece of an endless lattice: the box and a margin around it.
-struct Piece {
+/// Samples on a part of an endless lattice: the box and a margin around it.
+struct SampledPart {
     Lattice lattice; ///< starts kMargin cells before the box
     std::vector<double> values;
 
@@ -42,29 +42,29 @@ template <class Value> std::vector<double> everySample(const Lattice& lattice, c
 }
 
 /// The samples of a signal, filtered where the filter wants it.
-Piece samplesOf(const std::function<double(glm::dvec3)>& signal, LatticeKind kind, double spacing, LatticeFilter filter,
-                const Box& box) {
-    Piece piece;
-    piece.lattice.kind = kind;
-    piece.lattice.spacing = glm::dvec3(spacing);
-    piece.lattice.origin = box.lo - double(kMargin) * spacing;
-    piece.lattice.size = glm::ivec3(glm::ceil(box.size() / spacing)) + 2 * kMargin + 1;
-    piece.lattice.size.z *= kind == LatticeKind::BCC ? 2 : 1;
-    const Lattice& lattice = piece.lattice;
-    piece.values = everySample(lattice, [&](glm::ivec3 at) { return signal(lattice.position(at)); });
+SampledPart samplesOf(const std::function<double(glm::dvec3)>& signal, LatticeKind kind, double spacing,
+                      LatticeFilter filter, const Box& box) {
+    SampledPart part;
+    part.lattice.kind = kind;
+    part.lattice.spacing = glm::dvec3(spacing);
+    part.lattice.origin = box.lo - double(kMargin) * spacing;
+    part.lattice.size = glm::ivec3(glm::ceil(box.size() / spacing)) + 2 * kMargin + 1;
+    part.lattice.size.z *= kind == LatticeKind::BCC ? 2 : 1;
+    const Lattice& lattice = part.lattice;
+    part.values = everySample(lattice, [&](glm::ivec3 at) { return signal(lattice.position(at)); });
     if (filter == LatticeFilter::Quasi || filter == LatticeFilter::Quintic) {
-        const Prefiltered filtered(piece, LevelGeometry{kind, 1, 0});
-        piece.values = everySample(lattice, [&](glm::ivec3 at) { return filtered(at).value; });
+        const Prefiltered filtered(part, LevelGeometry{kind, 1, 0});
+        part.values = everySample(lattice, [&](glm::ivec3 at) { return filtered(at).value; });
     }
-    return piece;
+    return part;
 }
 
-double reconstructed(const Piece& piece, LatticeFilter filter, glm::dvec3 cells) {
-    const LevelGeometry geometry{piece.lattice.kind, 1, 0};
-    const Blend blend = filter == LatticeFilter::Tetrahedral ? tetrahedral(geometry, piece, cells)
-                        : filter == LatticeFilter::Cosine    ? cosineWeighted(geometry, piece, cells)
-                        : filter == LatticeFilter::Quintic   ? quinticBox(geometry, piece, cells)
-                                                             : linear(geometry, piece, cells);
+double reconstructed(const SampledPart& part, LatticeFilter filter, glm::dvec3 cells) {
+    const LevelGeometry geometry{part.lattice.kind, 1, 0};
+    const Blend blend = filter == LatticeFilter::Tetrahedral ? tetrahedral(geometry, part, cells)
+                        : filter == LatticeFilter::Cosine    ? cosineWeighted(geometry, part, cells)
+                        : filter == LatticeFilter::Quintic   ? quinticBox(geometry, part, cells)
+                                                             : linear(geometry, part, cells);
     return blend.sum / blend.coverage;
 }
 
@@ -81,14 +81,14 @@ std::vector<glm::dvec3> randomPoints(const Box& box, std::size_t points, unsigne
 
 LatticeError latticeError(const std::function<double(glm::dvec3)>& signal, LatticeKind kind, double spacing,
                           LatticeFilter filter, const Box& box, std::size_t points, unsigned seed) {
-    const Piece piece = samplesOf(signal, kind, spacing, filter, box);
+    const SampledPart part = samplesOf(signal, kind, spacing, filter, box);
     const std::vector<glm::dvec3> positions = randomPoints(box, points, seed);
     std::vector<double> errors(points);
     parallelFor(
         points,
         [&](std::size_t i) {
             errors[i] =
-                std::abs(reconstructed(piece, filter, piece.lattice.toCells(positions[i])) - signal(positions[i]));
+                std::abs(reconstructed(part, filter, part.lattice.toCells(positions[i])) - signal(positions[i]));
         },
         1024);
     LatticeError out;
@@ -106,15 +106,15 @@ double latticeGradientError(const std::function<double(glm::dvec3)>& signal,
                             const std::function<glm::dvec3(glm::dvec3)>& slope, LatticeKind kind, double spacing,
                             LatticeFilter filter, GradientSpan span, const Box& box, std::size_t points,
                             unsigned seed) {
-    const Piece piece = samplesOf(signal, kind, spacing, filter, box);
+    const SampledPart part = samplesOf(signal, kind, spacing, filter, box);
     const std::vector<glm::dvec3> positions = randomPoints(box, points, seed);
     const GradientStencil stencil = gradientStencil(kind, span);
     std::vector<glm::dvec2> angles(points); // times weight; weight
     parallelFor(
         points,
         [&](std::size_t i) {
-            const auto value = [&](glm::dvec3 cells) { return std::optional(reconstructed(piece, filter, cells)); };
-            const glm::dvec3 found = gradient(value, piece.lattice.toCells(positions[i]), stencil);
+            const auto value = [&](glm::dvec3 cells) { return std::optional(reconstructed(part, filter, cells)); };
+            const glm::dvec3 found = gradient(value, part.lattice.toCells(positions[i]), stencil);
             const glm::dvec3 wanted = slope(positions[i]);
             const double angle = std::atan2(glm::length(glm::cross(found, wanted)), glm::dot(found, wanted));
             angles[i] = glm::dvec2(angle, 1) * glm::length(wanted);
