@@ -34,7 +34,7 @@ double integerBoundForPsnr(const FrameSamples& samples, double wanted) {
             return apart * apart;
         });
         if (rms <= wanted) return bound;
-        bound = step / 2 - 0.5;
+        bound = std::min(step / 2 - 0.5, 0.97 * bound); // of large steps not one by one
     }
     return 0;
 }
