@@ -91,7 +91,8 @@ void refuse(double least, double limit) {
                 " MB, the limit of memory is " + std::to_string(std::lround(limit / kMega)) + " MB");
 }
 
-/// As many layers as fit, or `layers` where that is not 0, and slices that take no more. `whole`: what whole frames take.
+/// As many layers as fit, or `layers` where that is not 0, and slices that take no more. `whole`: what whole frames
+/// take.
 MemoryPlan planSlabs(const Metadata& metadata, const volume::DatasetInfo& source, const PackOptions& options,
                      int layers, double whole, double limit) {
     const SlabCosts costs(metadata, source, options);
