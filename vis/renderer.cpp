@@ -35,13 +35,8 @@ struct SavedState {
 
 /// Whether anything drawn moves with the linked cursor.
 bool liesAtCursor(const Scene& scene) {
-    return std::any_of(scene.layers.begin(), scene.layers.end(),
-                       [](const Layer& layer) {
-                           const auto* slice = std::get_if<SliceLayer>(&layer.technique);
-                           return slice && slice->atCursor && layer.visible;
-                       }) ||
-           std::any_of(scene.lenses.begin(), scene.lenses.end(),
-                       [](const Lens& lens) { return lens.enabled && lens.followsCursor; });
+    return sliceAtCursor(scene) || std::any_of(scene.lenses.begin(), scene.lenses.end(),
+                                               [](const Lens& lens) { return lens.enabled && lens.followsCursor; });
 }
 
 } // namespace

@@ -16,20 +16,11 @@ bool faces(const Camera& camera, const Ray& middle, glm::dvec3 halfSize, int axi
 } // namespace
 
 glm::ivec4 boxPixels(const Camera& camera, glm::dvec3 halfSize, glm::ivec2 size) {
-    const double aspect = double(size.x) / std::max(size.y, 1);
-    const glm::dmat4 view = viewMatrix(camera), projection = projectionMatrix(camera, aspect);
-    glm::dvec2 lo(size), hi(0);
-    for (int corner = 0; corner < 8; ++corner) {
-        const glm::dvec3 sign(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1);
-        const glm::dvec4 eye = view * glm::dvec4(sign * halfSize, 1);
-        if (camera.projection == Projection::Perspective && eye.z > -kNear) return {0, 0, size.x, size.y};
-        const glm::dvec4 clip = projection * eye;
-        const glm::dvec2 pixel = (glm::dvec2(clip) / clip.w * 0.5 + 0.5) * glm::dvec2(size);
-        lo = glm::min(lo, pixel);
-        hi = glm::max(hi, pixel);
-    }
-    const glm::ivec2 begin = glm::clamp(glm::ivec2(glm::floor(lo)) - 1, glm::ivec2(0), size);
-    const glm::ivec2 end = glm::clamp(glm::ivec2(glm::ceil(hi)) + 1, begin, size);
+    const auto found = PictureProjection(camera, size)
+                           .bounds(glm::dvec3(0), glm::dmat3(halfSize.x, 0, 0, 0, halfSize.y, 0, 0, 0, halfSize.z));
+    if (!found) return {0, 0, size.x, size.y};
+    const glm::ivec2 begin = glm::clamp(glm::ivec2(glm::floor(found->lo)) - 1, glm::ivec2(0), size);
+    const glm::ivec2 end = glm::clamp(glm::ivec2(glm::ceil(found->hi)) + 1, begin, size);
     return {begin.x, begin.y, end.x, end.y};
 }
 

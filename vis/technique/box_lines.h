@@ -1,13 +1,11 @@
 #pragma once
 
-#include "vis/model/camera.h"
+#include "vis/technique/picture_bounds.h"
 
 #include <glm/vec4.hpp>
 #include <vector>
 
 namespace tessera::vis {
-
-inline constexpr double kNear = 1e-3; ///< world units before the eye from which lines and boxes can be drawn
 
 /// The edges of the box as lines of the picture: (x, y, x, y) in pixels, y up; those that lie in front of everything
 /// inside the box last.

@@ -7,16 +7,12 @@
 
 namespace tessera::vis {
 
-namespace {
-
 bool sliceAtCursor(const Scene& scene) {
     return std::any_of(scene.layers.begin(), scene.layers.end(), [](const Layer& layer) {
         const auto* slice = std::get_if<SliceLayer>(&layer.technique);
         return slice && slice->atCursor && layer.visible;
     });
 }
-
-} // namespace
 
 std::optional<Tile> changedPixels(const Scene& before, const Scene& after, const WorldFrame& frame, glm::ivec2 size) {
     Scene otherwise = after;

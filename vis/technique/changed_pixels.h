@@ -7,6 +7,9 @@
 /// cost the whole of it.
 namespace tessera::vis {
 
+/// Whether a visible slice moves with the linked cursor.
+bool sliceAtCursor(const Scene& scene);
+
 /// Pixels that differ between the pictures, `size` pixels large, of two scenes of data with the same frame: of lenses
 /// that were moved, turned or made larger, what they cover before and after. nullopt: any pixel may.
 std::optional<Tile> changedPixels(const Scene& before, const Scene& after, const WorldFrame& frame, glm::ivec2 size);

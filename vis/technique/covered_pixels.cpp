@@ -1,6 +1,6 @@
 #include "vis/technique/covered_pixels.h"
 
-#include "vis/technique/box_lines.h"
+#include "vis/technique/picture_bounds.h"
 
 #include <algorithm>
 #include <cstdint>
@@ -52,26 +52,18 @@ std::vector<OccupiedBox> occupiedBoxes(const BlockDistances& distances, const Bl
 }
 
 std::vector<Tile> coveredPixels(const Camera& camera, std::span<const OccupiedBox> boxes, glm::ivec2 size) {
-    const double aspect = double(size.x) / std::max(size.y, 1);
-    const glm::dmat4 view = viewMatrix(camera), projection = projectionMatrix(camera, aspect);
+    const PictureProjection projection(camera, size);
     const glm::ivec2 cells = (size + kCoverCell - 1) / kCoverCell;
     std::vector<std::uint8_t> covered(std::size_t(cells.x) * std::size_t(cells.y));
     for (const OccupiedBox& box : boxes) {
-        glm::dvec2 lo(size), hi(0);
-        for (int corner = 0; corner < 8; ++corner) {
-            const glm::dvec3 place(corner & 1 ? box.hi.x : box.lo.x, corner & 2 ? box.hi.y : box.lo.y,
-                                   corner & 4 ? box.hi.z : box.lo.z);
-            const glm::dvec4 eye = view * glm::dvec4(place, 1);
-            if (camera.projection == Projection::Perspective && eye.z > -kNear) return {{{0, 0}, size}};
-            const glm::dvec4 clip = projection * eye;
-            const glm::dvec2 pixel = (glm::dvec2(clip) / clip.w * 0.5 + 0.5) * glm::dvec2(size);
-            lo = glm::min(lo, pixel);
-            hi = glm::max(hi, pixel);
-        }
+        const glm::dvec3 half = (box.hi - box.lo) * 0.5;
+        const auto found =
+            projection.bounds((box.lo + box.hi) * 0.5, glm::dmat3(half.x, 0, 0, 0, half.y, 0, 0, 0, half.z));
+        if (!found) return {{{0, 0}, size}};
         const glm::dvec2 top(size); // beyond it nothing is drawn
-        const glm::ivec2 begin(glm::floor(glm::clamp(lo - kMargin, glm::dvec2(0), top) / double(kCoverCell)));
-        const glm::ivec2 end =
-            glm::min(glm::ivec2(glm::ceil(glm::clamp(hi + kMargin, glm::dvec2(0), top) / double(kCoverCell))), cells);
+        const glm::ivec2 begin(glm::floor(glm::clamp(found->lo - kMargin, glm::dvec2(0), top) / double(kCoverCell)));
+        const glm::ivec2 end = glm::min(
+            glm::ivec2(glm::ceil(glm::clamp(found->hi + kMargin, glm::dvec2(0), top) / double(kCoverCell))), cells);
         for (int y = begin.y; y < end.y; ++y)
             for (int x = begin.x; x < end.x; ++x) covered[std::size_t(y) * std::size_t(cells.x) + std::size_t(x)] = 1;
     }

@@ -1,6 +1,6 @@
 #include "vis/technique/lens_pixels.h"
 
-#include "vis/technique/box_lines.h"
+#include "vis/technique/picture_bounds.h"
 
 #include <algorithm>
 
@@ -13,21 +13,11 @@ constexpr double kBeside = 1.5; ///< pixels around
 } // namespace
 
 std::optional<Tile> lensPixels(const PlacedLens& lens, const Camera& camera, glm::ivec2 size) {
-    const double aspect = double(size.x) / std::max(size.y, 1);
-    const glm::dmat4 view = viewMatrix(camera), projection = projectionMatrix(camera, aspect);
-    glm::dvec2 lo(1e9), hi(-1e9);
-    for (int corner = 0; corner < 8; ++corner) {
-        const glm::dvec3 unit(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1);
-        const glm::dvec4 eye = view * glm::dvec4(lens.center + lens.fromUnit * unit, 1);
-        if (camera.projection == Projection::Perspective && eye.z > -kNear) return std::nullopt;
-        const glm::dvec4 clip = projection * eye;
-        const glm::dvec2 pixel = (glm::dvec2(clip) / clip.w * 0.5 + 0.5) * glm::dvec2(size);
-        lo = glm::min(lo, pixel);
-        hi = glm::max(hi, pixel);
-    }
+    const auto found = PictureProjection(camera, size).bounds(lens.center, lens.fromUnit);
+    if (!found) return std::nullopt;
     const glm::dvec2 most(size);
-    return Tile{glm::ivec2(glm::floor(glm::clamp(lo - kBeside, glm::dvec2(0), most))),
-                glm::ivec2(glm::ceil(glm::clamp(hi + kBeside, glm::dvec2(0), most)))};
+    return Tile{glm::ivec2(glm::floor(glm::clamp(found->lo - kBeside, glm::dvec2(0), most))),
+                glm::ivec2(glm::ceil(glm::clamp(found->hi + kBeside, glm::dvec2(0), most)))};
 }
 
 std::optional<std::vector<Tile>> lensTiles(const Scene& scene, const WorldFrame& frame, glm::ivec2 size) {
