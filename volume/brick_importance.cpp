@@ -2,12 +2,12 @@
 
 #include "volume/number_extent.h"
 #include "volume/parallel.h"
+#include "volume/smoothed_half.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <concepts>
-#include <functional>
 #include <glm/common.hpp>
 #include <limits>
 #include <map>
@@ -17,132 +17,6 @@ namespace tessera::volume {
 namespace {
 
 constexpr int kTones = 256;
-constexpr float kBinomial[] = {1.0f / 16, 4.0f / 16, 6.0f / 16, 4.0f / 16, 1.0f / 16};
-constexpr int kReach = 2;
-
-std::size_t countOf(glm::ivec3 size) {
-    return std::size_t(size.x) * std::size_t(size.y) * std::size_t(size.z);
-}
-
-/// One sublattice of a field, smoothed and halved: values 0..1 with how much of each was there.
-struct Smoothed {
-    glm::ivec3 size{0};
-    std::vector<float> values, coverage; ///< coverage: empty where everything is present
-    std::size_t index(glm::ivec3 at) const {
-        return (std::size_t(at.z) * std::size_t(size.y) + std::size_t(at.y)) * std::size_t(size.x) + std::size_t(at.x);
-    }
-    bool has(std::size_t i) const { return coverage.empty() || coverage[i] > 0; }
-};
-
-/// Row `y` of slice `k` of a field as parts of a range, and whether each is there.
-struct RowReader {
-    const Field& field;
-    double lo, scale; ///< part = (value - lo) * scale
-    bool masked;
-
-    void read(int k, int y, float* values, float* present) const {
-        const std::size_t row = field.lattice.index({0, y, k}), n = std::size_t(field.lattice.size.x);
-        dispatch(field.type, [&]<class T>(T) {
-            const T* from = field.as<T>().data() + row;
-            const auto factor = float(field.scale * scale), shift = float((field.offset - lo) * scale);
-            for (std::size_t x = 0; x < n; ++x) values[x] = std::clamp(float(from[x]) * factor + shift, 0.0f, 1.0f);
-            if (!masked) return;
-            for (std::size_t x = 0; x < n; ++x) {
-                bool there = field.present(row + x);
-                if constexpr (std::same_as<T, float>) there = there && std::isfinite(from[x]);
-                present[x] = there ? 1.0f : 0.0f;
-                if (!there) values[x] = 0;
-            }
-        });
-    }
-};
-
-/// Every second sample of a line, smoothed; beyond its ends the last sample again.
-template <class At> float smoothAt(int i, int n, const At& at) {
-    float sum = 0;
-    for (int tap = -kReach; tap <= kReach; ++tap)
-        sum += kBinomial[tap + kReach] * at(std::clamp(2 * i + tap, 0, n - 1));
-    return sum;
-}
-
-/// Slices of the sublattice halved along x and y, then along z.
-std::vector<float> halved(glm::ivec3 size, const std::function<void(int slice, int y, float* row)>& read) {
-    const glm::ivec3 half = (size + 1) / 2;
-    const std::size_t nx = std::size_t(size.x), hx = std::size_t(half.x), slice = hx * std::size_t(half.y);
-    std::vector<float> flat(slice * std::size_t(size.z)), out(countOf(half));
-    parallelRanges(std::size_t(size.z), [&](std::size_t begin, std::size_t end) {
-        std::vector<float> row(nx + 1), evens(hx), odds(hx), rows(hx * std::size_t(size.y));
-        // In the middle of a row all taps are inside.
-        const std::size_t first = 1, last = nx > 2 ? (nx - 3) / 2 + 1 : 0;
-        for (std::size_t z = begin; z < end; ++z) {
-            for (int y = 0; y < size.y; ++y) {
-                read(int(z), y, row.data());
-                float* to = rows.data() + std::size_t(y) * hx;
-                const float* from = row.data();
-                float *even = evens.data(), *odd = odds.data();
-                for (std::size_t x = 0; x < hx; ++x) even[x] = from[2 * x], odd[x] = from[2 * x + 1];
-                for (std::size_t x = first; x < last; ++x)
-                    to[x] = kBinomial[0] * (even[x - 1] + even[x + 1]) + kBinomial[1] * (odd[x - 1] + odd[x]) +
-                            kBinomial[2] * even[x];
-                for (std::size_t x = 0; x < hx; ++x) {
-                    if (x == first && last > first) x = last;
-                    if (x < hx) to[x] = smoothAt(int(x), size.x, [&](int i) { return from[i]; });
-                }
-            }
-            for (int y = 0; y < half.y; ++y) {
-                const float* taps[5];
-                for (int tap = 0; tap < 5; ++tap)
-                    taps[tap] = rows.data() + std::size_t(std::clamp(2 * y + tap - kReach, 0, size.y - 1)) * hx;
-                float* to = flat.data() + z * slice + std::size_t(y) * hx;
-                for (std::size_t x = 0; x < hx; ++x)
-                    to[x] = kBinomial[0] * (taps[0][x] + taps[4][x]) + kBinomial[1] * (taps[1][x] + taps[3][x]) +
-                            kBinomial[2] * taps[2][x];
-            }
-        }
-    });
-    parallelFor(std::size_t(half.z), [&](std::size_t z) {
-        const float* taps[5];
-        for (int tap = 0; tap < 5; ++tap)
-            taps[tap] = flat.data() + std::size_t(std::clamp(2 * int(z) + tap - kReach, 0, size.z - 1)) * slice;
-        float* to = out.data() + z * slice;
-        for (std::size_t i = 0; i < slice; ++i)
-            to[i] = kBinomial[0] * (taps[0][i] + taps[4][i]) + kBinomial[1] * (taps[1][i] + taps[3][i]) +
-                    kBinomial[2] * taps[2][i];
-    });
-    return out;
-}
-
-Smoothed smoothedHalf(const RowReader& reader, int sublattice) {
-    const Lattice& lattice = reader.field.lattice;
-    const int slices = lattice.kind == LatticeKind::BCC ? 2 : 1;
-    const glm::ivec3 size = lattice.sublatticeSize(sublattice);
-    Smoothed out;
-    out.size = (size + 1) / 2;
-    if (countOf(size) == 0) {
-        out.size = glm::ivec3(0);
-        return out;
-    }
-    const auto row = [&](int k, int y, float* values, float* present) {
-        reader.read(k * slices + sublattice, y, values, present);
-    };
-    if (!reader.masked) {
-        out.values = halved(size, [&](int k, int y, float* to) { row(k, y, to, nullptr); });
-        return out;
-    }
-    const std::size_t nx = std::size_t(size.x);
-    out.values = halved(size, [&](int k, int y, float* to) {
-        std::vector<float> present(nx);
-        row(k, y, to, present.data());
-    });
-    out.coverage = halved(size, [&](int k, int y, float* to) {
-        std::vector<float> values(nx);
-        row(k, y, values.data(), to);
-    });
-    for (std::size_t i = 0; i < out.values.size(); ++i)
-        if (out.coverage[i] > 0) out.values[i] /= out.coverage[i];
-    return out;
-}
-
 /// Sums over the samples of one brick.
 struct Sums {
     double weight = 0, value = 0, square = 0, details = 0, axes = 0;
@@ -297,6 +171,7 @@ struct Extent {
         range = {std::min(range.lo, part.range.lo), std::max(range.hi, part.range.hi)};
         gaps = gaps || part.gaps;
     }
+    SmoothedRange within(Range whole) const { return {whole, gaps, whole.lo <= range.lo && range.hi <= whole.hi}; }
 };
 
 Extent extentOf(const Field& field) {
@@ -357,8 +232,7 @@ std::vector<BrickImportance> withNeighbours(const std::vector<BrickImportance>& 
 /// Bricks on their own, without what they get of their neighbours.
 struct OwnImportance {
     const BrickGrid& grid;
-    Range range;
-    bool gaps;
+    SmoothedRange about;
     double borderWeight;
     std::vector<BrickImportance>& bricks; ///< of the whole grid
 
@@ -368,9 +242,8 @@ struct OwnImportance {
     /// The layers [layer, end) of bricks from a part of the frame: its slices from texel `first` (an even one) on,
     /// kMargin texels more than those layers on both sides where there are so many.
     void take(const Field& part, int first, int layer, int end) const {
-        const RowReader reader{part, range.lo, 1 / (range.hi - range.lo), gaps};
         std::vector<Smoothed> halves;
-        for (int s = 0; s < slices(); ++s) halves.push_back(smoothedHalf(reader, s));
+        for (int s = 0; s < slices(); ++s) halves.push_back(smoothedHalf(part, s, about));
         const glm::ivec3 shift(0, 0, first / 2);
         parallelFor(perLayer() * std::size_t(end - layer), [&](std::size_t i) {
             const std::size_t number = perLayer() * std::size_t(layer) + i;
@@ -403,13 +276,13 @@ std::vector<BrickImportance> importanceOfBricks(const BrickGrid& grid, const Fie
     const glm::ivec3 count = grid.count();
     std::vector<BrickImportance> own(countOf(count));
     if (categorical) {
-        OwnImportance{grid, range, false, 1, own}.takeLabels(field, 0, count.z);
+        OwnImportance{grid, {range}, 1, own}.takeLabels(field, 0, count.z);
         return withNeighbours(own, count, options.neighbours);
     }
     const Extent extent = extentOf(field);
     if (!(range.lo <= range.hi)) range = extent.range;
     if (!(range.lo < range.hi)) return own; // one value, or nothing
-    OwnImportance{grid, range, extent.gaps, options.borderWeight, own}.take(field, 0, 0, count.z);
+    OwnImportance{grid, extent.within(range), options.borderWeight, own}.take(field, 0, 0, count.z);
     return withNeighbours(own, count, options.neighbours);
 }
 
@@ -417,7 +290,7 @@ std::vector<BrickImportance> importanceOfBricks(const BrickGrid& grid, const Sli
                                                 bool categorical, const ImportanceOptions& options) {
     const glm::ivec3 count = grid.count();
     std::vector<BrickImportance> own(countOf(count));
-    const OwnImportance plain{grid, range, false, 1, own};
+    const OwnImportance plain{grid, {range}, 1, own};
     const int texels = grid.lattice.texels().z;
     /// Calls `visit(part, first texel, layer, end)`.
     const auto forParts = [&](int margin, auto&& visit) {
@@ -437,41 +310,10 @@ std::vector<BrickImportance> importanceOfBricks(const BrickGrid& grid, const Sli
     forParts(0, [&](const Field& part, int, int, int) { extent.add(extentOf(part)); });
     if (!(range.lo <= range.hi)) range = extent.range;
     if (!(range.lo < range.hi)) return own;
-    const OwnImportance smooth{grid, range, extent.gaps, options.borderWeight, own};
+    const OwnImportance smooth{grid, extent.within(range), options.borderWeight, own};
     forParts(OwnImportance::kMargin,
              [&](const Field& part, int first, int layer, int end) { smooth.take(part, first, layer, end); });
     return withNeighbours(own, count, options.neighbours);
-}
-
-BrickChange changeOfBrick(const BrickGrid& grid, glm::ivec3 brick, const Field& before, const Field& after) {
-    const glm::ivec3 begin = grid.begin(brick), end = grid.end(brick);
-    const std::size_t width = std::size_t(end.x - begin.x);
-    constexpr double kInfinity = std::numeric_limits<double>::infinity();
-    double largest = 0, squares = 0;
-    std::size_t samples = 0;
-    dispatch(before.type, [&]<class T>(T) {
-        const auto first = before.as<T>(), second = after.as<T>();
-        for (int z = begin.z; z < end.z; ++z)
-            for (int y = begin.y; y < end.y; ++y) {
-                const std::size_t row = grid.lattice.index({begin.x, y, z});
-                for (std::size_t i = row; i < row + width; ++i) {
-                    bool was = before.present(i), is = after.present(i);
-                    const auto a = float(before.offset + before.scale * double(first[i]));
-                    const auto b = float(after.offset + after.scale * double(second[i]));
-                    was = was && std::isfinite(a);
-                    is = is && std::isfinite(b);
-                    if (was != is) largest = kInfinity;
-                    if (!was || !is) continue;
-                    const double moved = std::abs(double(b) - double(a));
-                    largest = std::max(largest, moved);
-                    squares += moved * moved;
-                    ++samples;
-                }
-            }
-    });
-    if (largest == kInfinity) return {roundedUp(kInfinity), roundedUp(kInfinity)};
-    const double rms = samples > 0 ? std::sqrt(squares / double(samples)) : 0.0;
-    return {roundedUp(largest), roundedUp(std::min(rms * (1 + 1e-12), largest))};
 }
 
 } // namespace tessera::volume

@@ -2,6 +2,7 @@
 
 #include "volume/brick_importance.h"
 #include "volume/error.h"
+#include "volume/field_bricks.h"
 #include "volume/load_once.h"
 #include "volume/parallel.h"
 #include "volume/resample.h"
@@ -33,114 +34,6 @@ struct FrameKeyHash {
 
 std::size_t fieldBytes(const Field& field) {
     return field.samples.size() + (field.mask ? field.mask->size() : 0);
-}
-
-/// The block of fine samples behind one level sample: mean of the present ones, or for labels the most frequent (the
-/// smallest of equals). Present when at least half of the block is.
-struct Block {
-    bool categorical;
-    double sum = 0;
-    int present = 0, total = 0;
-    std::vector<double> labels;
-
-    void clear() {
-        sum = 0;
-        present = total = 0;
-        labels.clear();
-    }
-    void add(double value, bool isPresent) {
-        ++total;
-        if (!isPresent) return;
-        ++present;
-        if (categorical)
-            labels.push_back(value);
-        else
-            sum += value;
-    }
-    bool exists() const { return present > 0 && 2 * present >= total; }
-    double value() {
-        if (!categorical) return sum / present;
-        std::sort(labels.begin(), labels.end());
-        double best = labels.front();
-        std::ptrdiff_t most = 0;
-        for (auto run = labels.begin(); run != labels.end();) {
-            const auto next = std::upper_bound(run, labels.end(), *run);
-            if (next - run > most) {
-                most = next - run;
-                best = *run;
-            }
-            run = next;
-        }
-        return best;
-    }
-};
-
-BrickSamples fineBrick(const Field& field, glm::ivec3 begin, glm::ivec3 end) {
-    BrickSamples out;
-    out.size = end - begin;
-    const std::size_t total = std::size_t(out.size.x) * std::size_t(out.size.y) * std::size_t(out.size.z);
-    out.values.resize(total);
-    if (field.mask) out.present.resize(total);
-    dispatch(field.type, [&]<class T>(T) {
-        const auto stored = field.as<T>();
-        std::size_t to = 0;
-        for (int z = begin.z; z < end.z; ++z)
-            for (int y = begin.y; y < end.y; ++y) {
-                const std::size_t row = field.lattice.index({begin.x, y, z});
-                const auto width = std::size_t(out.size.x);
-                for (std::size_t x = 0; x < width; ++x)
-                    out.values[to + x] = float(field.offset + field.scale * double(stored[row + x]));
-                if (field.mask) std::copy_n(&(*field.mask)[row], width, &out.present[to]);
-                to += width;
-            }
-    });
-    if (std::all_of(out.present.begin(), out.present.end(), [](std::uint8_t p) { return p != 0; })) out.present.clear();
-    return out;
-}
-
-BrickSamples coarseBrick(const Field& field, const BrickGrid& grid, const BrickKey& key, bool categorical) {
-    const glm::ivec3 begin = grid.begin(key.index), end = grid.end(key.index);
-    const BrickSamples fine = fineBrick(field, begin, end);
-    const int slices = grid.lattice.kind == LatticeKind::BCC ? 2 : 1; // storage slices per texel
-    const int step = 1 << key.level;
-    BrickSamples out;
-    out.size = grid.brickSamples(key.index, key.level);
-    const std::size_t total = std::size_t(out.size.x) * std::size_t(out.size.y) * std::size_t(out.size.z);
-    out.values.resize(total);
-    if (!fine.present.empty()) out.present.resize(total);
-    Block block{categorical, 0, 0, 0, {}};
-    std::size_t to = 0;
-    for (int z = 0; z < out.size.z; ++z)
-        for (int y = 0; y < out.size.y; ++y)
-            for (int x = 0; x < out.size.x; ++x, ++to) {
-                block.clear();
-                const int first = (z / slices) * step * slices + z % slices;
-                for (int k = first; k < std::min(first + step * slices, fine.size.z); k += slices)
-                    for (int j = y * step; j < std::min((y + 1) * step, fine.size.y); ++j)
-                        for (int i = x * step; i < std::min((x + 1) * step, fine.size.x); ++i) {
-                            const std::size_t at = (std::size_t(k) * std::size_t(fine.size.y) + std::size_t(j)) *
-                                                       std::size_t(fine.size.x) +
-                                                   std::size_t(i);
-                            block.add(double(fine.values[at]), fine.present.empty() || fine.present[at] != 0);
-                        }
-                if (block.exists()) out.values[to] = float(block.value());
-                if (!out.present.empty()) out.present[to] = block.exists() ? 1 : 0;
-            }
-    return out;
-}
-
-BrickStats brickStats(const Field& field, glm::ivec3 begin, glm::ivec3 end) {
-    const BrickSamples brick = fineBrick(field, begin, end);
-    BrickStats stats{std::numeric_limits<float>::max(), std::numeric_limits<float>::lowest(), 0};
-    std::size_t present = 0;
-    for (std::size_t i = 0; i < brick.values.size(); ++i) {
-        if (!brick.present.empty() && brick.present[i] == 0) continue;
-        ++present;
-        stats.min = std::min(stats.min, brick.values[i]);
-        stats.max = std::max(stats.max, brick.values[i]);
-    }
-    stats.presentFraction = float(double(present) / double(brick.values.size()));
-    return stats;
 }
 
 BrickSamples magnitudeOf(std::span<const BrickSamples> components) {

@@ -1,10 +1,72 @@
 #include "volume/reconstruct.h"
 
-#include <algorithm>
+#include "volume/parallel.h"
 
+#include <algorithm>
+#include <array>
 #include <cassert>
 
 namespace tessera::volume {
+
+namespace {
+
+/// Where the neighbours of a sample lie, as distances in memory: of even and of odd slices.
+template <std::size_t kCount> using Steps = std::array<std::array<std::ptrdiff_t, kCount>, 2>;
+
+Steps<6> ccSteps(glm::ivec3 size, int slices) {
+    const std::ptrdiff_t row = size.x, slice = std::ptrdiff_t(size.x) * size.y * slices;
+    const std::array<std::ptrdiff_t, 6> steps{-1, 1, -row, row, -slice, slice};
+    return {steps, steps};
+}
+
+Steps<8> bccSteps(glm::ivec3 size) {
+    const std::ptrdiff_t row = size.x, slice = std::ptrdiff_t(size.x) * size.y;
+    Steps<8> steps;
+    for (int parity = 0; parity < 2; ++parity) {
+        std::size_t n = 0;
+        for (int z : {-1, 1})
+            for (int y : {parity - 1, parity})
+                for (int x : {parity - 1, parity}) steps[std::size_t(parity)][n++] = z * slice + y * row + x;
+    }
+    return steps;
+}
+
+/// From every sample a twelfth of the sum of its differences to the neighbours that are present.
+template <std::size_t kCount>
+void subtractDifferences(const BrickSamples& gathered, int slices, const Steps<kCount>& steps, BrickSamples& out) {
+    const std::ptrdiff_t row = gathered.size.x, slice = row * gathered.size.y;
+    const bool masked = !gathered.present.empty();
+    parallelFor(std::size_t(out.size.z), [&](std::size_t z) {
+        const auto& step = steps[z & 1];
+        for (int y = 0; y < out.size.y; ++y) {
+            const std::size_t to = (z * std::size_t(out.size.y) + std::size_t(y)) * std::size_t(out.size.x);
+            const std::ptrdiff_t at = (std::ptrdiff_t(z) + slices) * slice + (y + 1) * row + 1;
+            const float* from = gathered.values.data() + at;
+            float* result = out.values.data() + to;
+            if (!masked) {
+                for (int x = 0; x < out.size.x; ++x) {
+                    const double centre = double(from[x]);
+                    double differences = 0;
+                    for (std::size_t n = 0; n < kCount; ++n) differences += double(from[x + step[n]]) - centre;
+                    result[x] = float(centre - differences / 12);
+                }
+                continue;
+            }
+            const std::uint8_t* present = gathered.present.data() + at;
+            for (int x = 0; x < out.size.x; ++x) {
+                out.present[to + std::size_t(x)] = present[x];
+                if (present[x] == 0) continue;
+                const double centre = double(from[x]);
+                double differences = 0;
+                for (std::size_t n = 0; n < kCount; ++n)
+                    if (present[x + step[n]] != 0) differences += double(from[x + step[n]]) - centre;
+                result[x] = float(centre - differences / 12);
+            }
+        }
+    });
+}
+
+} // namespace
 
 BrickSamples prefilter(const BrickSamples& gathered, const LevelGeometry& geometry) {
     const int slices = geometry.kind == LatticeKind::BCC ? 2 : 1;
@@ -16,34 +78,10 @@ BrickSamples prefilter(const BrickSamples& gathered, const LevelGeometry& geomet
     out.values.resize(total);
     if (!gathered.present.empty()) out.present.resize(total);
 
-    // Where the neighbours of a sample lie, as distances in memory; BCC: of even and of odd slices.
-    const std::ptrdiff_t row = from.x, slice = std::ptrdiff_t(from.x) * from.y;
-    std::vector<std::ptrdiff_t> neighbours[2];
-    for (int parity = 0; parity < 2; ++parity)
-        if (geometry.bccNeighbours()) {
-            for (int z : {-1, 1})
-                for (int y : {parity - 1, parity})
-                    for (int x : {parity - 1, parity}) neighbours[parity].push_back(z * slice + y * row + x);
-        } else {
-            neighbours[parity] = {-1, 1, -row, row, -slice * slices, slice * slices};
-        }
-
-    const float* values = gathered.values.data();
-    const std::uint8_t* present = gathered.present.empty() ? nullptr : gathered.present.data();
-    std::size_t to = 0;
-    for (int z = 0; z < out.size.z; ++z)
-        for (int y = 0; y < out.size.y; ++y)
-            for (int x = 0; x < out.size.x; ++x, ++to) {
-                const std::ptrdiff_t at = (z + slices) * slice + (y + 1) * row + x + 1;
-                if (present != nullptr) out.present[to] = present[at];
-                if (present != nullptr && present[at] == 0) continue;
-                const double centre = double(values[at]);
-                double differences = 0;
-                for (const std::ptrdiff_t step : neighbours[z & 1])
-                    if (present == nullptr || present[at + step] != 0)
-                        differences += double(values[at + step]) - centre;
-                out.values[to] = float(centre - differences / 12);
-            }
+    if (geometry.bccNeighbours())
+        subtractDifferences<8>(gathered, slices, bccSteps(gathered.size), out);
+    else
+        subtractDifferences<6>(gathered, slices, ccSteps(gathered.size, slices), out);
     return out;
 }
 

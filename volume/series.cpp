@@ -1,5 +1,6 @@
 #include "volume/series.h"
 
+#include "volume/blend_frames.h"
 #include "volume/parallel.h"
 #include "volume/reconstruct.h"
 #include "volume/resample_taps.h"
@@ -15,115 +16,14 @@ namespace {
 
 using FramePtr = std::shared_ptr<const Field>;
 
-struct WeightedFrame {
-    FramePtr field;
-    double weight = 0;
-    double linear = 0; ///< weight where a frame lacks the sample: never negative
-};
-
 constexpr std::size_t kGrain = 1 << 14; // samples per task
-
-/// Adds `weight` times a frame's samples, read in the units of `sum`.
-void addFrame(const Field& frame, double weight, Field& sum) {
-    const double scale = weight * frame.scale / sum.scale, offset = weight * (frame.offset - sum.offset) / sum.scale;
-    const auto to = sum.as<float>();
-    dispatch(frame.type, [&]<class T>(T) {
-        const auto from = frame.as<T>();
-        parallelRanges(
-            to.size(),
-            [&](std::size_t begin, std::size_t end) {
-                const auto a = float(scale), b = float(offset);
-                for (std::size_t i = begin; i < end; ++i) to[i] += a * float(from[i]) + b;
-            },
-            kGrain);
-    });
-}
-
-/// Where frames differ in what is present: the linear blend of those that have the sample.
-void blendPartly(std::span<const WeightedFrame> frames, Field& sum) {
-    auto mask = std::make_shared<Mask>(sum.count(), std::uint8_t(1));
-    const auto to = sum.as<float>();
-    parallelFor(
-        sum.count(),
-        [&](std::size_t i) {
-            const auto present = [&](const WeightedFrame& frame) { return frame.field->present(i); };
-            if (std::all_of(frames.begin(), frames.end(), present)) return;
-            Blend blend;
-            for (const WeightedFrame& frame : frames)
-                blend.add(frame.linear, {present(frame) ? frame.field->value(i) : 0, present(frame)});
-            const std::optional<double> value = blend.value();
-            to[i] = value ? float((*value - sum.offset) / sum.scale) : 0.0f;
-            (*mask)[i] = value ? 1 : 0;
-        },
-        kGrain);
-    if (std::any_of(mask->begin(), mask->end(), [](std::uint8_t p) { return p == 0; })) sum.mask = std::move(mask);
-}
-
-/// Kernels with negative weights overshoot: held within the present samples of the frames.
-void clampToFrames(std::span<const WeightedFrame> frames, Field& sum) {
-    float lo = std::numeric_limits<float>::max(), hi = std::numeric_limits<float>::lowest();
-    for (const WeightedFrame& frame : frames)
-        dispatch(frame.field->type, [&]<class T>(T) {
-            const auto stored = frame.field->as<T>();
-            T least = std::numeric_limits<T>::max(), most = std::numeric_limits<T>::lowest();
-            for (std::size_t i = 0; i < stored.size(); ++i) {
-                if (frame.field->mask && !frame.field->present(i)) continue;
-                least = std::min(least, stored[i]);
-                most = std::max(most, stored[i]);
-            }
-            const double scale = frame.field->scale / sum.scale,
-                         offset = (frame.field->offset - sum.offset) / sum.scale;
-            if (least > most) return;
-            lo = std::min(lo, float(scale * double(least) + offset));
-            hi = std::max(hi, float(scale * double(most) + offset));
-        });
-    if (lo > hi) return;
-    for (float& value : sum.as<float>()) value = std::clamp(value, lo, hi);
-}
-
-/// The weighted sum of frames that share a grid, as float in the units of the first. One frame alone stays as it is.
-Field blendFrames(std::span<const WeightedFrame> frames) {
-    if (frames.size() == 1) return *frames.front().field;
-    const Field& first = *frames.front().field;
-    Field sum = makeField(first.lattice, ScalarType::F32);
-    sum.offset = first.offset;
-    sum.scale = first.scale;
-    bool sameMask = true, overshoots = false;
-    for (const WeightedFrame& frame : frames) {
-        addFrame(*frame.field, frame.weight, sum);
-        sameMask = sameMask && (frame.field->mask == first.mask ||
-                                (frame.field->mask && first.mask && *frame.field->mask == *first.mask));
-        overshoots = overshoots || frame.weight < 0;
-    }
-    sum.mask = first.mask;
-    if (!sameMask) {
-        sum.mask = nullptr;
-        blendPartly(frames, sum);
-    }
-    if (overshoots) clampToFrames(frames, sum);
-    return sum;
-}
 
 /// Frames `from + step * i` blended at `cells` of that sub-series of `count` frames.
 Field blendAt(const Series& series, double cells, int from, int step, int count, const ResampleOptions& options) {
-    const ResampleOptions nearest{.filter = ResampleFilter::Nearest};
-    const Tap tap = tapAt(cells, count, series.categorical ? nearest : options);
     std::vector<WeightedFrame> frames;
-    for (int i = 0; i < tap.count; ++i) {
-        const double weight = tap.weight[std::size_t(i)];
-        const int at = tap.first + i;
-        if (weight == 0) continue;
-        const double linear = at == tap.cell[0] ? 1 - tap.fraction : at == tap.cell[1] ? tap.fraction : 0;
-        frames.push_back({series.frame(from + step * at), weight, linear});
-    }
+    for (const FrameWeight& weight : frameWeights(cells, count, optionsFor(series.categorical, options)))
+        frames.push_back({series.frame(from + step * weight.frame), weight});
     return blendFrames(frames);
-}
-
-/// B-splines need coefficients of the whole series; frames are blended as they pass.
-ResampleOptions inTime(ResampleOptions options) {
-    if (options.filter == ResampleFilter::BSpline3 || options.filter == ResampleFilter::BSpline5)
-        options.filter = ResampleFilter::Cubic;
-    return options;
 }
 
 /// The two grids of a BCC field, as they are stored: slices of `even` and `odd` in turn.
@@ -219,11 +119,11 @@ Field converted(const Field& field, ScalarType type) {
 }
 
 int framesSpanned(const ResampleOptions& options) {
-    return tapCount(inTime(options), 1 << 20);
+    return tapCount(optionsInTime(options), 1 << 20);
 }
 
 int firstFrameSpanned(double cells, int count, const ResampleOptions& options) {
-    const Tap tap = tapAt(cells, count, inTime(options));
+    const Tap tap = tapAt(cells, count, optionsInTime(options));
     int first = 0;
     while (first + 1 < tap.count && tap.weight[std::size_t(first)] == 0) ++first;
     return tap.first + first;
@@ -232,7 +132,7 @@ int firstFrameSpanned(double cells, int count, const ResampleOptions& options) {
 Field toD4Frame(const Series& cc, const Lattice4& d4, int frame, const ResampleOptions& options) {
     const double cells = (d4.time(frame) - cc.lattice.origin.w) / cc.lattice.spacing.w;
     const ResampleOptions labels{.filter = ResampleFilter::Nearest};
-    const Field blended = blendAt(cc, cells, 0, 1, cc.lattice.size.w, inTime(options));
+    const Field blended = blendAt(cc, cells, 0, 1, cc.lattice.size.w, optionsInTime(options));
     const ScalarType type =
         cc.categorical ? blended.type : cc.frame(std::clamp(int(cells), 0, cc.lattice.size.w - 1))->type;
     return converted(resample(blended, d4.grid(frame), cc.categorical ? labels : options), type);

@@ -1,5 +1,7 @@
 #include "volume/series_dataset.h"
 
+#include "volume/series_slices.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -57,65 +59,74 @@ Series d4SeriesOf(const Dataset& frames, int parameter, int component) {
 namespace {
 
 /// The frames of a D4* lattice from number `first` on; `source` is the whole series.
-Dataset framesOfD4(const Dataset& source, const Lattice4& lattice, int first, const ResampleOptions& options) {
-    Dataset out;
-    out.info = source.info;
-    out.info.lattice = lattice.grid(0);
-    out.info.times.clear();
-    for (int k = first; k < lattice.size.w; ++k) out.info.times.push_back(timeAt(source.info.times, lattice.time(k)));
+D4Frames framesFrom(const Dataset& source, const Lattice4& lattice, int first, const ResampleOptions& options,
+                    const SliceLoad& slices) {
+    D4Frames out;
+    out.times = source.info.times;
+    out.frames.info = source.info;
+    out.frames.info.lattice = lattice.grid(0);
+    out.frames.info.times.clear();
+    for (int k = first; k < lattice.size.w; ++k)
+        out.frames.info.times.push_back(timeAt(source.info.times, lattice.time(k)));
     // One series per component, each with the frames its filter spans and one to move on.
     const auto series = std::make_shared<std::map<std::pair<int, int>, Series>>();
     for (int p = 0; p < int(source.info.parameters.size()); ++p)
         for (int c = 0; c < source.info.parameters[std::size_t(p)].components; ++c)
             (*series)[{p, c}] = remembering(seriesOf(source, p, c), std::size_t(framesSpanned(options)) + 1);
-    out.load = [series, lattice, first, options](int parameter, int component, int time) {
+    out.frames.load = [series, lattice, first, options](int parameter, int component, int time) {
         return toD4Frame(series->at({parameter, component}), lattice, first + time, options);
     };
+    if (slices)
+        out.slices = [info = source.info, slices, lattice, first, options](int step, const std::string& scratch) {
+            return d4Slices(info, slices, frameLattice(info, LatticeKind4::CC), lattice, first, options, step, scratch);
+        };
     return out;
 }
 
 } // namespace
 
-Dataset toD4(Dataset source, const ResampleOptions& options) {
+D4Frames framesOfD4(const Dataset& source, const ResampleOptions& options, const SliceLoad& slices) {
     if (source.info.lattice.kind != LatticeKind::CC)
         throw Error("D4* is made from a regular grid, and this is none", source.info.name);
     if (source.info.times.size() < 2) throw Error("D4* is a lattice in space and time: it needs two times or more");
-    return framesOfD4(source, d4For(frameLattice(source.info, LatticeKind4::CC)), 0, options);
+    return framesFrom(source, d4For(frameLattice(source.info, LatticeKind4::CC)), 0, options, slices);
 }
 
-ContinuedD4 continueD4(Dataset source, const std::vector<double>& known, const std::vector<double>& frames,
-                       const ResampleOptions& options) {
+D4Frames continueD4(Dataset source, const std::vector<double>& known, const std::vector<double>& frames,
+                    const ResampleOptions& options, SliceLoad slices) {
     const std::vector<double> given = source.info.times;
-    ContinuedD4 out;
-    out.times = known;
+    std::vector<double> times = known;
     for (const double time : given)
-        if (time > known.back()) out.times.push_back(time);
-    if (out.times.size() == known.size()) throw Error("the data has no times behind the last one", source.info.name);
+        if (time > known.back()) times.push_back(time);
+    if (times.size() == known.size()) throw Error("the data has no times behind the last one", source.info.name);
     // Where each time of the whole series is in the source; -1: it is not.
     std::vector<int> place;
-    for (const double time : out.times) {
+    for (const double time : times) {
         const auto at = std::lower_bound(given.begin(), given.end(), time);
         place.push_back(at != given.end() && *at == time ? int(at - given.begin()) : -1);
     }
-    source.info.times = out.times;
+    source.info.times = times;
     source.load = [load = source.load, place](int parameter, int component, int time) {
         return load(parameter, component, place[std::size_t(time)]);
     };
+    if (slices)
+        slices = [load = slices, place](int parameter, int component, int time, int from, int count) {
+            return load(parameter, component, place[std::size_t(time)], from, count);
+        };
     Lattice4 lattice = d4For(frameLattice(source.info, LatticeKind4::CC));
     lattice.origin.w = frameAt(known, frames.front());
-    const double last = double(out.times.size() - 1), step = 0.5 * lattice.spacing.w;
+    const double last = double(times.size() - 1), step = 0.5 * lattice.spacing.w;
     constexpr double kRounding = 1e-9;
     lattice.size.w = int((last - lattice.origin.w) / step + kRounding) + 1;
     const int first = int(frames.size());
     std::string missing;
-    for (int at = firstFrameSpanned(lattice.time(first), int(out.times.size()), options); at < int(known.size()); ++at)
+    for (int at = firstFrameSpanned(lattice.time(first), int(times.size()), options); at < int(known.size()); ++at)
         if (place[std::size_t(at)] < 0) missing += (missing.empty() ? "" : ", ") + textOf(known[std::size_t(at)]);
     if (!missing.empty())
         throw Error("frames of D4* to come are also made of earlier times: the data must have those again at " +
                         missing,
                     source.info.name);
-    out.frames = framesOfD4(source, lattice, first, options);
-    return out;
+    return framesFrom(source, lattice, first, options, slices);
 }
 
 } // namespace tessera::volume

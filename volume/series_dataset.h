@@ -2,8 +2,12 @@
 
 #include "volume/dataset.h"
 #include "volume/series.h"
+#include "volume/slices.h"
 
+#include <functional>
 #include <span>
+#include <string>
+#include <vector>
 
 /// Data sets as series, and D4* between them. Times of a data set may be unevenly spaced: a series counts frames, so
 /// time 1.5 of its lattice lies half-way between the second and the third frame.
@@ -20,22 +24,30 @@ Series seriesOf(const Dataset& dataset, int parameter, int component);
 /// The frames of a D4* lattice, as made by toD4(), as a series.
 Series d4SeriesOf(const Dataset& frames, int parameter, int component);
 
-/// A data set on CC as frames of d4For(it): their times lie between the old ones, `load` gives a frame on its own grid,
-/// the lattice of the info is that of the even frames. Frames are best asked for in order; some of the source are kept.
-/// Throws Error when the source is not CC or has one time.
-Dataset toD4(Dataset source, const ResampleOptions& options);
+/// Slices of the frames of a data set, `step` slices of what they are made of in memory at a time; `scratch`: folder
+/// for scratch files.
+using SliceMaker = std::function<SliceLoad(int step, const std::string& scratch)>;
 
-/// What a series that has been made into frames of D4* becomes when it goes on.
-struct ContinuedD4 {
-    Dataset frames;            ///< those behind the ones there are, as toD4() gives them
-    std::vector<double> times; ///< of the whole series
+/// A series as frames of a D4* lattice.
+struct D4Frames {
+    Dataset frames;            ///< their times lie between those of the series; `load` gives a frame on its own grid
+    std::vector<double> times; ///< of the series
+    SliceMaker slices;         ///< of `frames` (volume/series_slices.h); null where the source has none
 };
 
-/// Goes on with a D4* lattice: `known` are the times of the series so far, `frames` those of the frames made of them,
-/// which stay as they are (those between the last two times were made without the times to come). `source` begins with
-/// the last of the known times, as many as the filter reaches back to, and has later ones. Throws Error when it has
-/// none or lacks one of those.
-ContinuedD4 continueD4(Dataset source, const std::vector<double>& known, const std::vector<double>& frames,
-                       const ResampleOptions& options);
+/// A data set on CC as frames of d4For(it). The lattice of the info is that of the even frames. Frames are best asked
+/// for in order; some of the source are kept. `slices`: of the source, or null. Throws Error when the source is not CC
+/// or has one time.
+D4Frames framesOfD4(const Dataset& source, const ResampleOptions& options, const SliceLoad& slices = {});
+inline Dataset toD4(const Dataset& source, const ResampleOptions& options) {
+    return framesOfD4(source, options).frames;
+}
+
+/// Goes on with a D4* lattice, with the frames behind those there are: `known` are the times of the series so far,
+/// `frames` those of the frames made of them, which stay as they are (those between the last two times were made
+/// without the times to come). `source` begins with the last of the known times, as many as the filter reaches back to,
+/// and has later ones. Throws Error when it has none or lacks one of those.
+D4Frames continueD4(Dataset source, const std::vector<double>& known, const std::vector<double>& frames,
+                    const ResampleOptions& options, SliceLoad slices = {});
 
 } // namespace tessera::volume

@@ -123,7 +123,7 @@ TEST(Series, D4GoesOnWithLaterTimes) {
             EXPECT_THROW((void)continueD4(planeTimes(known - reach + 1, added + reach - 1), times, frames, options),
                          Error);
             EXPECT_THROW((void)continueD4(planeTimes(0, known), times, frames, options), Error);
-            const ContinuedD4 later = continueD4(planeTimes(known - reach, added + reach), times, frames, options);
+            const D4Frames later = continueD4(planeTimes(known - reach, added + reach), times, frames, options);
             EXPECT_EQ(later.times, planeTimes(0, known + added).info.times);
             EXPECT_EQ(later.frames.info.lattice, shown.info.lattice);
             ASSERT_FALSE(later.frames.info.times.empty());
