@@ -31,6 +31,10 @@ BrickStats BrickCache::stats(const BrickKey& key) const {
     return impl_->source->stats(key);
 }
 
+std::optional<BrickDistribution> BrickCache::distribution(const BrickKey& key) const {
+    return impl_->source->distribution(key);
+}
+
 std::optional<BrickImportance> BrickCache::importance(const BrickKey& key) const {
     return impl_->source->importance(key);
 }

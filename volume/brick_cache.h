@@ -17,6 +17,7 @@ public:
     const DatasetInfo& info() const override;
     const BrickGrid& grid() const override;
     BrickStats stats(const BrickKey& key) const override;
+    std::optional<BrickDistribution> distribution(const BrickKey& key) const override;
     std::optional<BrickImportance> importance(const BrickKey& key) const override;
     std::optional<BrickChange> change(const BrickKey& key, int toTime) const override;
     BrickSamples read(const BrickKey& key) const override;

@@ -78,6 +78,10 @@ BrickImportance magnitudeImportance(std::span<const BrickImportance> components)
     return most;
 }
 
+std::optional<BrickDistribution> BrickSource::distribution(const BrickKey&) const {
+    return std::nullopt;
+}
+
 std::optional<BrickImportance> BrickSource::importance(const BrickKey&) const {
     return std::nullopt;
 }

@@ -66,6 +66,18 @@ struct BrickStats {
     float presentFraction = 1;
 };
 
+/// How the values of a brick are distributed, known without decoding it: physical values of present, finite samples at
+/// full resolution.
+struct BrickDistribution {
+    std::uint64_t samples = 0; ///< 0: the rest means nothing
+    Range range;               ///< of the values; lo = hi where all are one
+    double mean = 0;           ///< at most 2^-24 of the range beside the true one
+    /// Bin b of B, up to 32 by the number of samples, covers range.lo + [b, b + 1] / B of the range; a border belongs
+    /// to the bin above it, range.hi to the last. Exact; `samples` in sum.
+    std::vector<std::uint32_t> counts;
+    double step = 0; ///< values lie at range.lo + i * step; 0: anywhere
+};
+
 /// How much a brick has to show, 0 to 1 each (volume/brick_importance.h).
 struct BrickImportance {
     float importance = 0; ///< by mean, contrast and entropy
@@ -108,6 +120,8 @@ public:
     /// Statistics of a brick; `key.level` is ignored. Cheap for an archive; an in-memory source may have to load a
     /// frame.
     virtual BrickStats stats(const BrickKey& key) const = 0;
+    /// Mean and histogram of a brick; `key.level` is ignored. As cheap as `stats`; nothing where they are not known.
+    virtual std::optional<BrickDistribution> distribution(const BrickKey& key) const;
     /// Importance of a brick; `key.level` is ignored. As cheap as `stats`; nothing where it is not known.
     virtual std::optional<BrickImportance> importance(const BrickKey& key) const;
     /// A bound on how far the samples of a brick at full resolution move from key.time to `toTime`, which may come

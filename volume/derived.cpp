@@ -55,6 +55,10 @@ public:
         return stats_.try_emplace(fine, stats).first->second;
     }
 
+    std::optional<BrickDistribution> distribution(const BrickKey& key) const override {
+        return key.channel < first_ ? below_->distribution(key) : BrickSource::distribution(key);
+    }
+
     std::optional<BrickImportance> importance(const BrickKey& key) const override {
         return key.channel < first_ ? below_->importance(key) : BrickSource::importance(key);
     }

@@ -41,6 +41,9 @@ public:
     BrickStats stats(const BrickKey& key) const override {
         return ofSource(key) ? source_->stats(key) : original_->stats(inOriginal(key));
     }
+    std::optional<BrickDistribution> distribution(const BrickKey& key) const override {
+        return ofSource(key) ? source_->distribution(key) : original_->distribution(inOriginal(key));
+    }
     std::optional<BrickImportance> importance(const BrickKey& key) const override {
         return ofSource(key) ? source_->importance(key) : original_->importance(inOriginal(key));
     }

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -64,8 +65,19 @@ struct ChannelStatistics {
 struct Statistics {
     std::vector<ChannelStatistics> channels; ///< by position in StatisticsQuery::channels
     std::vector<JointHistogram> joint;       ///< by position in StatisticsQuery::pairs
-    int level = 0;
+    int level = 0;                           ///< of detail; grid().levels where no sample was read
 };
+
+/// Histograms and summaries from what the source knows of its bricks without reading a sample; `query.level` is
+/// ignored. Nothing where a brick's distribution is not known, as of magnitudes, or where more is asked for: joint
+/// histograms, a degree of interest.
+///
+/// Samples, min and max are those of computeStatistics at full resolution, the mean is within 2^-24 of the largest
+/// range of a brick. Within each bin of a brick samples are taken to lie evenly, on the values that may occur: so the
+/// sum of a histogram's bins up to any border is off by less than what the bins of bricks around that border hold (and
+/// by one where it is rounded), and the deviation by at most the root mean square, over samples, of the widths of their
+/// bins. Where a part of a brick is absent its volume counts by that part.
+std::optional<Statistics> notedStatistics(const BrickSource& source, const StatisticsQuery& query);
 
 /// Counts, on all cores; the result does not depend on the number of threads (degrees of interest are summed in units
 /// of 2^-10). Throws Error when a brick is damaged, Cancelled.
