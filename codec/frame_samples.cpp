@@ -18,6 +18,11 @@ std::size_t sliceSize(const volume::Lattice& lattice) {
 
 } // namespace
 
+Slab layerOf(const volume::BrickGrid& grid, int layer) {
+    const int slices = slicesOfLayer(grid), first = layer * slices;
+    return {first, std::min(slices, grid.lattice.size.z - first)};
+}
+
 std::pair<std::size_t, std::size_t> Slab::bricks(const volume::BrickGrid& grid) const {
     const glm::ivec3 all = grid.count();
     const std::size_t perLayer = std::size_t(all.x) * std::size_t(all.y);

@@ -23,6 +23,9 @@ struct Slab {
     volume::BrickGrid grid(volume::BrickGrid whole) const;
 };
 
+/// The slices of one layer of bricks.
+Slab layerOf(const volume::BrickGrid& grid, int layer);
+
 /// Where the samples of frames go that are larger than memory.
 struct SlabStore {
     int layers = 1;     ///< of bricks in memory at a time

@@ -3,6 +3,7 @@
 #include "codec/lift_box.h"
 #include "codec/uncleared.h"
 
+#include <algorithm>
 #include <vector>
 
 namespace tessera::codec {
@@ -20,6 +21,11 @@ public:
         if (values_.size() < words) values_.resize(words);
         present_.resize(masked ? words : 0);
         undivided_ = false;
+    }
+    /// Becomes a box of one value without gaps.
+    void fill(glm::ivec3 size, Word value) {
+        reset(size, false);
+        std::fill_n(values_.begin(), std::ptrdiff_t(pitchFor(size.x)) * size.y * size.z, value);
     }
     Box<Word> box() { return {values_.data(), size_, pitchFor(size_.x)}; }
     Box<const Word> box() const { return {values_.data(), size_, pitchFor(size_.x)}; }

@@ -3,6 +3,7 @@
 #include "codec/brick_access.h"
 #include "codec/coded_bricks.h"
 #include "volume/error.h"
+#include "volume/series.h"
 
 #include <algorithm>
 #include <cmath>
@@ -37,8 +38,8 @@ class SlabCosts {
 public:
     SlabCosts(const Metadata& metadata, const volume::DatasetInfo& source, const PackOptions& options)
         : metadata_(metadata), source_(source), options_(options),
-          bcc_(metadata.info.lattice.kind == volume::LatticeKind::BCC),
-          resampled_(bcc_ && source.lattice.kind == volume::LatticeKind::CC),
+          bcc_(metadata.info.lattice.kind == volume::LatticeKind::BCC), d4_(metadata.alternating),
+          resampled_(d4_ || (bcc_ && source.lattice.kind == volume::LatticeKind::CC)),
           sourceSlice_(double(source.lattice.size.x) * source.lattice.size.y),
           slice_(double(metadata.info.lattice.size.x) * metadata.info.lattice.size.y) {}
 
@@ -64,10 +65,13 @@ public:
             const double slices = (texels + kMargin) * metadata_.info.lattice.spacing.z / source_.lattice.spacing.z +
                                   2 * volume::kMostOrder;
             const double coefficients = isSpline(options_.resample) ? sizeof(double) : 0,
-                         edges = options_.resample.sharpen > 0 ? 2 * bytes : 0;
-            made =
-                sourceSlice_ * std::min(slices, double(source_.lattice.size.z)) * (2 * bytes + coefficients + edges) +
-                (stored + around) * (2 * bytes + 1 + edges);
+                         edges = options_.resample.sharpen > 0 ? 2 * (d4_ ? sizeof(float) + 1 : bytes) : 0;
+            // Of D4* a sum of floats is resampled, of as many frames as the filter spans.
+            const double blended = d4_ ? sizeof(float) + 1 : bytes;
+            const double read = d4_ ? volume::framesSpanned(options_.resample) * bytes + blended : bytes;
+            made = sourceSlice_ * std::min(slices, double(source_.lattice.size.z)) *
+                       (read + blended + coefficients + edges) +
+                   (stored + around) * (bytes + blended + 1 + edges);
         }
         return std::max(made, (stored + around) * (bytes + kSmoothed));
     }
@@ -82,7 +86,7 @@ private:
     const Metadata& metadata_;
     const volume::DatasetInfo& source_;
     const PackOptions& options_;
-    bool bcc_, resampled_;
+    bool bcc_, d4_, resampled_;
     double sourceSlice_, slice_; ///< samples
 };
 
@@ -113,6 +117,10 @@ MemoryPlan planSlabs(const Metadata& metadata, const volume::DatasetInfo& source
         ++plan.slabLayers;
     const double slice = most([&](const volume::Parameter& parameter) { return costs.ofSlice(parameter); });
     plan.slabStep = std::clamp(int(ofLayers(plan.slabLayers) / slice), 1, source.lattice.size.z);
+    if (metadata.alternating) { // a slice is made of many; those of all components are there at a time
+        const double components = most([](const volume::Parameter& parameter) { return double(parameter.components); });
+        plan.slabStep = std::max(1, int(plan.slabLayers * metadata.grid.brickSize / (1 + components)));
+    }
     return plan;
 }
 
@@ -137,7 +145,7 @@ MemoryPlan planMemory(const Metadata& metadata, const volume::DatasetInfo& sourc
     const double kept = d4 ? kTimesOfD4 * all : 0;
     const double least = kOwn + kept + std::max(step, coding);
     const double limit = options.memoryMb > 0 ? options.memoryMb * kMega : quarterOfRam();
-    if (slabs.slices && !d4 && (slabs.layers > 0 || least > limit))
+    if (slabs.slices && (slabs.layers > 0 || least > limit))
         return planSlabs(metadata, source, options, slabs.layers, least, limit);
     if (options.memoryMb > 0 && least > limit) refuse(least, limit);
     MemoryPlan plan;

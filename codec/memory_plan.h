@@ -15,9 +15,10 @@ struct MemoryPlan {
 /// Most that fits the limit of memory, the program itself included. Whole frames take the larger of what reading and
 /// what coding one time of one parameter take, all its components at once: samples and a flag each as read, one
 /// component of them resampled with what its filter needs, then the stored samples twice more for the bricks and their
-/// bytes; with D4* six times of every parameter besides. Where that is too much and frames can be read in slices
-/// (but for D4*), they go through in slabs of as many layers of bricks as fit, one at least: the slices of
-/// one component that a slab is made of, the slab twice, and some bricks with their bytes. Files read through another
+/// bytes; with D4* six times of every parameter besides. Where that is too much and frames can be read in slices,
+/// they go through in slabs of as many layers of bricks as fit, one at least: the slices of one component that a slab
+/// is made of (of D4* from every time that the filter spans), the slab twice, and some bricks with their bytes. Files
+/// read through another
 /// program take that program's memory. Throws Error when a stated limit is below the least of these.
 MemoryPlan planMemory(const Metadata& metadata, const volume::DatasetInfo& source, const PackOptions& options,
                       const SlabInput& slabs);

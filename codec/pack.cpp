@@ -91,9 +91,11 @@ void check(const volume::DatasetInfo& source, const PackOptions& options) {
 }
 
 /// The slabs of a plan; none where frames are read whole.
-SlabReading slabsOf(const MemoryPlan& plan, const SlabInput& slabs, const std::string& path) {
+SlabReading slabsOf(const MemoryPlan& plan, const SlabInput& slabs, const volume::SliceMaker& ofD4,
+                    const std::string& path) {
     if (plan.slabLayers == 0) return {};
-    return {slabs.slices, plan.slabStep, {plan.slabLayers, std::filesystem::path(path).parent_path().string()}};
+    const std::string folder = std::filesystem::path(path).parent_path().string();
+    return {ofD4 ? ofD4(plan.slabStep, folder) : slabs.slices, plan.slabStep, {plan.slabLayers, folder}};
 }
 
 /// Gives up details of a frame, of the least important bricks the most.
@@ -138,14 +140,15 @@ public:
         check(source.info, options);
         metadata_.source = source.info.lattice;
         metadata_.alternating = options.lattice == StoredLattice::D4;
-        if (metadata_.alternating && grown && bringsTimes(*grown, source.info)) {
-            volume::ContinuedD4 later =
-                volume::continueD4(source, grown->metadata().sourceTimes, grown->info().times, options.resample);
-            metadata_.sourceTimes = std::move(later.times);
-            dataset_ = std::move(later.frames);
-        } else if (metadata_.alternating) {
-            metadata_.sourceTimes = source.info.times;
-            dataset_ = volume::toD4(source, options.resample);
+        volume::SliceMaker slicesOfD4;
+        if (metadata_.alternating) {
+            volume::D4Frames made = grown && bringsTimes(*grown, source.info)
+                                        ? volume::continueD4(source, grown->metadata().sourceTimes, grown->info().times,
+                                                             options.resample, slabs.slices)
+                                        : volume::framesOfD4(source, options.resample, slabs.slices);
+            metadata_.sourceTimes = std::move(made.times);
+            dataset_ = std::move(made.frames);
+            slicesOfD4 = std::move(made.slices);
         }
         const volume::DatasetInfo& info = dataset_.info;
         const bool toBcc = options.lattice == StoredLattice::BCC && info.lattice.kind == LatticeKind::CC;
@@ -163,12 +166,14 @@ public:
         reading_ = {.toBcc = toBcc,
                     .resample = options.resample,
                     .grid = metadata_.grid,
-                    .slabs = slabsOf(memory_, slabs, path),
+                    .slabs = slabsOf(memory_, slabs, slicesOfD4, path),
                     .ahead = memory_.readAhead,
                     .rangesOnly = false};
     }
 
     PackSummary run(const Progress& progress);
+    /// How large the archive would be at various bounds; the source knows its ranges then.
+    std::vector<SizeAtBound> estimate(const Progress& progress);
 
 private:
     std::size_t times() const { return dataset_.info.times.size(); }
@@ -284,6 +289,12 @@ void Packing::addStep(ArchiveWriter& writer, FeedStep fed, const Progress& progr
     writer.commit(soFar(wholeTimes), wholeTimes);
 }
 
+std::vector<SizeAtBound> Packing::estimate(const Progress& progress) {
+    gatherAllRanges(dataset_, reading_, summary_, progress.part(0, 0.5));
+    source_.info.parameters = dataset_.info.parameters;
+    return estimateSizes(dataset_, reading_, options_, progress.part(0.5, 1));
+}
+
 PackSummary Packing::run(const Progress& progress) {
     {
         Stopwatch all(summary_.seconds);
@@ -335,16 +346,12 @@ PackSummary pack(volume::Dataset& source, const PackOptions& asked, const std::s
     const PackOptions options = resolved(asked);
     if (options.sizeMb == 0) return Packing(source, slabs, options, path, nullptr).run(progress);
     const auto trial = [&](const PackOptions& with, const std::string& to, const Progress& part) {
-        return Packing(source, {}, with, to, nullptr).run(part);
+        return Packing(source, slabs, with, to, nullptr).run(part);
     };
     const auto bytesAt = [&](const Progress& part) {
-        PackSummary reading;
-        const bool toBcc = options.lattice == StoredLattice::BCC && source.info.lattice.kind == LatticeKind::CC;
-        const volume::Lattice lattice = toBcc ? volume::bccFor(source.info.lattice) : source.info.lattice;
-        FeedOptions whole;
-        whole.ahead = planMemory({}, source.info, options, {}).readAhead;
-        gatherAllRanges(source, whole, reading, part.part(0, 0.5));
-        return estimateSizes(source, gridFor(lattice, source.info, options), options, toBcc, part.part(0.5, 1));
+        PackOptions plain = options;
+        plain.lossless = true;
+        return Packing(source, slabs, plain, path, nullptr).estimate(part);
     };
     return packToSize(options, path, bytesAt, trial, progress);
 }

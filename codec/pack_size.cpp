@@ -66,46 +66,73 @@ double nextBound(const std::vector<SizeAtBound>& curve, const std::optional<Size
     return above ? std::max({guess, kLeastStep * trial.bound, kFinest}) : std::min(guess, trial.bound / kLeastStep);
 }
 
+/// Adds to each point about what a part of a frame takes, `times` times.
+void addEstimates(const volume::BrickGrid& grid, const volume::Field& part, const volume::Parameter& parameter,
+                  const PackOptions& options, std::size_t bricks, double times, std::vector<SizeAtBound>& curve) {
+    double extent = 0;
+    for (std::size_t k = 0; k < std::size_t(parameter.components) && k < parameter.ranges.size(); ++k)
+        extent = std::max(extent, parameter.ranges[k].hi - parameter.ranges[k].lo);
+    const bool isFloat = part.type == volume::ScalarType::F32, bounded = !parameter.categorical;
+    FrameOptions frame;
+    frame.wavelet = parameter.categorical ? Wavelet::N1 : waveletOf(options.wavelet).value_or(Wavelet::W22);
+    double bytes = 0;
+    int lastStep = 0;
+    for (SizeAtBound& point : curve) {
+        frame.maxError = bounded ? point.bound * extent / std::abs(part.scale) : 0;
+        if (bounded && !isFloat) {
+            const int step = stepWithin(part.type, frame.maxError);
+            frame.maxError = 0;
+            if (step != lastStep) bytes = estimateFrameBytes(grid, inSteps(part, step / 2), frame, bricks);
+            lastStep = step;
+        } else if (bounded || point.bound == 0) {
+            bytes = estimateFrameBytes(grid, part, frame, bricks);
+        }
+        point.bytes += bytes * times;
+    }
+}
+
+/// The same of a frame; of one in a scratch file two layers of bricks stand for all.
+void addEstimates(const volume::BrickGrid& grid, const FrameSamples& samples, const volume::Parameter& parameter,
+                  const PackOptions& options, double times, std::vector<SizeAtBound>& curve) {
+    constexpr std::size_t kBricks = 8;
+    if (samples.whole()) return addEstimates(grid, *samples.whole(), parameter, options, kBricks, times, curve);
+    constexpr int kLayers = 2;
+    const int layers = grid.count().z, taken = std::min(kLayers, layers);
+    for (int i = 0; i < taken; ++i) {
+        const int layer = (2 * i + 1) * layers / (2 * taken);
+        const Slab slab = layerOf(grid, layer);
+        addEstimates(slab.grid(grid), samples.slices(slab.first, slab.count), parameter, options, kBricks / kLayers,
+                     times * layers / taken, curve);
+    }
+}
+
 } // namespace
 
-std::vector<SizeAtBound> estimateSizes(volume::Dataset& dataset, const volume::BrickGrid& grid,
-                                       const PackOptions& options, bool toBcc, const Progress& progress) {
+std::vector<SizeAtBound> estimateSizes(const volume::Dataset& dataset, FeedOptions reading, const PackOptions& options,
+                                       const Progress& progress) {
     constexpr int kFinest = -26, kCoarsest = -2; // powers of two
-    constexpr std::size_t kTimes = 2, kBricks = 8;
     std::vector<SizeAtBound> curve{{0, 0}};
     for (int exponent = kFinest; exponent <= kCoarsest; ++exponent) curve.push_back({std::ldexp(1.0, exponent), 0});
-    const volume::DatasetInfo& info = dataset.info;
-    const std::size_t times = std::min(kTimes, info.times.size());
-    for (std::size_t p = 0; p < info.parameters.size(); ++p)
-        for (std::size_t t = 0; t < times; ++t) {
-            const volume::Parameter& parameter = info.parameters[p];
-            progress.advance(double(p * times + t) / double(info.parameters.size() * times), "sizes");
-            for (int c = 0; c < parameter.components; ++c) {
-                volume::Field field = dataset.load(int(p), c, int((2 * t + 1) * info.times.size() / (2 * times)));
-                if (toBcc) field = volume::toBcc(field, parameter.categorical, options.resample);
-                double extent = 0;
-                for (std::size_t k = 0; k < std::size_t(parameter.components) && k < parameter.ranges.size(); ++k)
-                    extent = std::max(extent, parameter.ranges[k].hi - parameter.ranges[k].lo);
-                const bool isFloat = field.type == volume::ScalarType::F32, bounded = !parameter.categorical;
-                FrameOptions frame;
-                frame.wavelet = parameter.categorical ? Wavelet::N1 : waveletOf(options.wavelet).value_or(Wavelet::W22);
-                double bytes = 0;
-                int lastStep = 0;
-                for (SizeAtBound& point : curve) {
-                    frame.maxError = bounded ? point.bound * extent / std::abs(field.scale) : 0;
-                    if (bounded && !isFloat) {
-                        const int step = stepWithin(field.type, frame.maxError);
-                        frame.maxError = 0;
-                        if (step != lastStep)
-                            bytes = estimateFrameBytes(grid, inSteps(field, step / 2), frame, kBricks);
-                        lastStep = step;
-                    } else if (bounded || point.bound == 0) {
-                        bytes = estimateFrameBytes(grid, field, frame, kBricks);
-                    }
-                    point.bytes += bytes * double(info.times.size()) / double(times);
-                }
-            }
-        }
+    constexpr std::size_t kTimes = 2;
+    const std::size_t all = dataset.info.times.size(), times = std::min(kTimes, all);
+    const auto timeOf = [all, times](int t) { return int((2 * std::size_t(t) + 1) * all / (2 * times)); };
+    volume::Dataset some = dataset;
+    some.info.times.resize(times);
+    some.load = [load = dataset.load, timeOf](int p, int c, int t) { return load(p, c, timeOf(t)); };
+    if (reading.slabs.load)
+        reading.slabs.load = [load = reading.slabs.load, timeOf](int p, int c, int t, int first, int count) {
+            return load(p, c, timeOf(t), first, count);
+        };
+    reading.ahead = false;
+    FrameFeed feed(some, reading, progress.stop);
+    const std::size_t steps = times * some.info.parameters.size();
+    for (std::size_t step = 0; step < steps; ++step) {
+        progress.advance(double(step) / double(steps), "sizes");
+        const FeedStep fed = feed.next();
+        for (const FrameSamples& samples : fed.frames)
+            addEstimates(reading.grid, samples, some.info.parameters[std::size_t(fed.parameter)], options,
+                         double(all) / double(times), curve);
+    }
     return curve;
 }
 
@@ -116,7 +143,6 @@ PackSummary packToSize(const PackOptions& asked, const std::string& path,
     if (asked.maxError > 0 || asked.absError > 0 || asked.psnr > 0)
         throw Error("either a size or an error bound can be asked for, not both");
     if (asked.threshold.kind != ThresholdChoice::None) throw Error("a size cannot be asked for with a threshold");
-    if (asked.lattice == StoredLattice::D4) throw Error("a size cannot be asked for with d4");
     constexpr int kTrials = 8;
     constexpr double kFull = 0.9, kAim = 0.96; // of the size
     const double wanted = asked.sizeMb * 1e6, aim = kAim * wanted;

@@ -1,7 +1,7 @@
 #pragma once
 
+#include "codec/frame_feed.h"
 #include "codec/pack.h"
-#include "volume/brick_source.h"
 
 #include <functional>
 #include <vector>
@@ -15,9 +15,10 @@ struct SizeAtBound {
     double bytes = 0;
 };
 
-/// Sizes for bounds from 0 up, each twice the one before, from the tokens of some bricks of some times.
-std::vector<SizeAtBound> estimateSizes(volume::Dataset& dataset, const volume::BrickGrid& grid,
-                                       const PackOptions& options, bool toBcc, const Progress& progress);
+/// Sizes for bounds from 0 up, each twice the one before, from the tokens of some bricks of some times, which are read
+/// as for packing. Ranges must be known.
+std::vector<SizeAtBound> estimateSizes(const volume::Dataset& dataset, FeedOptions reading, const PackOptions& options,
+                                       const Progress& progress);
 
 /// Packs into `path` with the least relative bound for which the archive is at most options.sizeMb large: starts from
 /// the estimates and corrects them by what packing came to, until at least nine tenths of the size are used or a few

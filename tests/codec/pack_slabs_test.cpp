@@ -7,6 +7,8 @@
 
 #include <filesystem>
 #include <gtest/gtest.h>
+#include <map>
+#include <tuple>
 
 namespace tessera::codec {
 namespace {
@@ -18,9 +20,13 @@ using volume::ScalarType;
 struct PartReader {
     std::shared_ptr<int> most = std::make_shared<int>(0);
     SlabInput input(const volume::Dataset& made, int layers) const {
-        return {[load = made.load, most = most](int p, int c, int t, int first, int count) {
+        using Frames = std::map<std::tuple<int, int, int>, volume::Field>; // that were made
+        return {[load = made.load, most = most, frames = std::make_shared<Frames>()](int p, int c, int t, int first,
+                                                                                     int count) {
                     *most = std::max(*most, count);
-                    return volume::slicesOf(load(p, c, t), first, count);
+                    const auto [frame, isNew] = frames->try_emplace({p, c, t});
+                    if (isNew) frame->second = load(p, c, t);
+                    return volume::slicesOf(frame->second, first, count);
                 },
                 layers};
     }
@@ -35,7 +41,7 @@ PackOptions slabOptions(StoredLattice lattice) {
 
 std::vector<PackOptions> everyWayToPack() {
     std::vector<PackOptions> all;
-    for (const StoredLattice lattice : {StoredLattice::CC, StoredLattice::BCC}) {
+    for (const StoredLattice lattice : {StoredLattice::CC, StoredLattice::BCC, StoredLattice::D4}) {
         const PackOptions plain = slabOptions(lattice);
         all.push_back(plain);
         all.push_back(plain), all.back().absError = 0.7;
@@ -44,12 +50,14 @@ std::vector<PackOptions> everyWayToPack() {
         all.push_back(plain), all.back().threshold = {ThresholdChoice::Soft, 0.01, true};
         all.push_back(plain), all.back().discard = 0.3;
     }
-    PackOptions filtered = slabOptions(StoredLattice::BCC);
-    filtered.resample.filter = volume::ResampleFilter::BSpline5;
-    all.push_back(filtered);
-    filtered.resample.filter = volume::ResampleFilter::Sinc;
-    filtered.resample.sharpen = 0.5;
-    all.push_back(filtered);
+    for (const StoredLattice lattice : {StoredLattice::BCC, StoredLattice::D4}) {
+        PackOptions filtered = slabOptions(lattice);
+        filtered.resample.filter = volume::ResampleFilter::BSpline5;
+        all.push_back(filtered);
+        filtered.resample.filter = volume::ResampleFilter::Sinc;
+        filtered.resample.sharpen = 0.5;
+        all.push_back(filtered);
+    }
     return all;
 }
 
@@ -59,11 +67,13 @@ TEST(PackSlabs, GiveTheArchiveThatWholeFramesGive) {
     int number = 0;
     for (const PackOptions& options : everyWayToPack()) {
         std::vector<MadeParameter> kinds = everyKind();
-        if (options.lattice == StoredLattice::BCC) // which bits a NaN has is not settled where it is a sum
+        if (options.lattice != StoredLattice::CC) // which bits a NaN has is not settled where it is a sum
             std::erase_if(kinds, [](const MadeParameter& kind) {
                 return kind.type == ScalarType::F32 && kind.texture == Texture::Nasty;
             });
-        volume::Dataset whole = makeDataset({19, 17, 45}, kinds, 1), parts = whole;
+        // Of D4* two frames, of which none has one before on its own grid.
+        const int times = options.lattice == StoredLattice::D4 ? 2 : 1;
+        volume::Dataset whole = makeDataset({19, 17, 45}, kinds, times), parts = whole;
         const PackSummary expected = pack(whole, options, folder / "whole.tsr");
         const int layers = 1 + number++ % 3;
         const PackSummary summary = pack(parts, options, folder / "parts.tsr", {}, PartReader{}.input(parts, layers));
@@ -110,6 +120,56 @@ TEST(PackSlabs, AppendToo) {
         EXPECT_EQ(grown.maskCount(), archive.maskCount());
         EXPECT_EQ(archive.maskCount(), 1);
         EXPECT_TRUE(verifyArchive(grown).damage.empty());
+    }
+}
+
+// Frames of D4* that are made of several times, some of which only came with a continuation.
+TEST(PackSlabs, AppendToSeriesOnD4) {
+    const TemporaryFolder folder;
+    const std::vector<MadeParameter> kinds{{"a", ScalarType::U8, 1, Texture::Noise, true, false},
+                                           {"f", ScalarType::F32, 2, Texture::Smooth, false, false},
+                                           {"region", ScalarType::U8, 1, Texture::Noise, false, true}};
+    const volume::Dataset all = makeDataset({18, 20, 37}, kinds, 9);
+    for (const auto filter : {volume::ResampleFilter::Cubic, volume::ResampleFilter::Linear}) {
+        PackOptions options = slabOptions(StoredLattice::D4);
+        options.resample.filter = filter;
+        for (const bool slabs : {false, true}) {
+            const std::string path = folder / (slabs ? "parts.tsr" : "whole.tsr");
+            volume::Dataset early = timesFrom(all, 0, 6), late = timesFrom(all, 3, 6);
+            const PartReader reader;
+            pack(early, options, path, {}, slabs ? reader.input(early, 1) : SlabInput());
+            append(late, path, 0, {}, slabs ? reader.input(late, 2) : SlabInput());
+            if (slabs) {
+                EXPECT_LT(*reader.most, 37);
+            }
+        }
+        const Archive archive(folder / "whole.tsr"), parts(folder / "parts.tsr");
+        expectSameFrames(archive, parts);
+        EXPECT_EQ(parts.metadata().sourceTimes, all.info.times);
+        EXPECT_TRUE(verifyArchive(parts).damage.empty());
+    }
+}
+
+// To a size, too: neither estimates nor trials read whole frames.
+TEST(PackSlabs, MeetASize) {
+    const TemporaryFolder folder;
+    for (const StoredLattice lattice : {StoredLattice::CC, StoredLattice::BCC, StoredLattice::D4}) {
+        volume::Dataset made = makeDataset({24, 20, 150},
+                                           {{"u", ScalarType::U16, 1, Texture::Noise, true, false},
+                                            {"f", ScalarType::F32, 2, Texture::Noise, false, false}},
+                                           2);
+        PackOptions options = slabOptions(lattice);
+        options.brickSize = 16;
+        options.sizeMb = 0.1;
+        const PartReader reader;
+        const SlabInput input = reader.input(made, 1);
+        made.load = [](int, int, int) -> volume::Field { throw Error("a whole frame was read"); };
+        const PackSummary summary = pack(made, options, folder / "a.tsr", {}, input);
+        EXPECT_LE(summary.archiveBytes, 100000u);
+        EXPECT_GE(summary.archiveBytes, 80000u);
+        EXPECT_LT(*reader.most, 110);
+        EXPECT_EQ(folder.files(), 1u);
+        EXPECT_TRUE(verifyArchive(Archive(folder / "a.tsr")).damage.empty());
     }
 }
 

@@ -20,6 +20,8 @@ check "info" 0 "$tessera" info cc.tsr
 say "9 x 7 x 5" out.txt
 check "info --json" 0 "$tessera" info cc.tsr --json
 python3 -c 'import json,sys; d=json.load(open("out.txt")); assert d["size"]==[9,7,5] and d["times"]==[0,0.5] and d["lossless"] and [p["name"] for p in d["parameters"]]==["a","b"], d' || failures=$((failures + 1))
+check "info --bricks" 0 "$tessera" info cc.tsr --bricks --json
+python3 -c 'import json; d=json.load(open("out.txt"))["bricks"]; assert len(d)==4 and all("histogram" not in b for b in d), d' || failures=$((failures + 1))
 check "unpack" 0 "$tessera" unpack cc.tsr -o back.raw
 cmp ramp.raw back.raw || fail "not the same samples"
 check "its sidecar opens" 0 "$tessera" info back.json
@@ -33,6 +35,8 @@ check "unpack BCC" 0 "$tessera" unpack bcc.tsr -o grid.raw
 
 # Bricks that are alike, put together.
 check "pack small bricks" 0 "$tessera" pack ramp.json -o bricks.tsr --lattice cc --brick-size 4
+check "statistics of bricks" 0 "$tessera" info bricks.tsr --bricks --json
+python3 -c 'import json; d=json.load(open("out.txt"))["bricks"]; assert len(d)==48 and sum(b["samples"] for b in d)==4*315 and all(sum(b["histogram"])==b["samples"] and b["range"][0]<b["mean"]<b["range"][1] for b in d), d' || failures=$((failures + 1))
 check "info --merge" 0 "$tessera" info bricks.tsr --merge --merge.alike 1
 say "as one" out.txt
 check "info --merge --json" 0 "$tessera" info bricks.tsr --merge --merge.alike 1 --merge.shape mixed --json
@@ -92,28 +96,42 @@ EOF
 done
 check "a negative bound" 1 "$tessera" pack wave.json -o x.tsr --psnr -3
 
-# No more memory than was allowed: the least that packing says it needs, for noise, which does not shrink.
+# No more memory than was allowed: the least that packing says it needs, for noise, which does not shrink; in `tall`
+# frames go through in slabs.
 python3 - <<'EOF'
-import array, json, random
+import array, json, os, random
 n = 160
 frame = [random.random() for _ in range(n * n * n)]
 with open("noise.raw", "wb") as file:
     for t in range(3): array.array("f", frame[t:] + frame[:t]).tofile(file)
 json.dump({"dims": [n, n, n], "dtype": "float32", "times": [0, 1, 2], "components": [{"name": "x"}]},
           open("noise.json", "w"))
+dims = [100, 100, 1000]
+with open("tall.raw", "wb") as file: file.write(os.urandom(2 * 2 * dims[0] * dims[1] * dims[2]))
+json.dump({"dims": dims, "dtype": "uint16", "times": [0, 1], "components": [{"name": "x"}]}, open("tall.json", "w"))
 EOF
-for how in "--lattice cc" "--lattice bcc" "--lattice bcc --resample.filter bspline5" "--lattice d4" \
-    "--lattice cc --max-error 0.001" "--lattice bcc --resample.sharpen 1"; do
+for what in "noise --lattice cc" "noise --lattice bcc" "noise --lattice bcc --resample.filter bspline5" \
+    "noise --lattice d4" "noise --lattice d4 --resample.filter sinc" "noise --lattice cc --max-error 0.001" \
+    "noise --lattice bcc --resample.sharpen 1" "noise --lattice bcc --target-size 20" \
+    "tall --lattice cc" "tall --lattice bcc --resample.filter bspline5" "tall --lattice d4" \
+    "tall --lattice d4 --resample.filter bspline5" "tall --lattice cc --target-size 10" \
+    "tall --lattice d4 --target-size 10"; do
+    data=${what%% *} how=${what#* }
     # shellcheck disable=SC2086
-    check "too little memory, $how" 2 "$tessera" pack noise.json -o noise.tsr $how --memory 20
+    check "too little memory, $what" 2 "$tessera" pack "$data.json" -o noise.tsr $how --memory 20
     least=$(sed 's/.*takes about \([0-9]*\) MB.*/\1/' err.txt)
-    for memory in $((least + 1)) $((least + 40)); do
+    for memory in $((least + 1)) $((least + 20)); do
         # shellcheck disable=SC2086
-        check "memory $memory, $how" 0 "$tessera" pack noise.json -o noise.tsr $how --memory $memory --json
-        python3 -c 'import json,sys; p=json.load(open("out.txt"))["peakMemory"]; sys.exit(not 0 < p <= 1e6 * float(sys.argv[1]))' $memory ||
-            fail "more than $memory MB with $how"
+        check "memory $memory, $what" 0 "$tessera" pack "$data.json" -o noise.tsr $how --memory $memory --json
+        python3 - $memory "$data" <<'EOF' || fail "more than $memory MB, or no slabs, with $what"
+import json, sys
+done = json.load(open("out.txt"))
+slabs = any("slabs" in note for note in done["notes"])
+sys.exit(not 0 < done["peakMemory"] <= 1e6 * float(sys.argv[1]) or (sys.argv[2] == "tall" and not slabs))
+EOF
     done
 done
+rm -f tall.raw
 rm -f noise.raw noise.tsr
 
 # An archive that grows: later times, then another parameter, come to the same as everything at once.
