@@ -5,6 +5,7 @@
 #include "volume/memory_source.h"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 
 namespace tessera::codec {
@@ -85,8 +86,8 @@ Archive::Archive(const std::string& path) {
     impl.channels = impl.metadata.info.channels();
     impl.components = componentCount(impl.metadata.info);
     const std::uint64_t bricks = checkedBrickCount(impl.metadata.grid, path);
-    impl.index = readIndex(bytes, header,
-                           {impl.components, bricks, impl.metadata.grid.levels, impl.metadata.info.times.size()}, path);
+    impl.index =
+        readIndex(bytes, header, {impl.components, bricks, impl.metadata.grid, impl.metadata.info.times.size()}, path);
     if (header.version >= kGrowingVersion) impl.metadata.info.times = impl.index.times;
     if (impl.metadata.alternating && impl.metadata.info.times.size() < 2)
         throw Error("d4 needs two times", path, "index");
@@ -160,6 +161,16 @@ volume::BrickStats Archive::stats(const volume::BrickKey& key) const {
     for (int c = 1; c < channel.component; ++c)
         sum = volume::magnitudeStats(sum, impl_->statsOf(channel.parameter, c, key), nothing);
     return sum;
+}
+
+std::optional<volume::BrickDistribution> Archive::distribution(const volume::BrickKey& key) const {
+    const volume::Channel& channel = impl_->channelOf(key);
+    if (!impl_->hasTallies() || channel.magnitude) return std::nullopt;
+    const std::size_t brick = brickNumber(impl_->metadata.grid, key.index);
+    const FrameRecord& frame = impl_->holding(impl_->frame(channel.parameter, channel.component, key.time), brick);
+    const bool isFloat = frame.numbers.kind != NumberKind::Integer;
+    const FrameBrick& about = frame.bricks[brick];
+    return distributionOf(about.min, about.max, isFloat ? 0 : std::abs(frame.valueScale), about.tally);
 }
 
 std::optional<volume::BrickImportance> Archive::importance(const volume::BrickKey& key) const {

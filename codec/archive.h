@@ -38,6 +38,8 @@ public:
     const volume::DatasetInfo& info() const override;
     const volume::BrickGrid& grid() const override;
     volume::BrickStats stats(const volume::BrickKey& key) const override;
+    /// Nothing of archives from before there were such statistics, and of magnitudes.
+    std::optional<volume::BrickDistribution> distribution(const volume::BrickKey& key) const override;
     std::optional<volume::BrickImportance> importance(const volume::BrickKey& key) const override;
     /// Of D4* frames: between frames of the same parity.
     std::optional<volume::BrickChange> change(const volume::BrickKey& key, int toTime) const override;

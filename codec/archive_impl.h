@@ -76,10 +76,13 @@ struct Archive::Impl {
     std::shared_ptr<const BandDecoder> decoder(std::int32_t model) const;
     void decode(const FrameRecord& frame, const BrickFormat& format, std::size_t brick, int level,
                 std::span<const std::uint8_t> present, DecodedBrick& out) const;
+    /// The stored numbers of a brick decoded at full resolution; those of absent samples mean nothing.
+    Bytes numbersOf(const FrameRecord& frame, volume::ScalarType type, const DecodedBrick& decoded) const;
     volume::BrickSamples readComponent(int parameter, int component, const volume::BrickKey& key) const;
     volume::BrickStats statsOf(int parameter, int component, const volume::BrickKey& key) const;
     std::optional<volume::BrickChange> changeOf(int parameter, int component, const volume::BrickKey& key,
                                                 int toTime) const;
+    bool hasTallies() const { return (header.header.features & kBrickTallies) != 0; }
     bool hasNotes() const { return (header.header.features & kBrickNotes) != 0; }
 };
 

@@ -7,8 +7,35 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <concepts>
 
 namespace tessera::codec {
+
+namespace {
+
+/// Whether no code of a frame stands for a value that is not finite.
+bool isAlwaysFinite(const FrameRecord& frame) {
+    constexpr double kLargestCode = 4294967296.0, kLargest = 3e38;
+    if (frame.numbers.kind == NumberKind::Float) return false;
+    const double unit = frame.numbers.kind == NumberKind::Scaled      ? 1 / std::abs(frame.numbers.step)
+                        : frame.numbers.kind == NumberKind::Quantised ? std::abs(frame.numbers.step)
+                                                                      : 1;
+    const double number = std::abs(frame.numbers.origin) + unit * kLargestCode;
+    return number < kLargest && std::abs(frame.valueOffset) + std::abs(frame.valueScale) * number < kLargest;
+}
+
+/// Makes values that are not finite absent.
+void leaveOutInfinite(volume::BrickSamples& brick) {
+    std::int32_t infinite = 0;
+    for (const float value : brick.values)
+        infinite |= (std::bit_cast<std::int32_t>(value) & 0x7fffffff) > 0x7f7fffff ? 1 : 0;
+    if (infinite == 0) return;
+    if (brick.present.empty()) brick.present.assign(brick.values.size(), 1);
+    for (std::size_t i = 0; i < brick.values.size(); ++i)
+        if (!std::isfinite(brick.values[i])) brick.present[i] = 0, brick.values[i] = 0;
+}
+
+} // namespace
 
 /// Bytes of a segment, once their checksum is found right.
 std::span<const std::byte> Archive::Impl::segment(const Segment& segment) const {
@@ -83,6 +110,17 @@ void Archive::Impl::decode(const FrameRecord& frame, const BrickFormat& format, 
         damaged(path, frame.segments[(segments.size() - 1) * bricks + brick].offset, reason(status));
 }
 
+Bytes Archive::Impl::numbersOf(const FrameRecord& frame, volume::ScalarType type, const DecodedBrick& decoded) const {
+    Bytes numbers(countOf(decoded.size) * volume::byteSize(type));
+    volume::dispatch(type, [&]<class T>(T) {
+        T* const out = reinterpret_cast<T*>(numbers.data());
+        decoded.forRows([&](std::size_t first, auto row) { toSamples(frame.numbers, row, out + first); });
+        if constexpr (std::same_as<T, float>)
+            for (const ExactSample& exact : decoded.exact) out[exact.index] = std::bit_cast<float>(exact.bits);
+    });
+    return numbers;
+}
+
 volume::BrickSamples Archive::Impl::readComponent(int number, int component, const volume::BrickKey& key) const {
     const std::size_t brick = brickNumber(metadata.grid, key.index);
     const FrameRecord& record = holding(frame(number, component, key.time), brick);
@@ -95,22 +133,23 @@ volume::BrickSamples Archive::Impl::readComponent(int number, int component, con
     out.size = decoded->size;
     out.values.resize(countOf(out.size));
     out.present = decoded->present;
+    // Coarse levels stay within the range of the samples: row by row, while those are at hand.
+    const FrameBrick& range = record.bricks[brick];
+    const bool isHeld = key.level > 0 && range.min <= range.max, isFinite = isAlwaysFinite(record);
+    const auto hold = [&](std::span<float> values) {
+        for (float& value : values) value = std::min(std::max(value, range.min), range.max);
+    };
     decoded->forRows([&](std::size_t first, auto row) {
-        toValues(record.numbers, record.valueOffset, record.valueScale, row, out.values.data() + first);
+        float* const values = out.values.data() + first;
+        toValues(record.numbers, record.valueOffset, record.valueScale, row, values);
+        if (isHeld && isFinite) hold({values, row.size()});
     });
-    for (const ExactSample& exact : decoded->exact)
+    for (const ExactSample& exact : decoded->exact) // of full resolution
         out.values[exact.index] =
             static_cast<float>(record.valueOffset + record.valueScale * double(std::bit_cast<float>(exact.bits)));
-
-    std::int32_t infinite = 0;
-    for (const float value : out.values)
-        infinite |= (std::bit_cast<std::int32_t>(value) & 0x7fffffff) > 0x7f7fffff ? 1 : 0;
-    if (infinite != 0 && out.present.empty()) out.present.assign(out.values.size(), 1);
-    for (std::size_t i = 0; infinite != 0 && i < out.values.size(); ++i)
-        if (!std::isfinite(out.values[i])) out.present[i] = 0, out.values[i] = 0;
-    const FrameBrick& range = record.bricks[brick];
-    if (key.level > 0 && range.min <= range.max)
-        for (float& value : out.values) value = std::clamp(value, range.min, range.max);
+    if (isFinite && decoded->exact.empty()) return out;
+    leaveOutInfinite(out);
+    if (isHeld) hold(out.values);
     return out;
 }
 

@@ -53,6 +53,13 @@ struct Verifier {
                     const std::size_t s = std::size_t(format.levels - 1 - level);
                     bytes += record.segments[s * impl.bricks + brick].length;
                 }
+                if (!impl.hasTallies()) return;
+                const FrameBrick& noted = record.bricks[brick];
+                const volume::ScalarType type = parameters[parameter].type;
+                const TalliedBrick found = tallied(type, record.valueOffset, record.valueScale,
+                                                   impl.numbersOf(record, type, *decoded), fine, true);
+                if (!agree(found, noted.min, noted.max, noted.tally))
+                    throw Error("its statistics are not those of its samples", impl.path, "index");
             });
         });
         report.bricks += impl.bricks;

@@ -155,6 +155,8 @@ ArchiveWriter::ArchiveWriter(const std::string& path, const Metadata& metadata, 
     : impl_(std::make_unique<Impl>(path)) {
     impl_->metadata = metadata;
     impl_->keepsFrames = keepsFrames;
+    // A volume of one brick is read as quickly as what is noted of it, and small enough for that to count.
+    if (metadata.grid.count() == glm::ivec3(1)) impl_->header.features &= ~kBrickTallies;
 }
 
 ArchiveWriter::ArchiveWriter(const Archive& archive, const Metadata& metadata, bool keepsFrames) {
@@ -223,6 +225,7 @@ void ArchiveWriter::addFrame(int parameter, int component, int time, const Frame
     frame.segments.resize(bricks * levels);
     CodedBricks coded(bricks, levels, samples.store() ? &samples.store()->folder : nullptr);
     bool allWhole = levels > 1;
+    const bool tallies = (impl_->header.features & kBrickTallies) != 0;
     const int effort = effortFor(samples, options.zstdLevel);
     const std::size_t perBatch = batchOf(brickBytes(grid, samples.type()));
     samples.forSlabs([&](const volume::Field& part, Slab slab) {
@@ -243,6 +246,7 @@ void ArchiveWriter::addFrame(int parameter, int component, int time, const Frame
                     if (repeated[b] != 0) {
                         about = before->bricks[b];
                         about.notes.repeats += impl_->step();
+                        about.tally = {};
                         segments.resize(levels);
                         seen.bytes[b] = before->bytes[b];
                         input.take(grid, brick, before->field, false);
@@ -256,7 +260,7 @@ void ArchiveWriter::addFrame(int parameter, int component, int time, const Frame
                             encodeBrick(format, *taken.bricks[b], input.samples, input.present, compressor, encoder);
                         for (const Bytes& segment : segments) seen.bytes[b] += segment.size();
                         roundAsDecoded(format, maxError, input);
-                        about = rangeOf(part, input);
+                        about = tallyOf(part, input, tallies);
                     }
                     taken.bricks[b].reset();
                     about.notes.importance = importance[b];

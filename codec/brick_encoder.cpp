@@ -16,8 +16,9 @@ namespace {
 constexpr double kTryWhole = 3.0;
 constexpr std::size_t kGlance = 1 << 14;
 constexpr double kGlanceAsShort = 1.5, kNearlyAsShort = 1.15, kPerhapsAsShort = 1.3; // the last before LZMA
-constexpr double kSparse = 0.75;                                                     // bits a sample
-constexpr int kLeastEffort = 1, kSomeEffort = 3;
+constexpr double kWorthLevels = 0.9;
+constexpr double kSparse = 0.75; // bits a sample
+constexpr int kLeastEffort = -4, kSomeEffort = 3;
 
 /// Codes of the samples, and what is stored beside them.
 struct Numbers {
@@ -89,13 +90,33 @@ std::vector<TokenRun> levelTokens(const BrickFormat& format, Contexts contexts, 
     return runs;
 }
 
+/// Whether most floats of a brick occur more than once, as in fields that mirror or repeat themselves. Looks at the
+/// values in one of sixteen classes of hashes, where it finds all that are equal.
+bool valuesRecur(std::span<const std::byte> samples, std::span<const std::uint8_t> present) {
+    constexpr std::uint32_t kHash = 0x9E3779B1;
+    constexpr std::size_t kFew = 256;
+    std::vector<std::uint32_t> seen;
+    for (std::size_t i = 0; i + sizeof(std::uint32_t) <= samples.size(); i += sizeof(std::uint32_t)) {
+        std::uint32_t bits = 0;
+        std::memcpy(&bits, &samples[i], sizeof bits);
+        if ((bits * kHash) >> 28 == 0 && (present.empty() || present[i / sizeof bits] != 0)) seen.push_back(bits);
+    }
+    const std::size_t count = seen.size();
+    std::ranges::sort(seen);
+    const auto repeated = std::ranges::unique(seen);
+    return count >= kFew && 2 * repeated.size() >= count;
+}
+
 /// All samples as one stream in segment 0, if that is shorter than the levels: constants, labels, repeated slices.
 void tryWhole(const BrickFormat& format, std::span<const std::byte> samples, std::span<const std::uint8_t> present,
               Compressor& compressor, std::vector<Bytes>& segments) {
     std::size_t bytes = 0;
     for (const Bytes& segment : segments) bytes += segment.size();
     const std::size_t count = countOf(format.size);
-    if (8.0 * double(bytes) > kTryWhole * double(count) || bytes <= segments.size()) return;
+    if (bytes <= segments.size()) return;
+    // Levels of many bits are worth more than a few bytes.
+    const bool dense = 8.0 * double(bytes) > kTryWhole * double(count);
+    if (dense && (format.type != volume::ScalarType::F32 || !valuesRecur(samples, present))) return;
     const int effort = compressor.level();
     Bytes whole;
     const auto tryEffort = [&](std::span<const std::uint32_t> codes, int level, double nearly) {
@@ -127,7 +148,7 @@ void tryWhole(const BrickFormat& format, std::span<const std::byte> samples, std
     // Where a quick search for matches does about as well as bands, a longer one is worth its time.
     if (!tryEffort(codes, kSomeEffort, compressor.triesLzma() ? kPerhapsAsShort : kNearlyAsShort)) return;
     (void)tryEffort(codes, effort, 1);
-    if (whole.size() >= bytes) return;
+    if (double(whole.size()) >= (dense ? kWorthLevels : 1.0) * double(bytes)) return;
     for (Bytes& segment : segments) segment.clear();
     segments[0] = std::move(whole);
 }

@@ -26,7 +26,10 @@ inline constexpr std::uint32_t kBrickNotes = 1;
 /// Feature: metadata and pages of the index are pieces (codec/lzma.h), streams may be LZMA, models may be empty.
 inline constexpr std::uint32_t kCompact = 2;
 /// Feature: models may have contexts that tell bands apart.
-inline constexpr std::uint32_t kBandContexts = 4, kKnownFeatures = kBrickNotes | kCompact | kBandContexts;
+inline constexpr std::uint32_t kBandContexts = 4;
+/// Feature: the index has mean and histogram of each brick.
+inline constexpr std::uint32_t kBrickTallies = 8,
+                               kKnownFeatures = kBrickNotes | kCompact | kBandContexts | kBrickTallies;
 
 /// Where the chunks of a version begin.
 constexpr std::uint64_t firstChunk(std::uint32_t version) {
@@ -85,6 +88,7 @@ class ByteReader {
 public:
     explicit ByteReader(std::span<const std::byte> bytes) : bytes_(bytes) {}
     std::size_t left() const { return bytes_.size(); }
+    std::span<const std::byte> rest() const { return bytes_; }
     template <class T> T get() {
         if constexpr (std::same_as<T, double>)
             return std::bit_cast<double>(get<std::uint64_t>());

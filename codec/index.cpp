@@ -42,7 +42,8 @@ public:
     RecordReader(std::span<const std::byte> bytes, const Header& header, const IndexShape& shape,
                  const std::string& file)
         : in_(bytes), version_(header.version), notes_((header.features & kBrickNotes) != 0),
-          begin_(firstChunk(header.version)), end_(header.index.offset), shape_(shape), file_(file) {}
+          tallies_((header.features & kBrickTallies) != 0), begin_(firstChunk(header.version)),
+          end_(header.index.offset), shape_(shape), file_(file) {}
 
     IndexPage page() {
         IndexPage page;
@@ -59,11 +60,13 @@ public:
         const std::uint64_t frameBytes = kFrameRecordBytes + (hasModels ? kFrameModelBytes : 0) +
                                          (grows ? kFrameKeyBytes : 0) +
                                          bricks * (kFrameBrickBytes + (notes_ ? kNotesBytes : 0) +
-                                                   static_cast<std::uint64_t>(shape_.levels) * kSegmentBytes);
+                                                   static_cast<std::uint64_t>(shape_.grid.levels) * kSegmentBytes);
         require(times <= room / 8 && masks <= room / maskBytes && frames <= room / frameBytes &&
-                    models <= room / kModelBytes &&
-                    headBytes + 8 * times + models * kModelBytes + masks * maskBytes + frames * frameBytes == room,
+                    models <= room / kModelBytes,
                 "the index has the wrong length", file_);
+        const std::uint64_t records =
+            headBytes + 8 * times + models * kModelBytes + masks * maskBytes + frames * frameBytes;
+        require(tallies_ ? records <= room : records == room, "the index has the wrong length", file_);
         for (std::uint64_t t = 0; t < times; ++t) page.times.push_back(in_.get<double>());
         for (std::uint64_t m = 0; m < models; ++m) {
             page.models.push_back(in_.get<Block>());
@@ -71,6 +74,7 @@ public:
         }
         for (std::uint64_t m = 0; m < masks; ++m) page.masks.push_back(mask());
         for (std::uint64_t f = 0; f < frames; ++f) page.frames.push_back(frame());
+        page.tallies.assign(in_.rest().begin(), in_.rest().end());
         return page;
     }
 
@@ -146,7 +150,7 @@ private:
             if (notes_) brick.notes = notes();
         }
         std::uint64_t at = frame.offset;
-        frame.segments.resize(shape_.bricks * static_cast<std::uint64_t>(shape_.levels));
+        frame.segments.resize(shape_.bricks * static_cast<std::uint64_t>(shape_.grid.levels));
         for (Segment& segment : frame.segments) {
             segment.length = in_.get<std::uint32_t>();
             segment.checksum = in_.get<std::uint64_t>();
@@ -158,7 +162,7 @@ private:
 
     ByteReader in_;
     std::uint32_t version_;
-    bool notes_;
+    bool notes_, tallies_;
     std::uint64_t begin_, end_; ///< where chunks may lie
     const IndexShape& shape_;
     const std::string& file_;
@@ -189,6 +193,28 @@ std::vector<IndexPage> readPages(std::span<const std::byte> bytes, const Header&
     std::reverse(pages.begin(), pages.end());
     std::reverse(places.begin(), places.end());
     return pages;
+}
+
+/// Reads the tallies of a page, whose masks and those of older pages are in the index.
+void takeTallies(const Index& index, const IndexShape& shape, IndexPage& page, const std::string& file) {
+    BitReader in(page.tallies);
+    const glm::ivec3 count = shape.grid.count();
+    for (FrameRecord& frame : page.frames)
+        for (std::size_t b = 0; b < frame.bricks.size(); ++b) {
+            FrameBrick& brick = frame.bricks[b];
+            if (brick.notes.repeats > 0) continue;
+            const std::size_t nx = std::size_t(count.x), ny = std::size_t(count.y);
+            const glm::ivec3 at(int(b % nx), int(b / nx % ny), int(b / (nx * ny)));
+            const glm::u64vec3 size(shape.grid.brickSamples(at, 0));
+            const std::uint64_t samples = size.x * size.y * size.z,
+                                present =
+                                    frame.mask < 0 ? samples : index.masks[std::size_t(frame.mask)].bricks[b].present;
+            const bool isFloat = frame.numbers.kind != NumberKind::Integer;
+            require(present <= samples &&
+                        take(in, brick.min, brick.max, isFloat, static_cast<std::uint32_t>(present), brick.tally),
+                    "statistics of a brick cannot be read", file);
+        }
+    require(in.atEnd(), "statistics of bricks do not fill the index", file);
 }
 
 /// A brick that repeats another has no bytes of its own, the other one has.
@@ -289,6 +315,12 @@ Bytes serialise(const IndexPage& page, std::uint32_t features) {
             out.put(segment.checksum);
         }
     }
+    BitWriter tallies;
+    for (const FrameRecord& frame : page.frames)
+        for (const FrameBrick& brick : frame.bricks)
+            if (brick.notes.repeats == 0)
+                put(tallies, brick.min, brick.max, frame.numbers.kind != NumberKind::Integer, brick.tally);
+    if ((features & kBrickTallies) != 0) out.bytes.insert(out.bytes.end(), tallies.bytes.begin(), tallies.bytes.end());
     return (features & kCompact) != 0 ? encodePiece(out.bytes) : out.bytes;
 }
 
@@ -306,6 +338,9 @@ Index readIndex(std::span<const std::byte> bytes, const Header& header, const In
             require(frame.mask >= -1 && frame.mask < std::ssize(index.masks), "a mask is missing", file);
             require(header.version == 1 || (frame.model >= 0 && frame.model < std::ssize(index.models)),
                     "a model is missing", file);
+        }
+        if ((header.features & kBrickTallies) != 0) takeTallies(index, shape, page, file);
+        for (FrameRecord& frame : page.frames) {
             if (!grows) {
                 frame.time = static_cast<std::uint32_t>(frames.size() / shape.components);
                 frame.component = static_cast<std::uint32_t>(frames.size() % shape.components);

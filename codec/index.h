@@ -1,5 +1,6 @@
 #pragma once
 
+#include "codec/brick_tally.h"
 #include "codec/container.h"
 #include "codec/lifting.h"
 #include "codec/numbers.h"
@@ -30,6 +31,7 @@ struct MaskRecord {
 
 struct FrameBrick {
     float min = 0, max = -1; ///< physical values of present samples; min > max: none
+    BrickTally tally;        ///< only with kBrickTallies, and not of repeats
     /// What archives without kBrickNotes do not say of their bricks.
     struct Notes {
         volume::BrickImportance importance;             ///< stored with 16 bits each
@@ -66,6 +68,7 @@ struct IndexPage {
     std::vector<Block> models;
     std::vector<MaskRecord> masks;
     std::vector<FrameRecord> frames;
+    Bytes tallies; ///< as read: of all frames, in bits
 };
 
 struct Index {
@@ -80,7 +83,7 @@ struct Index {
 /// What the metadata says of the shape of an index.
 struct IndexShape {
     std::uint64_t components = 0, bricks = 0;
-    int levels = 0;
+    volume::BrickGrid grid;
     std::uint64_t times = 0; ///< versions 1 and 2 only
 };
 

@@ -8,6 +8,7 @@
 #include "codec/archive.h"
 #include "vis/image_io.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <map>
@@ -184,6 +185,11 @@ Json bricksJson(const codec::Archive& archive) {
                       {"bytes", archive.brickBytes(key)},
                       {"repeats", archive.repeats(key)}};
         if (stats.presentFraction > 0) entry["range"] = {stats.min, stats.max};
+        if (const auto distribution = archive.distribution(key); distribution && distribution->samples > 0) {
+            entry["samples"] = distribution->samples;
+            entry["mean"] = distribution->mean;
+            entry["histogram"] = distribution->counts;
+        }
         if (const auto importance = archive.importance(key)) {
             entry["importance"] = importance->importance;
             entry["detail"] = importance->detail;
@@ -198,14 +204,27 @@ Json bricksJson(const codec::Archive& archive) {
     return bricks;
 }
 
+/// A histogram as a row of bars, by the roots of its counts.
+std::string barsOf(const std::vector<std::uint32_t>& counts) {
+    constexpr const char* kBars[] = {" ",      "\u2581", "\u2582", "\u2583", "\u2584",
+                                     "\u2585", "\u2586", "\u2587", "\u2588"};
+    std::uint32_t most = 1;
+    for (const std::uint32_t count : counts) most = std::max(most, count);
+    std::string bars;
+    for (const std::uint32_t count : counts)
+        bars += kBars[std::size_t(std::ceil(8 * std::sqrt(double(count) / double(most))))];
+    return bars;
+}
+
 void printBricks(const codec::Archive& archive) {
     const auto channels = archive.info().channels();
-    std::printf("  %-16s %12s %-10s %10s %10s %7s %9s %6s %11s %11s %8s\n", "channel", "time", "brick", "min", "max",
-                "present", "importance", "detail", "change", "change RMS", "bytes");
+    std::printf("  %-16s %12s %-10s %10s %10s %10s %7s %9s %6s %11s %11s %8s  %s\n", "channel", "time", "brick", "min",
+                "max", "mean", "present", "importance", "detail", "change", "change RMS", "bytes", "histogram");
     forBricks(archive, [&](int channel, int time, glm::ivec3 brick) {
         const volume::BrickKey key{channel, time, 0, brick};
         const volume::BrickStats stats = archive.stats(key);
         const auto importance = archive.importance(key);
+        const auto distribution = archive.distribution(key);
         const auto change = lastChange(archive, key);
         const bool any = stats.presentFraction > 0;
         const std::string place =
@@ -213,15 +232,18 @@ void printBricks(const codec::Archive& archive) {
         const auto changeText = [&](float value) {
             return std::isfinite(value) ? numberText(double(value)) : std::string("appears");
         };
-        std::printf("  %-16s %12s %-10s %10s %10s %6.1f%% %10s %6s %11s %11s %8s\n",
+        std::printf("  %-16s %12s %-10s %10s %10s %10s %6.1f%% %10s %6s %11s %11s %8s  %s\n",
                     channels[std::size_t(channel)].name.c_str(),
                     numberText(archive.info().times[std::size_t(time)]).c_str(), place.c_str(),
                     any ? numberText(double(stats.min)).c_str() : "-",
-                    any ? numberText(double(stats.max)).c_str() : "-", 100.0 * double(stats.presentFraction),
+                    any ? numberText(double(stats.max)).c_str() : "-",
+                    distribution && distribution->samples > 0 ? numberText(distribution->mean).c_str() : "-",
+                    100.0 * double(stats.presentFraction),
                     importance ? numberText(std::round(1000 * double(importance->importance)) / 1000).c_str() : "-",
                     importance ? numberText(std::round(1000 * double(importance->detail)) / 1000).c_str() : "-",
                     change ? changeText(change->max).c_str() : "-", change ? changeText(change->rms).c_str() : "-",
-                    archive.repeats(key) > 0 ? "repeats" : std::to_string(archive.brickBytes(key)).c_str());
+                    archive.repeats(key) > 0 ? "repeats" : std::to_string(archive.brickBytes(key)).c_str(),
+                    distribution ? barsOf(distribution->counts).c_str() : "");
     });
 }
 
@@ -275,8 +297,8 @@ void addInfoCommand(CLI::App& app) {
         ->required();
     command->add_flag("--json", request->json, "Print as JSON with stable keys");
     command->add_flag("--bricks", request->bricks,
-                      "Of an archive also every brick of every component and time: range, importance, change from the "
-                      "time before, bytes");
+                      "Of an archive also every brick of every component and time: range, mean, histogram, importance, "
+                      "change from the time before, bytes");
     command->add_flag("--merge", request->merge,
                       "Of an archive also how its bricks merge into larger ones, and the bytes those would take");
     addDescribed(*command, request->merging, "merge.");

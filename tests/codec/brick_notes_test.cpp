@@ -217,6 +217,7 @@ TEST(BrickNotes, FormerArchivesHaveNone) {
     const Archive grown(path);
     EXPECT_EQ(grown.info().times.size(), 3u);
     EXPECT_FALSE(grown.importance({0, 1, 0, {0, 0, 0}}));
+    EXPECT_FALSE(grown.distribution({0, 1, 0, {0, 0, 0}}));
     EXPECT_FALSE(grown.change({0, 1, 0, {0, 0, 0}}, 2));
     EXPECT_EQ(grown.repeats().bricks, 0u);
     EXPECT_EQ(verifyArchive(grown).damaged, 0u);

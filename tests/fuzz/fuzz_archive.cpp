@@ -39,6 +39,7 @@ void readAll(const std::string& path) {
         for (int level = 0; level < archive.grid().levels; ++level) try {
                 (void)archive.read({0, 0, level, last});
                 (void)archive.stats({0, 0, level, last});
+                (void)archive.distribution({0, 0, level, last});
             } catch (const Error&) {
             }
         (void)codec::readField(archive, 0, 0, 0);

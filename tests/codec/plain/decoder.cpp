@@ -3,6 +3,8 @@
 #include "tests/codec/plain/codes.h"
 
 #include <algorithm>
+#include <bit>
+#include <cmath>
 #include <cstring>
 #include <xxhash.h>
 
@@ -75,14 +77,15 @@ Decoder::Decoder(std::vector<char> file) : file_(file.begin(), file.end()) {
         Piece found[2];
         for (Piece& part : found) part = readPiece(in);
         if (in.number(8) != XXH3_64bits(file_.data() + at, 72) || version < 1 || version > 3 ||
-            features > (version < 3 ? 0 : 7))
+            features > (version < 3 ? 0 : 15))
             return false;
         if (version < 3 ? at > 0 || end != file_.size() : end > file_.size()) return false;
         if (end <= end_) return true; // the other copy is as good or better
         version_ = version;
         hasNotes_ = features % 2 == 1;
         compact_ = features / 2 % 2 == 1;
-        knowsBands_ = features / 4 == 1;
+        knowsBands_ = features / 4 % 2 == 1;
+        hasStatistics_ = features / 8 == 1;
         end_ = end;
         std::copy(found, found + 2, parts);
         return true;
@@ -214,7 +217,8 @@ void Decoder::readPage(const Octets& page, std::vector<double>& times,
         frame.valueOffset = table.f64();
         frame.valueScale = table.f64();
         for (std::size_t b = 0; b < bricks; ++b) {
-            (void)table.number(8); // min, max
+            const float min = std::bit_cast<float>(table.u32()), max = std::bit_cast<float>(table.u32());
+            frame.ranges.push_back({min, max});
             if (!hasNotes_) continue;
             (void)table.take(10); // importance, detail, change
             frame.repeats.push_back(table.number(2));
@@ -227,7 +231,72 @@ void Decoder::readPage(const Octets& page, std::vector<double>& times,
         need(at == end, "frame chunk");
         frames.emplace_back(number, std::move(frame));
     }
+    const Octets bits = table.take(hasStatistics_ ? std::size_t(table.end - table.at) : 0);
+    std::size_t at = 0;
+    for (std::size_t f = frames.size() - frameCount; hasStatistics_ && f < frames.size(); ++f)
+        readStatistics(bits, frames[f].second, at);
+    need((at + 7) / 8 == bits.size(), "statistics");
+    need(at % 8 == 0 || bits.back() >> (at % 8) == 0, "statistics");
     need(table.at == table.end, "index");
+}
+
+/// 1.6
+void Decoder::readStatistics(const Octets& bits, Frame& frame, std::size_t& at) const {
+    const auto take = [&](std::size_t count) {
+        std::uint32_t value = 0;
+        for (std::size_t i = 0; i < count; ++i, ++at) {
+            need(at < 8 * bits.size(), "statistics");
+            value |= std::uint32_t(bits[at / 8] >> (at % 8) & 1) << i;
+        }
+        return value;
+    };
+    const auto bitsOf = [](std::uint64_t n) {
+        std::size_t count = 0;
+        for (; n > 0; n /= 2) ++count;
+        return count;
+    };
+    for (std::size_t b = 0; b < frame.ranges.size(); ++b) {
+        Statistics& brick = frame.statistics.emplace_back();
+        const auto [min, max] = frame.ranges[b];
+        if ((hasNotes_ && frame.repeats[b] > 0) || !(min <= max)) continue;
+        const Size size = fineSize(int(b));
+        brick.samples = std::uint64_t(size[0]) * std::uint64_t(size[1]) * std::uint64_t(size[2]);
+        if (frame.mask >= 0) brick.samples = masks_[std::size_t(frame.mask)].present[b];
+        if (frame.numbers > 0 && take(1) == 1) {
+            const std::uint64_t others = take(bitsOf(brick.samples));
+            need(others > 0 && others < brick.samples, "statistics");
+            brick.samples -= others;
+        }
+        brick.mean = double(min);
+        if (!std::isfinite(min) || !std::isfinite(max) || min == max) {
+            brick.counts = {std::uint32_t(brick.samples)};
+            continue;
+        }
+        brick.mean += (double(max) - double(min)) * take(24) / double(0xffffff);
+        const std::size_t width = bitsOf(brick.samples) / 2;
+        std::vector<std::uint32_t> parts{std::uint32_t(brick.samples)};
+        // Depth first: the next part to divide is the first one that is too long.
+        std::vector<std::size_t> lengths{std::size_t(1) << std::min<std::size_t>(width < 4 ? 0 : width - 4, 5)};
+        for (std::size_t p = 0; p < parts.size();) {
+            if (lengths[p] == 1) {
+                ++p;
+                continue;
+            }
+            const std::uint32_t low = parts[p] == 0 ? 0 : take(bitsOf(parts[p]));
+            need(low <= parts[p], "statistics");
+            const auto place = std::ptrdiff_t(p);
+            parts.insert(parts.begin() + place, low);
+            parts[p + 1] -= low;
+            lengths.insert(lengths.begin() + place, lengths[p] / 2);
+            lengths[p + 1] /= 2;
+        }
+        brick.counts = parts;
+    }
+}
+
+Statistics Decoder::statistics(std::size_t frame, int number) const {
+    const std::size_t repeats = frames_[frame].repeats[std::size_t(number)] * types_.size();
+    return frames_[frame - repeats].statistics[std::size_t(number)];
 }
 
 std::vector<std::uint8_t> Decoder::checked(const Piece& piece) const {

@@ -21,6 +21,13 @@ struct Brick {
     std::vector<std::uint32_t> bits; ///< level 0: the stored numbers, sign-extended or bits of a float; kept absent too
 };
 
+/// What the index says of the values of a brick.
+struct Statistics {
+    std::uint64_t samples = 0; ///< present and finite; 0: nothing else is said
+    double mean = 0;
+    std::vector<std::uint32_t> counts;
+};
+
 struct Reader;
 
 class Decoder {
@@ -33,6 +40,7 @@ public:
     std::size_t frames() const { return frames_.size(); }
     /// Frame = (time * components + component); brick numbers x fastest.
     Brick brick(std::size_t frame, int number, int level) const;
+    Statistics statistics(std::size_t frame, int number) const;
 
     struct Model {
         std::uint32_t shift = 0;
@@ -57,12 +65,16 @@ private:
         double origin = 0, step = 1, valueOffset = 0, valueScale = 1;
         std::vector<std::size_t> repeats; ///< by brick: the frame so many times before holds it
         std::vector<Piece> pieces;        ///< [segment * bricks + brick]
+        std::vector<std::array<float, 2>> ranges;
+        std::vector<Statistics> statistics;
     };
 
     static Piece readPiece(Reader& in);
     /// 1.4
     void readPage(const std::vector<std::uint8_t>& page, std::vector<double>& times,
                   std::vector<std::pair<std::size_t, Frame>>& frames, std::vector<Piece>& covered);
+    /// 1.6
+    void readStatistics(const std::vector<std::uint8_t>& bits, Frame& frame, std::size_t& at) const;
     Model parseModel(const Piece& piece) const;
     std::vector<std::uint8_t> checked(const Piece& piece) const;
     std::vector<bool> fineFlags(const Frame& frame, int number, const Size& size) const;
@@ -75,7 +87,7 @@ private:
     int brickSize_ = 0, levels_ = 0;
     std::vector<std::string> types_; ///< of the component of each frame within a time
     std::uint32_t version_ = 0;
-    bool hasNotes_ = false, compact_ = false, knowsBands_ = false;
+    bool hasNotes_ = false, compact_ = false, knowsBands_ = false, hasStatistics_ = false;
     std::size_t end_ = 0; ///< of the archive in the file
     std::vector<Piece> models_;
     std::vector<Mask> masks_;
