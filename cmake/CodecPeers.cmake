@@ -4,7 +4,7 @@ add_executable(tessera-codec-peers tests/bench/codec_peers.cpp tests/bench/peer_
 target_link_libraries(tessera-codec-peers PRIVATE codec PkgConfig::zstd)
 tessera_little_optimised(tessera-codec-peers 1)
 set_target_properties(tessera-codec-peers PROPERTIES UNITY_BUILD OFF)
-foreach(peer IN ITEMS LZ4:liblz4 XZ:liblzma BLOSC:blosc HDF5:hdf5-serial OPENJPEG:libopenjp2)
+foreach(peer IN ITEMS LZ4:liblz4 XZ:liblzma BLOSC:blosc HDF5:hdf5-serial OPENJPEG:libopenjp2 JXL:libjxl)
   string(REGEX MATCH "^[^:]+" name ${peer})
   string(REGEX MATCH "[^:]+$" module ${peer})
   pkg_check_modules(peer_${name} QUIET IMPORTED_TARGET ${module})

@@ -10,17 +10,25 @@ namespace {
 /// Raw bits, lowest first.
 class RawBits {
 public:
+    /// Bits are put at most `count` times.
+    explicit RawBits(std::size_t count) : bytes_(4 * count + 8) {}
+
     void put(std::uint32_t value, int bits) {
         pending_ |= static_cast<std::uint64_t>(value) << count_;
         count_ += bits;
-        for (; count_ >= 8; count_ -= 8, pending_ >>= 8) bytes.push_back(static_cast<std::byte>(pending_));
+        if (count_ < 32) return;
+        for (std::size_t i = 0; i < 4; ++i) bytes_[at_ + i] = static_cast<std::byte>(pending_ >> (8 * i));
+        at_ += 4, count_ -= 32, pending_ >>= 32;
     }
-    void flush() {
-        if (count_ > 0) bytes.push_back(static_cast<std::byte>(pending_));
+    Bytes taken() {
+        for (; count_ > 0; count_ -= 8, pending_ >>= 8) bytes_[at_++] = static_cast<std::byte>(pending_);
+        bytes_.resize(at_);
+        return std::move(bytes_);
     }
-    Bytes bytes;
 
 private:
+    Bytes bytes_;
+    std::size_t at_ = 0;
     std::uint64_t pending_ = 0;
     int count_ = 0;
 };
@@ -123,24 +131,24 @@ TESSERA_AVX512 void codeTokens512(const TokenRun& run, const std::uint32_t* tabl
 
 /// The raw bits of symbols that need them, in order.
 Bytes rawBits(const TokenRun& run, std::span<const std::uint32_t> escaped) {
-    RawBits raw;
+    RawBits raw(run.large.size() + escaped.size());
     std::size_t left = escaped.size();
     const auto escapeUpTo = [&](std::uint32_t at) { // of direct tokens, which are their symbols
         for (; left > 0 && escaped[left - 1] < at; --left) raw.put(run.tokens[escaped[left - 1]] & 255u, 32);
     };
-    for (const TokenRun::Large& large : run.large) {
-        escapeUpTo(large.at);
-        if (left > 0 && escaped[left - 1] == large.at) {
-            raw.put(large.symbol, 32);
+    for (std::size_t i = 0; i < run.large.size(); ++i) {
+        const std::uint32_t symbol = run.large[i], at = run.largeAt[i];
+        escapeUpTo(at);
+        if (left > 0 && escaped[left - 1] == at) {
+            raw.put(symbol, 32);
             --left;
             continue;
         }
-        const int bits = rawBitsOf(run.tokens[large.at] & 255u);
-        raw.put(large.symbol & ((1u << bits) - 1), bits);
+        const int bits = rawBitsOf(run.tokens[at] & 255u);
+        raw.put(symbol & ((1u << bits) - 1), bits);
     }
     escapeUpTo(~0u);
-    raw.flush();
-    return std::move(raw.bytes);
+    return raw.taken();
 }
 
 } // namespace

@@ -25,16 +25,19 @@ void rowTokens(const Band<const Word>& band, std::ptrdiff_t at, const Neighbours
             const std::uint32_t token = tokenOf(symbol).token;
             *tokens = static_cast<std::uint16_t>(kind | classOf(near.sum(x, contexts.byBand)) << 8 | token);
             run.zero = run.zero && symbol == 0;
-            if (token >= kDirect) run.large.push_back({static_cast<std::uint32_t>(tokens - run.tokens.data()), symbol});
+            if (token < kDirect) continue;
+            run.large.push_back(symbol);
+            run.largeAt.push_back(static_cast<std::uint32_t>(tokens - run.tokens.data()));
         }
 }
 
 #if TESSERA_X86
 
-/// As rowTokens, sixteen at a time.
+/// As rowTokens, sixteen at a time. `count`: of large symbols so far; there is room for more behind them.
 template <class Word, bool kByBand>
 TESSERA_AVX512 void rowTokens512(const Band<const Word>& band, std::ptrdiff_t at, const Neighbours& near,
-                                 Contexts contexts, std::uint16_t* sizes, std::uint16_t*& tokens, TokenRun& run) {
+                                 Contexts contexts, std::uint16_t* sizes, std::uint16_t*& tokens, TokenRun& run,
+                                 std::size_t& count) {
     const Word* values = band.values + at;
     const __m512i kind = _mm512_set1_epi32(kByBand ? band.kind << 13 : 0);
     __m512i any = _mm512_setzero_si512(), sums = any; // of 32 places
@@ -69,13 +72,16 @@ TESSERA_AVX512 void rowTokens512(const Band<const Word>& band, std::ptrdiff_t at
                 _mm512_srlv_epi32(symbol, _mm512_sub_epi32(octave, _mm512_set1_epi32(2))), _mm512_set1_epi32(3));
             token = _mm512_mask_add_epi32(
                 token, large, _mm512_add_epi32(_mm512_slli_epi32(octave, 2), _mm512_set1_epi32(kDirect - 20)), part);
-            alignas(64) std::uint32_t all[kLanes];
-            _mm512_store_si512(all, symbol);
-            const auto first = static_cast<std::uint32_t>(tokens - run.tokens.data());
-            for (std::uint32_t rest = large; rest != 0; rest &= rest - 1) {
-                const auto lane = static_cast<std::uint32_t>(__builtin_ctz(rest));
-                run.large.push_back({first + lane, all[lane]});
+            const __m512i place =
+                _mm512_add_epi32(_mm512_set1_epi32(static_cast<int>(tokens - run.tokens.data())),
+                                 _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15));
+            if (run.large.size() < count + kLanes) {
+                run.large.resize(2 * run.large.size() + kLanes);
+                run.largeAt.resize(run.large.size());
             }
+            _mm512_storeu_si512(run.large.data() + count, _mm512_maskz_compress_epi32(large, symbol));
+            _mm512_storeu_si512(run.largeAt.data() + count, _mm512_maskz_compress_epi32(large, place));
+            count += std::size_t(__builtin_popcount(large));
         }
         const __m512i both = _mm512_or_si512(_mm512_or_si512(_mm512_slli_epi32(context, 8), token), kind);
         _mm256_storeu_si256(reinterpret_cast<__m256i*>(tokens),
@@ -96,6 +102,7 @@ template <class Word> TokenRun tokensOf(std::span<const Band<const Word>> bands,
     run.tokens.resize(lanes.chunks * kLanes);
     std::uint16_t* next = run.tokens.data();
     std::vector<Magnitudes> magnitudes = magnitudesFor(bands);
+    std::size_t large = 0;
     forBandRows(bands, [&](std::size_t b, int z, int y) {
         const Band<const Word>& band = bands[b];
         const Neighbours near(magnitudes[b], z, y);
@@ -103,14 +110,18 @@ template <class Word> TokenRun tokensOf(std::span<const Band<const Word>> bands,
         std::uint16_t* sizes = magnitudes[b].row(z, y);
 #if TESSERA_X86
         if (cpu == Cpu::Avx512 && contexts.byBand)
-            rowTokens512<Word, true>(band, at, near, contexts, sizes, next, run);
+            rowTokens512<Word, true>(band, at, near, contexts, sizes, next, run, large);
         else if (cpu == Cpu::Avx512)
-            rowTokens512<Word, false>(band, at, near, contexts, sizes, next, run);
+            rowTokens512<Word, false>(band, at, near, contexts, sizes, next, run, large);
         else
 #endif
             rowTokens<Word>(band, at, near, contexts, sizes, next, run);
         return true;
     });
+    if (large > 0) {
+        run.large.resize(large);
+        run.largeAt.resize(large);
+    }
     (void)cpu;
     return run;
 }
@@ -119,13 +130,14 @@ void countTokens(const TokenRun& run, int level, Histogram& histogram, int every
     constexpr std::size_t kMany = 1024; // chunks
     const std::size_t chunks = run.tokens.size() / kLanes, step = chunks < kMany ? 1 : std::size_t(every);
     const std::size_t first = histogram.contexts.first(level);
-    const std::size_t kinds = std::size_t(histogram.contexts.kindsOf(level)); // 1: whatever the tokens say
+    // One kind: whatever the tokens say. (Kinds and classes are powers of two.)
+    const std::size_t contexts = std::size_t(histogram.contexts.kindsOf(level)) * kClasses - 1;
+    auto* const counts = histogram.counts.data() + first;
     for (std::size_t chunk = 0; chunk < chunks; chunk += step)
         for (std::size_t i = chunk * kLanes; i < (chunk + 1) * kLanes; ++i) {
             const std::size_t token = run.tokens[i];
             if (token != TokenRun::kNone)
-                histogram.counts[first + (token >> 8) % (kinds * kClasses)][token & 255] +=
-                    static_cast<std::uint32_t>(step);
+                counts[token >> 8 & contexts][token & 255] += static_cast<std::uint32_t>(step);
         }
 }
 

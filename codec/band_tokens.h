@@ -23,17 +23,13 @@ template <class Word> struct Band {
 
 /// The tokens of bands in the order of coding, and the contexts they came in: what is counted, and what is coded.
 struct TokenRun {
-    /// A symbol whose token does not say all of it.
-    struct Large {
-        std::uint32_t at = 0; ///< of its token
-        std::uint32_t symbol = 0;
-    };
     static constexpr std::uint16_t kNone = 0xffff;
 
     /// Sixteen a chunk: kind << 13 | class << 8 | token, kNone where a lane has no coefficient. The kind is that of the
     /// band where contexts ask for it, else 0.
     Uncleared<std::uint16_t> tokens;
-    std::vector<Large> large; ///< in order
+    /// Symbols whose tokens do not say all of them, and the numbers of those, in order.
+    Uncleared<std::uint32_t> large, largeAt;
     int groups = 1, used = 0; ///< of states, and how many states are stored
     bool zero = true;         ///< all coefficients are 0
 };

@@ -97,6 +97,13 @@ DecodeStatus decodeLevels(const BrickFormat& format, std::span<const std::span<c
 template <class Word>
 DecodeStatus decodeWhole(const BrickFormat& format, std::span<const std::byte> in, int level,
                          std::span<const std::uint8_t> present, DecodedBrick& out) {
+    // Every wavelet leaves a constant as it is.
+    if (const auto only = onlyCode(in); only && present.empty()) {
+        const auto code = static_cast<Word>(static_cast<std::int32_t>(*only));
+        for (int s = 0; s < format.sublattices(); ++s)
+            out.boxes<Word>().samples[std::size_t(s)].fill(levelSize(format.sublatticeSize(s), level), code);
+        return DecodeStatus::Ok;
+    }
     const std::size_t total = countOf(format.size);
     const auto absent = std::size_t(std::count(present.begin(), present.end(), std::uint8_t(0)));
     std::vector<std::uint32_t> codes(total - absent);

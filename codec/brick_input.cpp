@@ -1,7 +1,6 @@
 #include "codec/brick_input.h"
 
 #include "codec/brick_access.h"
-#include "volume/number_extent.h"
 
 #include <algorithm>
 #include <bit>
@@ -68,31 +67,10 @@ void roundAsDecoded(const BrickFormat& format, double maxError, BrickInput& inpu
     }
 }
 
-FrameBrick rangeOf(const volume::Field& field, const BrickInput& decoded) {
-    double lo = 0, hi = -1;
-    const auto add = [&](double number) {
-        const double value = field.offset + field.scale * number;
-        if (lo > hi) lo = hi = value;
-        lo = std::min(lo, value), hi = std::max(hi, value);
-    };
-    volume::dispatch(field.type, [&]<class T>(T) {
-        const std::size_t count = decoded.samples.size() / sizeof(T);
-        if constexpr (!std::same_as<T, float>)
-            if (decoded.present.empty() && count > 0) { // of the ends of the range only
-                const volume::NumberExtent<T> extent =
-                    volume::extentOfNumbers(std::span(reinterpret_cast<const T*>(decoded.samples.data()), count));
-                add(double(extent.least)), add(double(extent.most));
-                return;
-            }
-        for (std::size_t i = 0; i < count; ++i) {
-            if (!decoded.present.empty() && decoded.present[i] == 0) continue;
-            const T sample = sampleAt<T>(decoded.samples, i);
-            if constexpr (std::same_as<T, float>)
-                if (!std::isfinite(sample)) continue;
-            add(static_cast<double>(sample));
-        }
-    });
-    return {static_cast<float>(lo), static_cast<float>(hi), {}};
+FrameBrick tallyOf(const volume::Field& field, const BrickInput& decoded, bool withTally) {
+    const TalliedBrick brick =
+        tallied(field.type, field.offset, field.scale, decoded.samples, decoded.present, withTally);
+    return {brick.min, brick.max, brick.tally, {}};
 }
 
 bool mayStandFor(volume::ScalarType type, const BrickInput& decoded, const BrickInput& input, double maxError,

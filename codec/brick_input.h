@@ -25,8 +25,8 @@ void putSamples(const volume::BrickGrid& grid, glm::ivec3 brick, std::span<const
 /// Turns samples into what a reader will decode: of floats within a bound those of their codes.
 void roundAsDecoded(const BrickFormat& format, double maxError, BrickInput& input);
 
-/// Range of the samples a reader will decode, as physical values.
-FrameBrick rangeOf(const volume::Field& field, const BrickInput& decoded);
+/// Range of the samples a reader will decode, as physical values, and their tally if it is wanted.
+FrameBrick tallyOf(const volume::Field& field, const BrickInput& decoded, bool withTally);
 
 /// The latest frame of a component as a reader sees it: what the next one may repeat, and what its change is counted
 /// from.

@@ -97,4 +97,34 @@ constexpr LiftFilter filterOf(Wavelet wavelet) {
     return {cubic, {0, 3, {306, -59, 9}, false, 10}, true};
 }
 
+/// Calls `visit.operator()<wavelet>()`.
+template <class Visit> void withWavelet(Wavelet wavelet, Visit&& visit) {
+    switch (wavelet) {
+    case Wavelet::N1:
+        return visit.template operator()<Wavelet::N1>();
+    case Wavelet::N2:
+        return visit.template operator()<Wavelet::N2>();
+    case Wavelet::W11:
+        return visit.template operator()<Wavelet::W11>();
+    case Wavelet::W13:
+        return visit.template operator()<Wavelet::W13>();
+    case Wavelet::W15:
+        return visit.template operator()<Wavelet::W15>();
+    case Wavelet::W22:
+        return visit.template operator()<Wavelet::W22>();
+    case Wavelet::W24:
+        return visit.template operator()<Wavelet::W24>();
+    case Wavelet::W26:
+        return visit.template operator()<Wavelet::W26>();
+    case Wavelet::N4:
+        return visit.template operator()<Wavelet::N4>();
+    case Wavelet::W42:
+        return visit.template operator()<Wavelet::W42>();
+    case Wavelet::W44:
+        return visit.template operator()<Wavelet::W44>();
+    case Wavelet::W46:
+        return visit.template operator()<Wavelet::W46>();
+    }
+}
+
 } // namespace tessera::codec

@@ -15,11 +15,8 @@ namespace {
 
 template <class Word> struct Sources { std::array<const Word*, 3> left{}, right{}; };
 
-/// Steps of the wavelets that boxes are lifted with, each compiled on its own: constants become shifts.
+/// The predictions. Each step is compiled on its own: constants become shifts.
 constexpr LiftStep kSame{1, 0, {}, false, 0}, kMean{0, 1, {1}, false, 1}, kCubic{0, 2, {9, -1}, false, 4};
-constexpr LiftStep kHalf{1, 0, {}, false, 1}, kUpdate22{0, 1, {1}, false, 2}, kUpdate24{0, 2, {19, -3}, false, 6},
-    kUpdate26{0, 3, {162, -39, 5}, false, 9}, kUpdate44{0, 2, {9, -1}, false, 5},
-    kUpdate46{0, 3, {306, -59, 9}, false, 10};
 
 constexpr bool isUpdate(const LiftStep& step) {
     return step != kSame && step != kMean && step != kCubic;
@@ -232,29 +229,20 @@ template <class Word, LiftStep kStep> Stage<Word> stageFor(bool wide, Cpu cpu) {
     }
 }
 
-template <class Word> Stage<Word> stageOf(const LiftStep& step, bool wide, Cpu cpu) {
-    if (step == kSame) return stageFor<Word, kSame>(wide, cpu);
-    if (step == kMean) return stageFor<Word, kMean>(wide, cpu);
-    if (step == kCubic) return stageFor<Word, kCubic>(wide, cpu);
-    if (step == kHalf) return stageFor<Word, kHalf>(wide, cpu);
-    if (step == kUpdate22) return stageFor<Word, kUpdate22>(wide, cpu);
-    if (step == kUpdate24) return stageFor<Word, kUpdate24>(wide, cpu);
-    if (step == kUpdate26) return stageFor<Word, kUpdate26>(wide, cpu);
-    if (step == kUpdate44) return stageFor<Word, kUpdate44>(wide, cpu);
-    assert(step == kUpdate46);
-    return stageFor<Word, kUpdate46>(wide, cpu);
-}
-
 /// A transform ready to run.
 template <class Word> struct Plan {
     Stage<Word> predict, update;
     bool updates = false;
 
     Plan(Wavelet wavelet, bool wide, Cpu cpu) {
-        const LiftFilter filter = filterOf(wavelet);
-        updates = filter.updates;
-        predict = stageOf<Word>(filter.predict, wide, cpu);
-        if (updates) update = stageOf<Word>(filter.update, wide, cpu);
+        withWavelet(wavelet, [&]<Wavelet kWavelet>() {
+            constexpr LiftFilter kFilter = filterOf(kWavelet);
+            if constexpr (!kFilter.update.antisymmetric) {
+                updates = kFilter.updates;
+                predict = stageFor<Word, kFilter.predict>(wide, cpu);
+                if constexpr (kFilter.updates) update = stageFor<Word, kFilter.update>(wide, cpu);
+            }
+        });
     }
     /// Rows of `stride` words one behind the other, a few columns at a time that stay in the cache for all steps.
     void rows(Word* even, int evens, Word* odd, int odds, std::size_t stride, bool forward) const {

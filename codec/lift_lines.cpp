@@ -204,41 +204,9 @@ LineLifter<Word>::LineLifter(Wavelet wavelet, int lineWidth, bool wide, Cpu cpu)
     const int usable = usableDetails(filter.update.pairs, evens, odds);
     if (filter.updates && (usable < 1 || (filter.update.pairs == 0 && evens > odds))) return;
     if (filter.updates) fill(filter.update, true, evens, usable, update);
-    switch (wavelet) {
-    case Wavelet::N1:
-        use<Wavelet::N1>();
-        break;
-    case Wavelet::N2:
-        use<Wavelet::N2>();
-        break;
-    case Wavelet::W11:
-        use<Wavelet::W11>();
-        break;
-    case Wavelet::W22:
-        use<Wavelet::W22>();
-        break;
-    case Wavelet::W24:
-        use<Wavelet::W24>();
-        break;
-    case Wavelet::W26:
-        use<Wavelet::W26>();
-        break;
-    case Wavelet::N4:
-        use<Wavelet::N4>();
-        break;
-    case Wavelet::W42:
-        use<Wavelet::W42>();
-        break;
-    case Wavelet::W44:
-        use<Wavelet::W44>();
-        break;
-    case Wavelet::W46:
-        use<Wavelet::W46>();
-        break;
-    case Wavelet::W13:
-    case Wavelet::W15:
-        break;
-    }
+    withWavelet(wavelet, [this]<Wavelet kWavelet>() {
+        if constexpr (!filterOf(kWavelet).update.antisymmetric) use<kWavelet>();
+    });
 }
 
 template class LineLifter<std::int16_t>;

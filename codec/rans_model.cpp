@@ -1,5 +1,7 @@
 #include "codec/rans_model.h"
 
+#include "codec/bits.h"
+
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -67,43 +69,6 @@ Frequencies normalised(const Counts& counts) {
     }
     return out;
 }
-
-/// Bits, lowest first.
-class BitWriter {
-public:
-    void put(std::uint32_t value, int bits) {
-        for (int i = 0; i < bits; ++i, ++at_) {
-            if (at_ % 8 == 0) bytes.push_back(std::byte{0});
-            if ((value >> i & 1u) != 0) bytes.back() |= static_cast<std::byte>(1u << (at_ % 8));
-        }
-    }
-    Bytes bytes;
-
-private:
-    std::size_t at_ = 0;
-};
-
-class BitReader {
-public:
-    explicit BitReader(std::span<const std::byte> bytes) : bytes_(bytes) {}
-    std::uint32_t get(int bits) {
-        std::uint32_t value = 0;
-        for (int i = 0; i < bits; ++i, ++at_) {
-            if (at_ / 8 >= bytes_.size()) {
-                failed = true;
-                return 0;
-            }
-            value |= (static_cast<std::uint32_t>(bytes_[at_ / 8]) >> (at_ % 8) & 1u) << i;
-        }
-        return value;
-    }
-    std::size_t bytesRead() const { return (at_ + 7) / 8; }
-    bool failed = false;
-
-private:
-    std::span<const std::byte> bytes_;
-    std::size_t at_ = 0;
-};
 
 Model clustered(const Histogram& histogram, int mostTables) {
     struct Group {

@@ -100,6 +100,13 @@ Bytes encodeWhole(std::span<const std::uint32_t> codes, Compressor& compressor) 
     return whole;
 }
 
+std::optional<std::uint32_t> onlyCode(std::span<const std::byte> in) {
+    // FORMAT.md "Streams": modes 0 and 1.
+    if (in.size() == 2 && in[0] == kWhole && in[1] == std::byte{0}) return 0;
+    if (in.size() == 6 && in[0] == kWhole && in[1] == std::byte{1}) return unzigzag(readU32(in.data() + 2));
+    return std::nullopt;
+}
+
 DecodeStatus decodeWhole(std::span<const std::byte> in, std::span<std::uint32_t> codes) {
     const bool indexed = in[0] == kPalette;
     in = in.subspan(1);
@@ -114,9 +121,13 @@ DecodeStatus decodeWhole(std::span<const std::byte> in, std::span<std::uint32_t>
     }
     if (const DecodeStatus status = decodeStream(in, codes); status != DecodeStatus::Ok) return status;
     if (!in.empty()) return DecodeStatus::Trailing;
+    if (!indexed) {
+        for (std::uint32_t& code : codes) code = unzigzag(code);
+        return DecodeStatus::Ok;
+    }
     for (std::uint32_t& code : codes) {
-        if (indexed && code >= palette.size()) return DecodeStatus::BadData;
-        code = indexed ? palette[code] : unzigzag(code);
+        if (code >= palette.size()) return DecodeStatus::BadData;
+        code = palette[code];
     }
     return DecodeStatus::Ok;
 }

@@ -186,6 +186,9 @@ std::vector<std::string> absentCodecs() {
 #if !PEER_OPENJPEG
     names.push_back("OpenJPEG");
 #endif
+#if !PEER_JXL
+    names.push_back("JPEG XL");
+#endif
 #if !PEER_FPZIP
     names.push_back("fpzip");
 #endif

@@ -5,6 +5,10 @@
 #if PEER_FPZIP
 #include <fpzip.h>
 #endif
+#if PEER_JXL
+#include <jxl/decode_cxx.h>
+#include <jxl/encode_cxx.h>
+#endif
 #if PEER_OPENJPEG
 #include <openjpeg.h>
 #endif
@@ -15,6 +19,39 @@
 namespace tessera::bench {
 
 namespace {
+
+#if PEER_OPENJPEG || PEER_JXL
+/// Slices of whole numbers, each with its length before it, by coders of one picture.
+PeerCodec slicesCodec(std::string name, Bytes (*encode)(const std::byte*, glm::ivec3, std::size_t),
+                      bool (*decode)(std::span<const std::byte>, std::size_t, std::span<std::byte>)) {
+    const auto sliceBytes = [](const Samples& of) {
+        return std::size_t(of.size.x) * std::size_t(of.size.y) * of.sampleBytes();
+    };
+    return {std::move(name),
+            [sliceBytes, encode](const Samples& in) {
+                Bytes out;
+                if (in.type != volume::ScalarType::U8 && in.type != volume::ScalarType::U16) return out;
+                for (std::size_t at = 0; at < in.bytes.size(); at += sliceBytes(in)) {
+                    const Bytes slice = encode(in.bytes.data() + at, in.size, in.sampleBytes());
+                    const auto length = static_cast<std::uint32_t>(slice.size());
+                    out.resize(out.size() + sizeof length);
+                    std::memcpy(out.data() + out.size() - sizeof length, &length, sizeof length);
+                    out.insert(out.end(), slice.begin(), slice.end());
+                }
+                return out;
+            },
+            [sliceBytes, decode](std::span<const std::byte> coded, const Samples& like, std::span<std::byte> out) {
+                for (; !out.empty(); out = out.subspan(sliceBytes(like))) {
+                    std::uint32_t length = 0;
+                    std::memcpy(&length, coded.data(), sizeof length);
+                    if (!decode(coded.subspan(sizeof length, length), like.sampleBytes(), out.first(sliceBytes(like))))
+                        return false;
+                    coded = coded.subspan(sizeof length + length);
+                }
+                return true;
+            }};
+}
+#endif
 
 #if PEER_OPENJPEG
 /// Bytes as the library reads and writes them.
@@ -108,35 +145,54 @@ bool decodeSlice(std::span<const std::byte> coded, std::size_t width, std::span<
     return done;
 }
 
-/// Slices of whole numbers, each with its length before it.
 PeerCodec jpeg2000() {
-    const auto sliceBytes = [](const Samples& of) {
-        return std::size_t(of.size.x) * std::size_t(of.size.y) * of.sampleBytes();
-    };
-    return {
-        "JPEG 2000 of slices",
-        [sliceBytes](const Samples& in) {
-            Bytes out;
-            if (in.type != volume::ScalarType::U8 && in.type != volume::ScalarType::U16) return out;
-            for (std::size_t at = 0; at < in.bytes.size(); at += sliceBytes(in)) {
-                const Bytes slice = encodeSlice(in.bytes.data() + at, in.size, in.sampleBytes());
-                const auto length = static_cast<std::uint32_t>(slice.size());
-                out.resize(out.size() + sizeof length);
-                std::memcpy(out.data() + out.size() - sizeof length, &length, sizeof length);
-                out.insert(out.end(), slice.begin(), slice.end());
-            }
-            return out;
-        },
-        [sliceBytes](std::span<const std::byte> coded, const Samples& like, std::span<std::byte> out) {
-            for (; !out.empty(); out = out.subspan(sliceBytes(like))) {
-                std::uint32_t length = 0;
-                std::memcpy(&length, coded.data(), sizeof length);
-                if (!decodeSlice(coded.subspan(sizeof length, length), like.sampleBytes(), out.first(sliceBytes(like))))
-                    return false;
-                coded = coded.subspan(sizeof length + length);
-            }
-            return true;
-        }};
+    return slicesCodec("JPEG 2000 of slices", encodeSlice, decodeSlice);
+}
+#endif
+
+#if PEER_JXL
+JxlPixelFormat grey(std::size_t width) {
+    return {1, width == 1 ? JXL_TYPE_UINT8 : JXL_TYPE_UINT16, JXL_LITTLE_ENDIAN, 0};
+}
+
+/// Lossless, effort 7, one thread.
+Bytes encodeJxl(const std::byte* samples, glm::ivec3 size, std::size_t width) {
+    const JxlEncoderPtr encoder = JxlEncoderMake(nullptr);
+    JxlBasicInfo info;
+    JxlEncoderInitBasicInfo(&info);
+    info.xsize = std::uint32_t(size.x), info.ysize = std::uint32_t(size.y);
+    info.bits_per_sample = std::uint32_t(8 * width);
+    info.num_color_channels = 1;
+    info.uses_original_profile = JXL_TRUE;
+    JxlColorEncoding color;
+    JxlColorEncodingSetToSRGB(&color, JXL_TRUE);
+    JxlEncoderFrameSettings* settings = JxlEncoderFrameSettingsCreate(encoder.get(), nullptr);
+    const JxlPixelFormat format = grey(width);
+    const std::size_t bytes = std::size_t(size.x) * std::size_t(size.y) * width;
+    if (JxlEncoderSetBasicInfo(encoder.get(), &info) != JXL_ENC_SUCCESS ||
+        JxlEncoderSetColorEncoding(encoder.get(), &color) != JXL_ENC_SUCCESS ||
+        JxlEncoderSetFrameLossless(settings, JXL_TRUE) != JXL_ENC_SUCCESS ||
+        JxlEncoderFrameSettingsSetOption(settings, JXL_ENC_FRAME_SETTING_EFFORT, 7) != JXL_ENC_SUCCESS ||
+        JxlEncoderAddImageFrame(settings, &format, samples, bytes) != JXL_ENC_SUCCESS)
+        return {};
+    JxlEncoderCloseInput(encoder.get());
+    Bytes out(bytes + 4096);
+    auto* next = reinterpret_cast<std::uint8_t*>(out.data());
+    std::size_t left = out.size();
+    if (JxlEncoderProcessOutput(encoder.get(), &next, &left) != JXL_ENC_SUCCESS) return {};
+    out.resize(out.size() - left);
+    return out;
+}
+
+bool decodeJxl(std::span<const std::byte> coded, std::size_t width, std::span<std::byte> out) {
+    const JxlDecoderPtr decoder = JxlDecoderMake(nullptr);
+    const JxlPixelFormat format = grey(width);
+    return JxlDecoderSubscribeEvents(decoder.get(), JXL_DEC_FULL_IMAGE) == JXL_DEC_SUCCESS &&
+           JxlDecoderSetInput(decoder.get(), reinterpret_cast<const std::uint8_t*>(coded.data()), coded.size()) ==
+               JXL_DEC_SUCCESS &&
+           JxlDecoderProcessInput(decoder.get()) == JXL_DEC_NEED_IMAGE_OUT_BUFFER &&
+           JxlDecoderSetImageOutBuffer(decoder.get(), &format, out.data(), out.size()) == JXL_DEC_SUCCESS &&
+           JxlDecoderProcessInput(decoder.get()) == JXL_DEC_FULL_IMAGE;
 }
 #endif
 
@@ -258,6 +314,9 @@ std::vector<PeerCodec> arrayCodecs() {
     std::vector<PeerCodec> codecs;
 #if PEER_OPENJPEG
     codecs.push_back(jpeg2000());
+#endif
+#if PEER_JXL
+    codecs.push_back(slicesCodec("JPEG XL of slices", encodeJxl, decodeJxl));
 #endif
 #if PEER_FPZIP
     codecs.push_back(fpzipCodec());

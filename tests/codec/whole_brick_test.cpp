@@ -3,6 +3,7 @@
 #include "codec/brick_codec.h"
 
 #include <cmath>
+#include <cstring>
 #include <gtest/gtest.h>
 #include <random>
 
@@ -68,15 +69,20 @@ TEST(WholeBrick, RefusesAnIndexBeyondThePalette) {
     }
 }
 
+/// The model that suits a brick.
+Model modelOf(const BrickFormat& format, const Bytes& samples) {
+    Histogram histogram(format.levels, {});
+    SplitMemory memory;
+    countBrick(prepareBrick(format, samples, {}, 0, {}, memory), histogram);
+    return makeModel(histogram, 16);
+}
+
 TEST(WholeBrick, ASparseVolumeIsCodedAsOne) {
     BrickFormat format{volume::LatticeKind::CC, {32, 32, 32}, 4, Wavelet::W22, volume::ScalarType::U8, {}, false, 8};
     Bytes samples(countOf(format.size));
     for (std::size_t i = 0; i < samples.size(); i += 97) samples[i] = std::byte(1 + i % 3);
+    const Model model = modelOf(format, samples);
     Compressor compressor(3);
-    Histogram histogram(format.levels, {});
-    SplitMemory memory;
-    countBrick(prepareBrick(format, samples, {}, 0, {}, memory), histogram);
-    const Model model = makeModel(histogram, 16);
     const std::vector<Bytes> segments = encodeBrick(format, samples, {}, 0, compressor, BandEncoder(model));
     ASSERT_FALSE(segments[0].empty());
     EXPECT_TRUE(isWhole(segments[0][0]));
@@ -88,6 +94,36 @@ TEST(WholeBrick, ASparseVolumeIsCodedAsOne) {
         EXPECT_EQ(codes.size(), countOf(samplesAt(format, level)));
         for (std::size_t i = 0; level == 0 && i < samples.size(); ++i) ASSERT_EQ(codes[i], std::uint32_t(samples[i]));
     }
+}
+
+// A field of floats whose other half is its mirror image takes little more than the half; noise stays in levels.
+TEST(WholeBrick, MirroredFloatsAreStoredOnce) {
+    BrickFormat format{volume::LatticeKind::CC, {32, 32, 32}, 4, Wavelet::W22, volume::ScalarType::F32, {}, false, 32};
+    const std::size_t slice = 32 * 32;
+    std::size_t bytes[2] = {};
+    for (const bool mirrored : {false, true}) {
+        std::mt19937 random(5);
+        std::uniform_real_distribution<float> any(1, 2);
+        std::vector<float> values(countOf(format.size));
+        for (std::size_t z = 0; z < 32; ++z)
+            for (std::size_t i = 0; i < slice; ++i)
+                values[z * slice + i] = mirrored && z >= 16 ? values[(31 - z) * slice + i] : any(random);
+        Bytes samples(values.size() * sizeof(float));
+        std::memcpy(samples.data(), values.data(), samples.size());
+        const Model model = modelOf(format, samples);
+        Compressor compressor(3);
+        const std::vector<Bytes> segments = encodeBrick(format, samples, {}, 0, compressor, BandEncoder(model));
+        for (const Bytes& segment : segments) bytes[mirrored] += segment.size();
+        EXPECT_EQ(!segments[0].empty() && isWhole(segments[0][0]), mirrored);
+
+        const std::vector<std::span<const std::byte>> views(segments.begin(), segments.end());
+        DecodedBrick brick;
+        ASSERT_EQ(decodeBrick(format, views, 0, {}, BandDecoder(model), brick), DecodeStatus::Ok);
+        const std::vector<std::uint32_t> codes = brick.codes();
+        for (std::size_t i = 0; i < slice * 16 && mirrored; ++i)
+            ASSERT_EQ(codes[i], codes[(31 - i / slice) * slice + i % slice]) << i;
+    }
+    EXPECT_LT(double(bytes[1]), 0.6 * double(bytes[0]));
 }
 
 } // namespace
