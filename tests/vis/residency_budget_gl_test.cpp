@@ -1,13 +1,8 @@
 #include "tests/vis/residency_fixture.h"
 
-namespace tessera {
+namespace tessera::test {
 namespace {
 
-using test::bricks;
-using test::picture;
-using test::ResidencyTest;
-using test::volumeScene;
-using test::waves;
 using vis::Scene;
 
 // A budget that holds only some of the bricks: no hole while bricks come and go, and it says so.
@@ -34,6 +29,29 @@ TEST_F(ResidencyTest, NoHolesWithinTheBudget) {
     EXPECT_NE(said[0].find("budget"), std::string::npos);
 }
 
+// One time takes room for one; further times make the atlas larger, with what it holds, as far as the budget goes.
+TEST_F(ResidencyTest, AnAtlasGrowsWithTheTimesShown) {
+    vis::Renderer renderer(bricks());
+    renderer.setSource(waves(4));
+    const vis::ViewTargetPtr target = renderer.makeTarget();
+    Scene scene = volumeScene();
+    scene.render.detail = 0;
+    std::vector<glm::vec4> first;
+    std::vector<vis::ResidencyInfo> infos;
+    for (const double time : {0.0, 1.0, 2.0, 0.0}) {
+        scene.time = time;
+        refine(renderer, *target, scene, {32, 24});
+        infos.push_back(renderer.residency());
+        if (first.empty()) first = renderer.readLinear(*target);
+    }
+    EXPECT_LT(infos[0].textureBytes, infos[2].textureBytes);
+    EXPECT_GE(infos[2].bricksResident, 3 * infos[0].bricksResident);
+    EXPECT_LT(infos[3].bricksUploaded - infos[2].bricksUploaded, infos[0].bricksResident / 4)
+        << "what had been shown is still there; only the next time may be fetched ahead";
+    // Bricks lie elsewhere in the atlas now: the last bit of a coordinate may differ.
+    EXPECT_LT(maxDifference(renderer.readLinear(*target), first), 1e-3);
+}
+
 // Texture memory that is taken away: bricks go, coarser ones stay, no hole; given back, the picture is what it was.
 TEST_F(ResidencyTest, BudgetMayShrinkAndGrow) {
     vis::Renderer renderer(bricks());
@@ -41,6 +59,7 @@ TEST_F(ResidencyTest, BudgetMayShrinkAndGrow) {
     const vis::ViewTargetPtr target = renderer.makeTarget();
     Scene scene = volumeScene();
     scene.render.detail = 0;
+    scene.render.cullHidden = false; // what is loaded before it is known to be hidden is chance
     scene.transfer["v"].opacity = {{0, 0.5f}, {1, 0.5f}};
     refine(renderer, *target, scene, {24, 24});
     const std::vector<glm::vec4> first = renderer.readLinear(*target);
@@ -52,12 +71,12 @@ TEST_F(ResidencyTest, BudgetMayShrinkAndGrow) {
     EXPECT_LE(renderer.residency().textureBytes, std::size_t(1) << 20);
     EXPECT_LT(renderer.residency().bricksResident, full.bricksResident / 2);
     for (std::size_t i = 0; i < first.size(); ++i) EXPECT_NEAR(coarse[i].a, first[i].a, 0.02) << i;
-    EXPECT_LT(test::maxDifference(coarse, first), 0.2);
+    EXPECT_LT(maxDifference(coarse, first), 0.2);
 
     scene.render.limits.textureMemory = 1024;
     refine(renderer, *target, scene, {24, 24});
     // Bricks lie elsewhere in the atlas now: the last bit of a coordinate may differ.
-    EXPECT_LT(test::maxDifference(renderer.readLinear(*target), first), 1e-3);
+    EXPECT_LT(maxDifference(renderer.readLinear(*target), first), 1e-3);
     EXPECT_EQ(renderer.residency().bricksResident, full.bricksResident);
 }
 
@@ -72,9 +91,9 @@ TEST_F(ResidencyTest, RefusedMemoryMakesThePictureCoarser) {
             vis::Renderer renderer(options);
             renderer.setSource(waves());
             const vis::ViewTargetPtr target = renderer.makeTarget();
-            test::renderAll(renderer, *target, scene, {48, 40});
+            renderAll(renderer, *target, scene, {48, 40});
             EXPECT_LE(renderer.residency().textureBytes, memory * 5 / 4) << "an atlas is rounded up to a box";
-            const double difference = test::maxDifference(renderer.readLinear(*target), wanted);
+            const double difference = maxDifference(renderer.readLinear(*target), wanted);
             const bool said = !renderer.takeMessages().empty();
             if (memory < 2000) {
                 EXPECT_TRUE(said);
@@ -100,8 +119,8 @@ TEST_F(ResidencyTest, SizesComeAndGo) {
         const vis::FrameStatus status = renderer.render(*target, scene, request);
         EXPECT_EQ(status.texture != 0, size.x > 0 && size.y > 0);
     }
-    test::renderAll(renderer, *target, scene, {64, 48});
+    renderAll(renderer, *target, scene, {64, 48});
     EXPECT_TRUE(renderer.takeMessages().empty());
 }
 } // namespace
-} // namespace tessera
+} // namespace tessera::test

@@ -1,14 +1,8 @@
 #include "tests/vis/residency_fixture.h"
 
-namespace tessera {
+namespace tessera::test {
 namespace {
 
-using test::bricks;
-using test::picture;
-using test::ResidencyTest;
-using test::volumeScene;
-using test::Watched;
-using test::waves;
 using vis::Scene;
 
 // Whole, in bricks, and with budgets of a few bricks only: the same picture.
@@ -23,7 +17,7 @@ TEST_F(ResidencyTest, AnyCacheSizeGivesTheSamePicture) {
             vis::RendererOptions options = bricks();
             options.textureBudget = texture;
             options.memoryBudget = memory;
-            EXPECT_LT(test::maxDifference(whole, picture(source, options, scene, size)), 1.0 / 255)
+            EXPECT_LT(maxDifference(whole, picture(source, options, scene, size)), 1.0 / 255)
                 << texture << ' ' << memory;
         }
 }
@@ -37,7 +31,7 @@ TEST_F(ResidencyTest, BricksOutOfSightAreNotRead) {
     scene.camera.distance = 0.6f;
     scene.camera.target = {0.3f, 0.2f, 0.3f};
     const std::vector<glm::vec4> near = picture(part, bricks(), scene, {32, 32});
-    EXPECT_LT(test::maxDifference(near, picture(part, {}, scene, {32, 32})), 1.0 / 255);
+    EXPECT_LT(maxDifference(near, picture(part, {}, scene, {32, 32})), 1.0 / 255);
     const auto again = waves();
     picture(again, bricks(), scene, {32, 32});
     EXPECT_LT(again->count(0, 0), all->count(0, 0) * 3 / 4);
@@ -60,7 +54,7 @@ TEST_F(ResidencyTest, TransparentBricksAreNotRead) {
     const std::vector<glm::vec4> seen = picture(source, bricks(), scene, {40, 40});
     EXPECT_GT(source->count(0, 0), 0);
     EXPECT_LT(source->count(0, 0), 512 / 3);
-    EXPECT_LT(test::maxDifference(seen, picture(other, {}, scene, {40, 40})), 1.0 / 255);
+    EXPECT_LT(maxDifference(seen, picture(other, {}, scene, {40, 40})), 1.0 / 255);
     scene.layers = {{"iso", true, vis::IsoLayer{.channel = "v", .value = 0.8}}};
     const auto surface = make();
     picture(surface, bricks(), scene, {40, 40});
@@ -93,8 +87,10 @@ TEST_F(ResidencyTest, ALensIsFinerThanWhatIsAroundIt) {
     scene.render.detail = 0;
     const std::vector<glm::vec4> fine = picture(all, bricks(), scene, size);
     scene.render.detail = 100;
+    const float step = std::exchange(scene.render.stepVoxels, 0.125f); // of level 2: what the lens makes of it
     const std::vector<glm::vec4> coarse = picture(none, bricks(), scene, size);
     ASSERT_EQ(none->count(0, 0), 0);
+    scene.render.stepVoxels = step;
     vis::Lens lens;
     lens.shape = vis::LensShape::Disc;
     lens.effect = vis::LensEffect::Focus; // without brushes it changes nothing else
@@ -148,7 +144,7 @@ TEST_F(ResidencyTest, SeamsBetweenLevelsAreBounded) {
     };
     EXPECT_GT(rms(coarse), 0.001);
     EXPECT_LT(rms(mixed), rms(coarse));
-    EXPECT_LT(test::maxDifference(mixed, fine), test::maxDifference(coarse, fine) + 1.0 / 255);
+    EXPECT_LT(maxDifference(mixed, fine), maxDifference(coarse, fine) + 1.0 / 255);
 }
 } // namespace
-} // namespace tessera
+} // namespace tessera::test

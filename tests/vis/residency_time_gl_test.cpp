@@ -1,14 +1,8 @@
 #include "tests/vis/residency_fixture.h"
 
-namespace tessera {
+namespace tessera::test {
 namespace {
 
-using test::bricks;
-using test::picture;
-using test::ResidencyTest;
-using test::volumeScene;
-using test::Watched;
-using test::waves;
 using vis::Scene;
 
 // While time moves on, the next frame is read before it is wanted.
@@ -80,9 +74,9 @@ TEST_F(ResidencyTest, BricksThatDoNotMoveKeepTheirTextures) {
     int before = 0, whole = 0;
     for (const int time : {0, 1, 3, 2, 0}) {
         scene.time = time;
-        test::renderAll(renderer, *target, scene, {48, 40});
+        renderAll(renderer, *target, scene, {48, 40});
         const vis::ResidencyInfo now = renderer.residency();
-        EXPECT_LT(test::maxDifference(renderer.readLinear(*target), picture(source, {}, scene, {48, 40})), 1.0 / 255);
+        EXPECT_LT(maxDifference(renderer.readLinear(*target), picture(source, {}, scene, {48, 40})), 1.0 / 255);
         if (before > 0) {
             EXPECT_LT(now.bricksUploaded - before, 3 * whole / 4) << "half of them, their neighbours, and coarse ones";
         }
@@ -98,10 +92,10 @@ TEST_F(ResidencyTest, BricksThatDoNotMoveKeepTheirTextures) {
     lazy.setSource(source);
     scene.render.limits.keptChange = 0.1f;
     scene.time = 0;
-    test::renderAll(lazy, *target, scene, {48, 40});
+    renderAll(lazy, *target, scene, {48, 40});
     const int first = lazy.residency().bricksUploaded;
     scene.time = 1;
-    test::renderAll(lazy, *target, scene, {48, 40});
+    renderAll(lazy, *target, scene, {48, 40});
     EXPECT_LT(lazy.residency().bricksUploaded - first, first / 4) << "coarse ones and the first";
 }
 
@@ -112,17 +106,17 @@ TEST_F(ResidencyTest, ChannelsThatDoNotMoveShareTheirTexture) {
     renderer.setSource(source);
     const vis::ViewTargetPtr target = renderer.makeTarget();
     Scene scene = volumeScene();
-    test::renderAll(renderer, *target, scene, {48, 40});
+    renderAll(renderer, *target, scene, {48, 40});
     const vis::ResidencyInfo first = renderer.residency();
     scene.time = 1;
     scene.render.limits.keptChange = 0.1f;
-    test::renderAll(renderer, *target, scene, {48, 40});
+    renderAll(renderer, *target, scene, {48, 40});
     EXPECT_EQ(renderer.residency().bricksUploaded, first.bricksUploaded);
     EXPECT_EQ(renderer.residency().textureBytes, first.textureBytes);
     EXPECT_GT(renderer.residency().bricksKept, 0);
     scene.time = 2;
     scene.render.limits.keptChange = 0.01f;
-    test::renderAll(renderer, *target, scene, {48, 40});
+    renderAll(renderer, *target, scene, {48, 40});
     EXPECT_EQ(renderer.residency().bricksUploaded, 2 * first.bricksUploaded);
 }
 
@@ -144,7 +138,7 @@ TEST_F(ResidencyTest, GrowthKeepsWhatIsThere) {
         Scene scene = volumeScene();
         scene.render.detail = 0;
         scene.time = 1;
-        test::renderAll(renderer, *target, scene, {40, 32});
+        renderAll(renderer, *target, scene, {40, 32});
         const std::vector<glm::vec4> shown = renderer.readLinear(*target);
         const vis::ResidencyInfo first = renderer.residency();
         ASSERT_GT(first.bricksUploaded, 50);
@@ -152,21 +146,21 @@ TEST_F(ResidencyTest, GrowthKeepsWhatIsThere) {
         renderer.setSource(after, {1, 2});
         EXPECT_EQ(renderer.residency().bricksResident, first.bricksResident);
         EXPECT_EQ(renderer.residency().memoryBytes, first.memoryBytes);
-        test::renderAll(renderer, *target, scene, {40, 32});
-        EXPECT_EQ(test::maxDifference(renderer.readLinear(*target), shown), 0) << dense;
+        renderAll(renderer, *target, scene, {40, 32});
+        EXPECT_EQ(maxDifference(renderer.readLinear(*target), shown), 0) << dense;
         EXPECT_EQ(renderer.residency().bricksUploaded, first.bricksUploaded);
         for (int level = 0; level < 3; ++level) EXPECT_EQ(after->count(1, level), 0) << level;
 
         scene.time = 2;
-        test::renderAll(renderer, *target, scene, {40, 32});
+        renderAll(renderer, *target, scene, {40, 32});
         EXPECT_GT(after->count(2, 0), 20);
-        EXPECT_LT(test::maxDifference(renderer.readLinear(*target), picture(after, {}, scene, {40, 32})), 1.0 / 255);
+        EXPECT_LT(maxDifference(renderer.readLinear(*target), picture(after, {}, scene, {40, 32})), 1.0 / 255);
         EXPECT_GT(renderer.residency().bricksUploaded, first.bricksUploaded);
 
         // Another data set on the same grid has nothing in common: everything is read.
         scene.time = 1;
         renderer.setSource(other);
-        test::renderAll(renderer, *target, scene, {40, 32});
+        renderAll(renderer, *target, scene, {40, 32});
         EXPECT_GT(other->count(1, 0), 20);
     }
 }
@@ -179,7 +173,7 @@ TEST_F(ResidencyTest, GrowthGoesOnWithWhatIsMissing) {
     const vis::ViewTargetPtr target = renderer.makeTarget();
     Scene scene = volumeScene();
     scene.render.detail = 100; // the coarsest levels
-    test::renderAll(renderer, *target, scene, {40, 32});
+    renderAll(renderer, *target, scene, {40, 32});
     const int coarse = renderer.residency().bricksUploaded;
     ASSERT_EQ(before->count(0, 0), 0);
     scene.render.detail = 0;
@@ -187,11 +181,11 @@ TEST_F(ResidencyTest, GrowthGoesOnWithWhatIsMissing) {
     request.size = {40, 32};
     renderer.render(*target, scene, request); // asks for bricks and does not wait
     renderer.setSource(after, {1, 1});
-    test::renderAll(renderer, *target, scene, {40, 32});
+    renderAll(renderer, *target, scene, {40, 32});
     EXPECT_GT(renderer.residency().bricksUploaded, coarse + 20);
     EXPECT_EQ(renderer.residency().bricksWanted, 0);
-    EXPECT_LT(test::maxDifference(renderer.readLinear(*target), picture(after, {}, scene, {40, 32})), 1.0 / 255);
+    EXPECT_LT(maxDifference(renderer.readLinear(*target), picture(after, {}, scene, {40, 32})), 1.0 / 255);
     for (const std::string& message : renderer.takeMessages()) ADD_FAILURE() << message;
 }
 } // namespace
-} // namespace tessera
+} // namespace tessera::test

@@ -89,6 +89,7 @@ BrickLevels::BrickLevels(const volume::BrickGrid& grid, const ChannelSummary& su
         made.count = (levelTexels(grid, level) + grid.brickSize - 1) / grid.brickSize;
         made.bricks.resize(volumeOf(made.count), {State::Absent});
     }
+    sight_.resize(volumeOf(grid.count()));
     // A brick is absent where it and its neighbours have no sample.
     eachIndex(glm::ivec3(0), grid.count(), [&](glm::ivec3 brick) {
         const std::size_t i = linear(brick, grid.count());
@@ -128,12 +129,20 @@ void BrickLevels::want(const BrickDemand* wanted, std::uint64_t frame) {
     std::size_t i = 0;
     eachIndex(glm::ivec3(0), grid_.count(), [&](glm::ivec3 brick) {
         const int level = wanted->level[i];
+        if (wanted->hidden[i] != 0)
+            sight_[i].hidden = frame;
+        else if (level != BrickDemand::kNotWanted)
+            sight_[i].seen = frame;
         float priority = wanted->priority[i];
         if (!importance_.empty() && priority > 0) priority *= kPlain - importance_[i];
         ++i;
         if (level == BrickDemand::kNotWanted || pages_.pages[i - 1].w == PageTable::kAbsent) return;
         demand({level, brick >> level}, priority, frame);
     });
+}
+
+int BrickLevels::hidden(std::uint64_t since) const {
+    return int(std::ranges::count_if(sight_, [&](const Sight& at) { return at.hidden >= since && at.seen < since; }));
 }
 
 std::vector<BrickId> BrickLevels::ask(std::size_t count) {

@@ -50,6 +50,8 @@ public:
         float priority = 0;
     };
     std::vector<Guest> guests(std::uint64_t frame) const;
+    /// Bricks of full resolution that were hidden in a view since `frame`, and seen in none.
+    int hidden(std::uint64_t since) const;
     float priority(const BrickId& id) const { return at(id).priority; }
     /// Of bricks of full resolution, 0..1; empty: not known.
     const std::vector<float>& importance() const { return importance_; }
@@ -96,6 +98,11 @@ private:
 
     volume::BrickGrid grid_;
     std::vector<Level> levels_;
+    /// The last frames in which a brick of full resolution was hidden in a view, and seen in one.
+    struct Sight {
+        std::uint64_t hidden = 0, seen = 0;
+    };
+    std::vector<Sight> sight_;
     std::vector<float> importance_; ///< of bricks of full resolution; empty: not known
     std::vector<BrickId> pending_;  ///< wanted and away
     std::uint64_t call_ = 0;

@@ -76,7 +76,7 @@ void Residency::setBudgets(std::size_t texture, std::size_t memory) {
     std::size_t bytes = 0;
     bool outOfRoom = false;
     for (const auto& [components, list] : atlases_)
-        for (const auto& atlas : list) bytes += atlas->bytes();
+        for (const Atlas& atlas : list) bytes += atlas.texture->bytes();
     for (const auto& [key, entry] : entries_) outOfRoom = outOfRoom || (entry.shown && entry.shown->outOfRoom);
     if (larger ? !outOfRoom : bytes <= texture) return;
     std::erase_if(entries_, [](const auto& each) { return each.second.shown && each.second.shown->bricks; });
@@ -354,7 +354,7 @@ void Residency::evict() {
 std::size_t Residency::textureBytes() const {
     std::size_t total = 0;
     for (const auto& [components, list] : atlases_)
-        for (const auto& atlas : list) total += atlas->bytes();
+        for (const Atlas& atlas : list) total += atlas.texture->bytes();
     for (const auto& [key, entry] : entries_) // of a shared texture each counts its part
         if (entry.shown && entry.shown->texture)
             total += entry.shown->bytes / std::size_t(std::max(1L, entry.shown->texture.use_count()));
@@ -404,6 +404,8 @@ ResidencyInfo Residency::info() const {
         if (entry.shown) {
             if (entry.used + kFramesInUse >= frame_) info.bricksWanted += missing(key);
             info.bricksResident += entry.shown->bricks ? entry.shown->bricks->resident() : bricks - missing(key);
+            if (entry.shown->bricks)
+                info.bricksHidden += entry.shown->bricks->hidden(frame_ > kFramesInUse ? frame_ - kFramesInUse : 1);
         }
     return info;
 }

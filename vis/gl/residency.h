@@ -121,11 +121,15 @@ private:
     std::unique_ptr<BrickAtlas> makeAtlas(int components, std::size_t slots);
     std::optional<glm::ivec3> slotFor(ChannelTexture& channel, float priority);
     bool makeRoom(const ChannelTexture& channel, float priority);
-    bool grow(BrickAtlas* atlas);
+    bool grow(const BrickAtlas* atlas, bool beyond);
 
     RendererOptions options_;
-    std::shared_ptr<LoadExchange> exchange_;                          ///< null while there is no source
-    std::map<int, std::vector<std::unique_ptr<BrickAtlas>>> atlases_; ///< by components; outlive the entries
+    std::shared_ptr<LoadExchange> exchange_; ///< null while there is no source
+    struct Atlas {
+        std::unique_ptr<BrickAtlas> texture;
+        std::size_t most; ///< slots that it may grow to within the budget
+    };
+    std::map<int, std::vector<Atlas>> atlases_; ///< by components; outlive the entries
     std::map<ChannelKey, Entry> entries_;
     std::deque<Upload> uploads_;
     ChannelTexture nothing_;

@@ -116,24 +116,29 @@ bool Residency::reuseWhole(const ChannelKey& key, Entry& entry) {
 }
 
 /// An atlas for a new channel: one with room, a further one if the budget allows, else the emptiest.
+/// It begins with room for every brick of one channel at every level: texture memory is dear to set up without a GPU.
 BrickAtlas& Residency::atlasFor(int components) {
     auto& list = atlases_[components];
     const std::size_t bytes = slotBytes(components);
-    const std::size_t useful = 4 * std::size_t(exchange_->source->grid().count().x) *
-                               std::size_t(exchange_->source->grid().count().y) *
-                               std::size_t(exchange_->source->grid().count().z);
+    const glm::ivec3 count = exchange_->source->grid().count();
+    const std::size_t channel = std::size_t(count.x) * std::size_t(count.y) * std::size_t(count.z);
+    const std::size_t useful = 4 * channel;
     std::size_t used = 0;
     for (const auto& [kind, atlases] : atlases_)
-        for (const auto& atlas : atlases) used += atlas->bytes();
-    BrickAtlas* roomiest = nullptr;
-    for (const auto& atlas : list)
-        if (!roomiest || atlas->unused() > roomiest->unused()) roomiest = atlas.get();
+        for (const Atlas& atlas : atlases) used += atlas.most * slotBytes(kind);
+    Atlas* roomiest = nullptr;
+    const auto unused = [](const Atlas& atlas) {
+        return atlas.texture->unused() + atlas.most - std::min(atlas.most, atlas.texture->capacity());
+    };
+    for (Atlas& atlas : list)
+        if (!roomiest || unused(atlas) > unused(*roomiest)) roomiest = &atlas;
     // Half of what is left at most: the rest is for other formats.
     const std::size_t left = options_.textureBudget > used ? (options_.textureBudget - used) / 2 : 0;
     const std::size_t slots = std::min({useful, left / bytes, kMaxTextureBytes / bytes});
-    if (roomiest && (roomiest->unused() > roomiest->capacity() / 4 || slots < roomiest->capacity() / 2))
-        return *roomiest;
-    return *list.emplace_back(makeAtlas(components, std::max<std::size_t>(slots, 1)));
+    if (roomiest && (unused(*roomiest) > roomiest->most / 4 || slots < roomiest->most / 2)) return *roomiest->texture;
+    auto texture = makeAtlas(components, std::clamp<std::size_t>(slots, 1, channel * 5 / 4 + kFewSlots));
+    const std::size_t most = std::max(slots, texture->capacity());
+    return *list.emplace_back(std::move(texture), most).texture;
 }
 
 /// Half as large, and again, where the driver has no memory for it.
@@ -153,8 +158,8 @@ std::unique_ptr<BrickAtlas> Residency::makeAtlas(int components, std::size_t slo
 std::optional<glm::ivec3> Residency::slotFor(ChannelTexture& channel, float priority) {
     for (;;) {
         if (const auto slot = channel.atlas->allocate()) return slot;
-        if (makeRoom(channel, priority)) continue;
-        if (!waiting_ || !grow(channel.atlas)) return std::nullopt;
+        if (grow(channel.atlas, false) || makeRoom(channel, priority)) continue;
+        if (!waiting_ || !grow(channel.atlas, true)) return std::nullopt;
     }
 }
 
@@ -197,13 +202,15 @@ bool Residency::makeRoom(const ChannelTexture& channel, float priority) {
     return false;
 }
 
-/// A picture that must be complete gets a larger atlas, beyond the budget, with everything of the former one in it.
-bool Residency::grow(BrickAtlas* atlas) {
+/// A larger atlas with everything of the former one in it, within the budget or, for a picture that must be complete,
+/// beyond.
+bool Residency::grow(const BrickAtlas* atlas, bool beyond) {
     for (auto& [components, list] : atlases_)
-        for (std::unique_ptr<BrickAtlas>& each : list) {
-            if (each.get() != atlas) continue;
-            const std::size_t slots = atlas->capacity() * 2;
-            if (slots * slotBytes(components) > kMaxTextureBytes) return false;
+        for (Atlas& each : list) {
+            if (each.texture.get() != atlas) continue;
+            const std::size_t slots = beyond ? atlas->capacity() * 2 : std::min(atlas->capacity() * 2, each.most);
+            if (slots <= atlas->capacity() || slots * slotBytes(components) > kMaxTextureBytes) return false;
+            const std::size_t most = std::exchange(each.most, atlas->capacity()); // kept if there is no more
             std::unique_ptr<BrickAtlas> larger;
             try {
                 larger = makeAtlas(components, slots);
@@ -227,7 +234,8 @@ bool Residency::grow(BrickAtlas* atlas) {
                 entry.shown->bricks->resolveAll();
                 entry.shown->atlas = larger.get();
             }
-            each = std::move(larger);
+            each.most = std::max(most, larger->capacity());
+            each.texture = std::move(larger);
             return true;
         }
     return false;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/common.hpp>
+#include <glm/vec2.hpp>
 #include <limits>
 #include <mutex>
 
@@ -74,6 +75,12 @@ struct Run {
 struct Axis {
     std::vector<int> sample; ///< within its brick
     std::vector<Run> runs;
+    /// How many samples from `begin` on follow one another in the brick.
+    int adjacent(int begin, int end) const {
+        int last = begin + 1;
+        while (last < end && sample[std::size_t(last)] == sample[std::size_t(last) - 1] + 1) ++last;
+        return last - begin;
+    }
 };
 
 /// Where the output samples of one axis come from. `perTexel` samples per texel, the sublattices alternating.
@@ -125,10 +132,12 @@ BrickSamples gatherBox(const BrickGrid& grid, const BrickKey& which, const Texel
                 const std::size_t to = linear({0, y, z}, out.size);
                 const std::size_t source =
                     linear({0, axes[1].sample[std::size_t(y)], axes[2].sample[std::size_t(z)]}, from->size);
-                for (int x = rx.begin; x < rx.end; ++x) {
+                for (int x = rx.begin, count = 0; x < rx.end; x += count) { // beyond the lattice one by one
+                    count = axes[0].adjacent(x, rx.end);
                     const std::size_t sample = source + std::size_t(axes[0].sample[std::size_t(x)]);
-                    out.values[to + std::size_t(x)] = from->values[sample];
-                    if (!from->present.empty()) out.present[to + std::size_t(x)] = from->present[sample];
+                    std::copy_n(&from->values[sample], count, &out.values[to + std::size_t(x)]);
+                    if (!from->present.empty())
+                        std::copy_n(&from->present[sample], count, &out.present[to + std::size_t(x)]);
                 }
             }
     });
@@ -137,43 +146,103 @@ BrickSamples gatherBox(const BrickGrid& grid, const BrickKey& which, const Texel
 
 namespace {
 
-/// Block ranges of packed texels: those of one texel more on every side belong to a block, since interpolation inside
-/// it reaches them.
-BlockRanges blockRanges(const std::vector<float>& row, glm::ivec3 size, int samples) {
+struct Extent {
+    float least = std::numeric_limits<float>::infinity(), most = -std::numeric_limits<float>::infinity();
+    void take(float low, float high) { // NaN is neither
+        least = low < least ? low : least;
+        most = high > most ? high : most;
+    }
+};
+
+/// Texel ranges of what blocks see of every row: those of one texel more on every side belong to a block, since
+/// interpolation inside it reaches them.
+struct RowRanges {
+    glm::ivec3 size; ///< texels with halo
+    int blocks;      ///< along a row
+    std::vector<float> min, max;
+
+    explicit RowRanges(glm::ivec3 of) : size(of), blocks((of.x - 2 * kHalo + kBlockTexels - 1) / kBlockTexels) {
+        const std::size_t total = std::size_t(blocks) * std::size_t(size.y) * std::size_t(size.z);
+        min.resize(total);
+        max.resize(total);
+    }
+    /// `texels`: those of one row, `samples` values each.
+    void take(std::size_t row, const float* texels, int samples) {
+        for (int x = 0; x < blocks; ++x) {
+            const int lo = x * kBlockTexels + kHalo - 1, hi = std::min(lo + kBlockTexels + 2, size.x);
+            Extent extent;
+            for (int n = lo * samples; n < hi * samples; ++n) extent.take(texels[n], texels[n]);
+            min[row * std::size_t(blocks) + std::size_t(x)] = extent.least;
+            max[row * std::size_t(blocks) + std::size_t(x)] = extent.most;
+        }
+    }
+};
+
+BlockRanges blockRanges(const RowRanges& rows, int level) {
     BlockRanges blocks;
-    const glm::ivec3 texels = size - 2 * kHalo;
-    blocks.count = (texels + kBlockTexels - 1) / kBlockTexels;
-    const std::size_t total = std::size_t(blocks.count.x) * std::size_t(blocks.count.y) * std::size_t(blocks.count.z);
-    blocks.min.assign(total, std::numeric_limits<float>::infinity());
-    blocks.max.assign(total, -std::numeric_limits<float>::infinity());
-    parallelFor(total, [&](std::size_t block) {
-        const glm::ivec3 at(int(block % std::size_t(blocks.count.x)),
-                            int(block / std::size_t(blocks.count.x) % std::size_t(blocks.count.y)),
-                            int(block / std::size_t(blocks.count.x) / std::size_t(blocks.count.y)));
-        const glm::ivec3 lo = at * kBlockTexels + kHalo - 1;
-        const glm::ivec3 hi = glm::min(lo + kBlockTexels + 2, size);
-        float least = blocks.min[block], most = blocks.max[block]; // NaN is neither
-        for (int z = lo.z; z < hi.z; ++z)
-            for (int y = lo.y; y < hi.y; ++y)
-                for (std::size_t i = linear({lo.x, y, z}, size) * std::size_t(samples),
-                                 end = linear({hi.x - 1, y, z}, size) * std::size_t(samples) + std::size_t(samples);
-                     i < end; ++i) {
-                    least = row[i] < least ? row[i] : least;
-                    most = row[i] > most ? row[i] : most;
+    blocks.level = level;
+    blocks.count = (rows.size - 2 * kHalo + kBlockTexels - 1) / kBlockTexels;
+    const std::size_t across = std::size_t(blocks.count.x),
+                      total = across * std::size_t(blocks.count.y) * std::size_t(blocks.count.z);
+    blocks.min.resize(total);
+    blocks.max.resize(total);
+    parallelFor(std::size_t(blocks.count.y) * std::size_t(blocks.count.z), [&](std::size_t i) {
+        const glm::ivec2 lo = glm::ivec2(int(i) % blocks.count.y, int(i) / blocks.count.y) * kBlockTexels + (kHalo - 1);
+        const glm::ivec2 hi = glm::min(lo + (kBlockTexels + 2), glm::ivec2(rows.size.y, rows.size.z));
+        for (std::size_t x = 0; x < across; ++x) {
+            Extent extent;
+            for (int z = lo.y; z < hi.y; ++z)
+                for (int y = lo.x; y < hi.x; ++y) {
+                    const std::size_t from = (std::size_t(z) * std::size_t(rows.size.y) + std::size_t(y)) * across + x;
+                    extent.take(rows.min[from], rows.max[from]);
                 }
-        blocks.min[block] = least;
-        blocks.max[block] = most;
+            blocks.min[i * across + x] = extent.least;
+            blocks.max[i * across + x] = extent.most;
+        }
     });
     return blocks;
+}
+
+/// Packs one row of a sublattice, whose samples begin at `first`, into component `sublattice` of the texels of `row`,
+/// and as numbers, NaN where absent, into `plain`.
+void packRow(const BrickSamples& samples, std::size_t first, const TexelEncoding& encoding, int perTexel,
+             int sublattice, std::size_t row, std::vector<float>& plain, TexelBlock& out) {
+    const std::size_t width = std::size_t(out.size.x);
+    const float offset = float(encoding.offset), inverse = float(1 / encoding.scale);
+    const float* from = &samples.values[first];
+    const std::uint8_t* present = samples.present.empty() ? nullptr : &samples.present[first];
+    float* texels = &plain[std::size_t(sublattice)];
+    const auto every = std::size_t(perTexel), components = std::size_t(out.components);
+    for (std::size_t x = 0; x < width; ++x) {
+        const float value = (from[x] - offset) * inverse;
+        texels[x * every] = encoding.exact ? value : glm::clamp(value, 0.0f, 1.0f);
+    }
+    const std::size_t to = row * width * components + std::size_t(sublattice);
+    for (std::size_t x = 0; x < width; ++x) {
+        if (encoding.exact)
+            out.exact[to + x * components] = texels[x * every];
+        else
+            out.normalised[to + x * components] = std::uint16_t(texels[x * every] * 65535.0f + 0.5f);
+    }
+    if (present == nullptr && !encoding.coverage) return;
+    for (std::size_t x = 0; x < width; ++x) {
+        const bool is = present == nullptr || present[x] != 0;
+        const std::size_t value = to + x * components, coverage = value + every;
+        if (!is) texels[x * every] = std::numeric_limits<float>::quiet_NaN();
+        if (encoding.exact) {
+            if (!is) out.exact[value] = 0;
+            if (encoding.coverage) out.exact[coverage] = is;
+        } else {
+            if (!is) out.normalised[value] = 0;
+            if (encoding.coverage) out.normalised[coverage] = is ? 65535 : 0;
+        }
+    }
 }
 
 } // namespace
 
 TexelBlock makeTexels(const BrickGrid& grid, const BrickKey& which, const TexelBox& box, const TexelEncoding& encoding,
                       const ReadBrick& read) {
-    BrickSamples samples = gatherBox(grid, which, box, encoding.prefiltered ? kHalo + 1 : kHalo, read);
-    if (encoding.prefiltered) samples = volume::prefilter(samples, volume::levelGeometry(grid, box.level));
-
     TexelBlock out;
     const int perTexel = grid.lattice.kind == LatticeKind::BCC ? 2 : 1;
     out.size = box.size() + 2 * kHalo;
@@ -181,33 +250,29 @@ TexelBlock makeTexels(const BrickGrid& grid, const BrickKey& which, const TexelB
     const std::size_t texels = std::size_t(out.size.x) * std::size_t(out.size.y) * std::size_t(out.size.z);
     (encoding.exact ? out.exact.resize(texels * std::size_t(out.components))
                     : out.normalised.resize(texels * std::size_t(out.components)));
-    std::vector<float> plain(texels * std::size_t(perTexel)); // texel units, NaN = absent; for the block ranges
-    const float offset = float(encoding.offset), inverse = float(1 / encoding.scale);
-    parallelFor(std::size_t(out.size.z), [&](std::size_t z) {
-        for (int y = 0; y < out.size.y; ++y)
-            for (int x = 0; x < out.size.x; ++x) {
-                const std::size_t texel = linear({x, y, int(z)}, out.size);
-                for (int s = 0; s < perTexel; ++s) {
-                    const std::size_t from = linear({x, y, int(z) * perTexel + s}, samples.size);
-                    const bool present = samples.present.empty() || samples.present[from] != 0;
-                    float value = (samples.values[from] - offset) * inverse;
-                    if (!encoding.exact) value = glm::clamp(value, 0.0f, 1.0f);
-                    plain[texel * std::size_t(perTexel) + std::size_t(s)] =
-                        present ? value : std::numeric_limits<float>::quiet_NaN();
-                    if (!present) value = 0;
-                    const std::size_t to = texel * std::size_t(out.components) + std::size_t(s);
-                    if (encoding.exact) {
-                        out.exact[to] = value;
-                        if (encoding.coverage) out.exact[to + std::size_t(perTexel)] = present;
-                    } else {
-                        out.normalised[to] = std::uint16_t(value * 65535.0f + 0.5f);
-                        if (encoding.coverage) out.normalised[to + std::size_t(perTexel)] = present ? 65535 : 0;
-                    }
-                }
+    RowRanges ranges(out.size);
+    // A layer at a time, so that what lies between bricks and texels stays small.
+    const int layer = grid.brickSize;
+    for (int z = box.begin.z; z < box.end.z; z += layer) {
+        const TexelBox part{
+            box.level, {box.begin.x, box.begin.y, z}, {box.end.x, box.end.y, std::min(z + layer, box.end.z)}};
+        BrickSamples samples = gatherBox(grid, which, part, encoding.prefiltered ? kHalo + 1 : kHalo, read);
+        if (encoding.prefiltered) samples = volume::prefilter(samples, volume::levelGeometry(grid, box.level));
+        const int below = z - box.begin.z, first = z == box.begin.z ? 0 : below + kHalo,
+                  last = part.end.z == box.end.z ? out.size.z : part.end.z - box.begin.z + kHalo;
+        const auto rows = std::size_t(out.size.y);
+        parallelRanges(rows * std::size_t(last - first), [&](std::size_t begin, std::size_t end) {
+            std::vector<float> plain(std::size_t(out.size.x) * std::size_t(perTexel));
+            for (std::size_t row = begin + rows * std::size_t(first); row < end + rows * std::size_t(first); ++row) {
+                const glm::ivec3 from(0, int(row % rows), (int(row / rows) - below) * perTexel);
+                for (int s = 0; s < perTexel; ++s)
+                    packRow(samples, linear(from + glm::ivec3(0, 0, s), samples.size), encoding, perTexel, s, row,
+                            plain, out);
+                ranges.take(row, plain.data(), perTexel);
             }
-    });
-    out.blocks = blockRanges(plain, out.size, perTexel);
-    out.blocks.level = box.level;
+        });
+    }
+    out.blocks = blockRanges(ranges, box.level);
     return out;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "vis/model/adaptive_step.h"
 #include "volume/brick_source.h"
 
 #include <functional>
@@ -10,8 +11,8 @@
 /// From bricks to the texels of a 3D texture: gathered with a halo, filtered, normalised and packed. No GL.
 namespace tessera::vis {
 
-inline constexpr int kHalo = 2;        ///< texels around what a texture covers: central differences reach that far
-inline constexpr int kBlockTexels = 4; ///< edge of a block of the empty-space map
+inline constexpr int kHalo = 2; ///< texels around what a texture covers: central differences reach that far
+inline constexpr int kBlockTexels = kStepBlock; ///< edge of a block of the empty-space map
 
 /// How the numbers of a texture become values: physical = offset + scale * texel.
 struct TexelEncoding {
