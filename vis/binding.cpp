@@ -73,13 +73,22 @@ void setFrames(RayPlan& plan, const Frames& frames) {
     if (plan.later > 0) plan.fields.insert(plan.fields.end(), once.begin(), once.end());
 }
 
-/// What two frames of a channel need together.
+/// Edge of a cell of the finest level that any of the demands names, in cells of full resolution.
+double finestCell(const std::vector<std::shared_ptr<const BrickDemand>>& demands) {
+    std::uint8_t finest = BrickDemand::kNotWanted;
+    for (const auto& demand : demands)
+        if (demand && !demand->level.empty()) finest = std::min(finest, *std::ranges::min_element(demand->level));
+    return finest == BrickDemand::kNotWanted ? 1 : double(1 << finest);
+}
+
+/// What two frames of a channel need together. (They lie in one picture, which hides the same of both.)
 std::shared_ptr<const BrickDemand> either(const std::shared_ptr<const BrickDemand>& a,
                                           const std::shared_ptr<const BrickDemand>& b) {
     if (!a || !b || *a == *b) return a ? b ? a : nullptr : nullptr;
     auto both = std::make_shared<BrickDemand>(*a);
     for (std::size_t i = 0; i < both->level.size(); ++i) {
         both->level[i] = std::min(a->level[i], b->level[i]);
+        both->hidden[i] = a->hidden[i] | b->hidden[i];
         const bool here = a->level[i] != BrickDemand::kNotWanted, there = b->level[i] != BrickDemand::kNotWanted;
         both->priority[i] = here && there ? std::min(a->priority[i], b->priority[i])
                             : here        ? a->priority[i]
@@ -116,19 +125,24 @@ bool Renderer::Impl::demandBricks(ViewTarget& target, const Scene& scene, const 
                                   const RayPlan& plan, const std::vector<ChannelKey>& keys) {
     if (!residency.bricked()) {
         target.demands.assign(keys.size(), nullptr);
+        target.cell = 1;
         return false;
     }
     std::vector<ChannelKey> state;
     for (const ChannelKey& key : keys)
         if (const ChannelTexture* channel = residency.known(key); channel && channel->bricks) state.push_back(key);
     const DemandSettings settings{request.size, scene.render.detail * (request.moving ? kMovingDetail : 1),
-                                  scene.render.importance};
+                                  scene.render.importance, target.share};
     if (target.demandsFor && *target.demandsFor == scene && target.demandSettings == settings &&
-        target.demandsKnown == state && target.demands.size() == keys.size())
+        target.demandsKnown == state && target.demandsHidden == target.hidden.revision() &&
+        target.demands.size() == keys.size())
         return false;
     target.demandsFor = scene;
     target.demandSettings = settings;
     target.demandsKnown = state;
+    target.demandsHidden = target.hidden.revision();
+    std::span<const std::uint8_t> hidden;
+    if (findsHidden(scene) && target.source == source.get()) hidden = target.hidden.bricks();
     const std::size_t count = plan.later > 0 ? std::size_t(plan.later) : plan.fields.size();
     const auto demandsOf = [&](std::size_t first) {
         RayPlan known = plan;
@@ -143,7 +157,8 @@ bool Renderer::Impl::demandBricks(ViewTarget& target, const Scene& scene, const 
             importance[i] = channel->bricks->importance();
             known.fields[i].encoding = channel->encoding;
         }
-        return brickDemands(std::move(known), scene, source->info(), source->grid(), ranges, importance, settings);
+        return brickDemands(std::move(known), scene, source->info(), source->grid(), ranges, importance, settings,
+                            hidden);
     };
     std::vector<std::shared_ptr<const BrickDemand>> demands = demandsOf(0);
     if (plan.later > 0) {
@@ -154,7 +169,10 @@ bool Renderer::Impl::demandBricks(ViewTarget& target, const Scene& scene, const 
     }
     const bool changed = !std::equal(demands.begin(), demands.end(), target.demands.begin(), target.demands.end(),
                                      [](const auto& a, const auto& b) { return a == b || (a && b && *a == *b); });
-    if (changed) target.demands = std::move(demands);
+    if (changed) {
+        target.demands = std::move(demands);
+        target.cell = finestCell(target.demands);
+    }
     return changed;
 }
 
@@ -162,6 +180,9 @@ bool Renderer::Impl::demandBricks(ViewTarget& target, const Scene& scene, const 
 bool Renderer::Impl::bind(ViewTarget& target, const Scene& scene, const FrameRequest& request, RayPlan& plan,
                           FrameStatus& status) {
     const volume::DatasetInfo& info = source->info();
+    status.samples = status.bytes = 0;
+    status.bricksMissing = 0;
+    takeReach(target, false);
     const auto at = [&](double time) { return framesAt(plan, scene, info, time, residency.bricked()); };
     const Frames wanted = at(scene.time);
     setFrames(plan, wanted);
@@ -204,6 +225,7 @@ bool Renderer::Impl::bind(ViewTarget& target, const Scene& scene, const FrameReq
     // Part of the channels would want a program of its own, for a moment.
     if (!here(shown)) any = false;
     if (any) {
+        if (target.lastTime != time) ++target.sceneNumber;
         target.lastTime = time;
         target.shown = shown.keys;
     }

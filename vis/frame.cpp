@@ -13,6 +13,8 @@ namespace tessera::vis {
 
 namespace {
 
+constexpr double kProbeShrink = 3;
+
 std::vector<Tile> tilesOf(const Tile& whole, int edge) {
     std::vector<Tile> tiles;
     for (int y = whole.begin.y; y < whole.end.y; y += edge)
@@ -41,7 +43,9 @@ glm::ivec2 sharedByProcessors(const Tile& drawn, glm::ivec2 picture, glm::ivec2 
 /// Draws as much of the bound plan as the budget allows.
 void Renderer::Impl::refine(ViewTarget& target, const Scene& scene, const FrameRequest& request, RayPlan& plan,
                             Clock::time_point start) {
-    if (target.fullValid ? target.stillDone || request.moving : target.reducedValid && request.moving) return;
+    const bool probing = target.share < 1;
+    const bool done = target.fullValid ? target.stillDone || request.moving : target.reducedValid && request.moving;
+    if (done && !probing) return;
     const ProgramRecipe recipe = prepare(target, scene, plan);
     const ProgramAnswer answer = request.wait ? ProgramAnswer{programs.find(recipe), ProgramStage::Ready}
                                               : programs.request(recipe, request.budgetMs / 4);
@@ -66,7 +70,7 @@ void Renderer::Impl::refine(ViewTarget& target, const Scene& scene, const FrameR
     if (std::any_of(plan.layers.begin(), plan.layers.end(), [](const RayLayer& l) { return l.look & kCharcoalBit; }))
         glBindTextureUnit(GLuint(units.grain), grain.get());
     glBindTextureUnit(GLuint(units.lassos), brushes.update(brushTests(plan, scene, info)));
-    const bool lit = bindLight(target, scene, request, plan);
+    const bool lit = probing || bindLight(target, scene, request, plan);
 
     // Brings a program to where it can draw; false while that is on its way.
     const auto ready = [&](const ProgramAnswer& program, const ProgramRecipe& made, const RayPlan& drawn,
@@ -100,10 +104,12 @@ void Renderer::Impl::refine(ViewTarget& target, const Scene& scene, const FrameR
             request.wait ? ProgramAnswer{programs.find(other), ProgramStage::Ready} : programs.request(other, 0);
         if (ready(found, other, beyond, lensless)) rayPrograms.beyond = found.program;
     }
+    // Between the samples of coarser levels there is nothing to see: steps are as long as their cells.
     const auto setUniforms = [&](double stepFactor) {
-        setRayUniforms(*rayPrograms.program, plan, scene, info, source->grid(), target.size, stepFactor);
+        const double factor = stepFactor * target.cell;
+        setRayUniforms(*rayPrograms.program, plan, scene, info, source->grid(), target.size, factor);
         if (rayPrograms.beyond)
-            setRayUniforms(*rayPrograms.beyond, beyond, lensless, info, source->grid(), target.size, stepFactor);
+            setRayUniforms(*rayPrograms.beyond, beyond, lensless, info, source->grid(), target.size, factor);
     };
 
     const auto drawReduced = [&](double shrink, double stepFactor) {
@@ -122,15 +128,16 @@ void Renderer::Impl::refine(ViewTarget& target, const Scene& scene, const FrameR
         target.geometryMs = millisecondsSince(before);
         const Clock::time_point begin = Clock::now();
         rays(rayPrograms, scene, target.reduced, target.reducedSize, tile,
-             covered(target, scene, plan, target.reducedSize), stepFactor);
+             covered(target, scene, plan, target.reducedSize), stepFactor * target.cell);
         glFinish();
         const double cost = millisecondsSince(begin) * stepFactor / std::max(1.0, tile.area());
         target.msPerPixel = target.msPerPixel > 0 ? 0.5 * (target.msPerPixel + cost) : cost;
-        target.reducedValid = true;
+        target.reducedValid = target.reducedDrawn = true;
         present(target, scene, true, target.changed);
         target.changed = {};
         glBindTextureUnit(0, plan.fields[0].texture);
     };
+    if (probing) return drawReduced(kProbeShrink, 1);
     const auto left = [&] { return request.budgetMs - millisecondsSince(start); };
     const double expected = target.msPerPixel * target.changed.area();
     const bool fast = target.msPerPixel > 0 && target.msPerPixel * target.stale.area() < std::max(left(), 1.0);
@@ -174,7 +181,8 @@ void Renderer::Impl::refine(ViewTarget& target, const Scene& scene, const FrameR
         geometry(target, scene, plan, target.size, target.stale, pass);
         const Clock::time_point begin = Clock::now();
         if (pass == 0)
-            rays(rayPrograms, scene, target.full, target.size, tile, covered(target, scene, plan, target.size));
+            rays(rayPrograms, scene, target.full, target.size, tile, covered(target, scene, plan, target.size),
+                 target.cell);
         else
             accumulate(rayPrograms, target, scene, tile, covered(target, scene, plan, target.size), pass);
         glFinish();

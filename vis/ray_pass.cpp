@@ -2,6 +2,7 @@
 
 #include "vis/model/jitter.h"
 #include "vis/model/proxy.h"
+#include "vis/technique/block_steps.h"
 #include "vis/technique/box_lines.h"
 #include "vis/technique/lens_pixels.h"
 #include "vis/technique/lens_uniforms.h"
@@ -11,19 +12,53 @@
 #include "volume/error.h"
 
 #include <algorithm>
+#include <array>
 
 namespace tessera::vis {
 
 namespace {
 
-constexpr double kSkipOccupancy = 0.7; ///< above, leaping costs more than it saves
+constexpr double kSkipOccupancy = 0.7;    ///< above, leaping costs more than it saves
+constexpr double kWorthSteps = 0.6;       ///< share of the samples left above which longer steps do
+constexpr std::uint8_t kStepTexels = 128; ///< in the texture of block distances: from here on codes of steps
+
+/// What the shader sees: distances, at most kStepTexels - 1 where there are steps, or kStepTexels and a step's code.
+std::vector<std::uint8_t> blockTexels(const BlockDistances& blocks, const std::vector<std::uint8_t>& steps) {
+    std::vector<std::uint8_t> texels = blocks.distance;
+    for (std::size_t i = 0; i < steps.size(); ++i)
+        if (texels[i] > 0)
+            texels[i] = std::min(texels[i], std::uint8_t(kStepTexels - 1));
+        else if (steps[i] > 0)
+            texels[i] = std::uint8_t(kStepTexels + steps[i]);
+    return texels;
+}
+
+/// Whether two scenes whose layers and functions are the same have the same longer steps.
+bool sameSteps(const Scene& a, const Scene& b, const volume::DatasetInfo& info) {
+    const bool adapts = stepsAdapt(a, info);
+    if (adapts != stepsAdapt(b, info)) return false;
+    return !adapts || (a.render.adaptiveStep == b.render.adaptiveStep && a.render.stepVoxels == b.render.stepVoxels);
+}
 
 } // namespace
+
+/// About the share of all samples that is taken where empty blocks are leapt over and steps are longer.
+double Renderer::Impl::workLeft(const BlockDistances& blocks, const std::vector<std::uint8_t>& steps,
+                                const Scene& scene) const {
+    std::array<double, kMostSteps + 1> left;
+    for (int code = 0; code <= kMostSteps; ++code)
+        left[std::size_t(code)] = samplesLeft(code, scene, source->info(), source->grid().lattice, kBlockTexels);
+    double sum = 0;
+    for (std::size_t i = 0; i < steps.size(); ++i) sum += blocks.distance[i] == 0 ? left[steps[i]] : 0;
+    return steps.empty() ? 1 : sum / double(steps.size());
+}
 
 /// The program variant that a bound plan wants.
 ProgramRecipe Renderer::Impl::variant(const ViewTarget& target, const Scene& scene, const RayPlan& plan) const {
     ProgramRecipe made = rayRecipe(plan, scene, source->grid(), target.skip && !lensesBend(scene));
     if (options.countSamples) made.defines.emplace_back("COUNT_SAMPLES", "1");
+    if (target.adaptive && made.slots["skip"] == "slots/skip_distance.glsl") made.defines.emplace_back("ADAPTIVE", "1");
+    if (findsHidden(scene)) made.defines.emplace_back("REACH", "1");
     return made;
 }
 
@@ -36,15 +71,19 @@ ProgramRecipe Renderer::Impl::prepare(ViewTarget& target, const Scene& scene, Ra
     // Tables depend on these alone; a camera that moves keeps them.
     if (target.tablesFor && target.tablesRevision == residency.revision() && target.tablesFor->layers == scene.layers &&
         target.tablesFor->transfer == scene.transfer && target.tablesFor->render.filter == scene.render.filter &&
-        target.tablesKeys == target.shown && target.tablesFor->selection == scene.selection &&
-        target.tablesFor->stretch == scene.stretch)
+        sameSteps(*target.tablesFor, scene, source->info()) && target.tablesKeys == target.shown &&
+        target.tablesFor->selection == scene.selection && target.tablesFor->stretch == scene.stretch)
         return recipe();
     target.tablesFor = scene;
     target.tablesRevision = residency.revision();
     target.tablesKeys = target.shown;
 
     const std::optional<BlockDistances> blocks = blockDistances(plan, scene, source->info());
-    target.skip = blocks && blocks->occupied < kSkipOccupancy;
+    std::vector<std::uint8_t> steps = blockSteps(plan, scene, source->info(), source->grid().lattice);
+    const double work = blocks && !steps.empty() ? workLeft(*blocks, steps, scene) : 1;
+    target.adaptive = blocks && work < kWorthSteps * blocks->occupied;
+    target.skip = target.adaptive || (blocks && blocks->occupied < kSkipOccupancy);
+    if (!target.adaptive) steps.clear();
     target.occupied.reset();
     target.coveredFor.reset();
     if (blocks)
@@ -69,9 +108,10 @@ ProgramRecipe Renderer::Impl::prepare(ViewTarget& target, const Scene& scene, Ra
         if (target.blockCount != blocks->count || !target.blocks)
             target.blocks = makeTexture3D(blocks->count, GL_R8UI, GL_NEAREST, "block distances");
         target.blockCount = blocks->count;
+        const std::vector<std::uint8_t> texels = blockTexels(*blocks, steps);
         glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
         glTextureSubImage3D(target.blocks.name(), 0, 0, 0, 0, blocks->count.x, blocks->count.y, blocks->count.z,
-                            GL_RED_INTEGER, GL_UNSIGNED_BYTE, blocks->distance.data());
+                            GL_RED_INTEGER, GL_UNSIGNED_BYTE, texels.data());
         glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
     }
     return recipe();
@@ -134,7 +174,7 @@ const std::vector<Tile>* Renderer::Impl::covered(ViewTarget& target, const Scene
 /// Draws a tile with the rays of a pass; of it what lies in one of `parts`.
 void Renderer::Impl::rays(const RayPrograms& rayPrograms, const Scene& scene, const RayBuffer& buffer, glm::ivec2 size,
                           const Tile& tile, const std::vector<Tile>* parts, double stepFactor, int pass) {
-    const float nothing[] = {0, 0, 0, 0}, nowhere[] = {-1e9f, 0, 0, 0};
+    const float nothing[] = {0, 0, 0, 0}, nowhere[] = {-1e9f, 0, 0, 0}, unseen[] = {0, 0, 0, 0};
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, buffer.framebuffer.name());
     glViewport(buffer.first.x, buffer.first.y, size.x, size.y);
     glEnable(GL_SCISSOR_TEST);
@@ -144,6 +184,7 @@ void Renderer::Impl::rays(const RayPrograms& rayPrograms, const Scene& scene, co
     within(tile.begin, tile.end);
     glClearNamedFramebufferfv(buffer.framebuffer.name(), GL_COLOR, 0, nothing);
     glClearNamedFramebufferfv(buffer.framebuffer.name(), GL_COLOR, 1, nowhere);
+    glClearNamedFramebufferfv(buffer.framebuffer.name(), GL_COLOR, 2, unseen);
     // Only where the box is.
     const glm::ivec4 box = boxPixels(scene.camera, worldFrame(source->info().bounds, scene.stretch).halfSize, size);
     const glm::ivec2 begin = glm::max(tile.begin, glm::ivec2(box)), end = glm::min(tile.end, glm::ivec2(box.z, box.w));
@@ -185,17 +226,24 @@ void Renderer::Impl::accumulate(const RayPrograms& rayPrograms, ViewTarget& targ
     if (!average) throw Error("the program that averages passes does not compile");
     target.reducedValid = false;
     target.reduced.first = {0, 0};
-    rays(rayPrograms, scene, target.reduced, target.size, tile, parts, 1, pass);
+    rays(rayPrograms, scene, target.reduced, target.size, tile, parts, target.cell, pass);
     average->set("source", 0);
+    average->set("sourceReach", 1);
     glBindTextureUnit(0, target.reduced.color.name());
+    glBindTextureUnit(1, target.reduced.reach.name());
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, target.full.framebuffer.name());
     glScissor(tile.begin.x, tile.begin.y, tile.end.x - tile.begin.x, tile.end.y - tile.begin.y);
     glUseProgram(average->name());
+    glBindVertexArray(vertices.name()); // of a tile beside the box no ray was drawn
     glEnablei(GL_BLEND, 0);
     glBlendColor(0, 0, 0, 1 / float(pass + 1));
     glBlendFunc(GL_CONSTANT_ALPHA, GL_ONE_MINUS_CONSTANT_ALPHA);
     glColorMaski(1, GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+    glEnablei(GL_BLEND, 2); // the farthest of all passes
+    glBlendEquationi(2, GL_MAX);
     glDrawArrays(GL_TRIANGLES, 0, 3);
+    glBlendEquationi(2, GL_FUNC_ADD);
+    glDisablei(GL_BLEND, 2);
     glDisablei(GL_BLEND, 0);
     glColorMaski(1, GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
 }

@@ -58,6 +58,33 @@ ViewTargetPtr Renderer::makeTarget() {
     return ViewTargetPtr(new ViewTarget);
 }
 
+/// Asks for what the scene shows and draws, or refines, what is here of it; false where nothing can be drawn.
+bool Renderer::Impl::draw(ViewTarget& target, const Scene& scene, const FrameRequest& request, RayPlan& plan,
+                          Clock::time_point start, FrameStatus& status) {
+    const bool any = source && !plan.empty() && bind(target, scene, request, plan, status);
+    const std::uint64_t revision = residency.revision();
+    const bool same = target.source == source.get();
+    if (!target.started || !(target.scene == scene) || target.revision != revision || !same) {
+        std::optional<Tile> part;
+        if (source && target.started && target.shows && same && target.revision == revision)
+            part = changedPixels(target.scene, scene, worldFrame(source->info().bounds, scene.stretch), target.size);
+        target.redraw(part.value_or(target.everything()));
+        if (!(target.scene == scene) || !same) ++target.sceneNumber;
+        target.scene = scene;
+        target.revision = revision;
+        target.shows = target.shows && (same || target.source == formerSource);
+        target.source = source.get();
+        target.started = true;
+    }
+    if (any) {
+        refine(target, scene, request, plan, start);
+        if (findsHidden(scene)) startReach(target, scene);
+    } else if (!target.fullValid && (plan.empty() || status.complete || !target.shows)) {
+        nothing(target, scene);
+    }
+    return any;
+}
+
 FrameStatus Renderer::render(ViewTarget& target, const Scene& scene, const FrameRequest& wanted) {
     const Clock::time_point start = Clock::now();
     FrameStatus status;
@@ -81,7 +108,7 @@ FrameStatus Renderer::render(ViewTarget& target, const Scene& scene, const Frame
     status.texture = target.output.name();
 
     RayPlan plan;
-    bool any = false;
+    bool any = false, finds = false;
     if (impl_->source) {
         const RenderLimits& limits = scene.render.limits;
         impl_->residency.setBudgets(std::min(impl_->options.textureBudget, std::size_t(limits.textureMemory) << 20),
@@ -90,30 +117,20 @@ FrameStatus Renderer::render(ViewTarget& target, const Scene& scene, const Frame
         impl_->residency.beginFrame();
         impl_->residency.update(request.wait ? ~std::size_t(0) : kUploadPerFrame);
         plan = planRays(scene, impl_->source->info());
-        any = !plan.empty() && impl_->bind(target, scene, request, plan, status);
+        finds = !plan.empty() && impl_->findsHidden(scene);
     }
-    const std::uint64_t revision = impl_->residency.revision();
     if (!liesAtCursor(scene)) target.scene.cursor = scene.cursor;
-    if (!target.started || !(target.scene == scene) || target.revision != revision ||
-        target.source != impl_->source.get()) {
-        const bool same = target.source == impl_->source.get();
-        std::optional<Tile> part;
-        if (impl_->source && target.started && target.shows && same && target.revision == revision)
-            part = changedPixels(target.scene, scene, worldFrame(impl_->source->info().bounds, scene.stretch),
-                                 target.size);
-        target.redraw(part.value_or(target.everything()));
-        target.scene = scene;
-        target.revision = revision;
-        target.shows = target.shows && (same || target.source == impl_->formerSource);
-        target.source = impl_->source.get();
-        target.started = true;
+    if (target.source != impl_->source.get()) {
+        target.hidden.learn({}, false);
+        target.hiddenScene = 0;
     }
-    if (any) {
-        impl_->refine(target, scene, request, plan, start);
-    } else if (!target.fullValid && (plan.empty() || status.complete || !target.shows)) {
-        impl_->nothing(target, scene);
-    }
+    // What the last picture hid will do to begin with.
+    if (request.wait && finds && target.hiddenScene == 0) impl_->probe(target, scene, request, plan);
+    do any = impl_->draw(target, scene, request, plan, start, status);
+    while (request.wait && any && finds && impl_->reveals(target, scene, request, plan));
     status.complete = status.complete && target.fullValid && target.stillDone;
+    // What is hidden may be coarse, but it has to be known that it is.
+    if (any && finds) status.complete = status.complete && target.hiddenKnown;
     status.current = status.complete || target.changed.empty();
     status.milliseconds = target.passMilliseconds;
     return status;

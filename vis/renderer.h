@@ -51,11 +51,12 @@ struct FrameStatus {
     std::size_t samples = 0, bytes = 0;
 };
 
-/// Bytes in use and allowed; bricks in textures, bricks that a view wants and that are not there yet, jobs under way;
-/// of this data set so far, bricks uploaded, and bricks of another time that were shown with texels that were there.
+/// Bytes in use and allowed; bricks in textures, bricks that a view wants and that are not there yet, bricks not wanted
+/// since they are hidden in every view that would show them, jobs under way; of this data set so far, bricks uploaded,
+/// and bricks of another time that were shown with texels that were there.
 struct ResidencyInfo {
     std::size_t textureBytes = 0, textureBudget = 0, memoryBytes = 0, memoryBudget = 0;
-    int bricksResident = 0, bricksWanted = 0, bricksQueued = 0, bricksUploaded = 0, bricksKept = 0;
+    int bricksResident = 0, bricksWanted = 0, bricksHidden = 0, bricksQueued = 0, bricksUploaded = 0, bricksKept = 0;
 };
 
 /// What lies under a pixel: the first sample along the ray with noticeable opacity.

@@ -7,9 +7,11 @@
 #include "vis/technique/brush_uniforms.h"
 #include "vis/technique/look_uniforms.h"
 #include "vis/technique/ray_plan.h"
+#include "vis/technique/ray_tables.h"
 
 /// Inside the renderer: renderer.cpp has what is public, binding.cpp asks for textures, light_binding.cpp for light,
-/// ray_pass.cpp draws with them, present.cpp shows it, frame.cpp does as much of all this as there is time for.
+/// ray_pass.cpp draws with them, occlusion.cpp finds what is hidden, present.cpp shows it, frame.cpp does as much of
+/// all this as there is time for.
 namespace tessera::vis {
 
 using Clock = std::chrono::steady_clock;
@@ -50,6 +52,7 @@ struct Renderer::Impl {
     bool bind(ViewTarget& target, const Scene& scene, const FrameRequest& request, RayPlan& plan, FrameStatus& status);
 
     // ray_pass.cpp
+    double workLeft(const BlockDistances& blocks, const std::vector<std::uint8_t>& steps, const Scene& scene) const;
     ProgramRecipe variant(const ViewTarget& target, const Scene& scene, const RayPlan& plan) const;
     ProgramRecipe prepare(ViewTarget& target, const Scene& scene, RayPlan& plan);
     void geometry(ViewTarget& target, const Scene& scene, const RayPlan& plan, glm::ivec2 size, const Tile& tile,
@@ -61,6 +64,13 @@ struct Renderer::Impl {
     void accumulate(const RayPrograms& rayPrograms, ViewTarget& target, const Scene& scene, const Tile& tile,
                     const std::vector<Tile>* parts, int pass);
 
+    // occlusion.cpp
+    bool findsHidden(const Scene& scene) const;
+    void startReach(ViewTarget& target, const Scene& scene);
+    void takeReach(ViewTarget& target, bool wait);
+    void probe(ViewTarget& target, const Scene& scene, const FrameRequest& request, RayPlan& plan);
+    bool reveals(ViewTarget& target, const Scene& scene, const FrameRequest& request, const RayPlan& plan);
+
     // present.cpp
     void present(ViewTarget& target, const Scene& scene, bool reduced, const Tile& tile);
     void nothing(ViewTarget& target, const Scene& scene);
@@ -68,6 +78,10 @@ struct Renderer::Impl {
     // light_binding.cpp
     void sayLimits(const Scene& scene);
     bool bindLight(ViewTarget& target, const Scene& scene, const FrameRequest& request, const RayPlan& plan);
+
+    // renderer.cpp
+    bool draw(ViewTarget& target, const Scene& scene, const FrameRequest& request, RayPlan& plan,
+              Clock::time_point start, FrameStatus& status);
 
     // frame.cpp
     void refine(ViewTarget& target, const Scene& scene, const FrameRequest& request, RayPlan& plan,

@@ -9,7 +9,8 @@ void RayBuffer::resize(glm::ivec2 wanted, bool exact, const char* label) {
     RayBuffer made;
     made.color = makeTexture2D(wanted, exact ? GL_RGBA32F : GL_RGBA16F, GL_LINEAR, label);
     made.pick = makeTexture2D(wanted, GL_RG32F, GL_NEAREST, label);
-    made.framebuffer = makeFramebuffer({made.color.name(), made.pick.name()}, label);
+    made.reach = makeTexture2D(wanted, GL_R32F, GL_NEAREST, label);
+    made.framebuffer = makeFramebuffer({made.color.name(), made.pick.name(), made.reach.name()}, label);
     made.size = wanted;
     *this = std::move(made);
 }
@@ -21,6 +22,7 @@ void ViewTarget::resize(glm::ivec2 wanted, bool exact) {
     quick.resize(wanted, exact, "reduced picture");
     Texture made = makeTexture2D(wanted, GL_RGBA8, GL_LINEAR, "presented picture");
     outputFramebuffer = makeFramebuffer({made.name()}, "presented picture");
+    reach.resize(wanted);
     full = std::move(whole);
     reduced = std::move(quick);
     output = std::move(made);
@@ -35,6 +37,7 @@ void ViewTarget::redraw(const Tile& part) {
     stale = stillDone ? part : united(stale, part);
     changed = united(changed, part);
     reducedValid = fullValid = stillDone = false;
+    hiddenKnown = reachFinal = false;
     tilesDone = 0;
     geometrySize = {0, 0};
 }

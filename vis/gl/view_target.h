@@ -2,6 +2,7 @@
 
 #include "vis/gl/channel_load.h"
 #include "vis/gl/geometry_pass.h"
+#include "vis/gl/reach_reader.h"
 #include "vis/renderer.h"
 #include "vis/technique/brick_demand.h"
 #include "vis/technique/covered_pixels.h"
@@ -12,9 +13,10 @@
 
 namespace tessera::vis {
 
-/// One buffer the ray caster draws into: linear premultiplied colour; distance of what a pixel shows and its interest.
+/// One buffer the ray caster draws into: linear premultiplied colour; distance of what a pixel shows and its interest;
+/// distance up to which its ray went.
 struct RayBuffer {
-    Texture color, pick;
+    Texture color, pick, reach;
     Framebuffer framebuffer;
     glm::ivec2 size{0};
     glm::ivec2 first{0}; ///< texel of the picture's lower left pixel
@@ -57,13 +59,26 @@ public:
 
     // Bricks wanted, and what they were wanted for.
     std::vector<std::shared_ptr<const BrickDemand>> demands; ///< per field of the plan
+    double cell = 1; ///< edge of a cell of the finest level among them, in cells of full resolution
     std::optional<Scene> demandsFor;
     DemandSettings demandSettings;
     std::vector<ChannelKey> demandsKnown;
+    std::uint64_t demandsHidden = 0;        ///< HiddenInView::revision()
+    double share = 1;                       ///< DemandSettings::share: less while the picture is only probed
     int wantedTime = -1, timeStep = 0;      ///< which way the time runs, in stored times
     std::vector<BlockRanges> betweenBlocks; ///< of fields between two stored times, and what they were made for
     std::vector<ChannelKey> betweenKeys;
     std::uint64_t betweenRevision = 0;
+
+    // Bricks behind what is opaque, and the picture that is asked for them.
+    HiddenInView hidden;
+    std::uint64_t hiddenScene = 0; ///< number of the scene that `hidden` is of
+    bool hiddenKnown = false;      ///< from `full` as it is
+    std::uint64_t sceneNumber = 0; ///< counts the scenes, and times of data, drawn
+    ReachReader reach;
+    std::uint64_t reachScene = 0;
+    bool reachFinal = false;   ///< what is under way is of `full` as it is
+    bool reducedDrawn = false; ///< in this frame
 
     // Transfer tables and block distances, and what they were made for.
     Texture table, planes, blocks;
@@ -72,6 +87,7 @@ public:
     std::vector<ChannelKey> tablesKeys;
     int tableRows = 0, planePages = 0;
     glm::ivec3 blockCount{0};
+    bool adaptive = false;                            ///< take longer steps through smooth ones
     bool skip = false;                                ///< leap over empty blocks
     std::vector<std::optional<glm::vec2>> opaque;     ///< RayLayer::opaque
     std::optional<std::vector<OccupiedBox>> occupied; ///< nullopt: not known

@@ -8,9 +8,10 @@ namespace tessera::vis {
 /// What one picture needs of a channel: per brick of full resolution, x fastest, the level it should be shown at and
 /// how urgent that is (smaller: sooner).
 struct BrickDemand {
-    static constexpr std::uint8_t kNotWanted = 255; ///< out of sight, or transparent
+    static constexpr std::uint8_t kNotWanted = 255; ///< out of sight, transparent or hidden
     std::vector<std::uint8_t> level;
     std::vector<float> priority;
+    std::vector<std::uint8_t> hidden; ///< 1: behind what is opaque; its level is what is wanted all the same
     bool operator==(const BrickDemand&) const = default;
 };
 

@@ -33,11 +33,13 @@ struct RenderParams {
     float detail = 1;         ///< pixels; voxels of bricked data finer than this are shown at a coarser level
     float importance = 1;     ///< levels by which bricks with nothing to show may be coarser
     RenderLimits limits;
-    float stepVoxels = 0.5f; ///< distance between samples, in cells of the finest direction on screen at rest
+    float stepVoxels = 0.5f; ///< distance between samples, in cells of the finest level that the picture wants
     volume::GradientSpan gradient = volume::GradientSpan::Neighbours;
-    int normalBits = 0;  ///< of either coordinate of a gradient's direction, 0: as they are
-    bool jitter = false; ///< vis/model/jitter.h
-    int samples = 4;     ///< rays per pixel of a still
+    int normalBits = 0;     ///< of either coordinate of a gradient's direction, 0: as they are
+    bool jitter = false;    ///< vis/model/jitter.h
+    int samples = 4;        ///< rays per pixel of a still
+    bool cullHidden = true; ///< bricks behind what is opaque stay coarse: vis/technique/hidden_bricks.h
+    float adaptiveStep = 0; ///< vis/model/adaptive_step.h
 
     Proxy proxy = Proxy::Rays;
 
@@ -46,11 +48,12 @@ struct RenderParams {
         visit(self.filter,
               FieldInfo{
                   .key = "filter", .unit = "", .doc = "Reconstruction between lattice points", .names = kFilterNames});
-        visit(self.stepVoxels, FieldInfo{.key = "step",
-                                         .unit = "voxel",
-                                         .doc = "Distance between samples along a ray",
-                                         .range = Range{0.05, 4},
-                                         .logScale = true});
+        visit(self.stepVoxels,
+              FieldInfo{.key = "step",
+                        .unit = "voxel",
+                        .doc = "Distance between samples along a ray, in voxels of the finest level wanted",
+                        .range = Range{0.05, 4},
+                        .logScale = true});
         visit(self.detail, FieldInfo{.key = "detail",
                                      .unit = "pixel",
                                      .doc = "Voxels smaller than this are shown at a coarser level, in data too large "
@@ -87,6 +90,16 @@ struct RenderParams {
                                       .unit = "",
                                       .doc = "Rays per pixel once the picture is at rest",
                                       .range = Range{1, 64}});
+        visit(self.cullHidden,
+              FieldInfo{.key = "cullHidden",
+                        .unit = "",
+                        .doc = "Leave bricks that lie behind opaque ones coarse, until they are seen"});
+        visit(self.adaptiveStep,
+              FieldInfo{.key = "adaptiveStep",
+                        .unit = "",
+                        .doc = "Greatest change of light and opacity over a longer step where volumes are smooth under "
+                               "their transfer functions; 0 = all steps alike",
+                        .range = Range{0, 0.1}});
     }
 };
 

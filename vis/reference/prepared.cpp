@@ -79,6 +79,7 @@ Prepared::Prepared(const Scene& drawn, const volume::BrickSource& source, glm::i
         layers.push_back(std::move(one));
     }
     for (const std::string& channel : interestOf.channels()) brushed.push_back(load(channel));
+    if (stepsAdapt(scene, info)) findSteps();
     if (!scene.lighting.shadows.any()) return;
     const LightGrid grid = lightGrid(frame, scene.lighting.shadows);
     const std::vector<PlacedLight> lights = placeLights(scene.lighting, scene.camera);
@@ -87,6 +88,45 @@ Prepared::Prepared(const Scene& drawn, const volume::BrickSource& source, glm::i
     for (std::size_t i = 0; i < all.size(); ++i) all[i] += meshes[i];
     light.volume =
         std::make_shared<const LightVolume<double>>(spreadLight<double>(grid, all, lights, scene.lighting.shadows));
+}
+
+/// Steps of all blocks.
+void Prepared::findSteps() {
+    std::vector<std::optional<CurveMatter>> curves;
+    for (const DrawnLayer& layer : layers) {
+        const auto* volume = std::get_if<VolumeLayer>(layer.technique);
+        auto& curve = curves.emplace_back();
+        if (volume)
+            curve.emplace(*layer.function, layer.range, double(volume->density),
+                          volume->shaded && !layer.samples->categorical());
+    }
+    const glm::ivec3 texels = lattice.texels();
+    blocks = (texels + kStepBlock - 1) / kStepBlock;
+    steps.resize(std::size_t(blocks.x) * std::size_t(blocks.y) * std::size_t(blocks.z));
+    parallelFor(steps.size(), [&](std::size_t i) {
+        const glm::ivec3 block(int(i % std::size_t(blocks.x)), int(i / std::size_t(blocks.x) % std::size_t(blocks.y)),
+                               int(i / std::size_t(blocks.x) / std::size_t(blocks.y)));
+        std::vector<BlockMatter> matter;
+        for (std::size_t n = 0; n < layers.size(); ++n) {
+            const DrawnLayer& layer = layers[n];
+            const Range bounds = layer.samples->bounds(block * kStepBlock - 1, (block + 1) * kStepBlock + 1);
+            const auto* iso = std::get_if<IsoLayer>(layer.technique);
+            if (!(bounds.lo <= bounds.hi)) continue;
+            if (iso && bounds.lo <= iso->value && iso->value <= bounds.hi) return;
+            if (curves[n])
+                matter.push_back(curves[n]->between(layer.unclamped(bounds.lo), layer.unclamped(bounds.hi),
+                                                    layer.samples->someAbsent()));
+        }
+        steps[i] = std::uint8_t(stepCode(longestStep(matter, double(scene.render.adaptiveStep)), stepUnit(cell)));
+    });
+}
+
+double Prepared::stepAt(glm::ivec3 block) const {
+    block = glm::clamp(block, glm::ivec3(0), blocks - 1);
+    const int code =
+        steps[(std::size_t(block.z) * std::size_t(blocks.y) + std::size_t(block.y)) * std::size_t(blocks.x) +
+              std::size_t(block.x)];
+    return code > 0 ? stepOfCode(code, stepUnit(cell)) : 0;
 }
 
 namespace {

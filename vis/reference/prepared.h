@@ -1,5 +1,6 @@
 #pragma once
 
+#include "vis/model/adaptive_step.h"
 #include "vis/model/look_shading.h"
 #include "vis/model/preintegration.h"
 #include "vis/model/ray_setup.h"
@@ -61,6 +62,9 @@ struct Prepared {
     /// By channel name, time, and 1 without prefilter, for pre-classification.
     std::map<std::tuple<std::string, double, bool>, std::unique_ptr<Samples>> samples;
     std::vector<DrawnLayer> layers;
+    /// Codes of the steps of blocks (vis/model/adaptive_step.h), x fastest; empty: there are no longer ones.
+    std::vector<std::uint8_t> steps;
+    glm::ivec3 blocks{0};
     DoiFunction interestOf;
     std::vector<const Samples*> brushed; ///< of interestOf.channels(); null: unknown
 
@@ -70,6 +74,9 @@ struct Prepared {
     /// Where the data lie that are seen at a world point: physical, and in cells.
     glm::dvec3 physical(glm::dvec3 world) const { return frame.toPhysical(bend(lenses, world, frame.halfSize)); }
     glm::dvec3 cells(glm::dvec3 world) const { return lattice.toCells(physical(world)); }
+    void findSteps();
+    /// The longest step through the block that holds a place, in world units.
+    double stepAt(glm::ivec3 block) const;
     /// Matter of every cell of a light grid, as vis/model/light_volume.h says.
     Matter<double> matter(const LightGrid& grid) const;
     /// Of a world point.

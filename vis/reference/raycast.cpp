@@ -199,14 +199,31 @@ template <class Number> struct Caster {
         return {scene.colorAt(layer, *value, place), 1};
     }
 
-    void drawSample(const DrawnLayer& layer, Number t, int k) {
+    /// Samples from k on that one in their middle stands for; `event`: the next place of a slice, in samples.
+    int together(int k, double event) const {
+        const glm::dvec3 here = scene.cells(glm::dvec3(at(Number(samples.at(k)))));
+        const glm::dvec3 next = scene.cells(glm::dvec3(at(Number(samples.at(k + 1)))));
+        const glm::dvec3 block = glm::floor(here / double(kStepBlock));
+        double inside = 1e6; // samples to the wall of the block
+        for (int axis = 0; axis < 3; ++axis) {
+            const double advance = next[axis] - here[axis];
+            const double wall = (block[axis] + (advance > 0 ? 1 : 0)) * kStepBlock;
+            if (std::abs(advance) > 1e-9) inside = std::min(inside, (wall - here[axis]) / advance);
+        }
+        int most = std::max(1, int(std::floor(inside - 0.01)) + 1);
+        most = std::min({most, samples.count - k, int(std::ceil(std::min(event, 1e6))) - k,
+                         int(std::min(scene.stepAt(glm::ivec3(block)) / samples.step, 1e3))});
+        return std::max(most, 1);
+    }
+
+    void drawSample(const DrawnLayer& layer, Number t, int k, int count) {
         const auto& volume = std::get<VolumeLayer>(*layer.technique);
         const Classified classified = classify(layer, t);
         const glm::dvec3 place(at(t));
         const Interest doi = scene.interest(place);
         const LensAction lens = scene.lensAction(layer, place);
         const double opacity = classified.color.a * scene.opacityFactor(layer, doi) * lens.opacity;
-        const double thickness = double(volume.density) * classified.share * coverage(holes, k);
+        const double thickness = double(volume.density) * classified.share * coverage(holes, k) * count;
         if (opacity <= 0 || thickness <= 0) return;
         const Drawn at =
             drawn(layer, volume.look, scene.focused(layer, glm::dvec3(classified.color), doi, lens.saturation), opacity,
@@ -300,8 +317,26 @@ template <class Number> struct Caster {
         std::vector<Seen> seen(scene.layers.size());
         std::vector<Event> events;
         Number last = Number(samples.enter - kFaceTolerance);
-        for (int k = 0; k < samples.count && !opaque(); ++k) {
+        std::vector<double> slices; // in samples
+        if (!scene.steps.empty()) {
+            findSlices(events, last, Number(segment.exit + kFaceTolerance));
+            for (const Event& event : events) slices.push_back(inSamples(double(event.t)));
+            events.clear();
+        }
+        int count = 1; // samples that one stands for
+        for (int k = 0; k < samples.count && !opaque(); k += count) {
             const Number t = Number(samples.at(k));
+            if (count > 1)
+                for (std::size_t i = 0; i < now.size(); ++i)
+                    before[i] = scene.layers[i].samples->value(scene.cells(glm::dvec3(at(Number(samples.at(k - 1))))));
+            count = 1;
+            if (!scene.steps.empty()) {
+                double event = 1e6; // the first that is not drawn yet
+                for (const double slice : slices)
+                    if (slice > inSamples(double(last))) event = std::min(event, slice);
+                count = together(k, event);
+            }
+            const Number middle = Number(samples.at(k) + 0.5 * (count - 1) * samples.step);
             const glm::dvec3 place(at(t)), cells = scene.cells(place);
             for (std::size_t i = 0; i < now.size(); ++i) now[i] = scene.layers[i].samples->value(cells);
             findSlices(events, last, t);
@@ -310,7 +345,7 @@ template <class Number> struct Caster {
                     findIso(events, scene.layers[i], before[i], now[i], t);
             drawEvents(events);
             for (std::size_t i = 0; i < now.size(); ++i) {
-                if (isVolume(scene.layers[i], true)) drawSample(scene.layers[i], t, k);
+                if (isVolume(scene.layers[i], true)) drawSample(scene.layers[i], count > 1 ? middle : t, k, count);
                 if (isVolume(scene.layers[i], false))
                     look(scene.layers[i], seen[i], shows(k) ? now[i] : std::nullopt, place);
             }

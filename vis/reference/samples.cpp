@@ -2,7 +2,9 @@
 
 #include "volume/parallel.h"
 
+#include <algorithm>
 #include <cassert>
+#include <limits>
 
 namespace tessera::vis::reference {
 
@@ -95,6 +97,27 @@ Samples::Samples(const volume::BrickSource& source, int channel, volume::TimePai
                 if (!present_.empty()) present_[to] = sample.present;
             }
     });
+}
+
+Range Samples::bounds(glm::ivec3 begin, glm::ivec3 end) const {
+    const int slices = geometry_.kind == volume::LatticeKind::BCC ? 2 : 1;
+    const glm::ivec3 steps(1, 1, slices), from = glm::max(begin * steps, first_) - first_,
+                                          to = glm::min(end * steps, first_ + size_) - first_;
+    Range out{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+    for (int z = from.z; z < to.z; ++z)
+        for (int y = from.y; y < to.y; ++y)
+            for (int x = from.x; x < to.x; ++x) {
+                const std::size_t i = linearIndex(size_, {x, y, z});
+                if (!present_.empty() && present_[i] == 0) continue;
+                out = {std::min(out.lo, values_[i]), std::max(out.hi, values_[i])};
+            }
+    if (!later_) return out;
+    const Range later = later_->bounds(begin, end);
+    return {std::min(out.lo, later.lo), std::max(out.hi, later.hi)};
+}
+
+bool Samples::someAbsent() const {
+    return std::ranges::find(present_, 0) != present_.end() || (later_ && later_->someAbsent());
 }
 
 Samples::View Samples::view() const {

@@ -36,6 +36,11 @@ public:
     /// position; nullopt where the value would be absent.
     std::optional<glm::dvec4> blended(glm::dvec3 cells, const std::function<glm::dvec4(double)>& of) const;
     bool categorical() const { return categorical_; }
+    /// Bounds of the samples that are present among the texels [begin, end), lo > hi where none is; texels hold one
+    /// sample of each sublattice and may lie up to 4 beyond the lattice.
+    Range bounds(glm::ivec3 begin, glm::ivec3 end) const;
+    /// Whether any sample is absent.
+    bool someAbsent() const;
 
 private:
     struct View;

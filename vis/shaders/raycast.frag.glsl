@@ -23,6 +23,10 @@
 layout(location = 0) out vec4 outColor; // linear, premultiplied
 layout(location = 1) out vec2 outPick; // distance along the ray of what a pixel shows, < 0: nothing; its interest
 
+#ifdef REACH
+layout(location = 2) out float outReach; // distance along the ray up to which anything was looked at; 0: nowhere
+#endif
+
 #define EVENTS (SLICES + GEOMETRY)
 
 // Of the samples of an empty region the last ones that are taken all the same: where surfaces are looked for, and local
@@ -33,6 +37,18 @@ layout(location = 1) out vec2 outPick; // distance along the ray of what a pixel
 #define LAST_EMPTY 0
 #else
 #define LAST_EMPTY 1
+#endif
+
+// How many samples the one that is taken stands for.
+#ifdef ADAPTIVE
+#define TOGETHER together
+#if EVENTS > 0
+#define NEXT_EVENT nextEvent
+#else
+#define NEXT_EVENT 1e6
+#endif
+#else
+#define TOGETHER 1
 #endif
 
 const float kOpaque = 0.995, kPickOpacity = 0.1, kFlatGradient = 0.005;
@@ -47,6 +63,14 @@ vec4 show(vec4 color, vec4 top, float doi) {
 }
 
 #include "lib/events.glsl"
+
+#ifdef ADAPTIVE
+// Samples from k on that one stands for, none of them behind the next event.
+int samplesFrom(int k, vec3 p, float stepLength, int count, float event) {
+    int most = min(count - k, int(ceil(min(event, 1e6))) - k);
+    return max(min(samplesTogether(p, stepLength), most), 1);
+}
+#endif
 
 #if LAYERS > 0
 #include "lib/classify.glsl"
@@ -150,7 +174,14 @@ void main() {
 #ifdef COUNT_SAMPLES
             samples += LAYERS;
 #endif
-            vec3 seen = origin + direction * (inside.x + (float(k) + phase) * stepLength);
+#ifdef ADAPTIVE
+            int together = samplesFrom(k, p, stepLength, count, NEXT_EVENT);
+            float at = float(k) + 0.5 * float(together - 1);
+            p = first + at * cellsPerSample;
+#else
+            float at = float(k);
+#endif
+            vec3 seen = origin + direction * (inside.x + (at + phase) * stepLength);
             for (int i = 0; i < LAYERS; ++i) {
                 vec2 s = reconstruct(LAYER_FIELD(i), LAYER_LOOKUP(i) == LOOKUP_SLAB ? p + 0.5 * cellsPerSample : p);
                 vec2 lens = lensAction(LAYER_LENS(i), seen);
@@ -202,14 +233,22 @@ void main() {
         hit = within;
 #else
             if (hit) break;
-            ++k;
+            k += TOGETHER;
         }
 #endif
         if (hit) {
 #if !FLAT
             vec3 p = first + float(k) * cellsPerSample;
+#ifdef ADAPTIVE
+            int together = samplesFrom(k, p, stepLength, count, NEXT_EVENT);
+            float at = float(k) + 0.5 * float(together - 1);
+            vec3 middle = first + at * cellsPerSample;
+#else
+            float at = float(k);
+            vec3 middle = p;
+#endif
             for (int i = 0; i < LAYERS; ++i)
-                if (LAYER_STYLE(i) == COMPOSITE) here[i] = reconstruct(LAYER_FIELD(i), p);
+                if (LAYER_STYLE(i) == COMPOSITE) here[i] = reconstruct(LAYER_FIELD(i), middle);
 #if HAS_SLABS
             for (int i = 0; i < LAYERS; ++i)
                 if (LAYER_LOOKUP(i) == LOOKUP_SLAB) {
@@ -302,6 +341,9 @@ void main() {
                 if (eventAt[i] > passed) nextEvent = eventAt[i];
 #endif
 #if HAS_COMPOSITE
+#if !FLAT
+            p = middle;
+#endif
             for (int i = 0; i < LAYERS; ++i) {
                 if (LAYER_STYLE(i) != COMPOSITE) continue;
                 vec2 s = here[i];
@@ -323,12 +365,12 @@ void main() {
 #endif
                 c = transfer(i, x);
                 float doi = degreeOfInterest(p);
-                float t = inside.x + (float(k) + phase) * stepLength;
+                float t = inside.x + (at + phase) * stepLength;
                 vec3 world = origin + direction * t;
                 vec2 lens = lensAction(LAYER_LENS(i), world);
                 c.rgb = focusColor(c.rgb, doi, lens.y, LAYER_BRUSHED(i));
                 float opacity = c.a * focusOpacity(doi, LAYER_BRUSHED(i)) * lens.x;
-                float thickness = lengths * layerMap[i].z * share * clipCoverage(float(k));
+                float thickness = lengths * layerMap[i].z * share * clipCoverage(float(k)) * float(TOGETHER);
                 float alpha = correctedOpacity(opacity, thickness);
                 bool surface = LAYER_SHADED(i) == 1 || LAYER_LOOK(i) != 0;
                 if (surface && !byGradient) g = cellGradient(LAYER_FIELD(i), p, present(s) ? s.x : kUnknown, alpha > 0.0);
@@ -349,9 +391,9 @@ void main() {
 #endif
                 color = show(color, vec4(c.rgb * alpha, alpha), focusInterest(doi, LAYER_BRUSHED(i)));
             }
-            if (pick <= kNoPick && color.a > kPickOpacity) pick = float(k);
+            if (pick <= kNoPick && color.a > kPickOpacity) pick = at;
 #endif
-            ++k;
+            k += TOGETHER;
         }
     }
 #endif
@@ -363,6 +405,15 @@ void main() {
                 color = show(color, eventColor[i], eventInterest[i]);
                 if (pick <= kNoPick && color.a > kPickOpacity) pick = eventAt[i];
             }
+#endif
+#ifdef REACH
+    // Projections lie behind what is opaque and go no further.
+#if LAYERS > 0
+    float ended = float(min(k, count));
+#else
+    float ended = float(count);
+#endif
+    outReach = !meets ? 0.0 : color.a < kOpaque ? inside.y : inside.x + (ended + phase) * stepLength;
 #endif
 #if HAS_PROJECTION
     for (int i = 0; i < LAYERS; ++i) {

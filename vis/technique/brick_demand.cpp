@@ -1,5 +1,6 @@
 #include "vis/technique/brick_demand.h"
 
+#include "vis/model/light_volume.h"
 #include "vis/technique/ray_tables.h"
 
 #include <algorithm>
@@ -15,6 +16,7 @@ std::size_t countOf(glm::ivec3 size) {
     return std::size_t(size.x) * std::size_t(size.y) * std::size_t(size.z);
 }
 
+constexpr std::uint8_t kNotWanted = BrickDemand::kNotWanted;
 constexpr double kInLens = 0.5; ///< bricks in a lens are as urgent as those half as far away
 
 /// An axis-aligned box in world space.
@@ -90,6 +92,14 @@ std::uint8_t levelOf(double pixels, double detail, int levels) {
     return std::uint8_t(level);
 }
 
+/// The level of which light inside the volume is made, whatever the picture shows: its voxels are as large as the parts
+/// of a light cell that are sampled. Nothing where the scene has no such light.
+std::optional<std::uint8_t> lightLevel(const Scene& scene, const WorldFrame& frame, double voxel, int levels) {
+    if (!scene.lighting.shadows.any()) return std::nullopt;
+    const glm::dvec3 part = lightGrid(frame, scene.lighting.shadows).cell() / double(kMatterSamples);
+    return levelOf(voxel, std::min({part.x, part.y, part.z}), levels);
+}
+
 /// How many times as large voxels may be where there is little to show.
 class Coarser {
 public:
@@ -105,6 +115,18 @@ private:
     double levels_;
     float most_ = 0;
 };
+
+/// Leaves the most urgent `share` of the wanted bricks.
+void keepMostUrgent(BrickDemand& demand, double share) {
+    if (share >= 1) return;
+    std::vector<float> priorities;
+    for (std::size_t i = 0; i < demand.level.size(); ++i)
+        if (demand.level[i] != kNotWanted) priorities.push_back(demand.priority[i]);
+    const std::size_t left = std::size_t(share * double(priorities.size()));
+    if (left > 0) std::nth_element(priorities.begin(), priorities.begin() + std::ptrdiff_t(left), priorities.end());
+    for (std::size_t i = 0; i < demand.level.size(); ++i)
+        if (left == 0 || demand.priority[i] >= priorities[left]) demand.level[i] = kNotWanted;
+}
 
 /// Whether a box may reach into a lens.
 bool meets(const PlacedLens& lens, const WorldBox& box) {
@@ -122,7 +144,7 @@ bool meets(const PlacedLens& lens, const WorldBox& box) {
 std::vector<std::shared_ptr<const BrickDemand>>
 brickDemands(RayPlan plan, const Scene& scene, const volume::DatasetInfo& info, const volume::BrickGrid& grid,
              const std::vector<const BlockRanges*>& ranges, const std::vector<std::span<const float>>& importance,
-             const DemandSettings& settings) {
+             const DemandSettings& settings, std::span<const std::uint8_t> hidden) {
     const glm::ivec3 count = grid.count();
     const std::size_t total = countOf(count), fields = plan.fields.size();
     const WorldFrame frame = worldFrame(info.bounds, scene.stretch);
@@ -144,8 +166,10 @@ brickDemands(RayPlan plan, const Scene& scene, const volume::DatasetInfo& info, 
 
     const std::vector<PlacedLens> lenses = placeLenses(scene, frame);
     BrickDemand none;
-    none.level.assign(total, BrickDemand::kNotWanted);
+    none.level.assign(total, kNotWanted);
     none.priority.assign(total, 0);
+    none.hidden.assign(total, 0);
+    const std::optional<std::uint8_t> light = lightLevel(scene, frame, voxel, grid.levels);
     std::vector<BrickDemand> demands(fields, none);
     std::vector<Coarser> coarser;
     for (std::size_t f = 0; f < fields; ++f) coarser.emplace_back(importance[f], settings.importance);
@@ -183,10 +207,14 @@ brickDemands(RayPlan plan, const Scene& scene, const volume::DatasetInfo& info, 
                     if (any) shown[std::size_t(brush)][i] = 1;
                 for (std::size_t f = 0; f < fields; ++f)
                     if (shown[f][i]) {
-                        demands[f].level[i] = levelOf(pixels, detail * coarser[f](i), grid.levels);
+                        std::uint8_t level = levelOf(pixels, detail * coarser[f](i), grid.levels);
+                        demands[f].hidden[i] = !hidden.empty() && hidden[i] != 0;
+                        if (demands[f].hidden[i] != 0) level = light ? std::max(level, *light) : kNotWanted;
+                        demands[f].level[i] = level;
                         demands[f].priority[i] = float(priority);
                     }
             }
+    for (BrickDemand& demand : demands) keepMostUrgent(demand, settings.share);
     // Fields of the same samples (drawn by functions of their own) want them together.
     for (std::size_t f = 0; f < fields; ++f)
         for (std::size_t g = 0; g < fields; ++g) {
@@ -196,6 +224,7 @@ brickDemands(RayPlan plan, const Scene& scene, const volume::DatasetInfo& info, 
                 if (shown[g][k]) {
                     demands[f].level[k] = demands[g].level[k];
                     demands[f].priority[k] = demands[g].priority[k];
+                    demands[f].hidden[k] = demands[g].hidden[k];
                 }
         }
     std::vector<std::shared_ptr<const BrickDemand>> out;

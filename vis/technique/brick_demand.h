@@ -14,6 +14,7 @@ struct DemandSettings {
     glm::ivec2 size{512, 512}; ///< of the picture
     double detail = 1;         ///< pixels: voxels smaller than this are wanted at a coarser level; 0 = full resolution
     double importance = 0;     ///< levels: RenderParams::importance
+    double share = 1;          ///< of the bricks, the most urgent ones, that are wanted yet
     bool operator==(const DemandSettings&) const = default;
 };
 
@@ -25,11 +26,12 @@ struct DemandSettings {
 ///
 ///     detail * lens's detail * 2^(settings.importance * (1 - importance / that of the most important brick))
 ///
-/// pixels; `importance`: per field, of its bricks, empty: not known, all alike. Near ones, those in the middle of the
-/// picture, near the cursor and in lenses come first.
+/// pixels; `importance`: per field, of its bricks, empty: not known, all alike.
+/// Near ones, those in the middle of the picture, near the cursor and in lenses come first. `hidden`: as of
+/// hiddenBricks(); such bricks are wanted for light inside the volume alone.
 std::vector<std::shared_ptr<const BrickDemand>>
 brickDemands(RayPlan plan, const Scene& scene, const volume::DatasetInfo& info, const volume::BrickGrid& grid,
              const std::vector<const BlockRanges*>& ranges, const std::vector<std::span<const float>>& importance,
-             const DemandSettings& settings);
+             const DemandSettings& settings, std::span<const std::uint8_t> hidden = {});
 
 } // namespace tessera::vis

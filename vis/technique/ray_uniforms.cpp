@@ -156,6 +156,7 @@ void setRayUniforms(const Program& program, const RayPlan& plan, const Scene& sc
     setLensUniforms(program, scene, frame);
     setLookUniforms(program, looksOf(plan, scene), scene, frame, worldCell(grid.lattice, frame), size,
                     rayUnits(plan).grain);
+    program.set("stepUnit", float(stepUnit(worldCell(grid.lattice, frame))));
     if (const BlockRanges* blocks = commonBlocks(plan)) {
         const double edge = double(1 << blocks->level) * blocks->edge;
         program.set("blockScale", glm::vec3(float(1 / edge)));

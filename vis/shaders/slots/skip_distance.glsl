@@ -1,4 +1,5 @@
-// Slot skip: Chebyshev distance to the nearest block that can contribute, in blocks.
+// Slot skip: Chebyshev distance to the nearest block that can contribute, in blocks; with ADAPTIVE 128 and more: it can,
+// by longer steps (vis/model/adaptive_step.h).
 #define SKIPPING 1
 #include "lib/block_walls.glsl"
 uniform usampler3D blockDistance;
@@ -9,5 +10,21 @@ int emptySamples(vec3 p) {
     ivec3 at = clamp(ivec3(block), ivec3(0), textureSize(blockDistance, 0) - 1);
     // Blocks closer than `reach` are empty: the region from block - (reach - 1) to block + reach.
     float reach = float(texelFetch(blockDistance, at, 0).r);
+#ifdef ADAPTIVE
+    if (reach > 127.5) reach = 0.0;
+#endif
     return reach < 0.5 ? 0 : samplesToWall(q - block, reach);
 }
+
+#ifdef ADAPTIVE
+uniform float stepUnit;
+
+// Samples from p on (the one at p among them) that one in their middle may stand for.
+int samplesTogether(vec3 p, float stepLength) {
+    vec3 q = p * blockPlace[0] + blockPlace[1], block = floor(q);
+    ivec3 at = clamp(ivec3(block), ivec3(0), textureSize(blockDistance, 0) - 1);
+    float code = float(texelFetch(blockDistance, at, 0).r) - 128.0;
+    float most = stepUnit * exp2(code * 0.125) / stepLength;
+    return code < 0.5 ? 1 : clamp(int(min(most, 1e3)), 1, samplesToWall(q - block, 1.0));
+}
+#endif

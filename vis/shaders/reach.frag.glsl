@@ -1,0 +1,13 @@
+// How far the rays of a tile of pixels went (lib/bindings.glsl, REACH): the farthest of them.
+uniform sampler2D reach;
+uniform vec2 first, size; // of the picture within the buffer, in pixels
+
+out float farthest;
+
+void main() {
+    ivec2 from = ivec2(gl_FragCoord.xy) * TILE;
+    farthest = -1e9;
+    for (int y = 0; y < TILE; ++y)
+        for (int x = 0; x < TILE; ++x)
+            farthest = max(farthest, texelFetch(reach, ivec2(first) + min(from + ivec2(x, y), ivec2(size) - 1), 0).r);
+}
