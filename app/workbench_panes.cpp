@@ -154,6 +154,7 @@ void Workbench::drawStatusBar(float height) {
                     formatNumber(double(use.textureBudget) / kMebibyte, 1) + " MiB, " +
                     formatCount(use.bricksResident) + " bricks";
             if (use.bricksKept > 0) text += ", " + formatCount(use.bricksKept) + " kept from other times";
+            if (use.bricksHidden > 0) text += ", " + formatCount(use.bricksHidden) + " hidden";
             if (use.bricksWanted > 0) text += ", " + formatCount(use.bricksWanted) + " to come";
         }
         ImGui::TextUnformatted(text.c_str());

@@ -158,12 +158,12 @@ void drawHistogramView(ViewContext& context, const std::string& pane, HistogramV
     }
     HistogramCache& cache = cacheOf<HistogramCache>(context, pane);
     const volume::Channel channel = info.channels()[static_cast<std::size_t>(*index)];
-    const Range range = paddedRange(info.channelRange(channel), 0.02);
+    const HistogramBins bins = histogramBins(info, *index, paddedRange(info.channelRange(channel), 0.02), view.bins);
     const auto result = cache.feed.get(context, "histogram " + pane,
-                                       makeWish(context.session, info, {*index}, {range}, view.bins, false));
+                                       makeWish(context.session, info, {*index}, {bins.range}, bins.count, false));
     updateReadout(context, cache.readout);
     if (!context.figure) drawToolbar(context, view, channel, result);
-    drawPlot(context, cache, view, channel, range, result.get());
+    drawPlot(context, cache, view, channel, bins.range, result.get());
     if (!cache.feed.failure().empty() && !result) ImGui::TextWrapped("%s", cache.feed.failure().c_str());
 }
 

@@ -271,13 +271,19 @@ void drawScatterMatrixView(ViewContext& context, const std::string& pane, Scatte
         const bool usable = zoomed != view.zoom.end() && zoomed->second.hi > zoomed->second.lo;
         matrix.ranges.push_back(usable ? zoomed->second : matrix.whole.back());
     }
+    int bins = view.bins;
+    if (matrix.size() == 1 && matrix.ranges == matrix.whole) { // pairs share their number of bins
+        const HistogramBins own = histogramBins(info, matrix.channels.front(), matrix.ranges.front(), bins);
+        matrix.ranges.front() = own.range;
+        bins = own.count;
+    }
     // Esc clears, wherever in the view the mouse is; during a drag it belongs to the drag.
     if (!cache.drag.active && ImGui::IsWindowHovered(ImGuiHoveredFlags_ChildWindows) &&
         ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape), false))
         context.session.selection.brushes.clear();
     updateReadout(context, cache.readout);
     StatisticsWish wish =
-        makeWish(context.session, info, matrix.channels, matrix.ranges, view.bins, matrix.channels.size() > 1);
+        makeWish(context.session, info, matrix.channels, matrix.ranges, bins, matrix.channels.size() > 1);
     wish.meanOf = meanChannel(wish, info, view.colorBy);
     const std::shared_ptr<const StatisticsResult> result = cache.feed.get(context, "statistics " + pane, wish);
 

@@ -47,17 +47,8 @@ volume::StatisticsQuery makeQuery(const StatisticsWish& wish, const volume::Data
     return query;
 }
 
-std::shared_ptr<const StatisticsResult> compute(const std::shared_ptr<const volume::BrickSource>& source,
-                                                const StatisticsWish& wish, int level, const Progress& progress) {
-    auto result = std::make_shared<StatisticsResult>();
-    result->wish = wish;
-    result->brushed = wish.selection.active();
-    result->statistics = answer(source, wish, level, progress);
-    return result;
-}
-
 /// The level to begin with: coarse enough to answer within a few milliseconds.
-int firstLevel(const volume::BrickGrid& grid, std::size_t channels) {
+int coarseLevel(const volume::BrickGrid& grid, std::size_t channels) {
     const double most = 3e5;
     int level = 0;
     for (; level + 1 < grid.levels; ++level) {
@@ -67,6 +58,36 @@ int firstLevel(const volume::BrickGrid& grid, std::size_t channels) {
             break;
     }
     return level;
+}
+
+/// Before coarse levels comes what the source knows without reading a sample; grid().levels stands for that.
+int firstLevel(const volume::BrickGrid& grid, const StatisticsWish& wish) {
+    const int level = coarseLevel(grid, wish.channels.size());
+    return level > 0 && wish.pairs.empty() && !wish.selection.active() ? grid.levels : level;
+}
+
+/// The one to go on with; what is known of all samples is better than any part of them.
+int nextLevel(const volume::BrickGrid& grid, int level) {
+    return level == grid.levels ? 0 : std::max(0, level - 2);
+}
+
+std::shared_ptr<const StatisticsResult> compute(const std::shared_ptr<const volume::BrickSource>& source,
+                                                const StatisticsWish& wish, int level, const Progress& progress) {
+    auto result = std::make_shared<StatisticsResult>();
+    result->wish = wish;
+    result->brushed = wish.selection.active();
+    if (level == source->grid().levels) {
+        const volume::SourceAtTime shown = volume::sourceAt(source, wish.time);
+        volume::StatisticsQuery query = makeQuery(wish, source->info(), level);
+        query.time = shown.time;
+        if (auto noted = volume::notedStatistics(*shown.source, query)) {
+            result->statistics = std::move(*noted);
+            return result;
+        }
+        level = coarseLevel(source->grid(), wish.channels.size());
+    }
+    result->statistics = answer(source, wish, level, progress);
+    return result;
 }
 
 } // namespace
@@ -85,6 +106,18 @@ StatisticsFeed::StatisticsFeed() : state_(std::make_shared<State>()) {}
 
 std::string StatisticsFeed::failure() const {
     return state_->failure;
+}
+
+HistogramBins histogramBins(const volume::DatasetInfo& info, int channel, Range range, int count) {
+    const volume::Channel of = info.channels()[static_cast<std::size_t>(channel)];
+    const volume::Parameter& parameter = info.parameters[static_cast<std::size_t>(of.parameter)];
+    const bool integer = parameter.type != volume::ScalarType::F32;
+    const auto whole = [](Range r) { return std::floor(r.lo) == r.lo && std::floor(r.hi) == r.hi; };
+    if (!integer || of.magnitude || parameter.ranges.empty() || !std::ranges::all_of(parameter.ranges, whole))
+        return {range, count};
+    const double first = std::ceil(range.lo) - 0.5, numbers = std::max(1.0, std::floor(range.hi) + 0.5 - first);
+    const double each = std::ceil(numbers / count), bins = std::ceil(numbers / each);
+    return {{first, first + bins * each}, static_cast<int>(bins)};
 }
 
 StatisticsWish makeWish(const Session& session, const volume::DatasetInfo& info, const std::vector<int>& channels,
@@ -167,12 +200,13 @@ std::shared_ptr<const StatisticsResult> StatisticsFeed::get(ViewContext& context
     context.behind = context.behind || !exact;
     // While a brush is dragged its first, coarse answer is waited for: cancelling it each frame would show none.
     const bool running = state.running && context.jobs.running(jobKey);
-    const bool coarse = running && state.runningLevel == firstLevel(context.source->grid(), wish.channels.size());
+    const int first = firstLevel(context.source->grid(), wish);
+    const bool coarse = running && state.runningLevel == first;
     if (running && (*state.running == wish || coarse)) return exact ? exact : similar;
 
-    const int first = firstLevel(context.source->grid(), wish.channels.size());
-    const int level =
-        exact ? (context.interacting ? exact->statistics.level : std::max(0, exact->statistics.level - 2)) : first;
+    const int level = !exact                ? first
+                      : context.interacting ? exact->statistics.level
+                                            : nextLevel(context.source->grid(), exact->statistics.level);
     if (exact && level == exact->statistics.level) return exact;
     state.running = wish;
     state.runningLevel = level;

@@ -25,6 +25,15 @@ struct StatisticsWish {
     bool operator==(const StatisticsWish&) const = default;
 };
 
+/// Bins of a histogram over a range.
+struct HistogramBins {
+    Range range;
+    int count = 1;
+};
+/// `count` bins over the range of a channel; for whole numbers at most as many, each of equally many of them: bins of
+/// one number beside bins of two look like a comb.
+HistogramBins histogramBins(const volume::DatasetInfo& info, int channel, Range range, int count);
+
 /// A wish for these channels and their pairs under the session's time, brushes and lenses that mark. Channels that only
 /// the brushes name are added after the shown ones.
 StatisticsWish makeWish(const Session& session, const volume::DatasetInfo& info, const std::vector<int>& channels,

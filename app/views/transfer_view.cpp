@@ -106,8 +106,10 @@ void drawPlot(ViewContext& context, TransferCache& cache, const TransferView& vi
     const volume::Channel channel = info.channels()[static_cast<std::size_t>(index)];
     vis::TransferFunction& function = transferOf(context.session, functionName(context.session, view, channel.name));
     const Range data = info.channelRange(channel), range = vis::effectiveRange(function, data);
-    const Range span = paddedRange({std::min(data.lo, range.lo), std::max(data.hi, range.hi)}, 0.03);
-    const StatisticsWish wish = makeWish(context.session, info, {index}, {span}, 192, false);
+    const HistogramBins bins =
+        histogramBins(info, index, paddedRange({std::min(data.lo, range.lo), std::max(data.hi, range.hi)}, 0.03), 192);
+    const Range span = bins.range;
+    const StatisticsWish wish = makeWish(context.session, info, {index}, {span}, bins.count, false);
     const auto result = cache.feed.get(context, "histogram " + pane, wish);
 
     const ImVec2 origin = ImGui::GetCursorScreenPos(), room = ImGui::GetContentRegionAvail();
