@@ -21,8 +21,8 @@ constexpr NamedBench kBenches[] = {{"lattice", benchLattice},        {"lattice",
                                    {"codec", benchLevels},           {"codec", benchPeers},
                                    {"thesis", benchThesisSizes},     {"thesis", benchBricks},
                                    {"thesis", benchThesisCoding},    {"thesis", benchThesisFrames},
-                                   {"render", nullptr, benchRender}, {"styles", benchStyles},
-                                   {"modes", nullptr, benchModes},   {"link", benchLink},
+                                   {"render", nullptr, benchRender}, {"render", nullptr, benchModes},
+                                   {"styles", benchStyles},          {"link", benchLink},
                                    {"link", benchScatter},           {"large", benchLarge}};
 
 /// Columns of texts to the left, of numbers to the right.
@@ -74,7 +74,7 @@ void addBenchCommand(CLI::App& app) {
     for (const NamedBench& bench : kBenches)
         if (known.empty() || known.back() != bench.name) known.emplace_back(bench.name);
     command->add_option("name", options->names, "Which tables (all of them)")->check(CLI::IsMember(known));
-    command->add_option("--volume", options->volume, "Of render and modes: only volumes whose name contains this");
+    command->add_option("--volume", options->volume, "Of render: only volumes whose name contains this");
     command->add_flag("--json", options->json, "Print JSON with stable keys");
     command->callback([options] {
         nlohmann::json tables = nlohmann::json::array();

@@ -3,6 +3,7 @@
 #include "vis/reference/raycast.h"
 #include "vis/renderer.h"
 
+#include <memory>
 #include <vector>
 
 /// What the rendering benchmarks share: pictures of one layer, timed, compared and counted.
@@ -20,6 +21,9 @@ vis::Scene benchScene(const vis::Technique& technique, const std::vector<glm::ve
 
 /// Median cpuMilliseconds() of a picture while the camera turns, after one to warm up.
 double timeFrames(vis::Renderer& renderer, vis::Scene scene);
+
+/// cpuMilliseconds() until other samples are seen, however coarse, in a renderer that has drawn the scene before.
+double timeChanged(vis::Renderer& renderer, const vis::Scene& scene, std::shared_ptr<const volume::BrickSource> source);
 
 /// A picture of kBenchCompared pixels, linear.
 vis::reference::Image benchPicture(vis::Renderer& renderer, const vis::Scene& scene);

@@ -1,6 +1,7 @@
 #include "app/command/bench.h"
 #include "app/command/bench_frames.h"
 #include "app/command/bench_volumes.h"
+#include "app/command/vtk_peer.h"
 #include "vis/gl/headless.h"
 #include "volume/memory_source.h"
 
@@ -70,7 +71,7 @@ double samplesPerPixel(vis::Renderer& counter, const vis::Scene& scene) {
     return sum / double(counts.pixels.size());
 }
 
-void measure(const BenchVolume& volume, BenchTable& table) {
+void measure(const BenchVolume& volume, bool peers, BenchTable& table) {
     for (const volume::LatticeKind kind : {volume::LatticeKind::CC, volume::LatticeKind::BCC}) {
         const std::shared_ptr<const volume::BrickSource> source =
             volume::makeMemorySource(benchDataset(volume), {.lattice = kind});
@@ -88,8 +89,16 @@ void measure(const BenchVolume& volume, BenchTable& table) {
             table.rows.push_back({volume.name, std::string(volume::kLatticeNames[std::size_t(kind)]), mode.name,
                                   decimals(milliseconds, 1), decimals(samplesPerPixel(counter, mode.scene), 1),
                                   decimals(double(renderer.residency().textureBytes) / 1e6, 1), psnr});
+            if (peers) {
+                const PeerResults peer = kind == volume::LatticeKind::CC && peerDraws(mode.scene)
+                                             ? runVtkPeer(volume.bytes, volume.size, mode.scene,
+                                                          {kBenchPicture, kBenchCompared, kBenchFrames})
+                                             : PeerResults();
+                for (const auto& result : {peer.gpu, peer.cpu})
+                    table.rows.back().push_back(result ? decimals(result->milliseconds, 1) : "");
+            }
             if (isatty(STDERR_FILENO) != 0)
-                std::fprintf(stderr, "modes: %s %s %s\n", volume.name.c_str(), table.rows.back()[1].c_str(), mode.name);
+                std::fprintf(stderr, "render: %s %s %s\n", volume.name.c_str(), table.rows.back()[1].c_str(), mode.name);
         }
     }
 }
@@ -98,13 +107,15 @@ void measure(const BenchVolume& volume, BenchTable& table) {
 
 BenchTable benchModes(const std::string& only) {
     BenchTable table;
-    table.name = "modes";
+    table.name = "render: modes";
     table.columns = {"volume", "lattice", "mode", "CPU ms", "samples per pixel", "texture MB", "PSNR dB"};
+    const bool peers = vtkPeerAtHand();
+    if (peers) table.columns.insert(table.columns.end(), {"VTK GPU ms", "VTK CPU ms"});
     const vis::HeadlessContext context;
     const auto wanted = [&](std::string_view name) { return name.find(only) != name.npos; };
-    if (wanted("CT phantom 64^3")) measure(phantomVolume(64), table);
-    if (wanted("CT phantom 256^3")) measure(phantomVolume(256), table);
-    if (wanted("foam")) measure(foamVolume({250, 250, 1000}), table);
+    if (wanted("CT phantom 64^3")) measure(phantomVolume(64), peers, table);
+    if (wanted("CT phantom 256^3")) measure(phantomVolume(256), peers, table);
+    if (wanted("foam")) measure(foamVolume({250, 250, 1000}), peers, table);
     return table;
 }
 

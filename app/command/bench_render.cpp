@@ -63,6 +63,11 @@ struct Mean {
     int count = 0;
 };
 
+void add(Mean& mean, double theirs, double ours) {
+    mean.sum += std::log(theirs / ours);
+    ++mean.count;
+}
+
 /// Milliseconds, error, and how many times longer than ours it took.
 void addPeer(std::vector<std::string>& row, const std::optional<PeerResult>& peer, double ours,
              const vis::reference::Image& truth, Mean& mean) {
@@ -70,15 +75,14 @@ void addPeer(std::vector<std::string>& row, const std::optional<PeerResult>& pee
         row.insert(row.end(), {"", "", ""});
         return;
     }
-    mean.sum += std::log(peer->milliseconds / ours);
-    ++mean.count;
+    add(mean, peer->milliseconds, ours);
     row.push_back(decimals(peer->milliseconds, 1));
     row.push_back(decimals(vis::reference::compare(opaque(peer->picture), opaque(truth), 1).psnr, 1));
     row.push_back(decimals(peer->milliseconds / ours, 2));
 }
 
 struct Means {
-    Mean gpu, cpu, lattice; ///< lattice: BCC over CC
+    Mean gpu, cpu, changed, lattice; ///< changed: of VTK's GPU mapper; lattice: BCC over CC
 };
 
 void measure(const BenchVolume& volume, bool peers, std::map<std::string, Means>& means, BenchTable& table) {
@@ -98,12 +102,12 @@ void measure(const BenchVolume& volume, bool peers, std::map<std::string, Means>
             scene.render.stepVoxels = style.step;
             const double ours = timeFrames(renderer, scene);
             Means& mean = means[style.name];
-            if (cc) {
+            if (cc)
                 onCc[style.name] = ours;
-            } else {
-                mean.lattice.sum += std::log(ours / onCc[style.name]);
-                ++mean.lattice.count;
-            }
+            else
+                add(mean.lattice, ours, onCc[style.name]);
+            const double changed =
+                timeChanged(renderer, scene, volume::makeMemorySource(benchDataset(volume), {.lattice = kind}));
             const bool drawn = i > 0 && all[i - 1].technique == style.technique && all[i - 1].opacity == style.opacity;
             if (peers && cc && !drawn)
                 peer = runVtkPeer(volume.bytes, volume.size, theirs, {kBenchPicture, kBenchCompared, kBenchFrames});
@@ -113,11 +117,15 @@ void measure(const BenchVolume& volume, bool peers, std::map<std::string, Means>
                                          std::string(volume::kLatticeNames[std::size_t(kind)]),
                                          style.name,
                                          decimals(ours, 1),
+                                         decimals(changed, 0),
                                          decimals(vis::reference::compare(picture, same, 1).psnr, 1),
                                          decimals(vis::reference::compare(picture, limit, 1).psnr, 1)};
             if (peers) {
                 addPeer(row, peer.gpu, ours, limit, mean.gpu);
                 addPeer(row, peer.cpu, ours, limit, mean.cpu);
+                row.push_back(peer.gpu ? decimals(peer.gpu->changed, 0) : "");
+                row.push_back(peer.gpu ? decimals(peer.gpu->changed / changed, 1) : "");
+                if (peer.gpu) add(mean.changed, peer.gpu->changed, changed);
             }
             table.rows.push_back(std::move(row));
             if (isatty(STDERR_FILENO) != 0)
@@ -136,11 +144,11 @@ std::string ratio(const Mean& mean) {
 BenchTable benchRender(const std::string& only) {
     const bool peers = vtkPeerAtHand();
     BenchTable table;
-    table.name = "render";
-    table.columns = {"volume", "lattice", "style", "CPU ms", "shader dB", "converged dB"};
+    table.name = "render: beside VTK";
+    table.columns = {"volume", "lattice", "style", "CPU ms", "new data ms", "shader dB", "converged dB"};
     if (peers)
-        for (const char* column :
-             {"VTK GPU ms", "VTK GPU dB", "VTK GPU / ours", "VTK CPU ms", "VTK CPU dB", "VTK CPU / ours"})
+        for (const char* column : {"VTK GPU ms", "VTK GPU dB", "VTK GPU / ours", "VTK CPU ms", "VTK CPU dB",
+                                   "VTK CPU / ours", "VTK GPU new data ms", "VTK GPU / ours"})
             table.columns.emplace_back(column);
     else
         std::fprintf(stderr, "VTK not at hand: its columns are left out\n");
@@ -155,8 +163,8 @@ BenchTable benchRender(const std::string& only) {
     if (wanted("foam")) measure(foamVolume(kFullModel), peers, means, table);
     for (const Style& style : styles()) {
         const Means& mean = means[style.name];
-        std::vector<std::string> row{"geometric mean", "BCC / CC", style.name, ratio(mean.lattice), "", ""};
-        if (peers) row.insert(row.end(), {"", "", ratio(mean.gpu), "", "", ratio(mean.cpu)});
+        std::vector<std::string> row{"geometric mean", "BCC / CC", style.name, ratio(mean.lattice), "", "", ""};
+        if (peers) row.insert(row.end(), {"", "", ratio(mean.gpu), "", "", ratio(mean.cpu), "", ratio(mean.changed)});
         table.rows.push_back(std::move(row));
     }
     return table;

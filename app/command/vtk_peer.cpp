@@ -31,6 +31,22 @@ std::string quoted(const fs::path& path) {
     return "'" + path.string() + "'";
 }
 
+/// nullptr: VTK has no such ray style.
+const char* styleName(vis::VolumeStyle style) {
+    switch (style) {
+    case vis::VolumeStyle::Composite:
+        return "composite";
+    case vis::VolumeStyle::Maximum:
+        return "maximum";
+    case vis::VolumeStyle::Minimum:
+        return "minimum";
+    case vis::VolumeStyle::Average:
+        return "average";
+    default:
+        return nullptr;
+    }
+}
+
 /// The job in the words of tests/bench/vtk_peer.cpp. Colours go over as linear light, so that VTK composites as we do.
 std::string jobText(glm::ivec3 size, const vis::Scene& scene, PeerSizes sizes) {
     std::ostringstream out;
@@ -44,7 +60,7 @@ std::string jobText(glm::ivec3 size, const vis::Scene& scene, PeerSizes sizes) {
     if (iso != nullptr)
         out << "iso " << iso->value;
     else
-        out << (volume != nullptr && volume->style == vis::VolumeStyle::Maximum ? "maximum" : "composite");
+        out << (volume != nullptr ? styleName(volume->style) : "composite");
     const vis::Lighting& p = scene.lighting;
     const bool shaded =
         iso != nullptr || (volume != nullptr && volume->shaded && volume->style == vis::VolumeStyle::Composite);
@@ -91,6 +107,16 @@ bool vtkPeerAtHand() {
     return displayAtHand() || std::system("command -v xvfb-run >/dev/null 2>&1") == 0;
 }
 
+bool peerDraws(const vis::Scene& scene) {
+    const bool plainLight = scene.lighting.model == vis::LightModel::Phong && scene.lighting.shadows.strength == 0 &&
+                            scene.lighting.shadows.occlusion == 0;
+    if (scene.layers.size() != 1 || !plainLight) return false;
+    if (std::holds_alternative<vis::IsoLayer>(scene.layers.front().technique)) return true;
+    const auto* volume = std::get_if<vis::VolumeLayer>(&scene.layers.front().technique);
+    return volume != nullptr && volume->quantity == vis::Quantity::Value && styleName(volume->style) != nullptr &&
+           volume->classification == vis::Classification::Post;
+}
+
 PeerResults runVtkPeer(std::span<const std::uint8_t> bytes, glm::ivec3 size, const vis::Scene& scene, PeerSizes sizes) {
     const fs::path folder = fs::temp_directory_path() / ("tessera-bench-" + std::to_string(getpid()));
     fs::create_directories(folder);
@@ -103,11 +129,11 @@ PeerResults runVtkPeer(std::span<const std::uint8_t> bytes, glm::ivec3 size, con
     PeerResults results;
     if (FILE* pipe = popen(command.c_str(), "r")) {
         char name[16];
-        double milliseconds = 0, first = 0;
-        while (std::fscanf(pipe, "%15s %lf %lf", name, &milliseconds, &first) == 3)
+        double milliseconds = 0, changed = 0;
+        while (std::fscanf(pipe, "%15s %lf %lf", name, &milliseconds, &changed) == 3)
             if (auto picture = readPicture(job.string() + "." + name, sizes.compared))
                 (std::string(name) == "gpu" ? results.gpu : results.cpu) =
-                    PeerResult{milliseconds, *std::move(picture)};
+                    PeerResult{milliseconds, changed, *std::move(picture)};
         pclose(pipe);
     }
     std::error_code ignored;

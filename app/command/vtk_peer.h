@@ -15,6 +15,7 @@ bool vtkPeerAtHand();
 
 struct PeerResult {
     double milliseconds = 0;       ///< median of the timed pictures
+    double changed = 0;            ///< of the first picture after the samples have changed
     vis::reference::Image picture; ///< linear, like the reference
 };
 struct PeerResults {
@@ -24,6 +25,9 @@ struct PeerResults {
 struct PeerSizes {
     int timed = 512, compared = 64, frames = 5;
 };
+
+/// Whether VTK has the layer's ray style, classification and light.
+bool peerDraws(const vis::Scene& scene);
 
 /// Draws the one layer of `scene` from unsigned bytes (x fastest) with range 0..255.
 PeerResults runVtkPeer(std::span<const std::uint8_t> bytes, glm::ivec3 size, const vis::Scene& scene, PeerSizes sizes);

@@ -5,13 +5,14 @@
 //   size N              timed pictures of N x N pixels
 //   compare N           size of the picture that is written, seen by the camera as given
 //   frames N            timed pictures, the camera turned by a tenth of a degree about its up axis before each
-//   style composite|maximum|iso VALUE
+//   style composite|maximum|minimum|average|iso VALUE
 //   shaded 0|1          with ambient, diffuse, specular, shininess, and the light's direction (world) after it
 //   step D              world units between samples;   unit D   world length an opacity stands for
 //   camera PX PY PZ  TX TY TZ  UX UY UZ  ANGLE       vertical field of view in degrees
 //   table N  R G B A ...   colours as they are to be composited (linear light) over stored values 0..255
-// Prints for each mapper "gpu|cpu MEDIAN_MS FIRST_MS" (CPU time of all threads) and writes a picture as JOB.gpu,
-// JOB.cpu (RGBA bytes, rows bottom up). Composites over black.
+// Prints for each mapper "gpu|cpu MEDIAN_MS CHANGED_MS", CPU time of all threads of a picture and of the first one
+// after the samples have changed, and writes a picture as JOB.gpu, JOB.cpu (RGBA bytes, rows bottom up). Composites
+// over black.
 #include <algorithm>
 #include <array>
 #include <cstdio>
@@ -28,6 +29,7 @@
 #include <vtkNew.h>
 #include <vtkOpenGLGPUVolumeRayCastMapper.h>
 #include <vtkPiecewiseFunction.h>
+#include <vtkPointData.h>
 #include <vtkRenderWindow.h>
 #include <vtkRenderer.h>
 #include <vtkSmartPointer.h>
@@ -107,6 +109,8 @@ template <class Mapper> void configure(Mapper& mapper, const Job& job) {
     mapper.SetImageSampleDistance(1);
     mapper.SetSampleDistance(static_cast<float>(job.step));
     if (job.style == "maximum") mapper.SetBlendModeToMaximumIntensity();
+    if (job.style == "minimum") mapper.SetBlendModeToMinimumIntensity();
+    if (job.style == "average") mapper.SetBlendModeToAverageIntensity();
     if (job.style == "iso") mapper.SetBlendModeToIsoSurface();
 }
 
@@ -162,22 +166,27 @@ void run(const char* name, vtkVolumeMapper& mapper, vtkImageData& image, const J
         window->GetRGBACharPixelData(0, 0, size - 1, size - 1, 0, pixels); // waits for the picture
         return std::vector<unsigned char>(pixels->GetPointer(0), pixels->GetPointer(0) + pixels->GetNumberOfValues());
     };
-    std::vector<double> times;
-    for (int frame = 0; frame <= job.frames; ++frame) { // frame 0 warms up
+    const auto timed = [&] {
         const double begin = cpuMilliseconds();
         draw(job.size);
-        times.push_back(cpuMilliseconds() - begin);
+        return cpuMilliseconds() - begin;
+    };
+    timed(); // warms up
+    std::vector<double> times;
+    for (int frame = 0; frame < job.frames; ++frame) {
         camera->Azimuth(0.1);
+        times.push_back(timed());
     }
+    image.GetPointData()->GetScalars()->Modified();
+    image.Modified();
+    const double changed = timed();
     camera->SetPosition(job.position.data());
     camera->SetViewUp(job.up.data());
     const std::vector<unsigned char> picture = draw(job.compare);
     std::ofstream(path + "." + name, std::ios::binary)
         .write(reinterpret_cast<const char*>(picture.data()), std::streamsize(picture.size()));
-    const double first = times.front();
-    times.erase(times.begin());
     std::sort(times.begin(), times.end());
-    std::printf("%s %.3f %.3f\n", name, times.empty() ? first : times[times.size() / 2], first);
+    std::printf("%s %.3f %.3f\n", name, times[times.size() / 2], changed);
     std::fflush(stdout);
 }
 
@@ -201,7 +210,7 @@ int main(int argc, char** argv) {
         gpu->SetUseJittering(0);
         run("gpu", *gpu, *image, job, path);
     }
-    if (job.style != "iso") { // the fixed-point mapper knows no iso-surfaces
+    if (job.style != "iso" && job.style != "average") { // which the fixed-point mapper draws as nothing
         vtkNew<vtkFixedPointVolumeRayCastMapper> cpu;
         configure(*cpu, job);
         cpu->SetInteractiveSampleDistance(static_cast<float>(job.step));
