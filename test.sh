@@ -18,11 +18,6 @@ mkdir -p "$home/mesa"
 export XDG_CONFIG_HOME="$home/config" XDG_STATE_HOME="$home/state" XDG_CACHE_HOME="$home/cache"
 export XDG_DATA_HOME="$home/data" MESA_SHADER_CACHE_DIR="$home/mesa" TMPDIR="$home"
 
-# C++ files must be as clang-format leaves them.
-if command -v clang-format >/dev/null; then
-    git ls-files '*.cpp' '*.h' | xargs clang-format --dry-run -Werror
-fi
-
 if [ "$preset" = asan ]; then
     # Mesa and its LLVM keep memory of their own until the process ends.
     export ASAN_OPTIONS=detect_leaks=1 LSAN_OPTIONS="suppressions=$here/tests/lsan.supp:print_suppressions=0"

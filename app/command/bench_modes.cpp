@@ -98,7 +98,8 @@ void measure(const BenchVolume& volume, bool peers, BenchTable& table) {
                     table.rows.back().push_back(result ? decimals(result->milliseconds, 1) : "");
             }
             if (isatty(STDERR_FILENO) != 0)
-                std::fprintf(stderr, "render: %s %s %s\n", volume.name.c_str(), table.rows.back()[1].c_str(), mode.name);
+                std::fprintf(stderr, "render: %s %s %s\n", volume.name.c_str(), table.rows.back()[1].c_str(),
+                             mode.name);
         }
     }
 }
