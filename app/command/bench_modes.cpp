@@ -44,6 +44,12 @@ std::vector<Mode> modes() {
         {"local maximum", benchScene(with(style(VolumeStyle::LocalMaximum), &vis::VolumeLayer::threshold, 90.0), all)},
         {"iso-surface", benchScene(vis::IsoLayer{.channel = "v", .value = 150}, all)}};
 
+    vis::Scene regions = benchScene(shaded, all);
+    regions.transfer["v"].kind = vis::TransferKind::Regions;
+    regions.transfer["v"].regions = {
+        {.shape = vis::RegionShape::Triangle, .centre = {0.5f, 0.7f}, .size = {0.6f, 0.8f}, .opacity = 0.3f}};
+    out.push_back({"value and gradient", regions});
+
     vis::Scene surfaces = benchScene(vis::IsoLayer{.channel = "v", .value = 70, .opacity = 0.3f}, all);
     for (const double value : {95.0, 150.0})
         surfaces.layers.push_back(

@@ -114,7 +114,8 @@ bool peerDraws(const vis::Scene& scene) {
     if (std::holds_alternative<vis::IsoLayer>(scene.layers.front().technique)) return true;
     const auto* volume = std::get_if<vis::VolumeLayer>(&scene.layers.front().technique);
     return volume != nullptr && volume->quantity == vis::Quantity::Value && styleName(volume->style) != nullptr &&
-           volume->classification == vis::Classification::Post;
+           volume->classification == vis::Classification::Post &&
+           vis::transferFor(scene, volume->channel).kind == vis::TransferKind::Curve;
 }
 
 PeerResults runVtkPeer(std::span<const std::uint8_t> bytes, glm::ivec3 size, const vis::Scene& scene, PeerSizes sizes) {
