@@ -163,7 +163,7 @@ void Workbench::frame() {
     if (!options_.headless && !files_.shown() && !popup && !popupShown_) runShortcuts(commands_);
     popupShown_ = popup;
 
-    busy_ = false;
+    busy_ = compiling_ = false;
     drawn_.clear();
     hoveredPane_.clear();
     interacting_ = ImGui::IsAnyItemActive();

@@ -183,7 +183,7 @@ private:
     std::function<void(Session&, const std::string&)> takeFile_; ///< what the next answer of "take" does
     PictureRequest picture_;
     bool askPicture_ = false, askHelp_ = false, askAbout_ = false;
-    bool quit_ = false, busy_ = true, interacting_ = false;
+    bool quit_ = false, busy_ = true, compiling_ = false, interacting_ = false;
     std::function<void()> leaving_;   ///< waits for the answer whether to save
     std::function<void()> afterSave_; ///< waits for the session to be saved
     bool popupShown_ = false;         ///< at the start of the last frame

@@ -86,6 +86,7 @@ void Workbench::drawPane(const std::string& pane) {
         found->second);
     ImGui::PopID();
     busy_ = busy_ || context.busy;
+    compiling_ = compiling_ || context.compiling;
     if (options_.paneDrawn) options_.paneDrawn(pane, context.behind);
 }
 
@@ -157,6 +158,7 @@ void Workbench::drawStatusBar(float height) {
             if (use.bricksHidden > 0) text += ", " + formatCount(use.bricksHidden) + " hidden";
             if (use.bricksWanted > 0) text += ", " + formatCount(use.bricksWanted) + " to come";
         }
+        if (compiling_ && !options_.headless) text += "   compiling shaders";
         ImGui::TextUnformatted(text.c_str());
     } else {
         ImGui::TextUnformatted("No data");

@@ -47,12 +47,14 @@ void Renderer::Impl::refine(ViewTarget& target, const Scene& scene, const FrameR
     const bool done = target.fullValid ? target.stillDone || request.moving : target.reducedValid && request.moving;
     if (done && !probing) return;
     const ProgramRecipe recipe = prepare(target, scene, plan);
+    target.compiling = true;
     const ProgramAnswer answer = request.wait ? ProgramAnswer{programs.find(recipe), ProgramStage::Ready}
                                               : programs.request(recipe, request.budgetMs / 4);
     // A variant that is being compiled, or does not compile, leaves the former picture as it is.
     if (!answer.program) {
         if (!target.shows || request.wait) nothing(target, scene);
         target.fullValid = target.stillDone = answer.stage == ProgramStage::Failed || request.wait;
+        target.compiling = !target.fullValid;
         return;
     }
     const RayUnits units = rayUnits(plan);
@@ -92,6 +94,7 @@ void Renderer::Impl::refine(ViewTarget& target, const Scene& scene, const FrameR
         return true;
     };
     if (!ready(answer, recipe, plan, scene)) return;
+    target.compiling = false;
     RayPrograms rayPrograms{answer.program};
     RayPlan beyond = beyondLenses(plan);
     Scene lensless;

@@ -76,6 +76,7 @@ bool Renderer::Impl::draw(ViewTarget& target, const Scene& scene, const FrameReq
         target.source = source.get();
         target.started = true;
     }
+    target.compiling = false;
     if (any) {
         refine(target, scene, request, plan, start);
         if (findsHidden(scene)) startReach(target, scene);
@@ -132,6 +133,7 @@ FrameStatus Renderer::render(ViewTarget& target, const Scene& scene, const Frame
     // What is hidden may be coarse, but it has to be known that it is.
     if (any && finds) status.complete = status.complete && target.hiddenKnown;
     status.current = status.complete || target.changed.empty();
+    status.compiling = target.compiling;
     status.milliseconds = target.passMilliseconds;
     return status;
 }

@@ -45,6 +45,7 @@ struct FrameStatus {
     std::uint32_t texture = 0; ///< GL name, RGBA8, `request.size` large (upscaled while reduced), sRGB encoded, opaque
     bool current = false;      ///< the texture shows this scene, however coarse
     bool complete = false;   ///< full resolution, all bricks at the level wanted: nothing to do until the scene changes
+    bool compiling = false;  ///< its program is on the way: what shows meanwhile is a former picture, or nothing
     int bricksMissing = 0;   ///< bricks still shown at a coarser level
     double milliseconds = 0; ///< of the last full pass
     /// Lattice samples of the channels drawn, at the levels drawn, and bytes of the textures that hold them.

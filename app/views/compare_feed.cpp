@@ -137,9 +137,11 @@ void CompareFeed::drawCell(ViewContext& context, const std::string& pane, std::s
     cell.status = own.renderer.render(*cell.target, scene, request);
     cell.shows = cell.status.complete || cell.status.milliseconds > 0;
     cell.drawn = true;
-    if (!cell.status.complete || own.busy) context.busy = true;
-    context.behind = context.behind || own.behind || !cell.status.current;
-    if (!cell.status.complete || own.busy || request.moving) return;
+    own.follow(cell.status);
+    context.busy = context.busy || own.busy;
+    context.behind = context.behind || own.behind;
+    context.compiling = context.compiling || own.compiling;
+    if (own.busy || request.moving) return;
     const volume::BrickSource* source = own.source.get();
     if (cell.image && cell.image->size == size && cell.imageSource == source && cell.imageOf == scene) return;
     auto image = std::make_shared<vis::Image>();

@@ -234,8 +234,7 @@ std::set<int> drawWalls(ViewContext& context, const CubeFrame& frame, ShadowCube
         const glm::vec3 shadow = darkTheme() ? glm::vec3(1, 0.69f, 0.25f) : glm::vec3(0.25f, 0.2f, 0.15f);
         const vis::FrameStatus status = context.renderer.render(
             *cache.walls[i], wallScene(scene, name, wall.kind, face, frame.world, shadow), request);
-        context.busy = context.busy || !status.complete;
-        context.behind = context.behind || !status.current;
+        context.follow(status);
         drawFace(draw, frame, face, status.texture);
         drawMarks(draw, frame, context.session, i,
                   wall.kind == WallKind::Shadow && context.session.selection.active()
@@ -297,8 +296,7 @@ void drawShadowCubeView(ViewContext& context, const std::string& pane, ShadowCub
     scene.geometry = cache.surfaces.get(context, pane, moving);
     for (vis::GeometryLayer& flow : cache.flows.get(context, pane)) scene.geometry.push_back(std::move(flow));
     const vis::FrameStatus status = context.renderer.render(*cache.target, scene, request);
-    context.busy = context.busy || !status.complete;
-    context.behind = context.behind || !status.current;
+    context.follow(status);
     addPicture(draw, status.texture, frame.min, frame.max());
     const SpaceFrame object = spaceFrame(frame.min, frame.max(), session.camera, info.bounds, session.stretch);
     drawSpaceBrushes(draw, object, session.selection);

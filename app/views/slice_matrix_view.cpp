@@ -57,8 +57,7 @@ void drawSlice(ViewContext& context, vis::ViewTargetPtr& target, const std::stri
     request.moving = !context.headless && (context.interacting || context.session.animation.playing);
     request.wait = context.headless;
     const vis::FrameStatus status = context.renderer.render(*target, scene, request);
-    context.busy = context.busy || !status.complete;
-    context.behind = context.behind || !status.current;
+    context.follow(status);
     const ImVec2 max{min.x + static_cast<float>(pixels.x), min.y + static_cast<float>(pixels.y)};
     addPicture(*ImGui::GetWindowDrawList(), status.texture, min, max);
     ImGui::GetWindowDrawList()->AddRect(min, max, plotColors().frame);

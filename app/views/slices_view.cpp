@@ -177,8 +177,7 @@ void drawPlane(ViewContext& context, SlicesCache& cache, const SlicesView& view,
     request.budgetMs = scene.render.limits.frameTime / (request.moving ? 6.0 : 3.0);
     request.wait = context.headless;
     const vis::FrameStatus status = context.renderer.render(*target, scene, request);
-    context.busy = context.busy || !status.complete;
-    context.behind = context.behind || !status.current;
+    context.follow(status);
     addPicture(draw, status.texture, frame.min, frame.max);
     draw.AddRect(frame.min, frame.max, colors.frame);
     drawAxis(draw, frame, AxisSide::Bottom, nameX, unitX.name, min.x, std::min(max.x, frame.max.x + em() * 4),

@@ -41,7 +41,15 @@ struct ViewContext {
         {};
     bool busy = false;        ///< set by a view that needs another frame soon (refining, animating, waiting for a job)
     bool behind = false;      ///< set by a view that shows an older state of the session until an answer is there
+    bool compiling = false;   ///< set by a view whose picture waits for a program of the renderer
     bool interacting = false; ///< some edit is in progress (mouse held on a control): draw at reduced size
+
+    /// Takes note of how far a view's picture is.
+    void follow(const vis::FrameStatus& status) {
+        busy = busy || !status.complete;
+        behind = behind || !status.current;
+        compiling = compiling || status.compiling;
+    }
 };
 
 /// The cache of a pane, made on first use.

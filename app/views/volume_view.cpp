@@ -127,8 +127,7 @@ void drawVolumeView(ViewContext& context, const std::string& pane, VolumeView& v
     if (request.moving) request.budgetMs = double(scene.render.limits.frameTime) * 2 / 3;
     scene.showBox = view.showBox;
     const vis::FrameStatus status = context.renderer.render(*cache.target, scene, request);
-    context.busy = context.busy || !status.complete;
-    context.behind = context.behind || !status.current;
+    context.follow(status);
 
     const InkOnPaper ink(scene);
     ImDrawList& draw = *ImGui::GetWindowDrawList();
@@ -173,7 +172,7 @@ void drawVolumeView(ViewContext& context, const std::string& pane, VolumeView& v
         taken.push_back({{at.x - size.x, at.y}, {at.x, at.y + size.y}});
     }
     if (!status.complete && !context.headless && !request.moving) {
-        std::string text = "refining";
+        std::string text = status.compiling ? "compiling shaders" : "refining";
         if (status.bricksMissing > 0) text += ", " + formatCount(status.bricksMissing) + " bricks to come";
         const ImVec2 at{picture.min.x + em() * 0.5f, picture.min.y + em() * 0.4f},
             size = ImGui::CalcTextSize(text.c_str());

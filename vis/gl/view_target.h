@@ -41,6 +41,7 @@ public:
     Scene scene;
     std::uint64_t revision = 0; ///< of what was resident
     bool started = false;       ///< the buffers hold something of `scene`
+    bool compiling = false;     ///< the program that the picture waits for is on the way
     bool shows = false;         ///< `output` holds a picture, of whatever scene
     Tile changed;               ///< what `output` does not show yet
     bool reducedValid = false;  ///< `reduced` shows `reducedTile` (pixels of the picture) of `scene`
