@@ -36,6 +36,7 @@ struct FieldInfo {
     /// What a text member names, so that a widget can offer a choice: "" (free text), "channel", "colormap", "path".
     std::string_view refersTo = {};
     bool hidden = false; ///< stored and validated, but not drawn as a widget (edited by hand in a view)
+    bool applies = true; ///< has an effect beside the other members as they are: else not drawn either
 };
 
 namespace detail {

@@ -72,16 +72,21 @@ struct CompareView {
                                     .doc = "Variant swiped over the reference, counted from 0",
                                     .range = Range{0, 15},
                                     .hidden = true});
-        visit(self.swipe,
-              FieldInfo{.key = "swipe", .unit = "", .doc = "Place of the line between two", .range = Range{0, 1}});
+        visit(self.swipe, FieldInfo{.key = "swipe",
+                                    .unit = "",
+                                    .doc = "Place of the line between two",
+                                    .range = Range{0, 1},
+                                    .applies = self.mode == CompareMode::Swipe});
         visit(self.blinkSeconds, FieldInfo{.key = "blinkSeconds",
                                            .unit = "s",
                                            .doc = "How long each is shown in turn",
-                                           .range = Range{0.1, 10}});
+                                           .range = Range{0.1, 10},
+                                           .applies = self.mode == CompareMode::Blink});
         visit(self.differenceTop, FieldInfo{.key = "differenceTop",
                                             .unit = "of 255",
                                             .doc = "Difference of colours shown brightest; 0 = the largest that occurs",
-                                            .range = Range{0, 255}});
+                                            .range = Range{0, 255},
+                                            .applies = self.mode == CompareMode::Difference});
         visit(self.showTable, FieldInfo{.key = "table", .unit = "", .doc = "List what differs, costs and errors"});
         visit(self.questions, FieldInfo{.key = "questions",
                                         .unit = "",

@@ -166,8 +166,11 @@ struct TesseractView {
                                       .doc = "Cells of the lattice drawn along each axis, 0 = none",
                                       .range = Range{0, 8}});
         visit(self.tour, FieldInfo{.key = "tour", .unit = "", .doc = "Keep turning in two planes at once"});
-        visit(self.tourSpeed,
-              FieldInfo{.key = "tourSpeed", .unit = "deg/s", .doc = "Speed of the tour", .range = Range{1, 90}});
+        visit(self.tourSpeed, FieldInfo{.key = "tourSpeed",
+                                        .unit = "deg/s",
+                                        .doc = "Speed of the tour",
+                                        .range = Range{1, 90},
+                                        .applies = self.tour});
     }
 };
 

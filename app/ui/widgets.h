@@ -186,12 +186,15 @@ struct MemberToWidget {
 
 } // namespace detail
 
-/// Draws a widget for each member that is not hidden; returns true when one changed.
+/// Draws a widget for each member that is not hidden and applies; returns true when one changed.
 template <class T> bool drawDescribed(T& value, const WidgetContext& context) {
     bool changed = false;
     std::optional<Range> scale;
     std::string unit;
-    T::describe(value, detail::MemberToWidget{context, changed, scale, unit});
+    const detail::MemberToWidget draw{context, changed, scale, unit};
+    T::describe(value, [&](auto& member, const FieldInfo& field) {
+        if (field.applies) draw(member, field);
+    });
     return changed;
 }
 

@@ -90,6 +90,35 @@ TEST_F(UiTest, DraggingASliderIsOneUndoStep) {
     EXPECT_GT(session.appearance.scale, 1);
 }
 
+// A setting that the others leave without effect has no widget among them, but one where it is asked for by name.
+TEST_F(UiTest, WhatDoesNotApplyIsNotDrawn) {
+    Session session;
+    session.layers = {{"volume", true, vis::VolumeLayer{.channel = "v"}}};
+    auto& layer = std::get<vis::VolumeLayer>(session.layers[0].technique);
+    const auto height = [&](auto&& draw) {
+        float rows = 0;
+        const auto body = [&] {
+            ImGui::SetNextWindowSize({400, 500});
+            ImGui::Begin("test");
+            const float before = ImGui::GetCursorPosY();
+            draw();
+            rows = (ImGui::GetCursorPosY() - before) / ImGui::GetFrameHeightWithSpacing();
+            ImGui::End();
+        };
+        for (int i = 0; i < 3; ++i) frame(body);
+        return std::lround(rows);
+    };
+    const auto all = [&] { drawDescribed(layer, {}); };
+    const auto threshold = [&] { drawParameter(session, "/layers/0/technique/threshold", {}); };
+    const long composite = height(all); // classification and shading, no threshold
+    EXPECT_EQ(height(threshold), 1);
+    layer.quantity = vis::Quantity::Gradient;
+    EXPECT_EQ(height(all), composite - 1) << "no classification";
+    layer.style = vis::VolumeStyle::LocalMaximum;
+    EXPECT_EQ(height(all), composite - 2) << "no shading and look, but a threshold";
+    EXPECT_EQ(height(threshold), 1);
+}
+
 class DockTest : public UiTest {
 protected:
     void SetUp() override {

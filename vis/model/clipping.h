@@ -37,21 +37,26 @@ struct Clip {
                                      .unit = "",
                                      .doc = "Place in the box of the data, 0 to 1 on each axis",
                                      .range = Range{-0.5, 1.5}});
-        visit(self.axis,
-              FieldInfo{
-                  .key = "axis", .unit = "", .doc = "Normal of a plane, axis of a cylinder", .range = Range{-1, 1}});
+        visit(self.axis, FieldInfo{.key = "axis",
+                                   .unit = "",
+                                   .doc = "Normal of a plane, axis of a cylinder",
+                                   .range = Range{-1, 1},
+                                   .applies = self.kind == ClipKind::Plane || self.kind == ClipKind::Cylinder});
         visit(self.size, FieldInfo{.key = "size",
                                    .unit = "",
                                    .doc = "Edges of a box, longest edge of the data = 1",
-                                   .range = Range{0, 2}});
+                                   .range = Range{0, 2},
+                                   .applies = self.kind == ClipKind::Box});
         visit(self.radius, FieldInfo{.key = "radius",
                                      .unit = "",
                                      .doc = "Of a sphere or cylinder, longest edge of the data = 1",
-                                     .range = Range{0, 2}});
+                                     .range = Range{0, 2},
+                                     .applies = self.kind == ClipKind::Sphere || self.kind == ClipKind::Cylinder});
         visit(self.length, FieldInfo{.key = "length",
                                      .unit = "",
                                      .doc = "Of a cylinder, longest edge of the data = 1",
-                                     .range = Range{0, 4}});
+                                     .range = Range{0, 4},
+                                     .applies = self.kind == ClipKind::Cylinder});
     }
 };
 

@@ -69,10 +69,12 @@ struct FlowLayer {
             self.count,
             FieldInfo{
                 .key = "count", .unit = "", .doc = "Number of beginnings", .range = Range{1, 20000}, .logScale = true});
-        visit(self.random, FieldInfo{.key = "random",
-                                     .unit = "",
-                                     .doc = "Another number spreads random beginnings otherwise",
-                                     .range = Range{0, 1000}});
+        visit(self.random,
+              FieldInfo{.key = "random",
+                        .unit = "",
+                        .doc = "Another number spreads random beginnings otherwise",
+                        .range = Range{0, 1000},
+                        .applies = self.seeds == volume::SeedShape::Sphere || self.seeds == volume::SeedShape::Random});
         visit(self.weight, FieldInfo{.key = "weight",
                                      .unit = "",
                                      .doc = "Random beginnings are as dense as this parameter is high; none = evenly",
@@ -85,13 +87,15 @@ struct FlowLayer {
                                      .unit = "",
                                      .doc = "Greatest length of a line each way, in longest edges of the data",
                                      .range = Range{0.001, 100},
-                                     .logScale = true});
+                                     .logScale = true,
+                                     .applies = followsFlow(self.kind)});
         visit(self.speed, FieldInfo{.key = "speed",
                                     .unit = "",
                                     .doc = "Pathlines: lengths of the data's unit that a vector of 1 goes in its unit "
                                            "of time; 1 = m, s and m/s",
                                     .range = Range{1e-9, 1e9},
-                                    .logScale = true});
+                                    .logScale = true,
+                                    .applies = self.kind == FlowKind::Pathlines});
         visit(self.minimumSpeed, FieldInfo{.key = "minimumSpeed",
                                            .unit = "",
                                            .doc = "Share of the greatest speed below which nothing is drawn",
@@ -100,24 +104,30 @@ struct FlowLayer {
                                      .unit = "",
                                      .doc = "Radius of tubes, in longest edges as drawn",
                                      .range = Range{1e-4, 0.1},
-                                     .logScale = true});
+                                     .logScale = true,
+                                     .applies = self.kind == FlowKind::Tubes || self.kind == FlowKind::Pathlines});
         visit(self.size, FieldInfo{.key = "size",
                                    .unit = "",
                                    .doc = "Length of the longest glyph, in longest edges as drawn",
                                    .range = Range{1e-3, 1},
-                                   .logScale = true});
-        visit(self.scaled,
-              FieldInfo{.key = "scaled", .unit = "", .doc = "Glyphs as long as the vector; else all of one length"});
-        visit(self.lineWidth, FieldInfo{.key = "lineWidth",
-                                        .unit = "pixel",
-                                        .doc = "Width of streamlines and hedgehogs",
-                                        .range = Range{0.5, 20}});
+                                   .logScale = true,
+                                   .applies = !followsFlow(self.kind)});
+        visit(self.scaled, FieldInfo{.key = "scaled",
+                                     .unit = "",
+                                     .doc = "Glyphs as long as the vector; else all of one length",
+                                     .applies = !followsFlow(self.kind)});
+        visit(self.lineWidth,
+              FieldInfo{.key = "lineWidth",
+                        .unit = "pixel",
+                        .doc = "Width of streamlines and hedgehogs",
+                        .range = Range{0.5, 20},
+                        .applies = self.kind == FlowKind::Streamlines || self.kind == FlowKind::Hedgehogs});
         visit(self.color, FieldInfo{.key = "color",
                                     .unit = "",
                                     .doc = "Colour where the parameter has no value (sRGB)",
                                     .range = Range{0, 1}});
         visit(self.opacity, FieldInfo{.key = "opacity", .unit = "", .doc = "Opacity", .range = Range{0, 1}});
-        visit(self.look, kLookField);
+        visit(self.look, lookField());
     }
 };
 

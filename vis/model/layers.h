@@ -51,17 +51,22 @@ struct VolumeLayer {
                         .unit = "",
                         .doc = "Composite: colour of interpolated values (post), interpolated colours of samples "
                                "(pre), or the mean colour of all values between two samples (preintegrated)",
-                        .names = kClassificationNames});
-        visit(
-            self.threshold,
-            FieldInfo{.key = "threshold", .unit = "", .doc = "Local maximum: value that the first maximum must reach"});
-        visit(self.shaded, FieldInfo{.key = "shaded", .unit = "", .doc = "Phong shading by the gradient"});
+                        .names = kClassificationNames,
+                        .applies = self.style == VolumeStyle::Composite && self.quantity == Quantity::Value});
+        visit(self.threshold, FieldInfo{.key = "threshold",
+                                        .unit = "",
+                                        .doc = "Local maximum: value that the first maximum must reach",
+                                        .applies = self.style == VolumeStyle::LocalMaximum});
+        visit(self.shaded, FieldInfo{.key = "shaded",
+                                     .unit = "",
+                                     .doc = "Phong shading by the gradient",
+                                     .applies = self.style == VolumeStyle::Composite});
         visit(self.density, FieldInfo{.key = "density",
                                       .unit = "",
                                       .doc = "Factor on the optical depth",
                                       .range = Range{0.01, 100},
                                       .logScale = true});
-        visit(self.look, kLookField);
+        visit(self.look, lookField(self.style == VolumeStyle::Composite));
     }
 };
 
@@ -84,8 +89,11 @@ struct IsoLayer {
             self.channel,
             FieldInfo{.key = "channel", .unit = "", .doc = "Parameter whose surface is shown", .refersTo = "channel"});
         visit(self.value, FieldInfo{.key = "value", .unit = "", .doc = "Value on the surface"});
-        visit(self.color,
-              FieldInfo{.key = "color", .unit = "", .doc = "Colour of the surface (sRGB)", .range = Range{0, 1}});
+        visit(self.color, FieldInfo{.key = "color",
+                                    .unit = "",
+                                    .doc = "Colour of the surface (sRGB)",
+                                    .range = Range{0, 1},
+                                    .applies = self.method == SurfaceMethod::Rays || self.colorBy.empty()});
         visit(self.opacity,
               FieldInfo{.key = "opacity", .unit = "", .doc = "Opacity of the surface", .range = Range{0, 1}});
         visit(self.method, FieldInfo{.key = "method",
@@ -95,8 +103,9 @@ struct IsoLayer {
         visit(self.colorBy, FieldInfo{.key = "colorBy",
                                       .unit = "",
                                       .doc = "Parameter whose transfer function colours the surface; polygons only",
-                                      .refersTo = "colorChannel"});
-        visit(self.look, kLookField);
+                                      .refersTo = "colorChannel",
+                                      .applies = self.method == SurfaceMethod::Polygons});
+        visit(self.look, lookField());
     }
 };
 
@@ -124,9 +133,13 @@ struct SliceLayer {
         visit(self.position, FieldInfo{.key = "position",
                                        .unit = "",
                                        .doc = "Place along the normal, 0 to 1 through the box",
-                                       .range = Range{0, 1}});
-        visit(self.normal,
-              FieldInfo{.key = "normal", .unit = "", .doc = "Normal of an oblique slice", .range = Range{-1, 1}});
+                                       .range = Range{0, 1},
+                                       .applies = !self.atCursor});
+        visit(self.normal, FieldInfo{.key = "normal",
+                                     .unit = "",
+                                     .doc = "Normal of an oblique slice",
+                                     .range = Range{-1, 1},
+                                     .applies = self.orientation == SliceOrientation::Oblique});
         visit(self.contours,
               FieldInfo{
                   .key = "contours", .unit = "", .doc = "Number of contour lines, 0 = none", .range = Range{0, 50}});

@@ -52,7 +52,8 @@ struct Lens {
                         .doc = "Inside, the layers below give way to its own (or are cut away), alone stay, are "
                                "enhanced, suppressed, magnified, or are the only ones that brushes act on",
                         .names = kLensEffectNames});
-        visit(self.center, FieldInfo{.key = "center", .unit = "m", .doc = "Middle of the lens"});
+        visit(self.center,
+              FieldInfo{.key = "center", .unit = "m", .doc = "Middle of the lens", .applies = !self.followsCursor});
         visit(self.followsCursor, FieldInfo{.key = "followsCursor", .unit = "", .doc = "Lies at the linked cursor"});
         visit(self.followsPointer,
               FieldInfo{.key = "followsPointer",
@@ -63,9 +64,11 @@ struct Lens {
                                    .doc = "Radii or half edges along its axes, longest edge of the data = 1",
                                    .range = Range{0.005, 2},
                                    .logScale = true});
-        visit(self.rotation,
-              FieldInfo{
-                  .key = "rotation", .unit = "deg", .doc = "Turn around x, then y, then z", .range = Range{-180, 180}});
+        visit(self.rotation, FieldInfo{.key = "rotation",
+                                       .unit = "deg",
+                                       .doc = "Turn around x, then y, then z",
+                                       .range = Range{-180, 180},
+                                       .applies = self.shape != LensShape::Disc});
         visit(self.rim, FieldInfo{.key = "rim",
                                   .unit = "",
                                   .doc = "Soft rim, share of the radius; 0 = a sharp edge",
@@ -77,7 +80,8 @@ struct Lens {
                                             .unit = "",
                                             .doc = "Magnify: how much larger the middle becomes",
                                             .range = Range{1, 8},
-                                            .logScale = true});
+                                            .logScale = true,
+                                            .applies = self.effect == LensEffect::Magnify});
         visit(self.detail, FieldInfo{.key = "detail",
                                      .unit = "",
                                      .doc = "Factor on the picture's detail for bricks that it meets, in data too "

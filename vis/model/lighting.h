@@ -41,15 +41,18 @@ struct Light {
         visit(self.azimuth, FieldInfo{.key = "azimuth",
                                       .unit = "deg",
                                       .doc = "To the right of the viewer, or of the z axis",
-                                      .range = Range{-180, 180}});
+                                      .range = Range{-180, 180},
+                                      .applies = self.kind != LightKind::Point});
         visit(self.elevation, FieldInfo{.key = "elevation",
                                         .unit = "deg",
                                         .doc = "Above the viewer, or towards the y axis",
-                                        .range = Range{-90, 90}});
+                                        .range = Range{-90, 90},
+                                        .applies = self.kind != LightKind::Point});
         visit(self.position, FieldInfo{.key = "position",
                                        .unit = "",
                                        .doc = "Of a point light, from the centre, longest edge = 1",
-                                       .range = Range{-10, 10}});
+                                       .range = Range{-10, 10},
+                                       .applies = self.kind == LightKind::Point});
     }
 };
 
@@ -74,16 +77,27 @@ struct EnvironmentLight {
                         .unit = "",
                         .doc = "Picture of the surroundings for kind \"picture\", Radiance (.hdr) or PNG: "
                                "2:1 all around, its middle behind the data, or a cross of 4:3 or 3:4",
-                        .refersTo = "path"});
-        visit(self.strength,
-              FieldInfo{.key = "strength", .unit = "", .doc = "Brightness of the surroundings", .range = Range{0, 5}});
-        visit(self.reflection,
-              FieldInfo{.key = "reflection", .unit = "", .doc = "How much of them is mirrored", .range = Range{0, 4}});
+                        .refersTo = "path",
+                        .applies = self.kind == Environment::Picture});
+        visit(self.strength, FieldInfo{.key = "strength",
+                                       .unit = "",
+                                       .doc = "Brightness of the surroundings",
+                                       .range = Range{0, 5},
+                                       .applies = self.kind != Environment::None});
+        visit(self.reflection, FieldInfo{.key = "reflection",
+                                         .unit = "",
+                                         .doc = "How much of them is mirrored",
+                                         .range = Range{0, 4},
+                                         .applies = self.kind != Environment::None});
         visit(self.turn, FieldInfo{.key = "turn",
                                    .unit = "deg",
                                    .doc = "Turns them around the vertical axis",
-                                   .range = Range{-180, 180}});
-        visit(self.follows, FieldInfo{.key = "follows", .unit = "", .doc = "They turn with the viewer"});
+                                   .range = Range{-180, 180},
+                                   .applies = self.kind != Environment::None});
+        visit(self.follows, FieldInfo{.key = "follows",
+                                      .unit = "",
+                                      .doc = "They turn with the viewer",
+                                      .applies = self.kind != Environment::None});
     }
 };
 
@@ -111,21 +125,26 @@ struct Shadows {
                                     .unit = "",
                                     .doc = "How far ambient occlusion looks, longest edge = 1",
                                     .range = Range{0.01, 1},
-                                    .logScale = true});
+                                    .logScale = true,
+                                    .applies = self.occlusion > 0});
         visit(self.translucency, FieldInfo{.key = "translucency",
                                            .unit = "",
                                            .doc = "Light that matter passes on in its colour, 0 = none",
                                            .range = Range{0, 1}});
-        visit(self.scatter,
-              FieldInfo{
-                  .key = "scatter", .unit = "", .doc = "How far that light spreads on its way", .range = Range{0, 1}});
+        visit(self.scatter, FieldInfo{.key = "scatter",
+                                      .unit = "",
+                                      .doc = "How far that light spreads on its way",
+                                      .range = Range{0, 1},
+                                      .applies = self.translucency > 0});
         visit(self.meshes, FieldInfo{.key = "meshes",
                                      .unit = "",
-                                     .doc = "Surfaces of polygons cast shadows on volumes and on each other"});
+                                     .doc = "Surfaces of polygons cast shadows on volumes and on each other",
+                                     .applies = self.any()});
         visit(self.resolution, FieldInfo{.key = "resolution",
                                          .unit = "",
                                          .doc = "Cells of the light volume along the longest edge",
-                                         .range = Range{16, 128}});
+                                         .range = Range{16, 128},
+                                         .applies = self.any()});
     }
 };
 
@@ -158,24 +177,37 @@ struct Lighting {
         visit(self.shadows, FieldInfo{.key = "shadows", .unit = "", .doc = "Shadows, ambient occlusion, translucency"});
         visit(self.ambient,
               FieldInfo{.key = "ambient", .unit = "", .doc = "Light from everywhere", .range = Range{0, 1}});
-        visit(self.diffuse,
-              FieldInfo{.key = "diffuse", .unit = "", .doc = "Diffuse reflection (Phong)", .range = Range{0, 1}});
-        visit(self.specular,
-              FieldInfo{.key = "specular", .unit = "", .doc = "Specular reflection (Phong)", .range = Range{0, 1}});
-        visit(self.shininess,
-              FieldInfo{
-                  .key = "shininess", .unit = "", .doc = "Phong exponent", .range = Range{1, 200}, .logScale = true});
+        visit(self.diffuse, FieldInfo{.key = "diffuse",
+                                      .unit = "",
+                                      .doc = "Diffuse reflection (Phong)",
+                                      .range = Range{0, 1},
+                                      .applies = self.model == LightModel::Phong});
+        visit(self.specular, FieldInfo{.key = "specular",
+                                       .unit = "",
+                                       .doc = "Specular reflection (Phong)",
+                                       .range = Range{0, 1},
+                                       .applies = self.model == LightModel::Phong});
+        visit(self.shininess, FieldInfo{.key = "shininess",
+                                        .unit = "",
+                                        .doc = "Phong exponent",
+                                        .range = Range{1, 200},
+                                        .logScale = true,
+                                        .applies = self.model == LightModel::Phong});
         visit(self.roughness, FieldInfo{.key = "roughness",
                                         .unit = "",
                                         .doc = "Of the surface: 0.05 polished, 1 dull (physical)",
-                                        .range = Range{0.05, 1}});
-        visit(self.metalness,
-              FieldInfo{
-                  .key = "metalness", .unit = "", .doc = "1: reflects in its colour (physical)", .range = Range{0, 1}});
+                                        .range = Range{0.05, 1},
+                                        .applies = self.model == LightModel::Physical});
+        visit(self.metalness, FieldInfo{.key = "metalness",
+                                        .unit = "",
+                                        .doc = "1: reflects in its colour (physical)",
+                                        .range = Range{0, 1},
+                                        .applies = self.model == LightModel::Physical});
         visit(self.reflectance, FieldInfo{.key = "reflectance",
                                           .unit = "",
                                           .doc = "Share mirrored straight on: 0.04 plastic, 0.17 gem (physical)",
-                                          .range = Range{0, 1}});
+                                          .range = Range{0, 1},
+                                          .applies = self.model == LightModel::Physical});
     }
 };
 

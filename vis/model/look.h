@@ -89,8 +89,11 @@ struct DistanceColor {
                                        .range = Range{0.1, 8},
                                        .logScale = true});
         visit(self.toBackground, FieldInfo{.key = "toBackground", .unit = "", .doc = "Blend to the background"});
-        visit(self.color,
-              FieldInfo{.key = "color", .unit = "", .doc = "Blend to this otherwise (sRGB)", .range = Range{0, 1}});
+        visit(self.color, FieldInfo{.key = "color",
+                                    .unit = "",
+                                    .doc = "Blend to this otherwise (sRGB)",
+                                    .range = Range{0, 1},
+                                    .applies = !self.toBackground});
     }
 };
 
@@ -108,8 +111,11 @@ struct Cartoon {
         visit(self.shadow, FieldInfo{.key = "shadow", .unit = "", .doc = "Light in the shade", .range = Range{0, 1}});
         visit(self.outline,
               FieldInfo{.key = "outline", .unit = "pixel", .doc = "Width of outlines", .range = Range{0, 12}});
-        visit(self.outlineColor,
-              FieldInfo{.key = "outlineColor", .unit = "", .doc = "Colour of outlines (sRGB)", .range = Range{0, 1}});
+        visit(self.outlineColor, FieldInfo{.key = "outlineColor",
+                                           .unit = "",
+                                           .doc = "Colour of outlines (sRGB)",
+                                           .range = Range{0, 1},
+                                           .applies = self.outline > 0});
     }
 };
 
@@ -250,7 +256,9 @@ struct Look {
     }
 };
 
-inline constexpr FieldInfo kLookField{.key = "look", .unit = "", .doc = "Style of drawing"};
+constexpr FieldInfo lookField(bool applies = true) {
+    return {.key = "look", .unit = "", .doc = "Style of drawing", .applies = applies};
+}
 
 /// What the picture lies on.
 struct Paper {

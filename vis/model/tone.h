@@ -24,12 +24,14 @@ struct Tone {
         visit(self.exposure, FieldInfo{.key = "exposure",
                                        .unit = "stops",
                                        .doc = "Brightens (each stop doubles) or darkens, with a curve only",
-                                       .range = Range{-6, 6}});
+                                       .range = Range{-6, 6},
+                                       .applies = self.curve != ToneCurve::None});
         visit(self.white, FieldInfo{.key = "white",
                                     .unit = "",
                                     .doc = "Light that becomes white (Reinhard)",
                                     .range = Range{1, 20},
-                                    .logScale = true});
+                                    .logScale = true,
+                                    .applies = self.curve == ToneCurve::Reinhard});
     }
 };
 
