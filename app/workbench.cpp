@@ -2,6 +2,7 @@
 
 #include "app/pack_child.h"
 #include "app/session/import_memory.h"
+#include "volume/background.h"
 #include "volume/error.h"
 
 #include <algorithm>
@@ -27,6 +28,7 @@ constexpr std::size_t kMessages = 500;
 Workbench::Workbench(WorkbenchOptions options) : options_(std::move(options)) {
     renderer_ = options_.renderer ? options_.renderer : std::make_shared<vis::Renderer>(options_.render);
     if (!options_.headless) {
+        helpInBackground();
         autosave_ = std::make_unique<Autosave>(options_.stateFolder);
         recoveries_ = autosave_->abandoned();
     }

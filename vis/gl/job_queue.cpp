@@ -1,5 +1,7 @@
 #include "vis/gl/job_queue.h"
 
+#include "volume/background.h"
+
 #include <algorithm>
 
 namespace tessera::vis {
@@ -13,9 +15,12 @@ constexpr auto later = [](const auto& a, const auto& b) {
 
 } // namespace
 
-JobQueue::JobQueue(int threads) {
+JobQueue::JobQueue(int threads, bool background) {
     for (int i = 0; i < std::max(threads, 1); ++i)
-        threads_.emplace_back([this](std::stop_token ending) { run(ending); });
+        threads_.emplace_back([this, background](std::stop_token ending) {
+            if (background) workInBackground();
+            run(ending);
+        });
 }
 
 JobQueue::~JobQueue() {

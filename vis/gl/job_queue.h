@@ -14,7 +14,8 @@ class JobQueue {
 public:
     using Work = std::function<void(std::stop_token)>;
 
-    explicit JobQueue(int threads);
+    /// `background`: other threads go before these.
+    explicit JobQueue(int threads, bool background);
     ~JobQueue(); ///< asks running jobs to stop, drops the others and waits
 
     /// Smaller priorities run first; equal ones in the order they came.

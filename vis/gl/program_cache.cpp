@@ -60,7 +60,7 @@ void waitForDiskCache(const Program& program, const ProgramText& text, const Dra
 } // namespace
 
 ProgramCache::ProgramCache() : shared_(std::make_shared<Shared>()), context_(SharedContext::make()) {
-    if (context_) worker_ = std::make_unique<JobQueue>(1);
+    if (context_) worker_ = std::make_unique<JobQueue>(1, false);
 }
 
 ProgramCache::~ProgramCache() = default;

@@ -19,7 +19,7 @@ std::size_t texelCount(glm::ivec3 size) {
 
 } // namespace
 
-Residency::Residency(const RendererOptions& options) : options_(options), jobs_(options.decodeThreads) {
+Residency::Residency(const RendererOptions& options) : options_(options), jobs_(options.decodeThreads, true) {
     glGetIntegerv(GL_MAX_3D_TEXTURE_SIZE, &maxTextureSize_);
 }
 

@@ -1,5 +1,7 @@
 #include "vis/technique/light_baker.h"
 
+#include "volume/background.h"
+
 #include <algorithm>
 #include <chrono>
 
@@ -104,6 +106,7 @@ void LightBaker::start() {
     job_->matter = matter_;
     worker_ =
         std::jthread([job = job_, grid = grid_, casters = casting_ ? casters_ : MeshCasters()](std::stop_token stop) {
+            workInBackground();
             if (!casters.casters.empty()) {
                 vis::Matter<float> sum = meshMatter<float>(grid, casters, stop);
                 for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += (*job->matter)[i];

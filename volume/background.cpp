@@ -1,0 +1,31 @@
+#include "volume/background.h"
+
+#include <sys/resource.h>
+#include <tbb/task_scheduler_observer.h>
+#include <unistd.h>
+
+namespace tessera {
+
+namespace {
+
+struct Helpers : tbb::task_scheduler_observer {
+    Helpers() { observe(true); }
+    ~Helpers() override { observe(false); }
+    void on_scheduler_entry(bool isWorker) override {
+        if (isWorker) workInBackground();
+    }
+};
+
+} // namespace
+
+void workInBackground() {
+    constexpr int kNiceness = 10;
+    // Of this thread alone; where the system refuses, it works as before.
+    [[maybe_unused]] const int refused = setpriority(PRIO_PROCESS, id_t(gettid()), kNiceness);
+}
+
+void helpInBackground() {
+    static const Helpers helpers;
+}
+
+} // namespace tessera
