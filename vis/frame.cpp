@@ -51,12 +51,18 @@ void Renderer::Impl::refine(ViewTarget& target, const Scene& scene, const FrameR
     const ProgramAnswer answer = request.wait ? ProgramAnswer{programs.find(recipe), ProgramStage::Ready}
                                               : programs.request(recipe, request.budgetMs / 4);
     // A variant that is being compiled, or does not compile, leaves the former picture as it is.
+    const auto later = [&] {
+        if (!target.shows) blank(target, scene);
+        target.fullValid = target.stillDone = false;
+    };
     if (!answer.program) {
+        target.compiling = answer.stage != ProgramStage::Failed && !request.wait;
+        if (target.compiling) return later();
         if (!target.shows || request.wait) nothing(target, scene);
-        target.fullValid = target.stillDone = answer.stage == ProgramStage::Failed || request.wait;
-        target.compiling = !target.fullValid;
+        target.fullValid = target.stillDone = true;
         return;
     }
+    const bool presents = target.shows || request.wait || presentable(target, scene);
     const RayUnits units = rayUnits(plan);
     for (std::size_t i = 0; i < plan.fields.size(); ++i) {
         const BoundField& field = plan.fields[i];
@@ -93,7 +99,7 @@ void Renderer::Impl::refine(ViewTarget& target, const Scene& scene, const FrameR
         target.reducedValid = false;
         return true;
     };
-    if (!ready(answer, recipe, plan, scene)) return;
+    if (!ready(answer, recipe, plan, scene) || !presents) return later();
     target.compiling = false;
     RayPrograms rayPrograms{answer.program};
     RayPlan beyond = beyondLenses(plan);

@@ -80,6 +80,8 @@ bool Renderer::Impl::draw(ViewTarget& target, const Scene& scene, const FrameReq
     if (any) {
         refine(target, scene, request, plan, start);
         if (findsHidden(scene)) startReach(target, scene);
+    } else if (!target.fullValid && !plan.empty() && !status.complete && !target.shows && !request.wait) {
+        blank(target, scene);
     } else if (!target.fullValid && (plan.empty() || status.complete || !target.shows)) {
         nothing(target, scene);
     }

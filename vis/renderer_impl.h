@@ -4,6 +4,7 @@
 #include "vis/gl/residency.h"
 #include "vis/gl/view_target.h"
 #include "vis/renderer.h"
+#include "vis/technique/box_lines.h"
 #include "vis/technique/brush_uniforms.h"
 #include "vis/technique/look_uniforms.h"
 #include "vis/technique/ray_plan.h"
@@ -72,7 +73,12 @@ struct Renderer::Impl {
     bool reveals(ViewTarget& target, const Scene& scene, const FrameRequest& request, const RayPlan& plan);
 
     // present.cpp
+    BoxLines box(const ViewTarget& target, const Scene& scene) const;
+    void setPresented(const Program& resolve, const ViewTarget& target, const Scene& scene, const BoxLines& lines,
+                      bool reduced);
     void present(ViewTarget& target, const Scene& scene, bool reduced, const Tile& tile);
+    bool presentable(const ViewTarget& target, const Scene& scene);
+    void blank(ViewTarget& target, const Scene& scene);
     void nothing(ViewTarget& target, const Scene& scene);
 
     // light_binding.cpp

@@ -90,6 +90,32 @@ TEST_F(ProgramCacheTest, CompilingBlocksNobody) {
     EXPECT_TRUE(renderer.takeMessages().empty());
 }
 
+// Before its first picture a target shows the background, and says what it waits for.
+TEST_F(ProgramCacheTest, TheFirstPictureIsWaitedForOnAnEmptyGround) {
+    vis::Renderer renderer;
+    renderer.setSource(source());
+    const vis::ViewTargetPtr target = renderer.makeTarget();
+    vis::Scene scene = heavyScene();
+    scene.showBox = false;
+    scene.background = {1, 0, 0};
+    vis::FrameRequest request;
+    request.size = {64, 64};
+    int compiling = 0;
+    vis::FrameStatus status;
+    for (int frame = 0; frame < 20000 && !status.complete; ++frame) {
+        status = renderer.render(*target, scene, request);
+        compiling += status.compiling ? 1 : 0;
+        if (status.current) continue;
+        glm::ivec2 size;
+        const std::vector<std::uint8_t> shown = renderer.readPixels(*target, size);
+        for (std::size_t i = 0; i < shown.size(); i += 4)
+            ASSERT_TRUE(shown[i] == 255 && shown[i + 1] == 0 && shown[i + 2] == 0) << "frame " << frame;
+    }
+    ASSERT_TRUE(status.complete);
+    EXPECT_FALSE(status.compiling);
+    EXPECT_GT(compiling, 3);
+}
+
 // A variant that does not compile says so once; the picture before it stays, and the next good variant replaces it.
 TEST_F(ProgramCacheTest, BrokenVariantKeepsTheFormerPicture) {
     vis::Renderer renderer;

@@ -7,6 +7,8 @@
 
 namespace tessera::vis {
 
+using namespace std::chrono_literals;
+
 /// What both threads look at.
 struct ProgramCache::Shared {
     std::mutex mutex;
@@ -40,21 +42,6 @@ namespace {
 
 bool underWay(ProgramStage stage) {
     return stage == ProgramStage::Linking || stage == ProgramStage::Warming;
-}
-
-/// Mesa writes its disk cache on a thread of low priority. A second copy of the program shows whether the code is
-/// there: its first draw is then many times faster.
-void waitForDiskCache(const Program& program, const ProgramText& text, const DrawState& state, double firstDraw,
-                      std::stop_token stop) {
-    constexpr double kWorthIt = 25; // ms; hardware drivers, and code that was in the cache already, stay below
-    if (firstDraw < kWorthIt) return;
-    for (const int pause : {60, 250, 800}) {
-        std::this_thread::sleep_for(std::chrono::milliseconds(pause));
-        if (stop.stop_requested()) return;
-        const Program copy = linkProgram(text);
-        copySamplerUnits(program, copy);
-        if (drawOnePixel(copy, state) < 0.4 * firstDraw) return;
-    }
 }
 
 } // namespace
@@ -118,14 +105,44 @@ void ProgramCache::warmUp(const ProgramRecipe& recipe, const Framebuffer& frameb
     const DrawState state = captureDrawState(framebuffer);
     glFlush(); // the other context sees the uniforms set here
     shared_->reach(*found->second, ProgramStage::Warming);
-    worker_->add(-1, [entry = found->second, shared = shared_, state, context = context_.get()](std::stop_token stop) {
-        const SharedContext::Use use(*context);
+    worker_->add(-1, [this, entry = found->second, state](std::stop_token) {
+        double firstDraw = 0;
         try {
-            const double firstDraw = drawOnePixel(entry->program, state);
-            waitForDiskCache(entry->program, entry->text, state, firstDraw, stop);
+            const SharedContext::Use use(*context_);
+            firstDraw = drawOnePixel(entry->program, state);
         } catch (const std::exception&) { // no memory for it, say: the first draw happens in the first context then
         }
-        shared->reach(*entry, ProgramStage::Ready);
+        constexpr double kWorthIt = 25; // ms; hardware drivers, and code that was in the cache already, stay below
+        if (firstDraw < kWorthIt)
+            shared_->reach(*entry, ProgramStage::Ready);
+        else
+            awaitDiskCache({entry, state, firstDraw}, 0, Clock::now());
+    });
+}
+
+/// Mesa writes its disk cache on a thread of low priority. A second copy of the program shows whether the code is
+/// there: its first draw is then many times faster.
+bool ProgramCache::inDiskCache(const Drawn& drawn) {
+    const Program copy = linkProgram(drawn.entry->text);
+    copySamplerUnits(drawn.entry->program, copy);
+    return drawOnePixel(copy, drawn.state) < 0.4 * drawn.firstDraw;
+}
+
+/// Looks a few times, later and later, whether the driver has put a drawn program into its cache; what else there is to
+/// do comes first.
+void ProgramCache::awaitDiskCache(const Drawn& drawn, std::size_t trial, Clock::time_point since) {
+    static constexpr std::chrono::milliseconds kPauses[] = {60ms, 250ms, 800ms};
+    worker_->add(1, [this, drawn, trial, since](std::stop_token stop) {
+        const bool due = Clock::now() >= since + kPauses[trial];
+        if (!due) std::this_thread::sleep_for(10ms);
+        if (!due && !stop.stop_requested()) return awaitDiskCache(drawn, trial, since);
+        try {
+            const SharedContext::Use use(*context_);
+            if (!stop.stop_requested() && trial + 1 < std::size(kPauses) && !inDiskCache(drawn))
+                return awaitDiskCache(drawn, trial + 1, Clock::now());
+        } catch (const std::exception&) { // as above
+        }
+        shared_->reach(*drawn.entry, ProgramStage::Ready);
     });
 }
 

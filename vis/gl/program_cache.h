@@ -4,6 +4,7 @@
 #include "vis/gl/shared_context.h"
 #include "vis/gl/warm_up.h"
 
+#include <chrono>
 #include <condition_variable>
 #include <set>
 
@@ -48,6 +49,15 @@ private:
     struct Entry;
     struct Shared;
     Entry& make(const ProgramRecipe& recipe, bool background);
+    /// A program that the other context has drawn, how, and how long that took in milliseconds.
+    struct Drawn {
+        std::shared_ptr<Entry> entry;
+        DrawState state;
+        double firstDraw;
+    };
+    static bool inDiskCache(const Drawn& drawn);
+    using Clock = std::chrono::steady_clock;
+    void awaitDiskCache(const Drawn& drawn, std::size_t trial, Clock::time_point since);
 
     std::map<std::string, std::shared_ptr<Entry>> programs_;
     std::shared_ptr<Shared> shared_;
