@@ -32,6 +32,11 @@ struct StencilSystem {
     void clear();
 };
 
+/// Conductance between the centres of two cells half a step from their common face each.
+inline double series(double a, double b) {
+    return a > 0 && b > 0 ? 2 * a * b / (a + b) : 0.0;
+}
+
 /// Factors of the planes of one system. May be kept while the matrix changes a little: it is only a preconditioner.
 class PlanePreconditioner {
 public:

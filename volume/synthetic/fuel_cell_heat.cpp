@@ -1,0 +1,96 @@
+#include "volume/synthetic/fuel_cell_solver.h"
+
+#include "volume/synthetic/fuel_cell_properties.h"
+
+#include <cmath>
+
+namespace tessera::volume::cell {
+
+void FuelCellSolver::solveHeat(double voltage, double rate, const std::vector<double>& before, bool refresh) {
+    const CellGrid& g = grid_;
+    StencilSystem& a = heat_;
+    const std::size_t row = std::size_t(g.nx), plane = a.plane();
+    const double volume = g.dx * g.dy * g.dz;
+    struct Material {
+        double inPlane, through, capacity;
+    };
+    const double gasCapacity = concentration_ * kGasHeatCapacity;
+    const auto material = [&](CellRegion region) -> Material {
+        switch (region) {
+        case CellRegion::Land:
+            return {kConductivityLand, kConductivityLand, kHeatCapacityLand};
+        case CellRegion::AnodeChannel:
+            return {kConductivityHydrogen, kConductivityHydrogen, gasCapacity};
+        case CellRegion::CathodeChannel:
+            return {kConductivityAir, kConductivityAir, gasCapacity};
+        case CellRegion::Mea:
+            return {kConductivityMea, kConductivityMea, kHeatCapacityMea};
+        default:
+            return {kConductivityGdlInPlane, kConductivityGdl, kHeatCapacityGdl};
+        }
+    };
+    std::vector<Material> materials(plane);
+    for (std::size_t s = 0; s < plane; ++s) materials[s] = material(grid_.region(int(s % row), int(s / row)));
+
+    a.clear();
+    for (int z = 0; z < g.nz; ++z)
+        for (std::size_t s = 0; s < plane; ++s) {
+            const std::size_t p = s + plane * std::size_t(z);
+            const Material& m = materials[s];
+            const double storage = m.capacity * volume * rate;
+            a.diag[p] += storage;
+            a.rhs[p] += storage * before[p];
+            const auto link = [&](std::vector<double>& next, std::vector<double>& back, std::size_t step, double k) {
+                a.diag[p] += k, a.diag[p + step] += k;
+                next[p] += k, back[p + step] += k;
+            };
+            if (s % row + 1 < row)
+                link(a.east, a.west, 1, series(m.inPlane, materials[s + 1].inPlane) * g.dy * g.dz / g.dx);
+            if (s + row < plane)
+                link(a.north, a.south, row, series(m.through, materials[s + row].through) * g.dx * g.dz / g.dy);
+            if (z + 1 < g.nz) link(a.up, a.down, plane, m.inPlane * g.dx * g.dy / g.dz);
+            // Cooled plates behind the lands (and behind the floor of the channels).
+            if (s < row || s + row >= plane) {
+                const double k = g.dx * g.dz / (1 / kCoolantTransfer + 0.5 * g.dy / m.through);
+                a.diag[p] += k;
+                a.rhs[p] += k * settings_.coolantTemperature;
+            }
+        }
+
+    // Heat carried by the gas, upwind, in the form that needs no balance of moles: each cell takes what flows in.
+    for (const GasSpace& space : spaces_) {
+        const std::size_t section = row * std::size_t(space.rows), shift = row * std::size_t(space.yBegin);
+        for (int z = 0; z < g.nz; ++z)
+            for (std::size_t s = 0; s < section; ++s) {
+                if (space.kind[s] == 0) continue;
+                const std::size_t q = s + section * std::size_t(z), p = s + shift + plane * std::size_t(z);
+                const auto carry = [&](double flux, std::vector<double>& next, std::vector<double>& back,
+                                       std::size_t step) {
+                    const double heat = gasCapacity * std::abs(flux);
+                    if (flux > 0)
+                        a.diag[p + step] += heat, back[p + step] += heat;
+                    else
+                        a.diag[p] += heat, next[p] += heat;
+                };
+                if (s % row + 1 < row) carry(space.fluxX[q], a.east, a.west, 1);
+                if (s + row < section) carry(space.fluxY[q], a.north, a.south, row);
+                if (z + 1 < g.nz) carry(space.fluxZ[q], a.up, a.down, plane);
+                if (z == (space.air ? 0 : g.nz - 1)) {
+                    a.diag[p] += gasCapacity * space.inlet[s];
+                    a.rhs[p] += gasCapacity * space.inlet[s] * settings_.inletTemperature;
+                }
+            }
+    }
+
+    const int meaRows = g.rows[3] - g.rows[2];
+    for (int z = 0; z < g.nz; ++z)
+        for (int x = 0; x < g.nx; ++x) {
+            const double heat = current_[std::size_t(x + g.nx * z)] * (kThermalVoltage - voltage) * g.dx * g.dz;
+            for (int y = g.rows[2]; y < g.rows[3]; ++y) a.rhs[a.index(x, y, z)] += heat / meaRows;
+        }
+    // The largest factors; the flow changes them little, so that only another time step calls for new ones.
+    if (refresh || heatPreconditioner_.empty()) heatPreconditioner_ = PlanePreconditioner(a);
+    solve(a, heatPreconditioner_, temperature_, 3e-8);
+}
+
+} // namespace tessera::volume::cell
