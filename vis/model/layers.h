@@ -89,11 +89,8 @@ struct IsoLayer {
             self.channel,
             FieldInfo{.key = "channel", .unit = "", .doc = "Parameter whose surface is shown", .refersTo = "channel"});
         visit(self.value, FieldInfo{.key = "value", .unit = "", .doc = "Value on the surface"});
-        visit(self.color, FieldInfo{.key = "color",
-                                    .unit = "",
-                                    .doc = "Colour of the surface (sRGB)",
-                                    .range = Range{0, 1},
-                                    .applies = self.method == SurfaceMethod::Rays || self.colorBy.empty()});
+        visit(self.color,
+              FieldInfo{.key = "color", .unit = "", .doc = "Colour of the surface (sRGB)", .range = Range{0, 1}});
         visit(self.opacity,
               FieldInfo{.key = "opacity", .unit = "", .doc = "Opacity of the surface", .range = Range{0, 1}});
         visit(self.method, FieldInfo{.key = "method",
