@@ -1,16 +1,13 @@
 #pragma once
 
 #include "volume/brick_source.h"
+#include "volume/space_axis.h"
 
 #include <memory>
 #include <optional>
-#include <string_view>
 
 /// Data whose time runs along an axis of space: what moves becomes a shape that is seen at once.
 namespace tessera::volume {
-
-enum class SpaceAxis : std::uint8_t { X, Y, Z };
-inline constexpr std::string_view kSpaceAxisNames[] = {"x", "y", "z"};
 
 struct TimeAxis {
     SpaceAxis axis = SpaceAxis::Z;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "volume/describe.h"
+#include "volume/space_axis.h"
 
 #include <glm/vec3.hpp>
 #include <map>
@@ -113,20 +114,18 @@ struct ProfileView {
     }
 };
 
-enum class SliceAxis { X, Y, Z };
-inline constexpr std::string_view kSliceAxisNames[] = {"x", "y", "z"};
-
 /// Parameters (rows) on parallel planes (columns).
 struct SliceMatrixView {
     static constexpr std::string_view kType = "sliceMatrix";
     std::vector<std::string> channels;
-    SliceAxis axis = SliceAxis::Z;
+    volume::SpaceAxis axis = volume::SpaceAxis::Z;
     int planes = 4;
     bool operator==(const SliceMatrixView&) const = default;
     static void describe(auto& self, auto&& visit) {
         visit(self.channels, kShownChannels);
-        visit(self.axis,
-              FieldInfo{.key = "axis", .unit = "", .doc = "Axis the planes stand on", .names = kSliceAxisNames});
+        visit(
+            self.axis,
+            FieldInfo{.key = "axis", .unit = "", .doc = "Axis the planes stand on", .names = volume::kSpaceAxisNames});
         visit(self.planes,
               FieldInfo{.key = "planes", .unit = "", .doc = "Planes, evenly spread", .range = Range{1, 12}});
     }

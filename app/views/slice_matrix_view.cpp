@@ -24,7 +24,7 @@ struct SliceMatrixCache : ViewCache {
 struct PlaneAxes {
     int right = 0, up = 1, normal = 2;
 };
-PlaneAxes axesOf(SliceAxis axis, const vis::WorldFrame& world) {
+PlaneAxes axesOf(volume::SpaceAxis axis, const vis::WorldFrame& world) {
     const int normal = static_cast<int>(axis);
     PlaneAxes out{normal == 0 ? 1 : 0, normal == 2 ? 1 : 2, normal};
     if (world.halfSize[out.up] > world.halfSize[out.right]) std::swap(out.right, out.up);
@@ -171,10 +171,10 @@ void drawToolbar(ViewContext& context, SliceMatrixView& view, const std::vector<
     chooseChannels(info, view.channels, shown);
     continueLine(em() * 3.4f);
     ImGui::SetNextItemWidth(em() * 3.4f);
-    if (ImGui::BeginCombo("##axis", kSliceAxisNames[static_cast<std::size_t>(view.axis)].data())) {
+    if (ImGui::BeginCombo("##axis", volume::kSpaceAxisNames[static_cast<std::size_t>(view.axis)].data())) {
         for (int i = 0; i < 3; ++i)
-            if (ImGui::Selectable(kSliceAxisNames[i].data(), static_cast<int>(view.axis) == i))
-                view.axis = static_cast<SliceAxis>(i);
+            if (ImGui::Selectable(volume::kSpaceAxisNames[i].data(), static_cast<int>(view.axis) == i))
+                view.axis = static_cast<volume::SpaceAxis>(i);
         ImGui::EndCombo();
     }
     if (ImGui::IsItemHovered()) tooltip(("Axis the planes stand on; " + directions).c_str());
