@@ -88,7 +88,7 @@ TEST_F(Views, ASessionThatDoesNotFitTheData) {
 TEST_F(Views, EditingWhileTheBackgroundWorks) {
     headless = false;
     show(fuelCell(volume::LatticeKind::BCC));
-    for (int i = 0; i < 400 && (i < 3 || busy); ++i) {
+    for (int i = 0; i < 5000 && (i < 3 || busy); ++i) {
         if (i < 20) session.cursor.z = source->info().bounds.hi.z * i / 20;
         frame([&] { drawAll({640, 480}); });
         EXPECT_TRUE(messages.empty());
@@ -185,8 +185,9 @@ TEST_F(Views, DamagedDataIsTriedOnce) {
     data.info.parameters[1].name = "b";
     data.load = [](int, int, int) -> volume::Field { throw Error("damaged"); };
     show(volume::makeMemorySource(std::move(data), {}));
-    int reported = 0;
-    for (int i = 0; i < 60; ++i) {
+    int reported = 0, after = 0;
+    for (int i = 0; i < 5000 && after < 30; ++i) {
+        after += reported > 0 ? 1 : 0;
         frame([&] { draw("scatterMatrix", scatterView, drawScatterMatrixView, {640, 480}); });
         for (const std::string& message : messages) reported += message.find("damaged") != std::string::npos;
         std::this_thread::sleep_for(std::chrono::milliseconds(2));

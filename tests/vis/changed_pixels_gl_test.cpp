@@ -2,6 +2,7 @@
 #include "vis/technique/changed_pixels.h"
 
 #include <functional>
+#include <thread>
 
 /// What a dragged lens leaves as it is need not be drawn anew.
 namespace tessera::vis {
@@ -181,8 +182,8 @@ TEST_P(ChangedPixels, AreCoarseWhileALensIsDraggedTheOthersStay) {
     FrameRequest rest;
     rest.size = kSize;
     rest.budgetMs = 50;
-    for (int frame = 0; frame < 1000 && !drawing.renderer.render(*target, scene, rest).complete; ++frame)
-        ;
+    for (int frame = 0; frame < 20000 && !drawing.renderer.render(*target, scene, rest).complete; ++frame)
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
     const std::vector<glm::vec4> refined = drawing.renderer.readLinear(*target);
     target = drawing.renderer.makeTarget();
     EXPECT_EQ(refined, draw(scene));

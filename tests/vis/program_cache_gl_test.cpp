@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <thread>
 #include <unistd.h>
 
 namespace tessera {
@@ -82,6 +83,7 @@ TEST_F(ProgramCacheTest, CompilingBlocksNobody) {
     for (int frame = 0; frame < 20000 && !status.complete; ++frame) {
         status = renderer.render(*target, heavy, request);
         if (unchanged == frame && renderer.readPixels(*target, size) == former) ++unchanged;
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
     ASSERT_TRUE(status.complete);
     EXPECT_GT(unchanged, 3) << "calls come back, and the former picture stays, while the program is compiled";
@@ -105,6 +107,7 @@ TEST_F(ProgramCacheTest, TheFirstPictureIsWaitedForOnAnEmptyGround) {
     for (int frame = 0; frame < 20000 && !status.complete; ++frame) {
         status = renderer.render(*target, scene, request);
         compiling += status.compiling ? 1 : 0;
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
         if (status.current) continue;
         glm::ivec2 size;
         const std::vector<std::uint8_t> shown = renderer.readPixels(*target, size);
@@ -134,9 +137,10 @@ TEST_F(ProgramCacheTest, BrokenVariantKeepsTheFormerPicture) {
     request.size = {32, 32};
     std::vector<std::string> messages;
     vis::FrameStatus status;
-    for (int frame = 0; frame < 2000 && !status.complete; ++frame) {
+    for (int frame = 0; frame < 20000 && !status.complete; ++frame) {
         status = renderer.render(*target, heavyScene(), request);
         for (std::string& message : renderer.takeMessages()) messages.push_back(std::move(message));
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
     EXPECT_TRUE(status.complete);
     ASSERT_FALSE(messages.empty());

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <thread>
 
 namespace tessera {
 namespace {
@@ -119,7 +120,10 @@ TEST_F(RendererTest, RefinesToTheSamePicture) {
     EXPECT_GT(*std::max_element(first.begin(), first.begin() + 4 * 150 * 45), 60);
     request.moving = false;
     int frames = 0;
-    while (!status.complete && ++frames < 1000) status = renderer.render(*refined, scene, request);
+    while (!status.complete && ++frames < 20000) {
+        status = renderer.render(*refined, scene, request);
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
     EXPECT_TRUE(status.complete);
     EXPECT_EQ(test::maxDifference(renderer.readLinear(*waited), renderer.readLinear(*refined)), 0);
     // Nothing left to do: the same texture, at once.
