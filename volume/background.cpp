@@ -20,8 +20,10 @@ struct Helpers : tbb::task_scheduler_observer {
 
 void workInBackground() {
     constexpr int kNiceness = 10;
-    // Of this thread alone; where the system refuses, it works as before.
-    [[maybe_unused]] const int refused = setpriority(PRIO_PROCESS, id_t(gettid()), kNiceness);
+    const auto thread = id_t(gettid());
+    if (getpriority(PRIO_PROCESS, thread) >= kNiceness) return; // as it began: not to be raised
+    // Where the system refuses, it works as before.
+    [[maybe_unused]] const int refused = setpriority(PRIO_PROCESS, thread, kNiceness);
 }
 
 void helpInBackground() {

@@ -15,10 +15,10 @@ constexpr auto later = [](const auto& a, const auto& b) {
 
 } // namespace
 
-JobQueue::JobQueue(int threads, bool background) {
-    for (int i = 0; i < std::max(threads, 1); ++i)
-        threads_.emplace_back([this, background](std::stop_token ending) {
-            if (background) workInBackground();
+JobQueue::JobQueue(int count, JobThreads threads) {
+    for (int i = 0; i < std::max(count, 1); ++i)
+        threads_.emplace_back([this, threads](std::stop_token ending) {
+            if (threads == JobThreads::Background) workInBackground();
             run(ending);
         });
 }

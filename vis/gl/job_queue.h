@@ -9,13 +9,15 @@
 
 namespace tessera::vis {
 
+/// Whether other threads go before those of a queue (volume/background.h).
+enum class JobThreads { Equal, Background };
+
 /// Threads that run jobs, the most urgent first. Jobs must not throw; they should look at the token now and then.
 class JobQueue {
 public:
     using Work = std::function<void(std::stop_token)>;
 
-    /// `background`: other threads go before these.
-    explicit JobQueue(int threads, bool background);
+    JobQueue(int count, JobThreads threads);
     ~JobQueue(); ///< asks running jobs to stop, drops the others and waits
 
     /// Smaller priorities run first; equal ones in the order they came.

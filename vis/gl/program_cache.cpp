@@ -7,8 +7,6 @@
 
 namespace tessera::vis {
 
-using namespace std::chrono_literals;
-
 /// What both threads look at.
 struct ProgramCache::Shared {
     std::mutex mutex;
@@ -47,7 +45,7 @@ bool underWay(ProgramStage stage) {
 } // namespace
 
 ProgramCache::ProgramCache() : shared_(std::make_shared<Shared>()), context_(SharedContext::make()) {
-    if (context_) worker_ = std::make_unique<JobQueue>(1, false);
+    if (context_) worker_ = std::make_unique<JobQueue>(1, JobThreads::Equal);
 }
 
 ProgramCache::~ProgramCache() = default;
@@ -131,6 +129,7 @@ bool ProgramCache::inDiskCache(const Drawn& drawn) {
 /// Looks a few times, later and later, whether the driver has put a drawn program into its cache; what else there is to
 /// do comes first.
 void ProgramCache::awaitDiskCache(const Drawn& drawn, std::size_t trial, Clock::time_point since) {
+    using namespace std::chrono_literals;
     static constexpr std::chrono::milliseconds kPauses[] = {60ms, 250ms, 800ms};
     worker_->add(1, [this, drawn, trial, since](std::stop_token stop) {
         const bool due = Clock::now() >= since + kPauses[trial];

@@ -19,7 +19,8 @@ std::size_t texelCount(glm::ivec3 size) {
 
 } // namespace
 
-Residency::Residency(const RendererOptions& options) : options_(options), jobs_(options.decodeThreads, true) {
+Residency::Residency(const RendererOptions& options)
+    : options_(options), jobs_(options.decodeThreads, JobThreads::Background) {
     glGetIntegerv(GL_MAX_3D_TEXTURE_SIZE, &maxTextureSize_);
 }
 
