@@ -178,6 +178,10 @@ void Workbench::frame() {
         return found == session_.views.end() || !std::holds_alternative<VolumeView>(found->second);
     };
     panes.close = [this](const std::string& pane) { closePane(pane); };
+    if (source_)
+        panes.none = "No view is open: choose one in the View menu.";
+    else if (!jobs_.running("open"))
+        panes.none = "No data: choose File > Open, or drop a file here.";
     if (options_.onlyPane.empty()) {
         drawMenus();
         const float top = ImGui::GetFrameHeight(), bottom = std::round(ImGui::GetFontSize() * 1.7f);
@@ -367,6 +371,7 @@ void Workbench::pack(const std::string& path) {
     packed->sessionPath = sessionPath_;
     jobs_.start("pack", "Packing " + fs::path(path).filename().string(),
                 [this, path, inputs, packed, import = session_.data.import](const Progress& progress) -> Jobs::Finish {
+                    workInBackground();
                     const std::string self = fs::read_symlink("/proc/self/exe").string();
                     const PackedArchive archive = packInChild(self, inputs, import, path, progress.part(0, 0.95));
                     packed->messages.push_back("Packed " + textOfBytes(archive.sourceBytes) + " into " +

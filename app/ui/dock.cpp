@@ -293,7 +293,7 @@ void drawDock(DockTree& tree, DockHand& hand, const DockPanes& panes, ImVec2 ori
             }
             if (stack->tabs.empty())
                 ImGui::GetWindowDrawList()->AddText({rect.lo.x + 20 * scale, rect.lo.y + 20 * scale}, palette().muted,
-                                                    "No view is open: choose one in the View menu.");
+                                                    panes.none.c_str());
         }
     }
     ImGui::End();

@@ -1,6 +1,5 @@
 #include "app/ui/jobs.h"
 
-#include "volume/background.h"
 #include "volume/error.h"
 
 #include <algorithm>
@@ -35,7 +34,6 @@ void Jobs::start(const std::string& key, const std::string& title, std::function
         jobs_.push_back(job);
     }
     job->thread = std::jthread([this, self = job.get(), work = std::move(work)] {
-        workInBackground();
         Progress progress;
         progress.stop = self->stop.get_token();
         progress.report = [self](double fraction, const std::string& what) {

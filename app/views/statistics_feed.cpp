@@ -1,6 +1,7 @@
 #include "app/views/statistics_feed.h"
 
 #include "app/views/view_parts.h"
+#include "volume/background.h"
 #include "volume/brick_cache.h"
 #include "volume/error.h"
 #include "volume/source_at_time.h"
@@ -214,6 +215,7 @@ std::shared_ptr<const StatisticsResult> StatisticsFeed::get(ViewContext& context
         jobKey, "Statistics",
         [weak = std::weak_ptr(state_), source = level > 0 ? state.coarse : context.source, wish, level,
          keep](const Progress& progress) -> Jobs::Finish {
+            workInBackground();
             std::shared_ptr<const StatisticsResult> result;
             std::string failure;
             try {
