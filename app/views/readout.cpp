@@ -3,6 +3,7 @@
 #include "app/views/axis_label.h"
 #include "app/views/ticks.h"
 #include "app/views/view_parts.h"
+#include "volume/background.h"
 #include "volume/error.h"
 
 #include <algorithm>
@@ -63,6 +64,7 @@ void updateReadout(ViewContext& context, Readout& readout) {
     context.jobs.start(
         "", "Values at the cursor",
         [weak = std::weak_ptr(readout.state), cache = state.cache, position, time](const Progress&) -> Jobs::Finish {
+            workInBackground();
             std::vector<volume::ProbeValue> values;
             std::string failure;
             try {
