@@ -127,6 +127,7 @@ for what in "noise --lattice cc" "noise --lattice bcc" "noise --lattice bcc --re
 import json, sys
 done = json.load(open("out.txt"))
 slabs = any("slabs" in note for note in done["notes"])
+print("peak", done["peakMemory"] / 1e6, "MB,", "slabs" if slabs else "whole frames")
 sys.exit(not 0 < done["peakMemory"] <= 1e6 * float(sys.argv[1]) or (sys.argv[2] == "tall" and not slabs))
 EOF
     done
