@@ -42,7 +42,11 @@ python3 - "$tessera" <<'EOF' || failures=$((failures + 1))
 import os, signal, subprocess, sys, time
 run = subprocess.Popen([sys.argv[1], "generate", "fuel-cell", "-o", "stopped.tsr", "--size", "33x39x200"],
                        stderr=subprocess.PIPE, preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler))
-time.sleep(1.5)
+def listens(): # has it a handler for SIGINT (the second bit)?
+    caught = [line.split()[1] for line in open("/proc/%d/status" % run.pid) if line.startswith("SigCgt")]
+    return caught and int(caught[0], 16) & 2
+while run.poll() is None and not listens(): time.sleep(0.01)
+time.sleep(0.5)
 run.send_signal(signal.SIGINT)
 code = run.wait(timeout=60)
 left = [name for name in os.listdir(".") if name.startswith("stopped")]

@@ -73,8 +73,9 @@ xdotool mouseup 1
 await 60 fresh || fail "brushing draws nothing"
 
 # Save by shortcut: the dialog offers a name in the working folder.
+mark
 xdotool key ctrl+s
-sleep 1
+await 30 fresh || fail "Ctrl+S opens no dialog"
 xdotool key Return
 await 30 test -f session.tessera.json || fail "Ctrl+S saves nothing"
 sleep 1
