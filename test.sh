@@ -2,9 +2,11 @@
 # Installs what is missing, builds everything and passes every test.
 #   ./test.sh          the release build, all tests
 #   ./test.sh asan     the same with address and undefined sanitizers (tests that need no window)
+#   ./test.sh release --rerun-failed     what follows the preset goes to ctest
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 preset=${1:-release}
+[ $# -eq 0 ] || shift
 cd "$here"
 
 "$here/setup.sh" --tests
@@ -21,7 +23,7 @@ export XDG_DATA_HOME="$home/data" MESA_SHADER_CACHE_DIR="$home/mesa" TMPDIR="$ho
 if [ "$preset" = asan ]; then
     # Mesa and its LLVM keep memory of their own until the process ends.
     export ASAN_OPTIONS=detect_leaks=1 LSAN_OPTIONS="suppressions=$here/tests/lsan.supp:print_suppressions=0"
-    ctest --preset asan -j "$(nproc)" -LE e2e
+    ctest --preset asan -j "$(nproc)" -LE e2e "$@"
 else
-    ctest --preset "$preset" -j "$(nproc)"
+    ctest --preset "$preset" -j "$(nproc)" "$@"
 fi
