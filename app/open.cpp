@@ -231,11 +231,17 @@ std::shared_ptr<const volume::BrickSource> openSource(const DataRef& data, std::
 Opened openWith(Opened opened, const DataRef& data, const Progress& progress) {
     opened.missing.clear();
     const auto before = std::exchange(opened.source, openSource(data, opened.messages, progress));
-    if (before) carryTime(opened.document.session, before->info(), opened.source->info(), data.timeAxis);
-    opened.document.session.data = data;
-    opened.document.history.setData(data);
-    fitSession(opened.document.session, opened.source->info(), opened.messages);
+    moveTo(opened.document.session, opened.document.history, before ? &before->info() : nullptr, opened.source->info(),
+           data, opened.messages);
     return opened;
+}
+
+void moveTo(Session& session, History& history, const volume::DatasetInfo* from, const volume::DatasetInfo& to,
+            const DataRef& data, std::vector<std::string>& messages) {
+    if (from) carryTime(session, *from, to, data.timeAxis);
+    session.data = data;
+    history.setData(data);
+    fitSession(session, to, messages);
 }
 
 Session applyLayout(const SessionDocument& layout, const volume::DatasetInfo& info, const DataRef& data,

@@ -37,6 +37,12 @@ Opened open(const OpenRequest& request, const Progress& progress = {});
 /// (`opened.source`) with or without time along an axis, time and cross-hair go over into the other way.
 Opened openWith(Opened opened, const DataRef& data, const Progress& progress = {});
 
+/// Puts a session with its history on other data, which `to` describes, or on the same ones made or cut otherwise;
+/// `from` describes what it was on, null if nothing. Where only one of the two has time along an axis, time and
+/// cross-hair go over into the other way; one message for each thing that does not fit.
+void moveTo(Session& session, History& history, const volume::DatasetInfo* from, const volume::DatasetInfo& to,
+            const DataRef& data, std::vector<std::string>& messages);
+
 /// A source of bricks for what a session names; ranges known. Throws Error.
 std::shared_ptr<const volume::BrickSource> openSource(const DataRef& data, std::vector<std::string>& messages,
                                                       const Progress& progress = {});

@@ -1,12 +1,10 @@
 #include "app/workbench.h"
 
-#include "app/pack_child.h"
 #include "app/session/import_memory.h"
 #include "volume/background.h"
 #include "volume/error.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <ctime>
 #include <filesystem>
@@ -204,28 +202,6 @@ void Workbench::frame() {
     lastFrame_ = now();
 }
 
-/// Makes the source again when the parameters derived from it have been edited; what is shown stays until then.
-void Workbench::followDerived() {
-    if (!source_ || session_.data.derived == derivedShown_) return;
-    if (session_.data.derived == derivedWanted_) return; // on its way, or cancelled
-    derivedWanted_ = session_.data.derived;
-    jobs_.start("derive", "Deriving parameters",
-                [this, below = volume::underived(source_), wanted = derivedWanted_,
-                 from = source_](const Progress& progress) -> Jobs::Finish {
-                    auto messages = std::make_shared<std::vector<std::string>>();
-                    const auto made = volume::deriveAll(below, wanted, *messages, progress);
-                    return [this, messages, made, wanted, from] {
-                        if (source_ != from) return; // other data were opened meanwhile
-                        source_ = made;
-                        derivedShown_ = wanted;
-                        renderer_->setSource(source_);
-                        caches_.clear();
-                        fitSession(session_, source_->info(), *messages);
-                        for (const std::string& text : *messages) message(text, true);
-                    };
-                });
-}
-
 void Workbench::watchEdits() {
     const bool editing = ImGui::IsAnyItemActive() || ImGui::IsMouseDown(ImGuiMouseButton_Left) ||
                          ImGui::IsMouseDown(ImGuiMouseButton_Right) || ImGui::IsMouseDown(ImGuiMouseButton_Middle);
@@ -338,49 +314,6 @@ void Workbench::answerFile(const FileDialog::Answer& answer) {
     } else if (answer.purpose == "picture") {
         export_ = Export{picture_, answer.paths.front()};
     }
-}
-
-void Workbench::showAs(const DataRef& data, const std::string& title) {
-    const auto opened = std::make_shared<Opened>();
-    opened->document = document();
-    opened->source = source_;
-    opened->sessionPath = sessionPath_;
-    jobs_.start("open", title, [this, opened, data](const Progress& progress) -> Jobs::Finish {
-        const auto done = std::make_shared<Opened>(openWith(*opened, data, progress));
-        return [this, done] { reinstall(std::move(*done)); };
-    });
-}
-
-void Workbench::reinstall(Opened opened) {
-    const Session saved = saved_;
-    install(std::move(opened));
-    saved_ = saved;
-    unsavedEdits_ = dirty();
-}
-
-bool Workbench::showsDataFiles() const {
-    const auto& files = session_.data.files;
-    return source_ && !files.empty() && !(files.size() == 1 && files[0].absolutePath.ends_with(".tsr"));
-}
-
-void Workbench::pack(const std::string& path) {
-    std::vector<std::string> inputs;
-    for (const DataFile& file : session_.data.files) inputs.push_back(file.absolutePath);
-    const auto packed = std::make_shared<Opened>();
-    packed->document = document();
-    packed->sessionPath = sessionPath_;
-    jobs_.start("pack", "Packing " + fs::path(path).filename().string(),
-                [this, path, inputs, packed, import = session_.data.import](const Progress& progress) -> Jobs::Finish {
-                    workInBackground();
-                    const std::string self = fs::read_symlink("/proc/self/exe").string();
-                    const PackedArchive archive = packInChild(self, inputs, import, path, progress.part(0, 0.95));
-                    packed->messages.push_back("Packed " + textOfBytes(archive.sourceBytes) + " into " +
-                                               textOfBytes(archive.archiveBytes) + ", now shown from " + path);
-                    DataRef data = dataOf({path}, {});
-                    data.derived = packed->document.session.data.derived;
-                    auto done = std::make_shared<Opened>(openWith(*packed, data, progress.part(0.95, 1)));
-                    return [this, done] { reinstall(std::move(*done)); };
-                });
 }
 
 void Workbench::requestQuit() {

@@ -29,11 +29,12 @@ struct PictureRequest {
 };
 
 struct WorkbenchOptions {
-    std::shared_ptr<vis::Renderer> renderer; ///< null: one of its own
-    vis::RendererOptions render;             ///< for one of its own
-    bool headless = false;   ///< pictures: no messages, dialogs or remembered files; every frame is finished
-    std::string onlyPane;    ///< shows this pane alone, without its strip
-    std::string stateFolder; ///< recent files and autosave; "" remembers nothing
+    std::shared_ptr<vis::Renderer> renderer = {}; ///< null: one of its own
+    vis::RendererOptions render = {};             ///< for one of its own
+    bool headless = false;        ///< pictures: no messages, dialogs or remembered files; every frame is finished
+    std::string onlyPane = {};    ///< shows this pane alone, without its strip
+    std::string stateFolder = {}; ///< recent files and autosave; "" remembers nothing
+    std::string program = "/proc/self/exe"; ///< is run as a child to pack
     /// How often an archive that is shown is looked at for new times.
     std::chrono::milliseconds growthInterval = std::chrono::seconds(1);
     /// Called after each pane is drawn, for measurements: `behind` while it still shows an older state of the session.
@@ -127,19 +128,26 @@ private:
     /// Does what gives the session up: at once, or after asking whether to save what has changed.
     void leave(std::function<void()> go);
     void start(const OpenRequest& request);
-    void reinstall(Opened opened); ///< the same session on other data: what was not saved still is not
     void answerFile(const FileDialog::Answer& answer);
     void save(const std::string& path);
-    void pack(const std::string& path);
-    void showAs(const DataRef& data, const std::string& title); ///< the same data, made or cut otherwise
-    int chosenSurface() const;                                  // workbench_surface.cpp
-    void exportSurface(std::string path);                       // workbench_surface.cpp
-    bool showsDataFiles() const;                                ///< files that are not an archive
+    int chosenSurface() const;            // workbench_surface.cpp
+    void exportSurface(std::string path); // workbench_surface.cpp
+
+    /// What a job made to be shown in place of `from`: the same data otherwise.
+    struct Remade {
+        std::shared_ptr<const volume::BrickSource> from, source;
+        DataRef data;
+        std::vector<std::string> messages;
+    };
+    bool showsDataFiles() const;                                // workbench_data.cpp
+    void pack(const std::string& path);                         // workbench_data.cpp
+    void showAs(const DataRef& data, const std::string& title); // workbench_data.cpp
+    bool show(Remade remade);                                   // workbench_data.cpp
     void replace(Session session);
     void watchEdits();
     void autosave();
-    void followDerived();
-    void followGrowth(); // workbench_growth.cpp
+    void followDerived(); // workbench_data.cpp
+    void followGrowth();  // workbench_growth.cpp
     void play();
     void step(int count);
     void closePane(const std::string& pane);

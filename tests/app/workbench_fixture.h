@@ -1,0 +1,57 @@
+#pragma once
+
+#include "app/platform/gui.h"
+#include "app/ui/keys.h"
+#include "app/workbench.h"
+#include "vis/gl/headless.h"
+
+#include <gtest/gtest.h>
+#include <imgui.h>
+
+namespace tessera::app {
+
+/// A workbench with a window in memory, whose frames a test draws one by one.
+class DrawnWorkbench : public testing::Test {
+protected:
+    explicit DrawnWorkbench(WorkbenchOptions options = {}) : workbench(std::move(options)) {}
+
+    static Opened smallData(double size = 24) {
+        OpenRequest request;
+        request.data.emplace();
+        request.data->model = "marschner-lobb";
+        request.data->settings = {{"nx", size}, {"ny", size}, {"nz", size}};
+        return open(request);
+    }
+    void frame(const std::function<void(ImGuiIO&)>& input = {}) { frames.draw(workbench, 1, input); }
+    /// Until every job is done and nothing refines.
+    void settle() {
+        do {
+            workbench.jobs().wait();
+            frame();
+        } while (workbench.busy());
+        for (int i = 0; i < 4; ++i) frame();
+    }
+    void press(int key) {
+        for (const bool down : {true, false}) frame([&](ImGuiIO& io) { io.KeysDown[key] = down; });
+    }
+    /// False where the command is not available.
+    bool run(const std::string& name) {
+        for (const Command& command : workbench.commands())
+            if (command.title() == name && command.available()) {
+                command.run();
+                return true;
+            }
+        return false;
+    }
+    void addBrush(const std::string& name) {
+        workbench.session().selection.brushes.push_back({});
+        workbench.session().selection.brushes.back().name = name;
+    }
+
+    vis::HeadlessContext gl;
+    Gui gui;
+    Workbench workbench;
+    OffscreenFrames frames{{600, 400}};
+};
+
+} // namespace tessera::app
