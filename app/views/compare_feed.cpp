@@ -1,6 +1,7 @@
 #include "app/views/compare_feed.h"
 
 #include "app/open.h"
+#include "app/views/pending_wish.h"
 #include "codec/archive.h"
 #include "vis/model/transfer_function.h"
 #include "volume/error.h"
@@ -46,29 +47,27 @@ bool sameScene(const Session& a, const Session& b) {
 } // namespace
 
 std::shared_ptr<CompareData> CompareFeed::dataFor(ViewContext& context, const std::string& pane, const DataRef& data) {
+    const auto key = [&] { return pane + ":data" + toJson(data).dump(); };
     for (const auto& known : data_)
         if (known->data == data) {
             known->used = true;
+            if (!known->source && known->failure.empty() && !context.jobs.running(key())) known->failure = "cancelled";
             return known;
         }
     auto made = data_.emplace_back(std::make_shared<CompareData>());
     made->data = data;
     made->used = true;
     const auto open = [data, session = context.session.data](std::string& failure, const Progress& progress) {
-        std::shared_ptr<const volume::BrickSource> source;
-        try {
+        return attempt(failure, [&] {
             std::vector<std::string> messages;
-            source = openSource(located(data, session), messages, progress);
-        } catch (const Error& error) {
-            failure = error.what();
-        }
-        return source;
+            return openSource(located(data, session), messages, progress);
+        });
     };
     if (context.headless) {
         made->source = open(made->failure, {});
         return made;
     }
-    context.jobs.start(pane + ":data" + toJson(data).dump(), "Data to compare",
+    context.jobs.start(key(), "Data to compare",
                        [weak = std::weak_ptr(made), open](const Progress& progress) -> Jobs::Finish {
                            std::string failure;
                            auto source = open(failure, progress);
@@ -252,6 +251,8 @@ void CompareFeed::draw(ViewContext& context, const std::string& pane, const std:
             }
         }
         drawCell(context, pane, i, size, moving);
+        // What could not be opened is not tried again while the variant asks for it.
+        if (cell.data && cell.data->data == cell.session.data) cell.data->used = true;
     }
     std::erase_if(data_, [](const auto& data) { return !data->used; });
     // One picture after the other is refined with the frame's whole time: sharing it would cost each its beginning anew

@@ -26,8 +26,8 @@ public:
     /// being computed, else null; as LatestFeed::get.
     std::shared_ptr<const DerivativeResult> get(ViewContext& context, const std::string& jobKey,
                                                 const volume::DerivativeQuery& query, const volume::TimePair& time);
-    /// Whether the data could not be read; the log has the message.
-    bool failed() const { return feed_.failed(); }
+    /// Why the last query could not be answered, "" if it can.
+    std::string failure() const { return feed_.failure(); }
 
 private:
     struct Wish {

@@ -1,5 +1,6 @@
 #include "app/views/flow_feed.h"
 
+#include "app/views/pending_wish.h"
 #include "app/views/view_parts.h"
 #include "vis/model/flow_geometry.h"
 #include "volume/error.h"
@@ -54,7 +55,7 @@ struct FlowFeed::State {
     std::list<Made> kept;              ///< most recent first
     std::map<std::size_t, Made> shown; ///< by layer: the last one made for it
     std::map<std::size_t, Wish> running;
-    const volume::BrickSource* source = nullptr;
+    std::shared_ptr<const volume::BrickSource> source;
 
     const Made* find(const Wish& wish) const {
         const auto found = std::find_if(kept.begin(), kept.end(), [&](const Made& made) { return made.wish == wish; });
@@ -73,11 +74,11 @@ struct FlowFeed::State {
 FlowFeed::FlowFeed() : state_(std::make_shared<State>()) {}
 
 std::vector<vis::GeometryLayer> FlowFeed::get(ViewContext& context, const std::string& pane) {
-    State& state = *state_;
-    if (state.source != context.source.get()) {
-        state = {};
-        state.source = context.source.get();
+    if (state_->source != context.source) {
+        state_ = std::make_shared<State>(); // a job of the old source finds its state gone
+        state_->source = context.source;
     }
+    State& state = *state_;
     const Session& session = context.session;
     const volume::TimePair time = volume::timesAround(context.source->info().times, session.time);
     std::vector<vis::GeometryLayer> out;
@@ -108,16 +109,11 @@ std::vector<vis::GeometryLayer> FlowFeed::get(ViewContext& context, const std::s
                     job, "Flow of " + flow->vector,
                     [weak = std::weak_ptr(state_), source = context.source, wish,
                      i](const Progress& progress) -> Jobs::Finish {
-                        std::shared_ptr<const vis::Geometry> made;
                         std::string failure;
-                        try {
-                            made = makeWish(source, wish, progress);
-                        } catch (const Error& error) {
-                            failure = error.what();
-                        }
-                        return [weak, source, made, failure, wish, i] {
+                        const auto made = attempt(failure, [&] { return makeWish(source, wish, progress); });
+                        return [weak, made, failure, wish, i] {
                             const auto owner = weak.lock();
-                            if (!owner || owner->source != source.get()) return;
+                            if (!owner) return;
                             owner->running.erase(i);
                             owner->shown.insert_or_assign(i, Made{wish, made});
                             // A failure too is remembered, so that it is not tried again every frame.

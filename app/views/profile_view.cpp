@@ -210,7 +210,8 @@ void drawProfileView(ViewContext& context, const std::string& pane, ProfileView&
     const bool usable = profile && (overTime || (profile->distance.size() > 1 && profile->distance.back() > 0));
     if (!context.figure) drawToolbar(context, usable ? profile : nullptr, view, shown);
     if (!usable) {
-        if (cache.feed.failed()) return drawHint("The data cannot be read here", "The log says why.");
+        if (const std::string failure = cache.feed.failure(); !failure.empty())
+            return drawHint("No values", failure.c_str());
         if (!profile) return ImGui::TextDisabled("Reading...");
         return drawHint("The line has no length", "Place a corner, move the cursor, and place another.");
     }

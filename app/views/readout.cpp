@@ -1,6 +1,7 @@
 #include "app/views/readout.h"
 
 #include "app/views/axis_label.h"
+#include "app/views/pending_wish.h"
 #include "app/views/ticks.h"
 #include "app/views/view_parts.h"
 #include "volume/background.h"
@@ -65,13 +66,8 @@ void updateReadout(ViewContext& context, Readout& readout) {
         "", "Values at the cursor",
         [weak = std::weak_ptr(readout.state), cache = state.cache, position, time](const Progress&) -> Jobs::Finish {
             workInBackground();
-            std::vector<volume::ProbeValue> values;
             std::string failure;
-            try {
-                values = volume::probe(*cache, position, time);
-            } catch (const Error& error) {
-                failure = error.what();
-            }
+            auto values = attempt(failure, [&] { return volume::probe(*cache, position, time); });
             return [weak, values = std::move(values), failure, position, time] {
                 const auto owner = weak.lock();
                 if (!owner) return;

@@ -1,5 +1,6 @@
 #include "app/views/statistics_feed.h"
 
+#include "app/views/pending_wish.h"
 #include "app/views/view_parts.h"
 #include "volume/background.h"
 #include "volume/brick_cache.h"
@@ -95,18 +96,16 @@ std::shared_ptr<const StatisticsResult> compute(const std::shared_ptr<const volu
 
 struct StatisticsFeed::State {
     std::list<std::shared_ptr<const StatisticsResult>> kept; ///< most recent first
-    std::optional<StatisticsWish> failed;
-    std::string failure;
-    std::optional<StatisticsWish> running;
+    PendingWish<StatisticsWish> pending;
     int runningLevel = 0;
-    const volume::BrickSource* source = nullptr;
+    std::shared_ptr<const volume::BrickSource> source;
     std::shared_ptr<const volume::BrickSource> coarse; ///< its coarse bricks, kept while a brush is dragged
 };
 
 StatisticsFeed::StatisticsFeed() : state_(std::make_shared<State>()) {}
 
 std::string StatisticsFeed::failure() const {
-    return state_->failure;
+    return state_->pending.failure;
 }
 
 HistogramBins histogramBins(const volume::DatasetInfo& info, int channel, Range range, int count) {
@@ -161,13 +160,13 @@ volume::Statistics answer(const std::shared_ptr<const volume::BrickSource>& sour
 
 std::shared_ptr<const StatisticsResult> StatisticsFeed::get(ViewContext& context, const std::string& jobKey,
                                                             const StatisticsWish& wish) {
-    State& state = *state_;
-    if (state.source != context.source.get()) {
-        if (state.running) context.jobs.cancel(jobKey);
-        state = {};
-        state.source = context.source.get();
-        state.coarse = std::make_shared<volume::BrickCache>(context.source, kCoarseBytes);
+    if (state_->source != context.source) {
+        context.jobs.cancel(jobKey);
+        state_ = std::make_shared<State>(); // a job of the old source finds its state gone
+        state_->source = context.source;
+        state_->coarse = std::make_shared<volume::BrickCache>(context.source, kCoarseBytes);
     }
+    State& state = *state_;
     const auto keep = [](State& into, std::shared_ptr<const StatisticsResult> result) {
         std::erase_if(into.kept, [&](const auto& old) { return old->wish == result->wish; });
         into.kept.push_front(std::move(result));
@@ -186,55 +185,46 @@ std::shared_ptr<const StatisticsResult> StatisticsFeed::get(ViewContext& context
             similar = result;
     }
     if (exact && exact->statistics.level == 0) return exact;
-    if (state.failed == wish) return exact ? exact : similar;
+    if (state.pending.refused(context.jobs, jobKey, wish)) return exact ? exact : similar;
     if (context.headless) {
         try {
             keep(state, compute(context.source, wish, 0, {}));
             return state.kept.front();
         } catch (const Error& error) {
-            state.failed = wish;
-            state.failure = error.what();
+            state.pending.fail(wish, error.what());
             return exact ? exact : similar;
         }
     }
     context.busy = true;
     context.behind = context.behind || !exact;
     // While a brush is dragged its first, coarse answer is waited for: cancelling it each frame would show none.
-    const bool running = state.running && context.jobs.running(jobKey);
+    const bool running = state.pending.running.has_value();
     const int first = firstLevel(context.source->grid(), wish);
     const bool coarse = running && state.runningLevel == first;
-    if (running && (*state.running == wish || coarse)) return exact ? exact : similar;
+    if (running && (*state.pending.running == wish || coarse)) return exact ? exact : similar;
 
     const int level = !exact                ? first
                       : context.interacting ? exact->statistics.level
                                             : nextLevel(context.source->grid(), exact->statistics.level);
     if (exact && level == exact->statistics.level) return exact;
-    state.running = wish;
+    state.pending.start(wish);
     state.runningLevel = level;
     context.jobs.start(
         jobKey, "Statistics",
         [weak = std::weak_ptr(state_), source = level > 0 ? state.coarse : context.source, wish, level,
          keep](const Progress& progress) -> Jobs::Finish {
             workInBackground();
-            std::shared_ptr<const StatisticsResult> result;
             std::string failure;
-            try {
-                result = compute(source, wish, level, progress);
-            } catch (const Error& error) {
-                failure = error.what();
-            }
+            const auto result = attempt(failure, [&] { return compute(source, wish, level, progress); });
             return [weak, result, failure, wish, keep] {
                 const auto owner = weak.lock();
                 if (!owner) return;
-                owner->running.reset();
                 if (result) {
-                    owner->failure.clear();
+                    owner->pending.answered();
                     keep(*owner, result);
                 } else {
-                    // Remembered, so that it is not tried again every frame; thrown on, so that the log has it.
-                    owner->failed = wish;
-                    owner->failure = failure;
-                    throw Error(failure);
+                    owner->pending.fail(wish, failure);
+                    throw Error(failure); // so that the log has it
                 }
             };
         },

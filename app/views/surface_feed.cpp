@@ -1,5 +1,6 @@
 #include "app/views/surface_feed.h"
 
+#include "app/views/pending_wish.h"
 #include "app/views/view_parts.h"
 #include "volume/error.h"
 #include "volume/mesh/isosurface.h"
@@ -63,11 +64,14 @@ std::optional<Wish> wishOf(const vis::IsoLayer& layer, const volume::DatasetInfo
 } // namespace
 
 struct SurfaceFeed::State {
-    std::list<Shape> kept;                               ///< most recent first
-    std::map<std::size_t, Wish> shown;                   ///< by layer: the last wish that had a shape
-    std::map<std::size_t, std::pair<Wish, int>> running; ///< by layer, with the level
-    std::vector<Wish> failed;
-    const volume::BrickSource* source = nullptr;
+    struct Asked {
+        PendingWish<Wish> wish;
+        int level = 0;
+    };
+    std::list<Shape> kept;             ///< most recent first
+    std::map<std::size_t, Wish> shown; ///< by layer: the last wish that had a shape
+    std::map<std::size_t, Asked> asked;
+    std::shared_ptr<const volume::BrickSource> source;
 
     /// The shape of a wish, the finest or the coarsest one there is.
     const Shape* find(const Wish& wish, bool finest) const {
@@ -86,7 +90,6 @@ struct SurfaceFeed::State {
             return count++ >= 2 && triangles > kKeptTriangles;
         });
     }
-    bool hasFailed(const Wish& wish) const { return std::find(failed.begin(), failed.end(), wish) != failed.end(); }
 };
 
 SurfaceFeed::SurfaceFeed() : state_(std::make_shared<State>()) {}
@@ -99,12 +102,12 @@ std::shared_ptr<const vis::Geometry> extractLayer(const std::shared_ptr<const vo
 }
 
 std::vector<vis::GeometryLayer> SurfaceFeed::get(ViewContext& context, const std::string& pane, bool moving) {
+    if (state_->source != context.source) {
+        state_ = std::make_shared<State>(); // a job of the old source finds its state gone
+        state_->source = context.source;
+    }
     State& state = *state_;
     const volume::DatasetInfo& info = context.source->info();
-    if (state.source != context.source.get()) {
-        state = {};
-        state.source = context.source.get();
-    }
     const volume::TimePair time = volume::timesAround(info.times, context.session.time);
     const int first = firstLevel(context.source->grid());
     std::vector<vis::GeometryLayer> out;
@@ -115,43 +118,40 @@ std::vector<vis::GeometryLayer> SurfaceFeed::get(ViewContext& context, const std
         const std::optional<Wish> wish = wishOf(*iso, info, time);
         if (!wish) continue;
         const Shape* here = state.find(*wish, true);
-        if ((!here || here->level > 0) && !state.hasFailed(*wish)) {
+        const std::string job = pane + ":surface" + std::to_string(i);
+        State::Asked& asked = state.asked[i];
+        if (!asked.wish.refused(context.jobs, job, *wish) && (!here || here->level > 0)) {
             if (context.headless) {
                 try {
                     state.keep({*wish, 0, extract(context.source, *wish, 0, {})});
-                } catch (const Error&) {
-                    state.failed.push_back(*wish);
+                } catch (const Error& error) {
+                    asked.wish.fail(*wish, error.what());
                 }
             } else {
                 context.busy = true;
-                const std::string job = pane + ":surface" + std::to_string(i);
-                const auto running = state.running.find(i);
                 // A coarse shape is waited for though the wish moved on: else a drag would show none.
-                const bool wait = running != state.running.end() && context.jobs.running(job) &&
-                                  (running->second.first == *wish || running->second.second == first);
+                const bool wait = asked.wish.running && (*asked.wish.running == *wish || asked.level == first);
                 const bool enough = here && context.interacting;
                 if (!wait && !enough) {
                     const int level = here ? 0 : first;
-                    state.running.insert_or_assign(i, std::pair(*wish, level));
+                    asked.wish.start(*wish);
+                    asked.level = level;
                     context.jobs.start(
                         job, "Surface of " + iso->channel,
                         [weak = std::weak_ptr(state_), source = context.source, wish = *wish, level,
                          i](const Progress& progress) -> Jobs::Finish {
-                            std::shared_ptr<const vis::Geometry> made;
                             std::string failure;
-                            try {
-                                made = extract(source, wish, level, progress);
-                            } catch (const Error& error) {
-                                failure = error.what();
-                            }
+                            const auto made = attempt(failure, [&] { return extract(source, wish, level, progress); });
                             return [weak, made, failure, wish, level, i] {
                                 const auto owner = weak.lock();
                                 if (!owner) return;
-                                owner->running.erase(i);
-                                if (made) return owner->keep({wish, level, made});
-                                // Remembered, so that it is not tried again every frame.
-                                owner->failed.push_back(wish);
-                                throw Error(failure);
+                                PendingWish<Wish>& own = owner->asked[i].wish;
+                                if (!made) {
+                                    own.fail(wish, failure);
+                                    throw Error(failure);
+                                }
+                                own.answered();
+                                owner->keep({wish, level, made});
                             };
                         },
                         level == first);
@@ -159,7 +159,7 @@ std::vector<vis::GeometryLayer> SurfaceFeed::get(ViewContext& context, const std
             }
             here = state.find(*wish, true);
         }
-        context.behind = context.behind || (!here && !state.hasFailed(*wish));
+        context.behind = context.behind || (!here && !asked.wish.failed);
         if (here)
             state.shown.insert_or_assign(i, *wish);
         else if (const auto last = state.shown.find(i); last != state.shown.end())

@@ -1,5 +1,6 @@
 #include "app/views/tesseract_feed.h"
 
+#include "app/views/pending_wish.h"
 #include "volume/error.h"
 #include "volume/source_at_time.h"
 
@@ -17,33 +18,38 @@ struct Asked {
 
 struct TesseractFeed::State {
     std::shared_ptr<const volume::Samples4> samples;
-    std::optional<Asked> of, failed; ///< what `samples` answers; what is not tried again every frame
-    bool coarse = false;             ///< they are of the coarsest level only
-    std::string failure;
+    std::optional<Asked> of; ///< what `samples` answers
+    bool coarse = false;     ///< they are of the coarsest level only
+    PendingWish<Asked> pending;
+    std::shared_ptr<const volume::BrickSource> source;
 };
 
 TesseractFeed::TesseractFeed() : state_(std::make_shared<State>()) {}
 
 std::string TesseractFeed::failure() const {
-    return state_->failure;
+    return state_->pending.failure;
 }
 
 std::shared_ptr<const volume::Samples4> TesseractFeed::get(ViewContext& context, const std::string& jobKey,
                                                            const volume::SamplesQuery& query,
                                                            const std::optional<volume::TimePair>& time) {
+    if (state_->source != context.source) {
+        context.jobs.cancel(jobKey);
+        auto next = std::make_shared<State>(); // a job of the old source finds its state gone
+        next->samples = state_->samples;
+        next->source = context.source;
+        state_ = std::move(next);
+    }
     State& state = *state_;
     const Asked asked{query, time};
     const bool answered = state.samples && state.of == asked;
-    if ((answered && !state.coarse) || state.failed == asked) return state.samples;
+    if (state.pending.refused(context.jobs, jobKey, asked) || (answered && !state.coarse)) return state.samples;
     // Other values of the same samples come soon enough; nothing at all is worth a first picture.
     const bool coarse = !state.samples;
     const auto take = [asked](State& own, bool first, std::shared_ptr<const volume::Samples4> made,
                               const std::string& failure) {
-        own.failure = failure;
-        if (!made) {
-            own.failed = asked;
-            return;
-        }
+        if (!made) return own.pending.fail(asked, failure);
+        own.pending.answered();
         own.samples = std::move(made);
         own.of = asked;
         own.coarse = first;
@@ -64,17 +70,13 @@ std::shared_ptr<const volume::Samples4> TesseractFeed::get(ViewContext& context,
         return state.samples;
     }
     context.busy = true;
-    if (context.jobs.running(jobKey)) return state.samples; // the next one when this is here: a drag shows all the time
+    if (state.pending.running) return state.samples; // the next one when this is here: a drag shows all the time
+    state.pending.start(asked);
     context.jobs.start(
         jobKey, "Samples of the tesseract",
         [weak = std::weak_ptr<State>(state_), take, gather, coarse](const Progress& progress) -> Jobs::Finish {
-            std::shared_ptr<const volume::Samples4> made;
             std::string failure;
-            try {
-                made = gather(coarse, progress);
-            } catch (const Error& error) {
-                failure = error.what();
-            }
+            const auto made = attempt(failure, [&] { return gather(coarse, progress); });
             return [weak, take, coarse, made, failure] {
                 if (const auto own = weak.lock()) take(*own, coarse, made, failure);
                 if (!failure.empty()) throw Error(failure);

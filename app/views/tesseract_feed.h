@@ -15,9 +15,9 @@ namespace tessera::app {
 class TesseractFeed {
 public:
     TesseractFeed();
-    /// The best samples so far for a query, or of the former one while nothing is here; null at first. Sets
-    /// context.busy while better ones are on their way; headless, reads to the end. `time`: in place of the query's
-    /// times, between stored ones.
+    /// The best samples so far for a query, or of the former one, of former data too, while nothing is here; null at
+    /// first. Sets context.busy while better ones are on their way; headless, reads to the end. `time`: in place of the
+    /// query's times, between stored ones.
     std::shared_ptr<const volume::Samples4> get(ViewContext& context, const std::string& jobKey,
                                                 const volume::SamplesQuery& query,
                                                 const std::optional<volume::TimePair>& time);

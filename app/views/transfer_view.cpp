@@ -230,8 +230,8 @@ void drawTransferView(ViewContext& context, const std::string& pane, TransferVie
     query.gradientTop = double(function.gradientTop) * (range.hi - range.lo);
     const auto result = cache.derivatives.get(context, "gradients " + pane, query,
                                               volume::timesAround(info.times, context.session.time));
-    if (cache.derivatives.failed() && !result)
-        drawHint("No gradients", "The data could not be read; the log says where.");
+    if (const std::string failure = cache.derivatives.failure(); !failure.empty() && !result)
+        drawHint("No gradients", failure.c_str());
     else if (regions)
         drawRegionPage(context, cache.regions, function, info, now, result);
     else

@@ -1,0 +1,159 @@
+#include "app/views/compare_feed.h"
+#include "app/views/latest_feed.h"
+#include "app/views/statistics_feed.h"
+#include "app/views/surface_feed.h"
+#include "app/views/tesseract_feed.h"
+#include "tests/app/views_fixture.h"
+
+#include <gmock/gmock.h>
+
+namespace tessera::app {
+namespace {
+
+/// Feeds of views in frames without pictures.
+struct Feeds : ViewsTest {
+    Feeds() {
+        show(fuelCell(volume::LatticeKind::CC));
+        headless = false;
+    }
+    ViewContext context() {
+        return {.session = session, .source = source, .renderer = renderer, .jobs = jobs, .caches = caches};
+    }
+    /// Frames in which `get` asks and every job whose key has this in it is cancelled, until it asks no more; returns
+    /// how many there were.
+    template <class Get> int cancelAll(Get&& get, const std::string& key = "") {
+        int started = 0, asked = 1;
+        for (int turn = 0; turn < 20 && asked > 0; ++turn) {
+            ViewContext now = context();
+            get(now);
+            busy = now.busy;
+            asked = 0;
+            for (const Jobs::Status& job : jobs.list()) {
+                if (job.key.find(key) == std::string::npos) continue;
+                jobs.cancel(job.key);
+                ++asked;
+            }
+            started += asked;
+            jobs.wait();
+            for (const std::string& text : jobs.collect()) messages.push_back(text);
+        }
+        return started;
+    }
+    /// As many frames as it takes.
+    template <class Get> void finish(Get&& get) {
+        busy = true;
+        for (int turn = 0; turn < 500 && busy; ++turn) {
+            ViewContext now = context();
+            get(now);
+            busy = now.busy;
+            jobs.wait();
+            for (const std::string& text : jobs.collect()) messages.push_back(text);
+        }
+        EXPECT_FALSE(busy);
+    }
+};
+
+// What the user cancels is not started again in the next frame, but when something else is wanted.
+TEST_F(Feeds, CancelledStatisticsWaitForAnotherWish) {
+    StatisticsFeed feed;
+    int bins = 32;
+    const auto get = [&](ViewContext& now) {
+        return feed.get(now, "feed", makeWish(session, source->info(), {0}, {{0, 1000}}, bins, false));
+    };
+    EXPECT_EQ(cancelAll(get), 1);
+    EXPECT_FALSE(busy);
+    EXPECT_EQ(feed.failure(), "cancelled");
+    EXPECT_TRUE(messages.empty());
+    bins = 16;
+    finish(get);
+    EXPECT_EQ(feed.failure(), "");
+    bins = 32;
+    finish(get);
+    ViewContext now = context();
+    EXPECT_EQ(get(now)->statistics.level, 0) << "wanted again, it is tried again";
+}
+
+TEST_F(Feeds, CancelledLatestAnswerWaitsForAnotherWish) {
+    LatestFeed<int, int> feed;
+    int wish = 1;
+    bool memory = true;
+    const auto get = [&](ViewContext& now) {
+        return feed.get(
+            now, "feed", "Twice", wish,
+            [memory](const auto&, int of, const Progress& progress) {
+                progress.advance(0);
+                if (!memory) throw std::bad_alloc();
+                return 2 * of;
+            },
+            [](int) { return true; });
+    };
+    EXPECT_EQ(cancelAll(get), 1);
+    EXPECT_FALSE(busy);
+    EXPECT_EQ(feed.failure(), "cancelled");
+    wish = 2;
+    finish(get);
+    ViewContext now = context();
+    EXPECT_EQ(*get(now), 4);
+    EXPECT_EQ(feed.failure(), "");
+
+    memory = false;
+    wish = 3;
+    finish(get);
+    EXPECT_EQ(feed.failure(), "not enough memory");
+    EXPECT_THAT(messages, testing::ElementsAre("not enough memory"));
+    EXPECT_EQ(*get(now), 4) << "what was there stays";
+}
+
+TEST_F(Feeds, CancelledSurfaceWaitsForAnotherWish) {
+    SurfaceFeed feed;
+    vis::IsoLayer layer{.channel = "T"};
+    const Range range =
+        source->info().channelRange(source->info().channels()[std::size_t(*source->info().findChannel("T"))]);
+    layer.value = 0.5 * (range.lo + range.hi);
+    layer.method = vis::SurfaceMethod::Polygons;
+    session.layers = {{"surface", true, layer}};
+    const auto get = [&](ViewContext& now) { return feed.get(now, "pane", false); };
+    EXPECT_EQ(cancelAll(get), 1);
+    EXPECT_FALSE(busy);
+    std::get<vis::IsoLayer>(session.layers[0].technique).value = 0.4 * range.lo + 0.6 * range.hi;
+    finish(get);
+    ViewContext now = context();
+    EXPECT_EQ(get(now).size(), 1u);
+}
+
+TEST_F(Feeds, CancelledSamplesOfTheTesseractWaitForAnotherWish) {
+    TesseractFeed feed;
+    volume::SamplesQuery query;
+    query.channels = {0};
+    query.times = {0, 1};
+    const auto get = [&](ViewContext& now) { return feed.get(now, "tesseract", query, {}); };
+    EXPECT_EQ(cancelAll(get), 1);
+    EXPECT_FALSE(busy);
+    EXPECT_EQ(feed.failure(), "cancelled");
+    query.channels = {1};
+    finish(get);
+    ViewContext now = context();
+    EXPECT_TRUE(get(now));
+}
+
+TEST_F(Feeds, CancelledDataToCompareAreNotOpenedAgain) {
+    CompareFeed feed;
+    std::vector<CompareVariant> variants{{"as it is", {}}, {"other", {{"/data/model", "\"marschner-lobb\""}}}};
+    session.data.model = "fuel-cell";
+    const auto get = [&](ViewContext& now) { feed.draw(now, "pane", variants, 0, {32, 24}, false); };
+    EXPECT_EQ(cancelAll(get, ":data"), 1);
+    finish(get);
+    ASSERT_EQ(feed.cells().size(), 2u);
+    EXPECT_EQ(feed.cells()[1]->failure, "cancelled");
+    EXPECT_EQ(feed.cells()[0]->failure, "");
+    session.camera.distance *= 1.1f; // another picture of the same data
+    EXPECT_EQ(cancelAll(get, ":data"), 0);
+    variants[1].changes = {{"/data/model", "\"marschner-lobb\""},
+                           {"/data/settings", "{\"nx\": 8, \"ny\": 8, \"nz\": 8}"}};
+    finish(get);
+    EXPECT_EQ(feed.cells()[1]->failure, "");
+    EXPECT_TRUE(feed.cells()[1]->finished());
+}
+
+} // namespace
+} // namespace tessera::app
