@@ -40,6 +40,14 @@ bool sameSteps(const Scene& a, const Scene& b, const volume::DatasetInfo& info) 
     return !adapts || (a.render.adaptiveStep == b.render.adaptiveStep && a.render.stepVoxels == b.render.stepVoxels);
 }
 
+/// Whether layers come and go with their lenses, and brushes are confined, alike; where lenses lie is the camera's.
+bool sameLenses(const Scene& a, const Scene& b) {
+    const auto acts = [](const Lens& x, const Lens& y) {
+        return x.name == y.name && x.enabled == y.enabled && x.effect == y.effect;
+    };
+    return std::ranges::equal(a.lenses, b.lenses, acts);
+}
+
 } // namespace
 
 /// About the share of all samples that is taken where empty blocks are leapt over and steps are longer.
@@ -72,7 +80,8 @@ ProgramRecipe Renderer::Impl::prepare(ViewTarget& target, const Scene& scene, Ra
     if (target.tablesFor && target.tablesRevision == residency.revision() && target.tablesFor->layers == scene.layers &&
         target.tablesFor->transfer == scene.transfer && target.tablesFor->render.filter == scene.render.filter &&
         sameSteps(*target.tablesFor, scene, source->info()) && target.tablesKeys == target.shown &&
-        target.tablesFor->selection == scene.selection && target.tablesFor->stretch == scene.stretch)
+        target.tablesFor->selection == scene.selection && target.tablesFor->stretch == scene.stretch &&
+        sameLenses(*target.tablesFor, scene))
         return recipe();
     target.tablesFor = scene;
     target.tablesRevision = residency.revision();

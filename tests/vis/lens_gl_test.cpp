@@ -254,5 +254,37 @@ TEST_P(LensPictures, LayersMayShowAnotherTime) {
     EXPECT_EQ(draw(scene), wanted);
 }
 
+/// A lens that comes, goes or acts otherwise in a picture that is there already, over layers of one channel.
+TEST_P(LensPictures, MayBeTurnedOnAndOff) {
+    Drawing drawing(GetParam().kind, GetParam().masked, true);
+    Scene scene = baseScene(false);
+    scene.layers = {{"", true, VolumeLayer{.channel = "a", .shaded = false}},
+                    {"", true, IsoLayer{.channel = "a", .value = 320}, "inner"},
+                    {"", true, VolumeLayer{.channel = "a", .shaded = false, .density = 6}, "inner"}};
+    scene.selection.brushes = {rangeBrush({{"a", 318, 330, 1}})};
+    scene.selection.contextOpacity = 0;
+    scene.lenses = {lensAt("inner", scene.cursor, 0.3f)};
+    const ViewTargetPtr target = drawing.renderer.makeTarget();
+    FrameRequest request;
+    request.size = kSize;
+    request.wait = true;
+    std::optional<Linear> last;
+    for (const bool enabled : {false, true, false, true})
+        for (const LensEffect effect : {LensEffect::Replace, LensEffect::Focus, LensEffect::Enhance}) {
+            scene.lenses[0].enabled = enabled;
+            scene.lenses[0].effect = effect;
+            ASSERT_TRUE(drawing.renderer.render(*target, scene, request).complete);
+            Linear got;
+            got.size = kSize;
+            for (const glm::vec4& pixel : drawing.renderer.readLinear(*target)) got.pixels.emplace_back(pixel);
+            const Linear wanted = drawing.draw(scene);
+            EXPECT_LT(reference::compare(got, wanted, 1).rmse, 1e-6) << enabled << ' ' << int(effect);
+            if (last && enabled) {
+                EXPECT_GT(reference::compare(*last, wanted, 1).rmse, 1e-3) << int(effect);
+            }
+            last = wanted;
+        }
+}
+
 } // namespace
 } // namespace tessera::vis
