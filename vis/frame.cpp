@@ -62,7 +62,7 @@ void Renderer::Impl::refine(ViewTarget& target, const Scene& scene, const FrameR
         target.fullValid = target.stillDone = true;
         return;
     }
-    const bool presents = target.shows || request.wait || presentable(target, scene);
+    const bool presents = request.wait || presentable(target, scene);
     const RayUnits units = rayUnits(plan);
     for (std::size_t i = 0; i < plan.fields.size(); ++i) {
         const BoundField& field = plan.fields[i];
@@ -88,6 +88,7 @@ void Renderer::Impl::refine(ViewTarget& target, const Scene& scene, const FrameR
         if (!linked && !programs.firstUse(*program.program)) return true;
         setRayUniforms(*program.program, drawn, shown, info, source->grid(), target.size, 1);
         if (linked) {
+            geometry(target, scene, plan, target.size, target.everything());
             programs.warmUp(made, target.full.framebuffer);
             return false;
         }

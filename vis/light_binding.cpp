@@ -55,6 +55,12 @@ bool Renderer::Impl::bindLight(ViewTarget& target, const Scene& scene, const Fra
     const auto setUniforms = [&](const Program& program) {
         setRayUniforms(program, plan, scene, source->info(), source->grid(), target.size, 1);
     };
+    if (answer.stage == ProgramStage::Linked) {
+        setUniforms(*answer.program);
+        const Texture matter = makeTexture2D({1, 1}, kMatterFormat, GL_NEAREST, "like the light volume's matter");
+        programs.warmUp(recipe, makeFramebuffer({matter.name()}, "like the light volume's matter"));
+        return false;
+    }
     target.light.update(scene, source->info(), {residency.revision(), target.lastTime.value_or(0)}, *answer.program,
                         setUniforms, vertices.name(), request.budgetMs / 3, request.wait);
     if (target.lightVersion != target.light.version()) {

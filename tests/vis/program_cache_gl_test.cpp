@@ -2,6 +2,8 @@
 #include "tests/vis/gl_fixture.h"
 
 #include "vis/gl/program_cache.h"
+#include "vis/gl/warm_up.h"
+#include "vis/technique/ray_uniforms.h"
 
 #include <cstdlib>
 #include <filesystem>
@@ -90,6 +92,70 @@ TEST_F(ProgramCacheTest, CompilingBlocksNobody) {
     test::renderAll(renderer, *waited, heavy, request.size);
     EXPECT_EQ(test::maxDifference(renderer.readLinear(*target), renderer.readLinear(*waited)), 0);
     EXPECT_TRUE(renderer.takeMessages().empty());
+}
+
+// So it is with the program that presents: another tone curve is waited for under the former picture.
+TEST_F(ProgramCacheTest, PresentingBlocksNobody) {
+    vis::Renderer renderer;
+    renderer.setSource(source());
+    const vis::ViewTargetPtr target = renderer.makeTarget();
+    vis::Scene scene = heavyScene();
+    scene.layers.resize(1);
+    vis::FrameRequest request;
+    request.size = {64, 64};
+    test::renderAll(renderer, *target, scene, request.size);
+    glm::ivec2 size;
+    const std::vector<std::uint8_t> former = renderer.readPixels(*target, size);
+    scene.tone.curve = vis::ToneCurve::Filmic;
+    scene.tone.exposure = 1;
+    vis::FrameStatus status;
+    int compiling = 0;
+    for (int frame = 0; frame < 20000 && !status.complete; ++frame) {
+        status = renderer.render(*target, scene, request);
+        if (!status.compiling) continue;
+        ++compiling;
+        EXPECT_EQ(renderer.readPixels(*target, size), former);
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    ASSERT_TRUE(status.complete);
+    EXPECT_GT(compiling, 0);
+    EXPECT_NE(renderer.readPixels(*target, size), former);
+}
+
+// The picture's light volume too.
+TEST_F(ProgramCacheTest, ShadowsAreCompiledInTheBackground) {
+    vis::Renderer renderer;
+    renderer.setSource(source());
+    const vis::ViewTargetPtr target = renderer.makeTarget(), waited = renderer.makeTarget();
+    vis::Scene scene = heavyScene();
+    scene.layers.resize(1);
+    scene.lighting.shadows = {.strength = 0.9f, .resolution = 16};
+    vis::FrameRequest request;
+    request.size = {64, 64};
+    vis::FrameStatus status;
+    for (int frame = 0; frame < 20000 && !status.complete; ++frame) {
+        status = renderer.render(*target, scene, request);
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    ASSERT_TRUE(status.complete);
+    test::renderAll(renderer, *waited, scene, request.size);
+    EXPECT_LT(test::maxDifference(renderer.readLinear(*target), renderer.readLinear(*waited)), 1e-5);
+}
+
+// What a second context is to draw with: every unit that anything is bound to.
+TEST_F(ProgramCacheTest, DrawStatesHoldAllUnits) {
+    const vis::Texture high = vis::makeTexture2D({4, 4}, GL_RG32F, GL_NEAREST, "high"),
+                       color = vis::makeTexture2D({4, 4}, GL_RGBA16F, GL_NEAREST, "color");
+    const vis::Framebuffer framebuffer = vis::makeFramebuffer({color.name()}, "framebuffer");
+    for (const int at : {1, vis::RayUnits::kGeometry, vis::RayUnits::kPaper}) {
+        const auto unit = GLuint(at);
+        glBindTextureUnit(unit, high.name());
+        const vis::DrawState state = vis::captureDrawState(framebuffer);
+        ASSERT_EQ(state.textures.size(), 1u);
+        EXPECT_EQ(state.textures[0], std::make_pair(unit, high.name()));
+        EXPECT_EQ(state.colorFormats, std::vector<GLenum>{GL_RGBA16F});
+        glBindTextureUnit(unit, 0);
+    }
 }
 
 // Before its first picture a target shows the background, and says what it waits for.

@@ -72,7 +72,7 @@ bool LightBaker::drawMatter(const Program& program, const std::function<void(con
     const Clock::time_point begin = Clock::now();
     const glm::ivec2 size(grid_.size.x, grid_.size.y * grid_.size.z);
     if (atlasSize_ != size) {
-        atlas_ = makeTexture2D(size, GL_RGBA32F, GL_NEAREST, "matter of the light volume");
+        atlas_ = makeTexture2D(size, kMatterFormat, GL_NEAREST, "matter of the light volume");
         framebuffer_ = makeFramebuffer({atlas_.name()}, "matter of the light volume");
         atlasSize_ = size;
     }

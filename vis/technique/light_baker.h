@@ -12,6 +12,8 @@
 
 namespace tessera::vis {
 
+inline constexpr GLenum kMatterFormat = GL_RGBA32F; ///< of the texture that the matter is drawn to
+
 /// Keeps the textures of a picture's light volume (vis/model/light_volume.h) up to date without holding up the window:
 /// matter is drawn some rows a call, meshes are added and light is spread by a thread of its own; until then the former
 /// volume shows.
