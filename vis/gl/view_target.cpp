@@ -21,11 +21,12 @@ void ViewTarget::resize(glm::ivec2 wanted, bool exact) {
     whole.resize(wanted, exact, "picture");
     quick.resize(wanted, exact, "reduced picture");
     Texture made = makeTexture2D(wanted, GL_RGBA8, GL_LINEAR, "presented picture");
-    outputFramebuffer = makeFramebuffer({made.name()}, "presented picture");
+    Framebuffer framebuffer = makeFramebuffer({made.name()}, "presented picture");
     reach.resize(wanted);
     full = std::move(whole);
     reduced = std::move(quick);
     output = std::move(made);
+    outputFramebuffer = std::move(framebuffer);
     size = wanted;
     started = shows = stillDone = false;
     changed = stale = {};
