@@ -45,6 +45,7 @@ Renderer::Renderer(const RendererOptions& options) : impl_(std::make_unique<Impl
 Renderer::~Renderer() = default;
 
 void Renderer::setSource(std::shared_ptr<const volume::BrickSource> source, SameSamples same) {
+    if (source == impl_->source) return;
     impl_->formerSource = same.channels > 0 && same.times > 0 ? impl_->source.get() : nullptr;
     impl_->source = source;
     impl_->residency.setSource(std::move(source), same);
@@ -117,7 +118,9 @@ FrameStatus Renderer::render(ViewTarget& target, const Scene& scene, const Frame
         impl_->residency.setBudgets(std::min(impl_->options.textureBudget, std::size_t(limits.textureMemory) << 20),
                                     std::min(impl_->options.memoryBudget, std::size_t(limits.brickMemory) << 20));
         impl_->residency.setKeptChange(double(limits.keptChange));
-        impl_->residency.beginFrame();
+        // A frame of a window draws each of its targets once; a picture that is waited for stands for itself.
+        if (request.wait || target.frame == impl_->residency.frame()) impl_->residency.beginFrame();
+        target.frame = impl_->residency.frame();
         impl_->residency.update(request.wait ? ~std::size_t(0) : kUploadPerFrame);
         plan = planRays(scene, impl_->source->info());
         finds = !plan.empty() && impl_->findsHidden(scene);

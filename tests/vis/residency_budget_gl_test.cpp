@@ -105,6 +105,78 @@ TEST_F(ResidencyTest, RefusedMemoryMakesThePictureCoarser) {
     }
 }
 
+// More views than fit at once: what one of them draws makes no room for the next one within the same frame, and all
+// come to rest.
+TEST_F(ResidencyTest, ManyViewsComeToRestWithinTheBudget) {
+    vis::RendererOptions options = bricks();
+    options.textureBudget = std::size_t(1) << 20;
+    vis::Renderer renderer(options);
+    renderer.setSource(waves());
+    struct View {
+        vis::ViewTargetPtr target;
+        Scene scene;
+        bool complete = false;
+    };
+    std::vector<View> views;
+    for (int i = 0; i < 14; ++i) {
+        View view{renderer.makeTarget(), volumeScene(), false};
+        view.scene.camera.distance = 0.35f;
+        vis::orbit(view.scene.camera, {0, 0}, {0.25f * float(i), 0.1f * float(i % 3)});
+        views.push_back(std::move(view));
+    }
+    vis::FrameRequest request;
+    request.size = {16, 16};
+    bool rest = false;
+    for (int frame = 0; frame < 3000 && !rest; ++frame) {
+        rest = true;
+        for (View& view : views) rest &= renderer.render(*view.target, view.scene, request).complete;
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    EXPECT_TRUE(rest);
+    EXPECT_LE(renderer.residency().textureBytes, options.textureBudget);
+}
+
+// Two views of two channels, memory for one of them: one is shown coarser, none of them takes the other's for ever.
+TEST_F(ResidencyTest, RefusedMemoryIsSharedByTwoViews) {
+    const auto v = [](glm::dvec3 p) { return 0.5 + 0.4 * std::sin(0.2 * p.x); };
+    const auto source = std::make_shared<Watched>(
+        std::make_shared<vis::FunctionSource>(volume::LatticeKind::CC, glm::ivec3(40), glm::dvec3(1),
+                                              std::vector<vis::FunctionSource::Channel>{{"v", v}, {"w", v}}, 8));
+    vis::RendererOptions options;
+    options.driverMemory = std::size_t(200) << 10; // a channel takes 44^3 texels of 2 bytes
+    vis::Renderer renderer(options);
+    renderer.setSource(source);
+    Scene scene = volumeScene(), other = scene;
+    std::get<vis::VolumeLayer>(other.layers[0].technique).channel = "w";
+    other.transfer["w"] = scene.transfer["v"];
+    const vis::ViewTargetPtr a = renderer.makeTarget(), b = renderer.makeTarget();
+    vis::FrameRequest request;
+    request.size = {16, 16};
+    bool rest = false;
+    for (int frame = 0; frame < 3000 && !rest; ++frame) {
+        rest = renderer.render(*a, scene, request).complete;
+        rest &= renderer.render(*b, other, request).complete;
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    EXPECT_TRUE(rest);
+    EXPECT_EQ(renderer.takeMessages().size(), 1u);
+}
+
+// The source that is there already is not read again.
+TEST_F(ResidencyTest, TheSameSourceStays) {
+    const auto source = waves();
+    vis::Renderer renderer(bricks());
+    renderer.setSource(source);
+    const vis::ViewTargetPtr target = renderer.makeTarget();
+    refine(renderer, *target, volumeScene(), {24, 24});
+    const std::uint64_t revision = std::uint64_t(renderer.residency().bricksUploaded);
+    EXPECT_GT(revision, 0u);
+    renderer.setSource(source);
+    const vis::ViewTargetPtr next = renderer.makeTarget();
+    refine(renderer, *next, volumeScene(), {24, 24});
+    EXPECT_EQ(std::uint64_t(renderer.residency().bricksUploaded), revision);
+}
+
 // Minimised windows, odd sizes and a storm of them: no GL error, and the last one is drawn.
 TEST_F(ResidencyTest, SizesComeAndGo) {
     vis::Renderer renderer;

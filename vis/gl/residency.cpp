@@ -11,8 +11,6 @@ namespace tessera::vis {
 
 namespace {
 
-constexpr int kBricksInFlight = 12; ///< brick jobs queued per channel: few, so that the order follows the view
-
 std::size_t texelCount(glm::ivec3 size) {
     return std::size_t(size.x) * std::size_t(size.y) * std::size_t(size.z);
 }
@@ -130,8 +128,7 @@ void Residency::want(const ChannelKey& key, double priority, bool coarseFirst,
     request.coverage = entry.coverage;
     if (level > 0) {
         if (entry.shown) {
-            if (entry.demand != demand && !(entry.demand && demand && *entry.demand == *demand))
-                entry.shown->outOfRoom = entry.stuck = false; // another view may have less in sight
+            if (wantedAnew(entry, demand)) entry.shown->outOfRoom = entry.stuck = false; // less may be in sight
             entry.demand = std::move(demand);
             entry.shown->bricks->want(entry.demand.get(), frame_);
             queueBricks(key, entry, priority);
@@ -147,27 +144,6 @@ void Residency::want(const ChannelKey& key, double priority, bool coarseFirst,
         request.level = coarse ? grid.levels - 1 : finest;
         entry.loading = true;
         add(coarse ? priority - 1e6 : priority, std::move(request));
-    }
-}
-
-void Residency::queueBricks(const ChannelKey& key, Entry& entry, double priority) {
-    const ChannelTexture& shown = *entry.shown;
-    if (shown.outOfRoom && (!waiting_ || entry.stuck)) return;
-    while (entry.bricksInFlight < kBricksInFlight) {
-        const std::vector<BrickId> asked = shown.bricks->ask(std::size_t(kBricksInFlight - entry.bricksInFlight));
-        if (asked.empty()) return;
-        for (const BrickId& id : asked) {
-            if (reuseBrick(key, entry, id)) continue;
-            ++entry.bricksInFlight;
-            LoadRequest request;
-            request.key = key;
-            request.level = id.level;
-            request.brick = id.index;
-            request.summary = entry.summary;
-            request.encoding = shown.encoding;
-            request.coverage = entry.coverage;
-            add(priority + double(shown.bricks->priority(id)), std::move(request));
-        }
     }
 }
 

@@ -12,7 +12,7 @@
 /// per frame, within a budget.
 namespace tessera::vis {
 
-inline constexpr std::uint64_t kFramesInUse = 8; ///< several views draw in turn: what one of the last frames used stays
+inline constexpr std::uint64_t kFramesInUse = 2;                      ///< what one of the last frames used stays
 inline constexpr std::size_t kMaxTextureBytes = std::size_t(1) << 30; ///< software GL refuses more in one texture
 
 /// One channel at one time on the GPU: a texture of the whole where that is small enough, else bricks in an atlas.
@@ -45,8 +45,10 @@ public:
     /// Share of a parameter's range: bricks that move less from one time to another are drawn with the same texels.
     void setKeptChange(double share) { keptChange_ = share; }
 
-    /// A new frame begins: textures not wanted in one of the last few frames may leave if the budget asks for it.
+    /// A new frame begins, of all views: textures not wanted in one of the last few frames may leave if the budget asks
+    /// for it.
     void beginFrame() { ++frame_; }
+    std::uint64_t frame() const { return frame_; }
     /// Says that a channel is needed in this frame and queues what is missing. `coarseFirst`: get a first picture soon.
     /// `demand`: which bricks of a bricked channel; null: the coarsest level alone.
     void want(const ChannelKey& key, double priority, bool coarseFirst, std::shared_ptr<const BrickDemand> demand);
@@ -84,13 +86,18 @@ private:
         Texture texture;
         int slices = 0;
     };
+    struct Wanted {
+        std::shared_ptr<const BrickDemand> demand;
+        std::uint64_t frame = 0; ///< in which a view wanted it last
+    };
     struct Entry {
         std::shared_ptr<const ChannelSummary> summary;
         std::optional<ChannelTexture> shown;
-        std::shared_ptr<const BrickDemand> demand;
-        bool loading = false;  ///< a job for the whole channel, or its first brick, is under way
-        bool failed = false;   ///< nothing more will come
-        bool coverage = false; ///< a damaged brick asks for it
+        std::shared_ptr<const BrickDemand> demand; ///< of the view that asked last
+        std::vector<Wanted> wanted;                ///< of the views of the last frames
+        bool loading = false;                      ///< a job for the whole channel, or its first brick, is under way
+        bool failed = false;                       ///< nothing more will come
+        bool coverage = false;                     ///< a damaged brick asks for it
         int bricksInFlight = 0;
         bool stuck = false; ///< the atlas cannot grow either
         int finest = 0;     ///< level of a whole channel for which the driver has memory
@@ -101,7 +108,6 @@ private:
     std::size_t slotBytes(int components) const;
     void keepSame(const LoadExchange& former, SameSamples same);
     void add(double priority, LoadRequest request);
-    void queueBricks(const ChannelKey& key, Entry& entry, double priority);
     bool still(const ChannelKey& key, int madeOf, glm::ivec3 first, glm::ivec3 last, bool exactly) const;
     bool keepsStill(const ChannelKey& key, int madeOf, const BrickId& id) const;
     bool reuseBrick(const ChannelKey& key, Entry& entry, const BrickId& id);
@@ -115,6 +121,8 @@ private:
     void evict();
 
     // residency_bricks.cpp
+    bool wantedAnew(Entry& entry, const std::shared_ptr<const BrickDemand>& demand) const;
+    void queueBricks(const ChannelKey& key, Entry& entry, double priority);
     void beginBricks(const LoadedTexels& first, Entry& entry);
     void takeBrick(LoadedTexels& brick, Entry& entry);
     BrickAtlas& atlasFor(int components);

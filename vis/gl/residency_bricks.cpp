@@ -9,10 +9,49 @@ namespace tessera::vis {
 
 namespace {
 
+constexpr int kBricksInFlight = 12; ///< brick jobs queued per channel: few, so that the order follows the view
 constexpr std::size_t kFewSlots = 16;
 constexpr float kMuchLess = 1.25f; ///< a brick in sight gives way only to one this many times as urgent
 
 } // namespace
+
+/// Notes what a view wants of a channel's bricks. True where no view wanted that so far, or where one wants no more
+/// what it wanted.
+bool Residency::wantedAnew(Entry& entry, const std::shared_ptr<const BrickDemand>& demand) const {
+    const auto left = [&](const Wanted& each) { return each.frame + kFramesInUse < frame_; };
+    const auto same = [&](const Wanted& each) {
+        return each.demand == demand || (each.demand && demand && *each.demand == *demand);
+    };
+    const bool fewer = std::erase_if(entry.wanted, left) > 0;
+    const auto found = std::ranges::find_if(entry.wanted, same);
+    if (found == entry.wanted.end()) {
+        entry.wanted.push_back({demand, frame_});
+        return true;
+    }
+    found->frame = frame_;
+    return fewer;
+}
+
+void Residency::queueBricks(const ChannelKey& key, Entry& entry, double priority) {
+    const ChannelTexture& shown = *entry.shown;
+    if (shown.outOfRoom && (!waiting_ || entry.stuck)) return;
+    while (entry.bricksInFlight < kBricksInFlight) {
+        const std::vector<BrickId> asked = shown.bricks->ask(std::size_t(kBricksInFlight - entry.bricksInFlight));
+        if (asked.empty()) return;
+        for (const BrickId& id : asked) {
+            if (reuseBrick(key, entry, id)) continue;
+            ++entry.bricksInFlight;
+            LoadRequest request;
+            request.key = key;
+            request.level = id.level;
+            request.brick = id.index;
+            request.summary = entry.summary;
+            request.encoding = shown.encoding;
+            request.coverage = entry.coverage;
+            add(priority + double(shown.bricks->priority(id)), std::move(request));
+        }
+    }
+}
 
 /// The first brick of a channel says how it is encoded.
 void Residency::beginBricks(const LoadedTexels& first, Entry& entry) {

@@ -50,8 +50,9 @@ public:
     int tilesDone = 0, ///< of all passes over it
         tileEdge = 256;
     const volume::BrickSource* source = nullptr;
-    bool fullValid = false; ///< `full` is done
-    bool stillDone = false; ///< and every pass of a supersampled still
+    bool fullValid = false;  ///< `full` is done
+    bool stillDone = false;  ///< and every pass of a supersampled still
+    std::uint64_t frame = 0; ///< Residency::frame() in which it was drawn last
     double passMilliseconds = 0;
     std::optional<double> lastTime; ///< of the data shown
     std::vector<ChannelKey> shown;  ///< the frames of it
