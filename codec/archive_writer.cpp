@@ -67,7 +67,7 @@ struct ArchiveWriter::Impl {
     void writeModel(const Model& model, bool idle, std::size_t component, FrameRecord& frame);
     const SeenFrame* frameBefore(const FrameRecord& frame, const FrameSamples& samples) const;
     std::vector<std::uint8_t> repeated(const SeenFrame* before, const FrameSamples& samples, const FrameRecord& frame,
-                                       double maxError) const;
+                                       const FrameOptions& options) const;
     void commit(const Metadata& now, std::size_t wholeTimes, bool always);
 };
 
@@ -132,12 +132,13 @@ const SeenFrame* ArchiveWriter::Impl::frameBefore(const FrameRecord& frame, cons
 
 /// Flags of the bricks that need not be stored again.
 std::vector<std::uint8_t> ArchiveWriter::Impl::repeated(const SeenFrame* before, const FrameSamples& samples,
-                                                        const FrameRecord& frame, double maxError) const {
+                                                        const FrameRecord& frame, const FrameOptions& options) const {
     constexpr int kFurthest = 65535;
+    const double maxError = boundOf(frame, options);
     std::vector<std::uint8_t> flags(brickCount(metadata.grid), 0);
     if (!before || (header.features & kBrickNotes) == 0) return flags;
     parallelRanges(flags.size(), [&](std::size_t begin, std::size_t end) {
-        BrickInput was, is;
+        BrickInput was, is, coded;
         for (std::size_t b = begin; b < end; ++b) {
             if (before->bricks[b].notes.repeats + step() > kFurthest) continue;
             const glm::ivec3 brick = brickIndex(metadata.grid, b);
@@ -146,6 +147,10 @@ std::vector<std::uint8_t> ArchiveWriter::Impl::repeated(const SeenFrame* before,
             const bool absentToo = frame.keepsAbsent && !is.present.empty();
             if (absentToo && !before->keepsAbsent) continue;
             flags[b] = mayStandFor(samples.type(), was, is, maxError, absentToo) ? 1 : 0;
+            if (flags[b] == 0 || !options.keepsSquares) continue;
+            coded = is;
+            roundAsDecoded(brickFormat(metadata.grid, brick, samples.type(), frame), maxError, coded);
+            flags[b] = squaredError(samples.type(), was, is) <= squaredError(samples.type(), coded, is) ? 1 : 0;
         }
     });
     return flags;
@@ -205,7 +210,7 @@ void ArchiveWriter::addFrame(int parameter, int component, int time, const Frame
     frame.codeBits = codeBitsOf(samples, frame.numbers);
     const double maxError = boundOf(frame, options);
     const SeenFrame* const before = impl_->frameBefore(frame, samples);
-    const std::vector<std::uint8_t> repeated = impl_->repeated(before, samples, frame, maxError);
+    const std::vector<std::uint8_t> repeated = impl_->repeated(before, samples, frame, options);
     const std::vector<volume::BrickImportance> importance =
         importanceOfBricks(grid, samples, options.range, options.categorical, options.importance);
     Taken taken;

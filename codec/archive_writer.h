@@ -20,7 +20,10 @@ struct FrameOptions {
     std::optional<bool> bodyCentred;               ///< of BCC (codec/body_centred.h); none: the shorter by trial
     std::optional<NumberCoding> numbers;           ///< none: chosen for the bound
     double maxError = 0;                           ///< absolute, in stored units; 0: every sample exactly
-    bool keepsAbsent = false;                      ///< also the stored numbers of absent samples
+    double spent = 0; ///< of maxError, by what was done to the samples before: codes and repeats have what is left
+    /// A brick may repeat only one whose squares of differences sum up to no more than those of its own codes would.
+    bool keepsSquares = false;
+    bool keepsAbsent = false; ///< also the stored numbers of absent samples
     int zstdLevel = 3;
     Range range{1, 0}; ///< physical, of the component, that importance refers to; lo > hi: that of the frame
     bool categorical = false;

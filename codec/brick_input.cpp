@@ -96,4 +96,16 @@ bool mayStandFor(volume::ScalarType type, const BrickInput& decoded, const Brick
     });
 }
 
+double squaredError(volume::ScalarType type, const BrickInput& decoded, const BrickInput& input) {
+    double sum = 0;
+    volume::dispatch(type, [&]<class T>(T) {
+        for (std::size_t i = 0; i < input.samples.size() / sizeof(T); ++i) {
+            if (!input.present.empty() && input.present[i] == 0) continue;
+            const double apart = double(sampleAt<T>(decoded.samples, i)) - double(sampleAt<T>(input.samples, i));
+            if (std::isfinite(apart)) sum += apart * apart;
+        }
+    });
+    return sum;
+}
+
 } // namespace tessera::codec

@@ -42,5 +42,7 @@ struct SeenFrame {
 /// them equal bit by bit, or of floats at most `maxError` apart; `absentToo`: those absent equal as well.
 bool mayStandFor(volume::ScalarType type, const BrickInput& decoded, const BrickInput& input, double maxError,
                  bool absentToo);
+/// Sum of the squares of the differences of present samples, as stored; those that are not finite do not count.
+double squaredError(volume::ScalarType type, const BrickInput& decoded, const BrickInput& input);
 
 } // namespace tessera::codec

@@ -176,7 +176,7 @@ int effortFor(const FrameSamples& samples, int zstdLevel) {
 }
 
 double boundOf(const FrameRecord& frame, const FrameOptions& options) {
-    return frame.numbers.kind == NumberKind::Quantised ? options.maxError : 0;
+    return frame.numbers.kind == NumberKind::Quantised ? std::max(options.maxError - options.spent, 0.0) : 0;
 }
 
 double estimateFrameBytes(const volume::BrickGrid& grid, const FrameSamples& samples, const FrameOptions& options,

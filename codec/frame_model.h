@@ -34,7 +34,7 @@ NumberCoding chooseNumbers(const volume::BrickGrid& grid, const FrameSamples& sa
 /// Effort of zstd for the bricks of a frame: small frames take no time worth saving.
 int effortFor(const FrameSamples& samples, int zstdLevel);
 
-/// The bound that samples of a frame are held to beside their codes.
+/// What is left of the bound for samples of a frame, beside their codes and beside those of a brick they repeat.
 double boundOf(const FrameRecord& frame, const FrameOptions& options);
 
 /// The model of a frame: `last`, that of the component's frame before (or none), where its tables serve as well as new

@@ -182,7 +182,7 @@ Thresholded giveUpDetails(const volume::BrickGrid& grid, FrameSamples& samples, 
     frame.numbers = out.numbers;
     frame.wavelet = wavelet;
     const double most = kind == Threshold::Quantile ? value : inCodes(out.numbers, value);
-    const double rounding = maxError > 0 ? maxError : std::numeric_limits<double>::infinity();
+    const double rounding = maxError > 0 ? maxError : std::numeric_limits<double>::max(); // no number is infinitely off
     std::mutex mutex;
     samples.change([&](volume::Field& part, Slab slab) {
         const volume::BrickGrid own = slab.grid(grid);

@@ -244,14 +244,18 @@ void Packing::addFrame(ArchiveWriter& writer, FrameSamples& samples, int paramet
 
     leaveOut(samples, metadata_.grid, discarded_);
     frame.maxError = exact ? 0 : boundFor(options_, whole, samples);
+    frame.keepsSquares = options_.psnr > 0;
     double error = frame.maxError * std::abs(samples.scale());
     if (hasThreshold(options_) && !about.categorical) {
         const double scale = std::abs(samples.scale());
         const Thresholded left = giveUp(samples, metadata_.grid, frame, options_.threshold, extentOf(whole));
-        error = left.maxError * scale;
         summary_.weakenedBricks += left.weakened;
         frame.numbers = left.numbers;
         frame.maxError = std::max(frame.maxError, left.maxError);
+        frame.spent = left.maxError;
+        // Bricks of floats may repeat earlier ones within what is left.
+        const bool mayRepeat = left.numbers.kind == NumberKind::Quantised && place_.firstTime + time > 0;
+        error = (mayRepeat ? frame.maxError : left.maxError) * scale;
     } else if (frame.maxError > 0 && samples.type() != ScalarType::F32) {
         samples.change([&](Field& part, Slab) { part = inSteps(std::move(part), frame.maxError); });
         frame.maxError = 0;

@@ -94,6 +94,93 @@ TEST(Thresholds, BoundsHoldAndWithoutOneTheErrorIsNoted) {
             }
 }
 
+/// Waves that move a little from time to time, as floats and as integers; one parameter has gaps.
+volume::Dataset driftingSeries(int times, double driftOfRange) {
+    volume::Dataset made = makeDataset({24, 20, 18},
+                                       {{"a", ScalarType::F32, 1, Texture::Smooth, false, false},
+                                        {"b", ScalarType::U8, 1, Texture::Smooth, false, false},
+                                        {"c", ScalarType::F32, 1, Texture::Smooth, true, false}},
+                                       times);
+    made.load = [inner = made.load, driftOfRange, types = made.info.parameters](int p, int c, int t) {
+        constexpr double kRange = 160;
+        volume::Field field = inner(p, c, 0);
+        std::mt19937 random(7);
+        volume::dispatch(types[std::size_t(p)].type, [&]<class T>(T) {
+            for (T& sample : field.as<T>())
+                sample = static_cast<T>(double(sample) + double(random() % 32) + kRange * driftOfRange * t);
+        });
+        return field;
+    };
+    return made;
+}
+
+/// The largest error of a parameter, measured against an exact archive of the same samples.
+double largestBeside(const Archive& exact, const Archive& archive, int parameter) {
+    double largest = 0;
+    for (int t = 0; t < int(exact.info().times.size()); ++t) {
+        const volume::Field wanted = readField(exact, parameter, 0, t), stored = readField(archive, parameter, 0, t);
+        for (std::size_t i = 0; i < wanted.count(); ++i)
+            if (wanted.present(i)) largest = std::max(largest, std::abs(wanted.value(i) - stored.value(i)));
+    }
+    return largest;
+}
+
+// What a brick repeats must not add to what its threshold has moved already.
+TEST(Thresholds, BoundsAndReportedErrorsHoldInASeries) {
+    const TemporaryFolder folder;
+    for (const StoredLattice lattice : {StoredLattice::CC, StoredLattice::BCC, StoredLattice::D4})
+        for (const double drift : {0.0, 0.002, 0.01}) {
+            if (drift == 0 && lattice != StoredLattice::CC) continue;
+            PackOptions options;
+            options.lattice = lattice;
+            options.brickSize = 8;
+            options.lossless = true;
+            volume::Dataset made = driftingSeries(4, drift);
+            pack(made, options, folder / "exact.tsr");
+            const Archive exact(folder / "exact.tsr");
+            options.lossless = false;
+            for (const ThresholdChoice kind :
+                 {ThresholdChoice::None, ThresholdChoice::Hard, ThresholdChoice::Soft, ThresholdChoice::Quantile})
+                for (const double bound : {0.0, 0.02}) {
+                    if (kind == ThresholdChoice::None && bound == 0) continue;
+                    SCOPED_TRACE(::testing::Message()
+                                 << int(lattice) << " " << drift << " " << int(kind) << " " << bound);
+                    options.maxError = bound;
+                    options.threshold = {kind, kind == ThresholdChoice::Quantile ? 0.8 : 0.05, false};
+                    const PackSummary summary = pack(made, options, folder / "a.tsr");
+                    const Archive archive(folder / "a.tsr");
+                    for (int p = 0; p < 3; ++p) {
+                        const Range range = archive.info().parameters[std::size_t(p)].ranges[0];
+                        const double error = largestBeside(exact, archive, p) / (range.hi - range.lo);
+                        EXPECT_LE(error, summary.maxError * (1 + 1e-9)) << p;
+                        EXPECT_LE(error, archive.metadata().maxError * (1 + 1e-9)) << p;
+                        if (bound > 0) {
+                            EXPECT_LE(error, bound * (1 + 1e-9)) << p;
+                        }
+                    }
+                    if (drift == 0) {
+                        EXPECT_EQ(summary.repeatedBricks, 3 * 3 * summary.bricks);
+                    }
+                }
+        }
+}
+
+TEST(Thresholds, LeaveWhatIsNotFinite) {
+    const TemporaryFolder folder;
+    volume::Dataset made = driftingSeries(2, 0.01);
+    made.load = [inner = made.load](int p, int c, int t) {
+        volume::Field field = inner(p, c, t);
+        if (p == 0) field.as<float>()[5] = std::numeric_limits<float>::infinity();
+        return field;
+    };
+    PackOptions options;
+    options.lattice = StoredLattice::CC;
+    options.threshold = {ThresholdChoice::Hard, 0.05, false};
+    const PackSummary summary = pack(made, options, folder / "a.tsr");
+    EXPECT_LT(summary.maxError, 1);
+    EXPECT_EQ(readField(Archive(folder / "a.tsr"), 0, 0, 0).value(5), std::numeric_limits<double>::infinity());
+}
+
 TEST(Thresholds, GiveUpMoreForMoreAndSpareTheImportant) {
     const TemporaryFolder folder;
     volume::Dataset made = makeDataset({64, 32, 32}, {{"a", ScalarType::U8, 1, Texture::Smooth, false, false}}, 1);

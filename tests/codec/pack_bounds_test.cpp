@@ -75,6 +75,30 @@ TEST(PackBounds, SignalToNoiseIsReachedAndNotWasted) {
         }
 }
 
+// What moves with its range is coded ever as well; a brick of an earlier time, which is within the bound of every
+// sample still, is further away on the whole.
+TEST(PackBounds, SignalToNoiseIsReachedAtEveryTimeOfASeries) {
+    const TemporaryFolder folder;
+    for (const double drift : {0.0, 0.1, 1.6}) {
+        volume::Dataset made = makeDataset({33, 20, 18}, {{"T", ScalarType::F32, 1, Texture::Smooth, false, false}}, 5);
+        made.load = [lattice = made.info.lattice, drift](int, int, int t) {
+            volume::Field field = volume::makeField(lattice, ScalarType::F32);
+            const auto samples = field.as<float>();
+            std::fill(samples.begin(), samples.end(), float(60 + drift * t));
+            samples.front() -= 50, samples.back() += 50;
+            return field;
+        };
+        PackOptions options = gridOptions();
+        options.psnr = 40;
+        const PackSummary summary = pack(made, options, folder / "a.tsr");
+        const Archive archive(folder / "a.tsr");
+        for (int t = 0; t < 5; ++t) EXPECT_GE(errorsOf(made, archive, t).psnr, 40) << drift << " " << t;
+        if (drift == 0) {
+            EXPECT_EQ(summary.repeatedBricks, 4 * summary.bricks);
+        }
+    }
+}
+
 TEST(PackBounds, TheStrictestOfSeveralHolds) {
     const TemporaryFolder folder;
     volume::Dataset made = twoTimes(Texture::Smooth);
