@@ -31,6 +31,7 @@ volume::Mask flagsOfLayer(const auto& impl, const FrameRecord& frame, int layer)
 ArchiveState stateOf(const Archive& archive, bool withFrames) {
     const Archive::Impl& impl = *archive.impl_;
     ArchiveState state{impl.header.header,
+                       impl.index.pageBytes,
                        impl.metadata.info.times.size(),
                        impl.components,
                        impl.index.models.size(),

@@ -28,6 +28,7 @@ struct KnownModel {
 
 struct ArchiveState {
     Header header;
+    std::uint64_t pageBytes = 0; ///< of the index, decoded
     std::size_t times = 0, components = 0, models = 0, masks = 0;
     std::vector<KnownModel> lastModels;                        ///< by component
     std::vector<std::pair<int, MaskHash::Value>> lastMasks;    ///< those of the last time

@@ -6,6 +6,7 @@
 #include "codec/coded_bricks.h"
 #include "codec/frame_model.h"
 #include "codec/growing_file.h"
+#include "codec/lzma.h"
 #include "codec/mask_hash.h"
 #include "codec/whole_brick.h"
 #include "volume/parallel.h"
@@ -49,6 +50,7 @@ struct ArchiveWriter::Impl {
     Header header;                                ///< of the last commit
     Bytes block;                                  ///< the metadata of the last commit
     std::size_t times = 0, models = 0, masks = 0; ///< written so far; times: committed
+    std::uint64_t pageBytes = 0;                  ///< of all pages so far, decoded
     IndexPage page;                               ///< what the next commit adds
     std::map<MaskHash::Value, int> maskByHash;
     std::map<std::size_t, KnownModel> lastModel; ///< by component
@@ -177,6 +179,7 @@ ArchiveWriter::ArchiveWriter(const Archive& archive, const Metadata& metadata, b
     impl_->times = state.times;
     impl_->models = state.models;
     impl_->masks = state.masks;
+    impl_->pageBytes = state.pageBytes;
     for (const auto& [number, hash] : state.lastMasks) impl_->maskByHash.emplace(hash, number);
     for (std::size_t c = 0; c < state.lastModels.size(); ++c)
         impl_->lastModel.emplace(c, std::move(state.lastModels[c]));
@@ -320,7 +323,9 @@ void ArchiveWriter::Impl::commit(const Metadata& now, std::size_t wholeTimes, bo
         file.append(text);
         block = std::move(text);
     }
-    const Bytes index = serialise(page, header.features);
+    Bytes index = serialise(page, header.features);
+    pageBytes += index.size();
+    if ((header.features & kCompact) != 0) index = encodePiece(index, pageBytes > mostPageBytes(file.position()));
     header.index = {file.position(), index.size(), checksum(index)};
     file.append(index);
     header.fileSize = file.position();

@@ -54,7 +54,8 @@ public:
         const std::uint64_t times = grows ? in_.get<std::uint32_t>() : 0;
         const std::uint64_t masks = in_.get<std::uint32_t>(), frames = in_.get<std::uint32_t>();
         const std::uint64_t models = hasModels ? in_.get<std::uint32_t>() : 0, bricks = shape_.bricks;
-        // No number here exceeds what the bytes of the index can hold, so nothing below overflows or allocates much.
+        // No number here exceeds what the bytes of the page can hold, so nothing below overflows, and what is allocated
+        // is some times those bytes. Decoded ones are more than the file has; mostPageBytes limits them.
         require(bricks <= room, "the index is too short", file_);
         const std::uint64_t maskBytes = kMaskRecordBytes + bricks * kMaskBrickBytes;
         const std::uint64_t frameBytes = kFrameRecordBytes + (hasModels ? kFrameModelBytes : 0) +
@@ -170,9 +171,10 @@ private:
 
 /// The pages from the last, which the header names, to the first; here the first comes first.
 std::vector<IndexPage> readPages(std::span<const std::byte> bytes, const Header& header, const IndexShape& shape,
-                                 const std::string& file, std::vector<Block>& places) {
+                                 const std::string& file, std::vector<Block>& places, std::uint64_t& pageBytes) {
     std::vector<IndexPage> pages;
     Header upTo = header;
+    pageBytes = 0;
     for (Block at = header.index;;) {
         const auto part = bytes.subspan(at.offset, at.length);
         require(checksum(part) == at.checksum, "the index is damaged (checksum)", file);
@@ -180,6 +182,9 @@ std::vector<IndexPage> readPages(std::span<const std::byte> bytes, const Header&
         Bytes records;
         const bool compact = (header.features & kCompact) != 0;
         require(!compact || decodePiece(part, records) == DecodeStatus::Ok, "a page of the index cannot be decoded",
+                file);
+        pageBytes += compact ? records.size() : part.size();
+        require(!compact || pageBytes <= mostPageBytes(header.fileSize), "the index is far too long for the file",
                 file);
         pages.push_back(RecordReader(compact ? records : part, upTo, shape, file).page());
         places.push_back(at);
@@ -321,7 +326,7 @@ Bytes serialise(const IndexPage& page, std::uint32_t features) {
             if (brick.notes.repeats == 0)
                 put(tallies, brick.min, brick.max, frame.numbers.kind != NumberKind::Integer, brick.tally);
     if ((features & kBrickTallies) != 0) out.bytes.insert(out.bytes.end(), tallies.bytes.begin(), tallies.bytes.end());
-    return (features & kCompact) != 0 ? encodePiece(out.bytes) : out.bytes;
+    return out.bytes;
 }
 
 Index readIndex(std::span<const std::byte> bytes, const Header& header, const IndexShape& shape,
@@ -329,7 +334,7 @@ Index readIndex(std::span<const std::byte> bytes, const Header& header, const In
     Index index;
     const bool grows = header.version >= kGrowingVersion;
     std::vector<FrameRecord> frames;
-    for (IndexPage& page : readPages(bytes, header, shape, file, index.pages)) {
+    for (IndexPage& page : readPages(bytes, header, shape, file, index.pages, index.pageBytes)) {
         index.times.insert(index.times.end(), page.times.begin(), page.times.end());
         index.models.insert(index.models.end(), page.models.begin(), page.models.end());
         std::move(page.masks.begin(), page.masks.end(), std::back_inserter(index.masks));

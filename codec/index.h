@@ -78,6 +78,7 @@ struct Index {
     std::vector<FrameRecord> frames; ///< [time * components + component]
     std::vector<Block> pages;        ///< the first first
     std::vector<Block> retired;      ///< metadata of former commits
+    std::uint64_t pageBytes = 0;     ///< of all pages, decoded
 };
 
 /// What the metadata says of the shape of an index.
@@ -87,7 +88,12 @@ struct IndexShape {
     std::uint64_t times = 0; ///< versions 1 and 2 only
 };
 
-/// `features`: of the header.
+/// What all pages of a compact archive may decode to: no small file asks for much memory.
+constexpr std::uint64_t mostPageBytes(std::uint64_t fileSize) {
+    return (std::uint64_t(1) << 22) + 16 * fileSize;
+}
+
+/// The bytes of a page, which compact archives hold as a piece (codec/lzma.h). `features`: of the header.
 Bytes serialise(const IndexPage& page, std::uint32_t features);
 
 /// Reads and checks the index a header names. Throws Error naming `file` when a checksum or a length is wrong, frames

@@ -26,8 +26,6 @@ std::span<const std::byte> dictionary() {
     return std::as_bytes(std::span(kDictionary).first(sizeof kDictionary - 1));
 }
 
-constexpr std::size_t kLongPiece = 1 << 16; // not worth the time that decoding it would take
-
 const std::uint8_t* octets(const std::byte* at) {
     return reinterpret_cast<const std::uint8_t*>(at);
 }
@@ -84,11 +82,11 @@ DecodeStatus decodeLzma(std::span<const std::byte> in, int literalBits, std::spa
     return decode(in, literalBits, {}, out);
 }
 
-Bytes encodePiece(std::span<const std::byte> in) {
+Bytes encodePiece(std::span<const std::byte> in, bool plain) {
     Bytes out;
     appendLength(out, static_cast<std::uint32_t>(in.size()));
     Bytes packed;
-    if (in.size() <= kLongPiece) packed = encode(in, 0, dictionary());
+    if (in.size() <= kLongPiece && !plain) packed = encode(in, 0, dictionary());
     const bool shorter = !packed.empty() && packed.size() < in.size();
     const auto body = shorter ? std::span<const std::byte>(packed) : in;
     out.insert(out.end(), body.begin(), body.end());
@@ -96,14 +94,13 @@ Bytes encodePiece(std::span<const std::byte> in) {
 }
 
 DecodeStatus decodePiece(std::span<const std::byte> in, Bytes& out) {
-    constexpr std::size_t kMost = std::size_t(1) << 26, kLeastRatio = 4096;
     std::uint64_t length = 0;
     if (const DecodeStatus status = takeLength(in, length); status != DecodeStatus::Ok) return status;
     if (length == in.size()) {
         out.assign(in.begin(), in.end());
         return DecodeStatus::Ok;
     }
-    if (length > kMost || length / kLeastRatio > in.size()) return DecodeStatus::BadLength;
+    if (length > kLongPiece) return DecodeStatus::BadLength;
     out.resize(length);
     return decode(in, 0, dictionary(), out);
 }

@@ -14,10 +14,13 @@ Bytes encodeLzma(std::span<const std::byte> in, int literalBits);
 /// Decodes all of `in`, which must give exactly out.size() bytes.
 DecodeStatus decodeLzma(std::span<const std::byte> in, int literalBits, std::span<std::byte> out) noexcept;
 
+/// Longer pieces are not worth the time that decoding them would take; none of them is LZMA. Part of the format.
+inline constexpr std::size_t kLongPiece = 1 << 16;
+
 /// Text or a page of the index: its length, then LZMA that goes on from a fixed dictionary; of what is long or would
-/// not become shorter the bytes themselves.
-Bytes encodePiece(std::span<const std::byte> in);
-/// Undoes encodePiece; never allocates more than 4096 times the bytes of `in`.
+/// not become shorter, or if it is to be plain, the bytes themselves.
+Bytes encodePiece(std::span<const std::byte> in, bool plain = false);
+/// Undoes encodePiece; never allocates more than the bytes of `in` or kLongPiece.
 DecodeStatus decodePiece(std::span<const std::byte> in, Bytes& out);
 
 } // namespace tessera::codec

@@ -97,6 +97,14 @@ TEST(Pieces, GoOnFromTheDictionary) {
     // A length that nothing so short can have, and one beyond all bounds.
     Bytes lie{std::byte{0xff}, std::byte{0xff}, std::byte{0x7f}, std::byte{0}, std::byte{1}};
     EXPECT_EQ(decodePiece(lie, out), DecodeStatus::BadLength);
+    // One that it could have, but no writer makes.
+    for (const std::size_t count : {kLongPiece, kLongPiece + 1}) {
+        const Bytes zeros(count), body = encodeLzma(zeros, 0); // no use of the dictionary
+        lie.clear();
+        appendLength(lie, std::uint32_t(count));
+        lie.insert(lie.end(), body.begin(), body.end());
+        EXPECT_EQ(decodePiece(lie, out), count == kLongPiece ? DecodeStatus::Ok : DecodeStatus::BadLength);
+    }
     lie = Bytes(6, std::byte{0xff});
     EXPECT_EQ(decodePiece(lie, out), DecodeStatus::BadLength);
 }

@@ -57,6 +57,7 @@ Octets piece(const Octets& bytes) {
     const std::size_t size = in.length();
     const Octets packed = in.take(std::size_t(in.end - in.at));
     if (packed.size() == size) return packed;
+    need(size <= 65536, "piece");
     const Octets before = dictionary();
     lzma_options_lzma options{};
     options.dict_size = std::uint32_t(std::max<std::size_t>(4096, size + before.size()));

@@ -121,9 +121,12 @@ Decoder::Decoder(std::vector<char> file) : file_(file.begin(), file.end()) {
     // 1.4: pages, the last one first
     std::vector<Piece> covered{parts[0]};
     std::vector<Octets> pages;
+    std::size_t pageBytes = 0;
     for (Piece page = parts[1];;) {
         pages.insert(pages.begin(), compact_ ? piece(checked(page)) : checked(page));
         covered.push_back(page);
+        pageBytes += pages.front().size();
+        need(!compact_ || pageBytes <= (std::size_t(1) << 22) + 16 * end_, "too many pages");
         if (version_ < 3) break;
         Reader in(pages.front());
         const Piece before = readPiece(in), formerMetadata = readPiece(in);
