@@ -22,7 +22,11 @@ struct VerifyReport {
     std::uint64_t samples = 0;       ///< at full resolution
     std::uint64_t bytes = 0;         ///< whose checksum was computed
     std::vector<std::string> damage; ///< one line each, the first hundred
-    std::uint64_t damaged = 0;
+    std::uint64_t damaged = 0;       ///< places, each once: copies of the header, former metadata, models, masks of
+                                     ///< bricks, bricks with bytes of their own
+    std::uint64_t damagedBricks = 0; ///< that cannot be read: damaged themselves, in their mask, their model, or the
+                                     ///< brick that they repeat
+    bool damagedHeader = false; ///< one of its two copies, as a crash during a commit may leave it; part of `damaged`
 };
 
 /// An open .tsr archive: a source of bricks that reads a memory map, from any thread. Nothing in the file is trusted:

@@ -10,28 +10,40 @@ namespace tessera::app {
 
 namespace {
 
+/// What is wrong, for whoever wants to know what is lost.
+std::string verdictOf(const codec::VerifyReport& report) {
+    const auto counted = [](std::uint64_t count, const char* one, const char* more) {
+        return std::to_string(count) + (count == 1 ? one : more);
+    };
+    const std::string places = counted(report.damaged, " place is damaged", " places are damaged");
+    if (report.damagedBricks == 0) return places + ", all bricks can be read";
+    return std::to_string(report.damagedBricks) + " of " + counted(report.bricks, " brick", " bricks") +
+           " cannot be read, the rest can; " + places;
+}
+
 void run(const std::string& path, bool json) {
     const codec::Archive archive(path);
     const codec::VerifyReport report = codec::verifyArchive(archive, terminalProgress("verify"));
+    // Archives have two headers because a crash may damage one: what is stored is whole.
+    const bool whole = report.damaged == (report.damagedHeader ? 1 : 0);
     if (json) {
         std::printf("%s\n", nlohmann::json{{"file", path},
-                                           {"ok", report.damaged == 0},
+                                           {"ok", whole},
                                            {"bricks", report.bricks},
                                            {"samples", report.samples},
                                            {"bytes", archive.fileBytes()},
                                            {"damaged", report.damaged},
+                                           {"damagedBricks", report.damagedBricks},
                                            {"damage", report.damage}}
                                 .dump(1)
                                 .c_str());
     } else {
         for (const std::string& line : report.damage) std::fprintf(stderr, "%s: %s\n", path.c_str(), line.c_str());
     }
-    if (report.damaged > 0)
-        throw Error(std::to_string(report.damaged) + " of " + std::to_string(report.bricks) +
-                        " bricks are damaged, the rest is readable",
-                    path);
+    if (!whole) throw Error(verdictOf(report), path);
     if (!json)
-        std::printf("%s: whole; %llu bricks decoded at every level, %s checked\n", path.c_str(),
+        std::printf("%s: whole%s; %llu bricks decoded at every level, %s checked\n", path.c_str(),
+                    report.damagedHeader ? " but for one copy of the header, which the next append writes anew" : "",
                     static_cast<unsigned long long>(report.bricks), bytesText(double(archive.fileBytes())).c_str());
 }
 
@@ -39,6 +51,9 @@ void run(const std::string& path, bool json) {
 
 void addVerifyCommand(CLI::App& app) {
     CLI::App* command = app.add_subcommand("verify", "Check every byte of an archive and decode every brick");
+    command->footer(
+        "Exit status 0 also where only one of the two copies of the header is damaged, as a crash may leave "
+        "it: nothing is lost. 2 for anything else.");
     const auto path = std::make_shared<std::string>();
     const auto json = std::make_shared<bool>(false);
     command->add_option("IN", *path, "Archive (.tsr)")->required();

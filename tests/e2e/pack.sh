@@ -202,6 +202,14 @@ check "a cut archive" 2 "$tessera" verify cut.tsr
 python3 -c 'b=bytearray(open("cc.tsr","rb").read()); b[200]^=4; open("flip.tsr","wb").write(b)'
 check "a flipped bit" 2 "$tessera" verify flip.tsr
 say damaged err.txt
+say "of .* cannot be read, the rest can; 1 place is damaged" err.txt
+python3 -c 'b=bytearray(open("cc.tsr","rb").read()); b[100]^=4; open("head.tsr","wb").write(b)'
+check "a flipped bit of one header" 0 "$tessera" verify head.tsr
+say "but for one copy of the header" out.txt
+say "one of its two copies is damaged" err.txt
+check "the same as JSON" 0 "$tessera" verify head.tsr --json
+say '"damaged": 1' out.txt
+say '"damagedBricks": 0' out.txt
 check "is not unpacked" 2 "$tessera" unpack flip.tsr -o x.raw
 head -c 100 ramp.raw >short.raw
 cp ramp.json short.json

@@ -1,0 +1,99 @@
+#include "codec/archive.h"
+#include "codec/container.h"
+#include "codec/pack.h"
+#include "tests/codec/make_dataset.h"
+
+#include <cstring>
+#include <gtest/gtest.h>
+
+namespace tessera::codec {
+namespace {
+
+using namespace testing;
+using volume::ScalarType;
+
+VerifyReport verified(const TemporaryFolder& folder, const std::vector<char>& bytes) {
+    writeFile(folder / "verified.tsr", bytes);
+    return verifyArchive(Archive(folder / "verified.tsr"));
+}
+
+/// An archive of 4 x 1 x 1 bricks; every time has the same samples and gaps if it is still.
+std::vector<char> rowOfBricks(const TemporaryFolder& folder, bool masked, int times, bool isStill) {
+    volume::Dataset made = makeDataset({32, 8, 8}, {{"v", ScalarType::U16, 1, Texture::Noise, masked, false}}, times);
+    made.load = [inner = made.load, isStill](int p, int c, int t) { return inner(p, c, isStill ? 0 : t); };
+    PackOptions options;
+    options.lattice = StoredLattice::CC;
+    options.brickSize = 8;
+    pack(made, options, folder / "row.tsr");
+    return readFile(folder / "row.tsr");
+}
+
+TEST(Verify, ADamagedHeaderIsNoDamagedBrick) {
+    const TemporaryFolder folder;
+    const std::vector<char> whole = rowOfBricks(folder, false, 1, true);
+    EXPECT_EQ(verified(folder, whole).damaged, 0u);
+    for (const std::size_t at : {std::size_t(20), kHeaderBytes + 20}) {
+        std::vector<char> bytes = whole;
+        bytes[at] ^= 1;
+        const VerifyReport report = verified(folder, bytes);
+        EXPECT_TRUE(report.damagedHeader);
+        EXPECT_EQ(report.damaged, 1u);
+        EXPECT_EQ(report.damagedBricks, 0u);
+        EXPECT_EQ(report.bricks, 4u);
+    }
+}
+
+// Whatever byte it is: places once each, and never more bricks than there are.
+TEST(Verify, EveryDamagedPlaceIsCountedOnce) {
+    const TemporaryFolder folder;
+    for (const bool masked : {false, true})
+        for (const bool isStill : {false, true}) {
+            const std::vector<char> whole = rowOfBricks(folder, masked, 3, isStill);
+            std::uint64_t metadataAt = 0;
+            std::memcpy(&metadataAt, whole.data() + 24, 8);
+            std::size_t most = 0, least = 12;
+            for (std::size_t i = 2 * kHeaderBytes; i < metadataAt; i += 5) {
+                std::vector<char> bytes = whole;
+                bytes[i] ^= 4;
+                const VerifyReport report = verified(folder, bytes);
+                EXPECT_EQ(report.damaged, 1u) << i;
+                EXPECT_EQ(report.damage.size(), 1u);
+                EXPECT_FALSE(report.damagedHeader);
+                EXPECT_EQ(report.bricks, 12u);
+                EXPECT_LE(report.damagedBricks, 12u);
+                EXPECT_EQ(report.damagedBricks == 12, report.samples == 0);
+                // As many as a reader finds.
+                const Archive archive(folder / "verified.tsr");
+                std::uint64_t failed = 0;
+                for (int t = 0; t < 3; ++t)
+                    for (int x = 0; x < 4; ++x) try {
+                            (void)archive.read({0, t, 0, {x, 0, 0}});
+                        } catch (const Error&) {
+                            ++failed;
+                        }
+                EXPECT_EQ(report.damagedBricks, failed) << i;
+                most = std::max(most, std::size_t(report.damagedBricks));
+                least = std::min(least, std::size_t(report.damagedBricks));
+            }
+            EXPECT_EQ(least, isStill ? 3u : 1u); // with those that repeat it
+            EXPECT_GE(most, 3u);                 // a model, a mask
+        }
+}
+
+TEST(Verify, BricksOfADamagedMaskAreLookedAtToo) {
+    const TemporaryFolder folder;
+    std::vector<char> bytes = rowOfBricks(folder, true, 1, true);
+    // The mask comes first, and of a frame its first brick.
+    std::uint64_t metadataAt = 0;
+    std::memcpy(&metadataAt, bytes.data() + 24, 8);
+    const VerifyReport whole = verified(folder, bytes);
+    EXPECT_EQ(whole.damaged, 0u);
+    for (std::size_t i = 2 * kHeaderBytes; i < metadataAt; ++i) bytes[i] ^= 4;
+    const VerifyReport report = verified(folder, bytes);
+    EXPECT_EQ(report.damagedBricks, 4u);
+    EXPECT_EQ(report.samples, 0u);
+    EXPECT_EQ(report.damaged, 4u + 1u + 4u); // masks, the model, bricks
+}
+
+} // namespace
+} // namespace tessera::codec
