@@ -23,8 +23,12 @@ struct ExportSelection {
 ///         ("O2 mol/m3; T K"). Several times: OUT_0000.vti ... and OUT.pvd. A .pvd path gives the same with any number.
 /// - .nrrd one channel at one time.
 /// - .raw  (or .json) samples `[time][component][z][y][x]` as stored, and the sidecar beside them that `openFiles`
-///         reads; a parameter whose type differs from the first's has its own "dtype".
+///         reads; a parameter whose type differs from the first's has its own "dtype", each component its own "scale"
+///         and "offset".
 ///
+/// Integers whose scaling the format cannot say - in .vti and .nrrd any, in .raw one that changes in time - are written
+/// as physical floats (24 significant bits), and so are integer vectors whose components lack different samples where
+/// only one array of flags could say so.
 /// Absent samples are NaN in floating point; integers that have some get a companion array NAME.present (0 = absent).
 /// In .raw they keep their stored numbers, bit for bit: where one number tells them from the present ones, the sidecar
 /// states it as missing_value, else there is the companion array.

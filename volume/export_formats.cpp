@@ -30,30 +30,43 @@ Field asFloat(const Field& field) {
     return out;
 }
 
+Storage floatStorage(int components) {
+    return {ScalarType::F32, false, std::vector<Scaling>(std::size_t(components))};
+}
+
 Storage storageOf(const Dataset& dataset, int parameter, const std::vector<int>& times) {
     const Parameter& what = dataset.info.parameters[std::size_t(parameter)];
-    Storage storage{what.type, false, 1, 0};
+    Storage storage = floatStorage(what.components);
     if (what.type == ScalarType::F32) return storage;
-    for (std::size_t t = 0; t < times.size(); ++t) {
-        const Field field = dataset.load(parameter, 0, times[t]);
-        storage.presence = storage.presence || field.mask;
-        if (t == 0) {
-            storage.scale = field.scale;
-            storage.offset = field.offset;
-        } else if (field.scale != storage.scale || field.offset != storage.offset) {
-            return {};
+    storage.type = what.type;
+    for (const int time : times)
+        for (int c = 0; c < what.components; ++c) {
+            const Field field = dataset.load(parameter, c, time);
+            storage.presence = storage.presence || field.mask;
+            if (time == times.front()) storage.scaling[std::size_t(c)] = {field.scale, field.offset};
+            if (!isStoredAs(field, c, storage)) return floatStorage(what.components);
         }
-    }
     return storage;
 }
 
-bool isStoredAs(const Field& field, const Storage& storage) {
-    return field.type == storage.type && (field.type != ScalarType::F32 || (field.scale == 1 && field.offset == 0));
+bool masksAgree(const Dataset& dataset, int parameter, const std::vector<int>& times) {
+    for (const int time : times) {
+        const Field first = dataset.load(parameter, 0, time);
+        for (int c = 1; c < dataset.info.parameters[std::size_t(parameter)].components; ++c) {
+            const Field other = dataset.load(parameter, c, time);
+            if (first.mask != other.mask && presenceOf(first) != presenceOf(other)) return false;
+        }
+    }
+    return true;
+}
+
+bool isStoredAs(const Field& field, int component, const Storage& storage) {
+    return field.type == storage.type && Scaling{field.scale, field.offset} == storage.scaling[std::size_t(component)];
 }
 
 Field loadAs(const Dataset& dataset, int parameter, int component, int time, const Storage& storage) {
     Field field = dataset.load(parameter, component, time);
-    if (!isStoredAs(field, storage)) field = asFloat(field);
+    if (!isStoredAs(field, component, storage)) field = asFloat(field);
     markAbsent(field);
     return field;
 }

@@ -12,21 +12,36 @@
 /// What the formats of volume/export.h share, and those that have a file of their own.
 namespace tessera::volume {
 
-/// How a parameter is stored at the chosen times: found by looking at its integer frames once.
-struct Storage {
-    ScalarType type = ScalarType::F32;
-    bool presence = false; ///< some sample is absent, and the type has no NaN
+/// How the numbers of one component are read: physical value = offset + scale * stored value.
+struct Scaling {
     double scale = 1, offset = 0;
+    bool operator==(const Scaling&) const = default;
 };
 
+/// How a parameter is written at the chosen times.
+struct Storage {
+    ScalarType type = ScalarType::F32; ///< of all components
+    bool presence = false;             ///< some sample is absent, and the type has no NaN
+    std::vector<Scaling> scaling;      ///< of each component
+};
+
+/// Looks at every integer frame once. Integers stay integers where each component has one scaling at all times; else
+/// all components are floats.
 Storage storageOf(const Dataset& dataset, int parameter, const std::vector<int>& times);
 
-bool isStoredAs(const Field& field, const Storage& storage);
+/// Physical values as floats.
+Storage floatStorage(int components);
+
+/// Whether each time's components lack the same samples: one array of flags can only speak for all of them then.
+bool masksAgree(const Dataset& dataset, int parameter, const std::vector<int>& times);
+
+/// False: the samples have to be converted.
+bool isStoredAs(const Field& field, int component, const Storage& storage);
 
 /// Physical values as float, absent ones NaN.
 Field asFloat(const Field& field);
 
-/// A frame as `storage` wants it, absent floats NaN.
+/// A frame as `storage` has it, absent floats NaN.
 Field loadAs(const Dataset& dataset, int parameter, int component, int time, const Storage& storage);
 
 /// A flag for each sample.

@@ -14,12 +14,15 @@ namespace {
 struct Marker {
     bool works = true;           ///< false: a present sample has the number, or there are several numbers
     std::optional<double> value; ///< none: nothing is absent, or NaN says it
+    bool converted = false;      ///< some frame is not stored as it is written
 };
 
-Marker markerOf(const Dataset& dataset, int parameter, int component, const std::vector<int>& times) {
+Marker markerOf(const Dataset& dataset, int parameter, int component, const std::vector<int>& times,
+                const Storage& storage) {
     Marker marker;
     for (const int time : times) {
         const Field field = dataset.load(parameter, component, time);
+        marker.converted = marker.converted || !isStoredAs(field, component, storage);
         if (!field.mask) continue;
         dispatch(field.type, [&]<class T>(T) {
             const auto stored = field.as<T>();
@@ -43,6 +46,29 @@ Marker markerOf(const Dataset& dataset, int parameter, int component, const std:
     return marker;
 }
 
+/// How a parameter is written.
+struct Form {
+    Storage storage;
+    bool converted = false;     ///< to physical floats, NaN where absent
+    std::vector<Marker> marker; ///< of each component
+};
+
+Form formOf(const Dataset& dataset, int parameter, const std::vector<int>& times) {
+    Form form{storageOf(dataset, parameter, times), false, {}};
+    const int components = dataset.info.parameters[std::size_t(parameter)].components;
+    bool marked = true;
+    for (int c = 0; c < components; ++c) {
+        form.marker.push_back(markerOf(dataset, parameter, c, times, form.storage));
+        marked = marked && form.marker.back().works;
+        form.converted = form.converted || form.marker.back().converted;
+    }
+    if (!marked && !form.converted) form.converted = !masksAgree(dataset, parameter, times);
+    if (form.converted) form.storage = floatStorage(components);
+    form.storage.presence = !marked && !form.converted;
+    if (!marked || form.converted) form.marker.assign(form.marker.size(), {});
+    return form;
+}
+
 } // namespace
 
 std::vector<std::string> writeRaw(const Dataset& dataset, const std::vector<int>& parameters,
@@ -51,21 +77,10 @@ std::vector<std::string> writeRaw(const Dataset& dataset, const std::vector<int>
     fs::path raw = path, sidecar = path;
     raw.replace_extension(".raw");
     sidecar.replace_extension(".json");
-    std::vector<Storage> storage;
-    std::vector<std::vector<Marker>> markers; // of each component
+    std::vector<Form> forms;
     for (std::size_t i = 0; i < parameters.size(); ++i) {
         progress.advance(0.3 * double(i) / double(parameters.size()), "forms");
-        storage.push_back(storageOf(dataset, parameters[i], times));
-        std::vector<Marker>& own = markers.emplace_back();
-        bool works = true;
-        for (int c = 0; c < info.parameters[std::size_t(parameters[i])].components; ++c) {
-            own.push_back(markerOf(dataset, parameters[i], c, times));
-            works = works && own.back().works;
-        }
-        // Numbers that are converted to physical floats say it by NaN.
-        const bool converted = !isStoredAs(dataset.load(parameters[i], 0, times.front()), storage.back());
-        storage.back().presence = !works && !converted;
-        if (!works || converted) own.assign(own.size(), {});
+        forms.push_back(formOf(dataset, parameters[i], times));
     }
 
     using json = nlohmann::ordered_json;
@@ -74,7 +89,7 @@ std::vector<std::string> writeRaw(const Dataset& dataset, const std::vector<int>
         json entry;
         entry["name"] = componentName;
         entry["unit"] = unit;
-        if (type != storage.front().type) entry["dtype"] = name(type);
+        if (type != forms.front().storage.type) entry["dtype"] = name(type);
         components.push_back(std::move(entry));
         return components.back();
     };
@@ -84,15 +99,16 @@ std::vector<std::string> writeRaw(const Dataset& dataset, const std::vector<int>
             const std::string suffix = what.components == 1 ? ""
                                        : c < 3              ? std::string(".") + "xyz"[c]
                                                             : "." + std::to_string(c);
-            json& entry = add(what.name + suffix, what.unit, storage[i].type);
-            if (storage[i].scale != 1) entry["scale"] = storage[i].scale;
-            if (storage[i].offset != 0) entry["offset"] = storage[i].offset;
-            const Marker& marker = markers[i][std::size_t(c)];
+            json& entry = add(what.name + suffix, what.unit, forms[i].storage.type);
+            const Scaling& scaling = forms[i].storage.scaling[std::size_t(c)];
+            if (scaling.scale != 1) entry["scale"] = scaling.scale;
+            if (scaling.offset != 0) entry["offset"] = scaling.offset;
+            const Marker& marker = forms[i].marker[std::size_t(c)];
             if (marker.value) entry["missing_value"] = *marker.value;
             if (what.categorical) entry["categorical"] = true;
             for (const Label& label : what.labels) entry["labels"][std::to_string(label.value)] = label.name;
         }
-        if (storage[i].presence) add(what.name + ".present", "", ScalarType::U8)["presence_of"] = what.name;
+        if (forms[i].storage.presence) add(what.name + ".present", "", ScalarType::U8)["presence_of"] = what.name;
     }
     AtomicFile file(raw.string());
     double written = 0, done = 0;
@@ -102,12 +118,12 @@ std::vector<std::string> writeRaw(const Dataset& dataset, const std::vector<int>
             progress.advance(0.3 + 0.7 * done++ / double(times.size() * parameters.size()), what.name);
             Field field;
             for (int c = 0; c < what.components; ++c) {
-                field = dataset.load(parameters[i], c, t); // absent samples as they are
-                if (!isStoredAs(field, storage[i])) field = asFloat(field);
+                field = forms[i].converted ? loadAs(dataset, parameters[i], c, t, forms[i].storage)
+                                           : dataset.load(parameters[i], c, t); // absent samples as they are
                 writeField(file, field);
                 written += double(field.samples.size());
             }
-            if (storage[i].presence) {
+            if (forms[i].storage.presence) {
                 const auto flags = presenceOf(field);
                 file.write(flags.data(), flags.size());
                 written += double(flags.size());
@@ -118,7 +134,7 @@ std::vector<std::string> writeRaw(const Dataset& dataset, const std::vector<int>
     out["file"] = raw.filename().string();
     const Lattice& lattice = info.lattice;
     out["dims"] = {lattice.size.x, lattice.size.y, lattice.size.z};
-    out["dtype"] = name(storage.front().type);
+    out["dtype"] = name(forms.front().storage.type);
     out["byte_order"] = "little";
     out["layout"] = "[time][component][z][y][x], x fastest";
     out["spacing"] = {lattice.spacing.x, lattice.spacing.y, lattice.spacing.z};

@@ -65,7 +65,10 @@ void writeVti(const Dataset& dataset, const std::vector<int>& parameters, int ti
     std::string units, labels;
     for (const int p : parameters) {
         Storage storage = storageOf(dataset, p, {time});
-        if (storage.scale != 1 || storage.offset != 0) storage = {};
+        const bool plain = std::all_of(storage.scaling.begin(), storage.scaling.end(),
+                                       [](const Scaling& scaling) { return scaling == Scaling{}; });
+        if (!plain || (storage.presence && !masksAgree(dataset, p, {time})))
+            storage = floatStorage(dataset.info.parameters[std::size_t(p)].components);
         blocks.push_back({p, storage, false});
         if (storage.presence) blocks.push_back({p, storage, true});
         const Parameter& what = info.parameters[std::size_t(p)];

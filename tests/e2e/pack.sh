@@ -64,6 +64,38 @@ check "pack what came back" 0 "$tessera" pack gaps-back.json -o again.tsr --latt
 [ "$("$tessera" info gaps.tsr --json | grep -A3 ranges)" = "$("$tessera" info again.tsr --json | grep -A3 ranges)" ] ||
     fail "other ranges"
 
+# A vector of integers, each component with a scaling of its own, by the file or by the step of its loss.
+python3 - <<'EOF'
+import json, math, struct
+n = 9 * 7 * 5
+u = [int(12000 * math.sin(i * .01 * (c + 1))) for c in range(3) for i in range(n)]
+open("scaled.raw", "wb").write(struct.pack("<%dh" % len(u), *u))
+json.dump({"dims": [9, 7, 5], "dtype": "int16",
+           "components": [{"name": "U." + "xyz"[c], "scale": [.1, .2, .5][c], "offset": [0, 3, -4][c]}
+                          for c in range(3)]}, open("scaled.json", "w"))
+EOF
+check "pack a scaled vector" 0 "$tessera" pack scaled.json -o scaled.tsr --lattice cc
+check "unpack it" 0 "$tessera" unpack scaled.tsr -o scaled-back.raw
+cmp scaled.raw scaled-back.raw || fail "other integers"
+check "pack it with loss" 0 "$tessera" pack scaled.json -o lossy.tsr --lattice cc --psnr 45
+check "unpack that" 0 "$tessera" unpack lossy.tsr -o lossy-back.raw
+python3 - <<'EOF' || failures=$((failures + 1))
+import json, math, struct
+n = 9 * 7 * 5
+def physical(name):
+    about, data = json.load(open(name + ".json")), open(name + ".raw", "rb").read()
+    letter = {"int16": "h", "int32": "i", "float32": "f"}[about["dtype"]]
+    values = struct.unpack("<%d%s" % (3 * n, letter), data)
+    return [[c.get("offset", 0) + c.get("scale", 1) * v for v in values[i * n:(i + 1) * n]]
+            for i, c in enumerate(about["components"])]
+stored = physical("scaled")
+assert physical("scaled-back") == stored
+extent = max(max(a) - min(a) for a in stored)
+for a, b in zip(stored, physical("lossy-back")):
+    rms = math.sqrt(sum((x - y) ** 2 for x, y in zip(a, b)) / n)
+    assert rms <= extent * 10 ** (-45 / 20), (rms, extent)
+EOF
+
 # Presets, and bounds in each unit.
 python3 - <<'EOF'
 import json, math, struct

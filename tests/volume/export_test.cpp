@@ -3,9 +3,12 @@
 #include "volume/error.h"
 #include "volume/import/import.h"
 
+#include <array>
 #include <cmath>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <iterator>
@@ -122,6 +125,131 @@ TEST_F(Export, NrrdHoldsOneChannel) {
     const Field field = dataset.load(3, 0, 1);
     EXPECT_EQ(bytes.substr(bytes.find("\n\n") + 2),
               std::string(reinterpret_cast<const char*>(field.samples.data()), field.samples.size()));
+}
+
+/// An int16 vector at two times; `change` makes a frame of it special.
+Dataset integerVector(std::function<void(Field& field, int component, int time)> change) {
+    Dataset dataset;
+    dataset.info.name = "vector";
+    dataset.info.lattice.size = {5, 4, 3};
+    dataset.info.times = {0, 1};
+    dataset.info.parameters = {{"U", "m/s", 3, ScalarType::I16, false, {}, {}}};
+    dataset.load = [lattice = dataset.info.lattice, change = std::move(change)](int, int c, int t) {
+        Field field = makeField(lattice, ScalarType::I16);
+        for (std::size_t i = 0; i < field.count(); ++i)
+            field.as<std::int16_t>()[i] = std::int16_t((int(i) - 30) * (c + 1) + t);
+        change(field, c, t);
+        return field;
+    };
+    return dataset;
+}
+
+void withHole(Field& field, std::size_t at) {
+    Mask mask(field.count(), 1);
+    mask[at] = 0;
+    field.mask = std::make_shared<const Mask>(std::move(mask));
+}
+
+/// The samples of the only array of a .vti that holds floats.
+std::vector<float> floatsOfVti(const std::string& path, std::size_t count) {
+    std::ifstream in(path, std::ios::binary);
+    const std::string bytes{std::istreambuf_iterator<char>(in), {}};
+    EXPECT_THAT(bytes, testing::HasSubstr("<DataArray type=\"Float32\" Name=\"U\""));
+    EXPECT_THAT(bytes, testing::Not(testing::HasSubstr(".present")));
+    std::vector<float> values(count);
+    std::memcpy(values.data(), bytes.data() + bytes.find("\n_") + 2 + sizeof(std::uint64_t), count * sizeof(float));
+    return values;
+}
+
+TEST_F(Export, RawKeepsTheScalingOfEachComponent) {
+    const Dataset dataset = integerVector([](Field& field, int c, int) {
+        field.scale = std::array{0.1, 0.2, 0.5}[std::size_t(c)];
+        field.offset = std::array{0.0, -2.0, 7.0}[std::size_t(c)];
+    });
+    const std::string path = (folder_ / "out.raw").string();
+    exportDataset(dataset, {}, path);
+    expectEqual(dataset, openFiles({path}, {}));
+}
+
+TEST_F(Export, IntegersWhoseScalingChangesInTimeBecomeFloats) {
+    const Dataset dataset = integerVector([](Field& field, int c, int t) { field.scale = c == 2 && t == 1 ? 0.5 : 1; });
+    const std::string path = (folder_ / "out.raw").string();
+    exportDataset(dataset, {}, path);
+    const Dataset back = openFiles({path}, {});
+    ASSERT_EQ(back.info.parameters.size(), 1u);
+    EXPECT_EQ(back.info.parameters[0].type, ScalarType::F32);
+    for (int c = 0; c < 3; ++c)
+        for (int t = 0; t < 2; ++t)
+            EXPECT_EQ(physicalValues(back.load(0, c, t)), physicalValues(dataset.load(0, c, t)));
+}
+
+TEST_F(Export, ComponentsThatLackOtherSamplesBecomeFloats) {
+    // No number tells the absent sample from the present ones, and one array of flags cannot speak for three.
+    const Dataset dataset = integerVector([](Field& field, int c, int) {
+        field.as<std::int16_t>()[0] = field.as<std::int16_t>()[std::size_t(c) + 1];
+        withHole(field, std::size_t(c) + 1);
+    });
+    const std::string raw = (folder_ / "out.raw").string(), vti = (folder_ / "out.vti").string();
+    exportDataset(dataset, {}, raw);
+    const Dataset back = openFiles({raw}, {});
+    ExportSelection first;
+    first.times = {0};
+    exportDataset(dataset, first, vti);
+    const std::size_t count = dataset.info.lattice.count();
+    const std::vector<float> tuples = floatsOfVti(vti, 3 * count);
+    for (int c = 0; c < 3; ++c) {
+        const Field field = dataset.load(0, c, 0), again = back.load(0, c, 0);
+        for (std::size_t i = 0; i < count; ++i)
+            for (const double value : {again.value(i), double(tuples[3 * i + std::size_t(c)])}) {
+                EXPECT_EQ(std::isnan(value), !field.present(i)) << c << " " << i;
+                if (field.present(i)) {
+                    EXPECT_EQ(value, field.value(i)) << c << " " << i;
+                }
+            }
+    }
+}
+
+TEST_F(Export, VtiHoldsPhysicalValuesWhereAnyComponentIsScaled) {
+    const Dataset dataset = integerVector([](Field& field, int c, int) { field.scale = c == 1 ? 0.25 : 1; });
+    const std::string path = (folder_ / "out.vti").string();
+    ExportSelection first;
+    first.times = {0};
+    exportDataset(dataset, first, path);
+    const std::size_t count = dataset.info.lattice.count();
+    const std::vector<float> tuples = floatsOfVti(path, 3 * count);
+    for (int c = 0; c < 3; ++c)
+        for (std::size_t i = 0; i < count; ++i)
+            EXPECT_EQ(tuples[3 * i + std::size_t(c)], dataset.load(0, c, 0).value(i)) << c << " " << i;
+}
+
+/// Floats may be scaled too, by a sidecar.
+TEST_F(Export, AbsentNumbersOfScaledFloatsAreNotTakenForPhysicalOnes) {
+    Dataset dataset = integerVector([](Field&, int, int) {});
+    dataset.info.parameters[0].type = ScalarType::F32;
+    dataset.load = [inner = std::move(dataset.load)](int p, int c, int t) {
+        const Field integers = inner(p, c, t);
+        Field field = makeField(integers.lattice, ScalarType::F32);
+        for (std::size_t i = 0; i < field.count(); ++i) field.as<float>()[i] = float(integers.value(i));
+        if (c == 1) { // 250 is stored 500 as a physical value
+            field.scale = 2;
+            field.as<float>()[3] = 500;
+            field.as<float>()[4] = 250;
+            withHole(field, 3);
+        }
+        return field;
+    };
+    const std::string path = (folder_ / "out.raw").string();
+    exportDataset(dataset, {}, path);
+    const Dataset back = openFiles({path}, {});
+    for (int c = 0; c < 3; ++c) {
+        const Field field = dataset.load(0, c, 0), again = back.load(0, c, 0);
+        for (std::size_t i = 0; i < field.count(); ++i) {
+            EXPECT_EQ(again.present(i) && !std::isnan(again.value(i)), field.present(i)) << c << " " << i;
+            if (field.present(i)) {
+                EXPECT_EQ(again.value(i), field.value(i)) << c << " " << i;
+            }
+        }
+    }
 }
 
 TEST_F(Export, LeavesNothingHalfWritten) {
