@@ -53,6 +53,15 @@ TEST_F(ImportSeries, FilesOfAGroupAreSortedByNumber) {
     EXPECT_THROW(expandPaths({base + "c.vti"}), Error);
 }
 
+TEST_F(ImportSeries, WhatIsNamedTwiceCountsOnce) {
+    const std::string a = write("n_0.raw"), b = write("n_1.raw");
+    const std::string list = write("n.series", R"({"files": [{"name": "n_0.raw"}, {"name": "n_1.raw"}]})");
+    EXPECT_THAT(names(expandPaths({a, a, b, b, b})), testing::ElementsAre("n_0.raw", "n_1.raw"));
+    EXPECT_THAT(names(expandPaths({b, a, folder_.string() + "/n_*.raw", a})),
+                testing::ElementsAre("n_0.raw", "n_1.raw"));
+    EXPECT_THAT(names(expandPaths({list, list})), testing::ElementsAre("n_0.raw", "n_1.raw"));
+}
+
 TEST_F(ImportSeries, FoldersAreCasesOrLists) {
     write("case/system/controlDict");
     EXPECT_THAT(names(expandPaths({(folder_ / "case").string()})), testing::ElementsAre("case"));

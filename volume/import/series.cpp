@@ -13,6 +13,7 @@
 #include <iterator>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <string_view>
 
 namespace tessera::volume {
@@ -195,10 +196,12 @@ std::vector<SeriesFile> parseSeries(const std::string& text, const std::string& 
 std::vector<SeriesFile> expandPaths(const std::vector<std::string>& paths) {
     std::vector<SeriesFile> files;
     std::vector<std::string> pending(paths.rbegin(), paths.rend());
+    std::set<std::string> seen; // what is named twice counts once
     int rounds = 0;
     while (!pending.empty()) {
         const std::string path = pending.back();
         pending.pop_back();
+        if (!seen.insert(path).second) continue;
         if (++rounds > int(kMostFiles)) throw Error("names too many files", path);
         std::error_code ignored;
         if (fs::is_directory(path, ignored) && !fs::exists(fs::path(path) / "system" / "controlDict")) {
@@ -238,10 +241,8 @@ std::vector<SeriesFile> expandPaths(const std::vector<std::string>& paths) {
         if (a.time && b.time && *a.time != *b.time) return *a.time < *b.time;
         return a.number && b.number && *a.number < *b.number;
     });
-    const auto twice = std::adjacent_find(files.begin(), files.end(), [](const SeriesFile& a, const SeriesFile& b) {
-        return a.path == b.path && a.time == b.time;
-    });
-    if (twice != files.end()) files.erase(twice);
+    const auto same = [](const SeriesFile& a, const SeriesFile& b) { return a.path == b.path && a.time == b.time; };
+    files.erase(std::unique(files.begin(), files.end(), same), files.end());
     return files;
 }
 

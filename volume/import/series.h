@@ -21,8 +21,8 @@ struct SeriesFile {
 
 /// Expands what the user named: a directory (an OpenFOAM case, its one .pvd or .series, or its files of the commonest
 /// known ending), a pattern with * or ?, a ParaView .pvd or .series file, or files. Groups keep the order of their
-/// first file; files of a group are sorted by time, then number. Throws Error for what does not exist or cannot be
-/// read.
+/// first file; files of a group are sorted by time, then number. What is named twice counts once. Throws Error for what
+/// does not exist or cannot be read.
 std::vector<SeriesFile> expandPaths(const std::vector<std::string>& paths);
 
 /// Contents of a .pvd (XML Collection). `file` names it in errors; paths are relative to its folder.
