@@ -1,12 +1,14 @@
 #include "volume/brick_importance.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 
 namespace tessera::volume {
 
 BrickChange changeOfBrick(const BrickGrid& grid, glm::ivec3 brick, const Field& before, const Field& after) {
+    assert(before.type == after.type && before.samples.size() == after.samples.size());
     const glm::ivec3 begin = grid.begin(brick), end = grid.end(brick);
     const std::size_t width = std::size_t(end.x - begin.x);
     constexpr double kInfinity = std::numeric_limits<double>::infinity();

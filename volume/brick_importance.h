@@ -44,7 +44,8 @@ std::vector<BrickImportance> importanceOfBricks(const BrickGrid& grid, const Fie
 std::vector<BrickImportance> importanceOfBricks(const BrickGrid& grid, const SliceReader& read, int layers, Range range,
                                                 bool categorical, const ImportanceOptions& options = {});
 
-/// How far the samples of one brick move from one frame to another, as a reader sees them.
+/// How far the samples of one brick move from one frame to another, as a reader sees them. Both frames have the grid's
+/// lattice and one type; scale and offset may differ.
 BrickChange changeOfBrick(const BrickGrid& grid, glm::ivec3 brick, const Field& before, const Field& after);
 
 } // namespace tessera::volume

@@ -170,6 +170,11 @@ private:
             field.samples.size() != field.count() * byteSize(field.type))
             throw Error("a frame has another number of samples than the data set", info_.name,
                         parameter(key.parameter).name);
+        // What compares two frames takes them for numbers of one type.
+        if (field.type != parameter(key.parameter).type)
+            throw Error("a frame holds " + std::string(name(field.type)) + ", the parameter is " +
+                            std::string(name(parameter(key.parameter).type)),
+                        info_.name, parameter(key.parameter).name);
         if (field.lattice.kind != grid_.lattice.kind) field = toBcc(field, parameter(key.parameter).categorical);
         return std::make_shared<const Field>(std::move(field));
     }

@@ -29,4 +29,11 @@ std::size_t byteSize(ScalarType type) {
     return kWords[static_cast<std::size_t>(type)].bytes;
 }
 
+ScalarType commonType(ScalarType a, ScalarType b) {
+    if (a == b || b == ScalarType::U8) return a;
+    if (a == ScalarType::U8) return b;
+    const bool anyFloat = a == ScalarType::F32 || b == ScalarType::F32;
+    return anyFloat ? ScalarType::F32 : ScalarType::I32; // int16 and uint16, or int32 and a shorter one
+}
+
 } // namespace tessera::volume

@@ -21,6 +21,10 @@ std::optional<ScalarType> parseScalarType(std::string_view word);
 /// Bytes of one sample.
 std::size_t byteSize(ScalarType type);
 
+/// The smallest type that holds the numbers of both: integers exactly. Beside a float it is float, which rounds
+/// integers beyond 2^24.
+ScalarType commonType(ScalarType a, ScalarType b);
+
 /// Calls `function(T{})` with T the C++ type of `type` and returns its result.
 template <class Function> decltype(auto) dispatch(ScalarType type, Function&& function) {
     switch (type) {

@@ -242,6 +242,65 @@ TEST_F(ImportRaw, SeveralFilesAreParametersOrTimes) {
     EXPECT_THROW(openFiles({base + "O2.raw", base + "small.raw"}, {}), Error);
 }
 
+TEST_F(ImportRaw, FramesOfASeriesHaveOneType) {
+    const auto seriesOf = [&](const std::string& name, std::vector<std::pair<std::string, std::string>> typesAndBytes) {
+        std::vector<std::string> paths;
+        for (const auto& [sidecar, bytes] : typesAndBytes) {
+            const std::string stem = name + "_" + std::to_string(paths.size());
+            write(stem + ".json", R"({"dims":[3,1,1],"missing_value":7,)" + sidecar + "}");
+            paths.push_back(write(stem + ".raw", bytes));
+        }
+        return openFiles(paths, {});
+    };
+    const std::string bytes = bytesOf<std::uint8_t>({7, 250, 1}, false);
+    const Dataset mixed = seriesOf("mixed", {{R"("dtype":"uint8")", bytes},
+                                             {R"("dtype":"float32")", bytesOf<float>({0.5, 7, -2}, false)},
+                                             {R"("dtype":"int16","components":[{"name":"value","scale":0.5}])",
+                                              bytesOf<std::int16_t>({-3, 7, 300}, false)}});
+    const Dataset whole = seriesOf("whole", {{R"("dtype":"uint8","components":[{"name":"value","scale":0.5}])", bytes},
+                                             {R"("dtype":"uint16")", bytesOf<std::uint16_t>({65535, 7, 0}, false)},
+                                             {R"("dtype":"int16")", bytesOf<std::int16_t>({-32768, 7, 1}, false)}});
+    EXPECT_EQ(mixed.info.parameters[0].type, ScalarType::F32);
+    EXPECT_EQ(whole.info.parameters[0].type, ScalarType::I32);
+    const auto expectFrame = [](const Dataset& data, int time, const std::vector<double>& values, std::size_t absent) {
+        const Field field = data.load(0, 0, time);
+        EXPECT_EQ(field.type, data.info.parameters[0].type) << time;
+        for (std::size_t i = 0; i < 3; ++i) {
+            EXPECT_EQ(field.present(i), i != absent) << time << " " << i;
+            if (i != absent) {
+                EXPECT_EQ(field.value(i), values[i]) << time << " " << i;
+            }
+        }
+    };
+    expectFrame(mixed, 0, {0, 250, 1}, 0);
+    expectFrame(mixed, 1, {0.5, 0, -2}, 1);
+    expectFrame(mixed, 2, {-1.5, 0, 150}, 1);
+    expectFrame(whole, 0, {0, 125, 0.5}, 0);
+    expectFrame(whole, 1, {65535, 0, 0}, 1);
+    expectFrame(whole, 2, {-32768, 0, 1}, 1);
+}
+
+TEST(ScalarTypes, ACommonTypeHoldsTheNumbersOfBoth) {
+    const ScalarType all[] = {ScalarType::U8, ScalarType::I16, ScalarType::U16, ScalarType::I32, ScalarType::F32};
+    for (const ScalarType a : all)
+        for (const ScalarType b : all) {
+            const ScalarType both = commonType(a, b);
+            EXPECT_EQ(both, commonType(b, a));
+            EXPECT_EQ(both == ScalarType::F32, a == ScalarType::F32 || b == ScalarType::F32);
+            if (both == ScalarType::F32) continue;
+            dispatch(both, [&]<class Both>(Both) {
+                for (const ScalarType one : {a, b})
+                    dispatch(one, [&]<class One>(One) {
+                        EXPECT_LE(double(std::numeric_limits<Both>::lowest()),
+                                  double(std::numeric_limits<One>::lowest()));
+                        EXPECT_GE(double(std::numeric_limits<Both>::max()), double(std::numeric_limits<One>::max()));
+                    });
+            });
+        }
+    EXPECT_EQ(commonType(ScalarType::U8, ScalarType::I16), ScalarType::I16);
+    EXPECT_EQ(commonType(ScalarType::U8, ScalarType::U16), ScalarType::U16);
+}
+
 TEST_F(ImportRaw, ScanIgnoresAbsentSamples) {
     const float nan = std::nanf("");
     const std::string path = write("a.raw", bytesOf<float>({nan, 2, 3, -1, 0, 4, 0, 0, 0, 3, 0, 0}, false));

@@ -225,6 +225,8 @@ TEST(MemorySource, AFailedLoadIsReportedAndTriedAgain) {
     EXPECT_NO_THROW(source->read({0, 0, 0, {0, 0, 0}}));
     EXPECT_THROW(source->read({0, 1, 0, {0, 0, 0}}), Error);
     EXPECT_THROW(source->read({0, 0, 0, {1, 0, 0}}), Error);
+    dataset.load = [](int, int, int) { return makeField(ccLattice({8, 8, 8}), ScalarType::U8); }; // float is said
+    EXPECT_THROW(open(dataset, LatticeKind::CC)->read({0, 0, 0, {0, 0, 0}}), Error);
     dataset.load = [](int, int, int) { return makeField(ccLattice({7, 8, 8}), ScalarType::F32); };
     EXPECT_THROW(open(dataset, LatticeKind::CC)->read({0, 0, 0, {0, 0, 0}}), Error);
 }

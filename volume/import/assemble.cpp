@@ -165,14 +165,31 @@ Field allAbsent(const Lattice& lattice, ScalarType type) {
     return field;
 }
 
-/// In physical values where parameters mix types.
+/// In a type that holds its numbers: integers become longer ones that are read as before, or floats in physical values.
 Field inType(Field field, ScalarType type) {
     if (field.type == type) return field;
-    Field out = makeField(field.lattice, ScalarType::F32);
-    const auto values = out.as<float>();
-    for (std::size_t i = 0; i < values.size(); ++i) values[i] = static_cast<float>(field.value(i));
+    Field out = makeField(field.lattice, type);
     out.mask = field.mask;
+    if (type == ScalarType::F32) {
+        const auto values = out.as<float>();
+        for (std::size_t i = 0; i < values.size(); ++i) values[i] = static_cast<float>(field.value(i));
+        return out;
+    }
+    out.scale = field.scale;
+    out.offset = field.offset;
+    dispatch(field.type, [&]<class From>(From) {
+        dispatch(type, [&]<class To>(To) {
+            std::ranges::transform(field.as<From>(), out.as<To>().begin(), [](From v) { return static_cast<To>(v); });
+        });
+    });
     return out;
+}
+
+/// A type that holds an array's numbers in every file of its group.
+ScalarType typeInAll(const Group& group, std::size_t piece, std::size_t array) {
+    ScalarType type = group.files.front()->pieces[piece].arrays[array].type;
+    for (const OpenedFile* file : group.files) type = commonType(type, file->pieces[piece].arrays[array].type);
+    return type;
 }
 
 /// Fills samples that `into` lacks with those of `from`.
@@ -401,6 +418,7 @@ Assembled assemble(std::vector<OpenedFile> files, glm::ivec3 gridSize, bool read
             if (info.provenance.empty()) info.provenance = piece.provenance;
             for (std::size_t a = 0; a < piece.arrays.size(); ++a) {
                 const Array& array = piece.arrays[a];
+                const ScalarType type = typeInAll(all->groups[g], b, a);
                 anyLabel = anyLabel || array.categorical;
                 std::string name = array.name;
                 if (!piece.mesh && onGrids[name] > 1) {
@@ -416,13 +434,13 @@ Assembled assemble(std::vector<OpenedFile> files, glm::ivec3 gridSize, bool read
                         throw Error("array has " + std::to_string(array.components) + " components here and " +
                                         std::to_string(parameter.components) + " in another block",
                                     piece.file, array.name);
-                    if (parameter.type != array.type) parameter.type = ScalarType::F32;
+                    parameter.type = commonType(parameter.type, type);
                     all->feeds[known->second].push_back({g, b, static_cast<int>(a)});
                     continue;
                 }
                 byName.emplace(name, info.parameters.size());
                 info.parameters.push_back(
-                    {name, array.unit, array.components, array.type, array.categorical, array.labels, {}});
+                    {name, array.unit, array.components, type, array.categorical, array.labels, {}});
                 all->feeds.push_back({{g, b, static_cast<int>(a)}});
             }
         }
