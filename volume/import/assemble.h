@@ -25,14 +25,10 @@ struct Assembled {
 
 /// Puts files together into one data set: files of a group follow each other in time, arrays of equal name from several
 /// meshes are merged onto one grid (the first that has a sample wins), several files on one grid add parameters. A
-/// `region` label is made from the names of mesh blocks where there is no label. Where files store an array in different
-/// types, all its frames get one that holds their numbers (commonType). `gridSize` (0 = chosen) is for meshes.
-/// Throws Error when things do not fit. Without `readSamples` no sample is read (the values of a made label are then
-/// not yet known).
+/// `region` label is made from the names of mesh blocks where there is no label. Where files store an array in
+/// different types, all its frames get one that holds their numbers (commonType). `gridSize` (0 = chosen) is for
+/// meshes. Throws Error when things do not fit. Without `readSamples` no sample is read (the values of a made label are
+/// then not yet known).
 Assembled assemble(std::vector<OpenedFile> files, glm::ivec3 gridSize, bool readSamples, const Progress& progress);
-
-/// The grid a mesh is sampled on: per axis about one sample per cell of harmonic-mean extent, at most 1024 an axis and
-/// 16 M in all; in the middle of cells for cell data, else from border to border.
-Lattice gridForMesh(const Box& box, glm::dvec3 cellSize, bool cellData, glm::ivec3 wanted);
 
 } // namespace tessera::volume

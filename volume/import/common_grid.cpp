@@ -1,0 +1,113 @@
+#include "volume/import/common_grid.h"
+
+#include "volume/error.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/common.hpp>
+#include <limits>
+#include <set>
+
+namespace tessera::volume {
+
+namespace {
+
+std::string words(glm::ivec3 size) {
+    return std::to_string(size.x) + " x " + std::to_string(size.y) + " x " + std::to_string(size.z);
+}
+
+bool sameLattice(const Lattice& a, const Lattice& b) {
+    if (a.size != b.size) return false;
+    for (int axis = 0; axis < 3; ++axis) {
+        const double tolerance = 1e-4 * a.spacing[axis];
+        if (std::abs(a.spacing[axis] - b.spacing[axis]) * std::max(a.size[axis] - 1, 1) > tolerance ||
+            std::abs(a.origin[axis] - b.origin[axis]) > tolerance)
+            return false;
+    }
+    return true;
+}
+
+/// The grid a mesh is sampled on: per axis about one sample per cell of harmonic-mean extent, at most 1024 an axis and
+/// 16 M in all; in the middle of cells for cell data, else from border to border.
+Lattice gridForMesh(const Box& box, glm::dvec3 cellSize, bool cellData, glm::ivec3 wanted) {
+    constexpr double kMostPerAxis = 1024, kMost = 16e6;
+    const glm::dvec3 extent = box.size();
+    const double largest = std::max({extent.x, extent.y, extent.z});
+    glm::dvec3 n(1);
+    for (int axis = 0; axis < 3; ++axis)
+        if (extent[axis] > 1e-9 * largest && cellSize[axis] > 0)
+            n[axis] = std::clamp(std::round(extent[axis] / cellSize[axis]), 1.0, kMostPerAxis);
+    const double total = n.x * n.y * n.z;
+    if (total > kMost)
+        for (int axis = 0; axis < 3; ++axis) n[axis] = std::max(1.0, std::floor(n[axis] * std::cbrt(kMost / total)));
+    Lattice grid;
+    for (int axis = 0; axis < 3; ++axis) {
+        const bool flat = !(extent[axis] > 1e-9 * largest);
+        int samples = static_cast<int>(n[axis]) + (cellData || flat ? 0 : 1);
+        if (wanted[axis] > 0) samples = wanted[axis];
+        grid.size[axis] = samples;
+        if (flat) {
+            grid.spacing[axis] = largest > 0 ? largest / std::max(n.x, std::max(n.y, n.z)) : 1;
+            grid.origin[axis] = box.lo[axis];
+        } else if (cellData || samples == 1) {
+            grid.spacing[axis] = extent[axis] / samples;
+            grid.origin[axis] = box.lo[axis] + grid.spacing[axis] * 0.5;
+        } else {
+            grid.spacing[axis] = extent[axis] / (samples - 1);
+            grid.origin[axis] = box.lo[axis];
+        }
+    }
+    return grid;
+}
+
+} // namespace
+
+Lattice chooseLattice(const std::vector<OpenedFile>& files, glm::ivec3 gridSize, std::vector<std::string>& notes) {
+    const Piece& first = files.front().pieces.front();
+    bool equalGrids = true, anyMesh = false;
+    for (const OpenedFile& file : files)
+        for (const Piece& piece : file.pieces) {
+            anyMesh = anyMesh || piece.mesh;
+            equalGrids = equalGrids && !piece.mesh && !first.mesh && sameLattice(first.lattice, piece.lattice);
+        }
+    if (equalGrids) {
+        if (gridSize != glm::ivec3(0) && gridSize != first.lattice.size)
+            notes.push_back("already on a grid of " + words(first.lattice.size) + ": the grid asked for is not used");
+        return first.lattice;
+    }
+    Box box{glm::dvec3(std::numeric_limits<double>::max()), glm::dvec3(std::numeric_limits<double>::lowest())};
+    glm::dvec3 perLength(0);
+    double cells = 0;
+    bool cellData = true;
+    double all = 0, blocks = 0;
+    std::set<std::string> groups;
+    for (const OpenedFile& file : files) {
+        const bool firstOfGroup = groups.insert(file.entry.group).second;
+        for (const Piece& piece : file.pieces) {
+            if (!piece.resamples)
+                throw Error("does not lie on the grid of " + first.file + " (" + words(piece.lattice.size) +
+                                " against " + words(first.lattice.size) + ")",
+                            piece.file);
+            const Lattice& own = piece.lattice;
+            const Box extent = piece.mesh ? piece.box : Box{own.origin, own.position(own.size - 1)};
+            box.lo = glm::min(box.lo, extent.lo);
+            box.hi = glm::max(box.hi, extent.hi);
+            const double count = piece.mesh ? piece.cells : double(own.count());
+            all += count;
+            perLength += count / (piece.mesh ? piece.cellSize : own.spacing);
+            if (firstOfGroup && piece.mesh) {
+                cells += piece.cells;
+                ++blocks;
+            }
+            cellData = cellData && piece.cellData;
+        }
+    }
+    const Lattice grid = gridForMesh(box, all / perLength, cellData, gridSize);
+    std::string note =
+        anyMesh ? "mesh of " + std::to_string(static_cast<long long>(cells)) + " cells" : "grids that differ";
+    if (blocks > 1) note += " in " + std::to_string(int(blocks)) + " blocks";
+    notes.push_back(note + ", sampled on " + words(grid.size));
+    return grid;
+}
+
+} // namespace tessera::volume
