@@ -21,10 +21,12 @@ struct MemorySourceOptions {
 };
 std::shared_ptr<const BrickSource> makeMemorySource(Dataset dataset, const MemorySourceOptions& options);
 
-/// Adds the magnitude channel of every vector to a source that only gives stored components (BrickKey::channel of
-/// DatasetInfo::channels() whose `magnitude` is set): read() computes it, stats() bounds it.
-/// Both makeMemorySource and codec::openArchive return sources that already answer for magnitudes, through this.
+/// Magnitude of a vector whose components these are in one brick: sqrt(x^2 + y^2 + z^2), present where all three are.
+/// The bricks have one size. For sources that store components and answer for DatasetInfo::channels().
 BrickSamples magnitude(const BrickSamples& x, const BrickSamples& y, const BrickSamples& z);
+
+/// Bounds of that magnitude from those of the components, rounded outwards; the real extremes may lie further inside.
+/// The least `presentFraction` of the three.
 BrickStats magnitudeStats(const BrickStats& x, const BrickStats& y, const BrickStats& z);
 
 } // namespace tessera::volume
