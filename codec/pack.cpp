@@ -134,11 +134,12 @@ void leaveOut(FrameSamples& samples, const volume::BrickGrid& grid, const std::v
 class Packing {
 public:
     /// Into a new archive, or behind what is in `grown`, whose options `options` are then.
-    Packing(volume::Dataset& source, const SlabInput& slabs, const PackOptions& options, const std::string& path,
-            const Archive* grown)
+    Packing(volume::Dataset& source, const SlabInput& slabs, const PackedBefore& before, const PackOptions& options,
+            const std::string& path, const Archive* grown)
         : source_(source), dataset_(source), options_(options), path_(path), grown_(grown) {
         check(source.info, options);
-        metadata_.source = source.info.lattice;
+        metadata_.source =
+            before.grid && source.info.lattice.kind == LatticeKind::BCC ? *before.grid : source.info.lattice;
         metadata_.alternating = options.lattice == StoredLattice::D4;
         volume::SliceMaker slicesOfD4;
         if (metadata_.alternating) {
@@ -155,13 +156,15 @@ public:
         metadata_.info = info;
         metadata_.info.lattice = toBcc ? volume::bccFor(info.lattice) : info.lattice;
         metadata_.grid = gridFor(metadata_.info.lattice, source.info, options, grown);
-        metadata_.lossless = isExact(options) && options.discard == 0;
+        metadata_.lossless = isExact(options) && options.discard == 0 && before.lossless;
         metadata_.program = "tessera";
         metadata_.options = options;
         metadata_.options.memoryMb = 0; // of this machine, not of the archive
         place_ = grown ? continuationOf(*grown, metadata_) : Continuation(info);
         ranges_.resize(info.parameters.size());
         errors_.assign(info.parameters.size(), 0);
+        for (const volume::Parameter& parameter : info.parameters)
+            errorsBefore_.push_back(parameter.categorical ? 0 : before.maxError * extentOf(parameter));
         memory_ = planMemory(metadata_, source.info, options, slabs);
         reading_ = {.toBcc = toBcc,
                     .resample = options.resample,
@@ -194,6 +197,7 @@ private:
     FeedOptions reading_;
     std::vector<std::vector<Range>> ranges_; ///< gathered on the way, by parameter
     std::vector<double> errors_;             ///< largest of a sample, by parameter, in its unit
+    std::vector<double> errorsBefore_;       ///< that the source had already
     std::vector<std::uint8_t> discarded_;    ///< by brick
     PackSummary summary_;
 };
@@ -218,7 +222,7 @@ Metadata Packing::soFar(std::size_t wholeTimes) const {
     place_.widen(read, now.info);
     for (std::size_t p = 0; p < errors_.size(); ++p) {
         const double extent = extentOf(now.info.parameters[std::size_t(place_.parameterOf[p])]);
-        if (extent > 0) now.maxError = std::max(now.maxError, errors_[p] / extent);
+        if (extent > 0) now.maxError = std::max(now.maxError, (errorsBefore_[p] + errors_[p]) / extent);
     }
     return now;
 }
@@ -346,26 +350,26 @@ PackSummary Packing::run(const Progress& progress) {
 } // namespace
 
 PackSummary pack(volume::Dataset& source, const PackOptions& asked, const std::string& path, const Progress& progress,
-                 const SlabInput& slabs) {
+                 const SlabInput& slabs, const PackedBefore& before) {
     const PackOptions options = resolved(asked);
-    if (options.sizeMb == 0) return Packing(source, slabs, options, path, nullptr).run(progress);
+    if (options.sizeMb == 0) return Packing(source, slabs, before, options, path, nullptr).run(progress);
     const auto trial = [&](const PackOptions& with, const std::string& to, const Progress& part) {
-        return Packing(source, slabs, with, to, nullptr).run(part);
+        return Packing(source, slabs, before, with, to, nullptr).run(part);
     };
     const auto bytesAt = [&](const Progress& part) {
         PackOptions plain = options;
         plain.lossless = true;
-        return Packing(source, slabs, plain, path, nullptr).estimate(part);
+        return Packing(source, slabs, before, plain, path, nullptr).estimate(part);
     };
     return packToSize(options, path, bytesAt, trial, progress);
 }
 
 PackSummary append(volume::Dataset& source, const std::string& path, double memoryMb, const Progress& progress,
-                   const SlabInput& slabs) {
+                   const SlabInput& slabs, const PackedBefore& before) {
     const Archive grown(path);
     PackOptions options = grown.metadata().options;
     options.memoryMb = memoryMb;
-    return Packing(source, slabs, resolved(options), path, &grown).run(progress);
+    return Packing(source, slabs, before, resolved(options), path, &grown).run(progress);
 }
 
 } // namespace tessera::codec

@@ -167,21 +167,29 @@ struct SlabInput {
     int layers = 0;           ///< of bricks in memory at a time; 0: only where frames do not fit, as many as do
 };
 
+/// What samples that come from an archive have behind them; of other data nothing.
+struct PackedBefore {
+    std::optional<volume::Lattice> grid; ///< the samples came from, which their lattice does not tell when it is BCC
+    bool lossless = true;
+    double maxError = 0; ///< bound on |error|, relative to a parameter's range
+};
+
 /// Packs a data set into `path`, where it can be read from the first whole time on (with d4, from the second frame).
 /// Streams: one time of one parameter and its working copies are in memory; with d4, as many times of every parameter
 /// as the filter spans. A time larger than `memoryMb` goes through slab by slab, to the same bytes, where `slices`
 /// reads parts of it: never more than some layers of bricks are in memory, the rest is in scratch files beside `path`,
 /// as large as the stored samples (of B-splines 4 or 8 bytes a sample more). Ranges, where unknown, are gathered on the
 /// way (with `maxError`, in a pass before). Categorical parameters are resampled to the nearest and only predicted, so
-/// that every level holds labels. Nothing is left behind when it throws: Error for bad input or options, MachineError
-/// when the file cannot be written, Cancelled. (What exactly `memoryMb` bounds: codec/memory_plan.h.)
+/// that every level holds labels. The errors noted in the archive are those of `before` and its own, added up. Nothing
+/// is left behind when it throws: Error for bad input or options, MachineError when the file cannot be written,
+/// Cancelled. (What exactly `memoryMb` bounds: codec/memory_plan.h.)
 PackSummary pack(volume::Dataset& source, const PackOptions& options, const std::string& path,
-                 const Progress& progress = {}, const SlabInput& slabs = {});
+                 const Progress& progress = {}, const SlabInput& slabs = {}, const PackedBefore& before = {});
 
 /// Appends to an archive with its own options: times later than its last of the same parameters (with d4 the last times
 /// again before them, volume::continueD4), or further parameters at the same times. Whole times that were appended stay
 /// when it throws; of parameters all or none. `memoryMb` as in the options. Error when the data do not continue it.
 PackSummary append(volume::Dataset& source, const std::string& path, double memoryMb = 0, const Progress& progress = {},
-                   const SlabInput& slabs = {});
+                   const SlabInput& slabs = {}, const PackedBefore& before = {});
 
 } // namespace tessera::codec

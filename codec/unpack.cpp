@@ -87,6 +87,11 @@ volume::Dataset storedDataset(std::shared_ptr<const Archive> archive) {
     return dataset;
 }
 
+PackedBefore packedBefore(const Archive& archive) {
+    const Metadata& metadata = archive.metadata();
+    return {metadata.source, metadata.lossless, metadata.maxError};
+}
+
 volume::SliceLoad storedSlices(std::shared_ptr<const Archive> archive) {
     return [archive](int parameter, int component, int time, int first, int count) {
         const volume::BrickGrid& grid = archive->grid();

@@ -11,6 +11,8 @@ namespace tessera::codec {
 
 /// An archive as a data set of frames: on the lattice it is stored on, samples in their type.
 volume::Dataset storedDataset(std::shared_ptr<const Archive> archive);
+/// What is to be told when one of these data sets is packed.
+PackedBefore packedBefore(const Archive& archive);
 /// Reads slices of its frames: the layers of bricks that hold them are decoded.
 volume::SliceLoad storedSlices(std::shared_ptr<const Archive> archive);
 

@@ -57,14 +57,20 @@ codec::StoredLattice latticeOf(const PackRequest& request) {
     return request.append ? storedLattice(request.output) : request.options.lattice;
 }
 
-volume::SlicedDataset open(const PackRequest& request, const Progress& progress) {
+struct PackInput {
+    volume::SlicedDataset data;
+    codec::PackedBefore before;
+};
+
+PackInput open(const PackRequest& request, const Progress& progress) {
     if (request.inputs.size() == 1 && hasEnding(request.inputs[0], ".tsr")) {
         const auto archive = std::make_shared<const codec::Archive>(request.inputs[0]);
         const bool asGrid = latticeOf(request) != codec::StoredLattice::BCC || archive->metadata().alternating;
         const bool asStored =
             !asGrid || (archive->info().lattice.kind == volume::LatticeKind::CC && !archive->metadata().alternating);
-        if (asStored) return {codec::storedDataset(archive), codec::storedSlices(archive)};
-        return {codec::gridDataset(archive, 0), {}};
+        const codec::PackedBefore before = codec::packedBefore(*archive);
+        if (asStored) return {{codec::storedDataset(archive), codec::storedSlices(archive)}, before};
+        return {{codec::gridDataset(archive, 0), {}}, before};
     }
     const volume::ImportOptions options = recallOptions(request.inputs, request.import, progress);
     for (const std::string& rule : options.absent)
@@ -75,7 +81,7 @@ volume::SlicedDataset open(const PackRequest& request, const Progress& progress)
             std::fprintf(stderr, "tessera: remembered: --rename %s=%s\n", from.c_str(), to.c_str());
     volume::SlicedDataset data = volume::openSliced(request.inputs, options, progress);
     rememberStated(request.import, data.dataset.info.name);
-    return data;
+    return {std::move(data), {}};
 }
 
 void checkOutput(const PackRequest& request) {
@@ -141,11 +147,12 @@ void run(PackRequest request) {
     if (request.keepsLattice) request.options.lattice = storedLattice(request.inputs[0]);
     const Progress terminal = terminalProgress("pack");
     const Progress progress = request.progressJson ? jsonProgress(terminal) : terminal;
-    auto [dataset, slices] = open(request, progress.part(0, 0.02));
+    auto [data, before] = open(request, progress.part(0, 0.02));
+    const codec::SlabInput slabs{data.slices, 0};
     const Progress rest = progress.part(0.02, 1);
     const codec::PackSummary summary =
-        request.append ? codec::append(dataset, request.output, request.options.memoryMb, rest, {slices, 0})
-                       : codec::pack(dataset, request.options, request.output, rest, {slices, 0});
+        request.append ? codec::append(data.dataset, request.output, request.options.memoryMb, rest, slabs, before)
+                       : codec::pack(data.dataset, request.options, request.output, rest, slabs, before);
     if (request.json || request.progressJson) {
         std::printf("%s\n", toJson(summary, request.output).dump(request.progressJson ? -1 : 1).c_str());
         return;

@@ -211,6 +211,36 @@ check "verify what was converted" 0 "$tessera" verify converted.tsr
 check "convert keeps the lattice" 0 "$tessera" convert cc.tsr -o converted.tsr
 check "unpack it" 0 "$tessera" unpack converted.tsr -o back.raw
 cmp ramp.raw back.raw || { echo "FAILED: converting changes samples"; failures=$((failures + 1)); }
+# On BCC and D4* it keeps the grid its samples came from, and can grow.
+check "pack a BCC archive that grows" 0 "$tessera" pack early.json -o early.tsr
+check "unpack it" 0 "$tessera" unpack early.tsr -o early-back.nrrd -t 1
+for again in convert pack; do
+    check "$again the BCC archive" 0 "$tessera" $again early.tsr -o again.tsr
+    check "unpack what $again made" 0 "$tessera" unpack again.tsr -o again-back.nrrd -t 1
+    cmp early-back.nrrd again-back.nrrd || fail "$again gives another grid or other samples"
+done
+check "convert it with an error" 0 "$tessera" convert early.tsr -o again.tsr --abs-error 0.01
+check "append to what was converted" 0 "$tessera" pack late.json --append -o again.tsr
+check "unpack that" 0 "$tessera" unpack again.tsr -o again-back.raw
+[ "$(stat -c %s again-back.raw)" = $((4 * 1320 * 4)) ] || fail "it has not grown by two times of the same grid"
+check "append an archive" 0 "$tessera" pack late.json -o late.tsr
+check "to one on BCC" 0 "$tessera" pack late.tsr --append -o early.tsr
+check "pack D4*" 0 "$tessera" pack all.json -o d4.tsr --lattice d4
+check "convert D4*" 0 "$tessera" convert d4.tsr -o again.tsr
+check "info of that" 0 "$tessera" info again.tsr --json
+python3 -c 'import json; d=json.load(open("out.txt")); assert d["lattice"]=="d4" and d["sourceSize"]==[12,11,10], d' || fail "another grid of D4*"
+
+# Errors add up, and are not forgotten.
+check "pack with an error" 0 "$tessera" pack wave.json -o lossy.tsr --max-error 0.01
+for again in convert pack; do
+    check "$again it without" 0 "$tessera" $again lossy.tsr -o again.tsr
+    check "info" 0 "$tessera" info again.tsr
+    say "error within 0.01 of range" out.txt
+done
+check "convert with another" 0 "$tessera" convert lossy.tsr -o again.tsr --max-error 0.02
+check "info" 0 "$tessera" info again.tsr
+say "error within 0.03 of range" out.txt
+
 check "convert what is no archive" 2 "$tessera" convert ramp.json -o x.tsr
 check "convert onto itself" 2 "$tessera" convert cc.tsr -o cc.tsr
 check "pack to a size" 0 "$tessera" pack wave.json -o sized.tsr --target-size 0.004
