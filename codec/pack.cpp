@@ -349,9 +349,8 @@ PackSummary Packing::run(const Progress& progress) {
 
 } // namespace
 
-PackSummary pack(volume::Dataset& source, const PackOptions& asked, const std::string& path, const Progress& progress,
+PackSummary pack(volume::Dataset& source, const PackOptions& options, const std::string& path, const Progress& progress,
                  const SlabInput& slabs, const PackedBefore& before) {
-    const PackOptions options = resolved(asked);
     if (options.sizeMb == 0) return Packing(source, slabs, before, options, path, nullptr).run(progress);
     const auto trial = [&](const PackOptions& with, const std::string& to, const Progress& part) {
         return Packing(source, slabs, before, with, to, nullptr).run(part);
@@ -369,7 +368,7 @@ PackSummary append(volume::Dataset& source, const std::string& path, double memo
     const Archive grown(path);
     PackOptions options = grown.metadata().options;
     options.memoryMb = memoryMb;
-    return Packing(source, slabs, before, resolved(options), path, &grown).run(progress);
+    return Packing(source, slabs, before, options, path, &grown).run(progress);
 }
 
 } // namespace tessera::codec

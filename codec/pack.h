@@ -25,10 +25,6 @@ constexpr std::optional<Wavelet> waveletOf(WaveletChoice choice) {
     return static_cast<Wavelet>(static_cast<int>(choice) - 1);
 }
 
-/// Settings for a purpose; each replaces only what was left at its default.
-enum class PackPreset : std::uint8_t { None, Lossless, Visual, Small, Thesis };
-inline constexpr std::string_view kPackPresetNames[] = {"none", "lossless", "visual", "small", "thesis"};
-
 /// How BCC is taken apart: each of its grids by itself, or one predicted from the other; auto: the shorter by trial.
 enum class BccTransform : std::uint8_t { Auto, Separable, BodyCentred };
 inline constexpr std::string_view kBccTransformNames[] = {"auto", "separable", "bodyCentred"};
@@ -39,7 +35,6 @@ inline constexpr std::string_view kStoredLatticeNames[] = {"cc", "bcc", "d4"};
 
 /// How to pack. Described once: widgets, JSON and command-line options come from here.
 struct PackOptions {
-    PackPreset preset = PackPreset::None;
     StoredLattice lattice = StoredLattice::BCC;
     volume::ResampleOptions resample;
     bool lossless = true;
@@ -58,15 +53,17 @@ struct PackOptions {
     volume::ImportanceOptions importance;
 
     bool operator==(const PackOptions&) const = default;
+    /// Settings for a purpose.
+    static constexpr std::string_view kPresetNames[] = {"none", "lossless", "visual", "small", "thesis"};
+    static constexpr std::string_view kPresetDoc =
+        "Settings for a purpose, which options given beside it override: lossless (every sample of the source, on CC), "
+        "visual (error 0.001 of range), small (0.01, most effort), thesis (BCC, bricks of 16, 3 levels, (2,2) on each "
+        "grid, soft threshold by importance)";
+    /// One of kPresetNames; nullopt of others.
+    static std::optional<PackOptions> preset(std::string_view name);
+    /// True if the lattice is part of a preset; others go with any.
+    static bool presetHasLattice(std::string_view name);
     static void describe(auto& self, auto&& visit) {
-        visit(self.preset,
-              FieldInfo{.key = "preset",
-                        .unit = "",
-                        .doc = "Settings for a purpose, which options given beside it override: lossless "
-                               "(every sample of the source), visual (error 0.001 of range), small (0.01, "
-                               "most effort), thesis (BCC, bricks of 16, 3 levels, (2,2) on each grid, soft "
-                               "threshold by importance)",
-                        .names = kPackPresetNames});
         visit(self.lattice, FieldInfo{.key = "lattice",
                                       .unit = "",
                                       .doc = "Lattice of the stored samples: bcc keeps 70.7 % of them, d4 (in space "
@@ -138,9 +135,6 @@ struct PackOptions {
               FieldInfo{.key = "importance", .unit = "", .doc = "How much a brick has to show, by its samples"});
     }
 };
-
-/// The options with those left at their defaults set as the preset says; its preset is none.
-PackOptions resolved(PackOptions options);
 
 /// What was done.
 struct PackSummary {

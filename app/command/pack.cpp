@@ -208,7 +208,9 @@ void addConvertCommand(CLI::App& app) {
     addDescribed(*command, request->options);
     command->callback([request, command] {
         if (!hasEnding(request->inputs[0], ".tsr")) throw Error("not an archive (.tsr)", request->inputs[0]);
-        request->keepsLattice = command->count("--lattice") == 0 && command->count("--preset") == 0;
+        const CLI::Option& preset = *command->get_option("--preset");
+        request->keepsLattice = command->count("--lattice") == 0 &&
+                                (preset.count() == 0 || !codec::PackOptions::presetHasLattice(preset.results().back()));
         run(*request);
     });
 }

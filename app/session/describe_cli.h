@@ -79,11 +79,27 @@ struct MemberToOption {
     }
 };
 
+/// Options take effect in the order they were added in: a preset comes before the members.
+template <HasPresets T> void addPresets(CLI::App& app, T& value, const std::string& option) {
+    std::string choices;
+    for (const std::string_view choice : T::kPresetNames) choices += (choices.empty() ? "" : "|") + std::string(choice);
+    app.add_option_function<std::string>(
+           option,
+           [&value, option](const std::string& name) {
+               const std::optional<T> preset = T::preset(name);
+               if (!preset) throw CLI::ValidationError(option, "unknown name \"" + name + "\"");
+               value = *preset;
+           },
+           std::string(T::kPresetDoc))
+        ->type_name(choices);
+}
+
 } // namespace detail
 
-/// Adds an option for every member of `value` that a command line can give; parsing writes into `value`, which must
-/// outlive the parse.
+/// Adds an option for every member of `value` that a command line can give, and --preset where it has presets; parsing
+/// writes into `value`, which must outlive the parse. What is stated overrides a preset, wherever it stands.
 template <class T> void addDescribed(CLI::App& app, T& value, const std::string& prefix = {}) {
+    if constexpr (HasPresets<T>) detail::addPresets(app, value, "--" + prefix + "preset");
     T::describe(value, detail::MemberToOption{app, prefix});
 }
 

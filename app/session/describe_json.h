@@ -119,6 +119,12 @@ void variantFromJson(std::variant<Ts...>& value, const Json& json, std::vector<J
             {joinPointer(path, "type"), "unknown type \"" + wanted + "\"; known are " + typeNames(&value), false, {}});
 }
 
+template <HasPresets T>
+void presetFromJson(T& value, const Json& json, std::vector<JsonIssue>& issues, const std::string& path) {
+    if (const auto index = nameFromJson(json, T::kPresetNames, issues, path))
+        value = *T::preset(T::kPresetNames[*index]);
+}
+
 template <class T> Json valueToJson(const T& value, const FieldInfo& info) {
     if constexpr (Described<T>) {
         Json out = Json::object();
@@ -167,15 +173,18 @@ template <class T>
 void valueFromJson(T& value, const Json& json, const FieldInfo& info, std::vector<JsonIssue>& issues,
                    const std::string& path) {
     if constexpr (HasPresets<T>) {
-        if (json.is_string()) {
-            if (const auto index = nameFromJson(json, T::kPresetNames, issues, path))
-                value = *T::preset(T::kPresetNames[static_cast<std::size_t>(*index)]);
-            return;
-        }
+        if (json.is_string()) return presetFromJson(value, json, issues, path);
     }
     if constexpr (Described<T>) {
         if (!json.is_object()) return wrongType(json, "an object", issues, path);
-        membersFromJson(value, json, {}, issues, path);
+        std::vector<std::string_view> known;
+        if constexpr (HasPresets<T>) {
+            if (const auto name = json.find("preset"); name != json.end()) {
+                presetFromJson(value, *name, issues, joinPointer(path, "preset"));
+                known.emplace_back("preset");
+            }
+        }
+        membersFromJson(value, json, std::move(known), issues, path);
     } else if constexpr (std::is_same_v<T, bool>) {
         if (!json.is_boolean()) return wrongType(json, "true or false", issues, path);
         value = json.get<bool>();

@@ -56,9 +56,11 @@ struct DataRef {
         visit(self.derived,
               FieldInfo{.key = "derived", .unit = "", .doc = "Parameters computed from the others", .hidden = true});
         visit(self.import, FieldInfo{.key = "import", .unit = "", .doc = "What was stated about the files"});
-        visit(self.packed, FieldInfo{.key = "packed",
-                                     .unit = "",
-                                     .doc = "Show data that are no archive as one packed so would hold them"});
+        visit(self.packed,
+              FieldInfo{.key = "packed",
+                        .unit = "",
+                        .doc = "Show data that are no archive as one packed so would hold them: options of packing, or "
+                               "a preset of them"});
         visit(self.originals, FieldInfo{.key = "originals",
                                         .unit = "",
                                         .doc = "Show packed data with the data as computed beside, as parameters"});

@@ -115,36 +115,29 @@ TEST(PackBounds, TheStrictestOfSeveralHolds) {
     EXPECT_LE(errorsOf(made, archive, 0).largest, 1e-4 * (range.hi - range.lo));
 }
 
-TEST(PackPresets, SetWhatWasLeftAlone) {
-    const auto with = [](PackPreset preset) {
-        PackOptions options;
-        options.preset = preset;
-        return options;
-    };
-    EXPECT_EQ(resolved(with(PackPreset::None)), PackOptions());
-    EXPECT_EQ(resolved(with(PackPreset::Lossless)).lattice, StoredLattice::CC);
-    EXPECT_EQ(resolved(with(PackPreset::Visual)).maxError, 1e-3);
-    EXPECT_EQ(resolved(with(PackPreset::Small)).maxError, 1e-2);
-    EXPECT_EQ(resolved(with(PackPreset::Thesis)).brickSize, 16);
-    PackOptions own = with(PackPreset::Visual);
-    own.maxError = 0.05;
-    EXPECT_EQ(resolved(own).maxError, 0.05);
-    own = with(PackPreset::Thesis);
-    own.levels = 2;
-    EXPECT_EQ(resolved(own).levels, 2);
-    EXPECT_EQ(resolved(own).wavelet, WaveletChoice::W22);
+TEST(PackPresets, AreOfKnownNames) {
+    EXPECT_EQ(PackOptions::preset("none"), PackOptions());
+    EXPECT_EQ(PackOptions::preset("lossless")->lattice, StoredLattice::CC);
+    EXPECT_EQ(PackOptions::preset("visual")->maxError, 1e-3);
+    EXPECT_EQ(PackOptions::preset("small")->maxError, 1e-2);
+    EXPECT_EQ(PackOptions::preset("thesis")->brickSize, 16);
+    EXPECT_FALSE(PackOptions::preset("best"));
+    for (const std::string_view name : PackOptions::kPresetNames) {
+        ASSERT_TRUE(PackOptions::preset(name)) << name;
+        if (!PackOptions::presetHasLattice(name)) {
+            EXPECT_EQ(PackOptions::preset(name)->lattice, PackOptions().lattice) << name;
+        }
+    }
 }
 
 TEST(PackPresets, EachPacksWhatItPromises) {
     const TemporaryFolder folder;
-    for (int preset = 1; preset < int(std::size(kPackPresetNames)); ++preset) {
-        SCOPED_TRACE(kPackPresetNames[std::size_t(preset)]);
+    for (const std::string_view preset : PackOptions::kPresetNames) {
+        SCOPED_TRACE(preset);
         volume::Dataset made = twoTimes(Texture::Smooth);
-        PackOptions options;
-        options.preset = static_cast<PackPreset>(preset);
-        pack(made, options, folder / "a.tsr");
+        pack(made, *PackOptions::preset(preset), folder / "a.tsr");
         const Archive archive(folder / "a.tsr");
-        const bool grid = options.preset == PackPreset::Lossless;
+        const bool grid = preset == "lossless";
         EXPECT_EQ(archive.info().lattice.kind, grid ? LatticeKind::CC : LatticeKind::BCC);
         if (grid) {
             EXPECT_EQ(errorsOf(made, archive, 1).largest, 0);

@@ -107,6 +107,21 @@ for preset in lossless visual small thesis; do
     check "preset $preset" 0 "$tessera" pack wave.json -o "$preset.tsr" --preset $preset --json
     check "verify preset $preset" 0 "$tessera" verify "$preset.tsr"
 done
+has() { # has FILE LATTICE LARGEST_ERROR: what info says of the archive
+    check "info of $1" 0 "$tessera" info "$1" --json
+    python3 -c 'import json,sys; d=json.load(open("out.txt")); sys.exit([d["lattice"], d["maxError"]] != [sys.argv[1], float(sys.argv[2])])' \
+        "$2" "$3" || fail "$1 is not on $2 within $3"
+}
+check "an option overrides a preset" 0 "$tessera" pack wave.json -o preset.tsr --preset lossless --lattice bcc
+has preset.tsr bcc 0
+check "before it as well" 0 "$tessera" pack wave.json -o preset.tsr --max-error 0 --preset visual
+has preset.tsr bcc 0
+check "a preset without a lattice keeps that of an archive" 0 "$tessera" convert lossless.tsr -o preset.tsr --preset visual
+has preset.tsr cc 0.001
+check "one with a lattice does not" 0 "$tessera" convert lossless.tsr -o preset.tsr --preset thesis
+say "on BCC" <("$tessera" info preset.tsr)
+check "unless it is stated" 0 "$tessera" convert lossless.tsr -o preset.tsr --preset thesis --lattice cc
+say "on CC" <("$tessera" info preset.tsr)
 check "no such preset" 1 "$tessera" pack wave.json -o x.tsr --preset best
 check "unpack the lossless preset" 0 "$tessera" unpack lossless.tsr -o wave-back.raw
 cmp wave.raw wave-back.raw || fail "the preset lossless is not"
