@@ -68,7 +68,11 @@ void Workbench::pack(const std::string& path) {
 
 /// Makes the source again when the parameters derived from it have been edited; what is shown stays until then.
 void Workbench::followDerived() {
-    if (!source_ || session_.data.derived == derivedShown_) return;
+    if (!source_ || session_.data.derived == derivedShown_) {
+        if (derivedWanted_ != derivedShown_) jobs_.cancel("derive"); // taken back
+        derivedWanted_ = derivedShown_;
+        return;
+    }
     if (session_.data.derived == derivedWanted_) return; // on its way, or cancelled
     derivedWanted_ = session_.data.derived;
     jobs_.start("derive", "Deriving parameters",
@@ -77,7 +81,10 @@ void Workbench::followDerived() {
                     auto messages = std::make_shared<std::vector<std::string>>();
                     const auto made = volume::deriveAll(below, wanted, *messages, progress);
                     return [this, messages, made, wanted, from] {
-                        if (source_ != from) return; // other data were opened meanwhile
+                        if (source_ != from) { // gone on, or other data, meanwhile: derived from those
+                            derivedWanted_ = derivedShown_;
+                            return;
+                        }
                         source_ = made;
                         derivedShown_ = wanted;
                         renderer_->setSource(source_);

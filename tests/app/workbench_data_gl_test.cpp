@@ -48,20 +48,21 @@ struct WorkbenchData : DrawnWorkbench {
 
 TEST_F(WorkbenchData, WhatIsEditedWhilePackingStays) {
     showRamp();
-    addBrush("before");
+    workbench.session().title = "before";
     settle();
     startPacking();
     addBrush("meanwhile");
     settle();
     EXPECT_EQ(shownFile(), "ramp.tsr");
-    ASSERT_EQ(workbench.session().selection.brushes.size(), 2u);
+    ASSERT_EQ(workbench.session().selection.brushes.size(), 1u);
     EXPECT_EQ(workbench.history().data(), workbench.session().data);
     ASSERT_TRUE(run("Undo"));
     settle();
-    EXPECT_EQ(workbench.session().selection.brushes.size(), 1u);
+    EXPECT_TRUE(workbench.session().selection.brushes.empty());
+    EXPECT_EQ(workbench.session().title, "before");
     ASSERT_TRUE(run("Undo"));
     settle();
-    EXPECT_TRUE(workbench.session().selection.brushes.empty());
+    EXPECT_NE(workbench.session().title, "before");
     EXPECT_EQ(shownFile(), "ramp.tsr") << "where the data lie is no edit";
     ASSERT_TRUE(run("Redo"));
     ASSERT_TRUE(run("Redo"));
@@ -97,6 +98,30 @@ TEST_F(WorkbenchData, WhatIsEditedWhileResamplingStays) {
     EXPECT_TRUE(workbench.session().selection.brushes.empty());
     EXPECT_FALSE(workbench.source()->info().findChannel("twice").has_value());
     EXPECT_NE(workbench.session().data.bcc, bcc);
+}
+
+// Taken back or cancelled, it comes when it is wanted again.
+TEST_F(WorkbenchData, AParameterWhoseMakingWasCancelledComesWhenItIsWantedAgain) {
+    workbench.install(smallData());
+    settle();
+    const auto known = [&] { return workbench.source()->info().findChannel("twice").has_value(); };
+    workbench.session().data.derived = {{"twice", "", volume::ExpressionRecipe{"2*rho"}}};
+    frame();
+    ASSERT_TRUE(workbench.jobs().running("derive"));
+    workbench.jobs().cancel("derive");
+    settle();
+    EXPECT_FALSE(known());
+    ASSERT_TRUE(run("Undo"));
+    settle();
+    ASSERT_TRUE(run("Redo"));
+    frame();
+    ASSERT_TRUE(workbench.jobs().running("derive"));
+    ASSERT_TRUE(run("Undo"));
+    settle();
+    EXPECT_FALSE(known());
+    ASSERT_TRUE(run("Redo"));
+    settle();
+    EXPECT_TRUE(known());
 }
 
 } // namespace
