@@ -69,8 +69,7 @@ void Workbench::followGrowth() {
                 }
                 const std::size_t times = made->info().times.size(), more = times - source_->info().times.size();
                 source_ = made;
-                renderer_->setSource(source_, same);
-                caches_.clear();
+                renderer_->setSource(source_, same); // views keep what they have: a drag goes on
                 fitSession(session_, source_->info(), *messages);
                 const std::string name = std::filesystem::path(path).filename().string();
                 message(name +

@@ -25,9 +25,10 @@ struct TransferCache : ViewCache {
     VisibilityFeed visibility;
     RegionPage regions;
     BoundaryPage boundaries;
-    std::string shown; ///< function that the pages were last drawn for
-    int rangeEnd = 0;  ///< end of the range that is dragged: -1 low, 1 high
-    double grab = 0;   ///< from the mouse to that end, in values
+    std::string shown;                                 ///< function that the pages were last drawn for
+    std::shared_ptr<const volume::BrickSource> source; ///< and data
+    int rangeEnd = 0;                                  ///< end of the range that is dragged: -1 low, 1 high
+    double grab = 0;                                   ///< from the mouse to that end, in values
 };
 
 std::string channelOf(const vis::Technique& technique) {
@@ -219,6 +220,10 @@ void drawTransferView(ViewContext& context, const std::string& pane, TransferVie
     if (cache.shown != name) { // what was held or made belongs to the other function
         cache.shown = name;
         cache.regions.drag = {};
+        cache.boundaries.from.reset();
+    }
+    if (cache.source != context.source) { // gone on: what was made stays until something is changed
+        cache.source = context.source;
         cache.boundaries.from.reset();
     }
     const Range range = vis::effectiveRange(function, info.channelRange(shown));

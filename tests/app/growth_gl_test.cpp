@@ -1,13 +1,17 @@
 #include "app/growth_watch.h"
 #include "app/platform/gui.h"
 #include "app/platform/headless.h"
+#include "codec/archive.h"
 #include "codec/pack.h"
 #include "vis/gl/headless.h"
 #include "volume/synthetic/models.h"
 
+#include <condition_variable>
 #include <filesystem>
 #include <fstream>
 #include <gtest/gtest.h>
+#include <imgui.h>
+#include <mutex>
 #include <unistd.h>
 
 namespace tessera::app {
@@ -88,6 +92,102 @@ TEST_F(GrowthGl, TheWorkbenchTakesNewTimesOver) {
     const vis::Image after = drawUntilDone(workbench, {600, 400}, 1);
     EXPECT_NE(before.rgba, after.rgba);
     EXPECT_FALSE(workbench.busy());
+}
+
+// What is held of a view stays held, and its picture with it.
+TEST_F(GrowthGl, ADragGoesOnWhenNewTimesCome) {
+    volume::Dataset early = moving(0, 2), late = moving(2, 4);
+    codec::pack(early, {}, path);
+    OpenRequest request;
+    request.paths = {path};
+    const vis::HeadlessContext gl;
+    const Gui gui;
+    Workbench workbench({.onlyPane = "volume", .growthInterval = 1ms});
+    workbench.install(open(request));
+    (void)drawUntilDone(workbench, {600, 400}, 1);
+    OffscreenFrames frames({600, 400});
+    const auto hold = [&](float x, bool down) {
+        frames.draw(workbench, 1, [&](ImGuiIO& io) {
+            io.MousePos = {x, 200};
+            io.MouseDown[0] = down;
+        });
+    };
+    hold(300, false);
+    hold(300, false);
+    hold(300, true);
+    const vis::Camera start = workbench.session().camera;
+    hold(320, true);
+    const vis::Camera held = workbench.session().camera;
+    ASSERT_FALSE(held == start);
+    const ViewCache* cache = workbench.cache("volume");
+    codec::append(late, path);
+    ASSERT_TRUE(comes([&] {
+        hold(320, true);
+        return workbench.source()->info().times.size() == 6;
+    }));
+    EXPECT_EQ(workbench.cache("volume"), cache);
+    EXPECT_TRUE(workbench.session().camera == held);
+    hold(360, true);
+    EXPECT_FALSE(workbench.session().camera == held);
+    hold(360, false);
+    (void)drawUntilDone(workbench, {600, 400}, 1);
+}
+
+/// An archive that can be made to keep its readers waiting.
+class GatedArchive final : public volume::BrickSource {
+public:
+    explicit GatedArchive(const std::string& path) : archive_(codec::openArchive(path)) {}
+    const volume::DatasetInfo& info() const override { return archive_->info(); }
+    const volume::BrickGrid& grid() const override { return archive_->grid(); }
+    volume::BrickStats stats(const volume::BrickKey& key) const override { return archive_->stats(key); }
+    volume::BrickSamples read(const volume::BrickKey& key) const override {
+        std::unique_lock lock(mutex_);
+        changed_.wait(lock, [&] { return open_; });
+        return archive_->read(key);
+    }
+    void open(bool open) const {
+        const std::lock_guard lock(mutex_);
+        open_ = open;
+        changed_.notify_all();
+    }
+
+private:
+    std::shared_ptr<const volume::BrickSource> archive_;
+    mutable std::mutex mutex_;
+    mutable std::condition_variable changed_;
+    mutable bool open_ = true;
+};
+
+// New times that come while a parameter is being derived take its data away: it is derived from the new ones.
+TEST_F(GrowthGl, AParameterIsDerivedThoughNewTimesCome) {
+    volume::Dataset early = moving(0, 2), late = moving(2, 4);
+    codec::pack(early, {}, path);
+    OpenRequest request;
+    request.paths = {path};
+    Opened opened = open(request);
+    const auto gated = std::make_shared<const GatedArchive>(path);
+    opened.source = gated;
+    const vis::HeadlessContext gl;
+    const Gui gui;
+    Workbench workbench({.growthInterval = 1ms});
+    workbench.install(std::move(opened));
+    (void)drawUntilDone(workbench, {600, 400}, 1);
+    OffscreenFrames frames({600, 400});
+    gated->open(false);
+    workbench.session().data.derived = {{"twice", "", volume::ExpressionRecipe{"2*rho"}}};
+    frames.draw(workbench, 1);
+    codec::append(late, path);
+    EXPECT_TRUE(comes([&] {
+        frames.draw(workbench, 1);
+        return workbench.source()->info().times.size() == 6;
+    }));
+    EXPECT_TRUE(workbench.jobs().running("derive"));
+    gated->open(true);
+    EXPECT_TRUE(comes([&] {
+        frames.draw(workbench, 1);
+        return workbench.source()->info().findChannel("twice").has_value();
+    }));
+    EXPECT_EQ(workbench.source()->info().times.size(), 6u);
 }
 
 } // namespace
