@@ -1,12 +1,15 @@
 #include "app/platform/gui.h"
 #include "app/platform/headless.h"
 #include "app/ui/keys.h"
+#include "tests/app/workbench_fixture.h"
 #include "vis/gl/headless.h"
 #include "volume/error.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <gtest/gtest.h>
 #include <imgui.h>
+#include <unistd.h>
 
 namespace tessera::app {
 namespace {
@@ -217,6 +220,60 @@ TEST(WorkbenchGl, WhatIsNotSavedIsNotGivenUpUnasked) {
     workbench.open(other);
     settle();
     EXPECT_EQ(workbench.session().data.settings, other.data->settings) << "nothing to save, nothing asked";
+}
+
+struct WorkbenchLeaving : DrawnWorkbench {
+    void SetUp() override {
+        std::filesystem::create_directories(folder);
+        std::filesystem::current_path(folder);
+    }
+    void TearDown() override {
+        std::filesystem::current_path(before);
+        std::filesystem::remove_all(folder);
+    }
+    std::filesystem::path before = std::filesystem::current_path();
+    std::filesystem::path folder =
+        std::filesystem::path(testing::TempDir()) / ("workbench_leaving_" + std::to_string(::getpid()));
+};
+
+// Save, and then no place to save to: nothing is saved, nothing given up, and a later save is no more than that.
+TEST_F(WorkbenchLeaving, ACancelledSaveLeavesEverythingAsItIs) {
+    workbench.install(smallData());
+    settle();
+    addBrush("not saved");
+    settle();
+    const Session edited = workbench.session();
+    OpenRequest other;
+    other.data.emplace();
+    other.data->model = "marschner-lobb";
+    other.data->settings = {{"nx", 16}, {"ny", 16}, {"nz", 16}};
+    workbench.open(other);
+    settle();
+    press(key::kEnter); // Save
+    for (int i = 0; i < 3; ++i) frame();
+    press(key::kEscape); // but nowhere
+    settle();
+    EXPECT_TRUE(workbench.session() == edited);
+    EXPECT_NE(workbench.windowTitle().find('*'), std::string::npos);
+    EXPECT_TRUE(std::filesystem::is_empty(folder));
+
+    ASSERT_TRUE(run("Save session as..."));
+    for (int i = 0; i < 3; ++i) frame();
+    press(key::kEnter);
+    settle();
+    EXPECT_TRUE(std::filesystem::exists("session.tessera.json"));
+    EXPECT_TRUE(workbench.session() == edited);
+    EXPECT_EQ(workbench.windowTitle().find('*'), std::string::npos);
+
+    // With a place the same answer saves, and what was waited for is done.
+    addBrush("saved on leaving");
+    settle();
+    workbench.open(other);
+    settle();
+    press(key::kEnter);
+    settle();
+    EXPECT_EQ(workbench.session().data.settings, other.data->settings);
+    EXPECT_EQ(loadSession("session.tessera.json").session.selection.brushes.size(), 2u);
 }
 
 TEST(WorkbenchGl, CommandNamesAndKeysAreUnique) {
