@@ -18,7 +18,6 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr double kAutosaveSeconds = 10;
-constexpr double kToastLife = 7;
 constexpr std::size_t kMessages = 500;
 
 } // namespace
@@ -158,6 +157,8 @@ void Workbench::frame() {
     followDerived();
     followGrowth();
     std::erase_if(caches_, [&](const auto& entry) { return !session_.views.contains(entry.first); });
+    renderers_ = 1;
+    for (const auto& [pane, cache] : caches_) renderers_ += cache->renderers();
     // Also not in the frame whose Esc has just closed a menu: it would clear the brushes as well.
     const bool popup = ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopupId);
     if (!options_.headless && !files_.shown() && !popup && !popupShown_) runShortcuts(commands_);
@@ -337,7 +338,7 @@ double Workbench::idleSeconds() const {
     double wait = std::numeric_limits<double>::infinity();
     for (const Jobs::Status& job : jobs_.list()) wait = std::min(wait, job.quiet ? 0.25 : 0.1);
     for (const Message& each : messages_)
-        if (!each.gone && !each.failure) wait = std::min(wait, std::max(0.05, each.born + kToastLife - now()));
+        if (!each.gone && !each.failure) wait = std::min(wait, std::max(0.05, each.born + kToastSeconds - now()));
     if (unsavedEdits_) wait = std::min(wait, std::max(0.1, lastAutosave_ + kAutosaveSeconds - now()));
     return wait;
 }

@@ -92,6 +92,7 @@ public:
         takePicture;
 
 private:
+    static constexpr double kToastSeconds = 7; ///< that a message which is no failure stays
     struct Message {
         std::string text, clock;
         bool failure = false;
@@ -101,7 +102,6 @@ private:
     struct Export {
         PictureRequest request;
         std::string path;
-        bool transparentUi = false;
     };
 
     void makeCommands();                            // workbench_commands.cpp
@@ -165,6 +165,7 @@ private:
     std::vector<volume::DerivedParameter> derivedShown_, derivedWanted_; ///< of the source, and of one being made
     std::string sessionPath_;
     std::map<std::string, std::unique_ptr<ViewCache>> caches_;
+    int renderers_ = 1; ///< the window's and those of views, which share the limits of memory
     Fonts fonts_;
     float scale_ = 0, contentScale_ = 1;
     Theme theme_ = Theme::Dark;

@@ -18,8 +18,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr double kToastSeconds = 7;
-
 /// Begins a centred modal dialog; `open` becomes false with Esc or the cross.
 bool beginDialog(const char* title, bool& open, float width) {
     if (open && !ImGui::IsPopupOpen(title)) ImGui::OpenPopup(title);

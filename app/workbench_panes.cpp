@@ -26,6 +26,7 @@ void Workbench::drawPane(const std::string& pane) {
                         .iconFont = fonts_.icons,
                         .scale = scale_,
                         .headless = options_.headless,
+                        .renderers = renderers_,
                         .figure = options_.headless && !options_.onlyPane.empty(),
                         .runCommand =
                             [this](const std::string& name) {
@@ -85,6 +86,7 @@ void Workbench::drawPane(const std::string& pane) {
         },
         found->second);
     ImGui::PopID();
+    for (const std::string& text : context.messages) message(text, true);
     busy_ = busy_ || context.busy;
     compiling_ = compiling_ || context.compiling;
     if (options_.paneDrawn) options_.paneDrawn(pane, context.behind);

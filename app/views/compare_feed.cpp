@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <utility>
 
 namespace tessera::app {
 
@@ -57,25 +58,24 @@ std::shared_ptr<CompareData> CompareFeed::dataFor(ViewContext& context, const st
     auto made = data_.emplace_back(std::make_shared<CompareData>());
     made->data = data;
     made->used = true;
-    const auto open = [data, session = context.session.data](std::string& failure, const Progress& progress) {
-        return attempt(failure, [&] {
-            std::vector<std::string> messages;
-            return openSource(located(data, session), messages, progress);
-        });
+    const auto open = [data, session = context.session.data](CompareData& into, const Progress& progress) {
+        into.source =
+            attempt(into.failure, [&] { return openSource(located(data, session), into.messages, progress); });
     };
     if (context.headless) {
-        made->source = open(made->failure, {});
+        open(*made, {});
         return made;
     }
     context.jobs.start(key(), "Data to compare",
                        [weak = std::weak_ptr(made), open](const Progress& progress) -> Jobs::Finish {
-                           std::string failure;
-                           auto source = open(failure, progress);
-                           return [weak, source, failure] {
+                           const auto opened = std::make_shared<CompareData>();
+                           open(*opened, progress);
+                           return [weak, opened] {
                                const auto to = weak.lock();
                                if (!to) return;
-                               to->source = source;
-                               to->failure = failure;
+                               to->source = opened->source;
+                               to->failure = opened->failure;
+                               to->messages = opened->messages;
                            };
                        });
     return made;
@@ -116,6 +116,7 @@ void CompareFeed::drawCell(ViewContext& context, const std::string& pane, std::s
                     .iconFont = context.iconFont,
                     .scale = context.scale,
                     .headless = context.headless,
+                    .renderers = std::max(context.renderers, 1 + renderers()),
                     .figure = context.figure,
                     .interacting = context.interacting};
     if (!cell.target) cell.target = own.renderer.makeTarget();
@@ -134,6 +135,12 @@ void CompareFeed::drawCell(ViewContext& context, const std::string& pane, std::s
     cell.sceneShown = scene;
     cell.sizeShown = size;
     cell.status = own.renderer.render(*cell.target, scene, request);
+    if (cell.data) {
+        std::vector<std::string>& said = cell.data->messages;
+        for (std::string& text : own.renderer.takeMessages()) said.push_back(std::move(text));
+        const std::string name = variantName(context.session, cell.variant);
+        for (const std::string& text : std::exchange(said, {})) context.messages.push_back(name + ": " + text);
+    }
     cell.shows = cell.status.complete || cell.status.milliseconds > 0;
     cell.drawn = true;
     own.follow(cell.status);
@@ -141,13 +148,12 @@ void CompareFeed::drawCell(ViewContext& context, const std::string& pane, std::s
     context.behind = context.behind || own.behind;
     context.compiling = context.compiling || own.compiling;
     if (own.busy || request.moving) return;
-    const volume::BrickSource* source = own.source.get();
-    if (cell.image && cell.image->size == size && cell.imageSource == source && cell.imageOf == scene) return;
+    if (cell.image && cell.image->size == size && cell.imageSource == own.source && cell.imageOf == scene) return;
     auto image = std::make_shared<vis::Image>();
     image->rgba = own.renderer.readPixels(*cell.target, image->size);
     cell.image = image;
     cell.imageOf = scene;
-    cell.imageSource = source;
+    cell.imageSource = own.source;
 }
 
 void CompareFeed::measure(ViewContext& context, const std::string& pane, std::size_t index, std::size_t reference) {
@@ -190,13 +196,12 @@ void CompareFeed::measureSamples(ViewContext& context, const std::string& pane, 
                                  std::size_t reference) {
     CompareCell& cell = *cells_[index];
     const CompareCell& against = *cells_[reference];
-    const auto source = cell.data ? cell.data->source : context.source,
-               wanted = against.data ? against.data->source : context.source;
+    const auto source = cell.source(context), wanted = against.source(context);
     if (index == reference || !cell.failure.empty() || !source || !wanted || source == wanted) return;
     const std::vector<vis::Layer>& layers = cell.session.layers;
     if (layers.empty()) return;
     const std::string name = std::visit([](const auto& own) { return own.channel; }, layers.front().technique);
-    const CompareCell::Samples of{source.get(), wanted.get(), name, cell.session.time};
+    const CompareCell::Samples of{source, wanted, name, cell.session.time};
     if (cell.samplesOf == of) return;
     const auto compute = [source, wanted, of](const Progress& progress) -> std::optional<volume::SourceDifference> {
         const auto a = source->info().findChannel(of.channel), b = wanted->info().findChannel(of.channel);
@@ -265,6 +270,10 @@ void CompareFeed::draw(ViewContext& context, const std::string& pane, const std:
     }
 }
 
+int CompareFeed::renderers() const {
+    return int(std::count_if(data_.begin(), data_.end(), [](const auto& data) { return data->renderer != nullptr; }));
+}
+
 double CompareFeed::showDifferences(double top, std::size_t reference) {
     if (top <= 0)
         for (const auto& cell : cells_)
@@ -311,7 +320,7 @@ std::vector<CompareRow> CompareFeed::rows(const ViewContext& context, std::size_
         row.milliseconds = cell.status.milliseconds;
         row.samples = double(cell.status.samples);
         row.bytes = double(cell.status.bytes);
-        if (const auto* archive = dynamic_cast<const codec::Archive*>(cell.source(context)))
+        if (const auto* archive = dynamic_cast<const codec::Archive*>(cell.source(context).get()))
             row.storedBytes = double(archive->fileBytes());
         const bool known = cell.measuredImage && cell.measuredImage == cell.image && reference < cells_.size() &&
                            cell.measuredAgainst == cells_[reference]->image;
@@ -323,7 +332,7 @@ std::vector<CompareRow> CompareFeed::rows(const ViewContext& context, std::size_
             row.ssim = cell.measured.ssim;
         }
         if (i != reference && reference < cells_.size()) {
-            const volume::BrickSource* wanted = cells_[reference]->source(context);
+            const auto& wanted = cells_[reference]->source(context);
             if (cell.samplesOf.own == cell.source(context) && cell.samplesOf.reference == wanted && wanted)
                 row.data = cell.samples;
         }

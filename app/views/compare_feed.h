@@ -19,6 +19,7 @@ struct CompareData {
     std::shared_ptr<const volume::BrickSource> source; ///< null while it opens
     std::unique_ptr<vis::Renderer> renderer;
     std::string failure;
+    std::vector<std::string> messages; ///< of opening it, not yet passed on
     bool used = false;
 };
 
@@ -38,13 +39,13 @@ struct CompareCell {
 
     // What was read back of a finished picture, and what came of it.
     vis::Scene imageOf;
-    const volume::BrickSource* imageSource = nullptr;
+    std::shared_ptr<const volume::BrickSource> imageSource;
     std::shared_ptr<const vis::Image> image;
     std::shared_ptr<const vis::Image> measuredImage, measuredAgainst;
     vis::ImageDifference measured;
     /// Samples of the first layer beside those of the reference: of what, and what came of it.
     struct Samples {
-        const volume::BrickSource *own = nullptr, *reference = nullptr;
+        std::shared_ptr<const volume::BrickSource> own, reference;
         std::string channel;
         double time = 0;
         bool operator==(const Samples&) const = default;
@@ -55,8 +56,8 @@ struct CompareCell {
     std::shared_ptr<const vis::Image> shownImage, shownAgainst; ///< of differencePicture
     double shownTop = -1;
 
-    const volume::BrickSource* source(const ViewContext& context) const {
-        return data ? data->source.get() : context.source.get();
+    const std::shared_ptr<const volume::BrickSource>& source(const ViewContext& context) const {
+        return data ? data->source : context.source;
     }
     /// Nothing is left to draw.
     bool final() const { return !failure.empty() || (drawn && status.complete); }
@@ -70,6 +71,8 @@ public:
               std::size_t reference, glm::ivec2 size, bool moving);
     std::vector<std::shared_ptr<CompareCell>>& cells() { return cells_; }
     const std::vector<std::shared_ptr<CompareCell>>& cells() const { return cells_; }
+    /// How many there are besides the window's.
+    int renderers() const;
     /// Fills the pictures of the differences, brightest at `top` of 255, or at the largest where `top` is 0; returns
     /// the one used.
     double showDifferences(double top, std::size_t reference);

@@ -17,6 +17,7 @@ namespace tessera::app {
 namespace {
 
 struct CompareCache : ViewCache {
+    int renderers() const override { return feed.renderers(); }
     CompareFeed feed;
     std::vector<CameraHand> hands;
     CompareMenuState menu;

@@ -9,6 +9,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <vector>
 
 struct ImFont;
 
@@ -18,6 +19,8 @@ namespace tessera::app {
 /// never changes what is drawn, only how long it takes. Each view derives its own.
 struct ViewCache {
     virtual ~ViewCache() = default;
+    /// Renderers of its own beside the window's.
+    virtual int renderers() const { return 0; }
 };
 
 /// What one frame of the window gives to each view. Views read and edit `session`, nothing else; the workbench compares
@@ -27,10 +30,11 @@ struct ViewContext {
     std::shared_ptr<const volume::BrickSource> source; ///< null while nothing is loaded
     vis::Renderer& renderer;
     Jobs& jobs;                                                ///< background work
-    std::map<std::string, std::unique_ptr<ViewCache>>& caches; ///< by pane key; cleared when the source changes
+    std::map<std::string, std::unique_ptr<ViewCache>>& caches; ///< by pane key; kept while data only grow
     ImFont* iconFont = nullptr; ///< Font Awesome glyphs; null where the package is missing
     float scale = 1;            ///< pixels per design pixel
     bool headless = false;      ///< finish everything before the frame ends: no budget, no progressive states
+    int renderers = 1;          ///< that share the session's limits of memory
     bool figure = false;        ///< a picture of this view alone: without the controls, which nobody can press there
     /// Asks the workbench to run a command of its table, by name, after this frame; null in tests.
     std::function<void(const std::string& command)> runCommand = {};
@@ -39,6 +43,7 @@ struct ViewContext {
     /// Asks for a file to open, then changes the session by it as an edit; an Error goes to the log. Null in tests.
     std::function<void(const std::string& title, std::function<void(Session&, const std::string& path)> take)> askFile =
         {};
+    std::vector<std::string> messages = {}; ///< failures that a view adds, for the log
     bool busy = false;        ///< set by a view that needs another frame soon (refining, animating, waiting for a job)
     bool behind = false;      ///< set by a view that shows an older state of the session until an answer is there
     bool compiling = false;   ///< set by a view whose picture waits for a program of the renderer

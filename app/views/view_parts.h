@@ -73,8 +73,8 @@ LegendEntry legendOf(const Session& session, const volume::DatasetInfo& info, in
 /// Legends of the visible layers, each channel once.
 std::vector<LegendEntry> sceneLegends(const Session& session, const volume::DatasetInfo& info);
 
-/// The scene of the session with the theme's colours.
-vis::Scene themedScene(const Session& session);
+/// The scene of the session with the theme's colours, and its share of the limits of memory.
+vis::Scene themedScene(const ViewContext& context);
 
 /// A picture of the renderer between two corners; its rows run upwards, as GL has them.
 void addPicture(ImDrawList& draw, std::uint32_t texture, ImVec2 min, ImVec2 max);

@@ -3,9 +3,13 @@
 #include "app/views/statistics_feed.h"
 #include "app/views/surface_feed.h"
 #include "app/views/tesseract_feed.h"
+#include "codec/pack.h"
 #include "tests/app/views_fixture.h"
 
+#include <filesystem>
+#include <fstream>
 #include <gmock/gmock.h>
+#include <unistd.h>
 
 namespace tessera::app {
 namespace {
@@ -153,6 +157,41 @@ TEST_F(Feeds, CancelledDataToCompareAreNotOpenedAgain) {
     finish(get);
     EXPECT_EQ(feed.cells()[1]->failure, "");
     EXPECT_TRUE(feed.cells()[1]->finished());
+}
+
+// Renderers of other data share the limits with the window's, and what they have to say reaches the log.
+TEST_F(Feeds, RenderersOfVariantsShareTheLimitsAndSpeak) {
+    const std::string path = testing::TempDir() + "variant_" + std::to_string(::getpid()) + ".tsr";
+    volume::Dataset made = volume::makeModel("marschner-lobb", {{"nx", 40}, {"ny", 40}, {"nz", 40}});
+    codec::pack(made, {}, path);
+    const auto bytes = std::filesystem::file_size(path);
+    std::fstream file(path, std::ios::in | std::ios::out | std::ios::binary);
+    for (std::uintmax_t at = bytes / 4; at < bytes / 2; at += 7) { // within the bricks
+        file.seekp(std::streamoff(at));
+        file.put('\x5a');
+    }
+    file.close();
+    CompareFeed feed;
+    session.data.model = "fuel-cell";
+    const Json files = Json::array({{{"path", path}, {"absolutePath", path}}});
+    const std::vector<CompareVariant> variants{
+        {"as it is", {}}, {"damaged", {{"/data/files", files.dump()}, {"/layers/0/technique/channel", "rho"}}}};
+    std::vector<std::string> said;
+    const auto get = [&](ViewContext& now) {
+        now.renderers = 1 + feed.renderers();
+        feed.draw(now, "pane", variants, 0, {32, 24}, false);
+        said.insert(said.end(), now.messages.begin(), now.messages.end());
+    };
+    finish(get);
+    std::filesystem::remove(path);
+    ASSERT_EQ(feed.cells()[1]->failure, "");
+    EXPECT_EQ(feed.renderers(), 1);
+    const auto half = std::size_t(session.render.limits.textureMemory) / 2 << 20;
+    EXPECT_EQ(renderer.residency().textureBudget, half);
+    EXPECT_EQ(feed.cells()[1]->data->renderer->residency().textureBudget, half);
+    EXPECT_EQ(feed.cells()[1]->data->renderer->residency().memoryBudget,
+              std::size_t(session.render.limits.brickMemory) / 2 << 20);
+    EXPECT_THAT(said, testing::Contains(testing::StartsWith("damaged: ")));
 }
 
 } // namespace
