@@ -58,4 +58,10 @@ vec4 slabColor(int layer, float front, float back, out float share) {
     share = (hasFront ? 0.5 : 0.0) + (hasBack ? 0.5 : 0.0);
     return planeAt(LAYER_PLANE(layer), vec2(hasFront ? front : back, hasBack ? back : front));
 }
+
+// Place of the value at p, an end of a sample's part.
+float slabEnd(int layer, vec3 p) {
+    vec2 s = reconstruct(LAYER_FIELD(layer), p);
+    return present(s) ? s.x * layerMap[layer].x + layerMap[layer].y : kUnknown;
+}
 #endif

@@ -1,17 +1,23 @@
-// Where slices and rasterised surfaces are met along a ray (in samples: sample k at k), and what is seen there; nearest
-// first.
-#if EVENTS > 0
-float eventAt[EVENTS];
-vec4 eventColor[EVENTS];
-float eventInterest[EVENTS];
+// Events: where slices and rasterised surfaces are met along the ray, nearest first.
+#define EVENTS (SLICES + GEOMETRY)
 
-// `count`: of the ray's samples; it ends behind what is opaque.
-void findEvents(vec3 origin, vec3 direction, vec2 inside, float stepLength, float phase, bool meets, inout int count) {
+#if EVENTS > 0
+Met events[EVENTS];
+float passed = -1e8;        // events up to here are shown
+float nextEvent = kNowhere; // behind it
+
+// Where a place at distance t lies among the samples.
+float sampleAt(float t) {
+    return (t - ray.inside.x) / ray.stepLength - ray.phase;
+}
+
+// The ray ends behind what is opaque.
+void findEvents() {
 #if SLICES > 0
     for (int i = 0; i < SLICES; ++i) {
-        float slope = dot(slicePlane[i].xyz, direction);
-        float t = (slicePlane[i].w - dot(slicePlane[i].xyz, origin)) / (abs(slope) < 1e-9 ? 1e-9 : slope);
-        vec3 world = origin + direction * t;
+        float slope = dot(slicePlane[i].xyz, ray.direction);
+        float t = (slicePlane[i].w - dot(slicePlane[i].xyz, ray.origin)) / (abs(slope) < 1e-9 ? 1e-9 : slope);
+        vec3 world = ray.origin + ray.direction * t;
         vec3 p = toCells(clamp(world, -halfSize, halfSize));
         vec2 s = reconstruct(SLICE_FIELD(i), p);
         float x = s.x * sliceMap[i].x + sliceMap[i].y;
@@ -24,13 +30,14 @@ void findEvents(vec3 origin, vec3 direction, vec2 inside, float stepLength, floa
             c = mix(c, vec3(luminance(c) > 0.18 ? 0.0 : 1.0), 0.75 * clamp(1.2 - away, 0.0, 1.0) / max(1.0, width * 2.0));
         }
         float tolerance = 1e-5;
-        bool seen = meets && abs(slope) > 1e-6 && t > inside.x - tolerance && t < inside.y + tolerance && present(s);
-        float at = (t - inside.x) / stepLength - phase;
-        eventAt[i] = seen && clipShows(at) ? at : 1e9;
+        bool seen = ray.meets && abs(slope) > 1e-6 && t > ray.inside.x - tolerance && t < ray.inside.y + tolerance &&
+                    present(s);
+        float at = sampleAt(t);
+        events[i].at = seen && clipShows(at) ? at : kNowhere;
         vec2 lens = lensAction(SLICE_LENS(i), world);
         float alpha = min(sliceMap[i].w * focusOpacity(doi, SLICE_BRUSHED(i)) * lens.x, 1.0);
-        eventColor[i] = vec4(focusColor(c, doi, lens.y, SLICE_BRUSHED(i)) * alpha, alpha);
-        eventInterest[i] = focusInterest(doi, SLICE_BRUSHED(i));
+        events[i].color = vec4(focusColor(c, doi, lens.y, SLICE_BRUSHED(i)) * alpha, alpha);
+        events[i].interest = focusInterest(doi, SLICE_BRUSHED(i));
     }
 #endif
 #if GEOMETRY > 0
@@ -38,31 +45,37 @@ void findEvents(vec3 origin, vec3 direction, vec2 inside, float stepLength, floa
         ivec3 texel = ivec3(gl_FragCoord.xy, i);
         vec2 found = texelFetch(geometryDistance, texel, 0).rg;
         float t = found.x;
-        bool seen = meets && t < 1e8;
-        eventAt[SLICES + i] = seen ? (t - inside.x) / stepLength - phase : 1e9;
-        vec4 c = seen ? texelFetch(geometryColor, texel, 0) : vec4(0.0);
-        eventInterest[SLICES + i] = 1.0;
+        bool seen = ray.meets && t < 1e8;
+        Met met = Met(seen ? sampleAt(t) : kNowhere, seen ? texelFetch(geometryColor, texel, 0) : vec4(0.0), 1.0);
 #if BRUSH_TESTS > 0
         // Brushes act on what was lit: the rasteriser knows nothing of them.
         int effect = int(found.y + 0.5);
-        float doi = degreeOfInterest(toCells(origin + direction * min(t, 1e3)));
-        vec3 own = focusColor(c.rgb / max(c.a, 1e-6), doi, 1.0, effect);
-        float alpha = c.a * focusOpacity(doi, effect);
-        c = vec4(own * alpha, alpha);
-        eventInterest[SLICES + i] = focusInterest(doi, effect);
+        float doi = degreeOfInterest(toCells(ray.origin + ray.direction * min(t, 1e3)));
+        vec3 own = focusColor(met.color.rgb / max(met.color.a, 1e-6), doi, 1.0, effect);
+        float alpha = met.color.a * focusOpacity(doi, effect);
+        met.color = vec4(own * alpha, alpha);
+        met.interest = focusInterest(doi, effect);
 #endif
-        eventColor[SLICES + i] = c;
+        events[SLICES + i] = met;
         // Nothing behind what is opaque: the ray ends there.
-        if (eventColor[SLICES + i].a >= kOpaque)
-            count = clamp(int(floor(min(eventAt[SLICES + i], 1e8))) + 1, 0, count);
+        if (met.color.a >= kOpaque) ray.count = clamp(int(floor(min(met.at, 1e8))) + 1, 0, ray.count);
     }
 #endif
     for (int i = 0; i < EVENTS; ++i)
-        for (int j = EVENTS - 1; j > i; --j)
-            if (eventAt[j] < eventAt[j - 1]) {
-                float at = eventAt[j]; eventAt[j] = eventAt[j - 1]; eventAt[j - 1] = at;
-                vec4 c = eventColor[j]; eventColor[j] = eventColor[j - 1]; eventColor[j - 1] = c;
-                float doi = eventInterest[j]; eventInterest[j] = eventInterest[j - 1]; eventInterest[j - 1] = doi;
-            }
+        for (int j = EVENTS - 1; j > i; --j) order(events[j - 1], events[j]);
+    nextEvent = events[0].at;
+}
+
+// Shows those up to `until` (in samples) that are not shown yet.
+void showEvents(float until) {
+    for (int i = 0; i < EVENTS; ++i)
+        if (events[i].at > passed && events[i].at <= until) show(events[i]);
+    passed = max(passed, until);
+}
+
+void findNextEvent() {
+    nextEvent = kNowhere;
+    for (int i = EVENTS - 1; i >= 0; --i)
+        if (events[i].at > passed) nextEvent = events[i].at;
 }
 #endif

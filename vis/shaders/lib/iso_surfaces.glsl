@@ -1,0 +1,56 @@
+// Iso-surfaces: where the ray crosses them between two samples, and what is seen there.
+#if ISOS > 0
+
+// Shows those that are met between samples k - 1 and k, nearest first, with the events before and between them; the
+// values at sample k are then `before` of their layers.
+void showSurfaces(int k) {
+    Met surfaces[ISOS];
+    vec3 p = cellsAt(float(k));
+    for (int n = 0; n < ISOS; ++n) {
+        int i = ISO_LAYER(n), field = LAYER_FIELD(i);
+        float value = layerMap[i].z;
+        vec2 a = reconstruct(field, p - ray.cellsPerSample), b = reconstruct(field, p);
+        bool crossed = k > 0 && present(a) && present(b) && (a.x >= value) != (b.x >= value);
+        bool above = a.x >= value;
+        before[i] = present(b) ? b.x : kUnknown;
+        float lo = -1.0, hi = 0.0;
+        for (int m = 0; m < (crossed ? bisections : 0); ++m) {
+            float middle = 0.5 * (lo + hi);
+            bool same = (reconstruct(field, p + middle * ray.cellsPerSample).x >= value) == above;
+            lo = same ? middle : lo;
+            hi = same ? hi : middle;
+        }
+        float offset = 0.5 * (lo + hi), at = float(k) + offset;
+        vec3 q = p + offset * ray.cellsPerSample;
+        float doi = degreeOfInterest(q);
+        crossed = crossed && clipShows(at);
+        vec3 world = worldAt(at);
+        vec2 lens = lensAction(LAYER_LENS(i), world);
+        float alpha = crossed ? min(layerMap[i].w * focusOpacity(doi, LAYER_BRUSHED(i)) * lens.x, 1.0) : 0.0;
+        float centre = FIELD_COVERAGE(field) == 1 ? reconstruct(field, q).x : 0.0;
+        vec3 g = cellGradient(field, q, centre, crossed);
+        vec3 albedo = focusColor(layerColor[i], doi, lens.y, LAYER_BRUSHED(i)), c = albedo;
+#if LOOKS
+        LookSample look;
+        if (LAYER_LOOK(i) != 0) {
+            look = lookSample(i, field, q, g, 1.0, world, distanceAt(at), ray.direction, doi, crossed);
+            alpha = lookOpacity(i, alpha, look);
+            c = lookAlbedo(i, albedo, look);
+        }
+#endif
+        c = shade(c, shadingGradient(g), 1.0, world, -ray.direction);
+#if LOOKS
+        if (LAYER_LOOK(i) != 0) c = lookColor(i, albedo, c, look);
+#endif
+        surfaces[n] = Met(crossed ? at : kNowhere, vec4(c * alpha, alpha), focusInterest(doi, LAYER_BRUSHED(i)));
+    }
+    for (int n = 0; n < ISOS; ++n)
+        for (int m = ISOS - 1; m > n; --m) order(surfaces[m - 1], surfaces[m]);
+    for (int n = 0; n < ISOS; ++n) {
+#if EVENTS > 0
+        showEvents(min(surfaces[n].at, float(k)));
+#endif
+        show(surfaces[n]);
+    }
+}
+#endif

@@ -1,0 +1,69 @@
+// Projections: layers that look at the whole ray, and show one of its values. What each does stands in
+// vis/model/ray_setup.h.
+#if HAS_PROJECTION
+
+// Best score and its sample; sums. A local maximum that is found has weight 1.
+float best[LAYERS], bestAt[LAYERS], sum[LAYERS], weight[LAYERS], factor[LAYERS];
+
+void beginProjections() {
+    for (int i = 0; i < LAYERS; ++i) {
+        best[i] = -1.0;
+        bestAt[i] = 0.0;
+        sum[i] = 0.0;
+        weight[i] = 0.0;
+        factor[i] = 0.0;
+    }
+}
+
+// Looks at sample k at p: `x` the place of its value, `lens` its opacity in the layer's lens; where it is not present
+// nothing but that is seen.
+void project(int i, int k, vec3 p, float x, float lens, bool is) {
+    float f = is ? focusOpacity(degreeOfInterest(p), LAYER_BRUSHED(i)) * lens : 0.0;
+    float place = clamp(x, 0.0, 1.0);
+    if (LAYER_STYLE(i) == AVERAGE) {
+        sum[i] += is ? f * x : 0.0;
+        weight[i] += f;
+        factor[i] += is ? 1.0 : 0.0;
+    } else if (LAYER_STYLE(i) == XRAY) {
+        float a = is ? correctedOpacity(transfer(i, x).a * f, ray.stepLength * REFERENCE_LENGTHS * layerMap[i].z) : 0.0;
+        sum[i] += (1.0 - sum[i]) * a;
+    } else {
+        float score = (LAYER_STYLE(i) == MINIMUM ? 1.0 - place : place) * f;
+        // A local maximum stands when the values fall again above the threshold.
+        if (LAYER_STYLE(i) == LOCAL_MAXIMUM)
+            weight[i] = best[i] >= layerMore[i].y && (!is || score < best[i]) ? 1.0 : weight[i];
+        bool better = is && score > best[i] && weight[i] == 0.0;
+        bestAt[i] = better ? float(k) : bestAt[i];
+        best[i] = better ? score : best[i];
+    }
+}
+
+void showProjections() {
+    for (int i = 0; i < LAYERS; ++i) {
+        if (LAYER_STYLE(i) == COMPOSITE || LAYER_STYLE(i) == ISO) continue;
+        vec4 c;
+        float alpha, at = 0.5 * float(ray.count), doi = 1.0; // sums belong to no place
+        if (LAYER_STYLE(i) == XRAY) {
+            alpha = sum[i];
+            c = transfer(i, alpha);
+        } else if (LAYER_STYLE(i) == AVERAGE) {
+            c = transfer(i, sum[i] / max(weight[i], 1e-6));
+            alpha = weight[i] > 0.0
+                        ? min(min(1.0, layerMap[i].z * c.a) * (weight[i] / max(factor[i], 1.0)), 1.0) : 0.0;
+        } else {
+            at = bestAt[i];
+            vec3 p = cellsAt(at);
+            vec2 s = reconstruct(LAYER_FIELD(i), p);
+            float x = s.x * layerMap[i].x + layerMap[i].y;
+            if (LAYER_GRADIENT(i) == 1) x = gradientPlace(i, cellGradient(LAYER_FIELD(i), p, s.x, best[i] >= 0.0));
+            doi = degreeOfInterest(p);
+            c = transfer(i, x);
+            vec2 lens = lensAction(LAYER_LENS(i), worldAt(at));
+            c.rgb = focusColor(c.rgb, doi, lens.y, LAYER_BRUSHED(i));
+            alpha = best[i] >= 0.0
+                        ? min(min(1.0, layerMap[i].z * c.a) * focusOpacity(doi, LAYER_BRUSHED(i)) * lens.x, 1.0) : 0.0;
+        }
+        show(Met(at, vec4(c.rgb * alpha, alpha), focusInterest(doi, LAYER_BRUSHED(i))));
+    }
+}
+#endif
