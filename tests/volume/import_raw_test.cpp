@@ -165,7 +165,8 @@ TEST_F(ImportRaw, BadInputGivesOneLine) {
     EXPECT_THAT(with(R"({"dtype":"uint8"})"), testing::HasSubstr("dims: is missing"));
     EXPECT_THAT(with(R"({"dims":[2,2,2],"dtype":"complex"})"), testing::HasSubstr("unknown type \"complex\""));
     EXPECT_THAT(with(R"({"dims":[2,2,2]})"), testing::HasSubstr("dtype"));
-    EXPECT_THAT(with(R"({"dims":[2,2,3],"dtype":"uint8"})"), testing::HasSubstr("has 8 bytes, its form asks for 12"));
+    EXPECT_THAT(with(R"({"dims":[2,2,3],"dtype":"uint8"})"),
+                testing::HasSubstr("has 8 bytes, its form asks for 12 (2 x 2 x 3 samples, 1 component, 1 time)"));
     EXPECT_THAT(with(R"({"dims":[2,2,1],"dtype":"uint8"})"), testing::HasSubstr("has 8 bytes, its form asks for 4"));
     EXPECT_THAT(with(R"({"dims":[2,2,-2],"dtype":"uint8"})"), testing::HasSubstr("dims[2]"));
     EXPECT_THAT(with(R"({"dims":[1000000,1000000,1000000],"dtype":"uint8"})"), testing::HasSubstr("10^15"));
@@ -176,6 +177,33 @@ TEST_F(ImportRaw, BadInputGivesOneLine) {
                 testing::HasSubstr("there twice"));
     EXPECT_THAT(with(R"({"dims":[2,2,2],"dtype":"uint8","components":[]})"), testing::HasSubstr("no component"));
     EXPECT_THAT(with(R"({"dims":[2,2,2],"dtype":"uint8","byte_order":"pdp"})"), testing::HasSubstr("byte_order"));
+}
+
+TEST_F(ImportRaw, AnEmptyFileIsCalledEmpty) {
+    const std::string path = write("a.raw", "");
+    EXPECT_THAT(failure(path), testing::EndsWith("a.raw: is empty"));
+    write("a.json", R"({"dims":[2,2,1],"dtype":"uint8"})");
+    EXPECT_THAT(failure(path), testing::EndsWith("a.raw: is empty"));
+}
+
+TEST_F(ImportRaw, ANameThatFitsTheSizeTellsTheForm) {
+    const auto told = [&](const std::string& name, std::size_t bytes) {
+        return rawOptionOfName(write(name, std::string(bytes, 'x')));
+    };
+    EXPECT_EQ(told("plain_2x3x4_uint8.raw", 24), "dims=2x3x4,type=uint8");
+    EXPECT_EQ(told("Plain-2X3X4.Float32.raw", 96), "dims=2x3x4,type=float32");
+    EXPECT_EQ(told("gfs_2x3x4_c5_t2_int16.raw", 480), "dims=2x3x4,type=int16,components=5,times=2");
+    EXPECT_EQ(told("scan_t2_2x3x4_u8.raw", 24), "dims=2x3x4,type=u8") << "t2 is no number of times here";
+    EXPECT_EQ(told("plain_2x3x4_uint8.raw", 25), "");
+    EXPECT_EQ(told("plain_2x3x4.raw", 24), "");
+    EXPECT_EQ(told("uint8.raw", 24), "");
+    EXPECT_EQ(told("plain_2xx4_uint8.raw", 24), "");
+    EXPECT_EQ(told("plain_0x3x4_uint8.raw", 0), "");
+    EXPECT_EQ(told("plain_99999999999x3x4_uint8.raw", 24), "");
+    EXPECT_EQ(rawOptionOfName((folder_ / "missing_2x3x4_uint8.raw").string()), "");
+    ImportOptions options;
+    options.raw = told("good_2x3x4_uint8.raw", 24);
+    EXPECT_EQ(openFiles({(folder_ / "good_2x3x4_uint8.raw").string()}, options).info.lattice.size, glm::ivec3(2, 3, 4));
 }
 
 TEST_F(ImportRaw, FileThatShrinksAfterOpeningIsAnError) {

@@ -113,6 +113,12 @@ bool isRaw(const std::string& path, const std::string& rawOption) {
     return ending == ".raw" || ending == ".json" || (!rawOption.empty() && ending != ".vti");
 }
 
+bool hasSidecar(const std::string& path) {
+    const fs::path file(path);
+    std::error_code unknown;
+    return file.extension() == ".raw" && fs::exists(fs::path(file).replace_extension(".json"), unknown);
+}
+
 Piece openRaw(const std::string& path, const std::string& rawOption) {
     RawForm form;
     fs::path data = path;
@@ -122,9 +128,14 @@ Piece openRaw(const std::string& path, const std::string& rawOption) {
         fs::path sidecar = path;
         if (sidecar.extension() != ".json") sidecar.replace_extension(".json");
         if (!fs::exists(path)) throw Error("no such file", path);
-        if (!fs::exists(sidecar))
-            throw Error("has no sidecar " + sidecar.filename().string() + "; state its form with --raw dims=..,type=..",
+        if (!fs::exists(sidecar)) {
+            std::error_code unknown;
+            if (fs::file_size(path, unknown) == 0) throw Error("is empty", path);
+            throw Error("has no sidecar " + sidecar.filename().string() +
+                            "; state its form, such as dims=64x64x64,type=u8, with --raw or in the field Raw layout of "
+                            "File > Open",
                         path);
+        }
         constexpr std::uintmax_t kMostSidecar = 16 << 20;
         if (fs::file_size(sidecar) > kMostSidecar) throw Error("is too large for a sidecar", sidecar.string());
         std::ifstream in(sidecar, std::ios::binary);
@@ -143,11 +154,15 @@ Piece openForm(const RawForm& form, const std::string& path, const std::string& 
     std::error_code failed;
     const auto size = fs::file_size(data, failed);
     if (failed) throw Error("no such file", data);
+    if (size == 0) throw Error("is empty", data);
+    const auto counted = [](std::size_t n, const char* one) {
+        return std::to_string(n) + " " + one + (n == 1 ? "" : "s");
+    };
     if (size != form.bytes())
         throw Error("has " + std::to_string(size) + " bytes, its form asks for " + std::to_string(form.bytes()) + " (" +
                         std::to_string(form.lattice.size.x) + " x " + std::to_string(form.lattice.size.y) + " x " +
-                        std::to_string(form.lattice.size.z) + " samples, " + std::to_string(form.components.size()) +
-                        " components, " + std::to_string(form.frames()) + " times)",
+                        std::to_string(form.lattice.size.z) + " samples, " +
+                        counted(form.components.size(), "component") + ", " + counted(form.frames(), "time") + ")",
                     data);
 
     Piece piece;

@@ -43,6 +43,14 @@ RawForm parseSidecar(std::string_view json, const std::string& file);
 /// Reads the text of `--raw`: "dims=XxYxZ,type=u8,spacing=AxBxC,origin=AxBxC,components=N,times=N,big-endian,skip=N".
 RawForm parseRawOption(std::string_view text);
 
+/// The text of `--raw` that a file's name tells: "engine_149x208x110_uint8.raw" gives "dims=149x208x110,type=u8". ""
+/// where the name has no dims or no type, or where the file has other bytes than they ask for. Words c5 and t12 of the
+/// name are 5 components and 12 times.
+std::string rawOptionOfName(const std::string& path);
+
+/// True for a *.raw file beside which lies a sidecar of its name.
+bool hasSidecar(const std::string& path);
+
 /// Opens a raw file named by itself or by its sidecar; `rawOption` (may be empty) takes the place of the sidecar.
 /// Checks the size of the file against the form; samples are read on demand.
 Piece openRaw(const std::string& path, const std::string& rawOption);

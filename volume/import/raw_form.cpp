@@ -4,8 +4,10 @@
 #include "volume/import/raw.h"
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <cmath>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <optional>
 
@@ -14,6 +16,7 @@ namespace tessera::volume {
 namespace {
 
 using nlohmann::json;
+namespace fs = std::filesystem;
 
 constexpr double kMostBytes = 1e15;
 constexpr std::size_t kMostComponents = 4096;
@@ -290,6 +293,42 @@ RawForm parseRawOption(std::string_view text) {
         for (std::size_t i = 0; i < times; ++i) form.times.push_back(double(i));
     check(form, {});
     return form;
+}
+
+std::string rawOptionOfName(const std::string& path) {
+    const fs::path file(path);
+    std::string name = file.stem().string();
+    std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+    // Words between signs, each of which may say one thing; the last that says it counts.
+    std::string dims, type, components, times;
+    const auto countAfter = [](std::string_view word, char letter) {
+        return word.size() > 1 && word.size() < 6 && word[0] == letter &&
+               word.find_first_not_of("0123456789", 1) == std::string_view::npos;
+    };
+    for (std::size_t at = 0; at < name.size();) {
+        const std::size_t end = std::min(name.find_first_of("_-. ()[],", at), name.size());
+        const std::string word = name.substr(at, end - at);
+        at = end + 1;
+        if (parseType(word))
+            type = word;
+        else if (countAfter(word, 'c'))
+            components = ",components=" + word.substr(1);
+        else if (countAfter(word, 't'))
+            times = ",times=" + word.substr(1);
+        else if (std::count(word.begin(), word.end(), 'x') == 2 &&
+                 word.find_first_not_of("0123456789x") == std::string::npos)
+            dims = word;
+    }
+    if (dims.empty() || type.empty()) return {};
+    std::error_code failed;
+    const auto bytes = fs::file_size(file, failed);
+    if (failed) return {};
+    const std::string stated = "dims=" + dims + ",type=" + type;
+    for (const std::string& option : {stated + components + times, stated}) try {
+            if (parseRawOption(option).bytes() == bytes) return option;
+        } catch (const Error&) { // a name of other numbers
+        }
+    return {};
 }
 
 } // namespace tessera::volume
