@@ -31,7 +31,13 @@ Workbench::Workbench(WorkbenchOptions options) : options_(std::move(options)) {
     }
     history_.reset(session_);
     saved_ = session_;
-    files_.preview = [this](const std::string& path) { return previewOf(path); };
+    files_.preview = [this](const std::string& path) {
+        FilePreview preview = previewOf(path);
+        // Other questions are for files that are no data (colours), or whose form a session states.
+        preview.failed = preview.failed && files_.purpose() == "open";
+        return preview;
+    };
+    files_.filesChosen = [this](const std::vector<std::string>& paths) { filesChosen(paths); };
     files_.options = [this] { drawImportOptions(); };
     makeCommands();
 }
@@ -43,6 +49,12 @@ double Workbench::now() const {
 }
 
 void Workbench::open(OpenRequest request) {
+    // Nothing is asked, and so perhaps given up, for what cannot be opened anyway.
+    for (const std::string& path : request.paths) {
+        const bool pattern = path.find_first_of("*?[") != std::string::npos;
+        std::error_code unknown;
+        if (!options_.headless && !pattern && !fs::exists(path, unknown)) return message(path + ": no such file", true);
+    }
     leave([this, request = std::move(request)] { start(request); });
 }
 
@@ -338,7 +350,7 @@ double Workbench::idleSeconds() const {
     double wait = std::numeric_limits<double>::infinity();
     for (const Jobs::Status& job : jobs_.list()) wait = std::min(wait, job.quiet ? 0.25 : 0.1);
     for (const Message& each : messages_)
-        if (!each.gone && !each.failure) wait = std::min(wait, std::max(0.05, each.born + kToastSeconds - now()));
+        if (!each.gone) wait = std::min(wait, std::max(0.05, each.born + each.toastSeconds() - now()));
     if (unsavedEdits_) wait = std::min(wait, std::max(0.1, lastAutosave_ + kAutosaveSeconds - now()));
     return wait;
 }

@@ -92,38 +92,40 @@ public:
         takePicture;
 
 private:
-    static constexpr double kToastSeconds = 7; ///< that a message which is no failure stays
+    static constexpr int kToasts = 3; ///< messages that stand over the views at a time
     struct Message {
         std::string text, clock;
         bool failure = false;
         double born = 0;
         bool gone = false; ///< no longer shown as a toast
+        double toastSeconds() const { return failure ? 30 : 7; }
     };
     struct Export {
         PictureRequest request;
         std::string path;
     };
 
-    void makeCommands();                            // workbench_commands.cpp
-    void addFileCommands();                         // workbench_commands.cpp
-    void addEditCommands();                         // workbench_commands.cpp
-    void addHelpCommands();                         // workbench_commands.cpp
-    void addViewCommands();                         // workbench_view_commands.cpp
-    void addLayoutCommands();                       // workbench_view_commands.cpp
-    void drawMenus();                               // workbench_commands.cpp
-    void drawDialogs();                             // workbench_dialogs.cpp
-    void drawMissing();                             // workbench_dialogs.cpp
-    void drawRecovery();                            // workbench_dialogs.cpp
-    void drawExport();                              // workbench_dialogs.cpp
-    void drawLeaving();                             // workbench_dialogs.cpp
-    void drawHelp();                                // workbench_dialogs.cpp
-    void drawToasts();                              // workbench_dialogs.cpp
-    void drawImportOptions();                       // workbench_dialogs.cpp
-    std::string previewOf(const std::string& path); // workbench_dialogs.cpp
-    void drawStatusBar(float height);               // workbench_panes.cpp
-    void drawPane(const std::string& pane);         // workbench_panes.cpp
-    void drawHistoryPane();                         // workbench_panes.cpp
-    void drawLogPane();                             // workbench_panes.cpp
+    void makeCommands();                                     // workbench_commands.cpp
+    void addFileCommands();                                  // workbench_commands.cpp
+    void addEditCommands();                                  // workbench_commands.cpp
+    void addHelpCommands();                                  // workbench_commands.cpp
+    void addViewCommands();                                  // workbench_view_commands.cpp
+    void addLayoutCommands();                                // workbench_view_commands.cpp
+    void drawMenus();                                        // workbench_commands.cpp
+    void drawDialogs();                                      // workbench_dialogs.cpp
+    void drawMissing();                                      // workbench_dialogs.cpp
+    void drawRecovery();                                     // workbench_dialogs.cpp
+    void drawExport();                                       // workbench_dialogs.cpp
+    void drawLeaving();                                      // workbench_dialogs.cpp
+    void drawHelp();                                         // workbench_dialogs.cpp
+    void drawToasts();                                       // workbench_toasts.cpp
+    void drawImportOptions();                                // workbench_import.cpp
+    FilePreview previewOf(const std::string& path);          // workbench_import.cpp
+    void filesChosen(const std::vector<std::string>& paths); // workbench_import.cpp
+    void drawStatusBar(float height);                        // workbench_panes.cpp
+    void drawPane(const std::string& pane);                  // workbench_panes.cpp
+    void drawHistoryPane();                                  // workbench_panes.cpp
+    void drawLogPane();                                      // workbench_panes.cpp
 
     /// Does what gives the session up: at once, or after asking whether to save what has changed.
     void leave(std::function<void()> go);
@@ -178,7 +180,8 @@ private:
     FileDialog files_;
     volume::ImportOptions import_;
     std::string importAbsent_, importUnits_, importNames_;
-    std::map<std::string, std::string> previews_;
+    bool formStated_ = false; ///< by a sidecar of the files chosen: it wins over a layout typed before
+    std::map<std::string, FilePreview> previews_;
     std::optional<Opened> missing_;
     std::size_t locating_ = 0;
     std::unique_ptr<Autosave> autosave_;

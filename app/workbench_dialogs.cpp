@@ -2,14 +2,11 @@
 
 #include "app/ui/widgets.h"
 #include "volume/error.h"
-#include "volume/import/import.h"
 
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <imgui.h>
-#include <imgui_stdlib.h>
-#include <sstream>
 
 /// Dialogs of the workbench. Each is drawn every frame and shows itself when its state says so; Esc closes it.
 namespace tessera::app {
@@ -57,118 +54,7 @@ int dialogButtons(std::initializer_list<const char*> names) {
     return chosen;
 }
 
-std::string describe(const volume::ImportPreview& preview) {
-    std::ostringstream text;
-    const volume::DatasetInfo& info = preview.info;
-    const glm::dvec3 size = info.bounds.size();
-    text << preview.format << "\n"
-         << info.lattice.size.x << " x " << info.lattice.size.y << " x " << info.lattice.size.z << " samples, "
-         << textOfBytes(preview.bytes) << "\n"
-         << size.x << " x " << size.y << " x " << size.z << " " << info.lengthUnit << "\n";
-    if (info.times.size() > 1)
-        text << info.times.size() << " times, " << info.times.front() << " to " << info.times.back() << " "
-             << info.timeUnit << "\n";
-    text << "\n";
-    for (const volume::Parameter& parameter : info.parameters) {
-        text << parameter.name;
-        if (parameter.components > 1) text << " (vector)";
-        if (!parameter.unit.empty()) text << " [" << parameter.unit << "]";
-        text << "  " << volume::name(parameter.type) << "\n";
-    }
-    if (!preview.notes.empty()) text << "\n";
-    for (const std::string& note : preview.notes) text << note << "\n";
-    return text.str();
-}
-
 } // namespace
-
-std::string Workbench::previewOf(const std::string& path) {
-    const auto known = previews_.find(path);
-    if (known != previews_.end()) return known->second;
-    if (jobs_.running("preview:" + path)) return {};
-    const volume::ImportOptions import = import_;
-    jobs_.start(
-        "preview:" + path, "",
-        [this, path, import](const Progress& progress) -> Jobs::Finish {
-            std::string text;
-            try {
-                const std::string name = fs::path(path).filename().string();
-                if (name.ends_with(".png")) {
-                    sessionTextOfPicture(path);
-                    text = "A picture that carries its session.";
-                } else if (name.ends_with(".json") && looksLikeSession(readText(path))) {
-                    const SessionDocument document = loadSession(path);
-                    text = "Session: " + document.session.title + "\n\n";
-                    text += document.session.data.files.empty() ? "Built-in data: " + document.session.data.model : "";
-                    for (const DataFile& file : document.session.data.files)
-                        text += file.path + ", " + textOfBytes(file.bytes) + "\n";
-                    text += "\n" + std::to_string(document.session.views.size()) + " views, " +
-                            std::to_string(document.session.layers.size()) + " layers, " +
-                            std::to_string(document.session.selection.brushes.size()) + " brushes, " +
-                            std::to_string(document.history.steps().size()) + " steps of history";
-                } else if (name.ends_with(".tsr")) {
-                    std::vector<std::string> messages;
-                    DataRef data;
-                    data.files = {describeFile(path)};
-                    const auto source = openSource(data, messages, progress);
-                    text = describe({"Tessera archive", source->info(), data.files[0].bytes, {}});
-                } else {
-                    text = describe(volume::previewFiles({path}, import, progress));
-                }
-            } catch (const Error& error) {
-                text = error.reason();
-            }
-            return [this, path, text] { previews_[path] = text; };
-        },
-        true);
-    return {};
-}
-
-void Workbench::drawImportOptions() {
-    const float em = ImGui::GetFontSize();
-    ImGui::AlignTextToFramePadding();
-    ImGui::TextDisabled("Raw layout");
-    ImGui::SameLine(em * 7);
-    ImGui::SetNextItemWidth(em * 22);
-    bool changed = ImGui::InputTextWithHint("##raw", "dims=64x64x64,type=u8 (only for files without a header)",
-                                            &import_.raw, ImGuiInputTextFlags_EnterReturnsTrue);
-    changed |= ImGui::IsItemDeactivatedAfterEdit();
-    ImGui::SameLine(em * 31);
-    ImGui::TextDisabled("Absent");
-    ImGui::SameLine(em * 35);
-    ImGui::SetNextItemWidth(-FLT_MIN);
-    changed |= ImGui::InputTextWithHint("##absent", "O2=region:0,3  T=nan", &importAbsent_,
-                                        ImGuiInputTextFlags_EnterReturnsTrue);
-    changed |= ImGui::IsItemDeactivatedAfterEdit();
-    const auto pairs = [&](const char* title, float at, float width, const char* hint, std::string& text) {
-        if (at > 0) ImGui::SameLine(em * at);
-        ImGui::AlignTextToFramePadding();
-        ImGui::TextDisabled("%s", title);
-        ImGui::SameLine(em * (at + (at > 0 ? 4 : 7)));
-        ImGui::SetNextItemWidth(width);
-        changed |= ImGui::InputTextWithHint((std::string("##") + title).c_str(), hint, &text,
-                                            ImGuiInputTextFlags_EnterReturnsTrue);
-        changed |= ImGui::IsItemDeactivatedAfterEdit();
-    };
-    pairs("Units", 0, em * 22, "O2=mol/m3  T=K (remembered)", importUnits_);
-    pairs("Names", 31, -FLT_MIN, "O2.air=O2  wO2=O2", importNames_);
-    ImGui::Spacing();
-    if (changed) {
-        std::istringstream words(importAbsent_);
-        import_.absent.clear();
-        for (std::string word; words >> word;) import_.absent.push_back(word);
-        const auto read = [](const std::string& text, std::map<std::string, std::string>& into) {
-            into.clear();
-            std::istringstream list(text);
-            for (std::string word; list >> word;)
-                if (const std::size_t equals = word.find('='); equals != std::string::npos && equals > 0)
-                    into[word.substr(0, equals)] = word.substr(equals + 1);
-        };
-        read(importUnits_, import_.units);
-        read(importNames_, import_.rename);
-        previews_.clear();
-    }
-}
 
 void Workbench::drawDialogs() {
     if (const auto answer = files_.draw()) answerFile(*answer);
@@ -352,42 +238,6 @@ void Workbench::drawHelp() {
             textOfBytes(double(use.memoryBudget)).c_str());
         if (dialogButtons({"Close"}) == 0) askAbout_ = false;
         endDialog(askAbout_);
-    }
-}
-
-void Workbench::drawToasts() {
-    const ImGuiViewport& viewport = *ImGui::GetMainViewport();
-    float y = viewport.Pos.y + viewport.Size.y - ImGui::GetFontSize() * 2.4f;
-    int number = 0;
-    for (auto each = messages_.rbegin(); each != messages_.rend() && number < 4; ++each) {
-        if (each->gone) continue;
-        if (!each->failure && now() - each->born > kToastSeconds) {
-            each->gone = true;
-            continue;
-        }
-        const std::string id = "###toast" + std::to_string(number++);
-        const float width = std::min(ImGui::GetFontSize() * 28, viewport.Size.x * 0.5f);
-        ImGui::SetNextWindowPos({viewport.Pos.x + viewport.Size.x - 12 * scale_, y}, ImGuiCond_Always, {1, 1});
-        ImGui::SetNextWindowSizeConstraints({ImGui::GetFontSize() * 12, 0}, {width, viewport.Size.y / 2});
-        ImGui::PushStyleColor(ImGuiCol_WindowBg, ImGui::GetStyleColorVec4(ImGuiCol_PopupBg));
-        ImGui::PushStyleColor(ImGuiCol_Border, each->failure ? palette().failure : palette().line);
-        ImGui::Begin(id.c_str(), nullptr,
-                     ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoMove |
-                         ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoFocusOnAppearing |
-                         ImGuiWindowFlags_NoNav);
-        ImGui::PopStyleColor(2);
-        ImGui::PushTextWrapPos(width - ImGui::GetStyle().WindowPadding.x);
-        if (each->failure && fonts_.icons) {
-            ImGui::PushStyleColor(ImGuiCol_Text, palette().failure);
-            ImGui::TextUnformatted(icon::kWarning);
-            ImGui::PopStyleColor();
-            ImGui::SameLine();
-        }
-        ImGui::TextUnformatted(each->text.c_str());
-        ImGui::PopTextWrapPos();
-        if (ImGui::IsWindowHovered() && ImGui::IsMouseClicked(ImGuiMouseButton_Left)) each->gone = true;
-        y -= ImGui::GetWindowSize().y + 6 * scale_;
-        ImGui::End();
     }
 }
 

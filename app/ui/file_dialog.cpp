@@ -2,6 +2,7 @@
 
 #include "app/ui/keys.h"
 #include "app/ui/theme.h"
+#include "app/ui/widgets.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -10,10 +11,17 @@
 #include <imgui.h>
 #include <imgui_stdlib.h>
 #include <sys/stat.h>
+#include <utility>
 
 namespace tessera::app {
 
 namespace fs = std::filesystem;
+
+namespace {
+
+constexpr const char* kRefused = "This file cannot be opened: the preview says why.";
+
+} // namespace
 
 std::string textOfBytes(double bytes) {
     static constexpr const char* units[] = {"B", "kB", "MB", "GB", "TB"};
@@ -35,8 +43,10 @@ void FileDialog::show(FileMode mode, std::string title, std::string purpose, std
     name_ = std::move(name);
     suffix_ = std::move(suffix);
     filter_.clear();
-    opening_ = shown_ = true;
-    confirm_ = false;
+    opening_ = shown_ = selectStem_ = true;
+    confirm_ = deciding_ = focusName_ = false;
+    noticed_.clear();
+    if (mode_ == FileMode::Open && filesChosen) filesChosen({});
     std::error_code problem;
     enter(folder.empty() || !fs::is_directory(folder, problem) ? fs::current_path(problem).string() : folder);
 }
@@ -68,8 +78,37 @@ void FileDialog::enter(const std::string& folder) {
     chosen_.clear();
 }
 
+/// The files that would be opened now: those chosen in the list, else the one whose name was typed.
+std::vector<std::string> FileDialog::filesNamed() const {
+    std::vector<std::string> paths;
+    for (const std::string& name : chosen_) paths.push_back((fs::path(folder_) / name).string());
+    std::error_code problem;
+    if (const fs::path typed = fs::path(folder_) / name_;
+        paths.empty() && !name_.empty() && fs::exists(typed, problem) && !fs::is_directory(typed, problem))
+        paths = {typed.string()};
+    return paths;
+}
+
+void FileDialog::noticeChoice() {
+    if (mode_ != FileMode::Open) return;
+    std::vector<std::string> paths = filesNamed();
+    if (paths.empty() || paths == noticed_) return;
+    noticed_ = std::move(paths);
+    problem_.clear();
+    deciding_ = false;
+    if (filesChosen) filesChosen(noticed_);
+}
+
+/// Of the name without the ending that is added anyway, or without its last one.
+std::size_t FileDialog::stemLength() const {
+    if (!suffix_.empty() && name_.ends_with(suffix_)) return name_.size() - suffix_.size();
+    const std::size_t dot = name_.rfind('.');
+    return dot == std::string::npos || dot == 0 ? name_.size() : dot;
+}
+
 void FileDialog::answerWith(std::optional<Answer>& answer) {
     Answer result{purpose_, {}};
+    problem_.clear();
     if (mode_ == FileMode::Save) {
         std::string name = name_;
         if (name.empty()) return;
@@ -83,7 +122,7 @@ void FileDialog::answerWith(std::optional<Answer>& answer) {
         result.paths = {path};
     } else {
         if (chosen_.empty() && !name_.empty()) {
-            const fs::path typed = name_.starts_with("/") ? fs::path(name_) : fs::path(folder_) / name_;
+            const fs::path typed = fs::path(folder_) / name_; // which is name_ alone if that begins at the root
             std::error_code problem;
             if (fs::is_directory(typed, problem)) {
                 name_.clear();
@@ -94,10 +133,17 @@ void FileDialog::answerWith(std::optional<Answer>& answer) {
                 problem_ = name_ + ": no such file";
                 return;
             }
-            result.paths = {typed.string()};
         }
-        for (const std::string& name : chosen_) result.paths.push_back((fs::path(folder_) / name).string());
+        noticeChoice();
+        result.paths = filesNamed();
         if (result.paths.empty()) return;
+        // Several files may belong together in a way that none of them shows alone.
+        if (preview && result.paths.size() == 1) {
+            const FilePreview seen = preview(result.paths.front());
+            deciding_ = seen.text.empty() && !seen.failed;
+            if (seen.failed) problem_ = kRefused;
+            if (deciding_ || seen.failed) return;
+        }
     }
     answer = std::move(result);
     shown_ = false;
@@ -153,6 +199,68 @@ void FileDialog::drawList(std::optional<Answer>& answer, float height) {
     if (decided) answerWith(answer);
 }
 
+void FileDialog::drawPreview(float height) {
+    ImGui::BeginChild("##preview", {0, height}, true);
+    ImGui::PushTextWrapPos(0);
+    if (const std::vector<std::string> paths = filesNamed(); paths.empty()) {
+        ImGui::TextDisabled("Choose a file to see what is in it.");
+        ImGui::TextDisabled("Ctrl+click for several.");
+    } else if (const FilePreview seen = preview(paths.back()); seen.text.empty()) {
+        ImGui::TextDisabled("Reading the header...");
+    } else {
+        if (seen.failed) ImGui::PushStyleColor(ImGuiCol_Text, palette().failure);
+        ImGui::TextUnformatted(wrappedAtSpaces(seen.text, ImGui::GetContentRegionAvail().x).c_str());
+        if (seen.failed) ImGui::PopStyleColor();
+    }
+    ImGui::PopTextWrapPos();
+    ImGui::EndChild();
+}
+
+/// The field of the name with the buttons, and under it what is wrong with the name.
+void FileDialog::drawName(std::optional<Answer>& answer, bool& open) {
+    const float em = ImGui::GetFontSize();
+    ImGui::SetNextItemWidth(-em * 13);
+    if (ImGui::IsWindowAppearing() || std::exchange(focusName_, false)) ImGui::SetKeyboardFocusHere();
+    // ImGui would go on with the cursor and the selection that the field had when it was last shown.
+    const auto selectStem = [](ImGuiInputTextCallbackData* data) {
+        FileDialog& dialog = *static_cast<FileDialog*>(data->UserData);
+        if (!std::exchange(dialog.selectStem_, false)) return 0;
+        data->SelectionStart = 0;
+        data->SelectionEnd = data->CursorPos =
+            static_cast<int>(std::min(dialog.stemLength(), std::size_t(data->BufTextLen)));
+        return 0;
+    };
+    const bool enterKey = ImGui::InputTextWithHint(
+        "##name", mode_ == FileMode::Save ? "File name" : "File or folder", &name_,
+        ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_CallbackAlways, selectStem, this);
+    if (ImGui::IsItemEdited()) {
+        chosen_.clear();
+        problem_.clear();
+        confirm_ = deciding_ = false;
+        noticeChoice();
+    }
+    bool refused = false;
+    if (mode_ == FileMode::Open && preview)
+        if (const std::vector<std::string> paths = filesNamed(); paths.size() == 1)
+            refused = preview(paths.front()).failed;
+    if (!refused && problem_ == kRefused) problem_.clear(); // what was stated meanwhile has helped
+    ImGui::SameLine();
+    const char* verb = confirm_ ? "Replace" : mode_ == FileMode::Save ? "Save" : "Open";
+    ImGui::BeginDisabled(refused);
+    const bool button = ImGui::Button(verb, {em * 6, 0});
+    ImGui::EndDisabled();
+    if (button || enterKey || deciding_) {
+        answerWith(answer);
+        focusName_ = shown_ && !confirm_; // Enter that is held does not replace a file
+    }
+    ImGui::SameLine();
+    if (ImGui::Button("Cancel", {-FLT_MIN, 0}) || pressed({.key = key::kEscape})) open = false;
+    const std::string told = confirm_ ? name_ + " exists. Press again to replace it." : problem_;
+    ImGui::PushStyleColor(ImGuiCol_Text, confirm_ ? palette().warning : palette().failure);
+    ImGui::TextUnformatted(told.c_str());
+    ImGui::PopStyleColor();
+}
+
 std::optional<FileDialog::Answer> FileDialog::draw() {
     if (!shown_) return {};
     const std::string id = title_ + "###files";
@@ -187,7 +295,8 @@ std::optional<FileDialog::Answer> FileDialog::draw() {
     ImGui::InputTextWithHint("##filter", "Filter", &filter_);
     if (!into.empty()) enter(into);
 
-    const float footer = ImGui::GetFrameHeightWithSpacing() * (options && mode_ == FileMode::Open ? 4.4f : 1.3f);
+    const float footer = ImGui::GetFrameHeightWithSpacing() * (options && mode_ == FileMode::Open ? 3.7f : 1.3f) +
+                         ImGui::GetTextLineHeightWithSpacing();
     const bool previews = mode_ == FileMode::Open && preview;
     const float height = std::max(ImGui::GetContentRegionAvail().y - footer, em * 6);
     if (previews) {
@@ -195,46 +304,15 @@ std::optional<FileDialog::Answer> FileDialog::draw() {
         ImGui::SetColumnWidth(0, ImGui::GetWindowContentRegionMax().x * 0.62f);
     }
     drawList(answer, height);
+    noticeChoice();
     if (previews) {
         ImGui::NextColumn();
-        ImGui::BeginChild("##preview", {0, height}, true);
-        if (chosen_.empty()) {
-            ImGui::TextDisabled("Choose a file to see what is in it.");
-            ImGui::TextDisabled("Ctrl+click for several.");
-        } else {
-            ImGui::PushTextWrapPos(0);
-            const std::string text = preview((fs::path(folder_) / chosen_.back()).string());
-            if (text.empty())
-                ImGui::TextDisabled("Reading the header...");
-            else
-                ImGui::TextUnformatted(text.c_str());
-            ImGui::PopTextWrapPos();
-        }
-        ImGui::EndChild();
+        drawPreview(height);
         ImGui::Columns(1);
     }
     if (options && mode_ == FileMode::Open) options();
 
-    const float buttons = em * 13;
-    ImGui::SetNextItemWidth(-buttons);
-    if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
-    const bool enterKey = ImGui::InputTextWithHint("##name", mode_ == FileMode::Save ? "File name" : "File or folder",
-                                                   &name_, ImGuiInputTextFlags_EnterReturnsTrue);
-    if (ImGui::IsItemEdited()) {
-        chosen_.clear();
-        confirm_ = false;
-    }
-    ImGui::SameLine();
-    const char* verb = confirm_ ? "Replace" : mode_ == FileMode::Save ? "Save" : "Open";
-    if (ImGui::Button(verb, {em * 6, 0}) || enterKey) answerWith(answer);
-    ImGui::SameLine();
-    if (ImGui::Button("Cancel", {-FLT_MIN, 0}) || pressed({.key = key::kEscape})) open = false;
-    if (confirm_) {
-        ImGui::SameLine();
-        ImGui::SetTooltip("%s exists. Press again to replace it.", name_.c_str());
-    } else if (!problem_.empty()) {
-        ImGui::SetTooltip("%s", problem_.c_str());
-    }
+    drawName(answer, open);
     if (!open) {
         shown_ = false;
         ImGui::CloseCurrentPopup();

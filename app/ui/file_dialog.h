@@ -10,6 +10,12 @@ namespace tessera::app {
 
 enum class FileMode { Open, Save };
 
+/// What is known of a file before it is opened.
+struct FilePreview {
+    std::string text;    ///< "" while it is being read
+    bool failed = false; ///< it cannot be opened, for the reason that `text` gives
+};
+
 class FileDialog {
 public:
     /// Shows the dialog. `purpose` comes back with the answer. `suffix` is added to names that are saved without one.
@@ -25,9 +31,14 @@ public:
 
     bool shown() const { return shown_; }
     const std::string& folder() const { return folder_; }
+    const std::string& purpose() const { return purpose_; }
+    /// Why the last answer was none, such as a name that no file has; "" for nothing. Stands under the name.
+    const std::string& problem() const { return problem_; }
 
-    /// Asked for a file that becomes selected; gives its preview when it is known, "" while it is being read.
-    std::function<std::string(const std::string& path)> preview;
+    /// Asked every frame for the file that would be opened. One that failed is not opened.
+    std::function<FilePreview(const std::string& path)> preview;
+    /// Told when other files than before would be opened, before their preview is asked for; none when it is shown.
+    std::function<void(const std::vector<std::string>& paths)> filesChosen;
     /// Further widgets under the list when opening (import options).
     std::function<void()> options;
 
@@ -40,13 +51,22 @@ private:
     };
     void enter(const std::string& folder);
     void drawList(std::optional<Answer>& answer, float height);
+    void drawPreview(float height);
+    void drawName(std::optional<Answer>& answer, bool& open);
     void answerWith(std::optional<Answer>& answer);
+    std::vector<std::string> filesNamed() const;
+    void noticeChoice();
+    std::size_t stemLength() const;
 
     bool shown_ = false, opening_ = false, confirm_ = false;
+    bool selectStem_ = false; ///< of the name, as soon as its field takes the keyboard
+    bool focusName_ = false;  ///< the field of the name takes the keyboard in the next frame
+    bool deciding_ = false;   ///< the user has decided, the preview is still being read
     FileMode mode_ = FileMode::Open;
     std::string title_, purpose_, folder_, name_, suffix_, filter_, problem_;
     std::vector<Entry> entries_;
     std::vector<std::string> chosen_;
+    std::vector<std::string> noticed_; ///< paths that filesChosen was last told
 };
 
 /// "12.3 MB".

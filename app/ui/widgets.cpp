@@ -291,4 +291,30 @@ void endSection() {
     ImGui::TreePop();
 }
 
+std::string wrappedAtSpaces(const std::string& text, float width) {
+    std::string out;
+    float used = 0;
+    for (std::size_t at = 0; at < text.size();) {
+        std::size_t end = text.find_first_not_of(' ', at); // a word with the spaces before it
+        end = std::min(text.find_first_of(" \n", end), text.size());
+        const char* const begin = text.c_str() + at;
+        float wide = ImGui::CalcTextSize(begin, text.c_str() + end).x;
+        if (used > 0 && used + wide > width && text[at] == ' ') {
+            out += '\n';
+            at = std::min(text.find_first_not_of(' ', at), end);
+            used = 0;
+            wide = ImGui::CalcTextSize(text.c_str() + at, text.c_str() + end).x;
+        }
+        out.append(text, at, end - at);
+        used += wide;
+        at = end;
+        if (at < text.size() && text[at] == '\n') {
+            out += '\n';
+            used = 0;
+            ++at;
+        }
+    }
+    return out;
+}
+
 } // namespace tessera::app

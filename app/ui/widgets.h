@@ -58,6 +58,9 @@ bool beginSection(const char* id, std::string_view label, std::string_view help)
 void endSection();
 /// A small button that adds to a list or takes from it.
 bool drawListButton(const char* label);
+/// The text with line ends for a width in pixels, at spaces alone: ImGui would also break "a..b" between the dots. A
+/// word wider than a line stays whole.
+std::string wrappedAtSpaces(const std::string& text, float width);
 
 template <class T> bool drawDescribed(T& value, const WidgetContext& context);
 

@@ -1,0 +1,119 @@
+#include "app/ui/file_dialog.h"
+#include "app/ui/keys.h"
+#include "fed_imgui.h"
+
+#include <filesystem>
+#include <fstream>
+#include <unistd.h>
+
+namespace tessera::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The dialog over an empty window, with a folder of its own.
+class FileDialogTest : public FedImGui {
+protected:
+    FileDialogTest() : FedImGui({1200, 800}) { mapKeys(ImGui::GetIO()); }
+    void SetUp() override { fs::create_directories(folder); }
+    void TearDown() override { fs::remove_all(folder); }
+
+    void frames(int count = 4) {
+        for (int i = 0; i < count; ++i)
+            feed([&] {
+                if (auto answer = dialog.draw()) answers.push_back(*answer);
+            });
+    }
+    void show(FileMode mode, const std::string& name = {}, const std::string& suffix = {}) {
+        dialog.show(mode, "Test", "test", folder.string(), name, suffix);
+        frames();
+    }
+    void type(const std::string& text) {
+        ImGui::GetIO().AddInputCharactersUTF8(text.c_str());
+        frames();
+    }
+    void press(int key) {
+        ImGui::GetIO().KeysDown[key] = true;
+        frames(1);
+        ImGui::GetIO().KeysDown[key] = false;
+        frames();
+    }
+    std::string answered() {
+        const std::string name = answers.empty() ? "" : fs::path(answers.back().paths.front()).filename().string();
+        answers.clear();
+        return name;
+    }
+
+    fs::path folder = fs::path(testing::TempDir()) / ("file_dialog_" + std::to_string(::getpid()));
+    FileDialog dialog;
+    std::vector<FileDialog::Answer> answers;
+};
+
+// What is typed takes the place of the name without its ending, each time, however long the name before was.
+TEST_F(FileDialogTest, TheStemOfTheNameIsSelectedEachTime) {
+    show(FileMode::Save, "session.tessera.json", ".tessera.json");
+    press(key::kEnter);
+    EXPECT_EQ(answered(), "session.tessera.json");
+    for (int i = 0; i < 3; ++i) {
+        show(FileMode::Save, "engine_crop_149x208x110_uint8.tsr", ".tsr");
+        type("mine");
+        press(key::kEnter);
+        EXPECT_EQ(answered(), "mine.tsr") << i;
+    }
+    show(FileMode::Save, "surface.ply");
+    type("bone");
+    press(key::kEnter);
+    EXPECT_EQ(answered(), "bone.ply");
+}
+
+TEST_F(FileDialogTest, WhatIsWrongWithANameStandsUnderItUntilItChanges) {
+    std::ofstream(folder / "there.txt") << "x";
+    show(FileMode::Open);
+    type("missing");
+    press(key::kEnter);
+    EXPECT_EQ(dialog.problem(), "missing: no such file");
+    for (int i = 0; i < 7; ++i) press(key::kBackspace);
+    EXPECT_EQ(dialog.problem(), "");
+    type("there.txt");
+    press(key::kEnter);
+    EXPECT_EQ(answered(), "there.txt");
+}
+
+// A file is opened when its preview has been read and tells nothing against it; Enter may come before.
+TEST_F(FileDialogTest, OneFileIsLookedAtBeforeItIsOpened) {
+    std::ofstream(folder / "a.raw") << "x";
+    FilePreview seen;
+    std::vector<std::vector<std::string>> chosen;
+    dialog.preview = [&](const std::string&) { return seen; };
+    dialog.filesChosen = [&](const std::vector<std::string>& paths) { chosen.push_back(paths); };
+    show(FileMode::Open);
+    type("a.raw");
+    const std::vector<std::string> file = {(folder / "a.raw").string()};
+    EXPECT_EQ(chosen, (std::vector<std::vector<std::string>>{{}, file}));
+    press(key::kEnter);
+    EXPECT_EQ(answered(), "") << "it is still being read";
+    seen = {"no good", true};
+    frames();
+    EXPECT_EQ(answered(), "");
+    EXPECT_TRUE(dialog.shown());
+    EXPECT_NE(dialog.problem(), "");
+    seen = {"good", false};
+    frames();
+    EXPECT_EQ(answered(), "") << "the decision before was answered";
+    EXPECT_EQ(dialog.problem(), "");
+    press(key::kEnter);
+    EXPECT_EQ(answered(), "a.raw");
+    EXPECT_FALSE(dialog.shown());
+
+    seen = {};
+    show(FileMode::Open);
+    type("a.raw");
+    press(key::kEnter);
+    seen = {"good", false};
+    frames();
+    EXPECT_EQ(answered(), "a.raw");
+    EXPECT_EQ(chosen.size(), 4u) << "told again when shown again";
+}
+
+} // namespace
+} // namespace tessera::app
