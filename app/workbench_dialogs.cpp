@@ -49,7 +49,8 @@ int dialogButtons(std::initializer_list<const char*> names) {
         if (last) ImGui::PopStyleColor(2);
         ++index;
     }
-    if (chosen < 0 && pressed({.key = key::kEnter}) && !ImGui::IsAnyItemActive())
+    // Not with the Enter that has just answered the dialog before.
+    if (chosen < 0 && pressed({.key = key::kEnter}) && !ImGui::IsAnyItemActive() && !ImGui::IsWindowAppearing())
         chosen = static_cast<int>(names.size()) - 1;
     return chosen;
 }

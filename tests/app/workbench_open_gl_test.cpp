@@ -55,7 +55,17 @@ TEST_F(WorkbenchOpening, ALayoutIsOfTheFileItWasStatedFor) {
     openByName("plain_5x6x7_uint8.raw");
     EXPECT_EQ(shown(), "plain_5x6x7_uint8.raw");
     EXPECT_EQ(workbench.session().data.import.raw, "dims=5x6x7,type=uint8");
-    openByName("stated.raw");
+    // Both named in one dialog: the first fills the field.
+    ASSERT_TRUE(run("Open..."));
+    for (int i = 0; i < 3; ++i) frame();
+    const std::string first = "plain_5x6x7_uint8.raw";
+    ImGui::GetIO().AddInputCharactersUTF8(first.c_str());
+    settle();
+    for (std::size_t i = 0; i < first.size(); ++i) press(key::kBackspace);
+    ImGui::GetIO().AddInputCharactersUTF8("stated.raw");
+    settle();
+    press(key::kEnter);
+    settle();
     EXPECT_EQ(shown(), "stated.raw");
     EXPECT_EQ(workbench.session().data.import.raw, "");
 }
@@ -71,6 +81,8 @@ TEST_F(WorkbenchOpening, AFileThatFailedItsPreviewIsNotOpened) {
     for (const char* name : {"unknown.raw", "empty.raw"}) {
         openByName(name);
         EXPECT_TRUE(dialogOpen()) << name;
+        const ImGuiWindow* const asked = ImGui::FindWindowByName("Save the session?");
+        EXPECT_FALSE(asked && asked->Active) << name;
         press(key::kEscape);
         settle();
         EXPECT_FALSE(dialogOpen()) << "the dialog was the only one: " << name;
