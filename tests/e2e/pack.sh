@@ -96,6 +96,19 @@ for a, b in zip(stored, physical("lossy-back")):
     assert rms <= extent * 10 ** (-45 / 20), (rms, extent)
 EOF
 
+# A series whose files have different number types, one of them named twice.
+python3 - <<'EOF'
+import json, struct
+for number, (form, kind) in enumerate([("B", "uint8"), ("f", "float32"), ("h", "int16")]):
+    open("mixed_%d.raw" % number, "wb").write(struct.pack("<60" + form, *[i * (number + 1) for i in range(60)]))
+    json.dump({"dims": [5, 4, 3], "dtype": kind}, open("mixed_%d.json" % number, "w"))
+EOF
+check "a series of mixed types" 0 "$tessera" pack mixed_0.raw mixed_0.raw mixed_1.raw mixed_1.raw mixed_2.raw \
+    -o mixed.tsr --lattice cc
+check "unpack the mixed series" 0 "$tessera" unpack mixed.tsr -o mixed-back.raw
+python3 -c 'import struct; v=struct.unpack("<180f", open("mixed-back.raw","rb").read()); assert v==tuple(float(i*(t+1)) for t in range(3) for i in range(60)), v' ||
+    failures=$((failures + 1))
+
 # Presets, and bounds in each unit.
 python3 - <<'EOF'
 import json, math, struct
