@@ -73,6 +73,9 @@ int runCommandLine(int argc, const char* const* argv) {
     addUnpackCommand(app);
     addVerifyCommand(app);
     try {
+        // A mistyped command would be taken for a file, and what is said of its options instead of it.
+        const auto isFirst = [&](const CLI::App* command) { return command->check_name(argv[1]); };
+        if (argc > 1 && argv[1][0] != '-' && app.get_subcommands(isFirst).empty()) requireFile(argv[1]);
         app.parse(argc, argv);
         return 0;
     } catch (const CLI::ParseError& error) {

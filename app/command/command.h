@@ -24,6 +24,8 @@ void addUnpackCommand(CLI::App& app);
 void addVerifyCommand(CLI::App& app);
 /// Without a subcommand: the workbench on FILE...
 void addWorkbench(CLI::App& app);
+/// Throws Error for a word of the command line that is no file; for one without dot and slash it speaks of commands.
+void requireFile(const std::string& word);
 
 /// Parses the arguments and runs what they ask for; returns the exit status.
 int runCommandLine(int argc, const char* const* argv);

@@ -25,10 +25,16 @@ void applySetting(Json& document, const std::string& setting) {
 
 } // namespace
 
+void addLayoutOption(CLI::App& command, std::string& layout) {
+    std::string names;
+    for (const std::string& name : layoutNames()) names += (names.empty() ? ": " : ", ") + name;
+    command.add_option("--layout", layout, "Layout to show the data in, by file or name" + names)->type_name("LAYOUT");
+}
+
 void addPictureOptions(CLI::App& command, PictureOptions& options) {
     command.add_option("input", options.inputs, "Session, layout, picture of ours or data files; none: built-in data")
         ->type_name("SESSION|LAYOUT|DATA");
-    command.add_option("--layout", options.layout, "Layout to show the data in, by name or file");
+    addLayoutOption(command, options.layout);
     command.add_option("--view", options.view, "One view alone, e.g. volume; else the whole window");
     command.add_option("--size", options.size, "Pixels of the picture")->type_name("WxH")->capture_default_str();
     command.add_option("--scale", options.scale, "Size of text and lines")

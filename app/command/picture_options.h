@@ -19,6 +19,9 @@ struct PictureOptions {
     volume::ImportOptions import;
 };
 
+/// The option --layout, whose help names the layouts that ship; `layout` must outlive the parsing.
+void addLayoutOption(CLI::App& command, std::string& layout);
+
 /// Adds them to a command; `options` must outlive the parsing.
 void addPictureOptions(CLI::App& command, PictureOptions& options);
 

@@ -1,10 +1,25 @@
 #include "app/command/command.h"
 #include "app/command/import_options.h"
+#include "app/command/picture_options.h"
 #include "app/platform/window.h"
 
+#include "volume/error.h"
+
+#include <algorithm>
+#include <filesystem>
 #include <memory>
 
 namespace tessera::app {
+
+void requireFile(const std::string& word) {
+    std::error_code problem;
+    if (std::filesystem::exists(word, problem)) return;
+    if (word.find_first_of("./") != std::string::npos) throw Error("no such file", word);
+    const std::vector<std::string> layouts = layoutNames();
+    if (std::find(layouts.begin(), layouts.end(), word) != layouts.end())
+        throw Error("neither a command nor a file; the layout of that name: tessera --layout " + word, word);
+    throw Error("neither a command nor a file; tessera --help lists the commands", word);
+}
 
 void addWorkbench(CLI::App& app) {
     struct Options {
@@ -16,12 +31,15 @@ void addWorkbench(CLI::App& app) {
     app.add_option("file", options->request.paths,
                    "Session, archive, picture of ours or data files to open; none: the built-in fuel cell")
         ->type_name("FILE");
-    app.add_option("--layout", options->request.layout, "Layout to show the data in, by name or file");
+    addLayoutOption(app, options->request.layout);
     app.add_option("--screenshots", options->screenshots,
                    "Keep a PNG of the window up to date, written whenever it is complete; for scripts");
     addImportOptions(app, options->import);
     app.callback([options, &app] {
         if (!app.get_subcommands().empty()) return;
+        // Said here, not in a window that has nothing to show.
+        for (const std::string& path : options->request.paths) requireFile(path);
+        if (!options->request.layout.empty()) findLayout(options->request.layout);
         if (!(options->import == volume::ImportOptions{})) options->request.import = options->import;
         runWindow(options->request, options->screenshots);
     });

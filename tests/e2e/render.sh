@@ -7,6 +7,26 @@ size=640x400
 draw() { "$tessera" render "$@" --size $size > /dev/null 2> err; }
 
 "$tessera" generate fuel-cell -o cell.tsr --size 7x13x20 --times 2 > /dev/null 2> err || die "generate"
+
+# The window's command line is checked before there is a window: status 2, one line.
+refused() { # refused TEXT ARGUMENT...: the line holds the text
+    local text=$1
+    shift
+    env -u DISPLAY -u WAYLAND_DISPLAY timeout 20 "$tessera" "$@" > /dev/null 2> err
+    local status=$?
+    [ $status = 2 ] || die "tessera $*: status $status"
+    [ "$(wc -l < err)" = 1 ] || die "tessera $*: not one line"
+    grep -q -- "$text" err || die "tessera $* does not say \"$text\""
+}
+refused 'nosuch: no layout of that name; there are .*, overview,' --layout nosuch
+refused 'nosuch: no layout' cell.tsr --layout nosuch
+refused 'frobnicate: neither a command nor a file' frobnicate
+refused 'frobnicate: neither a command nor a file' cell.tsr frobnicate
+refused 'pakc: neither a command nor a file' pakc a.json -o y.tsr
+refused 'lens: .*--layout lens' lens
+refused 'gone.tsr: no such file' gone.tsr
+"$tessera" --help | tr -s ' \n' ' ' | grep -q 'animation, .*, overview, .*, tesseract' || die "--help does not name the layouts"
+
 draw cell.tsr --layout "$source/layouts/overview.json" -o first.png
 status=$?
 [ $status = 3 ] && grep -q 'OpenGL' err && { cat err; exit 77; }
