@@ -14,6 +14,8 @@ namespace tessera::app {
 
 namespace {
 
+constexpr float kSoftWidth = 4.4f; ///< of the slider, em
+
 void chooseTool(BrushTool& tool) {
     static constexpr const char* kTools[] = {"rectangle", "ellipse", "lasso"};
     ImGui::SetNextItemWidth(em() * 6.6f);
@@ -134,7 +136,7 @@ void drawMore(ViewContext& context, ScatterMatrixView& view, const std::vector<i
         ImGui::EndPopup();
     }
     if (!result) return;
-    ImGui::SameLine();
+    ImGui::SameLine(0, em() * 0.3f);
     exportMenu(
         context, "scatterplots",
         [info, result, logDensity = view.logDensity, focus = focusColor(context.session)](const Progress&) {
@@ -143,54 +145,68 @@ void drawMore(ViewContext& context, ScatterMatrixView& view, const std::vector<i
         [info, result](const Progress&) { return matrixCsv(info, *result); });
 }
 
+/// The end of the line: what is in focus, and the button that clears the brushes. Without brushes its place stays, or
+/// the plots would move under the mouse while the first one is drawn.
+void drawShare(Session& session, const ViewContext& context, const StatisticsResult* result) {
+    const bool brushes = !session.selection.brushes.empty();
+    const float button = ImGui::GetFrameHeight(), gap = em() * 0.3f;
+    const float least = button + gap + ImGui::CalcTextSize("99.9 %").x;
+    continueLine(least);
+    const ImVec2 place = ImGui::GetCursorPos();
+    const float room = ImGui::GetContentRegionAvail().x;
+    std::vector<std::string> texts; // the longest first
+    if (session.selection.active() && result && result->brushed) {
+        const Share share = focusShare(result->statistics);
+        const std::string percent = formatShare(share.all > 0 ? share.focus / share.all : 0);
+        if (result->statistics.level == 0) texts.push_back("focus " + percent + " (" + formatCount(share.focus) + ")");
+        texts.push_back("focus " + percent);
+        texts.push_back(percent);
+        texts.push_back(percent);
+        std::erase(texts.back(), ' ');
+    } else if (!brushes) {
+        texts = {"drag in a plot to brush, click to enlarge", "drag to brush"};
+    }
+    if (brushes) {
+        if (iconButton(context, "clear", icons::kTrash, "Remove all brushes (Esc)")) session.selection.brushes.clear();
+        ImGui::SameLine(0, gap);
+    }
+    const float textRoom = room - (brushes ? button + gap : 0);
+    while (!texts.empty() && ImGui::CalcTextSize(texts.front().c_str()).x > textRoom &&
+           (texts.size() > 1 || !brushes)) // the share itself is never left out
+        texts.erase(texts.begin());
+    if (!texts.empty()) {
+        ImGui::SetCursorPosX(place.x + room - std::min(textRoom, ImGui::CalcTextSize(texts.front().c_str()).x));
+        ImGui::AlignTextToFramePadding();
+        ImGui::PushStyleColor(ImGuiCol_Text, brushes ? plotColors().text : ImGui::GetColorU32(ImGuiCol_TextDisabled));
+        ImGui::TextUnformatted(texts.front().c_str());
+        ImGui::PopStyleColor();
+        if (brushes && ImGui::IsItemHovered()) tooltip("Share of the samples that the brushes have in focus");
+    }
+    ImGui::SetCursorPos(place);
+    ImGui::Dummy({least, ImGui::GetFrameHeight()});
+}
+
 } // namespace
 
 void drawScatterToolbar(ViewContext& context, ScatterMatrixView& view, const std::vector<int>& shown,
                         const std::shared_ptr<const StatisticsResult>& shared) {
-    const StatisticsResult* result = shared.get();
     Session& session = context.session;
     const volume::DatasetInfo& info = context.source->info();
+    const float gap = em() * 0.3f;
     chooseChannels(info, view.channels, shown);
-    ImGui::SameLine();
+    ImGui::SameLine(0, gap);
     ImGui::Checkbox("log", &view.logDensity);
     if (ImGui::IsItemHovered()) tooltip("Show the logarithm of the number of samples");
-    ImGui::SameLine();
+    ImGui::SameLine(0, gap);
     drawMore(context, view, shown, shared);
     continueLine(em() * 6.6f);
     chooseTool(view.tool);
-    continueLine(em() * 5);
-    ImGui::SetNextItemWidth(em() * 5);
+    continueLine(em() * kSoftWidth);
+    ImGui::SetNextItemWidth(em() * kSoftWidth);
     float percent = view.softness * 100;
     if (ImGui::SliderFloat("##soft", &percent, 0, 50, "soft %.0f %%")) view.softness = percent / 100;
     if (ImGui::IsItemHovered()) tooltip("Soft edge of new brushes, as a share of their width");
-    const bool brushed = session.selection.active();
-    std::string text, brief;
-    if (brushed && result && result->brushed) {
-        const Share share = focusShare(result->statistics);
-        text = brief = "focus " + formatShare(share.all > 0 ? share.focus / share.all : 0);
-        if (result->statistics.level == 0) text += " (" + formatCount(share.focus) + ")";
-    } else if (session.selection.brushes.empty()) {
-        text = "drag in a plot to brush, click to enlarge";
-        brief = "drag to brush";
-    }
-    if (!session.selection.brushes.empty()) {
-        continueLine(ImGui::GetFrameHeight());
-        if (iconButton(context, "clear", icons::kTrash, "Remove all brushes (Esc)")) session.selection.brushes.clear();
-    }
-    if (text.empty()) return;
-    // The share is never left out: where it does not fit the line it begins another. The hint is.
-    const float right = ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x;
-    const float room = right - ImGui::GetItemRectMax().x - ImGui::GetStyle().ItemSpacing.x;
-    if (ImGui::CalcTextSize(text.c_str()).x > room) text = brief;
-    const float width = ImGui::CalcTextSize(text.c_str()).x;
-    if (width > room && !brushed) return;
-    if (width <= room) ImGui::SameLine();
-    ImGui::SetCursorPosX(std::max(ImGui::GetCursorPosX(), ImGui::GetContentRegionMax().x - width));
-    ImGui::AlignTextToFramePadding();
-    if (brushed)
-        ImGui::TextUnformatted(text.c_str());
-    else
-        ImGui::TextDisabled("%s", text.c_str());
+    drawShare(session, context, shared.get());
 }
 
 } // namespace tessera::app

@@ -28,6 +28,26 @@ void forEachSample(const volume::BrickSource& data, int a, int b, int time,
             }
 }
 
+// Or the end of the first stroke would be read in another place than its beginning.
+TEST_F(BrushedViews, PlotsStayWhereTheyAreWhenBrushesComeAndGo) {
+    show(fuelCell(volume::LatticeKind::BCC));
+    for (float width = 900; width >= 250; width -= 37) {
+        const auto matrix = [&] { draw("scatterMatrix", scatterView, drawScatterMatrixView, {width, 700}); };
+        const auto layout = [&] {
+            for (int i = 0; i < 3; ++i) frame(matrix);
+            return dynamic_cast<const ScatterLayoutCache&>(*caches.at("scatterMatrix")).layout;
+        };
+        session.selection.brushes.clear();
+        const ScatterLayout without = layout();
+        vis::Brush brush;
+        brush.region = vis::RangeRegion{{{"T", 0, 1e9}}};
+        session.selection.brushes = {brush};
+        const ScatterLayout with = layout();
+        EXPECT_EQ(with.min.y, without.min.y) << width;
+        EXPECT_EQ(with.cellY, without.cellY) << width;
+    }
+}
+
 // The promise of the program: brush the hot, oxygen-poor points with the mouse, and exactly those are selected.
 TEST_F(BrushedViews, BrushingHotAndOxygenPoorSelectsWhatBruteForceSelects) {
     show(fuelCell(volume::LatticeKind::BCC));
