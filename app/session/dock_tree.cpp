@@ -148,6 +148,12 @@ void floatPane(DockTree& tree, const std::string& pane, FloatingPane place) {
     tree.floating.push_back(std::move(place));
 }
 
+void followTabs(DockNode& tree, const DockNode& now) {
+    if (tree.id != now.id || tree.tabs != now.tabs || tree.children.size() != now.children.size()) return;
+    tree.active = now.active;
+    for (std::size_t i = 0; i < tree.children.size(); ++i) followTabs(tree.children[i], now.children[i]);
+}
+
 std::vector<std::string> panesOf(const DockTree& tree) {
     std::vector<std::string> panes;
     collectPanes(tree.root, panes);

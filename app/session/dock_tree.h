@@ -69,6 +69,8 @@ void insertPane(DockTree& tree, const std::string& pane, int node, DockSide side
 void floatPane(DockTree& tree, const std::string& pane, FloatingPane place);
 /// Every pane of the tree, floating ones included.
 std::vector<std::string> panesOf(const DockTree& tree);
+/// Takes over which tabs are in front in stacks that are the same in both trees.
+void followTabs(DockNode& tree, const DockNode& now);
 /// Repairs a tree from a file: drops duplicates and unknown panes, adds missing ones to the first stack, clamps ratios.
 void repair(DockTree& tree, const std::vector<std::string>& panes);
 

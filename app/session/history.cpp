@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <utility>
 
 namespace tessera::app {
 
@@ -55,8 +56,9 @@ bool isNumber(const std::string& text) {
     return !text.empty() && std::all_of(text.begin(), text.end(), [](unsigned char c) { return std::isdigit(c) != 0; });
 }
 
-/// What an animation changes by itself.
-void followPlayback(Session& base, const Session& now) {
+/// What is no edit: what an animation changes by itself, and which tabs are in front.
+void followUnrecorded(Session& base, const Session& now) {
+    followTabs(base.dock.root, now.dock.root);
     if (now.animation.playing || base.animation.playing) {
         base.time = now.time;
         for (const Track& track : base.animation.tracks) setNumbersAt(base, track.path, numbersAt(now, track.path));
@@ -106,18 +108,21 @@ void History::reset(const Session& session) {
     position_ = 0;
     lastCommit_ = -1e9;
     pending_ = false;
+    nextName_.clear();
 }
 
 bool History::observe(const Session& session, bool editing, double seconds, double mergeSeconds) {
-    followPlayback(base_, session);
+    followUnrecorded(base_, session);
     pending_ = !(session == base_);
     if (!pending_ || editing) return false;
     pending_ = false;
-    // The document follows the base's playback state only here, where it is needed.
+    const std::string name = std::exchange(nextName_, {});
+    // The document follows what is no edit only here, where it is needed.
     if (base_.animation.tracks.empty()) {
         document_["time"] = app::toJson(base_.time);
         document_["animation"] = app::toJson(base_.animation);
         document_["data"] = app::toJson(base_.data);
+        document_["dock"] = app::toJson(base_.dock);
     } else {
         document_ = app::toJson(base_); // any parameter may have moved
     }
@@ -128,8 +133,8 @@ bool History::observe(const Session& session, bool editing, double seconds, doub
         return false;
     }
     Json before = document_;
-    const bool merges = position_ > 0 && position_ == steps_.size() && seconds - lastCommit_ < mergeSeconds &&
-                        pathsOf(steps_.back().forward) == pathsOf(forward);
+    const bool merges = name.empty() && position_ > 0 && position_ == steps_.size() &&
+                        seconds - lastCommit_ < mergeSeconds && pathsOf(steps_.back().forward) == pathsOf(forward);
     if (merges) {
         before = document_.patch(steps_.back().inverse);
         steps_.pop_back();
@@ -138,12 +143,12 @@ bool History::observe(const Session& session, bool editing, double seconds, doub
     }
     steps_.resize(position_);
     if (!forward.empty()) {
-        steps_.push_back({describePatch(forward), forward, Json::diff(now, before)});
+        steps_.push_back({name.empty() ? describePatch(forward) : name, forward, Json::diff(now, before)});
         ++position_;
     }
     document_ = std::move(now);
     base_ = session;
-    lastCommit_ = seconds;
+    lastCommit_ = name.empty() ? seconds : -1e9; // what follows a named step is another
     trim();
     return true;
 }
@@ -171,6 +176,7 @@ Session History::seek(std::size_t position) {
     base_ = sessionFromJson(document_, {});
     pending_ = false;
     lastCommit_ = -1e9;
+    nextName_.clear();
     return base_;
 }
 
@@ -198,7 +204,9 @@ History History::fromJson(const Json& json, const Session& session) {
         History trial = history;
         for (std::size_t i = trial.position_; i-- > 0;) trial.seek(i);
         for (std::size_t i = 1; i <= trial.steps_.size(); ++i) trial.seek(i);
-        if (!(trial.seek(history.position_) == session)) throw Error("history does not lead to the session");
+        Session end = trial.seek(history.position_);
+        followTabs(end.dock.root, session.dock.root);
+        if (!(end == session)) throw Error("history does not lead to the session");
     } catch (const Json::exception& error) {
         throw Error(std::string("history cannot be used: ") + error.what());
     }

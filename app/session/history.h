@@ -22,9 +22,13 @@ public:
 
     /// Call once per frame with the session as it is now. While `editing` (mouse held, text being typed) changes are
     /// only watched; when it ends they become one step. Edits of the same member within `mergeSeconds` become one
-    /// (turning the wheel). What plays by itself (time during an animation) is no edit. Returns true when a step was
+    /// (turning the wheel). What plays by itself (time during an animation) is no edit, nor which tabs are in front.
+    /// Returns true when a step was
     /// added.
     bool observe(const Session& session, bool editing, double seconds, double mergeSeconds = 0.6);
+
+    /// The step that the next change becomes is called so, and joins none before it.
+    void nameNext(std::string name) { nextName_ = std::move(name); }
 
     bool canUndo() const { return position_ > 0; }
     bool canRedo() const { return position_ < steps_.size(); }
@@ -57,6 +61,7 @@ private:
     std::vector<HistoryStep> steps_;
     std::size_t position_ = 0;
     double lastCommit_ = -1e9;
+    std::string nextName_; ///< "" = made from what changed
     bool pending_ = false;
 };
 

@@ -310,6 +310,50 @@ TEST(HistoryTest, PlayingIsNoEdit) {
     EXPECT_EQ(history.undo().time, 5);
 }
 
+TEST(HistoryTest, WhichTabsAreInFrontIsNoEdit) {
+    Session session;
+    session.dock.root.id = 1;
+    session.dock.root.tabs = {"a", "b", "c"};
+    History history;
+    history.reset(session);
+    session.dock.root.active = 1;
+    EXPECT_FALSE(history.observe(session, false, 1));
+    EXPECT_FALSE(history.pending());
+    // A pane that comes is one; what is undone and done again lets the tabs be.
+    session.dock.root.tabs.push_back("d");
+    session.dock.root.active = 3;
+    EXPECT_TRUE(history.observe(session, false, 2));
+    session.camera.distance = 7;
+    EXPECT_TRUE(history.observe(session, false, 3));
+    session.dock.root.active = 2;
+    EXPECT_FALSE(history.observe(session, false, 4));
+    EXPECT_EQ(history.steps().size(), 2u);
+    EXPECT_TRUE(History::fromJson(history.toJson(), session).steps().size() == 2) << "as saved";
+    EXPECT_EQ(history.undo().dock.root.active, 2);
+    EXPECT_EQ(history.undo().dock.root.tabs.size(), 3u);
+    EXPECT_EQ(history.redo().dock.root.tabs.size(), 4u);
+    EXPECT_EQ(history.redo().camera.distance, 7);
+}
+
+TEST(HistoryTest, AStepMayHaveAName) {
+    Session session;
+    History history;
+    history.reset(session);
+    for (const char* name : {"Layout: Lens", "Layout: Flow"}) {
+        history.nameNext(name);
+        session.camera.distance += 1;
+        session.time += 1;
+        EXPECT_TRUE(history.observe(session, false, 1));
+    }
+    session.camera.distance += 1;
+    session.time += 1;
+    EXPECT_TRUE(history.observe(session, false, 1));
+    ASSERT_EQ(history.steps().size(), 3u) << "none joins the one before";
+    EXPECT_EQ(history.steps()[0].name, "Layout: Lens");
+    EXPECT_EQ(history.steps()[1].name, "Layout: Flow");
+    EXPECT_EQ(history.steps()[2].name, "several changes");
+}
+
 TEST(Session, TheFormerXrayIsAnAverage) {
     const auto migrated = [](int schema) {
         Json document = Json::parse(
