@@ -244,6 +244,48 @@ void moveTo(Session& session, History& history, const volume::DatasetInfo* from,
     fitSession(session, to, messages);
 }
 
+namespace {
+
+/// Least and largest present sample of a channel at one time; nothing where there is none.
+std::optional<Range> rangeAt(const volume::BrickSource& source, int channel, int time) {
+    const glm::ivec3 count = source.grid().count();
+    std::optional<Range> range;
+    for (int z = 0; z < count.z; ++z)
+        for (int y = 0; y < count.y; ++y)
+            for (int x = 0; x < count.x; ++x) {
+                const volume::BrickStats stats = source.stats({channel, time, 0, {x, y, z}});
+                if (!(stats.presentFraction > 0) || !(stats.min <= stats.max)) continue;
+                const double lo = double(stats.min), hi = double(stats.max);
+                range = range ? Range{std::min(range->lo, lo), std::max(range->hi, hi)} : Range{lo, hi};
+            }
+    return range;
+}
+
+/// Sizes and settings of a model say nothing of other data, where they could only fail.
+void dropForeignVariants(Session& session, const DataRef& made, std::vector<std::string>& messages) {
+    if (made.model.empty() || (session.data.files.empty() && session.data.model == made.model)) return;
+    for (auto& [pane, view] : session.views) {
+        auto* compare = std::get_if<CompareView>(&view);
+        if (!compare) continue;
+        for (std::size_t i = compare->variants.size(); i-- > 0;) {
+            const auto changes = [&, &variant = compare->variants[i]](std::string_view place) {
+                return std::ranges::any_of(variant.changes,
+                                           [&](const auto& change) { return change.first.starts_with(place); });
+            };
+            if (!changes("/data/settings") || changes("/data/model")) continue;
+            messages.push_back("this comparison is of the model " + made.model + ": \"" + compare->variants[i].name +
+                               "\" is left out, which needs that model");
+            compare->variants.erase(compare->variants.begin() + static_cast<std::ptrdiff_t>(i));
+            const auto before = [&](int index) { return std::max(0, index - (index > static_cast<int>(i) ? 1 : 0)); };
+            compare->reference = before(compare->reference);
+            compare->other = before(compare->other);
+            if (compare->other == compare->reference) compare->other = compare->reference + 1;
+        }
+    }
+}
+
+} // namespace
+
 Session applyLayout(const SessionDocument& layout, const volume::DatasetInfo& info, const DataRef& data,
                     std::vector<std::string>& messages) {
     const bool own = sameData(layout.session.data, data);
@@ -263,16 +305,45 @@ Session applyLayout(const SessionDocument& layout, const volume::DatasetInfo& in
     Session session = sessionFromJson(result, {});
     std::erase_if(session.transfer, [&](const auto& entry) { return !info.findChannel(entry.first); });
     fitSession(session, info, messages);
-    // Surfaces of other data: a value near or beyond the ends of this range would show nothing.
-    for (vis::Layer& layer : session.layers)
-        if (auto* iso = std::get_if<vis::IsoLayer>(&layer.technique); iso != nullptr && !own) {
-            const auto channel = info.findChannel(iso->channel);
-            if (!channel) continue;
-            const Range range = info.channelRange(info.channels()[static_cast<std::size_t>(*channel)]);
-            const double share = (iso->value - range.lo) / (range.hi - range.lo);
-            if (!(share > 0.1 && share < 0.9)) iso->value = 0.5 * (range.lo + range.hi);
-        }
+    if (!own) dropForeignVariants(session, layout.session.data, messages);
     return session;
+}
+
+void fitSurfaces(Session& session, const volume::BrickSource& source, bool own, std::vector<std::string>& messages) {
+    const volume::DatasetInfo& info = source.info();
+    std::set<std::string> without;
+    for (vis::Layer& layer : session.layers) {
+        auto* iso = std::get_if<vis::IsoLayer>(&layer.technique);
+        const auto channel = iso ? info.findChannel(iso->channel) : std::nullopt;
+        if (!channel) continue;
+        std::optional<Range> range;
+        try {
+            range = rangeAt(source, *channel, info.nearestTime(session.time));
+        } catch (const Error&) { // a damaged brick: what the rest says is shown all the same
+            continue;
+        }
+        if (!range || !(range->hi > range->lo)) {
+            if (layer.visible && without.insert(iso->channel).second)
+                messages.push_back(iso->channel + (range ? " has one value everywhere" : " does not exist anywhere") +
+                                   " at this time, so its surface is empty: choose another time or parameter");
+            continue;
+        }
+        const double share = (double(iso->value) - range->lo) / (range->hi - range->lo);
+        const double margin = own ? 0 : 0.1;
+        if (!(share > margin && share < 1 - margin)) iso->value = 0.5 * (range->lo + range->hi);
+    }
+}
+
+Session changeLayout(const SessionDocument& layout, const volume::BrickSource& source, const Session& shown,
+                     std::vector<std::string>& messages) {
+    Session next = applyLayout(layout, source.info(), shown.data, messages);
+    next.appearance = shown.appearance;
+    next.time = shown.time;
+    next.cursor = shown.cursor;
+    const bool own = sameData(layout.session.data, shown.data);
+    if (!own) vis::fit(next.camera, vis::worldFrame(source.info().bounds, next.stretch), kFirstAspect);
+    fitSurfaces(next, source, own, messages);
+    return next;
 }
 
 Opened open(const OpenRequest& request, const Progress& progress) {
@@ -331,7 +402,9 @@ Opened open(const OpenRequest& request, const Progress& progress) {
     if (layout) {
         opened.messages.insert(opened.messages.end(), layout->messages.begin(), layout->messages.end());
         opened.document.session = applyLayout(*layout, info, data, opened.messages);
-        if (!sameData(layout->session.data, data)) aimFirstView(opened.document.session, *opened.source, kFirstAspect);
+        const bool own = sameData(layout->session.data, data);
+        if (!own) aimFirstView(opened.document.session, *opened.source, kFirstAspect);
+        fitSurfaces(opened.document.session, *opened.source, own, opened.messages);
     } else {
         opened.document.session = defaultSession(info, data);
         fitSession(opened.document.session, info, opened.messages);

@@ -58,7 +58,19 @@ std::vector<std::string> layoutNames();
 std::string findLayout(const std::string& nameOrPath);
 
 /// A layout laid over a data set: what it leaves out or cannot mean for this data comes from the data's own defaults.
+/// Variants of a comparison that are other sizes of another model are left out.
 Session applyLayout(const SessionDocument& layout, const volume::DatasetInfo& info, const DataRef& data,
                     std::vector<std::string>& messages);
+
+/// Surfaces whose value does not exist at the session's time, or, with `own` false, lies near the ends of what does,
+/// get the middle of the range at that time: parameters may be far from their overall range then. One message for each
+/// parameter that has no surface at all. Reads statistics of the bricks of one time; with a damaged one the rest
+/// stays as it is.
+void fitSurfaces(Session& session, const volume::BrickSource& source, bool own, std::vector<std::string>& messages);
+
+/// A layout chosen for data that are already shown: theme, time and cross-hair stay as in `shown`, and where the layout
+/// was made with other data the camera sees all of these. Throws Error.
+Session changeLayout(const SessionDocument& layout, const volume::BrickSource& source, const Session& shown,
+                     std::vector<std::string>& messages);
 
 } // namespace tessera::app

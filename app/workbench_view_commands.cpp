@@ -155,13 +155,12 @@ void Workbench::addLayoutCommands() {
              .name = (name == layoutNames().front() ? "-" : "") + title,
              .help = "Show the data in the layout " + name,
              .run =
-                 [this, name] {
+                 [this, name, title] {
                      try {
                          std::vector<std::string> messages;
                          const SessionDocument layout = loadSession(findLayout(name));
-                         Session next = applyLayout(layout, source_->info(), session_.data, messages);
-                         next.appearance = session_.appearance;
-                         replace(std::move(next));
+                         replace(changeLayout(layout, *source_, session_, messages));
+                         history_.nameNext("Layout: " + title);
                          for (const std::string& text : messages) message(text);
                      } catch (const Error& error) {
                          message(error.what(), true);

@@ -185,6 +185,78 @@ TEST_F(OpenTest, ALayoutFitsAnyData) {
     }
 }
 
+// Parameters of a simulation may be far from their overall range at one time: a surface must be looked for there.
+TEST_F(OpenTest, ALayoutChosenKeepsTheTimeAndItsSurfacesExistThen) {
+    OpenRequest request;
+    request.data.emplace();
+    request.data->model = "fuel-cell";
+    request.data->settings = {{"nx", 7}, {"ny", 13}, {"nz", 20}, {"times", 5}};
+    const Opened opened = open(request);
+    const volume::DatasetInfo& info = opened.source->info();
+    for (const char* name : {"evening", "charcoal", "compare_lattice", "gases"})
+        for (std::size_t t = 0; t < info.times.size(); ++t) {
+            Session shown = opened.document.session;
+            shown.time = info.times[t];
+            std::vector<std::string> messages;
+            const Session session = changeLayout(loadSession(findLayout(name)), *opened.source, shown, messages);
+            EXPECT_EQ(session.time, shown.time) << name;
+            EXPECT_EQ(session.cursor, shown.cursor) << name;
+            bool surface = false;
+            for (const vis::Layer& layer : session.layers) {
+                const auto* iso = std::get_if<vis::IsoLayer>(&layer.technique);
+                if (!iso) continue;
+                surface = true;
+                std::size_t below = 0, above = 0;
+                const glm::ivec3 count = opened.source->grid().count();
+                for (int z = 0; z < count.z; ++z)
+                    for (int y = 0; y < count.y; ++y)
+                        for (int x = 0; x < count.x; ++x) {
+                            const volume::BrickSamples samples = opened.source->read(
+                                {info.findChannel(iso->channel).value(), static_cast<int>(t), 0, {x, y, z}});
+                            for (std::size_t i = 0; i < samples.values.size(); ++i)
+                                if (samples.present.empty() || samples.present[i])
+                                    ++(double(samples.values[i]) < iso->value ? below : above);
+                        }
+                EXPECT_GT(below, 0u) << name << " at " << shown.time << ": " << iso->channel << " = " << iso->value;
+                EXPECT_GT(above, 0u) << name << " at " << shown.time << ": " << iso->channel << " = " << iso->value;
+            }
+            EXPECT_TRUE(surface) << name;
+        }
+}
+
+TEST_F(OpenTest, ASurfaceThatCannotBeIsToldOf) {
+    std::ofstream(folder / "flat.raw", std::ios::binary) << std::string(5 * 6 * 14, '\x21');
+    const Opened opened = open(rawRequest(in("flat.raw")));
+    std::vector<std::string> messages;
+    changeLayout(loadSession(findLayout("evening")), *opened.source, opened.document.session, messages);
+    EXPECT_TRUE(std::ranges::any_of(
+        messages, [](const std::string& text) { return text.find("surface is empty") != std::string::npos; }));
+}
+
+TEST_F(OpenTest, VariantsOfAnotherModelAreLeftOut) {
+    OpenRequest request;
+    request.data.emplace();
+    request.data->model = "fuel-cell";
+    request.data->settings = {{"nx", 7}, {"ny", 13}, {"nz", 20}, {"times", 2}};
+    const Opened opened = open(request);
+    std::vector<std::string> messages;
+    const SessionDocument layout = loadSession(findLayout("compare_lattice"));
+    const Session session = changeLayout(layout, *opened.source, opened.document.session, messages);
+    const auto& compare = std::get<CompareView>(session.views.at("compare"));
+    ASSERT_EQ(compare.variants.size(), 5u);
+    EXPECT_EQ(compare.variants[0].name, "CC, trilinear");
+    EXPECT_EQ(compare.reference, 0);
+    EXPECT_TRUE(std::ranges::any_of(messages, [](const std::string& text) {
+        return text.starts_with("this comparison is of the model marschner-lobb");
+    }));
+    // On the model itself all are there.
+    request.data->model = "marschner-lobb";
+    request.data->settings = {{"nx", 8}, {"ny", 8}, {"nz", 8}};
+    const Opened own = open(request);
+    const Session whole = changeLayout(layout, *own.source, own.document.session, messages);
+    EXPECT_EQ(std::get<CompareView>(whole.views.at("compare")).variants.size(), 6u);
+}
+
 TEST_F(OpenTest, ShippedLayoutsAreValid) {
     const std::vector<std::string> names = layoutNames();
     EXPECT_TRUE(std::find(names.begin(), names.end(), "overview") != names.end());
