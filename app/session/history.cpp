@@ -114,6 +114,7 @@ void History::reset(const Session& session) {
 bool History::observe(const Session& session, bool editing, double seconds, double mergeSeconds) {
     followUnrecorded(base_, session);
     pending_ = !(session == base_);
+    if (!pending_ && !editing) nextName_.clear(); // what was named changed nothing
     if (!pending_ || editing) return false;
     pending_ = false;
     const std::string name = std::exchange(nextName_, {});

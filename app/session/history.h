@@ -27,7 +27,8 @@ public:
     /// added.
     bool observe(const Session& session, bool editing, double seconds, double mergeSeconds = 0.6);
 
-    /// The step that the next change becomes is called so, and joins none before it.
+    /// The step that the next change becomes is called so, and joins none before it; one without changes takes
+    /// the name away.
     void nameNext(std::string name) { nextName_ = std::move(name); }
 
     bool canUndo() const { return position_ > 0; }

@@ -345,6 +345,8 @@ TEST(HistoryTest, AStepMayHaveAName) {
         session.time += 1;
         EXPECT_TRUE(history.observe(session, false, 1));
     }
+    history.nameNext("Layout: Flow");
+    EXPECT_FALSE(history.observe(session, false, 1)) << "it is shown already";
     session.camera.distance += 1;
     session.time += 1;
     EXPECT_TRUE(history.observe(session, false, 1));
