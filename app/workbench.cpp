@@ -177,7 +177,7 @@ void Workbench::frame() {
     popupShown_ = popup;
 
     busy_ = compiling_ = false;
-    drawn_.clear();
+    drawnBefore_ = std::exchange(drawn_, {});
     hoveredPane_.clear();
     interacting_ = ImGui::IsAnyItemActive();
     const ImGuiViewport& viewport = *ImGui::GetMainViewport();

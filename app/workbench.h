@@ -154,6 +154,7 @@ private:
     void step(int count);
     void closePane(const std::string& pane);
     std::string currentPane() const;
+    std::string spacePane() const; // workbench_panes.cpp
     double now() const;
     bool dirty() const;
 
@@ -188,7 +189,10 @@ private:
     std::vector<Recovery> recoveries_;
     std::deque<Message> messages_;
     std::string focusedPane_, hoveredPane_;
-    std::set<std::string> drawn_;
+    std::set<std::string> drawn_, drawnBefore_; ///< panes of this frame and of the last
+    std::string lastSpacePane_;                 ///< the view of the scene that the hand was on last
+    std::string cameraPane_;                    ///< the one that cameraKey_ is for
+    int cameraKey_ = 0;                         ///< of a camera command picked in a menu, 0 = none
     Playback playback_;
     std::optional<Export> export_;
     std::function<std::string(const Progress&)> exportText_;     ///< what the next answer of "export" writes

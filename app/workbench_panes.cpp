@@ -4,15 +4,37 @@
 
 #include <cmath>
 #include <imgui.h>
+#include <utility>
 
 /// What the workbench draws itself among the views: history, messages, status bar.
 namespace tessera::app {
 
+namespace {
+
+/// Whether a pane shows the scene from the session's camera.
+bool showsSpace(const Session& session, const std::string& pane) {
+    const auto found = session.views.find(pane);
+    return found != session.views.end() &&
+           (std::holds_alternative<VolumeView>(found->second) || std::holds_alternative<CompareView>(found->second));
+}
+
+} // namespace
+
+/// The view that the camera's commands are for: the one used last if it is on screen, else the first that is.
+std::string Workbench::spacePane() const {
+    if (drawnBefore_.contains(lastSpacePane_) && showsSpace(session_, lastSpacePane_)) return lastSpacePane_;
+    for (const std::string& pane : drawnBefore_)
+        if (showsSpace(session_, pane)) return pane;
+    return {};
+}
+
 void Workbench::drawPane(const std::string& pane) {
     drawn_.insert(pane);
-    if (ImGui::IsWindowFocused(ImGuiFocusedFlags_ChildWindows)) focusedPane_ = pane;
+    const bool focused =
+        ImGui::IsWindowFocused(ImGuiFocusedFlags_ChildWindows) && std::exchange(focusedPane_, pane) != pane;
     if (ImGui::IsWindowHovered(ImGuiHoveredFlags_ChildWindows | ImGuiHoveredFlags_AllowWhenBlockedByActiveItem))
         hoveredPane_ = pane;
+    if ((focused || hoveredPane_ == pane) && showsSpace(session_, pane)) lastSpacePane_ = pane;
     const auto found = session_.views.find(pane);
     if (found == session_.views.end()) {
         ImGui::TextDisabled("There is no view named %s.", pane.c_str());
@@ -45,6 +67,7 @@ void Workbench::drawPane(const std::string& pane) {
                                 takeFile_ = std::move(take);
                                 files_.show(FileMode::Open, title, "take", files_.folder());
                             },
+                        .cameraKey = cameraPane_ == pane ? std::exchange(cameraKey_, 0) : 0,
                         .busy = false,
                         .interacting = interacting_};
     ImGui::PushID(pane.c_str());

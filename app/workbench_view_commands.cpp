@@ -129,7 +129,20 @@ void Workbench::addViewCommands() {
                                           {"Look isometric", '9', "The corner"},
                                           {"Parallel projection", '5', "Perspective or parallel"},
                                           {"Reset the camera", 'R', "See everything again"}})
-        add({.menu = "View", .name = name, .help = std::string(help) + "; in a volume", .shortcut = {.key = key}});
+        add({.menu = "View",
+             .name = name,
+             .help = std::string(help) + "; in the volume used last, by key in the one under the mouse",
+             .shortcut = {.key = key},
+             .run =
+                 [this, key = key] {
+                     cameraPane_ = spacePane();
+                     cameraKey_ = key;
+                 },
+             .enabled = [this] { return source_ && !spacePane().empty(); },
+             .checked = [this,
+                         key =
+                             key] { return key == '5' && session_.camera.projection == vis::Projection::Orthographic; },
+             .keyInView = true});
 }
 
 void Workbench::addLayoutCommands() {

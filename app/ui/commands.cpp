@@ -19,6 +19,7 @@ char lower(char c) {
 
 void runShortcuts(const std::vector<Command>& commands) {
     for (const Command& command : commands) {
+        if (command.keyInView) continue;
         for (const Shortcut& shortcut : {command.shortcut, command.alternative}) {
             if (shortcut.key == 0) continue;
             const bool plain = !shortcut.ctrl && !shortcut.alt && shortcut.key < key::kF1;

@@ -19,6 +19,7 @@ struct Command {
     std::function<bool()> enabled = {}; ///< empty = always
     std::function<bool()> checked = {}; ///< empty = no check mark
     bool repeats = false;               ///< runs again while the key is held
+    bool keyInView = false;             ///< the view under the mouse answers to the key itself
 
     bool available() const { return run && (!enabled || enabled()); }
     /// Name without separator mark.

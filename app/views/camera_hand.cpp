@@ -3,6 +3,7 @@
 #include "app/ui/keys.h"
 
 #include <cmath>
+#include <utility>
 
 namespace tessera::app {
 
@@ -48,7 +49,9 @@ CameraDrag dragOf(const ImGuiIO& io) {
 }
 
 /// Standard views by digit, the opposite one with Shift.
-void handleKeys(vis::Camera& camera, const vis::WorldFrame& world, double aspect) {
+/// `chosen`: the key of an item picked in a menu, which does as the key does; the keys themselves count with `keys`.
+void handleKeys(vis::Camera& camera, const vis::WorldFrame& world, double aspect, bool keys, int chosen) {
+    const auto down = [&](int key) { return key == chosen || (keys && pressed({.key = key})); };
     using enum vis::StandardView;
     struct Key {
         int key;
@@ -56,14 +59,14 @@ void handleKeys(vis::Camera& camera, const vis::WorldFrame& world, double aspect
     };
     static constexpr Key kKeys[] = {{'1', Front, Back}, {'3', Right, Left}, {'7', Top, Bottom}};
     for (const Key& own : kKeys) {
-        if (pressed({.key = own.key})) lookAlong(camera, own.view, world, aspect);
-        if (pressed({.key = own.key, .shift = true})) lookAlong(camera, own.opposite, world, aspect);
+        if (down(own.key)) lookAlong(camera, own.view, world, aspect);
+        if (keys && pressed({.key = own.key, .shift = true})) lookAlong(camera, own.opposite, world, aspect);
     }
-    if (pressed({.key = '9'})) lookAlong(camera, Isometric, world, aspect);
-    if (pressed({.key = '5'}))
+    if (down('9')) lookAlong(camera, Isometric, world, aspect);
+    if (down('5'))
         camera.projection = camera.projection == vis::Projection::Perspective ? vis::Projection::Orthographic
                                                                               : vis::Projection::Perspective;
-    if (pressed({.key = 'R'}) || (ImGui::IsWindowFocused() && pressed({.key = key::kEnter})))
+    if (down('R') || (keys && ImGui::IsWindowFocused() && pressed({.key = key::kEnter})))
         resetCamera(camera, world, aspect);
 }
 
@@ -135,7 +138,8 @@ bool handleMouse(ViewContext& context, CameraHand& hand, vis::ViewTarget* target
         const glm::ivec2 pixel(io.MousePos.x - picture.min.x, io.MousePos.y - picture.min.y);
         if (const auto pick = context.renderer.pick(*target, pixel)) context.session.cursor = pick->position;
     }
-    if ((hovered || ImGui::IsWindowFocused()) && !typing()) handleKeys(camera, world, aspect);
+    handleKeys(camera, world, aspect, (hovered || ImGui::IsWindowFocused()) && !typing(),
+               std::exchange(context.cameraKey, 0));
     return moving;
 }
 

@@ -43,6 +43,8 @@ struct ViewContext {
     /// Asks for a file to open, then changes the session by it as an edit; an Error goes to the log. Null in tests.
     std::function<void(const std::string& title, std::function<void(Session&, const std::string& path)> take)> askFile =
         {};
+    /// The key of a camera command picked in a menu for this view, 0 = none: acts as if pressed over its picture.
+    int cameraKey = 0;
     std::vector<std::string> messages = {}; ///< failures that a view adds, for the log
     bool busy = false;        ///< set by a view that needs another frame soon (refining, animating, waiting for a job)
     bool behind = false;      ///< set by a view that shows an older state of the session until an answer is there

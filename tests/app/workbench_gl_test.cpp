@@ -222,6 +222,56 @@ TEST(WorkbenchGl, WhatIsNotSavedIsNotGivenUpUnasked) {
     EXPECT_EQ(workbench.session().data.settings, other.data->settings) << "nothing to save, nothing asked";
 }
 
+class WorkbenchMenus : public DrawnWorkbench {};
+
+// The mouse is on the menu when an item is picked: the view it was on before is meant, or the only one.
+TEST_F(WorkbenchMenus, CameraCommandsActOnAVolume) {
+    workbench.install(smallData());
+    settle();
+    const auto facing = [&](vis::StandardView view) {
+        return workbench.session().camera.orientation == vis::standardOrientation(view);
+    };
+    ASSERT_FALSE(facing(vis::StandardView::Right));
+    ASSERT_TRUE(run("Look from the right"));
+    settle();
+    EXPECT_TRUE(facing(vis::StandardView::Right));
+    ASSERT_TRUE(run("Look from the top"));
+    settle();
+    EXPECT_TRUE(facing(vis::StandardView::Top));
+    ASSERT_TRUE(run("Parallel projection"));
+    settle();
+    EXPECT_EQ(workbench.session().camera.projection, vis::Projection::Orthographic) << "once, not twice";
+    workbench.session().camera.distance = 50;
+    ASSERT_TRUE(run("Reset the camera"));
+    settle();
+    EXPECT_LT(workbench.session().camera.distance, 20);
+    workbench.session().dock.maximised = "layers";
+    settle();
+    EXPECT_FALSE(run("Look from the right")) << "no volume on screen";
+}
+
+TEST_F(WorkbenchMenus, ALayoutIsOneStepAndATabNone) {
+    workbench.install(smallData());
+    settle();
+    ASSERT_TRUE(run("Lens"));
+    settle();
+    ASSERT_TRUE(run("Evening"));
+    settle();
+    const std::function<DockNode*(DockNode&)> stack = [&](DockNode& node) -> DockNode* {
+        if (node.tabs.size() > 1) return &node;
+        for (DockNode& child : node.children)
+            if (DockNode* found = stack(child)) return found;
+        return nullptr;
+    };
+    DockNode* tabs = stack(workbench.session().dock.root);
+    ASSERT_TRUE(tabs);
+    tabs->active = tabs->active == 0 ? 1 : 0;
+    settle();
+    ASSERT_EQ(workbench.history().steps().size(), 2u);
+    EXPECT_EQ(workbench.history().steps()[0].name, "Layout: Lens");
+    EXPECT_EQ(workbench.history().steps()[1].name, "Layout: Evening");
+}
+
 struct WorkbenchLeaving : DrawnWorkbench {
     void SetUp() override {
         std::filesystem::create_directories(folder);
