@@ -40,9 +40,14 @@ await() {
     return 1
 }
 fresh() { [ "$work/shot.png" -nt "$work/mark" ]; }
-# A complete picture of the window after what follows `mark`.
+# A complete picture of the window after what follows `mark`, which waits until no more come of what was before.
 mark() {
+    local try
     sleep 0.3
+    for ((try = 0; try < 50; ++try)); do
+        [ -n "$(find "$work/shot.png" -newermt '0.8 seconds ago')" ] || break
+        sleep 0.2
+    done
     touch "$work/mark"
     sleep 0.05
 }
