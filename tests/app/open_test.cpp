@@ -185,13 +185,17 @@ TEST_F(OpenTest, ALayoutFitsAnyData) {
     }
 }
 
-// Parameters of a simulation may be far from their overall range at one time: a surface must be looked for there.
-TEST_F(OpenTest, ALayoutChosenKeepsTheTimeAndItsSurfacesExistThen) {
+OpenRequest smallCell(int times) {
     OpenRequest request;
     request.data.emplace();
     request.data->model = "fuel-cell";
-    request.data->settings = {{"nx", 7}, {"ny", 13}, {"nz", 20}, {"times", 5}};
-    const Opened opened = open(request);
+    request.data->settings = {{"nx", 7}, {"ny", 13}, {"nz", 20}, {"times", double(times)}};
+    return request;
+}
+
+// Parameters of a simulation may be far from their overall range at one time: a surface must be looked for there.
+TEST_F(OpenTest, ALayoutChosenKeepsTheTimeAndItsSurfacesExistThen) {
+    const Opened opened = open(smallCell(5));
     const volume::DatasetInfo& info = opened.source->info();
     for (const char* name : {"evening", "charcoal", "compare_lattice", "gases"})
         for (std::size_t t = 0; t < info.times.size(); ++t) {
@@ -234,10 +238,7 @@ TEST_F(OpenTest, ASurfaceThatCannotBeIsToldOf) {
 }
 
 TEST_F(OpenTest, VariantsOfAnotherModelAreLeftOut) {
-    OpenRequest request;
-    request.data.emplace();
-    request.data->model = "fuel-cell";
-    request.data->settings = {{"nx", 7}, {"ny", 13}, {"nz", 20}, {"times", 2}};
+    OpenRequest request = smallCell(2);
     const Opened opened = open(request);
     std::vector<std::string> messages;
     const SessionDocument layout = loadSession(findLayout("compare_lattice"));

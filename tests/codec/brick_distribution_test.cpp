@@ -5,10 +5,10 @@
 #include "codec/pack.h"
 #include "tests/codec/make_dataset.h"
 #include "tests/codec/plain/decoder.h"
+#include "tests/codec/sealed_file.h"
 #include "volume/statistics.h"
 
 #include <cmath>
-#include <cstring>
 #include <functional>
 #include <gtest/gtest.h>
 
@@ -130,13 +130,7 @@ std::vector<char> withPage(const std::vector<char>& file, const std::function<vo
     Bytes out(bytes.begin(), bytes.begin() + std::ptrdiff_t(header.index.offset));
     out.insert(out.end(), packed.begin(), packed.end());
     header.index = {header.index.offset, packed.size(), checksum(packed)};
-    header.fileSize = out.size();
-    const Bytes front = serialise(header);
-    for (const std::size_t at : {std::size_t(0), kHeaderBytes})
-        std::copy(front.begin(), front.end(), out.begin() + std::ptrdiff_t(at));
-    std::vector<char> chars(out.size());
-    std::memcpy(chars.data(), out.data(), out.size());
-    return chars;
+    return sealed(header, std::move(out));
 }
 
 // Statistics that are not true are found by verify, those that cannot be are refused; nothing else happens.

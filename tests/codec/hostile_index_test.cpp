@@ -6,8 +6,8 @@
 #include "codec/lzma.h"
 #include "tests/codec/make_dataset.h"
 #include "tests/codec/plain/decoder.h"
+#include "tests/codec/sealed_file.h"
 
-#include <cstring>
 #include <gtest/gtest.h>
 
 /// Small files whose index decodes to much.
@@ -53,13 +53,7 @@ std::vector<char> emptyBricks(std::size_t pages, int bricks) {
         header.index = {out.size(), piece.size(), checksum(piece)};
         add(out, piece);
     }
-    header.fileSize = out.size();
-    const Bytes front = serialise(header);
-    for (const std::size_t at : {std::size_t(0), kHeaderBytes})
-        std::copy(front.begin(), front.end(), out.begin() + std::ptrdiff_t(at));
-    std::vector<char> chars(out.size());
-    std::memcpy(chars.data(), out.data(), out.size());
-    return chars;
+    return sealed(header, std::move(out));
 }
 
 bool opens(const TemporaryFolder& folder, const std::vector<char>& bytes) {
