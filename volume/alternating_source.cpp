@@ -2,6 +2,7 @@
 
 #include "volume/brick_cache.h"
 #include "volume/memory_source.h"
+#include "volume/parts_bricks.h"
 #include "volume/reconstruct.h"
 #include "volume/resample_taps.h"
 
@@ -191,13 +192,40 @@ private:
     std::shared_ptr<const BrickSamples> readParity(BrickKey key, int parity) const {
         const std::vector<WeightedTime> times = timesOf(key, parity);
         const BrickStats range = times.size() > 1 ? rangeOf(key, times) : BrickStats{};
+        const int wanted = key.time;
         std::vector<std::shared_ptr<const BrickSamples>> bricks;
         for (const WeightedTime& time : times) {
             key.time = time.time;
             bricks.push_back(frames_->get(key));
         }
         if (bricks.size() == 1) return bricks.front();
-        return std::make_shared<const BrickSamples>(blendBricks(bricks, times, range));
+        key.time = wanted;
+        keepParts(key, parity, times, bricks);
+        BrickSamples blended = blendBricks(bricks, times, range);
+        return std::make_shared<const BrickSamples>(std::move(blended));
+    }
+
+    /// Makes absent what is of another part than the label says at the time of a key.
+    void keepParts(BrickKey key, int parity, const std::vector<WeightedTime>& times,
+                   std::vector<std::shared_ptr<const BrickSamples>>& bricks) const {
+        const Parameter& parameter = info_.parameters[std::size_t(channels_[std::size_t(key.channel)].parameter)];
+        const std::optional<int> label = labelChannel(info_, parameter);
+        if (!label) return;
+        key.channel = *label;
+        const auto partsAt = [&](int time) {
+            key.time = time;
+            return partsOfSamples(*frames_->get(key), parameter.parts);
+        };
+        const std::vector<std::uint8_t> own = partsAt(timesOf(key, parity).front().time);
+        for (std::size_t b = 0; b < bricks.size(); ++b) {
+            const std::vector<std::uint8_t> parts = partsAt(times[b].time);
+            if (parts == own) continue;
+            BrickSamples kept = *bricks[b];
+            if (kept.present.empty()) kept.present.assign(own.size(), 1);
+            for (std::size_t i = 0; i < own.size(); ++i)
+                if (parts[i] != own[i]) kept.present[i] = 0;
+            bricks[b] = std::make_shared<const BrickSamples>(std::move(kept));
+        }
     }
 
     std::shared_ptr<const BrickCache> frames_; ///< every frame is wanted for that before and behind it too

@@ -5,6 +5,7 @@
 #include "volume/resample_taps.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -30,41 +31,66 @@ void addWeighted(const Field& frame, double weight, Field& sum) {
     });
 }
 
-/// Where frames differ in what is present: the linear blend of those that have the sample.
+/// The number of a sample's part, 0 where it is absent (volume/part_masks.h).
+std::uint8_t numberAt(const Field& field, std::size_t i) {
+    return field.mask ? (*field.mask)[i] : std::uint8_t(1);
+}
+
+/// Where frames differ in what is present, or of which part: the linear blend of those that have the sample, of the
+/// part that it has in the nearest of these (of two the later).
 void blendPartly(std::span<const WeightedFrame> frames, Field& sum) {
     auto mask = std::make_shared<Mask>(sum.count(), std::uint8_t(1));
     const auto to = sum.as<float>();
     parallelFor(
         sum.count(),
         [&](std::size_t i) {
-            const auto present = [&](const WeightedFrame& frame) { return frame.field->present(i); };
-            if (std::all_of(frames.begin(), frames.end(), present)) return;
+            double most = -1;
+            std::uint8_t own = 0;
+            bool alike = true;
+            for (const WeightedFrame& frame : frames) {
+                const std::uint8_t number = numberAt(*frame.field, i);
+                alike = alike && number == numberAt(*frames.front().field, i);
+                if (number == 0 || frame.weight.linear < most) continue;
+                most = frame.weight.linear;
+                own = number;
+            }
+            (*mask)[i] = own;
+            if (alike) return;
             Blend blend;
-            for (const WeightedFrame& frame : frames)
-                blend.add(frame.weight.linear, {present(frame) ? frame.field->value(i) : 0, present(frame)});
+            for (const WeightedFrame& frame : frames) {
+                const bool isOwn = own != 0 && numberAt(*frame.field, i) == own;
+                blend.add(frame.weight.linear, {isOwn ? frame.field->value(i) : 0, isOwn});
+            }
             const std::optional<double> value = blend.value();
             to[i] = value ? float((*value - sum.offset) / sum.scale) : 0.0f;
-            (*mask)[i] = value ? 1 : 0;
+            if (!value) (*mask)[i] = 0;
         },
         kBlendGrain);
-    if (std::any_of(mask->begin(), mask->end(), [](std::uint8_t p) { return p == 0; })) sum.mask = std::move(mask);
+    if (std::any_of(mask->begin(), mask->end(), [](std::uint8_t number) { return number != 1; }))
+        sum.mask = std::move(mask);
 }
 
-/// Kernels with negative weights overshoot: held within the present samples of the frames.
+/// Kernels with negative weights overshoot: held within the present samples of the frames, part by part.
 void clampToFrames(std::span<const WeightedFrame> frames, std::span<const StoredExtent> extents, Field& sum) {
-    float lo = std::numeric_limits<float>::max(), hi = std::numeric_limits<float>::lowest();
+    std::array<float, StoredExtent::kNumbers> lo, hi;
+    lo.fill(std::numeric_limits<float>::max());
+    hi.fill(std::numeric_limits<float>::lowest());
     for (std::size_t f = 0; f < frames.size(); ++f) {
         const Field& frame = *frames[f].field;
         StoredExtent own;
         if (extents.empty()) own.add(frame);
         const StoredExtent& extent = extents.empty() ? own : extents[f];
         const double scale = frame.scale / sum.scale, offset = (frame.offset - sum.offset) / sum.scale;
-        if (extent.lo > extent.hi) continue;
-        lo = std::min(lo, float(scale * extent.lo + offset));
-        hi = std::max(hi, float(scale * extent.hi + offset));
+        for (std::size_t n = 1; n < lo.size(); ++n) {
+            const Range& range = extent.byPart[n];
+            if (range.lo > range.hi) continue;
+            lo[n] = std::min(lo[n], float(scale * range.lo + offset));
+            hi[n] = std::max(hi[n], float(scale * range.hi + offset));
+        }
     }
-    if (lo > hi) return;
-    for (float& value : sum.as<float>()) value = std::clamp(value, lo, hi);
+    const auto to = sum.as<float>();
+    for (std::size_t i = 0; i < to.size(); ++i)
+        if (const std::size_t n = numberAt(sum, i) % lo.size(); lo[n] <= hi[n]) to[i] = std::clamp(to[i], lo[n], hi[n]);
 }
 
 } // namespace

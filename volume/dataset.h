@@ -3,6 +3,7 @@
 #include "volume/describe.h"
 #include "volume/field.h"
 #include "volume/lattice.h"
+#include "volume/parts.h"
 
 #include <functional>
 #include <optional>
@@ -11,11 +12,19 @@
 
 namespace tessera::volume {
 
-/// A value of a categorical parameter and its name, e.g. 1 "air side".
+/// A value of a categorical parameter, its name, e.g. 1 "air side", and its colour.
 struct Label {
     int value = 0;
     std::string name;
+    std::string color = {}; ///< "#rrggbb"; "" = chosen by the program
     bool operator==(const Label&) const = default;
+};
+
+/// A number that belongs to each time of a data set: a voltage, a current density, an operating point.
+struct Quantity {
+    std::string name, unit;
+    std::vector<double> values; ///< one for each time, NaN where not known
+    bool operator==(const Quantity&) const = default;
 };
 
 /// One quantity per point: a scalar (1 component) or a vector (3).
@@ -28,6 +37,9 @@ struct Parameter {
     /// Physical range of present samples over all times, one per component, then for a vector that of its magnitude.
     /// Empty while not yet known.
     std::vector<Range> ranges;
+    /// Regions whose samples are never mixed (volume/parts.h).
+    Parts parts = {};
+    bool unitGuessed = false; ///< the unit follows from the name alone, no file and no user states it
     bool operator==(const Parameter&) const = default;
 };
 
@@ -48,9 +60,11 @@ struct DatasetInfo {
     Box bounds; ///< what is shown: the box of the first to the last sample of the CC grid it came from
     std::string lengthUnit = "m";
     std::vector<Parameter> parameters;
-    std::vector<double> times{0}; ///< strictly increasing
-    std::string timeUnit = "s";
-    std::string provenance; ///< where it came from, free text
+    std::vector<double> times{0};     ///< strictly increasing
+    std::string timeName = "time";    ///< what `times` count: time, operating point, voltage, step
+    std::string timeUnit = "s";       ///< of `times`, "" where there is none
+    std::vector<Quantity> quantities; ///< over the times
+    std::string provenance;           ///< where it came from, free text
     bool operator==(const DatasetInfo&) const = default;
 
     /// Every channel: parameters in order, for vectors the components, then the magnitude.

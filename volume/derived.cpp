@@ -18,15 +18,19 @@ constexpr double kRangeSamples = 3e6; // looked at to find a range, over all tim
 
 class DerivedSource final : public BrickSource {
 public:
-    DerivedSource(std::shared_ptr<const BrickSource> source, DerivedParameter derived, const Progress& progress)
+    /// `known`: its ranges; empty: they are looked for.
+    DerivedSource(std::shared_ptr<const BrickSource> source, DerivedParameter derived, const Progress& progress,
+                  std::vector<Range> known = {})
         : below_(std::move(source)), bricks_(below_, derived.recipe), derived_(std::move(derived)),
           info_(below_->info()), first_(int(info_.channels().size())) {
         Parameter parameter;
         parameter.name = derived_.name;
         parameter.unit = derived_.unit;
         parameter.components = componentsOf(derived_.recipe);
+        parameter.parts = partsOf(derived_.recipe, info_);
         info_.parameters.push_back(parameter);
-        info_.parameters.back().ranges = scan(parameter.components == 3 ? 4 : 1, progress);
+        info_.parameters.back().ranges =
+            known.empty() ? scan(parameter.components == 3 ? 4 : 1, progress) : std::move(known);
     }
 
     const DatasetInfo& info() const override { return info_; }
@@ -64,7 +68,8 @@ public:
     }
 
     std::optional<BrickChange> change(const BrickKey& key, int toTime) const override {
-        return key.channel < first_ ? below_->change(key, toTime) : BrickSource::change(key, toTime);
+        if (key.channel < first_) return below_->change(key, toTime);
+        return key.time == toTime ? BrickChange{} : bricks_.change(key, toTime);
     }
 
     BrickSamples read(const BrickKey& key) const override {
@@ -144,6 +149,18 @@ std::shared_ptr<const BrickSource> deriveAll(std::shared_ptr<const BrickSource> 
         } catch (const Error& error) {
             messages.push_back("derived parameter " + std::string(error.what()));
         }
+    }
+    return source;
+}
+
+std::shared_ptr<const BrickSource> deriveLike(const BrickSource& like, std::shared_ptr<const BrickSource> source,
+                                              const std::vector<DerivedParameter>& parameters) {
+    const std::vector<Parameter>& known = like.info().parameters;
+    for (const DerivedParameter& parameter : parameters) {
+        const auto found =
+            std::ranges::find_if(known, [&](const Parameter& other) { return other.name == parameter.name; });
+        if (found == known.end() || !derivedProblem(parameter, source->info()).empty()) continue;
+        source = std::make_shared<const DerivedSource>(source, parameter, Progress{}, found->ranges);
     }
     return source;
 }

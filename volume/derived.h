@@ -1,6 +1,7 @@
 #pragma once
 
 #include "volume/brick_source.h"
+#include "volume/other_time.h"
 #include "volume/progress.h"
 
 #include <memory>
@@ -12,7 +13,7 @@
 /// input is absent or the result is no number.
 namespace tessera::volume {
 
-/// A formula over channels, position and time, point by point: "O2 / (O2 + H2O)", "abs(T - 434)". See Expression.
+/// A formula over channels, position and time, point by point: "O2 / (O2 + H2O)", "T - at(T, first)". See Expression.
 struct ExpressionRecipe {
     static constexpr std::string_view kType = "expression";
     std::string formula;
@@ -20,7 +21,8 @@ struct ExpressionRecipe {
     static void describe(auto& self, auto&& visit) {
         visit(self.formula, FieldInfo{.key = "formula",
                                       .unit = "",
-                                      .doc = "Formula of parameters, position x y z and time t, e.g. O2/(O2+H2O)"});
+                                      .doc = "Formula of parameters, position x y z and time t, e.g. O2/(O2+H2O), "
+                                             "T - at(T, first)"});
     }
 };
 
@@ -113,8 +115,31 @@ struct TimeRecipe {
     static void describe(auto&, auto&&) {}
 };
 
+/// A channel minus itself at another time, or in the data set beside (volume/other_source.h): absent where either is.
+struct DifferenceRecipe {
+    static constexpr std::string_view kType = "difference";
+    std::string channel;
+    OtherTime from = OtherTime::First;
+    double time = 0; ///< of OtherTime::Time
+    bool operator==(const DifferenceRecipe&) const = default;
+    static void describe(auto& self, auto&& visit) {
+        visit(self.channel, kDerivedFrom);
+        visit(self.from, FieldInfo{.key = "from",
+                                   .unit = "",
+                                   .doc = "What is taken away: the values at the first, last, previous, next or a "
+                                          "stated time, or of the other data",
+                                   .names = kOtherTimeNames});
+        visit(self.time, FieldInfo{.key = "time",
+                                   .unit = "",
+                                   .doc = "Stated time, in the unit of the data's times; between stored ones "
+                                          "interpolated",
+                                   .applies = self.from == OtherTime::Time});
+    }
+    TimeReference reference() const { return {from, time}; }
+};
+
 using DerivedRecipe = std::variant<ExpressionRecipe, MagnitudeRecipe, GradientRecipe, DivergenceRecipe, VorticityRecipe,
-                                   DeviationRecipe, SmoothRecipe, PositionRecipe, TimeRecipe>;
+                                   DeviationRecipe, SmoothRecipe, PositionRecipe, TimeRecipe, DifferenceRecipe>;
 
 struct DerivedParameter {
     std::string name, unit;
@@ -142,6 +167,11 @@ std::shared_ptr<const BrickSource> derive(std::shared_ptr<const BrickSource> sou
 std::shared_ptr<const BrickSource> deriveAll(std::shared_ptr<const BrickSource> source,
                                              const std::vector<DerivedParameter>& parameters,
                                              std::vector<std::string>& messages, const Progress& progress = {});
+
+/// The same for what shows the same data otherwise: the ranges of derived parameters are those found in `like`, which
+/// has them already.
+std::shared_ptr<const BrickSource> deriveLike(const BrickSource& like, std::shared_ptr<const BrickSource> source,
+                                              const std::vector<DerivedParameter>& parameters);
 
 /// The source below all derived parameters.
 std::shared_ptr<const BrickSource> underived(std::shared_ptr<const BrickSource> source);

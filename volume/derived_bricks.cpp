@@ -5,7 +5,9 @@
 #include "volume/expression.h"
 #include "volume/load_once.h"
 #include "volume/memory_source.h"
+#include "volume/other_source.h"
 #include "volume/sample_position.h"
+#include "volume/source_at_time.h"
 #include "volume/stencil.h"
 
 #include <algorithm>
@@ -47,20 +49,67 @@ void set(BrickSamples& samples, std::size_t i, double value) {
         setAbsent(samples, i);
 }
 
+constexpr int kTimeName = -4; // FormulaNames::channel
+
+/// The values of a channel at the time that a formula or a difference means.
+class InputTime {
+public:
+    InputTime(std::shared_ptr<const BrickSource> source, int channel, const TimeReference& reference)
+        : source_(std::move(source)), channel_(channel), reference_(reference) {
+        if (reference.which == OtherTime::Other) channel_ = *otherChannel(source_->info(), channel);
+        if (const auto fixed = isFixed(reference) ? times(0) : std::nullopt; fixed && fixed->between())
+            between_ = sourceAt(source_, *fixed).source;
+    }
+    std::optional<TimePair> times(int now) const { return timesOf(reference_, source_->info().times, now); }
+    bool exists(int now) const { return times(now).has_value(); }
+    /// The time itself.
+    double time(int now) const {
+        const std::vector<double>& all = source_->info().times;
+        const TimePair at = *times(now);
+        return (1 - at.weight) * all[std::size_t(at.earlier)] + at.weight * all[std::size_t(at.later)];
+    }
+    BrickSamples read(BrickKey key) const {
+        key.channel = channel_;
+        key.time = between_ ? 0 : times(key.time)->earlier;
+        return (between_ ? between_ : source_)->read(key);
+    }
+    /// Whether it is the same in a brick at both times, as is known without reading it.
+    bool stays(BrickKey key, int toTime) const {
+        const std::optional<TimePair> from = times(key.time), to = times(toTime);
+        if (from == to) return true;
+        if (!from || !to) return false;
+        key.channel = channel_;
+        key.time = from->earlier; // all but fixed ones are stored times
+        const std::optional<BrickChange> change = source_->change(key, to->earlier);
+        return change && change->max == 0;
+    }
+
+private:
+    std::shared_ptr<const BrickSource> source_, between_;
+    int channel_;
+    TimeReference reference_;
+};
+
 } // namespace
 
 struct DerivedBricks::Impl {
     Impl(std::shared_ptr<const BrickSource> source, DerivedRecipe recipe)
-        : source_(std::move(source)), inputs_(source_, kInputBudget), recipe_(std::move(recipe)),
-          names_(source_->info()),
+        : source_(std::move(source)), cached_(std::make_shared<const BrickCache>(source_, kInputBudget)),
+          inputs_(*cached_), recipe_(std::move(recipe)), names_(source_->info()),
           results_(
               kResultBudget, [this](const BrickKey& key) { return std::make_shared<const Bricks>(compute(key)); },
               bytesOf),
           means_(
               kResultBudget, [this](const BrickKey& key) { return std::make_shared<const Bricks>(moments(key)); },
               bytesOf) {
-        if (const auto* formula = std::get_if<ExpressionRecipe>(&recipe_))
-            expression_.emplace(formula->formula, names_.names);
+        if (const auto* formula = std::get_if<ExpressionRecipe>(&recipe_)) {
+            expression_.emplace(formula->formula, names_.names, OtherTimes::Allowed);
+            for (const Expression::Input& input : expression_->inputs())
+                times_.emplace_back(cached_, names_.channel[std::size_t(input.name)],
+                                    input.at.value_or(TimeReference{}));
+        }
+        if (const auto* difference = std::get_if<DifferenceRecipe>(&recipe_))
+            times_.emplace_back(cached_, channelOf(difference->channel), difference->reference());
     }
 
     /// A channel of the source below, at a brick.
@@ -68,12 +117,21 @@ struct DerivedBricks::Impl {
         key.channel = channel;
         return inputs_.read(key);
     }
+    /// The same at another time.
+    BrickSamples input(const InputTime& at, const BrickKey& key) const {
+        return at.exists(key.time) ? at.read(key) : nothing(key);
+    }
     int channelOf(const std::string& name) const { return *source_->info().findChannel(name); }
 
     BrickSamples empty(const BrickKey& key) const {
         BrickSamples out;
         out.size = source_->grid().brickSamples(key.index, key.level);
         out.values.resize(std::size_t(out.size.x) * std::size_t(out.size.y) * std::size_t(out.size.z));
+        return out;
+    }
+    BrickSamples nothing(const BrickKey& key) const {
+        BrickSamples out = empty(key);
+        out.present.assign(out.values.size(), 0);
         return out;
     }
     Bricks compute(const BrickKey& key) const {
@@ -85,14 +143,18 @@ struct DerivedBricks::Impl {
         const std::size_t count = out.values.size();
         std::vector<BrickSamples> samples;
         std::vector<std::vector<double>> values;
-        for (const int name : expression_->used()) {
-            const int channel = names_.channel[std::size_t(name)];
+        for (std::size_t n = 0; n < expression_->inputs().size(); ++n) {
+            const Expression::Input& used = expression_->inputs()[n];
+            const int channel = names_.channel[std::size_t(used.name)];
             std::vector<double>& of = values.emplace_back(count);
-            if (channel >= 0) {
-                samples.push_back(input(channel, key));
+            if (used.at && channel == kTimeName && !times_[n].exists(key.time)) {
+                samples.push_back(nothing(key));
+            } else if (channel >= 0) {
+                samples.push_back(used.at ? input(times_[n], key) : input(channel, key));
                 std::copy(samples.back().values.begin(), samples.back().values.end(), of.begin());
-            } else if (channel == -4) {
-                std::fill(of.begin(), of.end(), source_->info().times[std::size_t(key.time)]);
+            } else if (channel == kTimeName) {
+                const double now = source_->info().times[std::size_t(key.time)];
+                std::fill(of.begin(), of.end(), used.at ? times_[n].time(key.time) : now);
             } else {
                 SamplePositions position(source_->grid(), key.index, key.level);
                 for (std::size_t i = 0; i < count; ++i, position.next()) of[i] = position.at()[-1 - channel];
@@ -138,7 +200,9 @@ struct DerivedBricks::Impl {
         for (const int channel : channels) {
             BrickKey own = key;
             own.channel = channel;
-            out.emplace_back(source_->grid(), own, 1, [&](const BrickKey& near) { return inputs_.read(near); });
+            out.emplace_back(
+                source_->grid(), own, 1, [&](const BrickKey& near) { return inputs_.read(near); },
+                partLabel(source_->info(), channel));
         }
         return out;
     }
@@ -219,7 +283,22 @@ struct DerivedBricks::Impl {
     Bricks make(const SmoothRecipe& recipe, const BrickKey& key) const {
         BrickKey own = key;
         own.channel = channelOf(recipe.channel);
-        return {smoothed(source_->grid(), own, recipe.width, [&](const BrickKey& near) { return inputs_.read(near); })};
+        return {smoothed(
+            source_->grid(), own, recipe.width, [&](const BrickKey& near) { return inputs_.read(near); },
+            partLabel(source_->info(), own.channel))};
+    }
+
+    Bricks make(const DifferenceRecipe& recipe, const BrickKey& key) const {
+        const int channel = channelOf(recipe.channel);
+        BrickSamples out = input(channel, key);
+        const BrickSamples other = input(times_.front(), key);
+        for (std::size_t i = 0; i < out.values.size(); ++i) {
+            if (presentAt(out, i) && presentAt(other, i))
+                set(out, i, double(out.values[i]) - double(other.values[i]));
+            else
+                setAbsent(out, i);
+        }
+        return {std::move(out)};
     }
 
     Bricks make(const PositionRecipe&, const BrickKey& key) const {
@@ -236,11 +315,36 @@ struct DerivedBricks::Impl {
         return out;
     }
 
+    /// Whether a channel is the same in the brick at both times, as is known without reading it.
+    bool stays(int channel, BrickKey key, int toTime) const {
+        key.channel = channel;
+        const std::optional<BrickChange> change = source_->change(key, toTime);
+        return change && change->max == 0;
+    }
+    bool stays(const BrickKey& key, int toTime) const {
+        if (const auto* difference = std::get_if<DifferenceRecipe>(&recipe_)) {
+            return stays(channelOf(difference->channel), key, toTime) && times_.front().stays(key, toTime);
+        }
+        if (!expression_) return false;
+        for (std::size_t n = 0; n < expression_->inputs().size(); ++n) {
+            const Expression::Input& used = expression_->inputs()[n];
+            const int channel = names_.channel[std::size_t(used.name)];
+            const bool fixed = used.at && isFixed(*used.at);
+            if (channel == kTimeName
+                    ? !fixed
+                    : channel >= 0 && !(used.at ? times_[n].stays(key, toTime) : stays(channel, key, toTime)))
+                return false;
+        }
+        return true;
+    }
+
     std::shared_ptr<const BrickSource> source_;
-    BrickCache inputs_;
+    std::shared_ptr<const BrickCache> cached_;
+    const BrickCache& inputs_;
     DerivedRecipe recipe_;
     FormulaNames names_;
     std::optional<Expression> expression_;
+    std::vector<InputTime> times_; ///< of the inputs of the expression, or of the difference
     mutable LoadOnce<BrickKey, Bricks, BrickKeyHash> results_, means_;
 };
 
@@ -252,6 +356,10 @@ DerivedBricks::~DerivedBricks() = default;
 std::shared_ptr<const DerivedBricks::Bricks> DerivedBricks::get(BrickKey key) const {
     key.channel = 0;
     return impl_->results_.get(key);
+}
+
+std::optional<BrickChange> DerivedBricks::change(const BrickKey& key, int toTime) const {
+    return impl_->stays(key, toTime) ? std::optional(BrickChange{}) : std::nullopt;
 }
 
 } // namespace tessera::volume

@@ -3,6 +3,7 @@
 #include "volume/derived.h"
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 /// Bricks computed by a recipe: inside of volume/derived.cpp.
@@ -22,6 +23,9 @@ public:
 
     /// A brick of every component; key.channel counts for nothing. From any thread.
     std::shared_ptr<const Bricks> get(BrickKey key) const;
+
+    /// No change where every sample that the brick is made of stays as it is from key.time to `toTime`, else nothing.
+    std::optional<BrickChange> change(const BrickKey& key, int toTime) const;
 
 private:
     struct Impl;

@@ -22,4 +22,7 @@ private:
 /// Components of a derived parameter: 3 of a vector, else 1.
 int componentsOf(const DerivedRecipe& recipe);
 
+/// Where a derived parameter jumps: where any of those that it is made of does. Of labels that differ the first counts.
+Parts partsOf(const DerivedRecipe& recipe, const DatasetInfo& info);
+
 } // namespace tessera::volume

@@ -66,9 +66,9 @@ std::string writeNrrd(const Dataset& dataset, const ExportSelection& selection, 
 
 } // namespace
 
-std::vector<std::string> exportDataset(const Dataset& dataset, const ExportSelection& selection,
-                                       const std::string& path, const Progress& progress) {
-    const DatasetInfo& info = dataset.info;
+std::vector<std::string> exportDataset(const Dataset& source, const ExportSelection& selection, const std::string& path,
+                                       const Progress& progress) {
+    const DatasetInfo& info = source.info;
     if (info.lattice.kind != LatticeKind::CC) throw Error("only a regular grid can be exported", path);
     const std::vector<int> parameters = orAll(selection.parameters, info.parameters.size());
     const std::vector<int> times = orAll(selection.times, info.times.size());
@@ -77,6 +77,7 @@ std::vector<std::string> exportDataset(const Dataset& dataset, const ExportSelec
         if (p < 0 || p >= int(info.parameters.size())) throw Error("parameter out of range", path);
     for (const int t : times)
         if (t < 0 || t >= int(info.times.size())) throw Error("time out of range", path);
+    const Dataset dataset = selection.values ? withValues(source, parameters, times) : source;
     const std::string ending = fs::path(path).extension().string();
     std::vector<std::string> written;
     if (ending == ".vti" && times.size() == 1) {

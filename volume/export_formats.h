@@ -29,6 +29,9 @@ struct Storage {
 /// all components are floats.
 Storage storageOf(const Dataset& dataset, int parameter, const std::vector<int>& times);
 
+/// The data set with ExportSelection::values: looks at every integer frame of the selection once.
+Dataset withValues(Dataset dataset, const std::vector<int>& parameters, const std::vector<int>& times);
+
 /// Physical values as floats.
 Storage floatStorage(int components);
 

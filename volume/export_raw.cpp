@@ -1,4 +1,5 @@
 #include "volume/export_formats.h"
+#include "volume/import/labels.h"
 
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -99,14 +100,14 @@ std::vector<std::string> writeRaw(const Dataset& dataset, const std::vector<int>
             const std::string suffix = what.components == 1 ? ""
                                        : c < 3              ? std::string(".") + "xyz"[c]
                                                             : "." + std::to_string(c);
-            json& entry = add(what.name + suffix, what.unit, forms[i].storage.type);
+            json& entry = add(what.name + suffix, what.unitGuessed ? "" : what.unit, forms[i].storage.type);
             const Scaling& scaling = forms[i].storage.scaling[std::size_t(c)];
             if (scaling.scale != 1) entry["scale"] = scaling.scale;
             if (scaling.offset != 0) entry["offset"] = scaling.offset;
             const Marker& marker = forms[i].marker[std::size_t(c)];
             if (marker.value) entry["missing_value"] = *marker.value;
             if (what.categorical) entry["categorical"] = true;
-            for (const Label& label : what.labels) entry["labels"][std::to_string(label.value)] = label.name;
+            for (const Label& label : what.labels) entry["labels"][std::to_string(label.value)] = labelText(label);
         }
         if (forms[i].storage.presence) add(what.name + ".present", "", ScalarType::U8)["presence_of"] = what.name;
     }
@@ -143,7 +144,16 @@ std::vector<std::string> writeRaw(const Dataset& dataset, const std::vector<int>
     out["components"] = std::move(components);
     out["times"] = json::array();
     for (const int t : times) out["times"].push_back(info.times[std::size_t(t)]);
+    out["time_name"] = info.timeName;
     out["time_unit"] = info.timeUnit;
+    for (const Quantity& quantity : info.quantities) {
+        json values = json::array();
+        for (const int t : times) {
+            const double value = quantity.values[std::size_t(t)];
+            values.push_back(std::isfinite(value) ? json(value) : json());
+        }
+        out["quantities"].push_back({{"name", quantity.name}, {"unit", quantity.unit}, {"values", values}});
+    }
     out["missing_value"] = nullptr;
     out["bytes"] = static_cast<std::uint64_t>(written);
     if (!info.provenance.empty()) out["provenance"] = info.provenance;

@@ -1,7 +1,9 @@
 #include "volume/error.h"
 #include "volume/export_formats.h"
+#include "volume/import/labels.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <cstring>
 
@@ -72,10 +74,11 @@ void writeVti(const Dataset& dataset, const std::vector<int>& parameters, int ti
         blocks.push_back({p, storage, false});
         if (storage.presence) blocks.push_back({p, storage, true});
         const Parameter& what = info.parameters[std::size_t(p)];
-        units += (units.empty() ? "" : "; ") + listed(what.name) + " " + (what.unit.empty() ? "-" : what.unit);
+        units += (units.empty() ? "" : "; ") + listed(what.name) + " " +
+                 (what.unit.empty() || what.unitGuessed ? "-" : what.unit);
         for (const Label& label : what.labels)
-            labels +=
-                (labels.empty() ? "" : "; ") + listed(what.name) + " " + std::to_string(label.value) + " " + label.name;
+            labels += (labels.empty() ? "" : "; ") + listed(what.name) + " " + std::to_string(label.value) + " " +
+                      labelText(label);
     }
     const std::string extent = "0 " + std::to_string(lattice.size.x - 1) + " 0 " + std::to_string(lattice.size.y - 1) +
                                " 0 " + std::to_string(lattice.size.z - 1);
@@ -86,6 +89,13 @@ void writeVti(const Dataset& dataset, const std::vector<int>& parameters, int ti
             triple(lattice.spacing) + "\">\n<FieldData>\n";
     head += "<DataArray type=\"Float64\" Name=\"TimeValue\" NumberOfTuples=\"1\" format=\"ascii\">" +
             exactText(info.times[std::size_t(time)]) + "</DataArray>\n";
+    for (const Quantity& quantity : info.quantities) {
+        units += "; " + listed(quantity.name) + " " + (quantity.unit.empty() ? "-" : quantity.unit);
+        if (std::isfinite(quantity.values[std::size_t(time)]))
+            head += "<DataArray type=\"Float64\" Name=\"" + escaped(quantity.name) +
+                    "\" NumberOfTuples=\"1\" format=\"ascii\">" + exactText(quantity.values[std::size_t(time)]) +
+                    "</DataArray>\n";
+    }
     const auto words = [](const std::string& name, const std::string& value) {
         std::string codes;
         for (const char c : value) codes += std::to_string(int(static_cast<unsigned char>(c))) + " ";
@@ -94,7 +104,8 @@ void writeVti(const Dataset& dataset, const std::vector<int>& parameters, int ti
     };
     head += words("units", units);
     if (!labels.empty()) head += words("labels", labels);
-    head += words("length_unit", info.lengthUnit);
+    head +=
+        words("length_unit", info.lengthUnit) + words("time_name", info.timeName) + words("time_unit", info.timeUnit);
     head += "</FieldData>\n<Piece Extent=\"" + extent + "\">\n<PointData>\n";
     std::size_t offset = 0;
     const auto sizeOf = [&](const Block& block) {

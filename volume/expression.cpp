@@ -4,8 +4,13 @@
 
 #include <algorithm>
 #include <cctype>
+#include <charconv>
+#include <cmath>
 #include <muParser.h>
+#include <numeric>
 #include <optional>
+#include <tuple>
+#include <utility>
 
 namespace tessera::volume {
 
@@ -15,8 +20,8 @@ bool isWord(char c) {
     return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || static_cast<unsigned char>(c) > 127;
 }
 
-std::string variable(int name) {
-    return "v" + std::to_string(name) + "_";
+std::string variable(std::size_t input) {
+    return "v" + std::to_string(input) + "_";
 }
 
 [[noreturn]] void fail(const std::string& reason, std::size_t position) {
@@ -55,18 +60,23 @@ std::string reasonOf(const mu::Parser::exception_type& error) {
 struct Translator {
     const std::string& text;
     std::span<const std::string> names;
-    std::string out;
-    std::vector<std::size_t> places;
-    std::vector<int> used;
+    bool otherTimes = false;
+    std::string out = {};
+    std::vector<std::size_t> places = {};
+    std::vector<Expression::Input> inputs = {}; ///< in the order in which they come
 
     void copy(std::string_view part, std::size_t from) {
         for (std::size_t i = 0; i < part.size(); ++i) places.push_back(from);
         out += part;
     }
-    void use(int name, std::size_t from) {
-        if (std::find(used.begin(), used.end(), name) == used.end()) used.push_back(name);
-        copy(variable(name), from);
+    void use(const Expression::Input& input, std::size_t from) {
+        const auto same = [&](const Expression::Input& own) { return own.name == input.name && own.at == input.at; };
+        const auto found = std::find_if(inputs.begin(), inputs.end(), same);
+        const auto index = std::size_t(found - inputs.begin());
+        if (found == inputs.end()) inputs.push_back(input);
+        copy(variable(index), from);
     }
+    std::size_t skipBlanks(std::size_t at) const { return std::min(text.find_first_not_of(" \t\n", at), text.size()); }
     /// The longest name that stands at a place and ends there.
     std::optional<int> nameAt(std::size_t at) const {
         std::optional<int> best;
@@ -79,14 +89,62 @@ struct Translator {
         }
         return best;
     }
-    std::size_t quoted(std::size_t at) {
+    /// A name between back quotes, and where it ends.
+    std::pair<int, std::size_t> quoted(std::size_t at) const {
         const std::size_t end = text.find('`', at + 1);
         if (end == std::string::npos) fail("the closing back quote is missing", at);
         const std::string name = text.substr(at + 1, end - at - 1);
         const auto found = std::find(names.rbegin(), names.rend(), name);
         if (found == names.rend()) fail("no parameter is named \"" + name + "\"", at);
-        use(int(names.rend() - found) - 1, at);
-        return end + 1;
+        return {int(names.rend() - found) - 1, end + 1};
+    }
+    /// Whether values at another time begin here: "at" and a parenthesis.
+    bool otherTimeAt(std::size_t at) const {
+        if (!otherTimes || text.compare(at, 2, "at") != 0) return false;
+        const std::size_t next = skipBlanks(at + 2);
+        return next < text.size() && text[next] == '(';
+    }
+    /// "first", "0.3", ... and where it ends.
+    std::pair<TimeReference, std::size_t> timeAt(std::size_t at) const {
+        std::size_t end = at;
+        while (end < text.size() && isWord(text[end])) ++end;
+        const std::string_view word = std::string_view(text).substr(at, end - at);
+        for (std::size_t i = 0; i < std::size(kOtherTimeNames); ++i)
+            if (word == kOtherTimeNames[i] && OtherTime(i) != OtherTime::Time) return {{OtherTime(i), 0}, end};
+        TimeReference reference{OtherTime::Time, 0};
+        const std::size_t sign = at < text.size() && text[at] == '+' ? 1 : 0;
+        const auto read = std::from_chars(text.data() + at + sign, text.data() + text.size(), reference.time);
+        if (read.ec != std::errc() || !std::isfinite(reference.time))
+            fail("a time is expected here: first, last, previous, next, a number, or other", at);
+        return {reference, std::size_t(read.ptr - text.data())};
+    }
+    /// at(NAME, TIME)
+    std::size_t otherTime(std::size_t from) {
+        std::size_t at = skipBlanks(text.find('(', from) + 1);
+        Expression::Input input;
+        if (at < text.size() && text[at] == '`') {
+            std::tie(input.name, at) = quoted(at);
+        } else if (const auto name = nameAt(at)) {
+            input.name = *name;
+            at += names[std::size_t(*name)].size();
+        } else {
+            std::size_t end = at;
+            while (end < text.size() && isWord(text[end])) ++end;
+            const std::string word = text.substr(at, end - at);
+            fail(word.empty() ? "at(...) takes a parameter and a time, as in at(T, first)"
+                              : "no parameter is named \"" + word + "\"",
+                 at);
+        }
+        at = skipBlanks(at);
+        if (at >= text.size() || text[at] != ',')
+            fail("a comma and a time are expected here: at(...) takes a parameter and a time", at);
+        at = skipBlanks(at + 1);
+        input.position = at + 1;
+        std::tie(input.at, at) = timeAt(at);
+        at = skipBlanks(at);
+        if (at >= text.size() || text[at] != ')') fail("a closing parenthesis is expected here", at);
+        use(input, from);
+        return at + 1;
     }
     std::size_t number(std::size_t at) {
         std::size_t end = at;
@@ -124,9 +182,13 @@ struct Translator {
                 (at == 0 || std::string_view("=<>!").find(text[at - 1]) == std::string_view::npos))
                 fail("\"=\" would assign: compare with \"==\"", at);
             if (c == '`') {
-                at = quoted(at);
+                const auto [name, end] = quoted(at);
+                use({name}, at);
+                at = end;
+            } else if (!inWord && otherTimeAt(at)) {
+                at = otherTime(at);
             } else if (const auto name = inWord ? std::nullopt : nameAt(at)) {
-                use(*name, at);
+                use({*name}, at);
                 at += names[std::size_t(*name)].size();
             } else if (std::isdigit(static_cast<unsigned char>(c)) || c == '.') {
                 at = number(at);
@@ -137,22 +199,31 @@ struct Translator {
                 ++at;
             }
         }
-        std::sort(used.begin(), used.end());
     }
 };
 
 } // namespace
 
-Expression::Expression(const std::string& text, std::span<const std::string> names) {
+Expression::Expression(const std::string& text, std::span<const std::string> names, OtherTimes otherTimes) {
     if (text.find_first_not_of(" \t\n") == std::string::npos) fail("the formula is empty", 0);
-    Translator translator{text, names, {}, {}, {}};
+    Translator translator{text, names, otherTimes == OtherTimes::Allowed};
     translator.run();
     translated_ = translator.out;
-    used_ = translator.used;
+    std::vector<std::size_t> order(translator.inputs.size());
+    std::iota(order.begin(), order.end(), std::size_t(0));
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+        const Input &left = translator.inputs[a], &right = translator.inputs[b];
+        return std::pair(left.name, left.at.has_value()) < std::pair(right.name, right.at.has_value());
+    });
+    for (const std::size_t i : order) {
+        inputs_.push_back(translator.inputs[i]);
+        variables_.push_back(variable(i));
+        used_.push_back(translator.inputs[i].name);
+    }
     try {
         double zero = 0;
         mu::Parser parser;
-        for (const int name : used_) parser.DefineVar(variable(name), &zero);
+        for (const std::string& name : variables_) parser.DefineVar(name, &zero);
         parser.SetExpr(translated_);
         parser.Eval();
         if (parser.GetNumResults() != 1) fail("one value is wanted, not several", 0);
@@ -168,8 +239,8 @@ void Expression::evaluate(std::span<const std::vector<double>> inputs, std::span
     try {
         mu::Parser parser;
         // Point by point: muParser's own loop would start threads inside of ours.
-        std::vector<double> now(used_.size());
-        for (std::size_t i = 0; i < used_.size(); ++i) parser.DefineVar(variable(used_[i]), &now[i]);
+        std::vector<double> now(variables_.size());
+        for (std::size_t i = 0; i < now.size(); ++i) parser.DefineVar(variables_[i], &now[i]);
         parser.SetExpr(translated_);
         for (std::size_t k = 0; k < out.size(); ++k) {
             for (std::size_t i = 0; i < now.size(); ++i) now[i] = inputs[i][k];

@@ -1,5 +1,6 @@
 #include "volume/flow.h"
 
+#include "volume/continued.h"
 #include "volume/parallel.h"
 #include "volume/reconstruct.h"
 
@@ -91,7 +92,13 @@ std::optional<double> valueAt(const SampleGrid& grid, glm::dvec3 position) {
         const bool present = grid.present.empty() || grid.present[index] != 0;
         return {present ? double(grid.values[index]) : 0.0, present};
     };
-    return tetrahedral({lattice.kind, 1, 0}, sample, lattice.toCells(position)).value();
+    const LevelGeometry geometry{lattice.kind, 1, 0};
+    if (grid.parts.empty()) return tetrahedral(geometry, sample, lattice.toCells(position)).value();
+    const auto partOf = [&](glm::ivec3 place) {
+        return int(grid.parts[lattice.index(clampToLattice(lattice.kind, lattice.size, place))]);
+    };
+    const OwnPart own(lattice.kind, lattice.size, sample, partOf, lattice.nearest(position));
+    return tetrahedral(geometry, own, lattice.toCells(position)).value();
 }
 
 std::optional<glm::dvec3> VectorGrid::at(glm::dvec3 position) const {

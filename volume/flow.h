@@ -11,7 +11,7 @@
 /// Lines that follow a vector field.
 namespace tessera::volume {
 
-/// A value between the samples as in probe.h; empty where absent.
+/// A value between the samples as in probe.h, of the part of the nearest one alone; empty where absent.
 std::optional<double> valueAt(const SampleGrid& grid, glm::dvec3 position);
 
 /// A vector parameter at one time and level of detail, in memory.

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <glm/geometric.hpp>
 
 namespace tessera::volume {
@@ -30,6 +31,12 @@ double frameWeight(const Lattice4& lattice, int frame, double time) {
     const double cells = (time - lattice.time(parity)) / lattice.spacing.w;
     const double at = std::clamp(cells, 0.0, double(count - 1));
     return std::max(1 - std::abs(at - own), 0.0) / parities;
+}
+
+/// The number of a sample's part (volume/part_masks.h), of a CC lattice; beyond it that of the nearest.
+std::uint8_t numberOf(const Field& field, glm::ivec3 at) {
+    if (!field.mask) return 1;
+    return (*field.mask)[field.lattice.index(clampToLattice(field.lattice.kind, field.lattice.size, at))];
 }
 
 } // namespace
@@ -64,11 +71,12 @@ HyperplaneSlice sliceBy(const Series& series, const Hyperplane& plane, const Pro
     };
 
     out.field = makeField(grid, ScalarType::F32);
-    std::vector<float> sum(grid.count()), coverage(grid.count()), best(series.categorical ? grid.count() : 0);
+    std::vector<float> sum(grid.count()), coverage(grid.count()), best(grid.count());
+    std::vector<std::uint8_t> part(series.categorical ? 0 : grid.count(), 1); // as the frame nearest in time says
     for (int frame = 0; frame < lattice.size.w; ++frame) {
         progress.advance(double(frame) / lattice.size.w, "slice");
         std::shared_ptr<const Field> samples;
-        const Lattice own = lattice.grid(frame);
+        const Lattice ownGrid = lattice.grid(frame);
         const auto touched = [&](const glm::dvec4& point) {
             return point[out.solved] >= box.lo[out.solved] - margin &&
                    point[out.solved] <= box.hi[out.solved] + margin && frameWeight(lattice, frame, point.w) > 0;
@@ -92,7 +100,7 @@ HyperplaneSlice sliceBy(const Series& series, const Hyperplane& plane, const Pro
                     const glm::dvec4 point = pointAt({i, j, int(k)});
                     if (!touched(point)) continue;
                     const double weight = frameWeight(lattice, frame, point.w);
-                    const glm::dvec3 cells = own.toCells(glm::dvec3(point));
+                    const glm::dvec3 cells = ownGrid.toCells(glm::dvec3(point));
                     if (series.categorical) { // the frame nearest in time speaks
                         const Sample label = nearest(geometry, values, cells);
                         if (float(weight) <= best[index]) continue;
@@ -101,9 +109,22 @@ HyperplaneSlice sliceBy(const Series& series, const Hyperplane& plane, const Pro
                         coverage[index] = label.present ? 1.0f : 0.0f;
                         continue;
                     }
-                    const Blend blend = linear(geometry, values, cells);
-                    sum[index] += float(weight * blend.sum);
-                    coverage[index] += float(weight * blend.coverage);
+                    if (const std::uint8_t number = numberOf(*samples, glm::ivec3(glm::round(cells)));
+                        float(weight) > best[index]) {
+                        best[index] = float(weight);
+                        if (number != 0 && number != part[index]) sum[index] = coverage[index] = 0;
+                        if (number != 0) part[index] = number;
+                    }
+                    const auto ownPart = [&](glm::ivec3 at) {
+                        const Sample sample = values(at);
+                        return Sample{sample.value, sample.present && numberOf(*samples, at) == part[index]};
+                    };
+                    // Samples of other parts are there, but of the own one's value.
+                    const Blend own = linear(geometry, ownPart, cells);
+                    if (own.coverage <= 0) continue;
+                    const double there = linear(geometry, values, cells).coverage;
+                    sum[index] += float(weight * there * own.sum / own.coverage);
+                    coverage[index] += float(weight * there);
                 }
         });
     }

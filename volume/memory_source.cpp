@@ -5,11 +5,14 @@
 #include "volume/field_bricks.h"
 #include "volume/load_once.h"
 #include "volume/parallel.h"
+#include "volume/part_masks.h"
+#include "volume/parts_bricks.h"
 #include "volume/resample.h"
 
 #include <algorithm>
 #include <cmath>
 #include <compare>
+#include <functional>
 #include <limits>
 #include <map>
 #include <mutex>
@@ -80,16 +83,20 @@ int chooseLevels(const Lattice& lattice, int brickSize) {
     return levels;
 }
 
+bool isResampled(const DatasetInfo& info, const MemorySourceOptions& options) {
+    return options.lattice == LatticeKind::BCC && info.lattice.kind == LatticeKind::CC;
+}
+
 class MemorySource final : public BrickSource {
 public:
-    MemorySource(Dataset dataset, const MemorySourceOptions& options)
-        : dataset_(std::move(dataset)), info_(dataset_.info),
+    MemorySource(Dataset dataset, const MemorySourceOptions& options, std::shared_ptr<const MemorySource> loads = {})
+        : dataset_(isResampled(dataset.info, options) ? withParts(dataset) : dataset), loads_(std::move(loads)),
+          info_(dataset_.info),
           frames_(
               options.budget, [this](const FrameKey& key) { return loadFrame(key); }, fieldBytes) {
         if (options.brickSize < 1 || (options.brickSize & (options.brickSize - 1)) != 0)
             throw Error("brick size " + std::to_string(options.brickSize) + " is not a power of two");
-        if (options.lattice == LatticeKind::BCC && info_.lattice.kind == LatticeKind::CC)
-            info_.lattice = bccFor(info_.lattice);
+        if (isResampled(info_, options)) info_.lattice = bccFor(info_.lattice);
         grid_.lattice = info_.lattice;
         grid_.brickSize = options.brickSize;
         grid_.levels = chooseLevels(grid_.lattice, options.brickSize);
@@ -99,6 +106,7 @@ public:
 
     const DatasetInfo& info() const override { return info_; }
     const BrickGrid& grid() const override { return grid_; }
+    const Dataset& dataset() const { return dataset_; }
 
     BrickStats stats(const BrickKey& key) const override {
         const Channel& channel = channelOf(key);
@@ -161,6 +169,15 @@ private:
     }
 
     FramePtr loadFrame(const FrameKey& key) const {
+        if (loads_) {
+            const FramePtr frame = loads_->frames_.get(key);
+            if (frame->lattice.kind == grid_.lattice.kind) return frame;
+            const Parameter& about = parameter(key.parameter);
+            Field field = *frame;
+            if (const int label = labelOf(info_, about); label >= 0)
+                field = withParts(std::move(field), *loads_->frames_.get({label, 0, key.time}), about.parts);
+            return std::make_shared<const Field>(withoutParts(toBcc(field, about.categorical)));
+        }
         Field field;
         {
             const std::lock_guard lock(loading_);
@@ -176,12 +193,22 @@ private:
                             std::string(name(parameter(key.parameter).type)),
                         info_.name, parameter(key.parameter).name);
         if (field.lattice.kind != grid_.lattice.kind) field = toBcc(field, parameter(key.parameter).categorical);
-        return std::make_shared<const Field>(std::move(field));
+        return std::make_shared<const Field>(withoutParts(std::move(field)));
     }
 
     BrickSamples readComponent(const BrickKey& key, int p, int component) const {
         const FramePtr frame = frames_.get({p, component, key.time});
         if (key.level == 0) return fineBrick(*frame, grid_.begin(key.index), grid_.end(key.index));
+        if (const int label = labelOf(info_, parameter(p)); label >= 0) {
+            const FramePtr labels = frames_.get({label, 0, key.time});
+            const glm::ivec3 begin = grid_.begin(key.index), end = grid_.end(key.index);
+            const BrickSamples fine = fineBrick(*labels, begin, end);
+            const Parts& parts = parameter(p).parts;
+            const std::vector<std::uint8_t> own = partsOfSamples(fine, parts);
+            if (std::adjacent_find(own.begin(), own.end(), std::not_equal_to<>()) != own.end())
+                return coarserOfParts(grid_, key.level, fineBrick(*frame, begin, end), fine,
+                                      coarseBrick(*labels, grid_, key, true), parts);
+        }
         return coarseBrick(*frame, grid_, key, parameter(p).categorical);
     }
 
@@ -219,6 +246,7 @@ private:
     }
 
     Dataset dataset_;
+    std::shared_ptr<const MemorySource> loads_; ///< has the frames as they are loaded; null: this one loads them
     DatasetInfo info_;
     BrickGrid grid_;
     std::vector<Channel> channels_;
@@ -233,6 +261,16 @@ private:
 
 std::shared_ptr<const BrickSource> makeMemorySource(Dataset dataset, const MemorySourceOptions& options) {
     return std::make_shared<const MemorySource>(std::move(dataset), options);
+}
+
+std::shared_ptr<const BrickSource> onLattice(const std::shared_ptr<const BrickSource>& source,
+                                             const MemorySourceOptions& options) {
+    const auto of = std::dynamic_pointer_cast<const MemorySource>(source);
+    if (!of) throw Error("only data that are no archive can be shown on another lattice", source->info().name);
+    if (of->grid().lattice.kind == options.lattice && of->grid().brickSize == options.brickSize) return source;
+    if (of->grid().lattice.kind != of->dataset().info.lattice.kind)
+        throw Error("its frames are resampled already", source->info().name);
+    return std::make_shared<const MemorySource>(of->dataset(), options, of);
 }
 
 BrickSamples magnitude(const BrickSamples& x, const BrickSamples& y, const BrickSamples& z) {

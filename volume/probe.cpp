@@ -1,10 +1,14 @@
 #include "volume/probe.h"
 
+#include "volume/continued.h"
+#include "volume/parts_bricks.h"
 #include "volume/reconstruct.h"
 
 #include <algorithm>
+#include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/vector_relational.hpp>
+#include <memory>
 #include <vector>
 
 namespace tessera::volume {
@@ -48,53 +52,91 @@ private:
     mutable std::vector<Held> held_;
 };
 
-ProbeValue probeOne(const BrickSource& source, const Channel& channel, const SourceSamples& samples,
-                    glm::dvec3 position) {
-    const Box& bounds = source.info().bounds;
-    if (glm::any(glm::lessThan(position, bounds.lo)) || glm::any(glm::greaterThan(position, bounds.hi))) return {};
-    const LevelGeometry geometry = levelGeometry(source.grid(), 0);
-    const Lattice& lattice = source.grid().lattice;
-    const Sample near = samples(lattice.nearest(position));
-    ProbeValue value;
-    if (near.present) value.nearest = near.value;
-    value.interpolated = source.info().parameters[std::size_t(channel.parameter)].categorical
-                             ? value.nearest
-                             : tetrahedral(geometry, samples, lattice.toCells(position)).value();
-    return value;
-}
+/// One channel, with the label of its parts where it has some.
+class ChannelProbe {
+public:
+    ChannelProbe(const BrickSource& source, int channel, int time)
+        : source_(source), channel_(source.info().channels()[std::size_t(channel)]), samples_(source, channel, time) {
+        if (const std::optional<int> label = labelChannel(source.info(), parameter()))
+            labels_.emplace(source, *label, time);
+    }
+
+    ProbeValue at(glm::dvec3 position) const {
+        const Box& bounds = source_.info().bounds;
+        if (glm::any(glm::lessThan(position, bounds.lo)) || glm::any(glm::greaterThan(position, bounds.hi))) return {};
+        const glm::ivec3 place = source_.grid().lattice.nearest(position);
+        const Sample near = samples_(place);
+        ProbeValue value;
+        if (near.present) value.nearest = near.value;
+        // Half-way between two gases a point is in the one of the nearest sample, never in both.
+        if (near.present) value.interpolated = parameter().categorical ? value.nearest : between(position, place);
+        return value;
+    }
+
+    /// The part of the nearest sample.
+    int partAt(glm::ivec3 place) const {
+        if (!labels_) return 0;
+        const Sample label = (*labels_)(place);
+        return label.present ? int(parameter().parts.partOf(int(std::lround(label.value)))) : 0;
+    }
+    int partAt(glm::dvec3 position) const { return partAt(source_.grid().lattice.nearest(position)); }
+
+private:
+    const Parameter& parameter() const { return source_.info().parameters[std::size_t(channel_.parameter)]; }
+
+    std::optional<double> between(glm::dvec3 position, glm::ivec3 near) const {
+        const LevelGeometry geometry = levelGeometry(source_.grid(), 0);
+        const Lattice& lattice = source_.grid().lattice;
+        const glm::dvec3 cells = lattice.toCells(position);
+        if (!labels_) return tetrahedral(geometry, samples_, cells).value();
+        const auto partOf = [this](glm::ivec3 place) { return partAt(place); };
+        const OwnPart own(lattice.kind, lattice.size, samples_, partOf, near);
+        std::optional<double> value = tetrahedral(geometry, own, cells).value();
+        if (value && !parameter().ranges.empty()) {
+            const Range range = source_.info().channelRange(channel_);
+            value = std::clamp(*value, range.lo, std::max(range.lo, range.hi));
+        }
+        return value;
+    }
+
+    const BrickSource& source_;
+    Channel channel_;
+    SourceSamples samples_;
+    std::optional<SourceSamples> labels_;
+};
 
 } // namespace
 
 std::vector<ProbeValue> probe(const BrickSource& source, glm::dvec3 position, int time) {
     std::vector<ProbeValue> values;
-    for (const Channel& channel : source.info().channels())
-        values.push_back(probeOne(source, channel, SourceSamples(source, int(values.size()), time), position));
+    for (std::size_t channel = 0, count = source.info().channels().size(); channel < count; ++channel)
+        values.push_back(probeChannel(source, int(channel), position, time));
     return values;
 }
 
 ProbeValue probeChannel(const BrickSource& source, int channel, glm::dvec3 position, int time) {
-    return probeOne(source, source.info().channels()[std::size_t(channel)], SourceSamples(source, channel, time),
-                    position);
+    return ChannelProbe(source, channel, time).at(position);
 }
 
 std::vector<ProbeValue> probeAlong(const BrickSource& source, int channel, std::span<const glm::dvec3> positions,
                                    int time) {
-    const Channel known = source.info().channels()[std::size_t(channel)];
-    const SourceSamples samples(source, channel, time);
+    const ChannelProbe samples(source, channel, time);
     std::vector<ProbeValue> values;
-    for (const glm::dvec3& position : positions) values.push_back(probeOne(source, known, samples, position));
+    for (const glm::dvec3& position : positions) values.push_back(samples.at(position));
     return values;
 }
 
 namespace {
 
-std::vector<ProbeValue> mixed(const std::vector<ProbeValue>& earlier, const std::vector<ProbeValue>& later,
+/// One channel between two times; where its part changes it is that of the nearer one.
+std::vector<ProbeValue> mixed(const BrickSource& source, int channel, std::span<const glm::dvec3> positions,
                               const TimePair& time) {
+    const ChannelProbe earlier(source, channel, time.earlier), later(source, channel, time.later);
     std::vector<ProbeValue> out;
-    for (std::size_t i = 0; i < earlier.size(); ++i) {
-        const ProbeValue &a = earlier[i], &b = later[i];
+    for (const glm::dvec3& position : positions) {
+        const ProbeValue a = earlier.at(position), b = later.at(position);
         ProbeValue value = time.weight >= 0.5 ? b : a;
-        if (a.interpolated && b.interpolated)
+        if (a.interpolated && b.interpolated && earlier.partAt(position) == later.partAt(position))
             value.interpolated = (1 - time.weight) * *a.interpolated + time.weight * *b.interpolated;
         out.push_back(value);
     }
@@ -104,15 +146,10 @@ std::vector<ProbeValue> mixed(const std::vector<ProbeValue>& earlier, const std:
 } // namespace
 
 std::vector<ProbeValue> probe(const BrickSource& source, glm::dvec3 position, const TimePair& time) {
-    std::vector<ProbeValue> earlier = probe(source, position, time.earlier);
-    if (!time.between()) return earlier;
-    const std::vector<ProbeValue> later = probe(source, position, time.later);
-    std::vector<ProbeValue> out = mixed(earlier, later, time);
-    const DatasetInfo& info = source.info();
-    const std::vector<Channel> channels = info.channels();
-    for (std::size_t i = 0; i < out.size(); ++i)
-        if (info.parameters[std::size_t(channels[i].parameter)].categorical)
-            out[i] = time.weight >= 0.5 ? later[i] : earlier[i];
+    if (!time.between()) return probe(source, position, time.earlier);
+    std::vector<ProbeValue> out;
+    for (std::size_t channel = 0, count = source.info().channels().size(); channel < count; ++channel)
+        out.push_back(probeAlong(source, int(channel), {&position, 1}, time).front());
     return out;
 }
 
@@ -122,8 +159,7 @@ std::vector<ProbeValue> probeAlong(const BrickSource& source, int channel, std::
     const Channel known = info.channels()[std::size_t(channel)];
     if (!time.between() || info.parameters[std::size_t(known.parameter)].categorical)
         return probeAlong(source, channel, positions, time.nearest());
-    return mixed(probeAlong(source, channel, positions, time.earlier),
-                 probeAlong(source, channel, positions, time.later), time);
+    return mixed(source, channel, positions, time);
 }
 
 std::vector<glm::dvec3> alongPolyline(std::span<const glm::dvec3> corners, int count) {

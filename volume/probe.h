@@ -12,7 +12,9 @@ namespace tessera::volume {
 /// What a data set says about one point, in physical units.
 struct ProbeValue {
     /// Between the samples: trilinear (CC) or linear box spline (BCC), which leave the range of the samples nowhere;
-    /// for labels the nearest sample. Empty where less than half of the weight is present.
+    /// for labels the nearest sample. Empty where the nearest sample is absent, or less than half of the weight is
+    /// present. Where regions are kept apart (volume/parts.h) of the part of the nearest sample alone, continued
+    /// linearly from it beyond its border, within the channel's range.
     std::optional<double> interpolated;
     std::optional<double> nearest; ///< the nearest sample; empty where that is absent
 };

@@ -1,5 +1,6 @@
 #include "volume/resample.h"
 
+#include "volume/continued.h"
 #include "volume/for_slices.h"
 #include "volume/reconstruct.h"
 #include "volume/resample_cc.h"
@@ -11,6 +12,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <type_traits>
 
 namespace tessera::volume {
@@ -43,7 +45,7 @@ template <class T> void fromNearest(const Field& source, Field& out, Mask* mask,
             for (int i = 0; i < target.size.x; ++i) {
                 const std::size_t to = target.index({i, j, k});
                 const std::size_t from = source.lattice.index(source.lattice.nearest(target.position({i, j, k})));
-                if (mask != nullptr) (*mask)[to] = source.present(from) ? 1 : 0;
+                if (mask != nullptr) (*mask)[to] = (*source.mask)[from];
                 samples[to] = source.present(from) ? stored[from] : T{};
             }
     });
@@ -52,21 +54,64 @@ template <class T> void fromNearest(const Field& source, Field& out, Mask* mask,
 /// Precision of prefiltered values of a stored type.
 template <class T> using Filtered = std::conditional_t<std::is_same_v<T, std::int32_t>, double, float>;
 
-/// A BCC source's stored values, prefiltered; 0 where absent.
+/// The number of each sample's part (volume/part_masks.h).
+struct PartNumbers {
+    const Mask* mask;
+    std::uint8_t operator()(std::size_t index) const { return mask != nullptr ? (*mask)[index] : std::uint8_t(1); }
+};
+
+/// Calls `visit(a, b)` with the memory indices of the nearest neighbours of a sample, each beside the one across.
+template <class Visit> void forOppositePairs(const Lattice& lattice, glm::ivec3 at, const Visit& visit) {
+    const auto index = [&](int x, int y, int z) {
+        return lattice.index(clampToLattice(lattice.kind, lattice.size, at + glm::ivec3(x, y, z)));
+    };
+    if (lattice.kind == LatticeKind::CC) {
+        visit(index(-1, 0, 0), index(1, 0, 0));
+        visit(index(0, -1, 0), index(0, 1, 0));
+        visit(index(0, 0, -1), index(0, 0, 1));
+        return;
+    }
+    const int lo = (at.z & 1) - 1; // an even sample's neighbours have indices -1 and 0, an odd one's 0 and 1
+    for (int y : {0, 1})
+        for (int x : {0, 1}) visit(index(lo + x, lo + y, -1), index(lo + 1 - x, lo + 1 - y, 1));
+}
+
+glm::ivec3 storageIndex(const Lattice& lattice, std::size_t index) {
+    const std::size_t nx = std::size_t(lattice.size.x), ny = std::size_t(lattice.size.y);
+    return {int(index % nx), int(index / nx % ny), int(index / (nx * ny))};
+}
+
+/// A BCC source's stored values, prefiltered (volume/reconstruct.h); 0 where absent. Beyond the border of its part the
+/// part is continued.
 template <class T> std::vector<Filtered<T>> prefilteredValues(const Field& source) {
     const Lattice& lattice = source.lattice;
     const auto stored = source.as<T>();
-    const auto samples = [&](glm::ivec3 at) {
-        const std::size_t index = lattice.index(clampToLattice(lattice.kind, lattice.size, at));
-        return Sample{double(stored[index]), source.present(index)};
-    };
-    const Prefiltered filtered(samples, LevelGeometry{lattice.kind, 1, 0});
+    const PartNumbers number{source.mask.get()};
     std::vector<Filtered<T>> values(source.count());
     parallelFor(std::size_t(lattice.size.z), [&](std::size_t k) {
         std::size_t index = lattice.index({0, 0, int(k)});
         for (int j = 0; j < lattice.size.y; ++j)
-            for (int i = 0; i < lattice.size.x; ++i, ++index)
-                if (source.present(index)) values[index] = Filtered<T>(filtered({i, j, int(k)}).value);
+            for (int i = 0; i < lattice.size.x; ++i, ++index) {
+                const std::uint8_t own = number(index);
+                if (own == 0) continue;
+                const double centre = double(stored[index]);
+                const auto ownValue = [&](glm::ivec3 there) -> std::optional<double> {
+                    if (clampToLattice(lattice.kind, lattice.size, there) != there) return std::nullopt;
+                    const std::size_t at = lattice.index(there);
+                    return number(at) == own ? std::optional(double(stored[at])) : std::nullopt;
+                };
+                const auto besideThis = [&](glm::ivec3 there) { return isBeside(lattice.kind, there, {i, j, int(k)}); };
+                double differences = 0;
+                forOppositePairs(lattice, {i, j, int(k)}, [&](std::size_t a, std::size_t b) {
+                    for (const std::size_t at : {a, b})
+                        differences += (number(at) == own
+                                            ? double(stored[at])
+                                            : continued(lattice.kind, storageIndex(lattice, at), ownValue, besideThis)
+                                                  .value_or(centre)) -
+                                       centre;
+                });
+                values[index] = Filtered<T>(centre - differences / 12);
+            }
     });
     return values;
 }
@@ -109,19 +154,32 @@ template <class T> void fromBcc(const Field& source, Field& out, Mask* mask, con
     std::array<std::vector<PairTap>, 2> taps[2][3]; // [target sublattice][axis][source sublattice]
     for (int s = 0; s < sublattices; ++s)
         for (int axis = 0; axis < 3; ++axis) taps[s][axis] = pairTaps(from, target, s, axis);
-    const StoredRange<T> range(source);
+    StoredExtent extent;
+    extent.add(source);
+    const StoredRange<T> range(extent);
+    const PartNumbers number{source.mask.get()};
     T* const stored = out.as<T>().data();
     forSlices(target, progress, [&](int k) {
         const auto& [tx, ty, tz] = taps[k % sublattices];
         std::size_t to = target.index({0, 0, k});
         for (int j = 0; j < target.size.y; ++j)
             for (int i = 0; i < target.size.x; ++i, ++to) {
+                std::size_t nearest = 0;
+                std::uint8_t own = 1;
                 if (mask != nullptr) {
-                    const glm::dvec3 position = target.position({i, j, k});
-                    (*mask)[to] = source.present(from.index(from.nearest(position))) ? 1 : 0;
-                    if ((*mask)[to] == 0) continue;
+                    nearest = from.index(from.nearest(target.position({i, j, k})));
+                    (*mask)[to] = own = number(nearest);
+                    if (own == 0) continue;
                 }
-                Blend blend;
+                const auto ownValue = [&](glm::ivec3 there) -> std::optional<double> {
+                    if (clampToLattice(from.kind, from.size, there) != there) return std::nullopt;
+                    const std::size_t index = from.index(there);
+                    return number(index) == own ? std::optional(double(values[index])) : std::nullopt;
+                };
+                const auto besideNearest = [&](glm::ivec3 there) {
+                    return isBeside(from.kind, there, storageIndex(from, nearest));
+                };
+                double sum = 0;
                 for (std::size_t s = 0; s < 2; ++s) {
                     const PairTap &x = tx[s][std::size_t(i)], &y = ty[s][std::size_t(j)],
                                   &z = tz[s][std::size_t(k / sublattices)];
@@ -131,10 +189,14 @@ template <class T> void fromBcc(const Field& source, Field& out, Mask* mask, con
                                          (corner & 4 ? z.fraction : 1 - z.fraction);
                         const std::size_t at = (corner & 1 ? x.upper : x.lower) + (corner & 2 ? y.upper : y.lower) +
                                                (corner & 4 ? z.upper : z.lower);
-                        blend.add(w, {double(values[at]), mask == nullptr || source.present(at)});
+                        if (number(at) == own)
+                            sum += w * double(values[at]);
+                        else if (w != 0)
+                            sum += w * continued(from.kind, storageIndex(from, at), ownValue, besideNearest)
+                                           .value_or(double(values[nearest]));
                     }
                 }
-                stored[to] = range.store(blend.sum / blend.coverage);
+                stored[to] = range.store(sum / 2, own); // the weights of a sublattice sum to 1
             }
     });
 }
@@ -154,31 +216,21 @@ Field sharpened(const Field& source, double amount, const StoredExtent& extent) 
         const auto stored = source.as<T>();
         const auto to = out.as<T>();
         const StoredRange<T> range(extent);
+        const PartNumbers number{source.mask.get()};
         forSlices(lattice, {}, [&](int k) {
             std::size_t index = lattice.index({0, 0, k});
             for (int j = 0; j < lattice.size.y; ++j)
                 for (int i = 0; i < lattice.size.x; ++i, ++index) {
-                    if (!source.present(index)) continue;
+                    const std::uint8_t own = number(index);
+                    if (own == 0) continue;
                     double difference = 0, count = 0;
-                    const auto add = [&](glm::ivec3 neighbour) {
-                        const std::size_t at = lattice.index(clampToLattice(lattice.kind, lattice.size, neighbour));
-                        if (!source.present(at)) return;
-                        difference += double(stored[at]) - double(stored[index]);
-                        count += 1;
-                    };
-                    if (lattice.kind == LatticeKind::BCC) {
-                        const int lo = (k & 1) - 1;
-                        for (const int z : {-1, 1})
-                            for (const int y : {lo, lo + 1})
-                                for (const int x : {lo, lo + 1}) add({i + x, j + y, k + z});
-                    } else {
-                        for (const int side : {-1, 1}) {
-                            add({i + side, j, k});
-                            add({i, j + side, k});
-                            add({i, j, k + side});
-                        }
-                    }
-                    if (count > 0) to[index] = range.store(double(stored[index]) - amount * difference / count);
+                    forOppositePairs(lattice, {i, j, k}, [&](std::size_t a, std::size_t b) {
+                        count += 2;
+                        if (number(a) != own || number(b) != own) return; // goes on as across: no difference
+                        difference += double(stored[a]) - double(stored[index]);
+                        difference += double(stored[b]) - double(stored[index]);
+                    });
+                    to[index] = range.store(double(stored[index]) - amount * difference / count, own);
                 }
         });
     });
@@ -221,7 +273,8 @@ Field resample(const Field& source, const Lattice& target, const ResampleOptions
         });
         out.mask = std::move(mask);
     }
-    if (out.mask && std::find(out.mask->begin(), out.mask->end(), std::uint8_t(0)) == out.mask->end()) out.mask.reset();
+    const auto isPlain = [](std::uint8_t number) { return number == 1; };
+    if (out.mask && std::all_of(out.mask->begin(), out.mask->end(), isPlain)) out.mask.reset();
     return out;
 }
 

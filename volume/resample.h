@@ -56,14 +56,15 @@ struct ResampleOptions {
 /// sample i), so that all but nearest and sinc reproduce linear functions up to the last sample; Lagrange moves its
 /// samples inside and reproduces its degree everywhere.
 ///
-/// Absent samples take no part: a target sample is absent where the nearest source sample is, and where the kernel
-/// meets an absent sample the weights of the present ones are normalised, for kernels wider than the trilinear one
-/// those of the trilinear kernel (a sum of its own, partly negative weights could vanish). B-splines treat every run of
-/// present samples along an axis as a signal of its own. From CC to BCC a gap of one absent sample along an axis
-/// stays a gap: where a sublattice would step over it, its sample nearer to the gap is absent too.
+/// Absent samples take no part, nor do those of other parts where the mask says parts (volume/part_masks.h): a target
+/// sample is absent where the nearest source sample is, else of the part of that one, and where the kernel meets any
+/// others Catmull-Rom's takes its place (of the linear one itself), with the part continued beyond its border from its
+/// own samples (volume/continued.h). B-splines treat every run of samples of one part along an axis as a signal of its
+/// own. From CC to BCC a gap of one absent sample along an axis stays a gap: where a sublattice would step over it, its
+/// sample nearer to the gap is absent too.
 ///
-/// Results stay within the range of the source's present samples, integer types round; a same-lattice target without
-/// edge enhancement is the identity. Deterministic on any number of threads. Throws Cancelled.
+/// Results stay within the range of the source's present samples of their part, integer types round; a same-lattice
+/// target without edge enhancement is the identity. Deterministic on any number of threads. Throws Cancelled.
 Field resample(const Field& source, const Lattice& target, const ResampleOptions& options,
                const Progress& progress = {});
 inline Field resample(const Field& source, const Lattice& target, ResampleFilter filter,
@@ -71,8 +72,9 @@ inline Field resample(const Field& source, const Lattice& target, ResampleFilter
     return resample(source, target, ResampleOptions{.filter = filter}, progress);
 }
 
-/// Edge enhancement: adds `amount` times the difference of every present sample to the mean of its present nearest
-/// neighbours (6 on CC, 8 on BCC), within the range of the field.
+/// Edge enhancement: adds `amount` times the difference of every present sample to the mean of its nearest neighbours
+/// (6 on CC, 8 on BCC), within the range of its part. Where one of two opposite neighbours is absent or of another
+/// part, both count as the sample itself.
 Field sharpened(const Field& source, double amount);
 
 /// How samples of a parameter are resampled: labels to the nearest.

@@ -92,15 +92,16 @@ void keepGaps(const CcTaps& taps, const CcPart& part, const TargetPart& out, con
 CcTaps::CcTaps(const Lattice& from, const Lattice& to, const ResampleOptions& options)
     : source(from), target(to), kernel(tapsOfSublattices(from, to, options)) {}
 
-std::pair<int, int> CcTaps::slicesFor(int first, int count) const {
+std::pair<int, int> CcTaps::slicesFor(int first, int count, bool masked) const {
     const int sublattices = int(kernel.size());
     int lo = source.size.z, hi = 0;
     for (int k = first; k < first + count; ++k) {
         const Tap& tap = kernel[std::size_t(k % sublattices)].z[std::size_t(k / sublattices)];
-        lo = std::min({lo, tap.first, tap.cell[0], tap.nearest});
-        hi = std::max({hi, tap.first + tap.count, tap.cell[1] + 1, tap.nearest + 1});
+        const int reach = masked ? OwnWindow::kReach : 0; // how a part goes on beyond its border
+        lo = std::min({lo, tap.first, tap.cell[0] - reach, tap.nearest});
+        hi = std::max({hi, tap.first + tap.count, tap.cell[0] + 2 + reach, tap.nearest + 1});
     }
-    return {lo, hi};
+    return {std::max(lo, 0), std::min(hi, source.size.z)};
 }
 
 Field resampleCc(const CcTaps& taps, const CcPart& part, const StoredExtent& extent, int first, int count,

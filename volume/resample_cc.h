@@ -19,8 +19,9 @@ struct CcTaps {
     std::vector<AxisTaps> kernel; ///< of each sublattice of the target
 
     CcTaps(const Lattice& source, const Lattice& target, const ResampleOptions& options);
-    /// The slices [first, end) of the source that slices [first, first + count) of the target are made of.
-    std::pair<int, int> slicesFor(int first, int count) const;
+    /// The slices [first, end) of the source that slices [first, first + count) of the target are made of; more where
+    /// it has masks.
+    std::pair<int, int> slicesFor(int first, int count, bool masked) const;
 };
 
 /// Part of a source: slices from `first` on, and of B-splines their coefficients, of the type SumOf<stored type>, where

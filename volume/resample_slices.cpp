@@ -139,7 +139,7 @@ SlicedFrame resampled(const SlicedFrame& source, const Lattice& target, const Re
         // Beyond what is wanted, as far as gaps reach.
         const int reach = source.extent.masked && target.kind == LatticeKind::BCC ? kGapSlices : 0;
         const int begin = std::max(first - reach, 0), end = std::min(first + count + reach, target.size.z);
-        const auto [from, to] = taps->slicesFor(begin, end - begin);
+        const auto [from, to] = taps->slicesFor(begin, end - begin, source.extent.masked);
         const Field part = maskedAlike(source.read(from, to - from), source.extent.masked);
         std::vector<std::byte> own;
         if (coefficients) own = coefficients->read(from, to - from);

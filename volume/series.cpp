@@ -66,12 +66,16 @@ void filterFrame(const Series& d4, int number, Field& out) {
             for (int i = 0; i < grid.size.x; ++i, ++index) {
                 if (!centre->present(index)) continue;
                 const double own = centre->value(index);
+                const auto isOwn = [number = centre->mask ? (*centre->mask)[index] : std::uint8_t(1)](const Field& side,
+                                                                                                      std::size_t at) {
+                    return (side.mask ? (*side.mask)[at] : std::uint8_t(1)) == number;
+                };
                 double differences = 0;
                 for (int corner = 0; corner < 8; ++corner) {
                     const glm::ivec3 at(i + lo + (corner & 1), j + lo + (corner >> 1 & 1), int(k) + lo + (corner >> 2));
                     const std::size_t neighbour = grid.index(clampToLattice(LatticeKind::CC, grid.size, at));
                     for (const FramePtr& side : sides)
-                        if (side->present(neighbour)) differences += side->value(neighbour) - own;
+                        if (isOwn(*side, neighbour)) differences += side->value(neighbour) - own;
                 }
                 to[index] = float(own - differences / 24);
             }

@@ -12,7 +12,8 @@
 namespace tessera::volume {
 
 /// Component of a parameter on a lattice in space and time. `frame(k)` lies on lattice.grid(k); may be called from one
-/// thread at a time.
+/// thread at a time. Masks may say the parts of samples (volume/part_masks.h): of several frames only samples of one
+/// part are mixed, that of the nearest, and results say theirs.
 struct Series {
     Lattice4 lattice;
     bool categorical = false; ///< labels: the nearest in space and time, no arithmetic

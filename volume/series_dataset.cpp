@@ -1,10 +1,13 @@
 #include "volume/series_dataset.h"
 
+#include "volume/part_masks.h"
+#include "volume/quantities.h"
 #include "volume/series_slices.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <map>
 
 namespace tessera::volume {
@@ -68,13 +71,15 @@ D4Frames framesFrom(const Dataset& source, const Lattice4& lattice, int first, c
     out.frames.info.times.clear();
     for (int k = first; k < lattice.size.w; ++k)
         out.frames.info.times.push_back(timeAt(source.info.times, lattice.time(k)));
+    out.frames.info.quantities = atTimes(source.info.quantities, source.info.times, out.frames.info.times);
     // One series per component, each with the frames its filter spans and one to move on.
     const auto series = std::make_shared<std::map<std::pair<int, int>, Series>>();
+    const Dataset parted = withParts(source);
     for (int p = 0; p < int(source.info.parameters.size()); ++p)
         for (int c = 0; c < source.info.parameters[std::size_t(p)].components; ++c)
-            (*series)[{p, c}] = remembering(seriesOf(source, p, c), std::size_t(framesSpanned(options)) + 1);
+            (*series)[{p, c}] = remembering(seriesOf(parted, p, c), std::size_t(framesSpanned(options)) + 1);
     out.frames.load = [series, lattice, first, options](int parameter, int component, int time) {
-        return toD4Frame(series->at({parameter, component}), lattice, first + time, options);
+        return withoutParts(toD4Frame(series->at({parameter, component}), lattice, first + time, options));
     };
     if (slices)
         out.slices = [info = source.info, slices, lattice, first, options](int step, const std::string& scratch) {
@@ -104,6 +109,12 @@ D4Frames continueD4(Dataset source, const std::vector<double>& known, const std:
     for (const double time : times) {
         const auto at = std::lower_bound(given.begin(), given.end(), time);
         place.push_back(at != given.end() && *at == time ? int(at - given.begin()) : -1);
+    }
+    for (Quantity& quantity : source.info.quantities) {
+        std::vector<double> values;
+        for (const int at : place)
+            values.push_back(at < 0 ? std::numeric_limits<double>::quiet_NaN() : quantity.values[std::size_t(at)]);
+        quantity.values = std::move(values);
     }
     source.info.times = times;
     source.load = [load = source.load, place](int parameter, int component, int time) {

@@ -1,6 +1,7 @@
 #include "volume/series_slices.h"
 
 #include "volume/blend_frames.h"
+#include "volume/part_masks.h"
 #include "volume/resample_slices.h"
 #include "volume/series.h"
 
@@ -18,8 +19,8 @@ class SlicedD4 {
 public:
     SlicedD4(const DatasetInfo& info, SliceLoad series, const Lattice4& cc, const Lattice4& d4, int first,
              const ResampleOptions& options, int step, std::string scratch)
-        : info_(info), series_(std::move(series)), cc_(cc), d4_(d4), first_(first), options_(options), step_(step),
-          scratch_(std::move(scratch)) {}
+        : info_(info), series_(withParts(info, std::move(series))), cc_(cc), d4_(d4), first_(first), options_(options),
+          step_(step), scratch_(std::move(scratch)) {}
 
     Field read(int parameter, int component, int time, int first, int count) {
         std::erase_if(frames_,
@@ -27,7 +28,7 @@ public:
         const auto [found, isNew] = frames_.try_emplace({parameter, component});
         if (isNew) found->second = {time, frame(parameter, component, first_ + time)};
         const ScalarType type = info_.parameters[std::size_t(parameter)].type;
-        return converted(found->second.frame.read(first, count), type);
+        return converted(withoutParts(found->second.frame.read(first, count)), type);
     }
 
 private:

@@ -84,6 +84,7 @@ void splineFilterAxis(glm::ivec3 size, std::span<const std::uint8_t> present, st
         run.reserve(std::size_t(size[axis]));
         for (int row = 0; row < size[along]; ++row) {
             const std::size_t first = plane * steps[across] + std::size_t(row) * steps[along];
+            std::uint8_t runNumber = 0;
             const auto finish = [&](std::size_t end) {
                 if (run.size() > 2) {
                     splinePrefilter(run, degree);
@@ -94,10 +95,10 @@ void splineFilterAxis(glm::ivec3 size, std::span<const std::uint8_t> present, st
             };
             for (std::size_t i = 0; i < std::size_t(size[axis]); ++i) {
                 const std::size_t at = first + i * steps[axis];
-                if (present.empty() || present[at] != 0)
-                    run.push_back(double(values[at]));
-                else
-                    finish(i);
+                const std::uint8_t number = present.empty() ? std::uint8_t(1) : present[at];
+                if (number != runNumber) finish(i);
+                runNumber = number;
+                if (number != 0) run.push_back(double(values[at]));
             }
             finish(std::size_t(size[axis]));
         }

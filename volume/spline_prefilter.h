@@ -22,8 +22,8 @@ constexpr int splineDegree(ResampleFilter filter) {
 /// The stored values of a field, 0 where absent.
 template <class Real> std::vector<Real> splineValues(const Field& field);
 
-/// Runs splinePrefilter over every line of a box along an axis, x fastest; `present`: one flag each, empty: all are.
-/// Every run of present samples is a signal of its own, so no value crosses an absent sample.
+/// Runs splinePrefilter over every line of a box along an axis, x fastest; `present`: the mask, empty: all are there.
+/// Every run of samples of one part (volume/part_masks.h) is a signal of its own, so no value crosses an absent sample.
 template <class Real>
 void splineFilterAxis(glm::ivec3 size, std::span<const std::uint8_t> present, std::vector<Real>& values, int axis,
                       int degree);

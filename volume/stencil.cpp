@@ -1,5 +1,7 @@
 #include "volume/stencil.h"
 
+#include "volume/parts_bricks.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -11,19 +13,39 @@ std::size_t indexIn(glm::ivec3 size, glm::ivec3 at) {
     return (std::size_t(at.z) * std::size_t(size.y) + std::size_t(at.y)) * std::size_t(size.x) + std::size_t(at.x);
 }
 
+/// The parts of the samples of a brick with a border.
+std::vector<std::uint8_t> partsAround(const BrickGrid& grid, BrickKey key, int reach, const ReadSamples& read,
+                                      const PartLabel& label) {
+    key.channel = label.channel;
+    return partsOfSamples(gather(grid, key, reach, read), label.parts);
+}
+
 } // namespace
 
-Neighbourhood::Neighbourhood(const BrickGrid& grid, const BrickKey& key, int reach, const ReadSamples& read)
+std::optional<PartLabel> partLabel(const DatasetInfo& info, int channel) {
+    const Parameter& parameter = info.parameters[std::size_t(info.channels()[std::size_t(channel)].parameter)];
+    const std::optional<int> label = labelChannel(info, parameter);
+    if (!label) return std::nullopt;
+    return PartLabel{*label, parameter.parts};
+}
+
+Neighbourhood::Neighbourhood(const BrickGrid& grid, const BrickKey& key, int reach, const ReadSamples& read,
+                             const std::optional<PartLabel>& label)
     : samples_(gather(grid, key, reach, read)), size_(grid.brickSamples(key.index, key.level)),
       first_(grid.levelBegin(key.index, key.level)), whole_(grid.levelSamples(key.level)),
       spacing_(grid.lattice.spacing * double(1 << key.level)), reach_(reach),
-      slices_(grid.lattice.kind == LatticeKind::BCC ? 2 : 1) {}
+      slices_(grid.lattice.kind == LatticeKind::BCC ? 2 : 1) {
+    if (label) parts_ = partsAround(grid, key, reach, read, *label);
+}
 
 std::optional<double> Neighbourhood::at(glm::ivec3 in, int axis, int steps) const {
+    const glm::ivec3 border(reach_, reach_, reach_ * slices_);
+    const std::size_t centre = indexIn(samples_.size, in + border);
     in[axis] += steps * (axis == 2 ? slices_ : 1);
     const int global = first_[axis] + in[axis];
     if (global < 0 || global >= whole_[axis]) return std::nullopt;
-    const std::size_t index = indexIn(samples_.size, in + glm::ivec3(reach_, reach_, reach_ * slices_));
+    const std::size_t index = indexIn(samples_.size, in + border);
+    if (!parts_.empty() && parts_[index] != parts_[centre]) return std::nullopt;
     if (!samples_.present.empty() && samples_.present[index] == 0) return std::nullopt;
     return double(samples_.values[index]);
 }
@@ -38,14 +60,12 @@ double Neighbourhood::derivative(glm::ivec3 in, int axis) const {
     return lower && upper ? (*upper - *lower) / width : 0;
 }
 
-BrickSamples smoothed(const BrickGrid& grid, const BrickKey& key, double width, const ReadSamples& read) {
-    const double sigma = width / (1 << key.level); // in samples of this level
-    const int reach = std::max(1, int(std::ceil(3 * sigma)));
-    std::vector<double> weights;
-    for (int i = -reach; i <= reach; ++i) weights.push_back(std::exp(-0.5 * i * i / (sigma * sigma)));
-    const BrickSamples wide = gather(grid, key, reach, read);
-    const glm::ivec3 own = grid.brickSamples(key.index, key.level);
-    const int slices = grid.lattice.kind == LatticeKind::BCC ? 2 : 1;
+namespace {
+
+/// What lies in the middle of a brick with a border of `reach` samples, `own` of them, smoothed by weights along each
+/// axis.
+BrickSamples smoothedWithin(const BrickSamples& wide, glm::ivec3 own, int reach, int slices,
+                            const std::vector<double>& weights) {
     // Value times weight, and weight, smoothed along one axis after the other; each pass drops its border.
     glm::ivec3 size = wide.size;
     std::vector<double> sum(wide.values.size()), coverage(wide.values.size());
@@ -90,6 +110,38 @@ BrickSamples smoothed(const BrickGrid& grid, const BrickKey& key, double width, 
                 if (!present) out.present[i] = 0;
                 out.values[i] = present ? float(sum[i] / coverage[i]) : 0;
             }
+    return out;
+}
+
+} // namespace
+
+BrickSamples smoothed(const BrickGrid& grid, const BrickKey& key, double width, const ReadSamples& read,
+                      const std::optional<PartLabel>& label) {
+    const double sigma = width / (1 << key.level); // in samples of this level
+    const int reach = std::max(1, int(std::ceil(3 * sigma)));
+    std::vector<double> weights;
+    for (int i = -reach; i <= reach; ++i) weights.push_back(std::exp(-0.5 * i * i / (sigma * sigma)));
+    const BrickSamples wide = gather(grid, key, reach, read);
+    const glm::ivec3 own = grid.brickSamples(key.index, key.level);
+    const int slices = grid.lattice.kind == LatticeKind::BCC ? 2 : 1;
+    if (!label) return smoothedWithin(wide, own, reach, slices, weights);
+    const std::vector<std::uint8_t> parts = partsAround(grid, key, reach, read, *label);
+    BrickSamples out;
+    for (std::size_t part = 0; part < label->parts.count(); ++part) {
+        if (std::ranges::find(parts, std::uint8_t(part)) == parts.end()) continue;
+        BrickSamples alone = wide;
+        if (alone.present.empty()) alone.present.assign(parts.size(), 1);
+        for (std::size_t i = 0; i < parts.size(); ++i)
+            if (parts[i] != part) alone.present[i] = 0;
+        BrickSamples made = smoothedWithin(alone, own, reach, slices, weights);
+        if (out.values.empty()) {
+            out = std::move(made);
+            continue;
+        }
+        for (std::size_t i = 0; i < made.values.size(); ++i)
+            if (made.present[i] != 0) out.values[i] = made.values[i], out.present[i] = 1;
+    }
+    if (std::ranges::find(out.present, std::uint8_t(0)) == out.present.end()) out.present.clear();
     return out;
 }
 

@@ -79,6 +79,7 @@ Dataset withTimeAlong(std::shared_ptr<const BrickSource> source, const TimeAxis&
     made.info.bounds.lo[axis] = grid.origin[axis];
     made.info.bounds.hi[axis] = grid.origin[axis] + from.bounds.size()[axis];
     made.info.times = {from.times.front()};
+    made.info.quantities.clear();
     for (Parameter& parameter : made.info.parameters)
         if (!parameter.categorical) parameter.type = ScalarType::F32;
     Parameter& clock = made.info.parameters.emplace_back();

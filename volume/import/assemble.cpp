@@ -2,9 +2,13 @@
 
 #include "volume/error.h"
 #include "volume/import/common_grid.h"
+#include "volume/import/formats.h"
+#include "volume/mesh_origin.h"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
+#include <limits>
 #include <map>
 #include <memory>
 #include <set>
@@ -209,6 +213,28 @@ struct Assembly {
         return merged.samples.empty() ? allAbsent(part, parameters[p].type) : merged;
     }
 
+    /// Of a parameter's own values at all times; empty where they are not known.
+    std::vector<Range> ranges(int parameter, const Progress& progress) const {
+        std::vector<Range> all;
+        double done = 0;
+        for (const Contribution& from : feeds[static_cast<std::size_t>(parameter)]) {
+            const Group& group = groups[from.group];
+            for (const Group::Frame& frame : group.frames) {
+                progress.advance(done++ / double(group.frames.size() * feeds.size()));
+                const Piece& piece = group.files[frame.file]->pieces[from.piece];
+                const std::vector<Range> own =
+                    piece.ranges ? piece.ranges(from.array, frame.localTime) : std::vector<Range>{};
+                if (own.empty() || (!all.empty() && own.size() != all.size())) return {};
+                if (all.empty()) all = own;
+                for (std::size_t i = 0; i < own.size(); ++i)
+                    all[i] = {std::min(all[i].lo, own[i].lo), std::max(all[i].hi, own[i].hi)};
+            }
+        }
+        for (const Range& range : all)
+            if (!(range.lo <= range.hi)) return {};
+        return all;
+    }
+
     /// Labels each sample with the set of blocks that cover it. A block that covers every sample tells nothing and is
     /// left out.
     void makeLabel(Parameter& parameter, const Progress& progress) {
@@ -258,6 +284,42 @@ struct Assembly {
     }
 };
 
+/// What a group's files, and the list that names them, say of each time beyond the samples. Of what several say, the
+/// first counts.
+void addQuantities(DatasetInfo& info, const Group& group) {
+    const auto note = [&info](const std::string& name, const std::string& unit, std::size_t time, double value) {
+        auto known = std::ranges::find(info.quantities, name, &Quantity::name);
+        if (known == info.quantities.end())
+            known = info.quantities.insert(
+                known, {name, unit, std::vector<double>(info.times.size(), std::numeric_limits<double>::quiet_NaN())});
+        if (known->unit.empty()) known->unit = unit;
+        if (std::isnan(known->values[time])) known->values[time] = value;
+    };
+    for (std::size_t f = 0; f < group.frames.size(); ++f) {
+        const OpenedFile& file = *group.files[group.frames[f].file];
+        const auto local = std::size_t(group.frames[f].localTime);
+        for (std::size_t t = 0; t < info.times.size(); ++t) {
+            // One frame beside a series is there at all times.
+            if (group.times.size() > 1 && group.times[f] != info.times[t]) continue;
+            for (const auto& [name, value] : file.entry.numbers) note(name, "", t, value);
+            for (const Piece& piece : file.pieces) {
+                for (const Quantity& quantity : piece.quantities)
+                    if (local < quantity.values.size()) note(quantity.name, quantity.unit, t, quantity.values[local]);
+                // A list, or numbers of names, that says another time than the file itself.
+                if (!group.times.empty() && local < piece.times.size() && piece.times[local] != group.times[f])
+                    note("time in the files", piece.timeUnit, t, piece.times[local]);
+            }
+        }
+    }
+}
+
+/// A mesh, or one of several grids of a file that lie beside each other: arrays of equal name are one parameter.
+bool isBlock(const OpenedFile& file, const Piece& piece) {
+    return piece.mesh || (file.pieces.size() > 1 && std::ranges::none_of(file.pieces, [&](const Piece& other) {
+                              return &other != &piece && other.lattice == piece.lattice;
+                          }));
+}
+
 std::string dataName(const std::vector<OpenedFile>& files) {
     const NumberedName numbered = numberedName(files.front().entry.path);
     std::string name = fs::path(numbered.pattern).filename().string();
@@ -278,12 +340,15 @@ Assembled assemble(std::vector<OpenedFile> files, glm::ivec3 gridSize, bool read
     for (const OpenedFile& file : all->files)
         if (file.pieces.empty()) throw Error("holds no data", file.entry.path);
     all->groups = makeGroups(all->files);
-    all->lattice = chooseLattice(all->files, gridSize, notes);
+    Box bounds;
+    all->lattice = chooseLattice(all->files, gridSize, bounds, notes);
+    bool scattered = false;
+    const bool resampled = all->lattice != all->files.front().pieces.front().lattice;
 
     DatasetInfo info;
     info.name = dataName(all->files);
     info.lattice = all->lattice;
-    info.bounds = {all->lattice.origin, all->lattice.position(all->lattice.size - 1)};
+    info.bounds = bounds;
     std::set<double> times;
     bool numbers = false;
     for (const Group& group : all->groups) {
@@ -300,15 +365,17 @@ Assembled assemble(std::vector<OpenedFile> files, glm::ivec3 gridSize, bool read
     if (info.times.empty()) info.times = {0};
     // Voxel files of scanners and archives of volumes leave units out; simulations write metres and seconds.
     const std::string& format = all->groups.front().files.front()->pieces.front().format;
-    if (format == "raw" || format == "nrrd" || format == "MetaImage") info.lengthUnit = info.timeUnit = "";
-    if (numbers) info.timeUnit = "step";
+    const FileFormat* row = formatNamed(format);
+    info.lengthUnit = row != nullptr ? row->lengthUnit : format == "raw" ? "" : "m";
+    info.timeUnit = ""; // few files say it
+    if (numbers) info.timeName = "step";
 
     std::map<std::string, std::size_t> byName;
     // Files on one grid do not hide each other: arrays of equal name are told apart by the file's name.
     std::map<std::string, int> onGrids;
     for (const Group& group : all->groups)
         for (const Piece& piece : group.files.front()->pieces)
-            if (!piece.mesh)
+            if (!isBlock(*group.files.front(), piece))
                 for (const Array& array : piece.arrays) ++onGrids[array.name];
     bool anyLabel = false;
     std::size_t meshes = 0;
@@ -316,21 +383,25 @@ Assembled assemble(std::vector<OpenedFile> files, glm::ivec3 gridSize, bool read
         const OpenedFile& file = *all->groups[g].files.front();
         for (std::size_t b = 0; b < file.pieces.size(); ++b) {
             const Piece& piece = file.pieces[b];
-            meshes += piece.mesh ? 1 : 0;
+            const bool block = isBlock(file, piece);
+            meshes += block ? 1 : 0;
+            scattered = scattered || piece.note.starts_with("scattered points");
+            if (!piece.note.empty() && std::ranges::find(notes, piece.note) == notes.end()) notes.push_back(piece.note);
             if (!piece.lengthUnit.empty()) info.lengthUnit = piece.lengthUnit;
-            if (!piece.timeUnit.empty()) info.timeUnit = piece.timeUnit;
+            if (!numbers && !piece.timeName.empty()) info.timeName = piece.timeName;
+            if (!numbers && !piece.timeUnit.empty()) info.timeUnit = piece.timeUnit;
             if (info.provenance.empty()) info.provenance = piece.provenance;
             for (std::size_t a = 0; a < piece.arrays.size(); ++a) {
                 const Array& array = piece.arrays[a];
                 const ScalarType type = typeInAll(all->groups[g], b, a);
                 anyLabel = anyLabel || array.categorical;
                 std::string name = array.name;
-                if (!piece.mesh && onGrids[name] > 1) {
+                if (!block && onGrids[name] > 1) {
                     const std::string stem = fs::path(file.entry.path).stem().string();
                     name = array.name == "value" ? stem : stem + "." + array.name;
                 }
                 const auto known = byName.find(name);
-                if (known != byName.end() && !piece.mesh)
+                if (known != byName.end() && !block)
                     throw Error("array \"" + array.name + "\" is there twice", piece.file);
                 if (known != byName.end()) {
                     Parameter& parameter = info.parameters[known->second];
@@ -351,7 +422,26 @@ Assembled assemble(std::vector<OpenedFile> files, glm::ivec3 gridSize, bool read
     }
     if (info.parameters.empty()) throw Error("holds no array of numbers", all->files.front().entry.path);
     result.mesh = meshes > 0;
+    bool mesh = false;
+    double cells = 0;
+    for (const Group& group : all->groups)
+        for (const Piece& piece : group.files.front()->pieces) {
+            mesh = mesh || piece.mesh;
+            cells += piece.mesh ? piece.cells : 0;
+        }
+    if (mesh) {
+        const std::string origin = meshProvenance(cells, all->lattice.size);
+        info.provenance += (info.provenance.empty() ? "" : "; ") + origin;
+        result.ranges = [all](int parameter, const Progress& by) { return all->ranges(parameter, by); };
+    } else if (resampled || scattered) {
+        info.provenance += (info.provenance.empty() ? "" : "; ") + std::string(scattered ? kFromPoints : kFromGrids);
+    }
+    if (info.timeUnit == "step") { // a count has a name and no unit
+        if (info.timeName == DatasetInfo().timeName) info.timeName = info.timeUnit;
+        info.timeUnit.clear();
+    }
     all->times = info.times;
+    for (const Group& group : all->groups) addQuantities(info, group);
     if (!anyLabel && meshes > 1 && !byName.contains("region")) {
         Parameter region{"region", "", 1, ScalarType::U8, true, {}, {}};
         if (readSamples) all->makeLabel(region, progress);

@@ -19,7 +19,10 @@ struct Assembled {
     Dataset dataset;  ///< with the file's own array names
     SliceLoad slices; ///< of its frames; null where one of the files can only be read whole
     std::vector<std::string> notes;
-    bool mesh = false;      ///< samples are found in cells, which costs time
+    bool mesh = false; ///< samples are found in cells, which costs time
+    /// Ranges of a parameter of meshes over all times, from the values at points or cells; empty where not known. Reads
+    /// every file.
+    std::function<std::vector<Range>(int parameter, const Progress& progress)> ranges;
     bool madeLabel = false; ///< the last parameter is a label made from blocks
 };
 

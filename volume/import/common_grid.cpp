@@ -62,7 +62,8 @@ Lattice gridForMesh(const Box& box, glm::dvec3 cellSize, bool cellData, glm::ive
 
 } // namespace
 
-Lattice chooseLattice(const std::vector<OpenedFile>& files, glm::ivec3 gridSize, std::vector<std::string>& notes) {
+Lattice chooseLattice(const std::vector<OpenedFile>& files, glm::ivec3 gridSize, Box& bounds,
+                      std::vector<std::string>& notes) {
     const Piece& first = files.front().pieces.front();
     bool equalGrids = true, anyMesh = false;
     for (const OpenedFile& file : files)
@@ -73,6 +74,7 @@ Lattice chooseLattice(const std::vector<OpenedFile>& files, glm::ivec3 gridSize,
     if (equalGrids) {
         if (gridSize != glm::ivec3(0) && gridSize != first.lattice.size)
             notes.push_back("already on a grid of " + words(first.lattice.size) + ": the grid asked for is not used");
+        bounds = {first.lattice.origin, first.lattice.position(first.lattice.size - 1)};
         return first.lattice;
     }
     Box box{glm::dvec3(std::numeric_limits<double>::max()), glm::dvec3(std::numeric_limits<double>::lowest())};
@@ -103,6 +105,9 @@ Lattice chooseLattice(const std::vector<OpenedFile>& files, glm::ivec3 gridSize,
         }
     }
     const Lattice grid = gridForMesh(box, all / perLength, cellData, gridSize);
+    bounds = box;
+    for (int axis = 0; axis < 3; ++axis) // without extent there is one layer of samples, or as many as were asked for
+        if (!(box.size()[axis] > 0)) bounds.hi[axis] = grid.position(grid.size - 1)[axis];
     std::string note =
         anyMesh ? "mesh of " + std::to_string(static_cast<long long>(cells)) + " cells" : "grids that differ";
     if (blocks > 1) note += " in " + std::to_string(int(blocks)) + " blocks";

@@ -22,8 +22,9 @@ namespace {
 /// The running tessera-import; one question at a time.
 class Importer {
 public:
-    Importer(const std::string& program, const std::vector<std::string>& paths)
-        : paths_(paths), child_(arguments(program, paths)) {}
+    Importer(const std::string& program, const std::vector<SeriesFile>& entries) : child_(arguments(program, entries)) {
+        for (const SeriesFile& entry : entries) paths_.push_back(entry.path);
+    }
 
     std::string header(std::size_t file, const Progress& progress) {
         // While no frame is asked for, a frame can have no length that fits.
@@ -44,16 +45,33 @@ public:
         return parseFrame(answer(file, MessageKind::Frame, target, type, {}), target, type);
     }
 
+    std::vector<Range> ranges(std::size_t file, std::size_t piece, int array, int time) {
+        char line[128];
+        std::snprintf(line, sizeof line, "ranges %zu %zu %d %d\n", file, piece, array, time);
+        const std::lock_guard lock(mutex_);
+        child_.write(line);
+        const auto text = answer(file, MessageKind::Header, Lattice{}, ScalarType::U8, {});
+        return parseRanges({reinterpret_cast<const char*>(text.data()), text.size()}, paths_[file]);
+    }
+
 private:
-    static std::vector<std::string> arguments(const std::string& program, const std::vector<std::string>& paths) {
+    static std::vector<std::string> arguments(const std::string& program, const std::vector<SeriesFile>& entries) {
+        const auto asWord = [](const std::string& path) { return fs::path(path).is_absolute() ? path : "./" + path; };
         std::vector<std::string> words{program};
         std::string last;
-        for (const std::string& path : paths) {
+        for (const SeriesFile& entry : entries) {
+            const std::string& path = entry.path;
+            if (!entry.slices.empty()) {
+                words.insert(words.end(), {"--slices", std::to_string(entry.slices.size())});
+                for (const std::string& slice : entry.slices) words.push_back(asWord(slice));
+                last.clear();
+                continue;
+            }
             const NumberedName name = numberedName(path);
             const std::string pattern = name.number ? name.pattern : std::string();
             if (!pattern.empty() && pattern == last) words.emplace_back("--like");
             last = pattern;
-            words.push_back(fs::path(path).is_absolute() ? path : "./" + path);
+            words.push_back(asWord(path));
         }
         return words;
     }
@@ -127,12 +145,14 @@ std::string findImporter() {
     return !failed && fs::exists(beside, failed) ? beside.string() : std::string();
 }
 
-std::vector<std::vector<Piece>> openForeign(const std::vector<std::string>& paths, const Progress& progress) {
+std::vector<std::vector<Piece>> openForeign(const std::vector<SeriesFile>& entries, const Progress& progress) {
+    std::vector<std::string> paths;
+    for (const SeriesFile& entry : entries) paths.push_back(entry.path);
     const std::string program = findImporter();
     if (program.empty())
         throw Error("reading this format needs the program tessera-import, which was not built (it wants VTK)",
                     paths.front());
-    const auto importer = std::make_shared<Importer>(program, paths);
+    const auto importer = std::make_shared<Importer>(program, entries);
     std::vector<std::vector<Piece>> files;
     for (std::size_t f = 0; f < paths.size(); ++f) {
         progress.advance(double(f) / double(paths.size()), fs::path(paths[f]).filename().string());
@@ -143,6 +163,11 @@ std::vector<std::vector<Piece>> openForeign(const std::vector<std::string>& path
             piece.resamples = true;
             std::vector<ScalarType> types;
             for (const Array& array : piece.arrays) types.push_back(array.type);
+            piece.ranges = [importer, f, p, kept](int array, int time) {
+                const Kept from = kept[std::size_t(array)];
+                if (from.flags >= 0) return std::vector<Range>{}; // of what is present: not known
+                return importer->ranges(f, p, from.index, time);
+            };
             piece.load = [importer, f, p, kept, types](int array, int component, int time, const Lattice& target) {
                 if (array < 0) return importer->frame(f, p, -1, 0, time, target, ScalarType::U8);
                 const Kept from = kept[std::size_t(array)];

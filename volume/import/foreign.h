@@ -1,6 +1,7 @@
 #pragma once
 
 #include "volume/import/piece.h"
+#include "volume/import/series.h"
 #include "volume/progress.h"
 
 #include <string>
@@ -11,7 +12,7 @@ namespace tessera::volume {
 /// Opens files of other programs through `tessera-import`, one process for all of them; gives the pieces of each file.
 /// The process lives as long as a piece does, and answers one request at a time. A process that crashes, ends or talks
 /// nonsense is an Error with the file and its last line of stderr; a requested stop ends it and throws Cancelled.
-std::vector<std::vector<Piece>> openForeign(const std::vector<std::string>& paths, const Progress& progress);
+std::vector<std::vector<Piece>> openForeign(const std::vector<SeriesFile>& entries, const Progress& progress);
 
 /// The program: $TESSERA_IMPORT, else "tessera-import" beside the running executable; "" when there is none.
 std::string findImporter();

@@ -3,10 +3,15 @@
 #include "volume/error.h"
 #include "volume/import/absent.h"
 #include "volume/import/assemble.h"
+#include "volume/import/find_parts.h"
 #include "volume/import/foreign.h"
+#include "volume/import/formats.h"
+#include "volume/import/labels.h"
 #include "volume/import/nrrd.h"
+#include "volume/import/over_time.h"
 #include "volume/import/raw.h"
 #include "volume/import/sliced.h"
+#include "volume/import/unit_guess.h"
 
 #include <algorithm>
 #include <cmath>
@@ -52,9 +57,10 @@ void nameParameters(DatasetInfo& info, const ImportOptions& options) {
             throw Error("must increase", {}, "--times");
         info.times = options.times;
     }
+    stateQuantities(info, options);
 }
 
-/// Only the parameters asked for; the rest stays loadable for rules until here.
+/// Only the parameters asked for, and the labels that say their parts; the rest stays loadable for rules until here.
 SlicedDataset withParameters(SlicedDataset data, const std::vector<std::string>& wanted) {
     if (wanted.empty()) return data;
     Dataset& dataset = data.dataset;
@@ -65,6 +71,15 @@ SlicedDataset withParameters(SlicedDataset data, const std::vector<std::string>&
         if (at == dataset.info.parameters.end())
             throw Error("there is no parameter \"" + name + "\"", {}, "--parameters");
         kept.push_back(static_cast<int>(at - dataset.info.parameters.begin()));
+    }
+    // Without their label nobody could tell the parts of a parameter.
+    for (std::size_t n = 0, stated = kept.size(); n < stated; ++n) {
+        const std::string& label = dataset.info.parameters[std::size_t(kept[n])].parts.label;
+        const bool known = std::any_of(kept.begin(), kept.end(), [&](int index) {
+            return dataset.info.parameters[std::size_t(index)].name == label;
+        });
+        for (std::size_t p = 0; p < dataset.info.parameters.size() && !known; ++p)
+            if (!label.empty() && dataset.info.parameters[p].name == label) kept.push_back(int(p));
     }
     std::vector<Parameter> parameters;
     for (const int index : kept) parameters.push_back(dataset.info.parameters[std::size_t(index)]);
@@ -117,12 +132,13 @@ SlicedDataset withLabels(SlicedDataset data) {
     return data;
 }
 
-/// Arrays named like labels are taken as such if they are whole numbers with few distinct values. Integer arrays at
-/// once; floating point ones only where samples may be read.
-void markLabels(Dataset& dataset, bool readSamples) {
+/// Arrays named like labels, or stated to be some, are taken as such if they are whole numbers with few distinct
+/// values. Integer arrays at once; floating point ones only where samples may be read.
+void markLabels(Dataset& dataset, const std::set<std::string>& stated, bool readSamples) {
     for (std::size_t p = 0; p < dataset.info.parameters.size(); ++p) {
         Parameter& parameter = dataset.info.parameters[p];
-        if (parameter.categorical || parameter.components != 1 || !isLabelName(parameter.name)) continue;
+        if (parameter.categorical || parameter.components != 1) continue;
+        if (!isLabelName(parameter.name) && !stated.contains(parameter.name)) continue;
         if (!readSamples) {
             parameter.categorical = parameter.type != ScalarType::F32;
             continue;
@@ -139,6 +155,18 @@ void markLabels(Dataset& dataset, bool readSamples) {
         }
         parameter.categorical = whole && values.size() <= 64;
     }
+}
+
+/// The parameters of rules by the names they have in the file.
+std::set<std::string> namesInFile(const std::vector<LabelRule>& rules, const ImportOptions& options) {
+    std::set<std::string> names;
+    for (const LabelRule& rule : rules) {
+        std::string name = rule.parameter;
+        for (const auto& [from, to] : options.rename)
+            if (to == rule.parameter) name = from;
+        names.insert(name);
+    }
+    return names;
 }
 
 double bytesOf(const DatasetInfo& info) {
@@ -174,15 +202,37 @@ std::string blockName(const SeriesFile& entry) {
     return std::string_view("_-.").find(pattern[number - 1]) == std::string_view::npos || name.empty() ? stem : name;
 }
 
+/// Parameters of meshes get the ranges of the mesh's own values: between points and in the middle of cells samples do
+/// not reach them. Not where rules take some of them as absent: those are known of samples only.
+void stateRanges(DatasetInfo& info, const Assembled& assembled, const std::vector<AbsentRule>& rules,
+                 const ImportOptions& options, const Progress& progress) {
+    const auto wanted = [&](const std::string& name) {
+        return options.parameters.empty() || std::ranges::find(options.parameters, name) != options.parameters.end();
+    };
+    for (std::size_t p = 0; p < info.parameters.size(); ++p) {
+        Parameter& parameter = info.parameters[p];
+        const bool ruled = std::ranges::any_of(rules, [&](const AbsentRule& rule) {
+            return !rule.nothing && !rule.values.empty() && (rule.parameter == "*" || rule.parameter == parameter.name);
+        });
+        const double n = double(info.parameters.size());
+        if (!ruled && !parameter.categorical && wanted(parameter.name))
+            parameter.ranges = assembled.ranges(int(p), progress.part(double(p) / n, double(p + 1) / n));
+    }
+}
+
 Opened open(const std::vector<std::string>& paths, const ImportOptions& options, bool readSamples,
-            const Progress& progress) {
+            const Progress& progress, bool meshRanges = false) {
     if (paths.empty()) throw Error("no file given");
     std::vector<AbsentRule> stated;
     for (const std::string& rule : options.absent) stated.push_back(parseAbsentRule(rule));
+    std::vector<PartsRule> parts;
+    for (const std::string& rule : options.parts) parts.push_back(parsePartsRule(rule));
+    std::vector<LabelRule> labels;
+    for (const std::string& rule : options.labels) labels.push_back(parseLabelRule(rule));
 
     const std::vector<SeriesFile> entries = expandPaths(paths);
     std::vector<OpenedFile> files(entries.size());
-    std::vector<std::string> foreign;
+    std::vector<SeriesFile> foreign;
     for (std::size_t i = 0; i < entries.size(); ++i) {
         files[i].entry = entries[i];
         if (isRaw(entries[i].path, options.raw))
@@ -190,7 +240,7 @@ Opened open(const std::vector<std::string>& paths, const ImportOptions& options,
         else if (std::optional<Piece> piece = openNrrd(entries[i].path))
             files[i].pieces.push_back(std::move(*piece));
         else
-            foreign.push_back(entries[i].path);
+            foreign.push_back(entries[i]);
     }
     if (!foreign.empty()) {
         std::vector<std::vector<Piece>> pieces = openForeign(foreign, progress.part(0, 0.3));
@@ -214,14 +264,18 @@ Opened open(const std::vector<std::string>& paths, const ImportOptions& options,
     const DatasetInfo& info = dataset.info;
     const double times = double(info.times.size());
     if (!assembled.mesh && bytesOf(info) / times * std::min(3.0, times) <= kQuickBytes) readSamples = true;
-    markLabels(dataset, readSamples);
+    markLabels(dataset, namesInFile(labels, options), readSamples);
     opened.data = withLabels(std::move(opened.data));
+    const bool unitsStated = opened.format == "OpenFOAM" ||
+                             std::ranges::any_of(dataset.info.parameters,
+                                                 [](const Parameter& parameter) { return !parameter.unit.empty(); });
     nameParameters(dataset.info, options);
     if (readSamples) findLabels(dataset);
+    applyLabels(dataset.info, labels, readSamples);
     std::vector<AbsentRule> rules = stated;
     // A label made from blocks says nothing new: outside its block a field is absent anyway.
     if (options.autoAbsent && readSamples && !assembled.madeLabel) {
-        for (AbsentRule& rule : suggestAbsentRules(dataset, progress.part(0.7, 1))) {
+        for (AbsentRule& rule : suggestAbsentRules(dataset, progress.part(0.7, 0.85))) {
             const bool ruled = std::any_of(stated.begin(), stated.end(), [&](const AbsentRule& own) {
                 return own.parameter == rule.parameter || (own.parameter == "*" && own.nothing);
             });
@@ -231,7 +285,15 @@ Opened open(const std::vector<std::string>& paths, const ImportOptions& options,
             rules.push_back(std::move(rule));
         }
     }
-    opened.data = withParameters(withAbsent(std::move(opened.data), rules), options.parameters);
+    opened.data = withAbsent(std::move(opened.data), rules);
+    if (meshRanges && assembled.ranges) stateRanges(dataset.info, assembled, rules, options, progress.part(0.8, 0.85));
+    if (readSamples) {
+        setParts(dataset.info, parts);
+        for (std::string& note : findParts(dataset, parts, options.parameters, progress.part(0.85, 1)))
+            opened.notes.push_back(std::move(note));
+    }
+    opened.data = withParameters(std::move(opened.data), options.parameters);
+    if (!unitsStated && formatNamed(opened.format) != nullptr) guessUnits(dataset, readSamples);
     return opened;
 }
 
@@ -247,7 +309,7 @@ ImportPreview previewFiles(const std::vector<std::string>& paths, const ImportOp
 }
 
 Dataset openFiles(const std::vector<std::string>& paths, const ImportOptions& options, const Progress& progress) {
-    return openSliced(paths, options, progress).dataset;
+    return open(paths, options, true, progress, true).data.dataset;
 }
 
 SlicedDataset openSliced(const std::vector<std::string>& paths, const ImportOptions& options,
@@ -262,6 +324,7 @@ void scanRanges(Dataset& dataset, const Progress& progress) {
         total += double(parameter.components) * double(info.times.size());
     for (std::size_t p = 0; p < info.parameters.size(); ++p) {
         Parameter& parameter = info.parameters[p];
+        if (!parameter.ranges.empty()) continue; // of a mesh: its own
         const auto components = static_cast<std::size_t>(parameter.components);
         constexpr double kInfinity = std::numeric_limits<double>::infinity();
         std::vector<Range> ranges(components > 1 ? components + 1 : 1, Range{kInfinity, -kInfinity});

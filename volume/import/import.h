@@ -27,6 +27,13 @@ struct ImportOptions {
     /// Finds a label such as `region` and fields that are exactly 0 wherever the label has certain values, and takes
     /// them as absent there. Rules of `absent` for the same parameter take its place ("O2=none": nothing is absent).
     bool autoAbsent = true;
+    /// Names, and after a '#' colours, of label values: "region:0=cathode,1=anode#e07b39".
+    std::vector<std::string> labels;
+    /// Regions whose samples are never mixed, by parameter: "p=region:1|3" (1 and 3 are two parts), "T=region:0,1,3"
+    /// (one part), "T=joined" (one part, whatever the data show). Parameters not named: found from the data.
+    std::vector<std::string> parts;
+    std::string timeName, timeUnit; ///< of the axis of a series; "" = what the files say
+    std::string overTime;           ///< CSV file with quantities over time, "" = none
 
     bool operator==(const ImportOptions&) const = default;
     static void describe(auto& self, auto&& visit) {
@@ -43,6 +50,15 @@ struct ImportOptions {
         visit(self.parameters, FieldInfo{.key = "parameters", .unit = "", .doc = "Parameters read, empty = all"});
         visit(self.autoAbsent,
               FieldInfo{.key = "autoAbsent", .unit = "", .doc = "Find absent samples by a label such as region"});
+        visit(self.labels, FieldInfo{.key = "labels",
+                                     .unit = "",
+                                     .doc = "Names and colours of label values: region:0=cathode,1=anode#e07b39"});
+        visit(self.parts, FieldInfo{.key = "parts",
+                                    .unit = "",
+                                    .doc = "Regions whose samples are never mixed: p=region:1|3, T=joined"});
+        visit(self.timeName, FieldInfo{.key = "timeName", .unit = "", .doc = "Name of the axis of a series"});
+        visit(self.timeUnit, FieldInfo{.key = "timeUnit", .unit = "", .doc = "Unit of the axis of a series"});
+        visit(self.overTime, FieldInfo{.key = "overTime", .unit = "", .doc = "CSV file with quantities over time"});
     }
 };
 

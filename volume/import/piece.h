@@ -33,13 +33,19 @@ struct Piece {
     double cells = 0;       ///< of a mesh
     glm::dvec3 cellSize{0}; ///< harmonic mean of the extents of a mesh's cells, per axis
     std::string lengthUnit, timeUnit, provenance; ///< "" = not stated
+    std::string timeName;                         ///< "" = not stated
+    std::string note;                             ///< for the user: how the samples came about
     std::vector<Array> arrays;
-    std::vector<double> times; ///< empty: one frame whose time is not stated
+    std::vector<double> times;        ///< empty: one frame whose time is not stated
+    std::vector<Quantity> quantities; ///< one value for each time, or one for the only frame
     /// One component of one array at the piece's own time index, sampled on `target` (equal to `lattice` for grids;
     /// samples outside a mesh are absent).
     std::function<Field(int array, int component, int time, const Lattice& target)> load;
     /// The same of slices [first, first + count) of a grid; null where it can only be read whole.
     SliceLoad slices;
+    /// Ranges of an array's own values, at points or cells: one per component, then for a vector that of its magnitude;
+    /// lo > hi where there is no value. Null, or empty, where they are not known.
+    std::function<std::vector<Range>(int array, int time)> ranges;
 };
 
 } // namespace tessera::volume

@@ -171,7 +171,9 @@ Piece openForm(const RawForm& form, const std::string& path, const std::string& 
     piece.lattice = form.lattice;
     piece.times = form.times;
     piece.lengthUnit = form.lengthUnit;
+    piece.timeName = form.timeName;
     piece.timeUnit = form.timeUnit;
+    piece.quantities = form.quantities;
     piece.provenance = form.provenance;
     std::vector<std::size_t> firstComponent;
     std::vector<std::size_t> presence; // index + 1 of the component with the presence flags, 0 = none

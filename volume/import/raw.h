@@ -29,7 +29,8 @@ struct RawForm {
     bool bigEndian = false;
     std::size_t skip = 0; ///< bytes before the first sample
     std::string dataFile; ///< name of the samples' file, relative to the sidecar; "" = same name with .raw
-    std::string lengthUnit, timeUnit, provenance;
+    std::string lengthUnit, timeName, timeUnit, provenance;
+    std::vector<Quantity> quantities; ///< one value for each frame
 
     std::size_t frames() const { return times.empty() ? 1 : times.size(); }
     /// Bytes a file of this form has; no overflow for forms the parsers let through.

@@ -1,6 +1,7 @@
 // Reads the form of a raw file: the JSON sidecar and the text of --raw.
 #include "volume/error.h"
 #include "volume/import/import_limits.h"
+#include "volume/import/labels.h"
 #include "volume/import/raw.h"
 
 #include <algorithm>
@@ -118,7 +119,7 @@ std::vector<Label> readLabels(const json& value, const Reader& reader) {
         const auto parsed = std::from_chars(key.data(), key.data() + key.size(), number);
         if (parsed.ec != std::errc() || parsed.ptr != key.data() + key.size() || !name.is_string())
             reader.fail("labels", "must be an object of value: name");
-        labels.push_back({number, name.get<std::string>()});
+        labels.push_back(labelOf(number, name.get<std::string>()));
     }
     std::sort(labels.begin(), labels.end(), [](const Label& a, const Label& b) { return a.value < b.value; });
     return labels;
@@ -147,6 +148,21 @@ RawForm::Component readComponent(const json& entry, const std::string& file, con
     if (const json* labels = reader.find("labels")) component.labels = readLabels(*labels, reader);
     if (component.name.empty()) throw Error("must not be empty", file, path + ".name");
     return component;
+}
+
+Quantity readQuantity(const json& entry, std::size_t frames, const std::string& file, const std::string& path) {
+    if (!entry.is_object()) throw Error("must be an object", file, path);
+    const Reader reader{entry, file, path + "."};
+    Quantity quantity{reader.text("name"), reader.text("unit"), {}};
+    if (quantity.name.empty()) reader.fail("name", "must not be empty");
+    const json* values = reader.find("values");
+    if (values == nullptr || !values->is_array() || values->size() != frames)
+        reader.fail("values", "must be a list of a number, or null, for each time");
+    for (const json& value : *values) {
+        if (!value.is_number() && !value.is_null()) reader.fail("values", "must be numbers or null");
+        quantity.values.push_back(value.is_null() ? std::nan("") : value.get<double>());
+    }
+    return quantity;
 }
 
 } // namespace
@@ -183,6 +199,7 @@ RawForm parseSidecar(std::string_view text, const std::string& file) {
     }
     if (reader.find("provenance") != nullptr) form.provenance = reader.text("provenance");
     form.lengthUnit = reader.text("length_unit");
+    form.timeName = reader.text("time_name");
     form.timeUnit = reader.text("time_unit");
     form.dataFile = reader.text("file");
     if (form.dataFile.find('\0') != std::string::npos) reader.fail("file", "is no file name");
@@ -214,6 +231,13 @@ RawForm parseSidecar(std::string_view text, const std::string& file) {
             if (!time.is_number()) reader.fail("times", "must be numbers");
             form.times.push_back(time.get<double>());
         }
+    }
+    if (const json* quantities = reader.find("quantities")) {
+        if (!quantities->is_array() || quantities->size() > kMostComponents)
+            reader.fail("quantities", "must be a list");
+        for (std::size_t q = 0; q < quantities->size(); ++q)
+            form.quantities.push_back(
+                readQuantity((*quantities)[q], form.frames(), file, "quantities[" + std::to_string(q) + "]"));
     }
     check(form, file);
     return form;
@@ -289,8 +313,10 @@ RawForm parseRawOption(std::string_view text) {
         component.type = *type;
         form.components.push_back(component);
     }
-    if (times > 1)
+    if (times > 1) {
+        form.timeName = "step";
         for (std::size_t i = 0; i < times; ++i) form.times.push_back(double(i));
+    }
     check(form, {});
     return form;
 }

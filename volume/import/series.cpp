@@ -1,9 +1,9 @@
 #include "volume/import/series.h"
 
 #include "volume/error.h"
+#include "volume/import/formats.h"
 
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <charconv>
 #include <cmath>
@@ -24,9 +24,6 @@ namespace {
 
 constexpr std::size_t kMostFiles = 1'000'000;
 constexpr std::uintmax_t kMostListBytes = 256u << 20;
-constexpr std::array<std::string_view, 18> kEndings = {".vti",  ".vtu",  ".vtm", ".vtr",  ".vts",  ".vtk",
-                                                       ".nrrd", ".nhdr", ".mha", ".mhd",  ".nii",  ".gz",
-                                                       ".nc",   ".case", ".raw", ".pvti", ".pvtu", ".encas"};
 
 std::string readText(const std::string& path) {
     std::error_code failed;
@@ -81,6 +78,29 @@ std::optional<std::string> attribute(std::string_view tag, std::string_view name
     return std::nullopt;
 }
 
+/// Attributes of a tag that are numbers and not those of every .pvd.
+std::vector<std::pair<std::string, double>> furtherNumbers(std::string_view tag) {
+    std::vector<std::pair<std::string, double>> numbers;
+    for (std::size_t at = 0; (at = tag.find('=', at)) != std::string_view::npos;) {
+        std::size_t end = at, begin;
+        while (end > 0 && std::isspace(static_cast<unsigned char>(tag[end - 1]))) --end;
+        for (begin = end; begin > 0 && !std::isspace(static_cast<unsigned char>(tag[begin - 1]));) --begin;
+        const std::string name(tag.substr(begin, end - begin));
+        const std::size_t quote = tag.find_first_of("\"'", at);
+        if (quote == std::string_view::npos) break;
+        at = tag.find(tag[quote], quote + 1); // an equals sign within a value is no attribute
+        if (at == std::string_view::npos) break;
+        static constexpr std::array<std::string_view, 5> kKnown = {"timestep", "group", "part", "file", "name"};
+        if (name.empty() || std::ranges::find(kKnown, name) != kKnown.end()) continue;
+        const std::string_view text = tag.substr(quote + 1, at - quote - 1);
+        double value = 0;
+        const auto parsed = std::from_chars(text.data(), text.data() + text.size(), value);
+        if (parsed.ec == std::errc() && parsed.ptr == text.data() + text.size() && std::isfinite(value))
+            numbers.emplace_back(name, value);
+    }
+    return numbers;
+}
+
 std::vector<std::string> expandPattern(const std::string& pattern) {
     glob_t found{};
     const int status = glob(pattern.c_str(), 0, nullptr, &found);
@@ -93,10 +113,15 @@ std::vector<std::string> expandPattern(const std::string& pattern) {
 
 std::vector<std::string> expandFolder(const std::string& folder) {
     std::map<std::string, std::vector<std::string>> byEnding;
+    std::map<const FileFormat*, std::vector<std::string>> byFormat;
     for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
         const std::string name = entry.path().filename().string();
         if (name.starts_with(".")) continue;
-        if (entry.is_regular_file()) byEnding[ending(name)].push_back(entry.path().string());
+        if (!entry.is_regular_file()) continue;
+        byEnding[ending(name)].push_back(entry.path().string());
+        const FileFormat* format =
+            ending(name) == ".txt" ? nullptr : formatOfFile(entry.path().string()); // words, mostly
+        if (format != nullptr && format->advice.empty()) byFormat[format].push_back(entry.path().string());
     }
     for (const char* list : {".foam", ".pvd", ".series"})
         if (const auto at = byEnding.find(list); at != byEnding.end()) {
@@ -104,13 +129,39 @@ std::vector<std::string> expandFolder(const std::string& folder) {
             return at->second;
         }
     if (fs::exists(fs::path(folder) / "system" / "controlDict")) return {folder};
-    std::vector<std::string> best;
-    for (const std::string_view known : kEndings)
-        if (const auto at = byEnding.find(std::string(known)); at != byEnding.end() && at->second.size() > best.size())
-            best = at->second;
+    std::vector<std::string> best = byEnding[".raw"];
+    for (const auto& [format, paths] : byFormat) // in the order of the table
+        if (paths.size() > best.size()) best = paths;
     if (best.empty()) throw Error("holds no data file", folder);
     std::sort(best.begin(), best.end());
     return best;
+}
+
+/// Files whose only page is a slice become one entry for each volume: TIFF by numbers in names, DICOM by folder.
+std::vector<SeriesFile> withSlices(std::vector<SeriesFile> files) {
+    std::vector<SeriesFile> out;
+    for (SeriesFile& entry : files) {
+        const FileFormat* format = entry.time ? nullptr : formatOfFile(entry.path);
+        if (format == nullptr || !format->slices || !isSlice(*format, entry.path)) {
+            out.push_back(std::move(entry));
+            continue;
+        }
+        if (format->name == "DICOM") entry.group = fs::path(entry.path).parent_path().string() + "#DICOM";
+        const auto volume = std::ranges::find_if(
+            out, [&](const SeriesFile& other) { return !other.slices.empty() && other.group == entry.group; });
+        if (volume != out.end()) {
+            volume->slices.push_back(entry.path);
+            continue;
+        }
+        entry.slices = {entry.path};
+        out.push_back(std::move(entry));
+    }
+    for (SeriesFile& entry : out)
+        if (entry.slices.size() == 1)
+            entry.slices.clear();
+        else if (!entry.slices.empty())
+            entry.number.reset(); // counts slices
+    return out;
 }
 
 } // namespace
@@ -161,6 +212,7 @@ std::vector<SeriesFile> parsePvd(const std::string& xml, const std::string& file
         const std::string part = attribute(tag, "part").value_or("0");
         entry.group = file + "#" + attribute(tag, "group").value_or("") + "#" + part;
         entry.part = attribute(tag, "name").value_or(attribute(tag, "group").value_or(""));
+        entry.numbers = furtherNumbers(tag);
         files.push_back(std::move(entry));
         if (files.size() > kMostFiles) throw Error("lists too many files", file);
         at = end;
@@ -187,6 +239,8 @@ std::vector<SeriesFile> parseSeries(const std::string& text, const std::string& 
             if (!item["time"].is_number()) throw Error("time is no number", file, place);
             entry.time = item["time"].get<double>();
         }
+        for (const auto& [key, value] : item.items())
+            if (key != "time" && value.is_number()) entry.numbers.emplace_back(key, value.get<double>());
         entry.group = file;
         files.push_back(std::move(entry));
     }
@@ -243,7 +297,7 @@ std::vector<SeriesFile> expandPaths(const std::vector<std::string>& paths) {
     });
     const auto same = [](const SeriesFile& a, const SeriesFile& b) { return a.path == b.path && a.time == b.time; };
     files.erase(std::unique(files.begin(), files.end(), same), files.end());
-    return files;
+    return withSlices(std::move(files));
 }
 
 } // namespace tessera::volume

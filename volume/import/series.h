@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 /// Which files belong together: directories, patterns, .pvd, .series and numbered files become a flat list.
@@ -16,6 +17,10 @@ struct SeriesFile {
     /// thing. The name with its last number replaced by '#', or the .pvd's part.
     std::string group;
     std::string part; ///< name of the part in a .pvd, "" = none
+    /// Further numbers that a .pvd or .series states of the file, by name: voltage="0.7".
+    std::vector<std::pair<std::string, double>> numbers = {};
+    /// All files of a volume whose slices are files, `path` first; else empty.
+    std::vector<std::string> slices = {};
     bool operator==(const SeriesFile&) const = default;
 };
 

@@ -2,11 +2,13 @@
 
 #include "volume/error.h"
 #include "volume/import/import_limits.h"
+#include "volume/import/labels.h"
 
 #include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -85,13 +87,27 @@ Array parseArray(const json& entry, const std::string& file, const std::string& 
             const auto parsed = std::from_chars(key.data(), key.data() + key.size(), value);
             if (parsed.ec != std::errc() || parsed.ptr != key.data() + key.size() || !name.is_string())
                 reader.fail("labels");
-            array.labels.push_back({value, name.get<std::string>()});
+            array.labels.push_back(labelOf(value, name.get<std::string>()));
         }
         std::sort(array.labels.begin(), array.labels.end(),
                   [](const Label& a, const Label& b) { return a.value < b.value; });
         array.categorical = !array.labels.empty() && array.components == 1;
     }
     return array;
+}
+
+Quantity parseQuantity(const json& entry, std::size_t times, const std::string& file, const std::string& place) {
+    const HeaderReader reader{entry, file, place + "."};
+    if (!entry.is_object()) reader.fail("");
+    Quantity quantity{reader.text("name"), reader.text("unit"), {}};
+    if (quantity.name.empty()) reader.fail("name");
+    const json& values = reader.get("values");
+    if (!values.is_array() || values.size() != std::max<std::size_t>(times, 1)) reader.fail("values");
+    for (const json& value : values) {
+        if (!value.is_number() && !value.is_null()) reader.fail("values");
+        quantity.values.push_back(value.is_null() ? std::nan("") : value.get<double>());
+    }
+    return quantity;
 }
 
 Piece parsePiece(const json& entry, const std::string& file, const std::string& place) {
@@ -102,6 +118,8 @@ Piece parsePiece(const json& entry, const std::string& file, const std::string& 
     piece.name = reader.text("name");
     piece.lengthUnit = reader.text("lengthUnit");
     piece.timeUnit = reader.text("timeUnit");
+    piece.timeName = reader.text("timeName");
+    piece.note = reader.text("note");
     piece.mesh = reader.flag("mesh");
     if (piece.mesh) {
         piece.cellData = reader.flag("cellData");
@@ -129,6 +147,12 @@ Piece parsePiece(const json& entry, const std::string& file, const std::string& 
     piece.times = reader.numbers("times", 0, kMostTimes);
     for (std::size_t t = 1; t < piece.times.size(); ++t)
         if (piece.times[t] <= piece.times[t - 1]) reader.fail("times");
+    if (const auto list = entry.find("quantities"); list != entry.end()) {
+        if (!list->is_array() || list->size() > kMostArrays) reader.fail("quantities");
+        for (std::size_t q = 0; q < list->size(); ++q)
+            piece.quantities.push_back(
+                parseQuantity((*list)[q], piece.times.size(), file, place + ".quantities[" + std::to_string(q) + "]"));
+    }
     const json& arrays = reader.get("arrays");
     if (!arrays.is_array() || arrays.size() > kMostArrays) reader.fail("arrays");
     for (std::size_t a = 0; a < arrays.size(); ++a)
@@ -169,6 +193,22 @@ std::vector<Piece> parseStreamHeader(std::string_view text, const std::string& f
         pieces.back().format = reader.text("format");
     }
     return pieces;
+}
+
+std::vector<Range> parseRanges(std::string_view text, const std::string& file) {
+    const json document = json::parse(text, nullptr, false);
+    const bool fits = document.is_object() && document.contains("ranges") && document["ranges"].is_array() &&
+                      document["ranges"].size() <= 4;
+    if (!fits) throw Error("tessera-import sent ranges out of form", file);
+    std::vector<Range> ranges;
+    for (const json& pair : document["ranges"]) {
+        ranges.push_back({std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()});
+        if (pair.is_null()) continue;
+        if (!pair.is_array() || pair.size() != 2 || !pair[0].is_number() || !pair[1].is_number())
+            throw Error("tessera-import sent ranges out of form", file);
+        ranges.back() = {pair[0].get<double>(), pair[1].get<double>()};
+    }
+    return ranges;
 }
 
 Field parseFrame(std::span<const std::byte> bytes, const Lattice& lattice, ScalarType type) {

@@ -1,8 +1,8 @@
 #include "volume/mesh/isosurface.h"
 
+#include "volume/flow.h"
 #include "volume/mesh/cell_triangles.h"
 #include "volume/parallel.h"
-#include "volume/reconstruct.h"
 
 #include <algorithm>
 #include <glm/geometric.hpp>
@@ -48,7 +48,7 @@ void join(SurfaceMesh& mesh, const std::vector<CellTriangles>& slabs) {
     });
 }
 
-SurfaceMesh extract(const SampleGrid& grid, float value, const Progress& progress) {
+SurfaceMesh extractPart(const SampleGrid& grid, float value, const Progress& progress) {
     const CrossedEdges edges(grid, value, progress.part(0, 0.4));
     SurfaceMesh mesh = edges.vertices(progress);
     progress.advance(0.7);
@@ -61,6 +61,22 @@ SurfaceMesh extract(const SampleGrid& grid, float value, const Progress& progres
     join(mesh, slabs);
     // Beside absent samples, and at the border of BCC, some crossed edges belong to no whole cell.
     if (!grid.present.empty() || grid.lattice.kind == LatticeKind::BCC) removeUnused(mesh);
+    return mesh;
+}
+
+/// The surfaces of each part by itself: what jumps between two of them is no crossing.
+SurfaceMesh extract(const SampleGrid& grid, float value, const Progress& progress) {
+    if (grid.parts.empty()) return extractPart(grid, value, progress);
+    const std::size_t parts = 1 + std::size_t(*std::ranges::max_element(grid.parts));
+    SurfaceMesh mesh;
+    for (std::size_t p = 0; p < parts; ++p) {
+        const SurfaceMesh own = extractPart(ofPart(grid, p), value,
+                                            progress.part(double(p) / double(parts), double(p + 1) / double(parts)));
+        const auto first = glm::uvec3(static_cast<std::uint32_t>(mesh.positions.size()));
+        mesh.positions.insert(mesh.positions.end(), own.positions.begin(), own.positions.end());
+        mesh.normals.insert(mesh.normals.end(), own.normals.begin(), own.normals.end());
+        for (const glm::uvec3 triangle : own.triangles) mesh.triangles.push_back(triangle + first);
+    }
     return mesh;
 }
 
@@ -93,10 +109,10 @@ void sampleAtVertices(SurfaceMesh& mesh, const BrickSource& source, int channel,
     const Lattice& lattice = grid.lattice;
     const Channel known = source.info().channels()[std::size_t(channel)];
     const bool categorical = source.info().parameters[std::size_t(known.parameter)].categorical;
-    const auto at = [&](glm::ivec3 place) -> Sample {
-        const std::size_t index = lattice.index(clampToLattice(lattice.kind, lattice.size, place));
-        const bool present = grid.present.empty() || grid.present[index] != 0;
-        return {present ? double(grid.values[index]) : 0.0, present};
+    const auto labelAt = [&](glm::dvec3 position) -> std::optional<double> {
+        const std::size_t index = lattice.index(lattice.nearest(position));
+        if (!grid.present.empty() && grid.present[index] == 0) return std::nullopt;
+        return double(grid.values[index]);
     };
     mesh.scalars.resize(mesh.positions.size());
     parallelRanges(
@@ -105,11 +121,7 @@ void sampleAtVertices(SurfaceMesh& mesh, const BrickSource& source, int channel,
             if (progress.stop.stop_requested()) throw Cancelled();
             for (std::size_t i = begin; i < end; ++i) {
                 const glm::dvec3 position(mesh.positions[i]);
-                std::optional<double> value;
-                if (!categorical)
-                    value = tetrahedral({lattice.kind, 1, 0}, at, lattice.toCells(position)).value();
-                else if (const Sample sample = at(lattice.nearest(position)); sample.present)
-                    value = sample.value;
+                const std::optional<double> value = categorical ? labelAt(position) : valueAt(grid, position);
                 mesh.scalars[i] = value ? float(*value) : std::numeric_limits<float>::quiet_NaN();
             }
         },

@@ -19,6 +19,7 @@ namespace tessera::volume {
 /// along it in opposite directions, or to one where the surface ends: at the border of the grid or at absent samples.
 /// Triangles face lower values. Normals come from differences of the samples (on BCC of the eight nearest neighbours),
 /// one-sided beside absent ones, interpolated along the edge. A cell or tetrahedron with an absent corner stays empty.
+/// Each part of the grid (SampleGrid::parts) has surfaces of its own, as if the samples of others were absent.
 ///
 /// `box`: the surface is continued, with the outermost samples repeated, and cut at this box. Same input, same output
 /// on any number of threads. Throws Error when there are more vertices than 32 bits count; Cancelled.

@@ -1,5 +1,6 @@
 #include "volume/mesh/cell_triangles.h"
 
+#include <algorithm>
 #include <array>
 
 /// The tetrahedra of BCC: around the long edge between two neighbouring odd samples stand four even ones, an

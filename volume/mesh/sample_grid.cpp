@@ -1,17 +1,19 @@
 #include "volume/mesh/sample_grid.h"
 
 #include "volume/parallel.h"
+#include "volume/parts_bricks.h"
 #include "volume/reconstruct.h"
 
 #include <algorithm>
 #include <atomic>
+#include <utility>
 
 namespace tessera::volume {
 
 namespace {
 
-/// The means of the pairs of samples of a coarse BCC level.
-SampleGrid pairMeans(const BrickGrid& bricks, int level, const SampleGrid& fine) {
+/// The means of the pairs of samples of a coarse BCC level; of labels the even ones.
+SampleGrid pairMeans(const BrickGrid& bricks, int level, const SampleGrid& fine, bool isLabel) {
     const glm::ivec3 stored = bricks.levelSamples(level);
     SampleGrid out;
     out.lattice.size = {stored.x, stored.y, (stored.z + 1) / 2};
@@ -26,15 +28,16 @@ SampleGrid pairMeans(const BrickGrid& bricks, int level, const SampleGrid& fine)
         const bool hasEven = fine.present.empty() || fine.present[even] != 0;
         const bool hasOdd = odd < fine.values.size() && (fine.present.empty() || fine.present[odd] != 0);
         const float a = fine.values[even], b = hasOdd ? fine.values[odd] : a;
-        out.values[i] = hasEven && hasOdd ? 0.5f * (a + b) : hasEven ? a : b;
+        const bool alike = !isLabel && (fine.parts.empty() || (hasOdd && fine.parts[even] == fine.parts[odd]));
+        out.values[i] = hasEven && hasOdd && alike ? 0.5f * (a + b) : hasEven ? a : b;
+        if (!fine.parts.empty()) out.parts.push_back(fine.parts[hasEven || !hasOdd ? even : odd]);
         if (!fine.present.empty()) out.present[i] = hasEven || hasOdd;
     }
     return out;
 }
 
-} // namespace
-
-SampleGrid readSamples(const BrickSource& source, int channel, int time, int level, const Progress& progress) {
+/// The samples of a level as they are stored.
+SampleGrid readStored(const BrickSource& source, int channel, int time, int level, const Progress& progress) {
     const BrickGrid& bricks = source.grid();
     const bool bcc = bricks.lattice.kind == LatticeKind::BCC;
     const glm::ivec3 size = bricks.levelSamples(level), count = bricks.count();
@@ -71,7 +74,32 @@ SampleGrid readSamples(const BrickSource& source, int channel, int time, int lev
         if (progress.report) progress.report(double(++done) / double(total), "");
     });
     if (!someAbsent) out.present.clear();
-    return bcc && level > 0 ? pairMeans(bricks, level, out) : out;
+    return out;
+}
+
+} // namespace
+
+SampleGrid readSamples(const BrickSource& source, int channel, int time, int level, const Progress& progress) {
+    const Channel known = source.info().channels()[std::size_t(channel)];
+    const Parameter& parameter = source.info().parameters[std::size_t(known.parameter)];
+    const std::optional<int> label = labelChannel(source.info(), parameter);
+    SampleGrid out = readStored(source, channel, time, level, label ? progress.part(0, 0.5) : progress);
+    if (label) {
+        SampleGrid labels = readStored(source, *label, time, level, progress.part(0.5, 1));
+        out.parts =
+            partsOfSamples({labels.lattice.size, std::move(labels.values), std::move(labels.present)}, parameter.parts);
+    }
+    const bool pairs = source.grid().lattice.kind == LatticeKind::BCC && level > 0;
+    return pairs ? pairMeans(source.grid(), level, out, parameter.categorical) : out;
+}
+
+SampleGrid ofPart(SampleGrid grid, std::size_t part) {
+    if (grid.parts.empty()) return grid;
+    if (grid.present.empty()) grid.present.assign(grid.values.size(), 1);
+    for (std::size_t i = 0; i < grid.parts.size(); ++i)
+        if (grid.parts[i] != part) grid.present[i] = 0;
+    grid.parts.clear();
+    return grid;
 }
 
 SampleGrid padded(const SampleGrid& grid) {
@@ -82,6 +110,7 @@ SampleGrid padded(const SampleGrid& grid) {
     out.lattice.origin -= grid.lattice.spacing;
     out.values.resize(out.lattice.count());
     if (!grid.present.empty()) out.present.resize(out.values.size());
+    if (!grid.parts.empty()) out.parts.resize(out.values.size());
     const glm::ivec3 size = out.lattice.size;
     parallelFor(std::size_t(size.z), [&](std::size_t z) {
         for (int y = 0; y < size.y; ++y)
@@ -92,6 +121,7 @@ SampleGrid padded(const SampleGrid& grid) {
                                                                            at - glm::ivec3(1, 1, slices)));
                 out.values[to] = grid.values[from];
                 if (!grid.present.empty()) out.present[to] = grid.present[from];
+                if (!grid.parts.empty()) out.parts[to] = grid.parts[from];
             }
     });
     return out;

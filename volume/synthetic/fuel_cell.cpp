@@ -199,6 +199,12 @@ std::vector<Parameter> describeParameters() {
     region.labels = {{0, "land"},     {1, "anode channel"}, {2, "anode GDL"},
                      {3, "membrane"}, {4, "cathode GDL"},   {5, "cathode channel"}};
     region.ranges = {{0, 5}};
+    // Water and pressure jump across the membrane, which may be thinner than a cell.
+    const auto values = [](CellRegion a, CellRegion b) { return std::vector<int>{int(a), int(b)}; };
+    for (const int jumping : {kH2O, kPressure})
+        parameters[std::size_t(jumping)].parts = {"region",
+                                                  {values(CellRegion::AnodeChannel, CellRegion::AnodeGdl),
+                                                   values(CellRegion::CathodeGdl, CellRegion::CathodeChannel)}};
     return parameters;
 }
 

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <span>
+#include <string>
+
+namespace tessera::volume {
+
+/// A unit to a power: {"mol/m3", 1}, {"m", 2}.
+struct UnitPower {
+    std::string unit;
+    int power = 1;
+};
+
+/// value in `unit` = factor * product of the values in their own units.
+struct ComposedUnit {
+    double factor = 1;
+    std::string unit;
+};
+
+/// The product of units with equal ones cancelled: mol/m3, m/s and mm to the power 2 give {1e-6, "mol/s"}. Reads "*",
+/// ".", "·" and blanks between factors, "/" before a divisor or a bracket, exponents as "m3", "m^3", "m-3", "m³".
+/// Lengths from nm to km become metres and ms, min and h become seconds, so that they cancel whatever prefix they have.
+/// What cannot be read counts as one name; "" is a number without unit.
+ComposedUnit composedUnit(std::span<const UnitPower> factors);
+
+} // namespace tessera::volume

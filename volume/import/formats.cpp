@@ -1,0 +1,132 @@
+#include "volume/import/formats.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cstdint>
+#include <fstream>
+
+namespace tessera::volume {
+
+namespace {
+
+constexpr FileFormat without(std::string_view name, std::string_view suffixes, std::string_view advice) {
+    return {name, suffixes, advice, "", false};
+}
+
+// Name, suffixes, advice where there is no reader, unit of lengths where files say none, slices.
+constexpr FileFormat kFormats[] = {
+    {"vti", ".vti", ""},
+    {"pvti", ".pvti", ""},
+    {"vtu", ".vtu", ""},
+    {"pvtu", ".pvtu", ""},
+    {"vtr", ".vtr", ""},
+    {"vts", ".vts", ""},
+    {"vtm", ".vtm", ""},
+    {"vtk", ".vtk", ""},
+    {"nrrd", ".nrrd .nhdr", "", ""},
+    {"MetaImage", ".mha .mhd", "", ""},
+    {"NIfTI", ".nii .nii.gz", ""},
+    {"OpenFOAM", ".foam", ""},
+    {"EnSight", ".case .encas", ""},
+    {"NetCDF", ".nc", ""},
+    {"CSV", ".csv .tsv .txt", ""},
+    {"Tecplot ASCII", ".dat .tec .tp", ""},
+    {"NumPy", ".npy .npz", "", ""},
+    {"HDF5", ".h5 .hdf5 .hdf .vtkhdf", "", ""},
+    {"TIFF", ".tif .tiff", "", "", true},
+    {"CGNS", ".cgns", ""},
+    {"Exodus", ".exo .ex2 .exii .e", ""},
+    {"Fluent", ".cas .msh", ""},
+    {"PLOT3D", ".xyz .p3d .x", ""},
+    {"DICOM", ".dcm .ima", "", "mm", true},
+    // No reader: what to export instead.
+    without("Fluent in HDF5", ".cas.h5 .dat.h5 .msh.h5", "export as CGNS or EnSight Gold from Fluent"),
+    without("binary Tecplot", ".plt .szplt", "write it as Tecplot ASCII (.dat), or as CGNS or EnSight Gold"),
+    without("CFD-Post, CFX", ".res .cst", "export as CGNS or EnSight Gold from CFX"),
+    without("STAR-CCM+", ".sim .ccm .ccmt", "export as CGNS or EnSight Gold from STAR-CCM+"),
+    without("COMSOL", ".mph", "export as VTK (.vtu), or as a text file on a grid, from COMSOL"),
+    without("MATLAB", ".mat", "write it as HDF5 (h5write), or as raw"),
+    without("Abaqus", ".odb", "export as Exodus or VTK (.vtu)"),
+    without("Ansys", ".rst .rth .cdb", "export as EnSight Gold or CGNS from Ansys"),
+    without("XDMF", ".xdmf .xmf", "open the HDF5 file beside it, or write it as VTK (.vtu) from ParaView"),
+    without("GRIB", ".grib .grb .grib2 .grb2", "convert it to NetCDF (cdo -f nc copy)"),
+    without("ParaView state", ".pvsm", "open the data files that it names"),
+    without("a picture", ".jpg .jpeg .bmp .gif", "write slices as TIFF"),
+    without("SILO", ".silo", "write it as VTK (.vtu) or Exodus from VisIt"),
+    without("OpenVDB", ".vdb", "write it as NumPy (.npy) or raw"),
+    without("a surface", ".stl .obj .ply .vtp", "it holds no volume: write the volume as VTK (.vtu)"),
+};
+
+/// Calls body(suffix) for each suffix of a row.
+void eachSuffix(const FileFormat& format, auto&& body) {
+    std::string_view rest = format.suffixes;
+    while (!rest.empty()) {
+        const std::size_t end = std::min(rest.size(), rest.find(' '));
+        body(rest.substr(0, end));
+        rest.remove_prefix(std::min(rest.size(), end + 1));
+    }
+}
+
+} // namespace
+
+std::span<const FileFormat> fileFormats() {
+    return kFormats;
+}
+
+const FileFormat* formatOf(std::string_view path) {
+    std::string name(path.substr(path.find_last_of('/') == std::string_view::npos ? 0 : path.find_last_of('/') + 1));
+    std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+    const FileFormat* best = nullptr;
+    std::size_t longest = 0;
+    for (const FileFormat& format : kFormats)
+        eachSuffix(format, [&](std::string_view suffix) {
+            if (suffix.size() <= longest || !name.ends_with(suffix)) return;
+            best = &format;
+            longest = suffix.size();
+        });
+    return best;
+}
+
+const FileFormat* formatNamed(std::string_view name) {
+    const auto at = std::find_if(std::begin(kFormats), std::end(kFormats),
+                                 [&](const FileFormat& format) { return format.name == name; });
+    return at == std::end(kFormats) ? nullptr : at;
+}
+
+const FileFormat* formatOfFile(const std::string& path) {
+    if (const FileFormat* format = formatOf(path)) return format;
+    std::ifstream in(path, std::ios::binary);
+    char head[132] = {};
+    in.read(head, sizeof head);
+    return in && std::string_view(head + 128, 4) == "DICM" ? formatNamed("DICOM") : nullptr;
+}
+
+bool isSlice(const FileFormat& format, const std::string& path) {
+    if (!format.slices || format.name != "TIFF") return format.slices;
+    std::ifstream in(path, std::ios::binary);
+    const auto number = [&](std::size_t bytes, bool big) {
+        unsigned char raw[8] = {};
+        in.read(reinterpret_cast<char*>(raw), static_cast<std::streamsize>(bytes));
+        std::uint64_t value = 0;
+        for (std::size_t i = 0; i < bytes; ++i) value = value * 256 + raw[big ? i : bytes - 1 - i];
+        return value;
+    };
+    char order[2] = {};
+    in.read(order, 2);
+    const bool big = order[0] == 'M', wide = number(2, big) == 43; // BigTIFF
+    if (wide) number(4, big);
+    const std::uint64_t directory = number(wide ? 8 : 4, big);
+    in.seekg(static_cast<std::streamoff>(directory));
+    const std::uint64_t entries = number(wide ? 8 : 2, big);
+    in.seekg(static_cast<std::streamoff>(entries * (wide ? 20 : 12)), std::ios::cur);
+    return number(wide ? 8 : 4, big) == 0 || !in;
+}
+
+std::string readableSuffixes() {
+    std::string all;
+    for (const FileFormat& format : kFormats)
+        if (format.advice.empty()) all += (all.empty() ? "" : " ") + std::string(format.suffixes);
+    return all;
+}
+
+} // namespace tessera::volume

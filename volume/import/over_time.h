@@ -1,0 +1,38 @@
+#pragma once
+
+#include "volume/dataset.h"
+#include "volume/import/import.h"
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+/// A table of quantities over time beside the data: what a solver or a test bench writes as history.csv.
+namespace tessera::volume {
+
+struct TimeTable {
+    std::string file;
+    std::string timeName, timeUnit;
+    std::vector<double> times;     ///< strictly increasing
+    std::vector<Quantity> columns; ///< over them
+    bool operator==(const TimeTable&) const = default;
+};
+
+/// Reads comma, semicolon or tab separated values. The first line names the columns, with units in brackets:
+/// "time [s],voltage (V)". Times are in the column named time or t, else in the first. A '#' starts a comment line; an
+/// empty cell, "-" or "nan" is a number not known. Rows may be in any order. Throws Error with file and line.
+TimeTable parseTimeTable(std::string_view text, const std::string& file);
+TimeTable readTimeTable(const std::string& path);
+
+/// Adds the columns at the times of the data, linear between rows, not known outside. Units of time are converted where
+/// both state one (ms and s). The name and unit of the axis follow the table where the data do not state them. Throws
+/// Error where the units do not fit or the table has none of the data's times.
+void addTable(DatasetInfo& info, const TimeTable& table);
+
+/// What the user states of the axis and of quantities: names, units, a table. Throws Error.
+void stateQuantities(DatasetInfo& info, const ImportOptions& options);
+
+/// True for a .csv or .tsv file whose first line does not name places in space (x, y, z), as tables of samples do.
+bool isTimeTable(const std::string& path);
+
+} // namespace tessera::volume
