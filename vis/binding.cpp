@@ -10,8 +10,7 @@ namespace {
 
 constexpr std::size_t kSmallTexels = std::size_t(1) << 20; ///< channels up to here need no coarse picture first
 constexpr double kAfterTheRest = 1e6;
-constexpr std::size_t kMostSamplers = 32, kOtherSamplers = 9; ///< of a program; those that are no channels
-constexpr double kMovingDetail = 2;                           ///< coarser bricks will do while something moves
+constexpr double kMovingDetail = 2; ///< coarser bricks will do while something moves
 
 /// Adds what a channel holds to the numbers of a frame.
 void addCost(FrameStatus& status, const volume::BrickGrid& grid, const ChannelTexture* channel) {
@@ -42,19 +41,19 @@ struct Frames {
 Frames framesAt(const RayPlan& plan, const Scene& scene, const volume::DatasetInfo& info, double time, bool bricked) {
     const bool prefiltered = scene.render.filter == Filter::AverageQuasi;
     const std::size_t count = plan.later > 0 ? std::size_t(plan.later) : plan.fields.size();
-    const std::size_t samplers = 2 * count * (bricked ? 2 : 1) + kOtherSamplers;
+    const bool fits = 2 * count * (bricked ? 2 : 1) <= std::size_t(kMostFields);
     Frames frames;
     std::vector<volume::TimePair> pairs;
     bool between = false;
     for (std::size_t i = 0; i < count; ++i) {
         volume::TimePair pair = volume::timesAround(info.times, time + plan.fields[i].timeShift);
-        if (plan.fields[i].categorical || samplers > kMostSamplers) pair = {pair.nearest(), pair.nearest(), 0};
+        if (plan.fields[i].nearest || !fits) pair = {pair.nearest(), pair.nearest(), 0};
         between = between || pair.between();
         pairs.push_back(pair);
     }
     const auto add = [&](std::size_t i, int index) {
         const BoundField& field = plan.fields[i];
-        frames.keys.push_back({field.channel, index, prefiltered && !field.categorical && !field.raw});
+        frames.keys.push_back({field.channel, index, prefiltered && !field.nearest && !field.raw, field.part});
     };
     for (std::size_t i = 0; i < count; ++i) add(i, pairs[i].earlier);
     for (std::size_t i = 0; between && i < count; ++i) {
@@ -97,24 +96,46 @@ std::shared_ptr<const BrickDemand> either(const std::shared_ptr<const BrickDeman
     return both;
 }
 
-/// Ranges that hold every mixture of two frames, in texels of the earlier one; empty where their grids differ.
-BlockRanges mixedBlocks(const BoundField& earlier, const BoundField& later) {
-    const BlockRanges &a = *earlier.blocks, &b = *later.blocks;
-    BlockRanges out = a;
-    if (a.count != b.count || a.edge != b.edge || a.level != b.level) {
-        out.min.clear(), out.max.clear();
-        return out;
+/// Takes in ranges in other texel units; false, and empty, where the grids differ.
+bool unite(BlockRanges& into, const BlockRanges& other, const TexelEncoding& units, const TexelEncoding& otherUnits) {
+    if (into.count != other.count || into.edge != other.edge || into.level != other.level || into.min.empty() ||
+        other.min.empty()) {
+        into.min.clear(), into.max.clear();
+        return false;
     }
-    const double scale = later.encoding.scale / earlier.encoding.scale;
-    const double offset = (later.encoding.offset - earlier.encoding.offset) / earlier.encoding.scale;
-    for (std::size_t i = 0; i < out.min.size(); ++i) {
-        if (!(b.min[i] <= b.max[i])) continue;
-        const float lo = float(double(b.min[i]) * scale + offset), hi = float(double(b.max[i]) * scale + offset);
-        const bool absent = !(a.min[i] <= a.max[i]);
-        out.min[i] = absent ? lo : std::min(a.min[i], lo);
-        out.max[i] = absent ? hi : std::max(a.max[i], hi);
+    const double scale = otherUnits.scale / units.scale, offset = (otherUnits.offset - units.offset) / units.scale;
+    for (std::size_t i = 0; i < into.min.size(); ++i) {
+        if (!(other.min[i] <= other.max[i])) continue;
+        const float lo = float(double(other.min[i]) * scale + offset),
+                    hi = float(double(other.max[i]) * scale + offset);
+        const bool absent = !(into.min[i] <= into.max[i]);
+        into.min[i] = absent ? lo : std::min(into.min[i], lo);
+        into.max[i] = absent ? hi : std::max(into.max[i], hi);
     }
+    return true;
+}
+
+/// Fields of a plan's channels at one time, from `first` on, that have several parts.
+std::vector<std::size_t> partedFields(const RayPlan& plan, std::size_t first) {
+    std::vector<std::size_t> out;
+    for (std::size_t i = 0; i < std::size_t(plan.channels); ++i)
+        if (plan.fields[i].parts > 1) out.push_back(first + i);
     return out;
+}
+
+/// Ranges of all parts of a channel, in texels of its first; null where not all are known.
+std::optional<BlockRanges> rangesOfParts(const RayPlan& plan, std::size_t i,
+                                         std::span<const BlockRanges* const> ranges) {
+    const BoundField& field = plan.fields[i];
+    if (!ranges[i]) return std::nullopt;
+    BlockRanges all = *ranges[i];
+    for (int part = 1; part < field.parts; ++part) {
+        const BlockRanges* other = ranges[std::size_t(field.more + part - 1)];
+        const TexelEncoding& units = plan.fields[std::size_t(field.more + part - 1)].encoding;
+        if (!other) return std::nullopt;
+        unite(all, *other, field.encoding, units);
+    }
+    return all;
 }
 
 } // namespace
@@ -157,8 +178,18 @@ bool Renderer::Impl::demandBricks(ViewTarget& target, const Scene& scene, const 
             importance[i] = channel->bricks->importance();
             known.fields[i].encoding = channel->encoding;
         }
-        return brickDemands(std::move(known), scene, source->info(), source->grid(), ranges, importance, settings,
-                            hidden);
+        // What is wanted of a channel is wanted of each of its parts.
+        std::vector<BlockRanges> all;
+        all.reserve(count);
+        for (const std::size_t i : partedFields(known, 0)) {
+            const std::optional<BlockRanges> united = rangesOfParts(known, i, ranges);
+            ranges[i] = united ? &all.emplace_back(*united) : nullptr;
+        }
+        auto wanted = brickDemands(known, scene, source->info(), source->grid(), ranges, importance, settings, hidden);
+        for (const std::size_t i : partedFields(known, 0))
+            for (int part = 1; part < known.fields[i].parts; ++part)
+                wanted[std::size_t(known.fields[i].more + part - 1)] = wanted[i];
+        return wanted;
     };
     std::vector<std::shared_ptr<const BrickDemand>> demands = demandsOf(0);
     if (plan.later > 0) {
@@ -221,7 +252,7 @@ bool Renderer::Impl::bind(ViewTarget& target, const Scene& scene, const FrameReq
         any = bindField(plan.fields[i], shown.keys[i]) || any;
         addCost(status, source->grid(), residency.find(shown.keys[i]));
     }
-    bindBetween(target, plan, shown.keys);
+    bindRanges(target, plan, shown.keys);
     // Part of the channels would want a program of its own, for a moment.
     if (!here(shown)) any = false;
     if (any) {
@@ -243,18 +274,39 @@ bool Renderer::Impl::bind(ViewTarget& target, const Scene& scene, const FrameReq
     return any;
 }
 
-/// Block ranges of fields between two frames.
-void Renderer::Impl::bindBetween(ViewTarget& target, RayPlan& plan, const std::vector<ChannelKey>& keys) {
-    if (plan.later == 0) return;
-    if (target.betweenKeys != keys || target.betweenRevision != residency.revision()) {
-        target.betweenKeys = keys;
-        target.betweenRevision = residency.revision();
-        target.betweenBlocks.clear();
-        for (int i = 0; i < plan.later; ++i)
-            target.betweenBlocks.push_back(
-                mixedBlocks(plan.fields[std::size_t(i)], plan.fields[std::size_t(i + plan.later)]));
+/// Block ranges of channels of several parts, and of those between two frames.
+void Renderer::Impl::bindRanges(ViewTarget& target, RayPlan& plan, const std::vector<ChannelKey>& keys) {
+    // What failed to load is absent in any units.
+    const std::size_t times = plan.later > 0 ? 2 : 1, count = plan.fields.size() / times;
+    std::vector<std::size_t> parted = partedFields(plan, 0);
+    for (std::size_t time = 0; time < times; ++time)
+        for (const std::size_t i : parted) {
+            TexelEncoding& units = plan.fields[time * count + i].encoding;
+            for (int part = 1; part < plan.fields[i].parts && !residency.find(keys[time * count + i]); ++part) {
+                const std::size_t other = time * count + std::size_t(plan.fields[i].more + part - 1);
+                if (residency.find(keys[other])) units = plan.fields[other].encoding;
+            }
+        }
+    if (plan.later == 0 && parted.empty()) return;
+    if (target.unitedKeys != keys || target.unitedRevision != residency.revision()) {
+        target.unitedKeys = keys;
+        target.unitedRevision = residency.revision();
+        target.unitedBlocks.clear();
+        for (const BoundField& field : plan.fields) target.unitedBlocks.push_back(*field.blocks);
+        for (std::size_t time = 0; time < times; ++time)
+            for (const std::size_t i : parted) {
+                const std::size_t first = time * count;
+                for (int part = 1; part < plan.fields[i].parts; ++part) {
+                    const std::size_t other = first + std::size_t(plan.fields[i].more + part - 1);
+                    unite(target.unitedBlocks[first + i], *plan.fields[other].blocks, plan.fields[first + i].encoding,
+                          plan.fields[other].encoding);
+                }
+            }
+        for (std::size_t i = 0; plan.later > 0 && i < count; ++i)
+            unite(target.unitedBlocks[i], target.unitedBlocks[count + i], plan.fields[i].encoding,
+                  plan.fields[count + i].encoding);
     }
-    for (std::size_t i = 0; i < std::size_t(plan.later); ++i) plan.fields[i].blocks = &target.betweenBlocks[i];
+    for (std::size_t i = 0; i < plan.fields.size(); ++i) plan.fields[i].blocks = &target.unitedBlocks[i];
 }
 
 bool Renderer::Impl::bindField(BoundField& field, const ChannelKey& key) {

@@ -6,8 +6,8 @@
 
 namespace tessera::vis {
 
-/// Says once when lights or clips are left out.
-void Renderer::Impl::sayLimits(const Scene& scene) {
+/// Says once when lights or clips are left out, or parts of channels have no room.
+void Renderer::Impl::sayLimits(const Scene& scene, const RayPlan& plan) {
     const auto enabled = [](const auto& all) {
         return std::count_if(all.begin(), all.end(), [](const auto& each) { return each.enabled; });
     };
@@ -18,6 +18,7 @@ void Renderer::Impl::sayLimits(const Scene& scene) {
         now += (now.empty() ? "" : "; ") + ("the first " + std::to_string(kMaxClips)) + " clips are used";
     if (enabled(scene.lenses) > kMaxLenses)
         now += (now.empty() ? "" : "; ") + ("the first " + std::to_string(kMaxLenses)) + " lenses are used";
+    if (!plan.limit.empty()) now += (now.empty() ? "" : "; ") + plan.limit;
     if (now != limits && !now.empty()) messages.push_back(now);
     limits = now;
 }
@@ -25,7 +26,7 @@ void Renderer::Impl::sayLimits(const Scene& scene) {
 /// Brings cube maps and light volume up to date and binds them; false while a light volume is still being made.
 bool Renderer::Impl::bindLight(ViewTarget& target, const Scene& scene, const FrameRequest& request,
                                const RayPlan& plan) {
-    sayLimits(scene);
+    sayLimits(scene, plan);
     bool surrounded = true;
     const GLuint first = GLuint(rayUnits(plan).light);
     if (usesMaps(scene.lighting)) {

@@ -122,7 +122,9 @@ FrameStatus Renderer::render(ViewTarget& target, const Scene& scene, const Frame
         if (request.wait || target.frame == impl_->residency.frame()) impl_->residency.beginFrame();
         target.frame = impl_->residency.frame();
         impl_->residency.update(request.wait ? ~std::size_t(0) : kUploadPerFrame);
-        plan = planRays(scene, impl_->source->info());
+        // Bricks take two texture units each.
+        const int mostFields = kMostFields / (impl_->residency.bricked() ? 2 : 1);
+        plan = planRays(scene, impl_->source->info(), mostFields);
         finds = !plan.empty() && impl_->findsHidden(scene);
     }
     if (!liesAtCursor(scene)) target.scene.cursor = scene.cursor;

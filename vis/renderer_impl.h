@@ -38,7 +38,7 @@ struct Renderer::Impl {
     BrushTables brushes;
     GeometryPass geometryPass;
     GrainTexture grain;
-    std::string limits;  ///< said last about lights and clips that are left out
+    std::string limits;  ///< said last about what there is too much of
     std::string refusal; ///< said last about a picture that the driver has no memory for
     std::vector<std::string> messages;
     Texture noShadow = makeUniform3D(glm::vec4(1), "no shadow"), noLight = makeUniform3D(glm::vec4(0), "no light");
@@ -49,7 +49,7 @@ struct Renderer::Impl {
     bool demandBricks(ViewTarget& target, const Scene& scene, const FrameRequest& request, const RayPlan& plan,
                       const std::vector<ChannelKey>& keys);
     bool bindField(BoundField& field, const ChannelKey& key);
-    void bindBetween(ViewTarget& target, RayPlan& plan, const std::vector<ChannelKey>& keys);
+    void bindRanges(ViewTarget& target, RayPlan& plan, const std::vector<ChannelKey>& keys);
     bool bind(ViewTarget& target, const Scene& scene, const FrameRequest& request, RayPlan& plan, FrameStatus& status);
 
     // ray_pass.cpp
@@ -82,7 +82,7 @@ struct Renderer::Impl {
     void nothing(ViewTarget& target, const Scene& scene);
 
     // light_binding.cpp
-    void sayLimits(const Scene& scene);
+    void sayLimits(const Scene& scene, const RayPlan& plan);
     bool bindLight(ViewTarget& target, const Scene& scene, const FrameRequest& request, const RayPlan& plan);
 
     // renderer.cpp

@@ -16,6 +16,7 @@ namespace tessera::vis {
 struct ChannelKey {
     int channel = 0, time = 0;
     bool prefiltered = true;
+    int part = -1; ///< the samples of this part alone (volume/parts.h); -1: all
     auto operator<=>(const ChannelKey&) const = default;
 };
 

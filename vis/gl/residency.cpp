@@ -47,25 +47,6 @@ void Residency::setSource(std::shared_ptr<const volume::BrickSource> source, Sam
     if (source) makeNothing();
 }
 
-/// Drops what the source has not in common with the former one, on the same grid. What was under way is asked for
-/// again.
-void Residency::keepSame(const LoadExchange& former, SameSamples same) {
-    exchange_->bricks->adopt(*former.bricks, [&](const volume::BrickKey& key) {
-        return key.channel < same.channels && key.time < same.times;
-    });
-    for (auto it = entries_.begin(); it != entries_.end();) {
-        const auto at = it++;
-        Entry& entry = at->second;
-        if (at->first.channel >= same.channels || at->first.time >= same.times || entry.failed) {
-            drop(at);
-            continue;
-        }
-        entry.loading = false;
-        entry.bricksInFlight = 0;
-        if (entry.shown && entry.shown->bricks) entry.shown->bricks->forgetAsked();
-    }
-}
-
 void Residency::setBudgets(std::size_t texture, std::size_t memory) {
     if (exchange_ && memory != options_.memoryBudget) exchange_->bricks->setBudget(memory);
     options_.memoryBudget = memory;
@@ -126,6 +107,7 @@ void Residency::want(const ChannelKey& key, double priority, bool coarseFirst,
     request.key = key;
     request.summary = entry.summary;
     request.coverage = entry.coverage;
+    request.encoding = encodingOfParts(key);
     if (level > 0) {
         if (entry.shown) {
             if (wantedAnew(entry, demand)) entry.shown->outOfRoom = entry.stuck = false; // less may be in sight

@@ -106,7 +106,6 @@ private:
     int textureLevel() const;
     int componentsOf(bool coverage) const;
     std::size_t slotBytes(int components) const;
-    void keepSame(const LoadExchange& former, SameSamples same);
     void add(double priority, LoadRequest request);
     bool still(const ChannelKey& key, int madeOf, glm::ivec3 first, glm::ivec3 last, bool exactly) const;
     bool keepsStill(const ChannelKey& key, int madeOf, const BrickId& id) const;
@@ -119,6 +118,11 @@ private:
     void makeNothing();
     void drop(std::map<ChannelKey, Entry>::iterator entry);
     void evict();
+
+    // residency_parts.cpp
+    bool samePart(const LoadExchange& former, const ChannelKey& key, SameSamples same) const;
+    void keepSame(const LoadExchange& former, SameSamples same);
+    std::optional<TexelEncoding> encodingOfParts(const ChannelKey& key) const;
 
     // residency_bricks.cpp
     bool wantedAnew(Entry& entry, const std::shared_ptr<const BrickDemand>& demand) const;

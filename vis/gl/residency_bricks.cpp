@@ -1,6 +1,7 @@
 #include "vis/gl/residency.h"
 
 #include "volume/error.h"
+#include "volume/parts_bricks.h"
 
 #include <algorithm>
 #include <array>
@@ -94,11 +95,17 @@ bool Residency::still(const ChannelKey& key, int madeOf, glm::ivec3 first, glm::
     const Range range = source.info().channelRange(channel);
     const bool labels = source.info().parameters[std::size_t(channel.parameter)].categorical;
     const double most = exactly || labels ? 0 : keptChange_ * (range.hi - range.lo);
+    // Which samples are of a part may change though no value does.
+    const volume::Parameter& parameter = source.info().parameters[std::size_t(channel.parameter)];
+    const int label = key.part >= 0 ? volume::labelChannel(source.info(), parameter).value_or(-1) : -1;
     for (int z = first.z; z < last.z; ++z)
         for (int y = first.y; y < last.y; ++y)
             for (int x = first.x; x < last.x; ++x) {
                 const auto change = source.change({key.channel, madeOf, 0, {x, y, z}}, key.time);
                 if (!change || !(double(change->max) <= most)) return false;
+                if (label < 0) continue;
+                const auto moved = source.change({label, madeOf, 0, {x, y, z}}, key.time);
+                if (!moved || moved->max != 0) return false;
             }
     return true;
 }
@@ -116,7 +123,9 @@ bool Residency::keepsStill(const ChannelKey& key, int madeOf, const BrickId& id)
 /// Shows a brick with the texels of another time, if there are any that will do.
 bool Residency::reuseBrick(const ChannelKey& key, Entry& entry, const BrickId& id) {
     for (const auto& [other, from] : entries_) {
-        if (other.channel != key.channel || other.prefiltered != key.prefiltered || other.time == key.time) continue;
+        if (other.channel != key.channel || other.prefiltered != key.prefiltered || other.part != key.part ||
+            other.time == key.time)
+            continue;
         if (!from.shown || !from.shown->bricks || from.shown->atlas != entry.shown->atlas ||
             !(from.shown->encoding == entry.shown->encoding) || !from.shown->bricks->holds(id) ||
             !keepsStill(key, from.shown->bricks->time(id), id))
@@ -134,9 +143,12 @@ bool Residency::reuseBrick(const ChannelKey& key, Entry& entry, const BrickId& i
 bool Residency::reuseWhole(const ChannelKey& key, Entry& entry) {
     const glm::ivec3 count = exchange_->source->grid().count();
     for (const auto& [other, from] : entries_) {
-        if (other.channel != key.channel || other.prefiltered != key.prefiltered || other.time == key.time) continue;
+        if (other.channel != key.channel || other.prefiltered != key.prefiltered || other.part != key.part ||
+            other.time == key.time)
+            continue;
         if (!from.shown || from.shown->bricks || from.shown->level > textureLevel()) continue;
         if (!still(key, from.shown->madeOf, glm::ivec3(0), count, false)) continue;
+        if (encodingOfParts(key).value_or(from.shown->encoding) != from.shown->encoding) continue;
         ChannelTexture made;
         made.texture = from.shown->texture;
         made.level = from.shown->level;

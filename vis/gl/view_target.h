@@ -65,12 +65,12 @@ public:
     std::optional<Scene> demandsFor;
     DemandSettings demandSettings;
     std::vector<ChannelKey> demandsKnown;
-    std::uint64_t demandsHidden = 0;        ///< HiddenInView::revision()
-    double share = 1;                       ///< DemandSettings::share: less while the picture is only probed
-    int wantedTime = -1, timeStep = 0;      ///< which way the time runs, in stored times
-    std::vector<BlockRanges> betweenBlocks; ///< of fields between two stored times, and what they were made for
-    std::vector<ChannelKey> betweenKeys;
-    std::uint64_t betweenRevision = 0;
+    std::uint64_t demandsHidden = 0;       ///< HiddenInView::revision()
+    double share = 1;                      ///< DemandSettings::share: less while the picture is only probed
+    int wantedTime = -1, timeStep = 0;     ///< which way the time runs, in stored times
+    std::vector<BlockRanges> unitedBlocks; ///< of all parts and both times, per field, and what they were made for
+    std::vector<ChannelKey> unitedKeys;
+    std::uint64_t unitedRevision = 0;
 
     // Bricks behind what is opaque, and the picture that is asked for them.
     HiddenInView hidden;

@@ -7,7 +7,7 @@ namespace tessera::vis {
 
 namespace {
 
-constexpr GLuint kUnits = 48; // as many as ray_uniforms.h and present.cpp number
+constexpr GLuint kUnits = 50; // as many as ray_uniforms.h and present.cpp number
 constexpr GLenum kTextureBindings[] = {GL_TEXTURE_BINDING_2D,       GL_TEXTURE_BINDING_3D,
                                        GL_TEXTURE_BINDING_1D_ARRAY, GL_TEXTURE_BINDING_2D_ARRAY,
                                        GL_TEXTURE_BINDING_CUBE_MAP, GL_TEXTURE_BINDING_BUFFER};

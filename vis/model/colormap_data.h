@@ -61,8 +61,8 @@ constexpr std::uint32_t kBlueRed[] = {
 constexpr std::uint32_t kJet[] = {0x000080, 0x0000ff, 0x0080ff, 0x00ffff, 0x80ff80,
                                   0xffff00, 0xff8000, 0xff0000, 0x800000};
 constexpr std::uint32_t kGray[] = {0x000000, 0xffffff};
-// Ten colours told apart by most eyes (Tableau 10 order), not interpolated.
-constexpr std::uint32_t kLabels[] = {0x1f77b4, 0xff7f0e, 0x2ca02c, 0xd62728, 0x9467bd,
-                                     0x8c564b, 0xe377c2, 0x7f7f7f, 0xbcbd22, 0x17becf};
+// The eight colours of Okabe and Ito ("Color Universal Design", 2002), told apart with any colour vision, with grey in
+// place of black and as the colour of 0, which is solid or outside in most data. Not interpolated.
+constexpr std::uint32_t kLabels[] = {0x999999, 0x0072b2, 0xe69f00, 0xd55e00, 0x009e73, 0xcc79a7, 0x56b4e9, 0xf0e442};
 
 } // namespace tessera::vis::colormap_data

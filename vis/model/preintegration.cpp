@@ -69,6 +69,11 @@ glm::dvec4 preintegrated(const IntegralFunctions& functions, double front, doubl
     return fromDensity((integralAt(functions, hi) - integralAt(functions, lo)) / (b - a));
 }
 
+glm::dvec4 inHalves(glm::dvec4 front, glm::dvec4 back) {
+    const glm::dvec3 sum = glm::dvec3(front) * front.a + glm::dvec3(back) * back.a;
+    return {sum / std::max(front.a + back.a, 1e-12), 1 - std::sqrt((1 - front.a) * (1 - back.a))};
+}
+
 std::vector<glm::vec4> preintegrationTable(const IntegralFunctions& functions, int size) {
     std::vector<glm::dvec4> integrals;
     std::vector<glm::vec4> table(std::size_t(size) * std::size_t(size));

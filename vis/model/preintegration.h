@@ -30,6 +30,10 @@ IntegralFunctions integralFunctions(const TransferFunction& function, Range rang
 /// clamped to 0..1; the order of the two does not matter. Where they are equal, of that place.
 glm::dvec4 preintegrated(const IntegralFunctions& functions, double front, double back);
 
+/// Colour and opacity of a segment whose halves have two of their own: where the value jumps in between. Twin:
+/// lib/classify.glsl.
+glm::dvec4 inHalves(glm::dvec4 front, glm::dvec4 back);
+
 /// preintegrated() for front = x / (size - 1), back = y / (size - 1), x fastest, colour premultiplied so that entries
 /// can be interpolated; in O(size^2).
 std::vector<glm::vec4> preintegrationTable(const IntegralFunctions& functions, int size);

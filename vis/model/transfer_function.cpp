@@ -107,7 +107,18 @@ glm::dvec3 colormapColor(std::string_view name, double x) {
 }
 
 Range effectiveRange(const TransferFunction& function, Range channelRange) {
-    return function.autoRange ? channelRange : function.range;
+    if (!function.autoRange) return function.range;
+    if (!function.aboutZero) return channelRange;
+    const double most = std::max(std::abs(channelRange.lo), std::abs(channelRange.hi));
+    return most > 0 ? Range{-most, most} : Range{-1, 1};
+}
+
+TransferFunction divergingFunction() {
+    TransferFunction made;
+    made.colormap = "blue-orange";
+    made.aboutZero = true;
+    made.opacity = {{0.0f, 0.8f}, {0.5f, 0.0f}, {1.0f, 0.8f}};
+    return made;
 }
 
 glm::dvec4 evaluate(const TransferFunction& function, Range range, double value) {

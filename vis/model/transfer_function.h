@@ -65,8 +65,9 @@ inline constexpr std::string_view kTransferKindNames[] = {"curve", "regions"};
 struct TransferFunction {
     std::string colormap = "viridis";
     bool reversed = false;
-    bool autoRange = true; ///< follow the parameter's range over all times
-    Range range{0, 1};     ///< physical values at the ends of the colour map, used if !autoRange
+    bool autoRange = true;  ///< follow the parameter's range over all times
+    bool aboutZero = false; ///< the parameter's range as far below 0 as above, so that the middle is 0
+    Range range{0, 1};      ///< physical values at the ends of the colour map, used if !autoRange
     /// Opacity curve: x in 0..1 along the range, y the opacity of a layer `kReferenceLength` thick. Sorted by x, at
     /// least 2.
     std::vector<glm::vec2> opacity{{0.0f, 0.0f}, {1.0f, 0.8f}};
@@ -84,6 +85,10 @@ struct TransferFunction {
         visit(self.reversed, FieldInfo{.key = "reversed", .unit = "", .doc = "Run the colour map backwards"});
         visit(self.autoRange,
               FieldInfo{.key = "autoRange", .unit = "", .doc = "Colour the parameter's own range over all times"});
+        visit(self.aboutZero, FieldInfo{.key = "aboutZero",
+                                        .unit = "",
+                                        .doc = "Range of its own reaches as far below 0 as above: the middle is 0",
+                                        .applies = self.autoRange});
         visit(self.range, FieldInfo{.key = "range", .unit = "", .doc = "Values at the ends of the colour map"});
         visit(self.opacity,
               FieldInfo{
@@ -129,8 +134,11 @@ std::span<const ColormapInfo> colormaps();
 /// as equal steps); unknown names give viridis.
 glm::dvec3 colormapColor(std::string_view name, double x);
 
-/// Range in use: the channel's own or the stated one.
+/// Range in use: the channel's own, made even about 0 where that is asked for, or the stated one.
 Range effectiveRange(const TransferFunction& function, Range channelRange);
+
+/// For values whose sign matters: diverging colours with 0 in the middle, transparent there.
+TransferFunction divergingFunction();
 
 /// Colour and opacity at a physical value: the one definition that legends, tables, plots and the reference use. A
 /// categorical map colours a value by its nearest integer, whatever the range: label n has colour n modulo their

@@ -140,19 +140,22 @@ glm::dvec4 matterAt(const Prepared& scene, const LightGrid& grid, glm::dvec3 cen
         double mean = 0;
         int present = 0;
         glm::dvec3 slope(0);
+        int part = 0; // of the first point; surfaces lie within one
         const auto* volume = std::get_if<VolumeLayer>(layer.technique);
         const auto* iso = std::get_if<IsoLayer>(layer.technique);
         if (!iso && (!volume || volume->style != VolumeStyle::Composite)) continue;
         for (int n = 0; n < kPoints; ++n) {
             const glm::dvec3 way = glm::dvec3(n & 1, n >> 1 & 1, n >> 2) - 0.5, world = center + 0.5 * way * edges;
-            const std::optional<double> value = layer.samples->value(scene.cells(world));
-            if (!value) continue;
-            ++present;
-            mean += *value / kPoints;
-            slope += way * *value / edges; // kPoints (1/2) / 4 (upper mean - lower mean) / (edge / 2)
+            const std::optional<Reading> found = layer.samples->read(scene.cells(world));
+            if (n == 0 && found) part = found->part;
+            if (!found) continue;
+            const double value = found->value;
+            present += found->part == part;
+            mean += value / kPoints;
+            slope += way * value / edges; // kPoints (1/2) / 4 (upper mean - lower mean) / (edge / 2)
             if (!volume || !kept(scene.clips, world)) continue;
             const Interest doi = scene.interest(world);
-            const glm::dvec4 color = scene.colorAt(layer, *value, world);
+            const glm::dvec4 color = scene.colorAt(layer, value, world);
             const LensAction lens = scene.lensAction(layer, world);
             const double own =
                 -std::log(1 - std::min(color.a * scene.opacityFactor(layer, doi) * lens.opacity, kThickest)) *

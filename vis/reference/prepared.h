@@ -89,13 +89,17 @@ struct Prepared {
     }
     /// Colour (linear light) and opacity of a volume layer at a place, classified after interpolation.
     glm::dvec4 colorAt(const DrawnLayer& layer, double value, glm::dvec3 world) const;
-    /// Gradient of a channel as it is seen, per cell of the sublattice and axis.
-    glm::dvec3 gradient(const Samples& of, glm::dvec3 world) const {
+    /// Gradient of a channel as it is seen, per cell of the sublattice and axis, by the samples of one part.
+    glm::dvec3 gradient(const Samples& of, glm::dvec3 world, int part) const {
         const auto seen = [&](glm::dvec3 at) {
-            return of.value(cells(frame.toWorld(lattice.origin + at * lattice.spacing)));
+            return of.ofPart(part, cells(frame.toWorld(lattice.origin + at * lattice.spacing)));
         };
         return volume::gradient(seen, lattice.toCells(frame.toPhysical(world)),
                                 volume::gradientStencil(lattice.kind, scene.render.gradient));
+    }
+    /// That of the part which the place belongs to.
+    glm::dvec3 gradient(const Samples& of, glm::dvec3 world) const {
+        return gradient(of, world, of.part(cells(world)));
     }
     LensAction lensAction(const DrawnLayer& layer, glm::dvec3 world) const {
         return vis::lensAction(lenses, layer.lens, world);

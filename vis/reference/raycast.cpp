@@ -29,7 +29,6 @@ template <class Number> struct Caster {
 
     Vec3<Number> at(Number t) const { return Vec3<Number>(ray.origin) + t * Vec3<Number>(ray.direction); }
     bool opaque() const { return out.a >= Number(kOpaque); }
-
     /// Place on the ray in samples: sample k lies at k.
     double inSamples(double t) const { return (t - samples.enter) / samples.step - samples.phase; }
     bool shows(double k) const {
@@ -80,10 +79,10 @@ template <class Number> struct Caster {
     }
 
     /// The gradient in world axes as shading uses it.
-    glm::dvec3 worldGradient(const DrawnLayer& layer, glm::dvec3 place) const {
+    glm::dvec3 worldGradient(const DrawnLayer& layer, glm::dvec3 place, int part) const {
         if (layer.samples->categorical()) return glm::dvec3(0);
         const glm::dvec3 edges = scene.lattice.spacing * scene.frame.scale; // of a sublattice cell, with sign
-        const glm::dvec3 gradient = scene.gradient(*layer.samples, place) / edges;
+        const glm::dvec3 gradient = scene.gradient(*layer.samples, place, part) / edges;
         const int bits = scene.scene.render.normalBits;
         return bits > 0 ? quantizedDirection(gradient, bits) * glm::length(gradient) : gradient;
     }
@@ -114,7 +113,8 @@ template <class Number> struct Caster {
             sample.weight = surfaceWeight(layer, place);
             const glm::dvec3 tangent = -ray.direction - glm::dot(-ray.direction, sample.at.normal) * sample.at.normal;
             const glm::dvec3 across = tangent / std::max(glm::length(tangent), 1e-6);
-            const glm::dvec3 other = worldGradient(layer, place + across * view.reach);
+            const int part = layer.samples->part(scene.cells(place));
+            const glm::dvec3 other = worldGradient(layer, place + across * view.reach, part);
             if (glm::length(other) > 0)
                 sample.curvature = std::abs(glm::dot(glm::normalize(other) - sample.at.normal, across)) / view.reach;
         }
@@ -136,7 +136,8 @@ template <class Number> struct Caster {
     };
     Drawn drawn(const DrawnLayer& layer, const Look& look, glm::dvec3 albedo, double opacity, bool shaded,
                 glm::dvec3 place, double t, double doi) const {
-        const glm::dvec3 gradient = shaded || look.any() ? worldGradient(layer, place) : glm::dvec3(0);
+        const int part = layer.samples->part(scene.cells(place));
+        const glm::dvec3 gradient = shaded || look.any() ? worldGradient(layer, place, part) : glm::dvec3(0);
         const auto lit = [&](glm::dvec3 color) {
             return vis::shade(scene.light, color, shaded ? gradient : glm::dvec3(0),
                               shaded ? surfaceWeight(layer, place) : 0, place, -ray.direction);
@@ -147,21 +148,20 @@ template <class Number> struct Caster {
         return {lookColor(look, albedo, color, sample, scene.look.ground), lookOpacity(look, opacity, sample)};
     }
 
-    /// Adds the crossing of an iso-surface between the last sample and the one at t.
-    void findIso(std::vector<Event>& events, const DrawnLayer& layer, std::optional<double> before,
-                 std::optional<double> now, Number t) const {
+    /// Adds the crossing of an iso-surface between the last sample and the one at t, where both belong to one part.
+    void findIso(std::vector<Event>& events, const DrawnLayer& layer, std::optional<Reading> before,
+                 std::optional<Reading> now, Number t) const {
         const auto& iso = std::get<IsoLayer>(*layer.technique);
-        if (!before || !now || (*before >= iso.value) == (*now >= iso.value)) return;
+        const bool above = before && before->value >= iso.value;
+        if (!before || !now || before->part != now->part || above == (now->value >= iso.value)) return;
         Number lo = t - step, hi = t;
         for (int i = 0; i < kBisections; ++i) {
-            const Number middle = (lo + hi) / 2;
-            const std::optional<double> value = layer.samples->value(scene.cells(glm::dvec3(at(middle))));
-            // An absent place in between counts as below the value.
-            const bool above = value && *value >= iso.value;
-            (above == (*before >= iso.value) ? lo : hi) = middle;
+            const Number middle = (lo + hi) / 2; // where the part does not reach counts as below the value
+            const double value = layer.samples->continued(now->part, scene.cells(glm::dvec3(at(middle))));
+            ((value >= iso.value) == above ? lo : hi) = middle;
         }
-        if (!shows(inSamples(double(lo + hi) / 2))) return;
         const glm::dvec3 place(at((lo + hi) / 2));
+        if (layer.samples->part(scene.cells(place)) != now->part || !shows(inSamples(double(lo + hi) / 2))) return;
         const Interest doi = scene.interest(place);
         const LensAction lens = scene.lensAction(layer, place);
         const glm::dvec3 albedo = scene.focused(layer, linearFromSrgb(glm::dvec3(iso.color)), doi, lens.saturation);
@@ -178,11 +178,12 @@ template <class Number> struct Caster {
     Classified classify(const DrawnLayer& layer, Number t) const {
         const glm::dvec3 place(at(t)), cells = scene.cells(place);
         if (layer.classification == Classification::PreIntegrated) {
-            const auto valueAt = [&](Number where) { return layer.samples->value(scene.cells(glm::dvec3(at(where)))); };
-            const std::optional<double> front = valueAt(t - step / 2), back = valueAt(t + step / 2);
+            const auto readAt = [&](Number where) { return layer.samples->read(scene.cells(glm::dvec3(at(where)))); };
+            const std::optional<Reading> front = readAt(t - step / 2), back = readAt(t + step / 2);
             if (!front && !back) return {};
-            const double a = layer.place(front.value_or(*(back ? back : front)));
-            const double b = layer.place(back.value_or(*(front ? front : back)));
+            const double a = layer.place((front ? front : back)->value), b = layer.place((back ? back : front)->value);
+            if (front && back && front->part != back->part)
+                return {inHalves(preintegrated(*layer.integrals, a, a), preintegrated(*layer.integrals, b, b)), 1.0};
             return {preintegrated(*layer.integrals, a, b), front && back ? 1.0 : 0.5};
         }
         if (layer.classification == Classification::Pre) {
@@ -242,10 +243,10 @@ template <class Number> struct Caster {
     };
 
     /// A sample of a projection; absent ones end the rise to a local maximum.
-    void look(const DrawnLayer& layer, Seen& seen, std::optional<double> value, glm::dvec3 place) const {
+    void look(const DrawnLayer& layer, Seen& seen, std::optional<Reading> found, glm::dvec3 place) const {
         const auto& volume = std::get<VolumeLayer>(*layer.technique);
         const double threshold = std::max(0.0, layer.unclamped(volume.threshold));
-        if (!value) {
+        if (!found) {
             if (volume.style == VolumeStyle::LocalMaximum) seen.found = seen.found || seen.best >= threshold;
             return;
         }
@@ -253,7 +254,7 @@ template <class Number> struct Caster {
         const Interest doi = scene.interest(place);
         const double factor = scene.opacityFactor(layer, doi) * lens.opacity;
         const double along =
-            volume.quantity == Quantity::Gradient ? scene.steepPlace(layer, place) : layer.unclamped(*value);
+            volume.quantity == Quantity::Gradient ? scene.steepPlace(layer, place) : layer.unclamped(found->value);
         const double x = std::clamp(along, 0.0, 1.0);
         seen.factors += factor;
         seen.weighted += factor * along;
@@ -313,7 +314,7 @@ template <class Number> struct Caster {
             const auto* volume = std::get_if<VolumeLayer>(layer.technique);
             return volume != nullptr && (volume->style == VolumeStyle::Composite) == composite;
         };
-        std::vector<std::optional<double>> before(scene.layers.size()), now(scene.layers.size());
+        std::vector<std::optional<Reading>> before(scene.layers.size()), now(scene.layers.size());
         std::vector<Seen> seen(scene.layers.size());
         std::vector<Event> events;
         Number last = Number(samples.enter - kFaceTolerance);
@@ -328,7 +329,7 @@ template <class Number> struct Caster {
             const Number t = Number(samples.at(k));
             if (count > 1)
                 for (std::size_t i = 0; i < now.size(); ++i)
-                    before[i] = scene.layers[i].samples->value(scene.cells(glm::dvec3(at(Number(samples.at(k - 1))))));
+                    before[i] = scene.layers[i].samples->read(scene.cells(glm::dvec3(at(Number(samples.at(k - 1))))));
             count = 1;
             if (!scene.steps.empty()) {
                 double event = 1e6; // the first that is not drawn yet
@@ -337,8 +338,8 @@ template <class Number> struct Caster {
                 count = together(k, event);
             }
             const Number middle = Number(samples.at(k) + 0.5 * (count - 1) * samples.step);
-            const glm::dvec3 place(at(t)), cells = scene.cells(place);
-            for (std::size_t i = 0; i < now.size(); ++i) now[i] = scene.layers[i].samples->value(cells);
+            const glm::dvec3 place(at(t));
+            for (std::size_t i = 0; i < now.size(); ++i) now[i] = scene.layers[i].samples->read(scene.cells(place));
             findSlices(events, last, t);
             for (std::size_t i = 0; i < now.size(); ++i)
                 if (k > 0 && std::holds_alternative<IsoLayer>(*scene.layers[i].technique))

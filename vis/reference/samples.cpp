@@ -1,6 +1,7 @@
 #include "vis/reference/samples.h"
 
 #include "volume/parallel.h"
+#include "volume/parts_bricks.h"
 
 #include <algorithm>
 #include <cassert>
@@ -22,14 +23,15 @@ struct Whole {
     std::vector<float> values;
     std::vector<std::uint8_t> present; // empty: all
 
-    Whole(const volume::BrickSource& source, int channel, int time, bool ignoredMask)
+    /// `brick`: reads one.
+    Whole(const volume::BrickSource& source, const std::function<volume::BrickSamples(glm::ivec3)>& brick,
+          bool ignoredMask)
         : lattice(source.grid().lattice), values(lattice.count()) {
         const volume::BrickGrid& grid = source.grid();
         const glm::ivec3 count = grid.count();
         for (int z = 0; z < count.z; ++z)
             for (int y = 0; y < count.y; ++y)
-                for (int x = 0; x < count.x; ++x)
-                    insert(grid.begin({x, y, z}), source.read({channel, time, 0, {x, y, z}}), ignoredMask);
+                for (int x = 0; x < count.x; ++x) insert(grid.begin({x, y, z}), brick({x, y, z}), ignoredMask);
     }
     void insert(glm::ivec3 begin, const volume::BrickSamples& brick, bool ignoredMask) {
         const bool masked = !brick.present.empty();
@@ -69,16 +71,35 @@ struct Samples::View {
 
 Samples::Samples(const volume::BrickSource& source, int channel, volume::TimePair time, Filter filter,
                  const Flaws& flaws)
+    : Samples(source, channel, time, filter, flaws, std::nullopt) {}
+
+Samples::Samples(const volume::BrickSource& source, int channel, volume::TimePair time, Filter filter,
+                 const Flaws& flaws, std::optional<OnePart> only)
     : geometry_(volume::levelGeometry(source.grid(), 0)), filter_(filter), flaws_(flaws),
       brickSize_(source.grid().brickSize) {
     const volume::DatasetInfo& info = source.info();
-    categorical_ = info.parameters[std::size_t(info.channels()[std::size_t(channel)].parameter)].categorical;
+    const volume::Parameter& parameter = info.parameters[std::size_t(info.channels()[std::size_t(channel)].parameter)];
+    categorical_ = parameter.categorical;
+    const std::optional<int> label = volume::labelChannel(info, parameter);
+    if (label && !only && !flaws.mixedParts) {
+        for (std::size_t part = 0; part < parameter.parts.count(); ++part)
+            parts_.push_back(std::unique_ptr<Samples>(
+                new Samples(source, channel, time, filter, flaws, OnePart{*label, parameter.parts, part})));
+        return;
+    }
     if (categorical_) time = {time.nearest(), time.nearest(), 0};
     if (time.between()) {
         laterWeight_ = time.weight;
-        later_ = std::make_unique<Samples>(source, channel, volume::TimePair{time.later, time.later, 0}, filter, flaws);
+        later_ = std::unique_ptr<Samples>(
+            new Samples(source, channel, volume::TimePair{time.later, time.later, 0}, filter, flaws, only));
     }
-    const Whole whole(source, channel, time.earlier, flaws.ignoredMask);
+    const auto brick = [&](glm::ivec3 index) {
+        volume::BrickSamples samples = source.read({channel, time.earlier, 0, index});
+        if (!only) return samples;
+        return volume::onlyPart(std::move(samples), source.read({only->label, time.earlier, 0, index}), only->parts,
+                                only->part);
+    };
+    const Whole whole(source, brick, flaws.ignoredMask && !only);
     const int slices = geometry_.kind == volume::LatticeKind::BCC ? 2 : 1;
     const glm::ivec3 margin(kMargin, kMargin, kMargin * slices);
     first_ = -margin;
@@ -104,6 +125,11 @@ Range Samples::bounds(glm::ivec3 begin, glm::ivec3 end) const {
     const glm::ivec3 steps(1, 1, slices), from = glm::max(begin * steps, first_) - first_,
                                           to = glm::min(end * steps, first_ + size_) - first_;
     Range out{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+    for (const auto& part : parts_) {
+        const Range own = part->bounds(begin, end);
+        out = {std::min(out.lo, own.lo), std::max(out.hi, own.hi)};
+    }
+    if (!parts_.empty()) return out;
     for (int z = from.z; z < to.z; ++z)
         for (int y = from.y; y < to.y; ++y)
             for (int x = from.x; x < to.x; ++x) {
@@ -117,6 +143,7 @@ Range Samples::bounds(glm::ivec3 begin, glm::ivec3 end) const {
 }
 
 bool Samples::someAbsent() const {
+    if (!parts_.empty()) return true;
     return std::ranges::find(present_, 0) != present_.end() || (later_ && later_->someAbsent());
 }
 
@@ -147,11 +174,42 @@ volume::Blend Samples::blend(glm::dvec3 cells) const {
             (1 - laterWeight_) * blend.coverage + laterWeight_ * later.coverage};
 }
 
-std::optional<double> Samples::value(glm::dvec3 cells) const {
-    return blend(cells).value();
+std::optional<Reading> Samples::read(glm::dvec3 cells) const {
+    if (parts_.empty()) {
+        const std::optional<double> value = blend(cells).value();
+        return value ? std::optional(Reading{*value, 0}) : std::nullopt;
+    }
+    volume::PartChoice choice;
+    double sum = 0;
+    for (std::size_t i = 0; i < parts_.size(); ++i) {
+        const volume::Blend own = parts_[i]->blend(cells);
+        if (choice.add(int(i), own.coverage)) sum = own.sum;
+    }
+    if (choice.total < volume::kPresentCoverage) return std::nullopt;
+    return Reading{sum / choice.coverage, choice.part};
 }
 
-std::optional<glm::dvec4> Samples::blended(glm::dvec3 cells, const std::function<glm::dvec4(double)>& of) const {
+std::optional<double> Samples::value(glm::dvec3 cells) const {
+    const std::optional<Reading> found = read(cells);
+    return found ? std::optional(found->value) : std::nullopt;
+}
+
+int Samples::part(glm::dvec3 cells) const {
+    volume::PartChoice choice;
+    for (std::size_t i = 0; i < parts_.size(); ++i) choice.add(int(i), parts_[i]->blend(cells).coverage);
+    return choice.part;
+}
+
+std::optional<double> Samples::ofPart(int part, glm::dvec3 cells) const {
+    return (parts_.empty() ? *this : *parts_[std::size_t(part)]).blend(cells).value();
+}
+
+double Samples::continued(int part, glm::dvec3 cells) const {
+    const volume::Blend blend = (parts_.empty() ? *this : *parts_[std::size_t(part)]).blend(cells);
+    return blend.coverage > 0 ? blend.sum / blend.coverage : std::numeric_limits<double>::quiet_NaN();
+}
+
+Samples::ColorBlend Samples::colorBlend(glm::dvec3 cells, const std::function<glm::dvec4(double)>& of) const {
     const auto sampleAt = [this, here = view()](glm::ivec3 at) {
         const volume::Sample sample = here(at);
         if (!later_) return sample;
@@ -161,17 +219,28 @@ std::optional<glm::dvec4> Samples::blended(glm::dvec3 cells, const std::function
         const std::optional<double> value = both.value();
         return volume::Sample{value.value_or(0), value.has_value()};
     };
-    glm::dvec4 out(0);
+    ColorBlend out;
     for (int c = 0; c < 4; ++c) {
         const auto component = [&](glm::ivec3 at) {
             const volume::Sample sample = sampleAt(at);
             return volume::Sample{sample.present ? of(sample.value)[c] : 0, sample.present};
         };
-        const std::optional<double> value = volume::linear(geometry_, component, cells).value();
-        if (!value) return std::nullopt;
-        out[c] = *value;
+        const volume::Blend blend = volume::linear(geometry_, component, cells);
+        out.sum[c] = blend.sum;
+        out.coverage = blend.coverage;
     }
     return out;
+}
+
+std::optional<glm::dvec4> Samples::blended(glm::dvec3 cells, const std::function<glm::dvec4(double)>& of) const {
+    volume::PartChoice choice;
+    glm::dvec4 sum(0);
+    for (std::size_t i = 0; i < std::max<std::size_t>(parts_.size(), 1); ++i) {
+        const ColorBlend own = (parts_.empty() ? *this : *parts_[i]).colorBlend(cells, of);
+        if (choice.add(int(i), own.coverage)) sum = own.sum;
+    }
+    if (choice.total < volume::kPresentCoverage) return std::nullopt;
+    return sum / choice.coverage;
 }
 
 } // namespace tessera::vis::reference

@@ -45,6 +45,9 @@ void main() {
 #if LAYERS > 0
     float mean[LAYERS], points[LAYERS];
     vec3 slope[LAYERS];
+#if PARTS
+    float part[LAYERS]; // of the first point: surfaces lie within one
+#endif
     for (int i = 0; i < LAYERS; ++i) {
         mean[i] = 0.0; points[i] = 0.0; slope[i] = vec3(0.0);
     }
@@ -53,16 +56,20 @@ void main() {
         vec3 world = center + 0.5 * way * edges, p = toCells(world);
         float doi = degreeOfInterest(p), kept = clipKept(world) ? 1.0 : 0.0;
         for (int i = 0; i < LAYERS; ++i) {
-            vec2 s = reconstruct(LAYER_FIELD(i), p);
+            Reading s = readAt(LAYER_FIELD(i), p);
             bool is = present(s);
             if (LAYER_STYLE(i) == COMPOSITE) {
-                vec4 c = colorAt(i, p, s);
+                vec4 c = colorAt(i, p, s.xy);
                 vec2 lens = lensAction(LAYER_LENS(i), world);
                 float factor = kept * focusOpacity(doi, LAYER_BRUSHED(i));
                 float own = -log(1.0 - min(c.a * factor * lens.x, kThickest)) * layerMap[i].z * REFERENCE_LENGTHS;
                 sum += is ? vec4(focusColor(c.rgb, doi, lens.y, LAYER_BRUSHED(i)), 1.0) * (own / 8.0) : vec4(0.0);
             } else if (LAYER_STYLE(i) == ISO) {
                 mean[i] += s.x / 8.0;
+#if PARTS
+                if (n == 0) part[i] = s.z;
+                is = is && s.z == part[i];
+#endif
                 points[i] += is ? 1.0 : 0.0;
                 slope[i] += way * s.x / edges; // 8 * (1/2) / 4 * (upper - lower mean) / (edge / 2)
             }

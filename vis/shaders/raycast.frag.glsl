@@ -62,13 +62,13 @@ int samples = 0;
 #endif
 
 // Of each layer what is known at the sample under way.
-vec2 here[LAYERS];    // composite: value
-float before[LAYERS]; // iso: value at sample k - 1; slab: place at the front of sample k's part; kUnknown: absent
+#include "lib/classify.glsl"
+vec2 here[LAYERS];   // composite: value
+Noted before[LAYERS]; // iso: value at sample k - 1; slab: place at the front of sample k's part
 #if HAS_SLABS
-float front[LAYERS];  // slab: the same of a sample that hits; `before` is then its back
+Noted front[LAYERS];  // slab: the same of a sample that hits; `before` is then its back
 #endif
 
-#include "lib/classify.glsl"
 #if LOOKS
 #include "lib/draw_look.glsl"
 #include "lib/look_sample.glsl"
@@ -80,7 +80,7 @@ float front[LAYERS];  // slab: the same of a sample that hits; `before` is then 
 // Takes samples in until one contributes, and shows it, to the end of the ray or until nothing behind is seen. Returns
 // the sample it ends at.
 int march() {
-    for (int i = 0; i < LAYERS; ++i) before[i] = kUnknown;
+    for (int i = 0; i < LAYERS; ++i) before[i] = kNothingNoted;
 #if HAS_SLABS
     for (int i = 0; i < LAYERS; ++i)
         if (LAYER_LOOKUP(i) == LOOKUP_SLAB) before[i] = slabEnd(i, cellsAt(-0.5));
@@ -88,7 +88,7 @@ int march() {
     int k = 0;
     while (k < ray.count && color.a < kOpaque) {
         bool hit = false;
-        float previous[LAYERS]; // `before` at this sample; far below: absent or not known
+        Noted previous[LAYERS]; // `before` at this sample; far below: absent or not known
         for (int i = 0; i < LAYERS; ++i) previous[i] = before[i];
 #if !FLAT
         while (k < ray.count) {
@@ -105,16 +105,16 @@ int march() {
             if (leap > 0) {
                 k += leap;
                 p = cellsAt(float(k));
-                for (int i = 0; i < LAYERS; ++i) previous[i] = kUnknown;
+                for (int i = 0; i < LAYERS; ++i) previous[i] = kNothingNoted;
             }
 #endif
 #if CLIP_HOLES
             int hidden = clipLeap(float(k));
             if (hidden > 0) {
                 k += hidden;
-                for (int i = 0; i < LAYERS; ++i) previous[i] = kUnknown;
+                for (int i = 0; i < LAYERS; ++i) previous[i] = kNothingNoted;
 #if FLAT
-                for (int i = 0; i < LAYERS; ++i) before[i] = kUnknown;
+                for (int i = 0; i < LAYERS; ++i) before[i] = kNothingNoted;
 #endif
                 continue;
             }
@@ -131,11 +131,10 @@ int march() {
             p = cellsAt(at);
             vec3 seen = worldAt(at);
             for (int i = 0; i < LAYERS; ++i) {
-                vec2 s = reconstruct(LAYER_FIELD(i),
-                                     LAYER_LOOKUP(i) == LOOKUP_SLAB ? p + 0.5 * ray.cellsPerSample : p);
+                Reading s = readAt(LAYER_FIELD(i), LAYER_LOOKUP(i) == LOOKUP_SLAB ? p + 0.5 * ray.cellsPerSample : p);
                 vec2 lens = lensAction(LAYER_LENS(i), seen);
                 bool is = present(s);
-                here[i] = s;
+                here[i] = s.xy;
                 float x = s.x * layerMap[i].x + layerMap[i].y;
                 if (LAYER_GRADIENT(i) == 1 && (FLAT == 0 || LAYER_STYLE(i) != COMPOSITE))
                     x = gradientPlace(i, cellGradient(LAYER_FIELD(i), p, s.x, is));
@@ -144,7 +143,7 @@ int march() {
 #if HAS_SLABS
                     if (LAYER_LOOKUP(i) == LOOKUP_SLAB) {
                         front[i] = previous[i];
-                        previous[i] = is ? x : kUnknown;
+                        previous[i] = note(s, x);
                         opacity = slabColor(i, front[i], previous[i], share).a;
                     }
 #endif
@@ -154,8 +153,10 @@ int march() {
                     hit = hit || opacity * share * lens.x > 0.0;
                 } else if (LAYER_STYLE(i) == ISO) {
                     float value = layerMap[i].z;
-                    hit = hit || (is && previous[i] > kUnknown && (s.x >= value) != (previous[i] >= value));
-                    previous[i] = is ? s.x : kUnknown;
+                    float last = notedValue(previous[i]);
+                    hit = hit || (is && last > kUnknown && joined(previous[i], note(s, s.x)) &&
+                                  (s.x >= value) != (last >= value));
+                    previous[i] = note(s, s.x);
                 } else {
 #if HAS_PROJECTION
                     project(i, k, p, x, lens.x, is && within && clipShows(float(k)));

@@ -7,6 +7,8 @@
 #include "vis/technique/light_uniforms.h"
 #include "vis/technique/look_uniforms.h"
 #include "vis/technique/ray_tables.h"
+#include "volume/part_choice.h"
+#include "volume/parts_bricks.h"
 #include "volume/reconstruct.h"
 
 #include <algorithm>
@@ -28,7 +30,7 @@ int fieldOf(RayPlan& plan, const volume::DatasetInfo& info, int channel, bool ra
     field.transfer = layer.transfer;
     field.timeShift = layer.timeShift;
     const volume::Channel known = info.channels()[std::size_t(channel)];
-    field.categorical = info.parameters[std::size_t(known.parameter)].categorical;
+    field.categorical = field.nearest = info.parameters[std::size_t(known.parameter)].categorical;
     plan.fields.push_back(field);
     return int(plan.fields.size()) - 1;
 }
@@ -39,6 +41,54 @@ template <class Use, class Member> std::string choice(const std::vector<Use>& us
     for (std::size_t i = uses.size(); i-- > 0;)
         chain = "((i)==" + std::to_string(i) + "?" + std::to_string(int(member(uses[i]))) + ":" + chain + ")";
     return chain;
+}
+
+/// Shows a field's nearest samples, and leaves out what is made of differences between samples.
+void drawNearest(RayPlan& plan, int field, const std::string& name) {
+    plan.fields[std::size_t(field)].nearest = true;
+    std::erase_if(plan.layers, [=](const RayLayer& layer) {
+        return layer.field == field &&
+               (layer.style == RayStyle::Iso || layer.gradient || layer.lookup == RayLookup::Plane);
+    });
+    plan.pages = 0;
+    for (RayLayer& layer : plan.layers) {
+        if (layer.field == field) {
+            layer.shaded = false;
+            layer.look = 0;
+            layer.lookup = RayLookup::Curve;
+            layer.page = -1;
+        }
+        if (layer.page >= 0) layer.page = plan.pages++;
+    }
+    plan.limit += (plan.limit.empty() ? "" : ", ") + name;
+}
+
+/// Gives the further parts of channels fields of their own, as far as there is room.
+void addParts(RayPlan& plan, const volume::DatasetInfo& info, int mostFields) {
+    plan.channels = int(plan.fields.size());
+    for (int i = 0; i < plan.channels; ++i) {
+        const volume::Channel channel = info.channels()[std::size_t(plan.fields[std::size_t(i)].channel)];
+        const volume::Parameter& parameter = info.parameters[std::size_t(channel.parameter)];
+        if (!volume::labelChannel(info, parameter)) continue;
+        const int parts = int(parameter.parts.count());
+        if (int(plan.fields.size()) + parts - 1 > mostFields) {
+            drawNearest(plan, i, channel.name);
+            continue;
+        }
+        BoundField& first = plan.fields[std::size_t(i)];
+        first.parts = parts;
+        first.more = int(plan.fields.size());
+        first.part = 0;
+        for (int part = 1; part < parts; ++part) {
+            BoundField other = plan.fields[std::size_t(i)];
+            other.parts = 1;
+            other.part = part;
+            plan.fields.push_back(other);
+        }
+    }
+    if (!plan.limit.empty())
+        plan.limit = "too many channels at once for the parts of " + plan.limit +
+                     ": its nearest samples are shown, without surfaces and gradients; show fewer layers";
 }
 
 /// The channel a layer shows.
@@ -74,10 +124,8 @@ RayLayer volumeUse(RayPlan& plan, int layer, const VolumeLayer& volume, int chan
     return use;
 }
 
-} // namespace
-
-RayPlan planRays(const Scene& scene, const volume::DatasetInfo& info) {
-    RayPlan plan;
+/// The layers of a scene that rays meet, and their fields.
+void planLayers(RayPlan& plan, const Scene& scene, const volume::DatasetInfo& info) {
     const std::vector<PlacedLens> lenses = placeLenses(scene, {});
     for (std::size_t i = 0; i < scene.layers.size(); ++i) {
         const Layer& layer = scene.layers[i];
@@ -101,12 +149,10 @@ RayPlan planRays(const Scene& scene, const volume::DatasetInfo& info) {
         plan.layers.back().lens = *lens;
         plan.layers.back().brushes = layer.brushes;
     }
-    for (RayLayer& layer : plan.layers) layer.row = plan.rows++;
-    for (SliceUse& slice : plan.slices) slice.row = plan.rows++;
-    plan.brushDefines = brushDefines({}, scene);
-    plan.peels = peelsOf(scene);
-    if (plan.peels > 0 && plan.fields.empty() && !info.channels().empty()) fieldOf(plan, info, 0); // samplers need one
-    if (plan.empty() || !scene.selection.active()) return plan;
+}
+
+/// The fields that brushes look at.
+void planBrushes(RayPlan& plan, const Scene& scene, const volume::DatasetInfo& info) {
     const std::vector<std::string> brushed = selectedChannels(scene.selection);
     for (const std::string& name : brushed) {
         const std::optional<int> channel = info.findChannel(name);
@@ -117,7 +163,21 @@ RayPlan planRays(const Scene& scene, const volume::DatasetInfo& info) {
     }
     // Brushes whose channels are unknown still decide: sample something.
     if (plan.brushFields.empty() && !brushed.empty()) plan.brushFields.push_back(0);
-    plan.brushDefines = brushDefines(brushTests(plan, scene, info), scene);
+}
+
+} // namespace
+
+RayPlan planRays(const Scene& scene, const volume::DatasetInfo& info, int mostFields) {
+    RayPlan plan;
+    planLayers(plan, scene, info);
+    plan.peels = peelsOf(scene);
+    if (plan.peels > 0 && plan.fields.empty() && !info.channels().empty()) fieldOf(plan, info, 0); // samplers need one
+    const bool brushes = !plan.empty() && scene.selection.active();
+    if (brushes) planBrushes(plan, scene, info);
+    addParts(plan, info, mostFields);
+    for (RayLayer& layer : plan.layers) layer.row = plan.rows++;
+    for (SliceUse& slice : plan.slices) slice.row = plan.rows++;
+    plan.brushDefines = brushDefines(brushes ? brushTests(plan, scene, info) : BrushTests(), scene);
     return plan;
 }
 
@@ -151,7 +211,12 @@ ProgramRecipe rayRecipe(const RayPlan& plan, const Scene& scene, const volume::B
     if (bricked) {
         define("BRICK_TEXELS", std::to_string(grid.brickSize));
     }
-    define("FIELD_NEAREST(i)", choice(plan.fields, [](const BoundField& field) { return field.categorical; }));
+    define("FIELD_NEAREST(i)", choice(plan.fields, [](const BoundField& field) { return field.nearest; }));
+    const bool parts = std::ranges::any_of(plan.fields, [](const BoundField& field) { return field.parts > 1; });
+    define("PARTS", parts ? "1" : "0");
+    define("FIELD_PARTS(i)", choice(plan.fields, [](const BoundField& field) { return field.parts; }));
+    define("FIELD_MORE(i)", choice(plan.fields, [](const BoundField& field) { return field.more; }));
+    define("PART_MARGIN", std::to_string(volume::kPartMargin));
     define("LAYERS", std::to_string(plan.layers.size()));
     define("LAYER_STYLE(i)", choice(plan.layers, [](const RayLayer& layer) { return int(layer.style); }));
     define("LAYER_FIELD(i)", choice(plan.layers, [](const RayLayer& layer) { return layer.field; }));

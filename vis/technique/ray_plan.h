@@ -20,6 +20,10 @@ struct BoundField {
     std::string transfer = {}; ///< Layer::transfer
     double timeShift = 0;      ///< Layer::timeShift
     double laterWeight = 0;    ///< of the later frame, where the plan has some
+    int parts = 1;             ///< that the channel has (volume/parts.h); part j > 0 is field `more` + j - 1
+    int more = 0;
+    int part = -1;        ///< that the field holds; -1: all there is
+    bool nearest = false; ///< the nearest sample is shown: a label's, or for want of room for parts
     // Filled from what is resident:
     GLuint texture = 0;
     int level = 0;
@@ -62,19 +66,27 @@ struct SliceUse {
 /// What a scene needs, independent of what is resident.
 struct RayPlan {
     std::vector<BoundField> fields;
+    /// Fields from here on, of those of one time, are further parts of the ones before.
+    int channels = 0;
     int later = 0; ///< fields from `later` on are the later frames of those before; 0: all are on stored times
     std::vector<RayLayer> layers;
     std::vector<SliceUse> slices;
     std::vector<int> brushFields;
     std::vector<std::pair<std::string, std::string>> brushDefines; ///< which tests of brushes the program needs
-    int peels = 0; ///< layers of rasterised geometry that lie among the samples
-    int pages = 0; ///< of the plane tables
-    int rows = 0;  ///< of the transfer tables: of layers, then of slices
+    int peels = 0;     ///< layers of rasterised geometry that lie among the samples
+    int pages = 0;     ///< of the plane tables
+    int rows = 0;      ///< of the transfer tables: of layers, then of slices
+    std::string limit; ///< what there is no room for; "": nothing
     bool empty() const { return layers.empty() && slices.empty() && peels == 0; }
 };
 
-/// Visible layers whose channel the data set has; layers of unknown channels are left out.
-RayPlan planRays(const Scene& scene, const volume::DatasetInfo& info);
+/// Fields that a program has texture units for: 32 less those of tables, light, geometry; half as many in bricks.
+inline constexpr int kMostFields = 32 - 9;
+
+/// Visible layers whose channel the data set has; layers of unknown channels are left out. A channel of several parts
+/// has a field for each; where that would be more than `mostFields` its nearest samples are shown, which mix nothing,
+/// and its surfaces are left out.
+RayPlan planRays(const Scene& scene, const volume::DatasetInfo& info, int mostFields = kMostFields);
 
 /// The program variant of a plan whose fields are bound. `skip`: leap over empty blocks.
 ProgramRecipe rayRecipe(const RayPlan& plan, const Scene& scene, const volume::BrickGrid& grid, bool skip);

@@ -10,7 +10,7 @@ namespace tessera::vis {
 /// colours and distances of rasterised layers and the paper's grain.
 struct RayUnits {
     int pages = 0, atlases = 0, table = 0, blocks = 0, lassos = 0, planes = 0, light = 0, grain = 0;
-    static constexpr int kGeometry = 40, kPaper = 42;
+    static constexpr int kGeometry = 48, kPaper = 42;
 };
 RayUnits rayUnits(const RayPlan& plan);
 

@@ -1,5 +1,6 @@
 // What the ray caster knows of the scene. Compiled-in (generated #defines):
-//   FIELDS    number of channels bound; FIELD_COVERAGE(i), FIELD_NEAREST(i): 0 or 1; LATER: see lib/between_times.glsl
+//   FIELDS    number of channels bound, and their parts; FIELD_COVERAGE(i), FIELD_NEAREST(i): 0 or 1; LATER, PARTS,
+//             FIELD_PARTS(i), FIELD_MORE(i), PART_MARGIN: see lib/between_times.glsl
 //   LAYERS    ray layers; LAYER_STYLE(i) (below), LAYER_FIELD(i), LAYER_SHADED(i); LAYER_LOOKUP(i): how a composite
 //             layer is classified (below); LAYER_GRADIENT(i): 1 where the gradient's magnitude is shown;
 //             LAYER_LOOK(i) (lib/draw_look.glsl); LAYER_INTERVAL(i): 1 where all opacity lies between layerOpaque[i];

@@ -7,13 +7,11 @@ float gradientPlace(int layer, vec3 gradient) {
 }
 
 #if HAS_LATTICE
-// Pre-classification: the samples around p are classified, their premultiplied colours interpolated as values are by
-// trilinear interpolation (on BCC the mean of both sublattices). `share`: 1 where enough of them are present, else 0.
-vec4 latticeColor(int layer, vec3 p, out float share) {
-    int field = LAYER_FIELD(layer);
-    p = dataCells(p);
+// Of one field: the samples around p (data cells) are classified, their premultiplied colours summed by the weights of
+// trilinear interpolation (on BCC of both sublattices); `coverage`: sum of the weights of those present.
+vec4 latticeSum(int layer, int field, vec3 p, out float coverage) {
     vec4 sum = vec4(0.0);
-    float coverage = 0.0;
+    coverage = 0.0;
     for (int corner = 0; corner < latticeCorners; ++corner) { // 8, on BCC 16
         int sublattice = corner >> 3;
         vec3 at = sublatticeIndex(field, p, sublattice), base = floor(at);
@@ -44,24 +42,80 @@ vec4 latticeColor(int layer, vec3 p, out float share) {
         sum += weight * vec4(c.rgb * c.a, c.a);
         coverage += weight;
     }
+    return sum;
+}
+
+// Pre-classification: the samples around p are classified, their colours interpolated as values are; of several parts
+// those of the one that carries the most weight. `share`: 1 where enough of all samples are present, else 0.
+vec4 latticeColor(int layer, vec3 p, out float share) {
+    int field = LAYER_FIELD(layer);
+    p = dataCells(p);
+    float coverage;
+    vec4 sum = latticeSum(layer, field, p, coverage);
+    float total = coverage;
+#if PARTS
+    for (int j = 1; j < FIELD_PARTS(field); ++j) {
+        float own;
+        vec4 other = latticeSum(layer, FIELD_MORE(field) + j - 1, p, own);
+        total += own;
+        if (own > coverage + PART_MARGIN * float(latticeCorners) / 8.0) {
+            sum = other;
+            coverage = own;
+        }
+    }
+#endif
     sum /= max(coverage, 1e-6);
-    share = coverage * 8.0 / float(latticeCorners) >= PRESENT_COVERAGE ? 1.0 : 0.0;
+    share = total * 8.0 / float(latticeCorners) >= PRESENT_COVERAGE ? 1.0 : 0.0;
     return vec4(sum.rgb / max(sum.a, 1e-12), sum.a);
+}
+#endif
+
+// What is kept of a layer from sample to sample: a value or place (x), kUnknown where absent, and of which part.
+#if PARTS
+#define Noted vec2
+const Noted kNothingNoted = vec2(kUnknown, 0.0);
+Noted note(Reading s, float x) {
+    return vec2(present(s) ? x : kUnknown, s.z);
+}
+float notedValue(Noted of) {
+    return of.x;
+}
+bool joined(Noted a, Noted b) {
+    return a.y == b.y;
+}
+#else
+#define Noted float
+const Noted kNothingNoted = kUnknown;
+Noted note(Reading s, float x) {
+    return present(s) ? x : kUnknown;
+}
+float notedValue(Noted of) {
+    return of;
+}
+bool joined(Noted a, Noted b) {
+    return true;
 }
 #endif
 
 #if PLANES > 0
 // Pre-integration between the places of the values at the two ends of a sample's part of the ray, kUnknown where
-// absent. `share`: of that part, what is present.
-vec4 slabColor(int layer, float front, float back, out float share) {
-    bool hasFront = front > kUnknown, hasBack = back > kUnknown;
+// absent. `share`: of that part, what is present. Between two parts the value jumps: each has a half.
+vec4 slabColor(int layer, Noted front, Noted back, out float share) {
+    float first = notedValue(front), last = notedValue(back);
+    bool hasFront = first > kUnknown, hasBack = last > kUnknown;
     share = (hasFront ? 0.5 : 0.0) + (hasBack ? 0.5 : 0.0);
-    return planeAt(LAYER_PLANE(layer), vec2(hasFront ? front : back, hasBack ? back : front));
+#if PARTS
+    if (hasFront && hasBack && !joined(front, back)) {
+        vec4 a = planeAt(LAYER_PLANE(layer), vec2(first)), b = planeAt(LAYER_PLANE(layer), vec2(last));
+        return vec4((a.rgb * a.a + b.rgb * b.a) / max(a.a + b.a, 1e-12), 1.0 - sqrt((1.0 - a.a) * (1.0 - b.a)));
+    }
+#endif
+    return planeAt(LAYER_PLANE(layer), vec2(hasFront ? first : last, hasBack ? last : first));
 }
 
 // Place of the value at p, an end of a sample's part.
-float slabEnd(int layer, vec3 p) {
-    vec2 s = reconstruct(LAYER_FIELD(layer), p);
-    return present(s) ? s.x * layerMap[layer].x + layerMap[layer].y : kUnknown;
+Noted slabEnd(int layer, vec3 p) {
+    Reading s = readAt(LAYER_FIELD(layer), p);
+    return note(s, s.x * layerMap[layer].x + layerMap[layer].y);
 }
 #endif

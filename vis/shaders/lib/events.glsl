@@ -24,6 +24,14 @@ void findEvents() {
         float doi = degreeOfInterest(p);
         vec3 c = transfer(LAYERS + i, x).rgb;
         float level = x * (sliceMap[i].z + 1.0), width = fwidth(level);
+#if PARTS
+        // Where the value jumps there is no line: by the change within the part.
+        vec3 across = dFdx(world), up = dFdy(world);
+        if (FIELD_PARTS(SLICE_FIELD(i)) > 1) {
+            vec3 g = cellGradient(SLICE_FIELD(i), p, s.x, sliceMap[i].z > 0.5) / worldCell;
+            width = (abs(dot(g, across)) + abs(dot(g, up))) * abs(sliceMap[i].x) * (sliceMap[i].z + 1.0);
+        }
+#endif
         if (sliceMap[i].z > 0.5 && width > 0.0) {
             // Contours at level = 1, 2, ..., n; a line 1.4 pixels wide, dark on light colours and light on dark ones.
             float away = abs(level - clamp(floor(level + 0.5), 1.0, sliceMap[i].z)) / width;

@@ -1,27 +1,30 @@
 // Iso-surfaces: where the ray crosses them between two samples, and what is seen there.
 #if ISOS > 0
 
-// Shows those that are met between samples k - 1 and k, nearest first, with the events before and between them; the
-// values at sample k are then `before` of their layers.
+// Shows those that are met between samples k - 1 and k of one part, nearest first, with the events before and between
+// them; the values at sample k are then `before` of their layers.
 void showSurfaces(int k) {
     Met surfaces[ISOS];
     vec3 p = cellsAt(float(k));
     for (int n = 0; n < ISOS; ++n) {
         int i = ISO_LAYER(n), field = LAYER_FIELD(i);
         float value = layerMap[i].z;
-        vec2 a = reconstruct(field, p - ray.cellsPerSample), b = reconstruct(field, p);
-        bool crossed = k > 0 && present(a) && present(b) && (a.x >= value) != (b.x >= value);
+        Reading a = readAt(field, p - ray.cellsPerSample), b = readAt(field, p);
+        bool crossed = k > 0 && present(a) && present(b) && samePart(a, b) && (a.x >= value) != (b.x >= value);
         bool above = a.x >= value;
-        before[i] = present(b) ? b.x : kUnknown;
+        before[i] = note(b, b.x);
         float lo = -1.0, hi = 0.0;
         for (int m = 0; m < (crossed ? bisections : 0); ++m) {
             float middle = 0.5 * (lo + hi);
-            bool same = (reconstruct(field, p + middle * ray.cellsPerSample).x >= value) == above;
+            bool same = (readPart(field, b, p + middle * ray.cellsPerSample).x >= value) == above;
             lo = same ? middle : lo;
             hi = same ? hi : middle;
         }
         float offset = 0.5 * (lo + hi), at = float(k) + offset;
         vec3 q = p + offset * ray.cellsPerSample;
+#if PARTS
+        crossed = crossed && samePart(readAt(field, q), b);
+#endif
         float doi = degreeOfInterest(q);
         crossed = crossed && clipShows(at);
         vec3 world = worldAt(at);

@@ -30,8 +30,10 @@ LookSample lookSample(int i, int field, vec3 p, vec3 perCell, float weight, vec3
         vec3 across = -direction - along * normal;
         across *= inversesqrt(max(dot(across, across), 1e-12));
         vec3 q = p + across * lookReach * cellsPerWorld;
-        vec2 there = reconstruct(field, q);
-        vec3 other = shadingGradient(cellGradient(field, q, present(there) ? there.x : kUnknown, shown && surface));
+        Reading here = readAt(field, p);
+        vec2 there = readPart(field, here, q);
+        float centre = present(there) ? there.x : kUnknown;
+        vec3 other = shadingGradient(partGradient(field, here, q, centre, shown && surface));
         float size = dot(other, other);
         at.curvature = size > 0.0 ? abs(dot(other * inversesqrt(size) - normal, across)) / lookReach : 0.0;
     }

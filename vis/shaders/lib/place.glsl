@@ -18,4 +18,6 @@ vec3 dataCells(vec3 p) {
 }
 #if LENS_BENDS
 #define reconstruct(field, p) reconstruct(field, dataCells(p))
+#define readAt(field, p) readAt(field, dataCells(p))
+#define readPart(field, like, p) readPart(field, like, dataCells(p))
 #endif

@@ -25,13 +25,13 @@ Page pageAt(int field, vec3 p) {
 }
 
 // Inside of a brick and its halo one page is enough: a place near p is found in the brick of p. (Not on BCC, where it
-// gained nothing.)
+// gained nothing, nor where parts have pages of their own.)
 Page heldPage = Page(vec3(0.0), 0.0);
 vec3 heldAt = vec3(0.0);
 bool held = false;
 
 void holdPage(int field, vec3 p) {
-#if LATER == 0 && !LENS_BENDS && !BCC
+#if LATER == 0 && !PARTS && !LENS_BENDS && !BCC
     heldPage = pageAt(field, p);
     heldAt = p;
     held = true;
