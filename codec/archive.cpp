@@ -3,10 +3,12 @@
 #include "codec/archive_impl.h"
 #include "volume/alternating_source.h"
 #include "volume/memory_source.h"
+#include "volume/quantities.h"
 
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 
 namespace tessera::codec {
 
@@ -89,6 +91,17 @@ Archive::Archive(const std::string& path) {
     impl.index =
         readIndex(bytes, header, {impl.components, bricks, impl.metadata.grid, impl.metadata.info.times.size()}, path);
     if (header.version >= kGrowingVersion) impl.metadata.info.times = impl.index.times;
+    // While an archive is written, and once it has grown, the metadata may tell of more or fewer times.
+    const auto fit = [](std::vector<volume::Quantity>& quantities, std::size_t times) {
+        for (volume::Quantity& quantity : quantities)
+            quantity.values.resize(times, std::numeric_limits<double>::quiet_NaN());
+    };
+    Metadata& metadata = impl.metadata;
+    fit(metadata.info.quantities, metadata.info.times.size());
+    fit(metadata.sourceQuantities, metadata.sourceTimes.size());
+    if (metadata.alternating)
+        metadata.info.quantities =
+            volume::atTimes(metadata.sourceQuantities, metadata.sourceTimes, metadata.info.times);
     if (impl.metadata.alternating && impl.metadata.info.times.size() < 2)
         throw Error("d4 needs two times", path, "index");
     impl.bricks = bricks;

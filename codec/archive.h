@@ -47,7 +47,8 @@ public:
     std::optional<volume::BrickImportance> importance(const volume::BrickKey& key) const override;
     /// Of D4* frames: between frames of the same parity.
     std::optional<volume::BrickChange> change(const volume::BrickKey& key, int toTime) const override;
-    /// Coarse levels are held within the brick's range; floats that are not finite count as absent.
+    /// Coarse levels are held within the brick's range; floats that are not finite count as absent. Where several parts
+    /// of a parameter (volume/parts.h) meet in a brick its coarse samples are made of one each.
     volume::BrickSamples read(const volume::BrickKey& key) const override;
 
     const Metadata& metadata() const;

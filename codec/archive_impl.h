@@ -79,6 +79,10 @@ struct Archive::Impl {
     /// The stored numbers of a brick decoded at full resolution; those of absent samples mean nothing.
     Bytes numbersOf(const FrameRecord& frame, volume::ScalarType type, const DecodedBrick& decoded) const;
     volume::BrickSamples readComponent(int parameter, int component, const volume::BrickKey& key) const;
+    /// The same; where several parts of the parameter (volume/parts.h) meet in the brick, coarser levels are made of
+    /// level 0, part by part: those stored mix them. So are those of labels, which a prediction between the grids of
+    /// BCC mixes too.
+    volume::BrickSamples readOfParts(int parameter, int component, const volume::BrickKey& key) const;
     volume::BrickStats statsOf(int parameter, int component, const volume::BrickKey& key) const;
     std::optional<volume::BrickChange> changeOf(int parameter, int component, const volume::BrickKey& key,
                                                 int toTime) const;

@@ -2,12 +2,15 @@
 #include "codec/brick_codec_v1.h"
 #include "volume/memory_source.h"
 #include "volume/parallel.h"
+#include "volume/part_masks.h"
+#include "volume/parts_bricks.h"
 #include "volume/slices.h"
 
 #include <algorithm>
 #include <bit>
 #include <cmath>
 #include <concepts>
+#include <functional>
 
 namespace tessera::codec {
 
@@ -153,10 +156,28 @@ volume::BrickSamples Archive::Impl::readComponent(int number, int component, con
     return out;
 }
 
+volume::BrickSamples Archive::Impl::readOfParts(int number, int component, const volume::BrickKey& key) const {
+    const bool isLabel = parameter(number).categorical && parameter(number).components == 1;
+    const int label = isLabel ? number : volume::labelOf(metadata.info, parameter(number));
+    if (key.level == 0 || label < 0) return readComponent(number, component, key);
+    if (const volume::BrickStats stats = statsOf(label, 0, key); stats.min == stats.max && stats.presentFraction == 1)
+        return readComponent(number, component, key);
+    volume::BrickKey fine = key;
+    fine.level = 0;
+    const volume::BrickSamples labels = readComponent(label, 0, fine);
+    if (isLabel) return volume::coarserLabels(metadata.grid, key, labels);
+    const volume::Parts& parts = parameter(number).parts;
+    const std::vector<std::uint8_t> own = volume::partsOfSamples(labels, parts);
+    if (std::adjacent_find(own.begin(), own.end(), std::not_equal_to<>()) == own.end())
+        return readComponent(number, component, key);
+    return volume::coarserOfParts(metadata.grid, key.level, readComponent(number, component, fine), labels,
+                                  volume::coarserLabels(metadata.grid, key, labels), parts);
+}
+
 volume::BrickSamples Archive::read(const volume::BrickKey& key) const {
     const volume::Channel& channel = impl_->channelOf(key);
-    if (!channel.magnitude) return impl_->readComponent(channel.parameter, channel.component, key);
-    const auto part = [&](int c) { return impl_->readComponent(channel.parameter, c, key); };
+    if (!channel.magnitude) return impl_->readOfParts(channel.parameter, channel.component, key);
+    const auto part = [&](int c) { return impl_->readOfParts(channel.parameter, c, key); };
     if (channel.component == 3) return volume::magnitude(part(0), part(1), part(2));
     volume::BrickSamples sum = part(0), nothing;
     nothing.size = sum.size;

@@ -1,5 +1,7 @@
 #include "codec/continuation.h"
 
+#include "volume/quantities.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -63,6 +65,26 @@ void Continuation::widen(const DatasetInfo& from, DatasetInfo& to) const {
     }
 }
 
+void Continuation::noteResampled(const std::vector<std::optional<ResampleError>>& before,
+                                 const std::vector<ResampleError>& then, Metadata& now) const {
+    if (before.empty() && then.empty()) return;
+    const bool isNew = firstTime == 0;
+    now.resampled.resize(now.info.parameters.size());
+    for (std::size_t p = 0; p < parameterOf.size(); ++p) {
+        std::optional<ResampleError> error;
+        if (p < before.size()) error = before[p];
+        const bool known = before.empty() || error;
+        if (p < then.size()) error = joined(error, then[p]);
+        std::optional<ResampleError>& noted = now.resampled[std::size_t(parameterOf[p])];
+        if (!known || !error)
+            noted.reset();
+        else if (isNew)
+            noted = error;
+        else if (noted) // else the cost at earlier times is not known
+            noted->add(*error);
+    }
+}
+
 bool bringsTimes(const Archive& archive, const DatasetInfo& added) {
     return std::any_of(added.parameters.begin(), added.parameters.end(), [&](const Parameter& parameter) {
         return find(archive.metadata().info, parameter.name) != nullptr;
@@ -85,6 +107,7 @@ Continuation continuationOf(const Archive& archive, Metadata& metadata) {
     metadata.info = old.info;
     metadata.grid = old.grid;
     metadata.source = old.source;
+    metadata.resampled = old.resampled;
     metadata.lossless = old.lossless && metadata.lossless;
     metadata.maxError = std::max(metadata.maxError, old.maxError);
     if (!bringsTimes(archive, added)) {
@@ -97,6 +120,8 @@ Continuation continuationOf(const Archive& archive, Metadata& metadata) {
             place.parameterOf.push_back(int(metadata.info.parameters.size()));
             metadata.info.parameters.push_back(parameter);
         }
+        for (const volume::Quantity& quantity : added.quantities)
+            if (!volume::findQuantity(old.info, quantity.name)) metadata.info.quantities.push_back(quantity);
         return place;
     }
     for (const Parameter& parameter : added.parameters) {
@@ -113,6 +138,8 @@ Continuation continuationOf(const Archive& archive, Metadata& metadata) {
                     path);
     place.firstTime = old.info.times.size();
     metadata.info.times.insert(metadata.info.times.end(), added.times.begin(), added.times.end());
+    metadata.info.quantities =
+        volume::joined(old.info.quantities, place.firstTime, added.quantities, added.times.size());
     return place;
 }
 

@@ -17,6 +17,11 @@ struct Continuation {
     Continuation() = default;
     /// Widens the ranges of the archive's parameters by those that are known of the data set's.
     void widen(const volume::DatasetInfo& from, volume::DatasetInfo& to) const;
+    /// Adds what resampling has cost, by parameter of the data set, to what `now`, the metadata of the archive as it
+    /// was, notes: `before`, that the data set had already (of what was resampled at an unknown cost: nothing), and
+    /// `then`.
+    void noteResampled(const std::vector<std::optional<ResampleError>>& before, const std::vector<ResampleError>& then,
+                       Metadata& now) const;
 };
 
 /// True if a data set brings later times of parameters of the archive, not further parameters.

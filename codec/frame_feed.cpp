@@ -2,6 +2,7 @@
 
 #include "codec/stopwatch.h"
 #include "volume/number_extent.h"
+#include "volume/part_masks.h"
 #include "volume/resample.h"
 
 #include <algorithm>
@@ -77,7 +78,10 @@ void widenRanges(std::vector<Range>& ranges, const std::vector<Range>& more) {
 
 FrameFeed::FrameFeed(volume::Dataset& dataset, FeedOptions options, std::stop_token stop)
     : dataset_(dataset), info_(dataset.info), options_(std::move(options)), stop_(std::move(stop)),
-      steps_(info_.times.size() * info_.parameters.size()) {}
+      load_(options_.toBcc ? volume::withParts(dataset).load : dataset.load),
+      steps_(info_.times.size() * info_.parameters.size()) {
+    if (options_.toBcc) options_.slabs.load = volume::withParts(info_, std::move(options_.slabs.load));
+}
 
 FrameFeed::~FrameFeed() {
     if (coming_.valid()) coming_.wait();
@@ -89,13 +93,17 @@ void FrameFeed::readWhole(FeedStep& step, const volume::Parameter& parameter) {
         Stopwatch load(step.loadSeconds);
         for (int c = 0; c < parameter.components; ++c)
             fields.push_back(
-                checked(dataset_.load(step.parameter, c, int(step.time)), parameter, info_.lattice.size, step.time));
+                checked(load_(step.parameter, c, int(step.time)), parameter, info_.lattice.size, step.time));
         if (parameter.ranges.empty()) step.ranges = rangesOf(fields);
     }
     Stopwatch resample(step.resampleSeconds);
     for (Field& field : fields) {
-        if (options_.toBcc) field = volume::toBcc(field, parameter.categorical, options_.resample, Progress{{}, stop_});
-        step.frames.emplace_back(std::move(field));
+        if (options_.toBcc) {
+            Field stored = volume::toBcc(field, parameter.categorical, options_.resample, Progress{{}, stop_});
+            if (options_.measures) step.resampled.add(resampleError(field, stored, parameter.categorical));
+            field = std::move(stored);
+        }
+        step.frames.emplace_back(volume::withoutParts(std::move(field)));
     }
 }
 
@@ -131,7 +139,13 @@ void FrameFeed::readSlabs(FeedStep& step, const volume::Parameter& parameter) {
             frame = volume::resampled(frame, options_.grid.lattice,
                                       volume::optionsFor(parameter.categorical, options_.resample), options_.slabs.step,
                                       options_.slabs.store.folder, progress);
+        const volume::SliceReader inParts = frame.read;
+        frame.read = [inParts](int first, int count) { return volume::withoutParts(inParts(first, count)); };
         step.frames.emplace_back(frame, options_.grid, options_.slabs.store, progress);
+        if (!options_.toBcc || !options_.measures) continue;
+        step.resampled.add(resampleError(
+            info_.lattice, [&, c](int first, int count) { return slicesOf(c, first, count); }, frame.lattice, inParts,
+            parameter.categorical));
     }
 }
 

@@ -1,10 +1,12 @@
 #pragma once
 
 #include "codec/frame_samples.h"
+#include "codec/resample_error.h"
 #include "volume/dataset.h"
 #include "volume/progress.h"
 #include "volume/resample.h"
 
+#include <functional>
 #include <future>
 #include <optional>
 #include <vector>
@@ -16,6 +18,7 @@ struct FeedStep {
     int parameter = 0;
     std::size_t time = 0;
     std::vector<FrameSamples> frames; ///< of each component
+    ResampleError resampled;          ///< of all components, where it was measured
     std::vector<Range> ranges;        ///< of what was read, components, then magnitude; empty where they were known
     std::uint64_t sourceSamples = 0, sourceBytes = 0;
     double loadSeconds = 0, resampleSeconds = 0;
@@ -39,6 +42,7 @@ struct FeedOptions {
     SlabReading slabs;
     bool ahead = false;      ///< the next step is read while the last one is in use, for memory of two
     bool rangesOnly = false; ///< of slabs: no frames are made
+    bool measures = false;   ///< what resampling costs
 };
 
 /// Reads a data set time by time, in each parameter by parameter, and resamples it: while one step is coded, the next
@@ -63,6 +67,8 @@ private:
     volume::DatasetInfo info_; ///< as it was at first
     FeedOptions options_;
     std::stop_token stop_;
+    std::function<volume::Field(int parameter, int component, int time)>
+        load_; ///< with parts where frames are resampled
     std::size_t steps_, taken_ = 0;
     std::future<FeedStep> coming_;
 };

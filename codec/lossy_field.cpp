@@ -158,8 +158,22 @@ int stepWithin(volume::ScalarType type, double maxError) {
     });
 }
 
+bool stepFits(volume::ScalarType type, std::int64_t step, double lo, double hi) {
+    const auto rounded = [step](double number) {
+        return double(step) * std::floor((std::abs(number) + double(step / 2)) / double(step));
+    };
+    return volume::dispatch(type, [&]<class T>(T) {
+        const double least = lo < 0 ? -rounded(lo) : lo, most = hi > 0 ? rounded(hi) : hi;
+        return least >= double(std::numeric_limits<T>::lowest()) && most <= double(std::numeric_limits<T>::max());
+    });
+}
+
 volume::Field inSteps(volume::Field field, double maxError) {
     const std::int64_t step = stepWithin(field.type, maxError);
+    return countedIn(std::move(field), step);
+}
+
+volume::Field countedIn(volume::Field field, std::int64_t step) {
     if (step == 1) return field;
     volume::dispatch(field.type, [&]<class T>(T) {
         if constexpr (!std::same_as<T, float>)

@@ -6,6 +6,7 @@
 #include "volume/brick_source.h"
 #include "volume/field.h"
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -16,6 +17,10 @@ namespace tessera::codec {
 /// `maxError` (in stored numbers) of what it was. 0 stays 0. The step depends on the type and the bound alone. Floats
 /// and labels are not for this.
 volume::Field inSteps(volume::Field field, double maxError);
+/// The same with any step that stepFits.
+volume::Field countedIn(volume::Field field, std::int64_t step);
+/// Whether whole numbers from lo to hi, of a type, stay within it when they are rounded to multiples of a step.
+bool stepFits(volume::ScalarType type, std::int64_t step, double lo, double hi);
 /// The step inSteps takes: at most 2 maxError + 1, and such that no value leaves the type.
 int stepWithin(volume::ScalarType type, double maxError);
 

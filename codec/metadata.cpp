@@ -31,16 +31,29 @@ json latticeJson(const volume::Lattice& lattice, bool alternating = false) {
 
 json parameterJson(const volume::Parameter& parameter) {
     json labels = json::array(), ranges = json::array();
-    for (const volume::Label& label : parameter.labels)
+    for (const volume::Label& label : parameter.labels) {
         labels.push_back({{"value", label.value}, {"name", label.name}});
+        if (!label.color.empty()) labels.back()["color"] = label.color;
+    }
     for (const Range& range : parameter.ranges) ranges.push_back({range.lo, range.hi});
-    return {{"name", parameter.name},
-            {"unit", parameter.unit},
-            {"components", parameter.components},
-            {"type", volume::name(parameter.type)},
-            {"categorical", parameter.categorical},
-            {"labels", std::move(labels)},
-            {"ranges", std::move(ranges)}};
+    json out = {{"name", parameter.name},
+                {"unit", parameter.unit},
+                {"components", parameter.components},
+                {"type", volume::name(parameter.type)},
+                {"categorical", parameter.categorical},
+                {"labels", std::move(labels)},
+                {"ranges", std::move(ranges)}};
+    if (!parameter.parts.label.empty())
+        out["parts"] = {{"label", parameter.parts.label}, {"regions", parameter.parts.regions}};
+    if (parameter.unitGuessed) out["unitGuessed"] = true;
+    return out;
+}
+
+/// Numbers, null where one is not known.
+json quantityJson(const volume::Quantity& quantity) {
+    json values = json::array();
+    for (const double value : quantity.values) values.push_back(std::isfinite(value) ? json(value) : json());
+    return {{"name", quantity.name}, {"unit", quantity.unit}, {"values", std::move(values)}};
 }
 
 /// A place in the document, for messages, and typed access below it.
@@ -54,6 +67,8 @@ public:
         if (!value_.is_object() || !value_.contains(key)) fail(std::string("the key '") + key + "' is missing");
         return {value_.at(key), path_ + "/" + key, file_};
     }
+    bool has(const char* key) const { return value_.is_object() && value_.contains(key); }
+    bool isNull() const { return value_.is_null(); }
     std::vector<Node> items(std::size_t most) const {
         if (!value_.is_array() || value_.size() > most) fail("not a list of at most " + std::to_string(most));
         std::vector<Node> all;
@@ -135,13 +150,51 @@ volume::Parameter readParameter(const Node& node) {
     parameter.categorical = node["categorical"].flag();
     constexpr int kMost = 1 << 30;
     for (const Node& label : node["labels"].items(65536))
-        parameter.labels.push_back({label["value"].integer(-kMost, kMost), label["name"].text()});
+        parameter.labels.push_back({label["value"].integer(-kMost, kMost), label["name"].text(),
+                                    label.has("color") ? label["color"].text() : std::string()});
+    if (node.has("parts")) {
+        parameter.parts.label = node["parts"]["label"].text();
+        for (const Node& part : node["parts"]["regions"].items(65536)) {
+            std::vector<int>& values = parameter.parts.regions.emplace_back();
+            for (const Node& value : part.items(65536)) values.push_back(value.integer(-kMost, kMost));
+        }
+    }
+    if (node.has("unitGuessed")) parameter.unitGuessed = node["unitGuessed"].flag();
     for (const Node& range : node["ranges"].items(65)) {
         const auto ends = range.items(2);
         if (ends.size() != 2) range.fail("not two numbers");
         parameter.ranges.push_back({ends[0].number(), ends[1].number()});
     }
     return parameter;
+}
+
+volume::Quantity readQuantity(const Node& node) {
+    volume::Quantity quantity{node["name"].text(), node["unit"].text(), {}};
+    for (const Node& value : node["values"].items(1 << 20))
+        quantity.values.push_back(value.isNull() ? std::nan("") : value.number());
+    return quantity;
+}
+
+/// By parameter, null where not known.
+json resampledJson(const std::vector<std::optional<ResampleError>>& resampled) {
+    json out = json::array();
+    for (const std::optional<ResampleError>& error : resampled)
+        out.push_back(error ? json{{"meanSquare", error->meanSquare},
+                                   {"largest", error->largest},
+                                   {"samples", error->samples},
+                                   {"share", error->share}}
+                            : json());
+    return out;
+}
+
+std::vector<std::optional<ResampleError>> readResampled(const Node& node, std::size_t parameters) {
+    std::vector<std::optional<ResampleError>> resampled;
+    for (const Node& error : node.items(parameters))
+        resampled.push_back(error.isNull()
+                                ? std::nullopt
+                                : std::optional(ResampleError{error["meanSquare"].number(), error["largest"].number(),
+                                                              error["samples"].number(), error["share"].number()}));
+    return resampled;
 }
 
 /// Of all but the times, which the index has.
@@ -165,6 +218,10 @@ std::string toJson(const Metadata& metadata) {
         {"lossless", metadata.lossless},
         {"maxError", metadata.maxError},
         {"options", toJson(metadata.options)}};
+    if (info.timeName != volume::DatasetInfo().timeName) document["data"]["timeName"] = info.timeName;
+    for (const volume::Quantity& quantity : metadata.alternating ? metadata.sourceQuantities : info.quantities)
+        document["data"]["quantities"].push_back(quantityJson(quantity));
+    if (!metadata.resampled.empty()) document["resampled"] = resampledJson(metadata.resampled);
     if (metadata.alternating) document["sourceTimes"] = metadata.sourceTimes;
     return document.dump(-1, ' ', false, json::error_handler_t::replace);
 }
@@ -189,8 +246,14 @@ Metadata metadataFromJson(std::string_view text, bool hasTimes, const std::strin
     if (info.parameters.empty()) data["parameters"].fail("no parameters");
     info.times.clear();
     if (hasTimes) info.times = readTimes(data["times"]);
+    if (root.has("resampled")) metadata.resampled = readResampled(root["resampled"], info.parameters.size());
     if (metadata.alternating) metadata.sourceTimes = readTimes(root["sourceTimes"]);
     info.timeUnit = data["timeUnit"].text();
+    if (data.has("timeName")) info.timeName = data["timeName"].text();
+    if (data.has("quantities")) {
+        std::vector<volume::Quantity>& quantities = metadata.alternating ? metadata.sourceQuantities : info.quantities;
+        for (const Node& quantity : data["quantities"].items(4096)) quantities.push_back(readQuantity(quantity));
+    }
     info.provenance = data["provenance"].text();
 
     const Node grid = root["grid"];

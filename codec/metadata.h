@@ -2,9 +2,12 @@
 
 #include "codec/entropy.h"
 #include "codec/pack.h"
+#include "codec/resample_error.h"
 #include "volume/brick_source.h"
 
+#include <optional>
 #include <string>
+#include <vector>
 
 /// The JSON part of an archive: all that is known of the data set, and how it was packed.
 namespace tessera::codec {
@@ -17,10 +20,14 @@ struct Metadata {
     /// grid of the even ones.
     bool alternating = false;
     std::vector<double> sourceTimes; ///< of an alternating archive: the times the samples came from
-    bool lossless = true;            ///< every stored sample is exact
-    double maxError = 0;             ///< otherwise: bound on |error|, relative to a parameter's range
-    std::string program;             ///< that wrote it, with its version
-    PackOptions options;             ///< what it was packed with, and is when it grows
+    /// Of an alternating archive: info.quantities at the times the samples came from.
+    std::vector<volume::Quantity> sourceQuantities = {};
+    bool lossless = true; ///< every stored sample is exact
+    double maxError = 0;  ///< otherwise: bound on |error|, relative to a parameter's range
+    /// What resampling cost, by parameter; none where it is not known. Empty: nothing was resampled, or all is unknown.
+    std::vector<std::optional<ResampleError>> resampled;
+    std::string program; ///< that wrote it, with its version
+    PackOptions options; ///< what it was packed with, and is when it grows
     bool operator==(const Metadata&) const = default;
 };
 

@@ -7,9 +7,11 @@
 #include "codec/frame_feed.h"
 #include "codec/lossy_field.h"
 #include "codec/memory_plan.h"
+#include "codec/pack_again.h"
 #include "codec/pack_passes.h"
 #include "codec/pack_size.h"
 #include "codec/stopwatch.h"
+#include "volume/quantities.h"
 #include "volume/resample.h"
 #include "volume/series_dataset.h"
 
@@ -130,11 +132,21 @@ void leaveOut(FrameSamples& samples, const volume::BrickGrid& grid, const std::v
     });
 }
 
+/// Quantities at the times that D4* frames are made of: those of the source, before it those of the archive.
+std::vector<volume::Quantity> quantitiesOf(const volume::DatasetInfo& source, const std::vector<double>& times,
+                                           const Archive* grown) {
+    const std::size_t old = grown ? grown->metadata().sourceTimes.size() : 0;
+    const std::vector<double> added(times.begin() + std::ptrdiff_t(std::min(old, times.size())), times.end());
+    const std::vector<volume::Quantity> own = volume::atTimes(source.quantities, source.times, added);
+    if (grown && added.empty()) return grown->metadata().sourceQuantities;
+    return grown ? volume::joined(grown->metadata().sourceQuantities, old, own, added.size()) : own;
+}
+
 /// One run of pack or append.
 class Packing {
 public:
     /// Into a new archive, or behind what is in `grown`, whose options `options` are then.
-    Packing(volume::Dataset& source, const SlabInput& slabs, const PackedBefore& before, const PackOptions& options,
+    Packing(volume::Dataset& source, const SlabInput& slabs, const PackedAgain& before, const PackOptions& options,
             const std::string& path, const Archive* grown)
         : source_(source), dataset_(source), options_(options), path_(path), grown_(grown) {
         check(source.info, options);
@@ -148,6 +160,7 @@ public:
                                                              options.resample, slabs.slices)
                                         : volume::framesOfD4(source, options.resample, slabs.slices);
             metadata_.sourceTimes = std::move(made.times);
+            metadata_.sourceQuantities = quantitiesOf(source.info, metadata_.sourceTimes, grown);
             dataset_ = std::move(made.frames);
             slicesOfD4 = std::move(made.slices);
         }
@@ -171,7 +184,9 @@ public:
                     .grid = metadata_.grid,
                     .slabs = slabsOf(memory_, slabs, slicesOfD4, path),
                     .ahead = memory_.readAhead,
-                    .rangesOnly = false};
+                    .rangesOnly = false,
+                    .measures = false};
+        resampledBefore_ = before.resampled;
     }
 
     PackSummary run(const Progress& progress);
@@ -195,10 +210,12 @@ private:
     Continuation place_;
     MemoryPlan memory_;
     FeedOptions reading_;
-    std::vector<std::vector<Range>> ranges_; ///< gathered on the way, by parameter
-    std::vector<double> errors_;             ///< largest of a sample, by parameter, in its unit
-    std::vector<double> errorsBefore_;       ///< that the source had already
-    std::vector<std::uint8_t> discarded_;    ///< by brick
+    std::vector<std::vector<Range>> ranges_;                    ///< gathered on the way, by parameter
+    std::vector<double> errors_;                                ///< largest of a sample, by parameter, in its unit
+    std::vector<double> errorsBefore_;                          ///< that the source had already
+    std::vector<std::uint8_t> discarded_;                       ///< by brick
+    std::vector<std::optional<ResampleError>> resampledBefore_; ///< of the source, by parameter
+    std::vector<ResampleError> resampled_;                      ///< measured so far, by parameter; empty: not measured
     PackSummary summary_;
 };
 
@@ -220,6 +237,7 @@ Metadata Packing::soFar(std::size_t wholeTimes) const {
     if (wholeTimes < now.info.times.size()) // of D4*: what the frames so far reach
         std::erase_if(now.sourceTimes, [&](double time) { return time > now.info.times[wholeTimes - 1]; });
     place_.widen(read, now.info);
+    place_.noteResampled(resampledBefore_, resampled_, now);
     for (std::size_t p = 0; p < errors_.size(); ++p) {
         const double extent = extentOf(now.info.parameters[std::size_t(place_.parameterOf[p])]);
         if (extent > 0) now.maxError = std::max(now.maxError, (errorsBefore_[p] + errors_[p]) / extent);
@@ -247,7 +265,8 @@ void Packing::addFrame(ArchiveWriter& writer, FrameSamples& samples, int paramet
     frame.range = c < known.size() ? known[c] : Range{1, 0};
 
     leaveOut(samples, metadata_.grid, discarded_);
-    frame.maxError = exact ? 0 : boundFor(options_, whole, samples);
+    const FrameBound bound = exact ? FrameBound() : boundFor(options_, whole, samples);
+    frame.maxError = bound.error;
     frame.keepsSquares = options_.psnr > 0;
     double error = frame.maxError * std::abs(samples.scale());
     if (hasThreshold(options_) && !about.categorical) {
@@ -261,7 +280,7 @@ void Packing::addFrame(ArchiveWriter& writer, FrameSamples& samples, int paramet
         const bool mayRepeat = left.numbers.kind == NumberKind::Quantised && place_.firstTime + time > 0;
         error = (mayRepeat ? frame.maxError : left.maxError) * scale;
     } else if (frame.maxError > 0 && samples.type() != ScalarType::F32) {
-        samples.change([&](Field& part, Slab) { part = inSteps(std::move(part), frame.maxError); });
+        samples.change([&](Field& part, Slab) { part = countedIn(std::move(part), bound.step); });
         frame.maxError = 0;
     }
     errors_[p] = std::max(errors_[p], error);
@@ -275,6 +294,7 @@ void Packing::addStep(ArchiveWriter& writer, FeedStep fed, const Progress& progr
     summary_.loadSeconds += fed.loadSeconds;
     summary_.resampleSeconds += fed.resampleSeconds;
     widenRanges(ranges_[p], fed.ranges);
+    if (reading_.measures) resampled_[p].add(fed.resampled);
     if (times() == 1) settleRanges(dataset_.info, ranges_);
     if (!metadata_.alternating) {
         summary_.sourceSamples += fed.sourceSamples;
@@ -313,6 +333,8 @@ PackSummary Packing::run(const Progress& progress) {
         summary_.bricks = brickCount(metadata_.grid);
         const auto writer = grown_ ? std::make_unique<ArchiveWriter>(*grown_, metadata_, memory_.keepFrames)
                                    : std::make_unique<ArchiveWriter>(path_, metadata_, memory_.keepFrames);
+        reading_.measures = reading_.toBcc; // not in the passes before
+        if (reading_.measures) resampled_.resize(dataset_.info.parameters.size());
         FrameFeed feed(dataset_, reading_, progress.stop);
         const std::vector<volume::Parameter>& parameters = dataset_.info.parameters;
         const std::size_t steps = times() * parameters.size();
@@ -350,7 +372,7 @@ PackSummary Packing::run(const Progress& progress) {
 } // namespace
 
 PackSummary pack(volume::Dataset& source, const PackOptions& options, const std::string& path, const Progress& progress,
-                 const SlabInput& slabs, const PackedBefore& before) {
+                 const SlabInput& slabs, const PackedAgain& before) {
     if (options.sizeMb == 0) return Packing(source, slabs, before, options, path, nullptr).run(progress);
     const auto trial = [&](const PackOptions& with, const std::string& to, const Progress& part) {
         return Packing(source, slabs, before, with, to, nullptr).run(part);
@@ -360,11 +382,11 @@ PackSummary pack(volume::Dataset& source, const PackOptions& options, const std:
         plain.lossless = true;
         return Packing(source, slabs, before, plain, path, nullptr).estimate(part);
     };
-    return packToSize(options, path, bytesAt, trial, progress);
+    return packToSize(options, sizeControlFor(source.info), path, bytesAt, trial, progress);
 }
 
 PackSummary append(volume::Dataset& source, const std::string& path, double memoryMb, const Progress& progress,
-                   const SlabInput& slabs, const PackedBefore& before) {
+                   const SlabInput& slabs, const PackedAgain& before) {
     const Archive grown(path);
     PackOptions options = grown.metadata().options;
     options.memoryMb = memoryMb;

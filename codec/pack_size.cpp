@@ -1,6 +1,7 @@
 #include "codec/pack_size.h"
 
 #include "codec/archive_writer.h"
+#include "codec/error_bound.h"
 #include "codec/lossy_field.h"
 #include "volume/error.h"
 #include "volume/resample.h"
@@ -68,23 +69,20 @@ double nextBound(const std::vector<SizeAtBound>& curve, const std::optional<Size
 
 /// Adds to each point about what a part of a frame takes, `times` times.
 void addEstimates(const volume::BrickGrid& grid, const volume::Field& part, const volume::Parameter& parameter,
-                  const PackOptions& options, std::size_t bricks, double times, std::vector<SizeAtBound>& curve) {
-    double extent = 0;
-    for (std::size_t k = 0; k < std::size_t(parameter.components) && k < parameter.ranges.size(); ++k)
-        extent = std::max(extent, parameter.ranges[k].hi - parameter.ranges[k].lo);
+                  const PackOptions& options, SizeControl control, std::size_t bricks, double times,
+                  std::vector<SizeAtBound>& curve) {
     const bool isFloat = part.type == volume::ScalarType::F32, bounded = !parameter.categorical;
     FrameOptions frame;
     frame.wavelet = parameter.categorical ? Wavelet::N1 : waveletOf(options.wavelet).value_or(Wavelet::W22);
     double bytes = 0;
-    int lastStep = 0;
+    std::int64_t lastStep = 0;
     for (SizeAtBound& point : curve) {
-        frame.maxError = bounded ? point.bound * extent / std::abs(part.scale) : 0;
+        const FrameBound bound = boundFor(withBound(PackOptions(), control, point.bound), parameter, part);
         if (bounded && !isFloat) {
-            const int step = stepWithin(part.type, frame.maxError);
-            frame.maxError = 0;
-            if (step != lastStep) bytes = estimateFrameBytes(grid, inSteps(part, step / 2), frame, bricks);
-            lastStep = step;
+            if (bound.step != lastStep) bytes = estimateFrameBytes(grid, countedIn(part, bound.step), frame, bricks);
+            lastStep = bound.step;
         } else if (bounded || point.bound == 0) {
+            frame.maxError = bound.error;
             bytes = estimateFrameBytes(grid, part, frame, bricks);
         }
         point.bytes += bytes * times;
@@ -93,24 +91,41 @@ void addEstimates(const volume::BrickGrid& grid, const volume::Field& part, cons
 
 /// The same of a frame; of one in a scratch file two layers of bricks stand for all.
 void addEstimates(const volume::BrickGrid& grid, const FrameSamples& samples, const volume::Parameter& parameter,
-                  const PackOptions& options, double times, std::vector<SizeAtBound>& curve) {
+                  const PackOptions& options, SizeControl control, double times, std::vector<SizeAtBound>& curve) {
     constexpr std::size_t kBricks = 8;
-    if (samples.whole()) return addEstimates(grid, *samples.whole(), parameter, options, kBricks, times, curve);
+    if (samples.whole())
+        return addEstimates(grid, *samples.whole(), parameter, options, control, kBricks, times, curve);
     constexpr int kLayers = 2;
     const int layers = grid.count().z, taken = std::min(kLayers, layers);
     for (int i = 0; i < taken; ++i) {
         const int layer = (2 * i + 1) * layers / (2 * taken);
         const Slab slab = layerOf(grid, layer);
-        addEstimates(slab.grid(grid), samples.slices(slab.first, slab.count), parameter, options, kBricks / kLayers,
-                     times * layers / taken, curve);
+        addEstimates(slab.grid(grid), samples.slices(slab.first, slab.count), parameter, options, control,
+                     kBricks / kLayers, times * layers / taken, curve);
     }
 }
 
 } // namespace
 
+SizeControl sizeControlFor(const volume::DatasetInfo& info) {
+    const auto isWhole = [](const volume::Parameter& parameter) {
+        return !parameter.categorical && parameter.type != volume::ScalarType::F32;
+    };
+    return std::any_of(info.parameters.begin(), info.parameters.end(), isWhole) ? SizeControl::Psnr
+                                                                                : SizeControl::LargestError;
+}
+
+PackOptions withBound(PackOptions options, SizeControl control, double bound) {
+    const bool psnr = control == SizeControl::Psnr && bound > 0;
+    options.psnr = psnr ? 20 * std::log10(std::sqrt(3.0) / bound) : 0;
+    options.maxError = psnr ? 0 : bound;
+    return options;
+}
+
 std::vector<SizeAtBound> estimateSizes(const volume::Dataset& dataset, FeedOptions reading, const PackOptions& options,
                                        const Progress& progress) {
     constexpr int kFinest = -26, kCoarsest = -2; // powers of two
+    const SizeControl control = sizeControlFor(dataset.info);
     std::vector<SizeAtBound> curve{{0, 0}};
     for (int exponent = kFinest; exponent <= kCoarsest; ++exponent) curve.push_back({std::ldexp(1.0, exponent), 0});
     constexpr std::size_t kTimes = 2;
@@ -118,6 +133,7 @@ std::vector<SizeAtBound> estimateSizes(const volume::Dataset& dataset, FeedOptio
     const auto timeOf = [all, times](int t) { return int((2 * std::size_t(t) + 1) * all / (2 * times)); };
     volume::Dataset some = dataset;
     some.info.times.resize(times);
+    some.info.quantities.clear();
     some.load = [load = dataset.load, timeOf](int p, int c, int t) { return load(p, c, timeOf(t)); };
     if (reading.slabs.load)
         reading.slabs.load = [load = reading.slabs.load, timeOf](int p, int c, int t, int first, int count) {
@@ -130,21 +146,22 @@ std::vector<SizeAtBound> estimateSizes(const volume::Dataset& dataset, FeedOptio
         progress.advance(double(step) / double(steps), "sizes");
         const FeedStep fed = feed.next();
         for (const FrameSamples& samples : fed.frames)
-            addEstimates(reading.grid, samples, some.info.parameters[std::size_t(fed.parameter)], options,
+            addEstimates(reading.grid, samples, some.info.parameters[std::size_t(fed.parameter)], options, control,
                          double(all) / double(times), curve);
     }
     return curve;
 }
 
-PackSummary packToSize(const PackOptions& asked, const std::string& path,
+PackSummary packToSize(const PackOptions& asked, SizeControl control, const std::string& path,
                        const std::function<std::vector<SizeAtBound>(const Progress&)>& estimate,
                        const std::function<PackSummary(const PackOptions&, const std::string&, const Progress&)>& pack,
                        const Progress& progress) {
     if (asked.maxError > 0 || asked.absError > 0 || asked.psnr > 0)
         throw Error("either a size or an error bound can be asked for, not both");
     if (asked.threshold.kind != ThresholdChoice::None) throw Error("a size cannot be asked for with a threshold");
-    constexpr int kTrials = 8;
-    constexpr double kFull = 0.9, kAim = 0.96; // of the size
+    constexpr int kTrials = 10;
+    constexpr double kFull = 0.96, kAim = 0.98; // of the size
+    constexpr double kSame = 1.01;              // ratio of bounds between which nothing is looked for: 0.09 dB
     const double wanted = asked.sizeMb * 1e6, aim = kAim * wanted;
     const std::vector<SizeAtBound> curve = estimate(progress.part(0, 0.1));
     const Scratch trial(path + ".trial-" + std::to_string(::getpid()));
@@ -153,13 +170,13 @@ PackSummary packToSize(const PackOptions& asked, const std::string& path,
     std::optional<SizeAtBound> above, below; // the nearest trials that came out too large, and small enough
     int trials = 0;
     while (trials < kTrials) {
-        PackOptions options = asked;
+        const double bound = std::min(nextBound(curve, above, below, aim), kLargestBound);
+        PackOptions options = withBound(asked, control, bound);
         options.sizeMb = 0;
-        options.maxError = std::min(nextBound(curve, above, below, aim), kLargestBound);
         const double begin = 0.1 + 0.9 * trials / kTrials;
         const PackSummary summary = pack(options, trial.path, progress.part(begin, begin + 0.9 / kTrials));
         ++trials;
-        const SizeAtBound came{options.maxError, double(summary.archiveBytes)};
+        const SizeAtBound came{bound, double(summary.archiveBytes)};
         if (came.bytes > wanted) {
             above = came;
             if (came.bound >= kLargestBound) break;
@@ -171,10 +188,11 @@ PackSummary packToSize(const PackOptions& asked, const std::string& path,
             std::filesystem::rename(trial.path, best.path);
         }
         if (came.bound == 0 || came.bytes >= kFull * wanted) break;
+        if (above && below && below->bound <= kSame * above->bound) break;
     }
     if (found.archiveBytes == 0)
         throw Error("the archive cannot be made so small: " + std::to_string(std::llround(above->bytes)) +
-                        " bytes even with the largest error tried (samples that are not floats are stored exactly)",
+                        " bytes even with the largest error tried (labels are stored exactly)",
                     path);
     std::filesystem::rename(best.path, path);
     found.trials = trials;

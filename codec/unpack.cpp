@@ -3,6 +3,7 @@
 #include "codec/brick_access.h"
 #include "volume/alternating_source.h"
 #include "volume/parallel.h"
+#include "volume/part_masks.h"
 #include "volume/resample.h"
 #include "volume/series_dataset.h"
 
@@ -58,16 +59,19 @@ Field levelField(const volume::BrickSource& source, int channel, int time, int l
     return field;
 }
 
-/// The mean of two fields on one grid where both are present, else the one that is.
+/// The mean of two fields on one grid where both are present and of one part, else the first that is.
 Field meanOf(const Field& a, const Field& b) {
     Field out = a;
     volume::Mask mask(a.count(), 1);
     const auto to = out.as<float>();
     const auto other = b.as<float>();
+    const auto numberAt = [](const Field& field, std::size_t i) {
+        return field.mask ? (*field.mask)[i] : std::uint8_t(1);
+    };
     for (std::size_t i = 0; i < to.size(); ++i) {
-        if (a.present(i) && b.present(i))
+        if (a.present(i) && numberAt(a, i) == numberAt(b, i))
             to[i] = 0.5f * to[i] + 0.5f * other[i];
-        else if (b.present(i))
+        else if (!a.present(i) && b.present(i))
             to[i] = other[i];
         else
             mask[i] = a.present(i) ? 1 : 0;
@@ -87,9 +91,11 @@ volume::Dataset storedDataset(std::shared_ptr<const Archive> archive) {
     return dataset;
 }
 
-PackedBefore packedBefore(const Archive& archive) {
+PackedAgain packedBefore(const Archive& archive) {
     const Metadata& metadata = archive.metadata();
-    return {metadata.source, metadata.lossless, metadata.maxError};
+    PackedAgain before{{metadata.source, metadata.lossless, metadata.maxError}, metadata.resampled};
+    if (isResampled(metadata)) before.resampled.resize(metadata.info.parameters.size());
+    return before;
 }
 
 volume::SliceLoad storedSlices(std::shared_ptr<const Archive> archive) {
@@ -104,11 +110,17 @@ volume::SliceLoad storedSlices(std::shared_ptr<const Archive> archive) {
 
 volume::Series storedSeries(std::shared_ptr<const Archive> archive, int parameter, int component) {
     if (archive->metadata().alternating)
-        return volume::d4SeriesOf(storedDataset(std::move(archive)), parameter, component);
-    return volume::seriesOf(gridDataset(std::move(archive), 0), parameter, component);
+        return volume::d4SeriesOf(volume::withParts(storedDataset(std::move(archive))), parameter, component);
+    return volume::seriesOf(volume::withParts(gridDataset(std::move(archive), 0)), parameter, component);
 }
 
 namespace {
+
+/// The times that D4* frames were made of, and what belongs to them.
+void atSourceTimes(volume::DatasetInfo& info, const Archive& archive) {
+    info.times = archive.metadata().sourceTimes;
+    info.quantities = archive.metadata().sourceQuantities;
+}
 
 /// Level 0 of D4* frames at the times they came from.
 volume::Dataset steadyDataset(std::shared_ptr<const Archive> archive, const Lattice& target,
@@ -116,19 +128,20 @@ volume::Dataset steadyDataset(std::shared_ptr<const Archive> archive, const Latt
     volume::Dataset dataset;
     dataset.info = archive->info();
     dataset.info.lattice = target;
-    dataset.info.times = archive->metadata().sourceTimes;
+    atSourceTimes(dataset.info, *archive);
     constexpr std::size_t kFrames = 6; // cubic: four of one parity, and two of the other for a linear step
     const auto series = std::make_shared<std::map<std::pair<int, int>, volume::Series>>();
+    const volume::Dataset stored = volume::withParts(storedDataset(archive));
     for (int p = 0; p < int(dataset.info.parameters.size()); ++p)
         for (int c = 0; c < dataset.info.parameters[std::size_t(p)].components; ++c)
-            (*series)[{p, c}] = volume::remembering(storedSeries(archive, p, c), kFrames);
+            (*series)[{p, c}] = volume::remembering(volume::d4SeriesOf(stored, p, c), kFrames);
     dataset.load = [archive, series, target, filter](int parameter, int component, int time) {
         const Metadata& metadata = archive->metadata();
         const double frame = volume::frameAt(metadata.info.times, metadata.sourceTimes[std::size_t(time)]);
         const volume::Parameter& about = metadata.info.parameters[std::size_t(parameter)];
         const Field field = volume::atTime(series->at({parameter, component}), frame, filter);
         const auto kernel = about.categorical ? volume::ResampleFilter::Nearest : volume::ResampleFilter::Cubic;
-        return volume::converted(volume::resample(field, target, kernel), about.type);
+        return volume::converted(volume::withoutParts(volume::resample(field, target, kernel)), about.type);
     };
     return dataset;
 }
@@ -155,11 +168,12 @@ volume::Dataset gridDataset(std::shared_ptr<const Archive> archive, int level, v
     volume::Dataset dataset;
     dataset.info = archive->info();
     dataset.info.lattice = target;
-    if (metadata.alternating) dataset.info.times = metadata.sourceTimes;
+    if (metadata.alternating) atSourceTimes(dataset.info, *archive);
     if (level > 0)
         for (volume::Parameter& parameter : dataset.info.parameters)
             if (!parameter.categorical) parameter.type = ScalarType::F32;
-    dataset.load = [archive, source, target, level, bcc](int parameter, int component, int wanted) {
+    dataset.load = [archive, source, stored = volume::withParts(storedDataset(archive)), target, level,
+                    bcc](int parameter, int component, int wanted) {
         const volume::DatasetInfo& info = archive->info();
         // Coarse levels of D4* show the frame nearest in time.
         const int time = archive->metadata().alternating
@@ -167,13 +181,22 @@ volume::Dataset gridDataset(std::shared_ptr<const Archive> archive, int level, v
                              : wanted;
         const bool categorical = info.parameters[std::size_t(parameter)].categorical;
         const auto cubic = categorical ? volume::ResampleFilter::Nearest : volume::ResampleFilter::Cubic;
-        if (level == 0) return volume::resample(readField(*archive, parameter, component, time), target, cubic);
+        if (level == 0)
+            return volume::withoutParts(volume::resample(stored.load(parameter, component, time), target, cubic));
         const auto linear = categorical ? volume::ResampleFilter::Nearest : volume::ResampleFilter::Linear;
         const int channel = channelOf(info, parameter, component);
-        Field coarse = volume::resample(levelField(*source, channel, time, level, 0), target, linear);
-        if (bcc && !categorical)
-            coarse = meanOf(coarse, volume::resample(levelField(*source, channel, time, level, 1), target, linear));
-        if (!categorical) return coarse;
+        const int label = volume::labelOf(info, info.parameters[std::size_t(parameter)]);
+        const auto of = [&](int sublattice) {
+            Field field = levelField(*source, channel, time, level, sublattice);
+            if (label >= 0)
+                field = volume::withParts(std::move(field),
+                                          levelField(*source, channelOf(info, label, 0), time, level, sublattice),
+                                          info.parameters[std::size_t(parameter)].parts);
+            return volume::resample(field, target, linear);
+        };
+        Field coarse = of(0);
+        if (bcc && !categorical) coarse = meanOf(coarse, of(1));
+        if (!categorical) return volume::withoutParts(std::move(coarse));
         Field labels = volume::makeField(target, info.parameters[std::size_t(parameter)].type);
         labels.mask = coarse.mask;
         volume::dispatch(labels.type, [&]<class T>(T) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "codec/archive.h"
+#include "codec/pack_again.h"
 #include "volume/dataset.h"
 #include "volume/series.h"
 #include "volume/slices.h"
@@ -12,7 +13,7 @@ namespace tessera::codec {
 /// An archive as a data set of frames: on the lattice it is stored on, samples in their type.
 volume::Dataset storedDataset(std::shared_ptr<const Archive> archive);
 /// What is to be told when one of these data sets is packed.
-PackedBefore packedBefore(const Archive& archive);
+PackedAgain packedBefore(const Archive& archive);
 /// Reads slices of its frames: the layers of bricks that hold them are decoded.
 volume::SliceLoad storedSlices(std::shared_ptr<const Archive> archive);
 
@@ -24,7 +25,7 @@ volume::Dataset gridDataset(std::shared_ptr<const Archive> archive, int level,
                             volume::TimeFilter filter = volume::TimeFilter::Cubic);
 
 /// One component of a parameter as a series on the lattice it is stored on (of a BCC archive: on gridDataset's), time
-/// counted in frames.
+/// counted in frames; masks say the parts of samples (volume/part_masks.h).
 volume::Series storedSeries(std::shared_ptr<const Archive> archive, int parameter, int component);
 
 } // namespace tessera::codec
