@@ -9,7 +9,7 @@ packages=(
     libimgui-dev libstb-dev libfreetype-dev libglfw3-dev libepoxy-dev libegl-dev # the window
     libgl1-mesa-dri libegl1 libgl1 libglx-mesa0                      # GL without a GPU
     fonts-roboto-unhinted fonts-font-awesome                         # text and icons
-    libvtk9-dev                                                      # tessera-import: readers of foreign formats
+    libvtk9-dev libtiff-dev zlib1g-dev                               # tessera-import: readers of foreign formats
 )
 test_packages=(libgtest-dev libgmock-dev clang-format xvfb xdotool xauth x11-utils) # only ./test.sh needs these
 [ "${1:-}" = --tests ] && packages+=("${test_packages[@]}")

@@ -3,21 +3,16 @@
 #include "app/first_view.h"
 #include "app/session/import_memory.h"
 
-#include "codec/archive.h"
 #include "vis/image_io.h"
 #include "volume/error.h"
 #include "volume/import/import.h"
-#include "volume/memory_source.h"
-#include "volume/originals.h"
-#include "volume/synthetic/models.h"
+#include "volume/quantities.h"
 
 #include <algorithm>
 #include <cctype>
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
 #include <set>
-#include <unistd.h>
 #include <utility>
 
 namespace tessera::app {
@@ -55,10 +50,6 @@ std::vector<fs::path> layoutFolders() {
     }
     folders.emplace_back(TESSERA_LAYOUT_DIR);
     return folders;
-}
-
-bool hasData(const DataRef& data) {
-    return !data.files.empty() || !data.model.empty();
 }
 
 bool sameData(const DataRef& a, const DataRef& b) {
@@ -137,68 +128,6 @@ DataRef dataOf(const std::vector<std::string>& paths, const volume::ImportOption
 
 namespace {
 
-/// What an archive holds of a data set, through a file that nobody else sees.
-std::shared_ptr<const volume::BrickSource> openPacked(volume::Dataset& dataset, const codec::PackOptions& options,
-                                                      const Progress& progress) {
-    std::string name = (fs::temp_directory_path() / "tessera-packed-XXXXXX.tsr").string();
-    const int file = ::mkstemps(name.data(), 4);
-    if (file < 0) throw MachineError("cannot make a file to pack into", name);
-    ::close(file);
-    // Mapped files live on without a name.
-    struct Remove {
-        const std::string& path;
-        ~Remove() {
-            std::error_code problem;
-            fs::remove(path, problem);
-        }
-    } const remove{name};
-    codec::pack(dataset, options, name, progress);
-    return codec::openArchive(name);
-}
-
-std::shared_ptr<const volume::BrickSource> openWhole(const DataRef& data, std::vector<std::string>& messages,
-                                                     const Progress& progress) {
-    if (!hasData(data)) throw Error("names no data: open data first, or give a data file", {}, "/data");
-    if (data.files.size() == 1 && endsWith(data.files[0].absolutePath, ".tsr"))
-        return codec::openArchive(data.files[0].absolutePath);
-    volume::Dataset dataset;
-    if (data.files.empty()) {
-        dataset = volume::makeModel(data.model, data.settings, progress.part(0, 0.9));
-    } else {
-        std::vector<std::string> paths;
-        for (const DataFile& file : data.files) paths.push_back(file.absolutePath);
-        dataset = volume::openFiles(paths, data.import, progress.part(0, 0.3));
-        const bool known = std::all_of(dataset.info.parameters.begin(), dataset.info.parameters.end(),
-                                       [](const volume::Parameter& parameter) { return !parameter.ranges.empty(); });
-        if (!known) volume::scanRanges(dataset, progress.part(0.3, 0.95));
-    }
-    for (const volume::Parameter& parameter : dataset.info.parameters)
-        for (const Range& range : parameter.ranges)
-            if (!(range.hi >= range.lo)) {
-                messages.push_back("parameter " + parameter.name + " has no present samples");
-                break;
-            }
-    volume::MemorySourceOptions options;
-    options.lattice = data.bcc ? volume::LatticeKind::BCC : volume::LatticeKind::CC;
-    if (data.packed) {
-        auto packed = openPacked(dataset, *data.packed, progress.part(0.95, 1));
-        if (!data.originals) return packed;
-        options.lattice = packed->info().lattice.kind;
-        options.brickSize = packed->grid().brickSize;
-        return volume::withOriginals(std::move(packed), volume::makeMemorySource(std::move(dataset), options));
-    }
-    return volume::makeMemorySource(std::move(dataset), options);
-}
-
-std::shared_ptr<const volume::BrickSource> openStored(const DataRef& data, std::vector<std::string>& messages,
-                                                      const Progress& progress) {
-    auto source = openWhole(data, messages, progress);
-    if (!data.timeAxis) return source;
-    volume::MemorySourceOptions options;
-    options.lattice = source->info().lattice.kind;
-    return volume::makeMemorySource(volume::withTimeAlong(source, *data.timeAxis), options);
-}
-
 /// Where time takes the place of an axis the cross-hair lies at the time that was shown, and the other way round; where
 /// it was along that axis is known from TimeAxis::place. `session` still refers to the data before, described by
 /// `from`.
@@ -219,18 +148,12 @@ void carryTime(Session& session, const volume::DatasetInfo& from, const volume::
 
 } // namespace
 
-std::shared_ptr<const volume::BrickSource> openSource(const DataRef& data, std::vector<std::string>& messages,
-                                                      const Progress& progress) {
-    const double stored = data.derived.empty() ? 1 : 0.7;
-    auto source = openStored(data, messages, progress.part(0, stored));
-    source = volume::deriveAll(source, data.derived, messages, progress.part(stored, 1));
-    progress.advance(1);
-    return source;
-}
-
 Opened openWith(Opened opened, const DataRef& data, const Progress& progress) {
     opened.missing.clear();
-    const auto before = std::exchange(opened.source, openSource(data, opened.messages, progress));
+    Sources now = openSources(data, opened.messages, progress);
+    opened.numbers = std::move(now.numbers);
+    opened.origin = std::move(now.origin);
+    const auto before = std::exchange(opened.source, std::move(now.pictures));
     moveTo(opened.document.session, opened.document.history, before ? &before->info() : nullptr, opened.source->info(),
            data, opened.messages);
     return opened;
@@ -239,6 +162,11 @@ Opened openWith(Opened opened, const DataRef& data, const Progress& progress) {
 void moveTo(Session& session, History& history, const volume::DatasetInfo* from, const volume::DatasetInfo& to,
             const DataRef& data, std::vector<std::string>& messages) {
     if (from) carryTime(session, *from, to, data.timeAxis);
+    if (from && from->timeName != to.timeName) // the same state, counted otherwise
+        if (const auto same = volume::findQuantity(*from, to.timeName)) {
+            const double time = volume::valueAt(from->times, from->quantities[std::size_t(*same)].values, session.time);
+            if (std::isfinite(time)) session.time = time;
+        }
     session.data = data;
     history.setData(data);
     fitSession(session, to, messages);
@@ -369,10 +297,10 @@ Opened open(const OpenRequest& request, const Progress& progress) {
                 // A session's data shown in another layout.
                 const ResolvedData found = resolveData(document.session.data, folder);
                 if (!found.missing.empty()) throw Error("data file is missing", found.missing[0].wanted.path, path);
-                OpenRequest inner{{}, request.layout, found.data, request.import};
+                OpenRequest inner{{}, request.layout, found.data, request.import, {}};
                 return open(inner, progress);
             }
-            OpenRequest inner{{}, path, request.data, request.import}; // a layout without data
+            OpenRequest inner{{}, path, request.data, request.import, request.lattice}; // a layout without data
             return open(inner, progress);
         }
     }
@@ -389,15 +317,20 @@ Opened open(const OpenRequest& request, const Progress& progress) {
     } else if (!request.paths.empty()) {
         const volume::ImportOptions stated = request.import.value_or(volume::ImportOptions{});
         data = dataOf(request.paths, recallOptions(request.paths, stated, progress.part(0, 0.1)));
+        if (request.lattice) data.lattice = *request.lattice;
     } else if (hasData(layout->session.data)) {
         const ResolvedData found = resolveData(layout->session.data, layoutFolder);
         if (!found.missing.empty()) throw Error("data file is missing", found.missing[0].wanted.path);
         data = found.data;
     } else {
         data.model = "fuel-cell";
+        if (request.lattice) data.lattice = *request.lattice;
     }
     if (layout && data.derived.empty()) data.derived = layout->session.data.derived;
-    opened.source = openSource(data, opened.messages, progress);
+    Sources sources = openSources(data, opened.messages, progress);
+    opened.source = std::move(sources.pictures);
+    opened.numbers = std::move(sources.numbers);
+    opened.origin = std::move(sources.origin);
     const volume::DatasetInfo& info = opened.source->info();
     if (layout) {
         opened.messages.insert(opened.messages.end(), layout->messages.begin(), layout->messages.end());

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "app/session/session_file.h"
-#include "volume/brick_source.h"
+#include "app/sources.h"
 #include "volume/progress.h"
 
 #include <memory>
@@ -18,15 +18,20 @@ struct OpenRequest {
     std::string layout;                          ///< name or file of a layout; "" = none
     std::optional<DataRef> data;                 ///< instead of paths, or instead of the data of a session
     std::optional<volume::ImportOptions> import; ///< for data files
+    std::optional<PictureLattice> lattice = {};  ///< of pictures of data that are opened anew
 };
 
 struct Opened {
     SessionDocument document;
-    std::shared_ptr<const volume::BrickSource> source; ///< null if data are missing
+    std::shared_ptr<const volume::BrickSource> source;  ///< of pictures; null if data are missing
+    std::shared_ptr<const volume::BrickSource> numbers; ///< what numbers are read from; null: `source`
+    NumberOrigin origin = {};                           ///< of the numbers
     std::vector<MissingData> missing;
     std::string sessionPath; ///< where Save writes; "" for data, layouts and pictures
     std::string folder;      ///< that data paths are relative to
     std::vector<std::string> messages;
+
+    Sources sources() const { return {source, numbers, origin}; }
 };
 
 /// Opens a request. Nothing at all means the overview layout with the built-in fuel cell. Files that a session names
@@ -42,10 +47,6 @@ Opened openWith(Opened opened, const DataRef& data, const Progress& progress = {
 /// cross-hair go over into the other way; one message for each thing that does not fit.
 void moveTo(Session& session, History& history, const volume::DatasetInfo* from, const volume::DatasetInfo& to,
             const DataRef& data, std::vector<std::string>& messages);
-
-/// A source of bricks for what a session names; ranges known. Throws Error.
-std::shared_ptr<const volume::BrickSource> openSource(const DataRef& data, std::vector<std::string>& messages,
-                                                      const Progress& progress = {});
 
 /// The data set that files given together make.
 DataRef dataOf(const std::vector<std::string>& paths, const volume::ImportOptions& options);

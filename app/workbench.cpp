@@ -3,6 +3,7 @@
 #include "app/session/import_memory.h"
 #include "volume/background.h"
 #include "volume/error.h"
+#include "volume/import/over_time.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -55,6 +56,9 @@ void Workbench::open(OpenRequest request) {
         std::error_code unknown;
         if (!options_.headless && !pattern && !fs::exists(path, unknown)) return message(path + ": no such file", true);
     }
+    if (source_ && !options_.headless && request.paths.size() == 1 && !request.import &&
+        volume::isTimeTable(request.paths.front()))
+        return addTable(request.paths.front());
     leave([this, request = std::move(request)] { start(request); });
 }
 
@@ -65,13 +69,24 @@ void Workbench::leave(std::function<void()> go) {
         go();
 }
 
+/// Data opened anew are drawn on the lattice chosen last.
+OpenRequest Workbench::withChoices(OpenRequest request) const {
+    const std::string chosen = rememberedChoice(options_.stateFolder, kLatticeChoice);
+    for (const auto lattice : {PictureLattice::Grid, PictureLattice::BodyCentred})
+        if (chosen == kPictureLatticeNames[std::size_t(lattice)]) {
+            request.lattice = lattice;
+            if (request.data && request.paths.empty() && request.data->files.empty()) request.data->lattice = lattice;
+        }
+    return request;
+}
+
 void Workbench::start(const OpenRequest& request) {
     std::string title = "Opening the built-in fuel cell";
     if (!request.paths.empty())
         title = "Opening " + fs::path(request.paths.front()).filename().string();
     else if (request.data && !request.data->model.empty())
         title = "Computing " + request.data->model;
-    jobs_.start("open", title, [this, request](const Progress& progress) -> Jobs::Finish {
+    jobs_.start("open", title, [this, request = withChoices(request)](const Progress& progress) -> Jobs::Finish {
         auto opened = std::make_shared<Opened>(app::open(request, progress));
         return [this, opened, request] {
             if (!opened->missing.empty()) {
@@ -88,11 +103,12 @@ void Workbench::start(const OpenRequest& request) {
 void Workbench::install(Opened opened) {
     const Appearance appearance = session_.appearance;
     const bool first = !source_;
-    source_ = std::move(opened.source);
-    renderer_->setSource(source_);
-    caches_.clear();
+    take(opened.sources());
     session_ = std::move(opened.document.session);
     derivedShown_ = derivedWanted_ = session_.data.derived;
+    countedShown_ = countedWanted_ = countedBy(session_.data);
+    latticeShown_ = latticeWanted_ = session_.data.lattice;
+    labelsShown_ = labelsWanted_ = session_.data.import.labels;
     // A data file says nothing about the looks of the window: they stay. A session does.
     if (!first && opened.document.raw.is_null()) session_.appearance = appearance;
     history_ = std::move(opened.document.history);
@@ -166,7 +182,10 @@ void Workbench::frame() {
         chosen_ = nullptr;
         run();
     }
+    followLattice();
+    followLabels();
     followDerived();
+    followAxis();
     followGrowth();
     std::erase_if(caches_, [&](const auto& entry) { return !session_.views.contains(entry.first); });
     renderers_ = 1;
@@ -302,11 +321,13 @@ void Workbench::answerFile(const FileDialog::Answer& answer) {
         save(answer.paths.front());
     } else if (answer.purpose == "pack") {
         pack(answer.paths.front());
+    } else if (answer.purpose == "compare") {
+        compareWith(answer.paths);
     } else if (answer.purpose == "surface") {
         exportSurface(answer.paths.front());
     } else if (answer.purpose == "locate" && missing_) {
-        const std::size_t index = missing_->missing[locating_].index;
-        missing_->document.session.data.files[index] = describeFile(answer.paths.front());
+        const MissingData& found = missing_->missing[locating_];
+        filesOf(missing_->document.session.data, found.other)[found.index] = describeFile(answer.paths.front());
         missing_->missing.erase(missing_->missing.begin() + static_cast<std::ptrdiff_t>(locating_));
     } else if (answer.purpose == "export" && exportText_) {
         const std::string path = answer.paths.front(), name = fs::path(path).filename().string();
@@ -337,7 +358,7 @@ void Workbench::afterFrame() {
     if (!export_ || !takePicture || !source_) return;
     const Export job = *std::exchange(export_, {});
     try {
-        const vis::Image image = takePicture(document(), source_, renderer_, job.request);
+        const vis::Image image = takePicture(document(), sources(), renderer_, job.request);
         vis::writePng(job.path, image, {{vis::kSessionTextKey, printSession(document(), job.path)}});
         message("Saved picture " + fs::path(job.path).filename().string());
     } catch (const Error& error) {

@@ -15,6 +15,7 @@
 #include <chrono>
 #include <deque>
 #include <memory>
+#include <optional>
 #include <set>
 
 /// The workbench: one session, its data, and what surrounds the views. Knows nothing of windows: the platform makes an
@@ -53,6 +54,9 @@ public:
     void open(OpenRequest request);
     /// Takes over what open() returned, at once.
     void install(Opened opened);
+    /// Shows another data set beside the one shown and how the parameter shown first differs, in the background; with
+    /// no paths takes it away.
+    void compareWith(const std::vector<std::string>& paths);
 
     /// Fonts and style for a display; call before ImGui::NewFrame. True when the font atlas changed and must be
     /// uploaded.
@@ -75,6 +79,9 @@ public:
     Session& session() { return session_; }
     const History& history() const { return history_; }
     std::shared_ptr<const volume::BrickSource> source() const { return source_; }
+    /// What numbers are read from.
+    std::shared_ptr<const volume::BrickSource> numbers() const { return numbers_; }
+    const NumberOrigin& origin() const { return origin_; }
     std::shared_ptr<vis::Renderer> renderer() const { return renderer_; }
     SessionDocument document() const;
     std::string windowTitle() const;
@@ -87,12 +94,13 @@ public:
     }
 
     /// Makes a picture of a session; given by the platform.
-    std::function<vis::Image(const SessionDocument&, std::shared_ptr<const volume::BrickSource>,
-                             std::shared_ptr<vis::Renderer>, const PictureRequest&)>
+    std::function<vis::Image(const SessionDocument&, const Sources&, std::shared_ptr<vis::Renderer>,
+                             const PictureRequest&)>
         takePicture;
 
 private:
-    static constexpr int kToasts = 3; ///< messages that stand over the views at a time
+    static constexpr const char* kLatticeChoice = "lattice"; ///< by this name it is remembered
+    static constexpr int kToasts = 3;                        ///< messages that stand over the views at a time
     struct Message {
         std::string text, clock;
         bool failure = false;
@@ -108,6 +116,7 @@ private:
     void makeCommands();                                     // workbench_commands.cpp
     void addFileCommands();                                  // workbench_commands.cpp
     void addEditCommands();                                  // workbench_commands.cpp
+    void addDifferenceCommands();                            // workbench_commands.cpp
     void addHelpCommands();                                  // workbench_commands.cpp
     void addViewCommands();                                  // workbench_view_commands.cpp
     void addLayoutCommands();                                // workbench_view_commands.cpp
@@ -130,6 +139,7 @@ private:
     /// Does what gives the session up: at once, or after asking whether to save what has changed.
     void leave(std::function<void()> go);
     void start(const OpenRequest& request);
+    OpenRequest withChoices(OpenRequest request) const;
     void answerFile(const FileDialog::Answer& answer);
     void save(const std::string& path);
     int chosenSurface() const;            // workbench_surface.cpp
@@ -137,7 +147,8 @@ private:
 
     /// What a job made to be shown in place of `from`: the same data otherwise.
     struct Remade {
-        std::shared_ptr<const volume::BrickSource> from, source;
+        std::shared_ptr<const volume::BrickSource> from;
+        Sources sources;
         DataRef data;
         std::vector<std::string> messages;
     };
@@ -148,8 +159,14 @@ private:
     void replace(Session session);
     void watchEdits();
     void autosave();
-    void followDerived(); // workbench_data.cpp
-    void followGrowth();  // workbench_growth.cpp
+    Sources sources() const { return {source_, numbers_, origin_}; }
+    void take(Sources sources, std::optional<vis::SameSamples> grown = {}); // workbench_data.cpp
+    void followLattice();                                                   // workbench_data.cpp
+    void followLabels();                                                    // workbench_data.cpp
+    void followDerived();                                                   // workbench_data.cpp
+    void followAxis();                                                      // workbench_data.cpp
+    void addTable(const std::string& path);                                 // workbench_data.cpp
+    void followGrowth();                                                    // workbench_growth.cpp
     void play();
     void step(int count);
     void closePane(const std::string& pane);
@@ -160,12 +177,24 @@ private:
 
     WorkbenchOptions options_;
     std::shared_ptr<vis::Renderer> renderer_;
-    std::shared_ptr<const volume::BrickSource> source_;
+    std::shared_ptr<const volume::BrickSource> source_, numbers_; ///< of pictures, and of numbers
+    NumberOrigin origin_;                                         ///< of the numbers
     Session session_;
     History history_;
     std::vector<JsonIssue> unknown_;
     Session saved_;                                                      ///< as last saved or opened
     std::vector<volume::DerivedParameter> derivedShown_, derivedWanted_; ///< of the source, and of one being made
+    PictureLattice latticeShown_ = {}, latticeWanted_ = {};              ///< likewise
+    /// What the times of the data depend on.
+    struct CountedBy {
+        std::string axis;
+        std::optional<volume::TimeAxis> along;
+        std::string overTime;
+        bool operator==(const CountedBy&) const = default;
+    };
+    static CountedBy countedBy(const DataRef& data);
+    CountedBy countedShown_, countedWanted_;              ///< likewise
+    std::vector<std::string> labelsShown_, labelsWanted_; ///< names of labels, likewise
     std::string sessionPath_;
     std::map<std::string, std::unique_ptr<ViewCache>> caches_;
     int renderers_ = 1; ///< the window's and those of views, which share the limits of memory

@@ -1,5 +1,7 @@
 #include "app/workbench.h"
 
+#include "app/views/derived_list.h"
+#include "app/views/view_parts.h"
 #include "volume/error.h"
 #include "volume/synthetic/models.h"
 
@@ -15,6 +17,7 @@ namespace fs = std::filesystem;
 void Workbench::makeCommands() {
     addFileCommands();
     addEditCommands();
+    addDifferenceCommands();
     addViewCommands();
     addLayoutCommands();
     addHelpCommands();
@@ -60,6 +63,16 @@ void Workbench::addFileCommands() {
                  files_.show(FileMode::Save, "Pack into an archive", "pack", files_.folder(), stem + ".tsr", ".tsr");
              },
          .enabled = [this] { return showsDataFiles(); }});
+    add({.menu = "File",
+         .name = "Compare with another file...",
+         .help = "The parameters of another data set beside these, on the same grid, and how they differ",
+         .run =
+             [this] {
+                 if (session_.data.other) return compareWith({});
+                 files_.show(FileMode::Open, "Compare with", "compare", files_.folder());
+             },
+         .enabled = loaded,
+         .checked = [this] { return session_.data.other.has_value(); }});
     add({.menu = "File",
          .name = "-Save picture...",
          .help = "The window or one view as PNG at any size; it carries the session",
@@ -176,17 +189,17 @@ void Workbench::addEditCommands() {
          .run = [this] { session_.animation.playing = !session_.animation.playing; },
          .enabled = [this] { return source_ && source_->info().times.size() > 1; },
          .checked = [this] { return session_.animation.playing; }});
-    add({.menu = "Edit",
-         .name = "-Show on BCC lattice",
-         .help = "Resample data files to 70.7 % of the samples on the body-centred cubic lattice",
-         .run =
-             [this] {
-                 DataRef data = session_.data;
-                 data.bcc = !data.bcc;
-                 showAs(data, "Resampling");
-             },
-         .enabled = [this] { return source_ && (session_.data.files.empty() || showsDataFiles()); },
-         .checked = [this] { return session_.data.bcc; }});
+    for (const auto lattice : {PictureLattice::Grid, PictureLattice::BodyCentred})
+        add({.menu = "Edit",
+             .name = lattice == PictureLattice::Grid ? "-Draw on the grid of the file"
+                                                     : "Draw on the body-centred lattice (70.7 % of the samples)",
+             .help = "What pictures are drawn from; numbers come from the samples of the file on either",
+             .run = [this, lattice] { session_.data.lattice = lattice; },
+             .enabled =
+                 [this] {
+                     return source_ && !session_.data.packed && (session_.data.files.empty() || showsDataFiles());
+                 },
+             .checked = [this, lattice] { return session_.data.lattice == lattice; }});
     for (const auto axis : {volume::SpaceAxis::X, volume::SpaceAxis::Y, volume::SpaceAxis::Z}) {
         const auto shown = [this, axis] { return session_.data.timeAxis && session_.data.timeAxis->axis == axis; };
         add({.menu = "Edit",
@@ -208,6 +221,33 @@ void Workbench::addEditCommands() {
                  },
              .checked = shown});
     }
+}
+
+/// Of the parameter shown first, as new parameters; the list of derived ones offers further times.
+void Workbench::addDifferenceCommands() {
+    const auto add = [this](const char* name, const char* help, volume::OtherTime which) {
+        commands_.push_back(
+            {.menu = "",
+             .name = name,
+             .help = help,
+             .run =
+                 [this, which] {
+                     const volume::DatasetInfo& info = source_->info();
+                     const auto channel = resolveChannel(info, session_, "");
+                     if (!channel) return;
+                     const std::string of = info.channels()[static_cast<std::size_t>(*channel)].name;
+                     message("New parameter: " + addDerived(session_, newDifference(info, of, {which, session_.time})));
+                 },
+             .enabled = [this] { return source_ && source_->info().times.size() > 1; }});
+    };
+    add("Minus another time: first", "How the parameter shown differs from what it is at the first time",
+        volume::OtherTime::First);
+    add("Minus another time: previous", "How the parameter shown differs from what it is at the time before",
+        volume::OtherTime::Previous);
+    add("Minus another time: last", "How the parameter shown differs from what it is at the last time",
+        volume::OtherTime::Last);
+    add("Minus another time: shown now", "How the parameter shown differs from what it is at the time shown now",
+        volume::OtherTime::Time);
 }
 
 void Workbench::addHelpCommands() {

@@ -2,6 +2,8 @@
 
 #include "codec/archive.h"
 #include "volume/error.h"
+#include "volume/labelled_source.h"
+#include "volume/other_source.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -51,25 +53,32 @@ void Workbench::followGrowth() {
     if (!growth_->changed()) return;
     jobs_.start(
         "growth", "Reading what is new",
-        [this, path, from = source_, derived = derivedShown_](const Progress& progress) -> Jobs::Finish {
+        [this, path, data = session_.data, from = source_,
+         derived = derivedShown_](const Progress& progress) -> Jobs::Finish {
             auto messages = std::make_shared<std::vector<std::string>>();
-            std::shared_ptr<const volume::BrickSource> made;
+            Sources made;
             try {
-                made = codec::openArchive(path);
+                std::vector<std::string> known; // was said when it was opened
+                made = openArchived(data, known);
+                made.pictures = made.numbers = volume::withLabelNames(made.pictures, data.import.labels);
             } catch (const Error&) {
                 return {}; // being replaced: what is shown stays good
             }
-            if (!goesOn(*volume::underived(from), *made)) return {};
-            const vis::SameSamples same = sameSamples(*volume::underived(from), *made);
-            made = volume::deriveAll(made, derived, *messages, progress);
+            if (const auto other = volume::otherOf(*volume::underived(from))) {
+                const auto both = volume::withOther(made.pictures, other);
+                made = {both, both, made.origin};
+            }
+            if (!goesOn(*volume::underived(from), *made.pictures)) return {};
+            const vis::SameSamples same = sameSamples(*volume::underived(from), *made.pictures);
+            made = deriveBoth(made, derived, *messages, progress);
             return [this, path, messages, made, from, same] {
                 if (source_ != from) { // other data, or derived anew from what was there: look again
                     growth_.reset();
                     return;
                 }
-                const std::size_t times = made->info().times.size(), more = times - source_->info().times.size();
-                source_ = made;
-                renderer_->setSource(source_, same); // views keep what they have: a drag goes on
+                const std::size_t times = made.pictures->info().times.size(),
+                                  more = times - source_->info().times.size();
+                take(made, same); // views keep what they have: a drag goes on
                 fitSession(session_, source_->info(), *messages);
                 const std::string name = std::filesystem::path(path).filename().string();
                 message(name +

@@ -1,4 +1,6 @@
 #include "app/ui/file_dialog.h"
+#include "app/views/ticks.h"
+#include "app/views/time_text.h"
 #include "app/workbench.h"
 #include "volume/error.h"
 #include "volume/import/import.h"
@@ -28,8 +30,10 @@ std::string describe(const volume::ImportPreview& preview) {
          << "extent " << size.x << " x " << size.y << " x " << size.z << " "
          << (info.lengthUnit.empty() ? "(no unit stated)" : info.lengthUnit) << "\n";
     if (info.times.size() > 1)
-        text << info.times.size() << " times, " << info.times.front() << " to " << info.times.back() << " "
-             << info.timeUnit << "\n";
+        text << info.times.size() << " times, " << timeText(info, info.times.front()) << " to "
+             << timeValueText(info, info.times.back()) << "\n";
+    for (const volume::Quantity& quantity : info.quantities)
+        text << "over time: " << titleWithUnit(quantity.name, quantity.unit) << "\n";
     text << "\n";
     for (const volume::Parameter& parameter : info.parameters) {
         text << parameter.name;

@@ -45,6 +45,8 @@ void Workbench::drawPane(const std::string& pane) {
                         .renderer = *renderer_,
                         .jobs = jobs_,
                         .caches = caches_,
+                        .numbers = numbers_,
+                        .origin = origin_,
                         .iconFont = fonts_.icons,
                         .scale = scale_,
                         .headless = options_.headless,
@@ -102,6 +104,8 @@ void Workbench::drawPane(const std::string& pane) {
                 drawTesseractView(context, pane, view);
             else if constexpr (std::is_same_v<View, CompareView>)
                 drawCompareView(context, pane, view);
+            else if constexpr (std::is_same_v<View, CurvesView>)
+                drawCurvesView(context, pane, view);
             else if constexpr (std::is_same_v<View, HistoryView>)
                 drawHistoryPane();
             else
@@ -166,10 +170,13 @@ void Workbench::drawStatusBar(float height) {
     ImGui::PushStyleColor(ImGuiCol_Text, palette().muted);
     if (source_) {
         const volume::DatasetInfo& info = source_->info();
-        const volume::Lattice& lattice = source_->grid().lattice;
-        std::string text = info.name;
-        text += "   " + std::to_string(lattice.size.x) + " \xc3\x97 " + std::to_string(lattice.size.y) + " \xc3\x97 " +
-                std::to_string(lattice.size.z) + (lattice.kind == volume::LatticeKind::BCC ? " BCC" : " CC");
+        const auto latticeText = [](const volume::Lattice& lattice) {
+            return std::to_string(lattice.size.x) + " \xc3\x97 " + std::to_string(lattice.size.y) + " \xc3\x97 " +
+                   std::to_string(lattice.size.z) + (lattice.kind == volume::LatticeKind::BCC ? " BCC" : " CC");
+        };
+        const volume::Lattice &lattice = numbers_->grid().lattice, &drawn = source_->grid().lattice;
+        std::string text = info.name + "   " + latticeText(lattice);
+        if (drawn != lattice) text += ", drawn from " + latticeText(drawn);
         text += "   " + std::to_string(info.parameters.size()) +
                 (info.parameters.size() == 1 ? " parameter" : " parameters");
         if (info.times.size() > 1) text += ", " + std::to_string(info.times.size()) + " times";

@@ -18,6 +18,18 @@ struct ViewKind {
     ViewState view;
 };
 
+StatisticsView regionTable() {
+    StatisticsView view;
+    view.byRegion = true;
+    return view;
+}
+
+ProfileView sectionAverages() {
+    ProfileView view;
+    view.over = ProfileOver::Sections;
+    return view;
+}
+
 std::vector<ViewKind> viewKinds() {
     return {{"Volume", "The data in space", VolumeView{}},
             {"Slices", "Three orthogonal slices with a read-out", SlicesView{}},
@@ -29,8 +41,11 @@ std::vector<ViewKind> viewKinds() {
             {"History", "Every edit, undone and redone by a click", HistoryView{}},
             {"Messages", "What the program had to say", LogView{}},
             {"Statistics", "Every parameter inside and outside of the selection", StatisticsView{}},
+            {"Region table", "Every parameter in every region, and what flows in and out of them", regionTable()},
             {"Histogram", "One parameter's histogram; drag to select", HistogramView{}},
             {"Line profile", "Parameters along a line", ProfileView{}},
+            {"Section averages", "Means over planes across an axis, a curve for each region", sectionAverages()},
+            {"Curves", "Quantities and statistics over time, against each other", CurvesView{}},
             {"Slice matrix", "Parameters on parallel planes", SliceMatrixView{}},
             {"Shadow cube", "Projections on the faces of a cube around the scene", ShadowCubeView{}},
             {"Tesseract", "The field in four dimensions, turned in six planes", TesseractView{}},

@@ -64,12 +64,15 @@ int runCommandLine(int argc, const char* const* argv) {
     addBenchCommand(app);
     addConvertCommand(app);
     addCompareCommand(app);
+    addDiffCommand(app);
     addGenerateCommand(app);
     addInfoCommand(app);
     addMeshCommand(app);
     addPackCommand(app);
+    addPlotCommand(app);
     addRenderCommand(app);
     addReplayCommand(app);
+    addStatsCommand(app);
     addUnpackCommand(app);
     addVerifyCommand(app);
     try {

@@ -14,12 +14,15 @@ namespace tessera::app {
 void addBenchCommand(CLI::App& app);
 void addConvertCommand(CLI::App& app);
 void addCompareCommand(CLI::App& app);
+void addDiffCommand(CLI::App& app);
 void addGenerateCommand(CLI::App& app);
 void addInfoCommand(CLI::App& app);
 void addMeshCommand(CLI::App& app);
 void addPackCommand(CLI::App& app);
+void addPlotCommand(CLI::App& app);
 void addRenderCommand(CLI::App& app);
 void addReplayCommand(CLI::App& app);
+void addStatsCommand(CLI::App& app);
 void addUnpackCommand(CLI::App& app);
 void addVerifyCommand(CLI::App& app);
 /// Without a subcommand: the workbench on FILE...

@@ -93,9 +93,9 @@ void addCompareCommand(CLI::App& app) {
         request.pane = pane;
         PictureMaker maker;
         std::vector<CompareRow> rows;
-        const vis::Image image = maker.render(opened.document, opened.source, request, [&](const Workbench& workbench) {
-            rows = drawnComparison(workbench.cache(pane));
-        });
+        const vis::Image image =
+            maker.render(opened.document, opened.sources(), request,
+                         [&](const Workbench& workbench) { rows = drawnComparison(workbench.cache(pane)); });
         for (const CompareRow& row : rows)
             if (!row.failure.empty()) throw Error(row.failure, {}, row.name);
         vis::writePng(options->output, image, {{vis::kSessionTextKey, printSession(opened.document, options->output)}});

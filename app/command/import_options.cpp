@@ -1,8 +1,11 @@
 #include "app/command/import_options.h"
 
 #include "volume/error.h"
+#include "volume/import/find_parts.h"
 
+#include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
@@ -57,6 +60,11 @@ std::vector<std::string> importArguments(const volume::ImportOptions& options) {
                           std::to_string(options.gridSize.z));
     for (const std::string& rule : options.absent) add("--absent", rule);
     if (!options.autoAbsent) out.push_back("--no-auto-absent");
+    for (const std::string& rule : options.labels) add("--label", rule);
+    for (const std::string& rule : options.parts) add("--parts", rule);
+    add("--time-name", options.timeName);
+    add("--time-unit", options.timeUnit);
+    add("--over-time", options.overTime);
     for (const auto& [from, to] : options.rename) add("--rename", from + "=" + to);
     for (const auto& [parameter, unit] : options.units) add("--unit", parameter + "=" + unit);
     add("--length-unit", options.lengthUnit);
@@ -91,6 +99,22 @@ void addImportOptions(CLI::App& command, volume::ImportOptions& options) {
             "--no-auto-absent", [&options](std::int64_t) { options.autoAbsent = false; },
             "Keep samples that are 0 on whole values of a label")
         ->group("Import");
+    const auto repeated = [&command](const char* name, std::vector<std::string>& rules, const char* help) {
+        command.add_option(name, rules, help)
+            ->expected(1)
+            ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+            ->group("Import");
+    };
+    repeated("--label", options.labels,
+             "Names, and colours, of label values: region:0=cathode,1=anode#e07b39; may be repeated");
+    repeated("--parts", options.parts,
+             "Regions whose samples are never mixed: p=region:1|3, or T=joined (default: found from the data); may be "
+             "repeated");
+    command.add_option("--time-name", options.timeName, "Name of the axis of a series, e.g. \"operating point\"")
+        ->group("Import");
+    command.add_option("--time-unit", options.timeUnit, "Unit of the axis of a series")->group("Import");
+    command.add_option("--over-time", options.overTime, "CSV file with quantities over time: voltage, current, ...")
+        ->group("Import");
     command
         .add_option_function<std::vector<std::string>>(
             "--rename",
@@ -123,6 +147,37 @@ void addImportOptions(CLI::App& command, volume::ImportOptions& options) {
         ->group("Import");
 }
 
+nlohmann::json quantitiesJson(const volume::DatasetInfo& info) {
+    nlohmann::json out = nlohmann::json::array();
+    for (const volume::Quantity& quantity : info.quantities) {
+        nlohmann::json values = nlohmann::json::array();
+        for (const double value : quantity.values)
+            values.push_back(std::isfinite(value) ? nlohmann::json(value) : nlohmann::json());
+        out.push_back({{"name", quantity.name}, {"unit", quantity.unit}, {"values", std::move(values)}});
+    }
+    return out;
+}
+
+std::string quantityLines(const volume::DatasetInfo& info) {
+    std::string out;
+    for (const volume::Quantity& quantity : info.quantities) {
+        Range range{INFINITY, -INFINITY};
+        std::size_t known = 0;
+        for (const double value : quantity.values) {
+            if (!std::isfinite(value)) continue;
+            ++known;
+            range = {std::min(range.lo, value), std::max(range.hi, value)};
+        }
+        out += "  over time  " + quantity.name + ": ";
+        out += known == 0 ? "not known at any time" : number(range.lo) + " .. " + number(range.hi);
+        if (!quantity.unit.empty()) out += " " + quantity.unit;
+        if (known > 0 && known < quantity.values.size())
+            out += ", known at " + std::to_string(known) + " of " + std::to_string(quantity.values.size()) + " times";
+        out += "\n";
+    }
+    return out;
+}
+
 std::string describePreview(const volume::ImportPreview& preview) {
     const volume::DatasetInfo& info = preview.info;
     const volume::Lattice& lattice = info.lattice;
@@ -136,13 +191,18 @@ std::string describePreview(const volume::ImportPreview& preview) {
            info.lengthUnit + "\n";
     out += "  times      " + std::to_string(info.times.size());
     if (info.times.size() > 1)
-        out += ": " + number(info.times.front()) + " .. " + number(info.times.back()) + " " + info.timeUnit;
+        out += ": " + (info.timeName == "time" ? "" : info.timeName + " ") + number(info.times.front()) + " .. " +
+               number(info.times.back()) + (info.timeUnit.empty() ? "" : " " + info.timeUnit);
+    out += "\n" + quantityLines(info);
+    if (out.ends_with('\n')) out.pop_back();
     out += "\n  size       " + size(preview.bytes) + "\n  parameters " + std::to_string(info.parameters.size()) + "\n";
     for (const volume::Parameter& parameter : info.parameters) {
-        out += "    " + parameter.name + (parameter.unit.empty() ? "" : " [" + parameter.unit + "]") + " " +
-               std::string(volume::name(parameter.type));
+        out += "    " + parameter.name +
+               (parameter.unit.empty() ? "" : " [" + parameter.unit + (parameter.unitGuessed ? " (guessed)]" : "]")) +
+               " " + std::string(volume::name(parameter.type));
         if (parameter.components > 1) out += ", vector of " + std::to_string(parameter.components);
         if (parameter.categorical) out += ", label";
+        if (parameter.parts.count() > 1) out += ", " + volume::partsText(parameter);
         out += "\n";
     }
     for (const std::string& note : preview.notes) out += "  " + note + "\n";
@@ -162,16 +222,20 @@ std::string describePreviewJson(const volume::ImportPreview& preview) {
     out["origin"] = triple(info.lattice.origin);
     out["lengthUnit"] = info.lengthUnit;
     out["times"] = info.times;
+    out["timeName"] = info.timeName;
     out["timeUnit"] = info.timeUnit;
+    out["quantities"] = quantitiesJson(info);
     out["bytes"] = preview.bytes;
     out["parameters"] = json::array();
     for (const volume::Parameter& parameter : info.parameters) {
         json entry;
         entry["name"] = parameter.name;
         entry["unit"] = parameter.unit;
+        if (parameter.unitGuessed) entry["unitGuessed"] = true;
         entry["type"] = volume::name(parameter.type);
         entry["components"] = parameter.components;
         entry["label"] = parameter.categorical;
+        entry["parts"] = {{"label", parameter.parts.label}, {"regions", parameter.parts.regions}};
         out["parameters"].push_back(std::move(entry));
     }
     out["notes"] = preview.notes;

@@ -3,6 +3,7 @@
 #include "volume/import/import.h"
 
 #include <CLI/CLI.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,9 @@ void addImportOptions(CLI::App& command, volume::ImportOptions& options);
 
 /// What `tessera info DATAFILE` prints: dims, spacing, parameters with type and unit, times, bytes, notes.
 std::string describePreview(const volume::ImportPreview& preview);
+/// Quantities over time as lines of text, and as JSON: [{name, unit, values}].
+std::string quantityLines(const volume::DatasetInfo& info);
+nlohmann::json quantitiesJson(const volume::DatasetInfo& info);
 
 /// The same with stable keys, as JSON text.
 std::string describePreviewJson(const volume::ImportPreview& preview);

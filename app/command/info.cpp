@@ -6,7 +6,9 @@
 #include "app/session/import_memory.h"
 #include "app/session/session_file.h"
 #include "codec/archive.h"
+#include "codec/error_bound.h"
 #include "vis/image_io.h"
+#include "volume/import/find_parts.h"
 
 #include <algorithm>
 #include <cmath>
@@ -24,6 +26,18 @@ Json vectorJson(const auto& v) {
     return {v.x, v.y, v.z};
 }
 
+/// What resampling a parameter cost; null where it is not known.
+Json resampledJson(const codec::Metadata& metadata, std::size_t parameter, double extent) {
+    if (parameter >= metadata.resampled.size() || !metadata.resampled[parameter]) return nullptr;
+    const codec::ResampleError& error = *metadata.resampled[parameter];
+    const double psnr = codec::psnrOf(error, extent);
+    return {{"psnr", std::isfinite(psnr) ? Json(psnr) : Json()},
+            {"rms", std::sqrt(error.meanSquare)},
+            {"largest", error.largest},
+            {"samples", error.samples},
+            {"share", error.share}};
+}
+
 Json archiveJson(const codec::Archive& archive) {
     const volume::DatasetInfo& info = archive.info();
     const volume::BrickGrid& grid = archive.grid();
@@ -36,9 +50,13 @@ Json archiveJson(const codec::Archive& archive) {
                       {"type", volume::name(parameter.type)},
                       {"categorical", parameter.categorical},
                       {"labels", Json::object()},
+                      {"parts", {{"label", parameter.parts.label}, {"regions", parameter.parts.regions}}},
                       {"ranges", Json::array()}};
+        if (parameter.unitGuessed) entry["unitGuessed"] = true;
         for (const volume::Label& label : parameter.labels) entry["labels"][std::to_string(label.value)] = label.name;
         for (const Range& range : parameter.ranges) entry["ranges"].push_back({range.lo, range.hi});
+        if (codec::isResampled(archive.metadata()))
+            entry["resampled"] = resampledJson(archive.metadata(), parameters.size(), codec::extentOf(parameter));
         parameters.push_back(std::move(entry));
         stored += double(info.lattice.count()) * double(info.times.size()) * parameter.components *
                   double(volume::byteSize(parameter.type));
@@ -61,7 +79,9 @@ Json archiveJson(const codec::Archive& archive) {
             {"lengthUnit", info.lengthUnit},
             {"parameters", std::move(parameters)},
             {"times", info.times},
+            {"timeName", info.timeName},
             {"timeUnit", info.timeUnit},
+            {"quantities", quantitiesJson(info)},
             {"brickSize", grid.brickSize},
             {"levels", std::move(levels)},
             {"masks", archive.maskCount()},
@@ -70,6 +90,7 @@ Json archiveJson(const codec::Archive& archive) {
             {"repeatedBytes", archive.repeats().bytes},
             {"lossless", archive.metadata().lossless},
             {"maxError", archive.metadata().maxError},
+            {"exactness", codec::exactnessText(archive.metadata())},
             {"provenance", info.provenance}};
 }
 
@@ -82,9 +103,7 @@ void printArchive(const codec::Archive& archive) {
     const volume::BrickGrid& grid = archive.grid();
     const glm::dvec3 extent = info.bounds.size();
     std::printf("%s (archive, %s, %s)\n", info.name.c_str(), bytesText(double(archive.fileBytes())).c_str(),
-                archive.metadata().lossless
-                    ? "lossless"
-                    : ("error within " + numberText(archive.metadata().maxError) + " of range").c_str());
+                codec::exactnessText(archive.metadata()).c_str());
     std::printf("  samples    %s on %s, from a grid of %s\n", triple(info.lattice.size).c_str(),
                 archive.metadata().alternating                  ? "D4* (each time)"
                 : info.lattice.kind == volume::LatticeKind::BCC ? "BCC"
@@ -92,8 +111,10 @@ void printArchive(const codec::Archive& archive) {
                 triple(archive.metadata().source.size).c_str());
     std::printf("  extent     %s x %s x %s %s\n", numberText(extent.x).c_str(), numberText(extent.y).c_str(),
                 numberText(extent.z).c_str(), info.lengthUnit.c_str());
-    std::printf("  times      %zu, %s .. %s %s\n", info.times.size(), numberText(info.times.front()).c_str(),
+    std::printf("  times      %zu, %s%s .. %s %s\n", info.times.size(),
+                info.timeName == "time" ? "" : (info.timeName + " ").c_str(), numberText(info.times.front()).c_str(),
                 numberText(info.times.back()).c_str(), info.timeUnit.c_str());
+    std::printf("%s", quantityLines(info).c_str());
     if (archive.commits() > 1) std::printf("  grown      in %d steps\n", archive.commits());
     std::printf("  bricks     %s of %d, %d levels:", triple(grid.count()).c_str(), grid.brickSize, grid.levels);
     for (int level = 0; level < grid.levels; ++level)
@@ -105,14 +126,18 @@ void printArchive(const codec::Archive& archive) {
         std::printf("  repeats    %llu bricks are those of an earlier time, which saves %s\n",
                     static_cast<unsigned long long>(repeats.bricks), bytesText(double(repeats.bytes)).c_str());
     std::printf("  parameters\n");
-    for (const volume::Parameter& parameter : info.parameters) {
+    for (std::size_t p = 0; p < info.parameters.size(); ++p) {
+        const volume::Parameter& parameter = info.parameters[p];
         std::printf("    %-16s %-8s %-8s", parameter.name.c_str(), std::string(volume::name(parameter.type)).c_str(),
-                    parameter.unit.c_str());
+                    (parameter.unit + (parameter.unitGuessed ? " (guessed)" : "")).c_str());
         if (parameter.components > 1) std::printf(" vector of %d, length", parameter.components);
         if (!parameter.ranges.empty() && !parameter.categorical)
             std::printf(" %s .. %s", numberText(parameter.ranges.back().lo).c_str(),
                         numberText(parameter.ranges.back().hi).c_str());
         for (const volume::Label& label : parameter.labels) std::printf(" %d %s,", label.value, label.name.c_str());
+        if (parameter.parts.count() > 1) std::printf(" %s", volume::partsText(parameter).c_str());
+        if (const std::string words = codec::resampledText(archive.metadata(), p); !words.empty())
+            std::printf("  (%s)", words.c_str());
         std::printf("\n");
     }
     if (!info.provenance.empty()) std::printf("  %s\n", info.provenance.c_str());
@@ -149,6 +174,11 @@ void printSession(const std::string& path, bool asJson) {
     }
     std::printf("%s (session)\n", session.title.empty() ? path.c_str() : session.title.c_str());
     for (const DataFile& file : session.data.files) std::printf("  data       %s\n", file.path.c_str());
+    if (session.data.other)
+        for (const DataFile& file : session.data.other->files) std::printf("  other data %s\n", file.path.c_str());
+    for (const volume::DerivedParameter& each : session.data.derived)
+        std::printf("  derived    %s%s\n", each.name.c_str(),
+                    each.unit.empty() ? "" : (" [" + each.unit + "]").c_str());
     if (!session.data.model.empty()) std::printf("  model      %s\n", session.data.model.c_str());
     std::printf("  views     ");
     for (const auto& [key, view] : session.views) std::printf(" %s", key.c_str());

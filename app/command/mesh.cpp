@@ -53,7 +53,7 @@ std::shared_ptr<const volume::BrickSource> openInput(const MeshRequest& request,
         data.model = request.inputs[0];
     else
         data = dataOf(request.inputs, request.import);
-    data.bcc = request.mesh.bcc;
+    data.lattice = request.mesh.bcc ? PictureLattice::BodyCentred : PictureLattice::Grid;
     std::vector<std::string> messages;
     auto source = openSource(data, messages, progress);
     for (const std::string& message : messages) std::fprintf(stderr, "tessera: %s\n", message.c_str());

@@ -59,7 +59,7 @@ codec::StoredLattice latticeOf(const PackRequest& request) {
 
 struct PackInput {
     volume::SlicedDataset data;
-    codec::PackedBefore before;
+    codec::PackedAgain before;
 };
 
 PackInput open(const PackRequest& request, const Progress& progress) {
@@ -68,7 +68,7 @@ PackInput open(const PackRequest& request, const Progress& progress) {
         const bool asGrid = latticeOf(request) != codec::StoredLattice::BCC || archive->metadata().alternating;
         const bool asStored =
             !asGrid || (archive->info().lattice.kind == volume::LatticeKind::CC && !archive->metadata().alternating);
-        const codec::PackedBefore before = codec::packedBefore(*archive);
+        const codec::PackedAgain before = codec::packedBefore(*archive);
         if (asStored) return {{codec::storedDataset(archive), codec::storedSlices(archive)}, before};
         return {{codec::gridDataset(archive, 0), {}}, before};
     }
@@ -113,6 +113,10 @@ std::uint64_t peakMemory() {
     return ::getrusage(RUSAGE_SELF, &usage) == 0 ? std::uint64_t(usage.ru_maxrss) * kKibi : 0;
 }
 
+std::string exactnessOf(const std::string& path) {
+    return codec::exactnessText(codec::Archive(path).metadata());
+}
+
 nlohmann::json toJson(const codec::PackSummary& summary, const std::string& path) {
     const auto stage = [](const char* name, double seconds, std::uint64_t bytes) {
         return nlohmann::json{{"name", name}, {"seconds", seconds}, {"bytes", bytes}};
@@ -124,6 +128,7 @@ nlohmann::json toJson(const codec::PackSummary& summary, const std::string& path
             {"archiveBytes", summary.archiveBytes},
             {"addedBytes", summary.addedBytes},
             {"maxError", summary.maxError},
+            {"exactness", exactnessOf(path)},
             {"bricks", summary.bricks},
             {"discardedBricks", summary.discardedBricks},
             {"weakenedBricks", summary.weakenedBricks},
@@ -177,6 +182,7 @@ void run(PackRequest request) {
                 bytesText(stored).c_str(), bytesText(source).c_str(), source / stored,
                 100.0 * double(summary.storedSamples) / double(summary.sourceSamples), summary.seconds,
                 bytesText(source / summary.seconds).c_str());
+    std::printf("%s\n", exactnessOf(request.output).c_str());
 }
 
 } // namespace

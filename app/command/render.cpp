@@ -36,7 +36,7 @@ void addRenderCommand(CLI::App& app) {
         opened.document.history.reset(session);
         PictureMaker maker;
         const vis::Image image =
-            maker.render(opened.document, opened.source, pictureRequest(options->picture, session));
+            maker.render(opened.document, opened.sources(), pictureRequest(options->picture, session));
         vis::writePng(options->output, image, {{vis::kSessionTextKey, printSession(opened.document, options->output)}});
     });
 }

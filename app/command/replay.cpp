@@ -99,7 +99,7 @@ void run(const ReplayOptions& options) {
         char name[32];
         std::snprintf(name, sizeof name, reel.name.c_str(), i);
         const std::string path = (folder / name).string();
-        const vis::Image image = maker.render(document, opened.source, request);
+        const vis::Image image = maker.render(document, opened.sources(), request);
         vis::writePng(path, image, {{vis::kSessionTextKey, printSession(document, path)}});
     }
     if (!options.video.empty())

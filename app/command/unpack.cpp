@@ -1,5 +1,6 @@
 #include "codec/unpack.h"
 #include "app/command/command.h"
+#include "app/command/derive_option.h"
 #include "app/command/format.h"
 #include "volume/export.h"
 #include "volume/hyperplane.h"
@@ -17,12 +18,15 @@ struct UnpackRequest {
     std::vector<std::string> parameters;
     std::vector<double> times;
     std::vector<double> plane;
+    std::vector<volume::DerivedParameter> derived;
     int level = 0;
     volume::TimeFilter timeFilter = volume::TimeFilter::Cubic;
 };
 
-volume::ExportSelection select(const UnpackRequest& request, const volume::DatasetInfo& info) {
+/// `values`: the samples are not those of the source, nor is their scaling.
+volume::ExportSelection select(const UnpackRequest& request, const volume::DatasetInfo& info, bool values) {
     volume::ExportSelection selection;
+    selection.values = values;
     for (const std::string& wanted : request.parameters) {
         const auto found = info.findChannel(wanted);
         if (!found) throw Error("there is no parameter \"" + wanted + "\"", request.input);
@@ -56,11 +60,22 @@ volume::Dataset planeDataset(const std::shared_ptr<const codec::Archive>& archiv
     dataset.info = stored;
     dataset.info.lattice = shape.field.lattice;
     dataset.info.times = {0};
-    for (int i = 0; i < 3; ++i) // frames become times again
-        if (shape.axes[std::size_t(i)] == 3) {
-            dataset.info.lattice.origin[i] = first + step * shape.field.lattice.origin[i];
-            dataset.info.lattice.spacing[i] *= step;
-        }
+    dataset.info.timeUnit.clear();
+    dataset.info.quantities.clear();
+    const auto unitText = [](const std::string& unit) { return unit.empty() ? std::string("-") : unit; };
+    std::string axes, units; // no axis of time is told as a length
+    for (int i = 0; i < 3; ++i) {
+        const int axis = shape.axes[std::size_t(i)];
+        const std::string unit = axis == 3 ? stored.timeUnit : stored.lengthUnit;
+        axes += (i > 0 ? ", " : "") + (axis == 3 ? stored.timeName : std::string(1, "xyz"[axis])) + " [" +
+                unitText(unit) + "]";
+        units += (i > 0 ? ", " : "") + unitText(unit);
+        if (axis != 3) continue;
+        dataset.info.lattice.origin[i] = first + step * shape.field.lattice.origin[i]; // frames become times again
+        dataset.info.lattice.spacing[i] *= step;
+    }
+    if (shape.solved != 3) dataset.info.lengthUnit = units;
+    dataset.info.provenance += (dataset.info.provenance.empty() ? "axes: " : "; axes: ") + axes;
     for (volume::Parameter& parameter : dataset.info.parameters) parameter.type = volume::ScalarType::F32;
     dataset.load = [slice, lattice = dataset.info.lattice](int parameter, int component, int) {
         volume::Field field = slice(parameter, component).field;
@@ -72,12 +87,15 @@ volume::Dataset planeDataset(const std::shared_ptr<const codec::Archive>& archiv
 
 void run(const UnpackRequest& request) {
     const auto archive = std::make_shared<const codec::Archive>(request.input);
-    const volume::Dataset dataset = request.plane.empty()
-                                        ? codec::gridDataset(archive, request.level, request.timeFilter)
-                                        : planeDataset(archive, request.plane);
     const Progress progress = terminalProgress("unpack");
-    for (const std::string& written :
-         volume::exportDataset(dataset, select(request, dataset.info), request.output, progress))
+    const bool derives = !request.derived.empty();
+    const volume::Dataset dataset = request.plane.empty()
+                                        ? withDerived(codec::gridDataset(archive, request.level, request.timeFilter),
+                                                      request.derived, progress.part(0, derives ? 0.5 : 0))
+                                        : planeDataset(archive, request.plane);
+    const bool values = !archive->metadata().lossless;
+    for (const std::string& written : volume::exportDataset(dataset, select(request, dataset.info, values),
+                                                            request.output, progress.part(derives ? 0.5 : 0, 1)))
         std::printf("%s\n", written.c_str());
 }
 
@@ -101,6 +119,8 @@ void addUnpackCommand(CLI::App& app) {
             "the other three axes than the steepest")
         ->delimiter(',')
         ->expected(5);
+    addDeriveOption(*command, request->derived);
+    command->get_option("--derive")->excludes("--plane");
     command
         ->add_option_function<std::string>(
             "--time-filter",

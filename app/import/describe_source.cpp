@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <stdexcept>
@@ -9,21 +10,38 @@
 #include <vtkDataArraySelection.h>
 #include <vtkDataObject.h>
 #include <vtkFieldData.h>
+#include <vtkIdList.h>
 #include <vtkImageData.h>
 #include <vtkInformation.h>
 #include <vtkInformationVector.h>
 #include <vtkNIFTIImageReader.h>
 #include <vtkNetCDFReader.h>
+#include <vtkNew.h>
 #include <vtkPointData.h>
 #include <vtkStreamingDemandDrivenPipeline.h>
 #include <vtkStringArray.h>
+#include <vtkUnstructuredGrid.h>
 #include <vtkXMLReader.h>
+#include <vtkXMLUnstructuredGridReader.h>
 
 namespace tessera::importer {
 
 namespace {
 
 using volume::ScalarType;
+
+/// Skips the points and cells of a file.
+class FieldDataReader : public vtkXMLUnstructuredGridReader {
+public:
+    static FieldDataReader* New() {
+        auto* reader = new FieldDataReader;
+        reader->InitializeObjectBase();
+        return reader;
+    }
+
+protected:
+    void ReadXMLData() override { ReadFieldData(); }
+};
 
 ScalarType typeOf(int vtkType) {
     switch (vtkType) {
@@ -65,6 +83,11 @@ void addArray(PieceRef& ref, const std::string& name, int vtkType, int component
     for (int c = 0; c < components; ++c) add(shown + "." + std::to_string(c), 1, c);
 }
 
+/// Names that VTK's programs give to the time of a file.
+bool isTimeName(const std::string& name) {
+    return std::ranges::find(kTimeNames, name) != kTimeNames.end();
+}
+
 /// Undoes %20, %2C, %3B and %25 in a listed name.
 std::string unlisted(const std::string& text) {
     std::string out;
@@ -79,7 +102,7 @@ std::string unlisted(const std::string& text) {
 
 /// Units, labels and the unit of lengths from the field data, in the form exportDataset writes:
 /// "O2,H2 mol/m3; T K; region -" and "region 1 air side; ...".
-void readWords(vtkFieldData* data, PieceRef& ref) {
+void readWords(vtkFieldData* data, volume::Piece& piece, std::vector<ArrayRef>& arrays) {
     const auto text = [&](const char* name) -> std::string {
         auto* words = data != nullptr ? vtkStringArray::SafeDownCast(data->GetAbstractArray(name)) : nullptr;
         return words != nullptr && words->GetNumberOfValues() > 0 ? std::string(words->GetValue(0)) : std::string();
@@ -97,8 +120,11 @@ void readWords(vtkFieldData* data, PieceRef& ref) {
         const std::string unit = item.substr(space + 1);
         each(item.substr(0, space), ',', [&](const std::string& listed) {
             const std::string name = unlisted(listed);
-            for (ArrayRef& array : ref.arrays)
+            for (ArrayRef& array : arrays)
                 if (array.form.name == name && unit != "-") array.form.unit = unit;
+            for (volume::Quantity& quantity : piece.quantities)
+                if (quantity.name == name && unit != "-") quantity.unit = unit;
+            if (isTimeName(name) && unit != "-") piece.timeUnit = unit;
         });
     });
     each(text("labels"), ';', [&](const std::string& item) {
@@ -106,10 +132,12 @@ void readWords(vtkFieldData* data, PieceRef& ref) {
         std::string name, words;
         int value = 0;
         if (!(in >> name >> value) || !std::getline(in >> std::ws, words)) return;
-        for (ArrayRef& array : ref.arrays)
+        for (ArrayRef& array : arrays)
             if (array.form.name == unlisted(name)) array.form.labels.push_back({value, words});
     });
-    ref.piece.lengthUnit = text("length_unit");
+    piece.lengthUnit = text("length_unit");
+    piece.timeName = text("time_name");
+    if (const std::string unit = text("time_unit"); !unit.empty()) piece.timeUnit = unit;
 }
 
 void setLattice(PieceRef& ref, const int extent[6], const double spacing[3], const double origin[3], bool cells) {
@@ -127,6 +155,13 @@ void setLattice(PieceRef& ref, const int extent[6], const double spacing[3], con
 
 void finish(Source& source, PieceRef& ref) {
     ref.piece.times = source.times;
+    if (source.format == "OpenFOAM") ref.piece.timeUnit = "s";
+    for (ArrayRef& array : ref.arrays)
+        if (const auto unit = source.units.find(array.vtkName); unit != source.units.end())
+            array.form.unit = unit->second;
+    if (!source.lengthUnit.empty()) ref.piece.lengthUnit = source.lengthUnit;
+    if (!source.timeUnit.empty()) ref.piece.timeUnit = source.timeUnit;
+    ref.piece.note = source.note;
     if (auto* nifti = vtkNIFTIImageReader::SafeDownCast(source.reader)) {
         ref.scale = nifti->GetRescaleSlope();
         ref.offset = nifti->GetRescaleIntercept();
@@ -193,7 +228,7 @@ std::vector<PieceRef> describeImageHeader(Source& source) {
     xml->Update();
     throwReported();
     vtkDataObject* output = xml->GetOutputDataObject(0);
-    readWords(output->GetFieldData(), ref);
+    describeFieldData(output->GetFieldData(), ref.piece, ref.arrays);
     if (source.times.empty()) findTime(output, source.times);
     xml->GetPointDataArraySelection()->EnableAllArrays();
     xml->GetCellDataArraySelection()->EnableAllArrays();
@@ -231,11 +266,32 @@ std::vector<PieceRef> describeBlocks(const Source& given, const std::vector<Bloc
             ref.piece.box = {{box[0], box[2], box[4]}, {box[1], box[3], box[5]}};
             ref.piece.cellSize = meanCellSize(data);
         }
-        readWords(data->GetFieldData(), ref);
+        describeFieldData(data->GetFieldData(), ref.piece, ref.arrays);
+        if (source.times.size() > 1) ref.piece.quantities.clear(); // they are those of one of the times
         finish(source, ref);
         pieces.push_back(std::move(ref));
     }
     return pieces;
+}
+
+void describeFieldData(vtkFieldData* data, volume::Piece& piece, std::vector<ArrayRef>& arrays) {
+    if (data == nullptr) return;
+    for (int i = 0; i < data->GetNumberOfArrays(); ++i) {
+        vtkDataArray* array = data->GetArray(i);
+        if (array == nullptr || array->GetName() == nullptr || array->GetNumberOfValues() != 1) continue;
+        const std::string name = array->GetName();
+        if (isHelper(name) || isTimeName(name)) continue;
+        piece.quantities.push_back({name, "", {meantTime(array->GetComponent(0, 0))}});
+    }
+    readWords(data, piece, arrays);
+}
+
+vtkSmartPointer<vtkFieldData> fieldDataAlone(const std::string& path) {
+    vtkNew<FieldDataReader> reader;
+    reader->SetFileName(path.c_str());
+    reader->Update();
+    throwReported();
+    return reader->GetOutput()->GetFieldData();
 }
 
 vtkDataArray* findArray(vtkDataSet* data, const ArrayRef& array) {
@@ -243,6 +299,41 @@ vtkDataArray* findArray(vtkDataSet* data, const ArrayRef& array) {
     if (array.ofCells) from = data->GetCellData();
     if (vtkDataArray* named = from->GetArray(array.vtkName.c_str())) return named;
     return array.vtkName == "value" && from->GetNumberOfArrays() == 1 ? from->GetArray(0) : nullptr;
+}
+
+std::string rangesJson(vtkDataSet* data, vtkDataArray* values, const ArrayRef& array) {
+    std::vector<std::uint8_t> used(std::size_t(values->GetNumberOfTuples()), array.ofCells ? 1 : 0);
+    if (!array.ofCells) {
+        vtkNew<vtkIdList> points;
+        for (vtkIdType c = 0; c < data->GetNumberOfCells(); ++c) {
+            data->GetCellPoints(c, points);
+            for (vtkIdType i = 0; i < points->GetNumberOfIds(); ++i) {
+                const auto point = std::size_t(points->GetId(i));
+                if (point < used.size()) used[point] = 1;
+            }
+        }
+    }
+    const int components = array.form.components;
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    std::vector<double> lo(std::size_t(components > 1 ? components + 1 : 1), kInfinity), hi(lo.size(), -kInfinity);
+    const auto widen = [&](std::size_t i, double value) {
+        lo[i] = std::min(lo[i], value);
+        hi[i] = std::max(hi[i], value);
+    };
+    for (std::size_t i = 0; i < used.size(); ++i) {
+        if (used[i] == 0) continue;
+        double square = 0;
+        for (int c = 0; c < components; ++c) {
+            const double value = values->GetComponent(vtkIdType(i), array.firstComponent + c);
+            if (std::isfinite(value)) widen(std::size_t(c), value);
+            square += value * value;
+        }
+        if (components > 1 && std::isfinite(square)) widen(std::size_t(components), std::sqrt(square));
+    }
+    nlohmann::json ranges = nlohmann::json::array();
+    for (std::size_t i = 0; i < lo.size(); ++i)
+        ranges.push_back(lo[i] <= hi[i] ? nlohmann::json{lo[i], hi[i]} : nlohmann::json());
+    return nlohmann::json{{"ranges", ranges}}.dump();
 }
 
 std::string headerJson(const std::vector<PieceRef>& pieces) {
@@ -264,8 +355,16 @@ std::string headerJson(const std::vector<PieceRef>& pieces) {
         entry["cells"] = {piece.cells};
         entry["cellSize"] = triple(piece.cellSize);
         entry["lengthUnit"] = piece.lengthUnit;
+        entry["timeName"] = piece.timeName;
         entry["timeUnit"] = piece.timeUnit;
+        if (!piece.note.empty()) entry["note"] = piece.note;
         entry["times"] = piece.times;
+        entry["quantities"] = json::array();
+        for (const volume::Quantity& quantity : piece.quantities) {
+            json values = json::array();
+            for (const double value : quantity.values) values.push_back(std::isfinite(value) ? json(value) : json());
+            entry["quantities"].push_back({{"name", quantity.name}, {"unit", quantity.unit}, {"values", values}});
+        }
         entry["arrays"] = json::array();
         for (const ArrayRef& array : ref.arrays) {
             json words;

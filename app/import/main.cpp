@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <exception>
 #include <iostream>
@@ -37,6 +38,7 @@ constexpr std::size_t kMostKilobytesKept = 512 * 1024; // of read data
 constexpr std::size_t kMostSamplings = 64;
 
 struct OpenFile {
+    std::vector<std::string> files; ///< one, or slices of one volume
     std::optional<Source> source;
     std::vector<PieceRef> pieces;
 };
@@ -88,7 +90,7 @@ Loaded& load(State& state, std::size_t file, int time) {
             return state.loaded.front();
         }
     OpenFile& opened = state.files[file];
-    if (!opened.source) opened.source = openSource(opened.pieces.front().piece.file);
+    if (!opened.source) opened.source = openSource(opened.files);
     Loaded now{file, time, readBlocks(*opened.source, time), 0, {}};
     now.kilobytes = kilobytesOf(now.blocks);
     std::size_t kept = now.kilobytes;
@@ -102,16 +104,24 @@ Loaded& load(State& state, std::size_t file, int time) {
 
 /// Reads what is known of a file. With `like`, the form of the file before it is taken over where the names agree, so
 /// that of a long series only the first file of meshes is read.
-OpenFile openFile(State& state, const std::string& path, bool like) {
+OpenFile openFile(State& state, const std::vector<std::string>& files, bool like) {
+    const std::string& path = files.front();
     OpenFile file;
-    file.source = openSource(path);
+    file.files = files;
+    file.source = openSource(files);
     Source& source = *file.source;
     file.pieces = describeImageHeader(source);
     if (file.pieces.empty() && like && !source.times.empty() && !state.files.empty() &&
         !state.files.back().pieces.empty() && source.format != "OpenFOAM" && source.format != "EnSight" &&
-        source.format != "NetCDF") {
+        source.format != "NetCDF" &&
+        (source.format == "vtu" || state.files.back().pieces.front().piece.quantities.empty())) {
         file.pieces = state.files.back().pieces;
-        for (PieceRef& ref : file.pieces) ref.piece.times = source.times;
+        for (PieceRef& ref : file.pieces) {
+            ref.piece.times = source.times;
+            ref.piece.quantities.clear();
+            std::vector<ArrayRef> none; // what the field data say of arrays is known
+            if (source.format == "vtu") describeFieldData(fieldDataAlone(path), ref.piece, none);
+        }
     }
     if (file.pieces.empty()) {
         const std::vector<Block> blocks = readBlocks(source, 0);
@@ -264,7 +274,7 @@ void sendFrame(State& state, const Request& request) {
             }
             vtkDataArray* points = smoothed->GetPointData()->GetArray(array->vtkName.c_str());
             if (points == nullptr) throw std::runtime_error("array \"" + array->vtkName + "\" cannot be interpolated");
-            sampleArray(smoothed, *sampling, points, false, component, type, samples.data());
+            sampleCells(smoothed, *sampling, from, points, component, reinterpret_cast<float*>(samples.data()));
         } else {
             sampleArray(data, *sampling, from, array->ofCells, component, type, samples.data());
         }
@@ -283,10 +293,33 @@ void sendFrame(State& state, const Request& request) {
     std::fflush(stdout);
 }
 
+/// Ranges of an array's own values: of cells, or of points that a cell uses.
+void sendRanges(State& state, const std::string& line) {
+    std::istringstream in(line);
+    std::string word;
+    std::size_t fileIndex = 0, piece = 0;
+    int arrayIndex = 0, time = 0;
+    in >> word >> fileIndex >> piece >> arrayIndex >> time;
+    if (!in || fileIndex >= state.files.size()) throw std::runtime_error("bad request");
+    OpenFile& file = state.files[fileIndex];
+    if (piece >= file.pieces.size() || arrayIndex < 0 || arrayIndex >= int(file.pieces[piece].arrays.size()) ||
+        time < 0 || time >= std::max(1, int(file.pieces[piece].piece.times.size())))
+        throw std::runtime_error("bad request");
+    const PieceRef& ref = file.pieces[piece];
+    Loaded& loaded = load(state, fileIndex, time);
+    if (piece >= loaded.blocks.size() || loaded.blocks[piece].name != ref.piece.name)
+        throw std::runtime_error("has other blocks at this time or in this file of the series");
+    const ArrayRef& array = ref.arrays[std::size_t(arrayIndex)];
+    vtkDataArray* from = findArray(loaded.blocks[piece].data, array);
+    if (from == nullptr || from->GetNumberOfComponents() < array.firstComponent + array.form.components)
+        throw std::runtime_error("array \"" + array.vtkName + "\" is missing in this file or at this time");
+    sendMessage(MessageKind::Header, rangesJson(loaded.blocks[piece].data, from, array));
+}
+
 int run(int argc, char** argv) {
     if (argc < 2 || std::string(argv[1]) == "--help") {
-        std::fprintf(stderr,
-                     "tessera-import [--like] FILE ...: streams data files to tessera, see volume/import/stream.h\n");
+        std::fprintf(stderr, "tessera-import [--like | --slices N] FILE ...: streams data files to tessera, see "
+                             "volume/import/stream.h\n");
         return argc < 2 ? 1 : 0;
     }
     // Readers may print to stdout: it becomes stderr, and messages go to a copy of it.
@@ -301,8 +334,14 @@ int run(int argc, char** argv) {
             like = true;
             continue;
         }
+        std::vector<std::string> files{argv[i]};
+        if (std::string(argv[i]) == "--slices" && i + 2 < argc) {
+            const int first = i + 2, count = std::min(std::atoi(argv[i + 1]), argc - first);
+            files.assign(argv + first, argv + first + std::max(count, 1));
+            i = first + std::max(count, 1) - 1;
+        }
         try {
-            state.files.push_back(openFile(state, argv[i], like));
+            state.files.push_back(openFile(state, files, like));
             sendMessage(MessageKind::Header, headerJson(state.files.back().pieces));
         } catch (const std::exception& error) {
             sendMessage(MessageKind::Failure, error.what());
@@ -312,7 +351,10 @@ int run(int argc, char** argv) {
     }
     for (std::string line; std::getline(std::cin, line);) {
         try {
-            sendFrame(state, parseRequest(line));
+            if (line.starts_with("ranges "))
+                sendRanges(state, line);
+            else
+                sendFrame(state, parseRequest(line));
         } catch (const std::bad_alloc&) {
             sendMessage(MessageKind::Failure, "not enough memory");
         } catch (const std::exception& error) {

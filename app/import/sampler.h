@@ -27,4 +27,10 @@ std::shared_ptr<const Sampling> makeSampling(vtkDataSet* mesh, const volume::Lat
 void sampleArray(vtkDataSet* mesh, const Sampling& sampling, vtkDataArray* array, bool ofCells, int component,
                  volume::ScalarType type, void* out);
 
+/// One component of an array of cells at every sample: the value of the cell, plus what the same values moved to its
+/// points (`smoothed`, of `mesh`) change from the middle of the cell to the sample, held within those points' values.
+/// So a sample in the middle of a cell has its value, and a linear course is kept.
+void sampleCells(vtkDataSet* mesh, const Sampling& sampling, vtkDataArray* cells, vtkDataArray* smoothed, int component,
+                 float* out);
+
 } // namespace tessera::importer

@@ -1,12 +1,15 @@
 #include "app/import/source.h"
 
+#include "app/import/even_grid.h"
+#include "app/import/formats.h"
+#include "app/import/whole_file.h"
+#include "volume/import/formats.h"
+
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <stdexcept>
 #include <vtkAbstractArray.h>
 #include <vtkCell.h>
@@ -14,29 +17,12 @@
 #include <vtkDataArray.h>
 #include <vtkDataObjectTree.h>
 #include <vtkFieldData.h>
-#include <vtkGenericDataObjectReader.h>
-#include <vtkGenericEnSightReader.h>
-#include <vtkImageReader2.h>
 #include <vtkInformation.h>
 #include <vtkInformationVector.h>
-#include <vtkMetaImageReader.h>
 #include <vtkMultiBlockDataSet.h>
-#include <vtkNIFTIImageReader.h>
-#include <vtkNetCDFCFReader.h>
 #include <vtkNew.h>
-#include <vtkNrrdReader.h>
-#include <vtkOpenFOAMReader.h>
 #include <vtkOutputWindow.h>
 #include <vtkStreamingDemandDrivenPipeline.h>
-#include <vtkStringArray.h>
-#include <vtkXMLImageDataReader.h>
-#include <vtkXMLMultiBlockDataReader.h>
-#include <vtkXMLPImageDataReader.h>
-#include <vtkXMLPUnstructuredGridReader.h>
-#include <vtkXMLReader.h>
-#include <vtkXMLRectilinearGridReader.h>
-#include <vtkXMLStructuredGridReader.h>
-#include <vtkXMLUnstructuredGridReader.h>
 
 namespace tessera::importer {
 
@@ -57,14 +43,24 @@ public:
     void DisplayText(const char* text) override {
         const MessageTypes kind = GetCurrentMessageType();
         std::fprintf(stderr, "%s\n", text);
-        if (kind == MESSAGE_TYPE_ERROR && reported.empty()) reported = firstReason(text);
+        const bool error = kind == MESSAGE_TYPE_ERROR || (kind != MESSAGE_TYPE_TEXT && meansMissing(text));
+        if (error && reported.empty()) reported = firstReason(text);
     }
 
 private:
+    /// Some readers only warn of what they could not read, and fill it with zeros.
+    static bool meansMissing(const std::string& text) {
+        static constexpr const char* kWords[] = {"rror",   "EOF",      "nd of file", "runcated",
+                                                 "ailed",  "ould not", "annot",      "nable to",
+                                                 "issing", "remature", "nexpected",  "nrecognized"};
+        return std::any_of(std::begin(kWords), std::end(kWords),
+                           [&](const char* word) { return text.find(word) != std::string::npos; });
+    }
     /// "ERROR: In file.cxx, line 12\nvtkReader (0x..): reason\n\n" -> "reason".
     static std::string firstReason(const std::string& text) {
         std::size_t begin = text.find("): ");
-        begin = begin == std::string::npos ? 0 : begin + 3;
+        if (begin == std::string::npos) begin = text.find('\n'); // a warning of no object
+        begin = begin == std::string::npos ? 0 : begin + (text[begin] == '\n' ? 1 : 3);
         std::string line = text.substr(begin, 300);
         for (char& c : line)
             if (static_cast<unsigned char>(c) < ' ') c = ' ';
@@ -72,171 +68,6 @@ private:
         return line.empty() ? "error" : line;
     }
 };
-template <class Reader> vtkSmartPointer<vtkAlgorithm> withName(const std::string& path) {
-    vtkNew<Reader> reader;
-    reader->SetFileName(path.c_str());
-    return reader.Get();
-}
-
-std::string lowerEnding(const std::string& path) {
-    std::string name = fs::path(path).filename().string();
-    std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) { return char(std::tolower(c)); });
-    if (name.ends_with(".nii.gz")) return ".nii.gz";
-    const std::size_t dot = name.rfind('.');
-    return dot == std::string::npos ? std::string() : name.substr(dot);
-}
-
-/// Image files are recognised by content, so that a wrong one is refused with a reason.
-template <class Reader> vtkSmartPointer<vtkAlgorithm> image(const std::string& path) {
-    vtkNew<Reader> reader;
-    if (reader->CanReadFile(path.c_str()) == 0) throw std::runtime_error("is damaged or not of this format");
-    reader->SetFileName(path.c_str());
-    return reader.Get();
-}
-
-/// VTK's readers fill what a truncated file lacks with whatever was in memory: these checks refuse it.
-std::string readPart(const std::string& path, std::size_t begin, std::size_t count) {
-    std::ifstream in(path, std::ios::binary);
-    in.seekg(static_cast<std::streamoff>(begin));
-    std::string text(count, '\0');
-    in.read(text.data(), static_cast<std::streamsize>(count));
-    text.resize(static_cast<std::size_t>(in.gcount()));
-    return text;
-}
-
-void checkXmlEnd(const std::string& path) {
-    constexpr std::size_t kTail = 4096;
-    const std::size_t size = fs::file_size(path);
-    if (readPart(path, 0, kTail).find("<VTKFile") == std::string::npos) throw std::runtime_error("is no VTK XML file");
-    if (readPart(path, size - std::min(size, kTail), kTail).find("</VTKFile>") == std::string::npos)
-        throw std::runtime_error("ends before its last tag: truncated");
-}
-
-void checkImageSize(vtkImageReader2* reader, const std::string& path) {
-    const int* extent = reader->GetDataExtent();
-    double wanted =
-        double(vtkDataArray::GetDataTypeSize(reader->GetDataScalarType())) * reader->GetNumberOfScalarComponents();
-    for (int axis = 0; axis < 3; ++axis) wanted *= extent[2 * axis + 1] - extent[2 * axis] + 1.0;
-    constexpr std::size_t kHead = 1 << 20;
-    const std::string head = readPart(path, 0, kHead);
-    std::size_t begin = 0; // where the samples start; 0 = in another file or compressed
-    if (head.starts_with("NRRD") && head.find("encoding: raw") < head.find("\n\n"))
-        begin = head.find("data file:") < head.find("\n\n") || head.find("datafile:") < head.find("\n\n")
-                    ? 0
-                    : head.find("\n\n") + 2;
-    else if (const std::size_t local = head.find("ElementDataFile = LOCAL");
-             local != std::string::npos && head.find("CompressedData = True") == std::string::npos)
-        begin = head.find('\n', local) + 1;
-    else if (path.ends_with(".nii"))
-        begin = 348;
-    const double has = double(fs::file_size(path)) - double(begin);
-    if (begin != 0 && has < wanted)
-        throw std::runtime_error("has " + std::to_string(static_cast<long long>(has)) +
-                                 " bytes of samples, its header asks for " +
-                                 std::to_string(static_cast<long long>(wanted)));
-}
-
-vtkSmartPointer<vtkAlgorithm> openFoam(const std::string& path) {
-    vtkNew<vtkOpenFOAMReader> reader;
-    const std::string file = fs::is_directory(path) ? (fs::path(path) / "case.foam").string() : path;
-    reader->SetFileName(file.c_str());
-    reader->UpdateInformation();
-    for (int i = 0; i < reader->GetNumberOfPatchArrays(); ++i) {
-        const std::string name = reader->GetPatchArrayName(i);
-        reader->SetPatchArrayStatus(name.c_str(), name.ends_with("internalMesh") ? 1 : 0);
-    }
-    reader->EnableAllCellArrays();
-    reader->DisableAllLagrangianArrays();
-    reader->CreateCellToPointOff(); // done here, for each block on its own
-    return reader.Get();
-}
-
-/// The dimensions that most variables share: others lie on other grids.
-vtkSmartPointer<vtkAlgorithm> openNetCdf(const std::string& path) {
-    vtkNew<vtkNetCDFCFReader> reader;
-    reader->SetFileName(path.c_str());
-    reader->SphericalCoordinatesOff();
-    reader->ReplaceFillValueWithNanOn();
-    reader->UpdateInformation();
-    vtkStringArray* dimensions = reader->GetAllDimensions();
-    std::string best;
-    vtkIdType most = 0;
-    for (vtkIdType d = 0; d < dimensions->GetNumberOfValues(); ++d) {
-        const std::string name = dimensions->GetValue(d);
-        const auto axes = std::count(name.begin(), name.end(), ',') + 1;
-        vtkIdType count = axes >= 2 ? axes * 1000 : 0; // three axes before two
-        for (vtkIdType v = 0; v < reader->GetVariableDimensions()->GetNumberOfValues(); ++v)
-            count += reader->GetVariableDimensions()->GetValue(v) == name ? 1 : 0;
-        if (count > most) {
-            most = count;
-            best = name;
-        }
-    }
-    if (!best.empty()) reader->SetDimensions(best.c_str());
-    return reader.Get();
-}
-
-vtkSmartPointer<vtkAlgorithm> openEnSight(const std::string& path) {
-    vtkNew<vtkGenericEnSightReader> reader;
-    reader->SetCaseFileName(path.c_str());
-    reader->ReadAllVariablesOn();
-    return reader.Get();
-}
-
-vtkSmartPointer<vtkAlgorithm> openLegacy(const std::string& path) {
-    vtkNew<vtkGenericDataObjectReader> reader;
-    reader->SetFileName(path.c_str());
-    reader->ReadAllScalarsOn();
-    reader->ReadAllVectorsOn();
-    reader->ReadAllFieldsOn();
-    return reader.Get();
-}
-
-/// The reader of legacy files stops at the end of a truncated one without a word: compares the arrays it gave with
-/// those that the file announces.
-void checkLegacyArrays(vtkDataObject* data, const std::string& path) {
-    const std::string text = readPart(path, 0, fs::file_size(path));
-    int announced = 0, found = 0;
-    for (std::size_t at = text.find('\n'); at != std::string::npos; at = text.find('\n', at + 1)) {
-        static constexpr const char* kWords[] = {"SCALARS ", "VECTORS ", "NORMALS ", "TENSORS ", "COLOR_SCALARS "};
-        for (const char* word : kWords)
-            if (text.compare(at + 1, std::strlen(word), word) == 0) ++announced;
-        int number = 0;
-        if (text.compare(at + 1, 6, "FIELD ") == 0 && std::sscanf(text.c_str() + at + 7, "%*255s %d", &number) == 1)
-            announced += number;
-        if (text.compare(at + 1, 10, "NULL_ARRAY") == 0) --announced;
-    }
-    for (const int kind : {vtkDataObject::POINT, vtkDataObject::CELL, vtkDataObject::FIELD})
-        if (vtkFieldData* arrays = data->GetAttributesAsFieldData(kind)) found += arrays->GetNumberOfArrays();
-    if (found < announced)
-        throw std::runtime_error("ends too early: announces " + std::to_string(announced) + " arrays, holds " +
-                                 std::to_string(found));
-}
-
-struct Known {
-    const char* ending;
-    const char* format;
-    vtkSmartPointer<vtkAlgorithm> (*open)(const std::string&);
-};
-constexpr Known kKnown[] = {{".vti", "vti", withName<vtkXMLImageDataReader>},
-                            {".pvti", "pvti", withName<vtkXMLPImageDataReader>},
-                            {".vtu", "vtu", withName<vtkXMLUnstructuredGridReader>},
-                            {".pvtu", "pvtu", withName<vtkXMLPUnstructuredGridReader>},
-                            {".vtr", "vtr", withName<vtkXMLRectilinearGridReader>},
-                            {".vts", "vts", withName<vtkXMLStructuredGridReader>},
-                            {".vtm", "vtm", withName<vtkXMLMultiBlockDataReader>},
-                            {".vtk", "vtk", openLegacy},
-                            {".nrrd", "nrrd", image<vtkNrrdReader>},
-                            {".nhdr", "nrrd", image<vtkNrrdReader>},
-                            {".mha", "MetaImage", image<vtkMetaImageReader>},
-                            {".mhd", "MetaImage", image<vtkMetaImageReader>},
-                            {".nii", "NIfTI", image<vtkNIFTIImageReader>},
-                            {".nii.gz", "NIfTI", image<vtkNIFTIImageReader>},
-                            {".foam", "OpenFOAM", openFoam},
-                            {".case", "EnSight", openEnSight},
-                            {".encas", "EnSight", openEnSight},
-                            {".nc", "NetCDF", openNetCdf}};
-
 void flatten(vtkDataObject* data, const std::string& name, std::vector<Block>& blocks) {
     if (vtkDataObjectTree::SafeDownCast(data) != nullptr) {
         auto* multi = vtkMultiBlockDataSet::SafeDownCast(data);
@@ -254,6 +85,34 @@ void flatten(vtkDataObject* data, const std::string& name, std::vector<Block>& b
     auto* leaf = vtkDataSet::SafeDownCast(data);
     if (leaf != nullptr && leaf->GetNumberOfPoints() > 0 && leaf->GetNumberOfCells() > 0)
         blocks.push_back({name, leaf});
+}
+
+int arraysIn(vtkDataObject* data) {
+    int found = 0;
+    for (const int kind : {vtkDataObject::POINT, vtkDataObject::CELL, vtkDataObject::FIELD})
+        if (vtkFieldData* arrays = data->GetAttributesAsFieldData(kind)) found += arrays->GetNumberOfArrays();
+    return found;
+}
+
+/// What VTK's reader gives at one time: a copy, because the reader overwrites its output at the next.
+vtkSmartPointer<vtkDataObject> readByVtk(const Source& source, int time) {
+    if (static_cast<std::size_t>(time) < source.readerTimes.size())
+        source.reader->UpdateTimeStep(source.readerTimes[static_cast<std::size_t>(time)]);
+    else
+        source.reader->Update();
+    vtkDataObject* output = source.reader->GetOutputDataObject(0);
+    if (output != nullptr && source.format == "vtk")
+        checkLegacy(source.path, static_cast<std::size_t>(arraysIn(output)));
+    try {
+        throwReported();
+    } catch (const std::runtime_error& error) { // "Error reading binary data!"
+        if (source.format != "vtk") throw;
+        throw std::runtime_error("ends early or is damaged: " + std::string(error.what()));
+    }
+    if (output == nullptr) throw std::runtime_error("gave no data");
+    vtkSmartPointer<vtkDataObject> copy = vtkSmartPointer<vtkDataObject>::Take(output->NewInstance());
+    copy->ShallowCopy(output);
+    return copy;
 }
 
 int dimensionOf(vtkDataSet* data) {
@@ -290,27 +149,36 @@ double meantTime(double time) {
 
 void findTime(vtkDataObject* data, std::vector<double>& times) {
     if (data == nullptr || data->GetFieldData() == nullptr) return;
-    for (const char* name : {"TimeValue", "TIME", "Time"}) {
-        vtkDataArray* value = data->GetFieldData()->GetArray(name);
+    for (const std::string_view name : kTimeNames) {
+        vtkDataArray* value = data->GetFieldData()->GetArray(std::string(name).c_str());
         if (value == nullptr || value->GetNumberOfValues() != 1 || !std::isfinite(value->GetComponent(0, 0))) continue;
         times.push_back(meantTime(value->GetComponent(0, 0)));
         return;
     }
 }
 
-Source openSource(const std::string& path) {
+Source openSource(const std::vector<std::string>& files) {
+    const std::string& path = files.front();
     if (!fs::exists(path)) throw std::runtime_error("no such file");
-    const std::string ending = fs::is_directory(path) ? std::string(".foam") : lowerEnding(path);
-    const auto* known =
-        std::find_if(std::begin(kKnown), std::end(kKnown), [&](const Known& one) { return ending == one.ending; });
-    if (known == std::end(kKnown))
-        throw std::runtime_error("unknown ending \"" + ending +
-                                 "\": .vti .vtu .vtm .vtr .vts .vtk .nrrd .mha .mhd .nii .foam .case .nc or .raw");
-    Source source{path, known->format, known->open(path), {}, {}};
-    if (vtkXMLReader::SafeDownCast(source.reader) != nullptr) checkXmlEnd(path);
+    const volume::FileFormat* format =
+        fs::is_directory(path) ? volume::formatNamed("OpenFOAM") : volume::formatOfFile(path);
+    if (format == nullptr)
+        throw std::runtime_error("unknown ending \"" + fs::path(path).extension().string() +
+                                 "\": " + volume::readableSuffixes() + " or .raw");
+    const auto known = std::find_if(readers().begin(), readers().end(),
+                                    [&](const Reader& reader) { return reader.format == format->name; });
+    if (known == readers().end())
+        throw std::runtime_error("is " + std::string(format->name) +
+                                 ", which is not read: " + std::string(format->advice));
+    Source source;
+    source.path = path;
+    if (files.size() > 1) source.files = files;
+    source.format = format->name;
+    known->open(source);
+    throwReported();
+    if (source.reader == nullptr) return source;
     source.reader->UpdateInformation();
     throwReported();
-    if (auto* images = vtkImageReader2::SafeDownCast(source.reader)) checkImageSize(images, path);
     vtkInformation* information = source.reader->GetOutputInformation(0);
     const auto* key = vtkStreamingDemandDrivenPipeline::TIME_STEPS();
     auto* steps = const_cast<vtkInformationDoubleVectorKey*>(key);
@@ -322,19 +190,9 @@ Source openSource(const std::string& path) {
 }
 
 std::vector<Block> readBlocks(const Source& source, int time) {
-    if (static_cast<std::size_t>(time) < source.readerTimes.size())
-        source.reader->UpdateTimeStep(source.readerTimes[static_cast<std::size_t>(time)]);
-    else
-        source.reader->Update();
-    throwReported();
-    vtkDataObject* output = source.reader->GetOutputDataObject(0);
-    if (output == nullptr) throw std::runtime_error("gave no data");
-    if (vtkGenericDataObjectReader::SafeDownCast(source.reader) != nullptr) checkLegacyArrays(output, source.path);
-    // A copy, because the reader overwrites its output at the next time.
-    vtkSmartPointer<vtkDataObject> copy = vtkSmartPointer<vtkDataObject>::Take(output->NewInstance());
-    copy->ShallowCopy(output);
+    if (source.check) source.check(source, static_cast<std::size_t>(time));
     std::vector<Block> blocks;
-    flatten(copy, "", blocks);
+    flatten(source.read ? source.read(static_cast<std::size_t>(time)) : readByVtk(source, time), "", blocks);
     int most = 0;
     std::vector<int> dimensions;
     for (const Block& block : blocks) {
@@ -343,7 +201,7 @@ std::vector<Block> readBlocks(const Source& source, int time) {
     }
     std::vector<Block> kept;
     for (std::size_t i = 0; i < blocks.size(); ++i)
-        if (dimensions[i] == most) kept.push_back(std::move(blocks[i]));
+        if (dimensions[i] == most) kept.push_back({blocks[i].name, asEvenGrid(blocks[i].data)});
     if (kept.empty()) throw std::runtime_error("holds no grid and no cells");
     for (const Block& block : kept) {
         const double* box = block.data->GetBounds();

@@ -8,7 +8,7 @@ namespace tessera::app {
 
 namespace {
 
-vis::Image renderAndInspect(const SessionDocument& document, std::shared_ptr<const volume::BrickSource> source,
+vis::Image renderAndInspect(const SessionDocument& document, const Sources& sources,
                             std::shared_ptr<vis::Renderer> renderer, const PictureRequest& request,
                             const Inspect& inspect) {
     if (!request.pane.empty() && !document.session.views.contains(request.pane)) {
@@ -22,7 +22,9 @@ vis::Image renderAndInspect(const SessionDocument& document, std::shared_ptr<con
     Opened opened;
     opened.document = document;
     opened.document.session.animation.playing = false;
-    opened.source = std::move(source);
+    opened.source = sources.pictures;
+    opened.numbers = sources.numbers;
+    opened.origin = sources.origin;
     workbench.install(std::move(opened));
     vis::Image image = drawUntilDone(workbench, request.size, request.scale);
     if (inspect) inspect(workbench);
@@ -31,9 +33,9 @@ vis::Image renderAndInspect(const SessionDocument& document, std::shared_ptr<con
 
 } // namespace
 
-vis::Image renderPicture(const SessionDocument& document, std::shared_ptr<const volume::BrickSource> source,
+vis::Image renderPicture(const SessionDocument& document, const Sources& sources,
                          std::shared_ptr<vis::Renderer> renderer, const PictureRequest& request) {
-    return renderAndInspect(document, std::move(source), std::move(renderer), request, {});
+    return renderAndInspect(document, sources, std::move(renderer), request, {});
 }
 
 struct PictureMaker::Impl {
@@ -47,9 +49,9 @@ PictureMaker::PictureMaker(const vis::RendererOptions& options) : impl_(std::mak
 
 PictureMaker::~PictureMaker() = default;
 
-vis::Image PictureMaker::render(const SessionDocument& document, std::shared_ptr<const volume::BrickSource> source,
-                                const PictureRequest& request, const Inspect& inspect) {
-    return renderAndInspect(document, std::move(source), impl_->renderer, request, inspect);
+vis::Image PictureMaker::render(const SessionDocument& document, const Sources& sources, const PictureRequest& request,
+                                const Inspect& inspect) {
+    return renderAndInspect(document, sources, impl_->renderer, request, inspect);
 }
 
 } // namespace tessera::app

@@ -5,8 +5,8 @@
 /// The workbench without a window: the same frames, drawn into memory.
 namespace tessera::app {
 
-/// Renders a session in the GL context that is current; what the window would show. The data are `source`.
-vis::Image renderPicture(const SessionDocument& document, std::shared_ptr<const volume::BrickSource> source,
+/// Renders a session in the GL context that is current; what the window would show.
+vis::Image renderPicture(const SessionDocument& document, const Sources& sources,
                          std::shared_ptr<vis::Renderer> renderer, const PictureRequest& request);
 
 /// Looks at a workbench that has drawn its picture.
@@ -21,8 +21,8 @@ public:
     PictureMaker(const PictureMaker&) = delete;
     PictureMaker& operator=(const PictureMaker&) = delete;
 
-    vis::Image render(const SessionDocument& document, std::shared_ptr<const volume::BrickSource> source,
-                      const PictureRequest& request, const Inspect& inspect = {});
+    vis::Image render(const SessionDocument& document, const Sources& sources, const PictureRequest& request,
+                      const Inspect& inspect = {});
 
 private:
     struct Impl;

@@ -85,6 +85,7 @@ std::string parameterReference() {
     out += markdownSection<StatisticsView>("View of type `statistics`", "Numbers inside and outside of the selection.");
     out += markdownSection<HistogramView>("View of type `histogram`", "One parameter's histogram.");
     out += markdownSection<ProfileView>("View of type `profile`", "Parameters along a line.");
+    out += markdownSection<CurvesView>("View of type `curves`", "Quantities and statistics over time.");
     out += markdownSection<SliceMatrixView>("View of type `sliceMatrix`", "Parameters on parallel planes.");
     out += markdownSection<ShadowCubeView>("View of type `shadowCube`",
                                            "The scene in a cube; parameters projected on its faces.");
@@ -99,6 +100,8 @@ std::string parameterReference() {
     out += markdownSection<volume::GradientRecipe>("Recipe of type `gradient`", "A vector.");
     out += markdownSection<volume::DeviationRecipe>("Recipe of type `deviation`", "Departure from the mean over time.");
     out += markdownSection<volume::SmoothRecipe>("Recipe of type `smooth`", "A Gaussian.");
+    out += markdownSection<volume::DifferenceRecipe>("Recipe of type `difference`",
+                                                     "A parameter minus itself at another time or in other data.");
     return out;
 }
 

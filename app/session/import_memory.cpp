@@ -1,14 +1,18 @@
 #include "app/session/import_memory.h"
 
 #include "app/session/describe_json.h"
+#include "codec/archive.h"
 #include "volume/atomic_file.h"
 #include "volume/error.h"
 #include "volume/import/absent.h"
+#include "volume/import/find_parts.h"
+#include "volume/import/labels.h"
 
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <iterator>
 #include <set>
 
@@ -26,6 +30,68 @@ std::map<std::string, std::string> readTexts(const Json& object, const std::stri
         texts[key] = value.get<std::string>();
     }
     return texts;
+}
+
+/// Rules by data name; `check` throws Error for what is none.
+void readRules(const Json& document, const std::string& key, const std::string& file,
+               std::map<std::string, std::vector<std::string>>& out,
+               const std::function<void(const std::string&)>& check) {
+    const auto rules = document.find(key);
+    if (rules == document.end()) return;
+    if (!rules->is_object()) throw Error("must be an object", file, "/" + key);
+    for (const auto& [data, list] : rules->items()) {
+        if (!list.is_array()) throw Error("must be a list", file, "/" + key + "/" + data);
+        for (const Json& rule : list) {
+            if (!rule.is_string()) throw Error("must be texts", file, "/" + key + "/" + data);
+            check(rule.get<std::string>());
+            out[data].push_back(rule.get<std::string>());
+        }
+    }
+}
+
+/// Adds rules to those known: the newest one of a parameter counts.
+void rememberRules(std::vector<std::string>& known, const std::vector<std::string>& stated,
+                   const std::function<std::string(const std::string&)>& parameterOf) {
+    for (const std::string& rule : stated) {
+        const std::string parameter = parameterOf(rule);
+        std::erase_if(known, [&](const std::string& old) {
+            return old != rule && parameterOf(old) == parameter &&
+                   std::find(stated.begin(), stated.end(), old) == stated.end();
+        });
+        if (std::find(known.begin(), known.end(), rule) == known.end()) known.push_back(rule);
+    }
+}
+
+std::string parameterOfAbsent(const std::string& rule) {
+    return volume::parseAbsentRule(rule).parameter;
+}
+std::string parameterOfParts(const std::string& rule) {
+    return volume::parsePartsRule(rule).parameter;
+}
+
+std::string parameterOfLabels(const std::string& rule) {
+    return volume::parseLabelRule(rule).parameter;
+}
+/// A rule as recallRules wants it.
+struct NamedLabels {
+    std::string parameter, label;
+};
+NamedLabels parseLabels(const std::string& rule) {
+    return {parameterOfLabels(rule), {}};
+}
+
+/// Adds what is remembered to the rules stated: of parameters that those do not name, where it fits the data.
+template <class Parse>
+void recallRules(std::vector<std::string>& stated, const std::vector<std::string>& known,
+                 const std::set<std::string>& names, const Parse& parse) {
+    std::set<std::string> ruled;
+    for (const std::string& rule : stated) ruled.insert(parse(rule).parameter);
+    for (const std::string& text : known) {
+        const auto rule = parse(text);
+        const bool fits = (rule.parameter == "*" || names.contains(rule.parameter)) &&
+                          (rule.label.empty() || names.contains(rule.label));
+        if (fits && !ruled.contains(rule.parameter)) stated.push_back(text);
+    }
 }
 
 } // namespace
@@ -52,17 +118,9 @@ ImportMemory loadImportMemory(const std::string& path) {
         for (const auto& [data, names] : rename->items())
             memory.rename[data] = readTexts(names, path, "/rename/" + data);
     }
-    if (const auto absent = document.find("absent"); absent != document.end()) {
-        if (!absent->is_object()) throw Error("must be an object", path, "/absent");
-        for (const auto& [data, rules] : absent->items()) {
-            if (!rules.is_array()) throw Error("must be a list", path, "/absent/" + data);
-            for (const Json& rule : rules) {
-                if (!rule.is_string()) throw Error("must be texts", path, "/absent/" + data);
-                volume::parseAbsentRule(rule.get<std::string>());
-                memory.absent[data].push_back(rule.get<std::string>());
-            }
-        }
-    }
+    readRules(document, "absent", path, memory.absent, [](const std::string& rule) { volume::parseAbsentRule(rule); });
+    readRules(document, "parts", path, memory.parts, [](const std::string& rule) { volume::parsePartsRule(rule); });
+    readRules(document, "labels", path, memory.labels, [](const std::string& rule) { volume::parseLabelRule(rule); });
     return memory;
 }
 
@@ -73,6 +131,8 @@ void saveImportMemory(const ImportMemory& memory, const std::string& path) {
     Json out;
     out["units"] = memory.units;
     out["absent"] = memory.absent;
+    out["parts"] = memory.parts;
+    out["labels"] = memory.labels;
     out["rename"] = memory.rename;
     AtomicFile file(path);
     file.write(out.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
@@ -91,29 +151,31 @@ volume::ImportOptions withMemory(volume::ImportOptions options, const ImportMemo
                 names.erase(from);
                 names.insert(to);
             }
-    if (const auto known = memory.absent.find(info.name); known != memory.absent.end()) {
-        std::set<std::string> stated;
-        for (const std::string& rule : options.absent) stated.insert(volume::parseAbsentRule(rule).parameter);
-        for (const std::string& text : known->second) {
-            const volume::AbsentRule rule = volume::parseAbsentRule(text);
-            const bool fits = (rule.parameter == "*" || names.contains(rule.parameter)) &&
-                              (rule.label.empty() || names.contains(rule.label));
-            if (fits && !stated.contains(rule.parameter)) options.absent.push_back(text);
-        }
-    }
+    if (const auto known = memory.absent.find(info.name); known != memory.absent.end())
+        recallRules(options.absent, known->second, names, volume::parseAbsentRule);
+    if (const auto known = memory.parts.find(info.name); known != memory.parts.end())
+        recallRules(options.parts, known->second, names, volume::parsePartsRule);
+    if (const auto known = memory.labels.find(info.name); known != memory.labels.end())
+        recallRules(options.labels, known->second, names, parseLabels);
     return options;
 }
 
 volume::ImportOptions recallOptions(const std::vector<std::string>& paths, const volume::ImportOptions& stated,
                                     const Progress& progress) {
-    if (paths.size() == 1 && paths[0].ends_with(".tsr")) return stated;
     const ImportMemory memory = loadImportMemory();
+    if (paths.size() == 1 && paths[0].ends_with(".tsr")) {
+        volume::ImportOptions options = stated;
+        if (!memory.labels.empty()) options.labels = withMemory(stated, memory, codec::Archive(paths[0]).info()).labels;
+        return options;
+    }
     if (memory == ImportMemory{}) return stated;
     return withMemory(stated, memory, volume::previewFiles(paths, stated, progress).info);
 }
 
 void rememberStated(const volume::ImportOptions& stated, const std::string& dataName, const std::string& path) {
-    if (path.empty() || (stated.units.empty() && stated.absent.empty() && stated.rename.empty())) return;
+    const bool isEmpty = stated.units.empty() && stated.absent.empty() && stated.parts.empty() &&
+                         stated.labels.empty() && stated.rename.empty();
+    if (path.empty() || isEmpty) return;
     try {
         ImportMemory memory = loadImportMemory(path);
         if (remember(memory, stated, dataName)) saveImportMemory(memory, path);
@@ -124,17 +186,12 @@ void rememberStated(const volume::ImportOptions& stated, const std::string& data
 bool remember(ImportMemory& memory, const volume::ImportOptions& stated, const std::string& dataName) {
     const ImportMemory before = memory;
     for (const auto& [name, unit] : stated.units) memory.units[name] = unit;
-    if (!dataName.empty() && !stated.absent.empty()) {
-        std::vector<std::string>& rules = memory.absent[dataName];
-        for (const std::string& rule : stated.absent) { // the newest rule of a parameter counts
-            const std::string parameter = volume::parseAbsentRule(rule).parameter;
-            std::erase_if(rules, [&](const std::string& old) {
-                return old != rule && volume::parseAbsentRule(old).parameter == parameter &&
-                       std::find(stated.absent.begin(), stated.absent.end(), old) == stated.absent.end();
-            });
-            if (std::find(rules.begin(), rules.end(), rule) == rules.end()) rules.push_back(rule);
-        }
-    }
+    if (!dataName.empty() && !stated.absent.empty())
+        rememberRules(memory.absent[dataName], stated.absent, parameterOfAbsent);
+    if (!dataName.empty() && !stated.parts.empty())
+        rememberRules(memory.parts[dataName], stated.parts, parameterOfParts);
+    if (!dataName.empty() && !stated.labels.empty())
+        rememberRules(memory.labels[dataName], stated.labels, parameterOfLabels);
     if (!dataName.empty())
         for (const auto& [from, to] : stated.rename) memory.rename[dataName][from] = to;
     return memory != before;

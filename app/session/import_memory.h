@@ -14,6 +14,8 @@ struct ImportMemory {
     std::map<std::string, std::string> units; ///< by parameter name
     /// Rules of ImportOptions::absent and names by data name (DatasetInfo::name, e.g. "small").
     std::map<std::string, std::vector<std::string>> absent;
+    std::map<std::string, std::vector<std::string>> parts;  ///< rules of ImportOptions::parts, the same way
+    std::map<std::string, std::vector<std::string>> labels; ///< of ImportOptions::labels
     std::map<std::string, std::map<std::string, std::string>> rename;
     bool operator==(const ImportMemory&) const = default;
 };
@@ -32,7 +34,8 @@ void saveImportMemory(const ImportMemory& memory, const std::string& path = impo
 volume::ImportOptions withMemory(volume::ImportOptions options, const ImportMemory& memory,
                                  const volume::DatasetInfo& info);
 
-/// Looks at the files and adds what is remembered for them; the one call before previewFiles or openFiles.
+/// Looks at the files and adds what is remembered for them; the one call before previewFiles or openFiles. Of what an
+/// archive says only the names of label values are added to.
 volume::ImportOptions recallOptions(const std::vector<std::string>& paths, const volume::ImportOptions& stated,
                                     const Progress& progress = {});
 

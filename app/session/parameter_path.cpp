@@ -72,7 +72,7 @@ std::vector<std::string> parameterPaths(const Session& session) {
             continue;
         out.push_back(path);
     }
-    if (session.data.files.empty() || !session.data.files[0].path.ends_with(".tsr")) out.emplace_back("/data/bcc");
+    if (session.data.files.empty() || !session.data.files[0].path.ends_with(".tsr")) out.emplace_back("/data/lattice");
     return out;
 }
 

@@ -1,5 +1,7 @@
 #include "app/session/session.h"
 
+#include "app/session/label_colors.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -104,10 +106,10 @@ std::vector<std::string> paneKeys(const Session& session) {
 std::string paneTitle(const Session& session, const std::string& pane) {
     const auto found = session.views.find(pane);
     if (found == session.views.end()) return pane;
-    static constexpr std::string_view titles[] = {"Volume",       "Slices",      "Scatterplots", "Transfer function",
-                                                  "Layers",       "Timeline",    "Data",         "History",
-                                                  "Messages",     "Statistics",  "Histogram",    "Line profile",
-                                                  "Slice matrix", "Shadow cube", "Tesseract",    "Side by side"};
+    static constexpr std::string_view titles[] = {
+        "Volume",       "Slices",      "Scatterplots", "Transfer function", "Layers",    "Timeline",
+        "Data",         "History",     "Messages",     "Statistics",        "Histogram", "Line profile",
+        "Slice matrix", "Shadow cube", "Tesseract",    "Side by side",      "Curves"};
     static_assert(std::variant_size_v<ViewState> == std::size(titles));
     std::string title(titles[found->second.index()]);
     if (const auto dash = pane.rfind('-'); dash != std::string::npos) title += " " + pane.substr(dash + 1);
@@ -129,10 +131,17 @@ std::string firstVector(const volume::DatasetInfo& info) {
     return {};
 }
 
+void colorDifferences(Session& session) {
+    for (const volume::DerivedParameter& each : session.data.derived)
+        if (std::holds_alternative<volume::DifferenceRecipe>(each.recipe))
+            session.transfer.try_emplace(each.name, vis::divergingFunction());
+}
+
 void fitSession(Session& session, const volume::DatasetInfo& info, std::vector<std::string>& messages) {
     repair(session.dock, paneKeys(session));
     const auto channels = info.channels();
     if (channels.empty()) return;
+    colorDifferences(session);
     const auto known = [&](const std::string& name) { return info.findChannel(name).has_value(); };
 
     // A name that is missing is replaced by the same stand-in everywhere, different ones by different channels.
@@ -251,7 +260,9 @@ Session defaultSession(const volume::DatasetInfo& info, const DataRef& data) {
     const auto channels = info.channels();
     static constexpr std::string_view maps[] = {"viridis", "inferno", "cividis", "plasma"};
     std::size_t next = 0;
+    colorDifferences(session);
     for (const volume::Channel& each : channels) {
+        if (session.transfer.contains(each.name)) continue;
         const volume::Parameter& parameter = info.parameters[static_cast<std::size_t>(each.parameter)];
         vis::TransferFunction function;
         // What is low in a scan is mostly air or noise; in a simulation it is a result.
@@ -267,6 +278,10 @@ Session defaultSession(const volume::DatasetInfo& info, const DataRef& data) {
             function.range = {-most, most};
         } else {
             function.colormap = std::string(maps[next++ % std::size(maps)]);
+        }
+        if (parameter.categorical) {
+            function.colormap = "labels";
+            function.colors = labelStops(parameter, range);
         }
         session.transfer[each.name] = function;
     }

@@ -18,7 +18,7 @@
 /// The session: everything that decides what is on screen, as one value, and its JSON file (*.tessera.json).
 namespace tessera::app {
 
-inline constexpr int kSessionSchema = 2;
+inline constexpr int kSessionSchema = 3;
 
 /// A file a session shows, found again by path (relative to the session file), size and hash.
 struct DataFile {
@@ -36,23 +36,49 @@ struct DataFile {
     }
 };
 
+/// Lattice that pictures of unpacked data are drawn from. Numbers come from the samples as computed on either.
+enum class PictureLattice { Grid, BodyCentred };
+inline constexpr std::string_view kPictureLatticeNames[] = {"grid", "bodyCentred"};
+
+/// A second data set, whose parameters stand beside those of the first.
+struct OtherData {
+    std::vector<DataFile> files;
+    std::string model;
+    std::map<std::string, double> settings;
+    volume::ImportOptions import;
+    bool operator==(const OtherData&) const = default;
+    static void describe(auto& self, auto&& visit) {
+        visit(self.files, FieldInfo{.key = "files", .unit = "", .doc = "Files of the other data set"});
+        visit(self.model, FieldInfo{.key = "model", .unit = "", .doc = "Built-in model where there is no file"});
+        visit(self.settings, FieldInfo{.key = "settings", .unit = "", .doc = "Settings of the model"});
+        visit(self.import, FieldInfo{.key = "import", .unit = "", .doc = "What was stated about the files"});
+    }
+};
+
 /// What is shown: files, or a model computed by the program.
 struct DataRef {
-    std::vector<DataFile> files;                   ///< an archive, or data files opened together
-    std::string model;                             ///< "fuel-cell", "marschner-lobb", ...: used when there are no files
-    std::map<std::string, double> settings;        ///< of the model: e.g. nx, ny, nz, times
-    bool bcc = true;                               ///< show unpacked data on the BCC lattice at 70.7 % of the samples
+    std::vector<DataFile> files;            ///< an archive, or data files opened together
+    std::string model;                      ///< "fuel-cell", "marschner-lobb", ...: used when there are no files
+    std::map<std::string, double> settings; ///< of the model: e.g. nx, ny, nz, times
+    PictureLattice lattice = PictureLattice::BodyCentred;
     std::vector<volume::DerivedParameter> derived; ///< computed from the others
     volume::ImportOptions import;                  ///< what was stated about files that do not say it themselves
     std::optional<codec::PackOptions> packed;      ///< unpacked data are shown as an archive packed so holds them
     bool originals = false;                        ///< packed data lie beside the data as computed
+    std::string axis;                              ///< quantity that takes the place of the times, "" = none
     std::optional<volume::TimeAxis> timeAxis;      ///< a plane at all times is shown in place of the data
+    std::optional<OtherData> other = {};           ///< its parameters stand beside these as "T (other)"
     bool operator==(const DataRef&) const = default;
     static void describe(auto& self, auto&& visit) {
         visit(self.files, FieldInfo{.key = "files", .unit = "", .doc = "Files that are shown together"});
         visit(self.model, FieldInfo{.key = "model", .unit = "", .doc = "Built-in model shown when there is no file"});
         visit(self.settings, FieldInfo{.key = "settings", .unit = "", .doc = "Settings of the model"});
-        visit(self.bcc, FieldInfo{.key = "bcc", .unit = "", .doc = "Resample unpacked data to the BCC lattice"});
+        visit(self.lattice, FieldInfo{.key = "lattice",
+                                      .unit = "",
+                                      .doc = "Lattice that pictures of unpacked data are drawn from: the grid of the "
+                                             "file, or body-centred, 70.7 % of the samples; numbers are those of the "
+                                             "file on either",
+                                      .names = kPictureLatticeNames});
         visit(self.derived,
               FieldInfo{.key = "derived", .unit = "", .doc = "Parameters computed from the others", .hidden = true});
         visit(self.import, FieldInfo{.key = "import", .unit = "", .doc = "What was stated about the files"});
@@ -64,7 +90,15 @@ struct DataRef {
         visit(self.originals, FieldInfo{.key = "originals",
                                         .unit = "",
                                         .doc = "Show packed data with the data as computed beside, as parameters"});
+        visit(self.axis, FieldInfo{.key = "axis",
+                                   .unit = "",
+                                   .doc = "Quantity over time that takes the place of the times where it rises or "
+                                          "falls all the time; where it does not it is shown first"});
         visit(self.timeAxis, FieldInfo{.key = "timeAxis", .unit = "", .doc = "Show time in place of an axis"});
+        visit(self.other, FieldInfo{.key = "other",
+                                    .unit = "",
+                                    .doc = "Another data set, whose parameters stand beside these as \"T (other)\" on "
+                                           "their grid"});
     }
 };
 
@@ -158,6 +192,9 @@ std::string paneTitle(const Session& session, const std::string& pane);
 
 /// Adds a view of a kind ("volume", "slices", ...) as a tab beside the first pane; returns its key.
 std::string addView(Session& session, const ViewState& view);
+
+/// Gives derived differences that have no transfer function yet diverging colours with 0 in the middle.
+void colorDifferences(Session& session);
 
 /// Makes a session fit a data set: the dock tree holds exactly the open views, parameters that do not exist are
 /// replaced by ones that do (one message each), brushes on absent parameters are dropped, cursor and time lie inside.

@@ -4,29 +4,17 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <cstdio>
 #include <cstring>
 #include <fcntl.h>
 #include <filesystem>
 #include <fstream>
 #include <unistd.h>
-#include <xxhash.h>
 
 namespace tessera::app {
 
 namespace fs = std::filesystem;
 
 namespace {
-
-std::string hex(std::uint64_t value) {
-    char text[17];
-    std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(value));
-    return text;
-}
-
-fs::path absolutePath(const std::string& path) {
-    return fs::absolute(path).lexically_normal();
-}
 
 /// Puts unknown keys back where they were, as far as their parents still exist.
 void restoreUnknown(Json& document, const std::vector<JsonIssue>& unknown) {
@@ -154,6 +142,37 @@ void renameAverage(Json& json) {
         for (Json& part : json) renameAverage(part);
 }
 
+/// Up to schema 2 the lattice of pictures was "bcc": true or false, in the data and in changes of variants.
+void renameLattice(Json& json) {
+    static const auto named = [](bool bcc) { return std::string(kPictureLatticeNames[bcc ? 1 : 0]); };
+    if (json.is_object()) {
+        if (const auto change = json.find("/data/bcc"); change != json.end()) {
+            json["/data/lattice"] = named(*change == "true");
+            json.erase("/data/bcc");
+        }
+        if (const auto path = json.find("path"); path != json.end() && path->is_string()) {
+            auto& text = path->get_ref<std::string&>();
+            constexpr std::string_view kWas = "~1data~1bcc";
+            if (text.ends_with(kWas)) {
+                text.replace(text.size() - kWas.size(), kWas.size(), "~1data~1lattice");
+                if (const auto value = json.find("value"); value != json.end()) *value = named(*value == "true");
+            }
+        }
+    }
+    if (json.is_structured())
+        for (Json& part : json) renameLattice(part);
+}
+
+void migrateLattice(Json& document) {
+    renameLattice(document);
+    const auto data = document.find("data");
+    if (data == document.end() || !data->is_object()) return;
+    if (const auto bcc = data->find("bcc"); bcc != data->end() && bcc->is_boolean()) {
+        (*data)["lattice"] = kPictureLatticeNames[bcc->get<bool>() ? 1 : 0];
+        data->erase("bcc");
+    }
+}
+
 } // namespace
 
 void migrate(Json& document, const std::string& file) {
@@ -177,6 +196,7 @@ void migrate(Json& document, const std::string& file) {
         moveLight(document);
         renameAverage(document);
     }
+    if (schema < 3) migrateLattice(document);
     document["schema"] = kSessionSchema;
 }
 
@@ -223,7 +243,12 @@ SessionDocument loadSession(const std::string& path) {
 std::string printSession(const SessionDocument& document, const std::string& path) {
     Session session = document.session;
     const fs::path folder = absolutePath(path).parent_path();
-    for (DataFile& file : session.data.files) {
+    std::vector<DataFile*> files;
+    for (DataFile& file : session.data.files) files.push_back(&file);
+    if (session.data.other)
+        for (DataFile& file : session.data.other->files) files.push_back(&file);
+    for (DataFile* each : files) {
+        DataFile& file = *each;
         const fs::path where = absolutePath(file.absolutePath.empty() ? file.path : file.absolutePath);
         file.absolutePath = where.generic_string();
         const fs::path relative = where.lexically_relative(folder);
@@ -244,55 +269,6 @@ std::string printSession(const SessionDocument& document, const std::string& pat
 
 void saveSession(const SessionDocument& document, const std::string& path) {
     writeTextAtomically(path, printSession(document, path));
-}
-
-DataFile describeFile(const std::string& path) {
-    DataFile file;
-    file.path = file.absolutePath = absolutePath(path).generic_string();
-    std::error_code problem;
-    const auto bytes = fs::file_size(file.path, problem);
-    std::ifstream in(file.path, std::ios::binary);
-    if (problem || !in) return file;
-    file.bytes = static_cast<double>(bytes);
-    constexpr std::uintmax_t part = 1 << 20;
-    XXH64_state_t* state = XXH64_createState();
-    XXH64_reset(state, 0);
-    std::vector<char> buffer(static_cast<std::size_t>(std::min(bytes, part)));
-    in.read(buffer.data(), static_cast<std::streamsize>(buffer.size()));
-    XXH64_update(state, buffer.data(), static_cast<std::size_t>(in.gcount()));
-    if (bytes > part) {
-        in.seekg(static_cast<std::streamoff>(bytes - std::min(part, bytes - part)));
-        in.read(buffer.data(), static_cast<std::streamsize>(std::min(part, bytes - part)));
-        XXH64_update(state, buffer.data(), static_cast<std::size_t>(in.gcount()));
-    }
-    file.hash = hex(XXH64_digest(state));
-    XXH64_freeState(state);
-    return file;
-}
-
-ResolvedData resolveData(const DataRef& data, const std::string& folder) {
-    ResolvedData resolved;
-    resolved.data = data;
-    const fs::path base = absolutePath(folder.empty() ? "." : folder);
-    for (std::size_t i = 0; i < data.files.size(); ++i) {
-        const DataFile& wanted = data.files[i];
-        const fs::path candidates[] = {base / wanted.path, fs::path(wanted.absolutePath),
-                                       base / fs::path(wanted.path).filename()};
-        bool found = false;
-        for (const fs::path& candidate : candidates) {
-            std::error_code problem;
-            if (candidate.empty() || !fs::is_regular_file(candidate, problem)) continue;
-            const DataFile here = describeFile(candidate.string());
-            if (!wanted.hash.empty() && here.hash != wanted.hash)
-                resolved.warnings.push_back(here.path + " has changed since the session was saved (xxh64 " + here.hash +
-                                            ", was " + wanted.hash + ")");
-            resolved.data.files[i] = here;
-            found = true;
-            break;
-        }
-        if (!found) resolved.missing.push_back({i, wanted});
-    }
-    return resolved;
 }
 
 } // namespace tessera::app

@@ -3,6 +3,7 @@
 #include "app/session/history.h"
 #include "app/session/session.h"
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -37,21 +38,29 @@ void saveSession(const SessionDocument& document, const std::string& path);
 /// Brings a document of an older schema up to date. Throws Error for a newer one.
 void migrate(Json& document, const std::string& file);
 
-/// Path, size and hash of a data file, for a session. Absolute paths; empty hash when it cannot be read.
+/// A path from the root, without "." and "..".
+std::filesystem::path absolutePath(const std::string& path);
+
+/// Path, size and hashes of a data file or folder and of what is read with it. Absolute paths; no hash if unreadable.
 DataFile describeFile(const std::string& path);
 
 /// A data file that is not where the session says.
 struct MissingData {
     std::size_t index = 0; ///< into DataRef::files
     DataFile wanted;
+    bool other = false; ///< into those of DataRef::other instead
 };
 struct ResolvedData {
     DataRef data; ///< `path` and `absolutePath` both absolute where found
     std::vector<MissingData> missing;
     std::vector<std::string> warnings; ///< e.g. a file that has changed since
 };
-/// Finds data files: relative to the session's folder, then at the absolute path, then by name in the folder.
+/// Finds data files, those of DataRef::other too: relative to the session's folder, then at the absolute path, then by
+/// name in the folder.
 ResolvedData resolveData(const DataRef& data, const std::string& folder);
+
+/// The files of a data set or those of the other one beside it.
+std::vector<DataFile>& filesOf(DataRef& data, bool other);
 
 /// A whole file as text. Throws Error.
 std::string readText(const std::string& path);

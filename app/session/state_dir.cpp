@@ -9,6 +9,7 @@
 #include <ctime>
 #include <fcntl.h>
 #include <filesystem>
+#include <map>
 #include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -76,6 +77,41 @@ void addRecentFile(const std::string& folder, const std::string& path) {
     if (files.size() > kRecent) files.resize(kRecent);
     try {
         writeTextAtomically(folder + "/recent.json", printJson(Json(files)));
+    } catch (const Error&) {
+        // Only a convenience.
+    }
+}
+
+namespace {
+
+std::map<std::string, std::string> choices(const std::string& folder) {
+    std::map<std::string, std::string> made;
+    try {
+        const Json list = parseJson(readText(folder + "/choices.json"), {});
+        if (list.is_object())
+            for (const auto& [name, value] : list.items())
+                if (value.is_string()) made[name] = value.get<std::string>();
+    } catch (const Error&) {
+        // None yet, or a broken list: it is only a convenience.
+    }
+    return made;
+}
+
+} // namespace
+
+std::string rememberedChoice(const std::string& folder, const std::string& name) {
+    if (folder.empty()) return {};
+    const auto made = choices(folder);
+    const auto found = made.find(name);
+    return found == made.end() ? std::string() : found->second;
+}
+
+void rememberChoice(const std::string& folder, const std::string& name, const std::string& value) {
+    if (folder.empty()) return;
+    auto made = choices(folder);
+    made[name] = value;
+    try {
+        writeTextAtomically(folder + "/choices.json", printJson(Json(made)));
     } catch (const Error&) {
         // Only a convenience.
     }

@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-/// What the program remembers between runs, in $XDG_STATE_HOME/tessera: recent files, and the autosaved session of a
-/// run that did not end by itself.
+/// What the program remembers between runs, in $XDG_STATE_HOME/tessera: recent files, choices for data opened later,
+/// and the autosaved session of a run that did not end by itself.
 namespace tessera::app {
 
 /// The folder, made if need be; "" when there is none (nothing is remembered then).
@@ -13,6 +13,10 @@ std::string stateFolder();
 /// Files opened lately, newest first. A missing or broken list is an empty one.
 std::vector<std::string> recentFiles(const std::string& folder);
 void addRecentFile(const std::string& folder, const std::string& path);
+
+/// Choices that hold for data opened later, by name; "" where none was made. A missing or broken list is an empty one.
+std::string rememberedChoice(const std::string& folder, const std::string& name);
+void rememberChoice(const std::string& folder, const std::string& name, const std::string& value);
 
 /// A session left behind by a run that crashed.
 struct Recovery {

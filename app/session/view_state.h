@@ -74,6 +74,6 @@ struct LogView {
 
 using ViewState = std::variant<VolumeView, SlicesView, ScatterMatrixView, TransferView, LayersView, TimelineView,
                                DataView, HistoryView, LogView, StatisticsView, HistogramView, ProfileView,
-                               SliceMatrixView, ShadowCubeView, TesseractView, CompareView>;
+                               SliceMatrixView, ShadowCubeView, TesseractView, CompareView, CurvesView>;
 
 } // namespace tessera::app

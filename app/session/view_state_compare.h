@@ -13,6 +13,10 @@ namespace tessera::app {
 enum class CompareMode { Grid, Swipe, Blink, Difference };
 inline constexpr std::string_view kCompareModeNames[] = {"grid", "swipe", "blink", "difference"};
 
+/// What *difference* shows: how far the colours of the pictures differ, or the first layer's values, in their unit.
+enum class DifferenceOf { Colors, Values };
+inline constexpr std::string_view kDifferenceOfNames[] = {"colors", "values"};
+
 /// The session with some settings changed.
 struct CompareVariant {
     std::string name;                           ///< "" = made of the changes
@@ -48,6 +52,7 @@ struct CompareView {
     int other = 1;                        ///< index of the one swiped over the reference
     float swipe = 0.5f;                   ///< place of the line, share of the width
     float blinkSeconds = 0.8f;
+    DifferenceOf differenceOf = DifferenceOf::Colors;
     float differenceTop = 0; ///< difference of 8-bit colours shown brightest; 0 = the largest there is
     bool showTable = true;
     std::vector<CompareQuestion> questions;
@@ -82,11 +87,19 @@ struct CompareView {
                                            .doc = "How long each is shown in turn",
                                            .range = Range{0.1, 10},
                                            .applies = self.mode == CompareMode::Blink});
-        visit(self.differenceTop, FieldInfo{.key = "differenceTop",
-                                            .unit = "of 255",
-                                            .doc = "Difference of colours shown brightest; 0 = the largest that occurs",
-                                            .range = Range{0, 255},
-                                            .applies = self.mode == CompareMode::Difference});
+        visit(self.differenceOf,
+              FieldInfo{.key = "differenceOf",
+                        .unit = "",
+                        .doc = "Difference of the pictures' colours, or of the values of the first layer's parameter "
+                               "on the planes through the cross-hair",
+                        .names = kDifferenceOfNames,
+                        .applies = self.mode == CompareMode::Difference});
+        visit(self.differenceTop,
+              FieldInfo{.key = "differenceTop",
+                        .unit = "of 255",
+                        .doc = "Difference of colours shown brightest; 0 = the largest that occurs",
+                        .range = Range{0, 255},
+                        .applies = self.mode == CompareMode::Difference && self.differenceOf == DifferenceOf::Colors});
         visit(self.showTable, FieldInfo{.key = "table", .unit = "", .doc = "List what differs, costs and errors"});
         visit(self.questions, FieldInfo{.key = "questions",
                                         .unit = "",

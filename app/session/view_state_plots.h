@@ -1,5 +1,6 @@
 #pragma once
 
+#include "app/session/section_settings.h"
 #include "volume/describe.h"
 #include "volume/space_axis.h"
 
@@ -60,6 +61,8 @@ struct StatisticsView {
     static constexpr std::string_view kType = "statistics";
     std::vector<std::string> channels;
     std::string correlateWith; ///< "" = the first parameter
+    bool byRegion = false;
+    std::string balance; ///< by region: what of this parameter flows in and out; "" = statistics
     bool operator==(const StatisticsView&) const = default;
     static void describe(auto& self, auto&& visit) {
         visit(self.channels, kShownChannels);
@@ -67,6 +70,13 @@ struct StatisticsView {
                                             .unit = "",
                                             .doc = "Parameter that the others are correlated with",
                                             .refersTo = "channel"});
+        visit(self.byRegion,
+              FieldInfo{.key = "byRegion", .unit = "", .doc = "Numbers of every region instead of the selection"});
+        visit(self.balance,
+              FieldInfo{.key = "balance",
+                        .unit = "",
+                        .doc = "By region: what of this parameter flows in and out, instead of statistics",
+                        .refersTo = "channel"});
     }
 };
 
@@ -88,9 +98,10 @@ struct HistogramView {
     }
 };
 
-/// What a line profile runs over: a line in space, every time at the cursor, or both as a picture.
-enum class ProfileOver { Line, Time, LineAndTime };
-inline constexpr std::string_view kProfileOverNames[] = {"line", "time", "lineAndTime"};
+/// What a profile runs over: a line in space, every time at the cursor, both as a picture, or planes across an axis or
+/// the line.
+enum class ProfileOver { Line, Time, LineAndTime, Sections };
+inline constexpr std::string_view kProfileOverNames[] = {"line", "time", "lineAndTime", "sections"};
 
 /// Parameters along a polyline in space, over time, or both.
 struct ProfileView {
@@ -99,18 +110,46 @@ struct ProfileView {
     ProfileOver over = ProfileOver::Line;
     std::vector<glm::dvec3> points; ///< corners; fewer than two: the longest axis through the cursor
     int samples = 256;
+    SectionSettings sections; ///< over planes
     bool operator==(const ProfileView&) const = default;
     static void describe(auto& self, auto&& visit) {
         visit(self.channels, kShownChannels);
         visit(self.over, FieldInfo{.key = "over",
                                    .unit = "",
-                                   .doc = "Values along the line, at the cursor over time, or along the line at every "
-                                          "time as colours",
+                                   .doc = "Values along the line, at the cursor over time, along the line at every "
+                                          "time as colours, or averages over planes",
                                    .names = kProfileOverNames});
         visit(self.points,
               FieldInfo{.key = "points", .unit = "m", .doc = "Corners of the line; none: along the longest axis"});
         visit(self.samples,
               FieldInfo{.key = "samples", .unit = "", .doc = "Places along the line", .range = Range{16, 4096}});
+        visit(self.sections, FieldInfo{.key = "sections", .unit = "", .doc = "Averages over planes"});
+    }
+};
+
+/// Quantities over time, statistics of parameters and formulas of both, against time or each other.
+struct CurvesView {
+    static constexpr std::string_view kType = "curves";
+    std::string x;              ///< formula, "time"; "" = what the curves want
+    std::vector<std::string> y; ///< formulas; empty: the polarisation curve, else every quantity, else a mean
+    std::string region;         ///< statistics are of this region of a label, by name or value; "" = everywhere
+    bool brushed = false;       ///< and of what the brushes select
+    bool operator==(const CurvesView&) const = default;
+    static void describe(auto& self, auto&& visit) {
+        visit(self.x, FieldInfo{.key = "x",
+                                .unit = "",
+                                .doc = "What runs to the right: time, a quantity over time, a formula; none: what the "
+                                       "curves want"});
+        visit(self.y, FieldInfo{.key = "y",
+                                .unit = "",
+                                .doc = "Curves: quantities over time, mean(T), min(T), max(T), deviation(T), share(T), "
+                                       "volume(T), formulas of them; none: the polarisation curve, else every "
+                                       "quantity, else a mean"});
+        visit(self.region, FieldInfo{.key = "region",
+                                     .unit = "",
+                                     .doc = "Region of a label that statistics are of; none: everywhere"});
+        visit(self.brushed,
+              FieldInfo{.key = "brushed", .unit = "", .doc = "Statistics are of what the brushes select"});
     }
 };
 

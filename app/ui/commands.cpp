@@ -117,8 +117,8 @@ const Command* drawPalette(CommandPalette& palette, const std::vector<Command>& 
         const Match& match = matches[static_cast<std::size_t>(i)];
         const std::string keys = textOf(match.command->shortcut);
         if (ImGui::Selectable(match.text.c_str(), i == palette.chosen)) chosen = match.command;
-        if (i == palette.chosen && ImGui::IsKeyPressed(key::kDown)) ImGui::SetScrollHereY(0.7f);
-        if (i == palette.chosen && ImGui::IsKeyPressed(key::kUp)) ImGui::SetScrollHereY(0.3f);
+        if (i == palette.chosen && keyPressed(key::kDown, true)) ImGui::SetScrollHereY(0.7f);
+        if (i == palette.chosen && keyPressed(key::kUp, true)) ImGui::SetScrollHereY(0.3f);
         if (ImGui::IsItemHovered() && !match.command->help.empty())
             ImGui::SetTooltip("%s", match.command->help.c_str());
         if (!keys.empty()) {

@@ -44,7 +44,11 @@ bool pressed(const Shortcut& shortcut, bool repeat) {
     if (shortcut.key == 0) return false;
     const ImGuiIO& io = ImGui::GetIO();
     return io.KeyCtrl == shortcut.ctrl && io.KeyShift == shortcut.shift && io.KeyAlt == shortcut.alt &&
-           ImGui::IsKeyPressed(shortcut.key, repeat);
+           keyPressed(shortcut.key, repeat);
+}
+
+bool keyPressed(int code, bool repeat) {
+    return ImGui::IsKeyPressed(static_cast<ImGuiKey>(code), repeat); // an enumeration from ImGui 1.87 on
 }
 
 bool typing() {
@@ -67,7 +71,11 @@ void mapKeys(ImGuiIO& io) {
     io.KeyMap[ImGuiKey_Space] = key::kSpace;
     io.KeyMap[ImGuiKey_Enter] = key::kEnter;
     io.KeyMap[ImGuiKey_Escape] = key::kEscape;
-    io.KeyMap[ImGuiKey_KeyPadEnter] = 335;
+#if IMGUI_VERSION_NUM >= 18700
+    io.KeyMap[ImGuiKey_KeypadEnter] = key::kKeypadEnter;
+#else
+    io.KeyMap[ImGuiKey_KeyPadEnter] = key::kKeypadEnter;
+#endif
     for (const auto& [imgui, letter] : {std::pair{ImGuiKey_A, 'A'},
                                         {ImGuiKey_C, 'C'},
                                         {ImGuiKey_V, 'V'},

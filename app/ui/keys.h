@@ -11,7 +11,7 @@ namespace tessera::app {
 namespace key {
 inline constexpr int kSpace = 32, kEscape = 256, kEnter = 257, kTab = 258, kBackspace = 259, kInsert = 260,
                      kDelete = 261, kRight = 262, kLeft = 263, kDown = 264, kUp = 265, kPageUp = 266, kPageDown = 267,
-                     kHome = 268, kEnd = 269, kF1 = 290, kF5 = 294, kF11 = 300, kF12 = 301;
+                     kHome = 268, kEnd = 269, kF1 = 290, kF5 = 294, kF11 = 300, kF12 = 301, kKeypadEnter = 335;
 } // namespace key
 
 /// A key with modifiers; letters and digits by their upper-case character.
@@ -26,6 +26,9 @@ std::string textOf(const Shortcut& shortcut);
 
 /// True in the frame the shortcut is pressed with exactly its modifiers (again while held, if `repeat`).
 bool pressed(const Shortcut& shortcut, bool repeat = false);
+
+/// True in the frame a key goes down, whatever the modifiers (again while held, if `repeat`).
+bool keyPressed(int code, bool repeat = false);
 
 /// True while text is being typed somewhere: single keys are letters then.
 bool typing();

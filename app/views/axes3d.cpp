@@ -219,10 +219,10 @@ std::optional<vis::StandardView> drawTriad(ImDrawList& draw, ImVec2 center, floa
         if (end.positive) {
             draw.AddLine(center, p, color, std::max(1.5f, em() * 0.13f));
             draw.AddCircleFilled(p, dot, lit ? plotColors().text : color, 20);
-            const ImVec2 size = ImGui::CalcTextSize(labels[static_cast<std::size_t>(end.axis)].name);
+            const ImVec2 size = ImGui::CalcTextSize(labels[static_cast<std::size_t>(end.axis)].name.c_str());
             draw.AddText({std::round(p.x - size.x / 2), std::round(p.y - size.y / 2)},
                          darkTheme() ? IM_COL32(12, 14, 18, 255) : IM_COL32(255, 255, 255, 255),
-                         labels[static_cast<std::size_t>(end.axis)].name);
+                         labels[static_cast<std::size_t>(end.axis)].name.c_str());
         } else {
             draw.AddCircleFilled(p, dot * 0.62f,
                                  lit ? plotColors().text : ((color & ~IM_COL32_A_MASK) | IM_COL32(0, 0, 0, 120)), 16);

@@ -1,5 +1,7 @@
 #include "app/views/axis_label.h"
 
+#include "app/views/time_text.h"
+
 namespace tessera::app {
 
 AxisLabels axisLabels(const Session& session, const volume::DatasetInfo& info) {
@@ -10,7 +12,7 @@ AxisLabels axisLabels(const Session& session, const volume::DatasetInfo& info) {
         labels[axis] = {kNames[axis], suitableLength(info.lengthUnit, extent > 0 ? extent : 1)};
     }
     if (const auto& time = session.data.timeAxis)
-        labels[std::size_t(time->axis)] = {"t", {info.timeUnit, volume::timePerLength(info, *time)}};
+        labels[std::size_t(time->axis)] = {timeWord(info), {info.timeUnit, volume::timePerLength(info, *time)}};
     return labels;
 }
 

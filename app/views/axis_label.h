@@ -4,17 +4,19 @@
 #include "app/views/ticks.h"
 
 #include <array>
+#include <string>
 
 namespace tessera::app {
 
 /// How places along an axis are written: its letter, and the unit that suits its extent.
 struct AxisLabel {
-    const char* name = "x";
+    std::string name = "x";
     LengthUnit unit;
 };
 using AxisLabels = std::array<AxisLabel, 3>;
 
-/// Of the axes of a session's data: lengths, but where time takes the place of an axis "t" in the unit of time.
+/// Of the axes of a session's data: lengths, but where time takes the place of an axis "t", or the name of the axis of
+/// times, in its unit.
 AxisLabels axisLabels(const Session& session, const volume::DatasetInfo& info);
 
 } // namespace tessera::app

@@ -5,6 +5,7 @@
 #include "codec/archive.h"
 #include "vis/model/transfer_function.h"
 #include "volume/error.h"
+#include "volume/source_at_time.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -32,7 +33,7 @@ std::string whyNot(const DataRef& wanted, const DataRef& session) {
     if (wanted.files.empty() || wanted.files != session.files) return {};
     if (wanted.settings != session.settings) return "only built-in models come in other sizes";
     if (wanted.files.size() != 1 || !wanted.files[0].absolutePath.ends_with(".tsr")) return {};
-    if (wanted.bcc != session.bcc) return "an archive keeps its lattice; compare with what it was packed from";
+    if (wanted.lattice != session.lattice) return "an archive keeps its lattice; compare with what it was packed from";
     if (wanted.packed != session.packed) return "an archive stays as packed; compare with what it was packed from";
     return {};
 }
@@ -197,18 +198,30 @@ void CompareFeed::measureSamples(ViewContext& context, const std::string& pane, 
     CompareCell& cell = *cells_[index];
     const CompareCell& against = *cells_[reference];
     const auto source = cell.source(context), wanted = against.source(context);
-    if (index == reference || !cell.failure.empty() || !source || !wanted || source == wanted) return;
-    const std::vector<vis::Layer>& layers = cell.session.layers;
-    if (layers.empty()) return;
-    const std::string name = std::visit([](const auto& own) { return own.channel; }, layers.front().technique);
-    const CompareCell::Samples of{source, wanted, name, cell.session.time};
+    if (index == reference || !cell.failure.empty() || !source || !wanted) return;
+    const auto first = [](const Session& session) {
+        if (session.layers.empty()) return std::string();
+        return std::visit([](const auto& own) { return own.channel; }, session.layers.front().technique);
+    };
+    const CompareCell::Samples of{
+        source, wanted, first(cell.session), first(against.session), cell.session.time, against.session.time};
     if (cell.samplesOf == of) return;
+    if (source == wanted && of.channel == of.referenceChannel && of.time == of.referenceTime) {
+        cell.samplesOf = of;
+        cell.samples.reset();
+        return;
+    }
     const auto compute = [source, wanted, of](const Progress& progress) -> std::optional<volume::SourceDifference> {
-        const auto a = source->info().findChannel(of.channel), b = wanted->info().findChannel(of.channel);
+        const auto a = source->info().findChannel(of.channel), b = wanted->info().findChannel(of.referenceChannel);
         if (!a || !b) return std::nullopt;
+        const auto unit = [](const volume::BrickSource& data, int channel) {
+            return data.info().channels()[std::size_t(channel)].unit;
+        };
+        if (unit(*source, *a) != unit(*wanted, *b)) return std::nullopt;
         try {
-            return volume::sourceDifference({*source, *a, source->info().nearestTime(of.time)},
-                                            {*wanted, *b, wanted->info().nearestTime(of.time)}, progress);
+            const auto one = volume::sourceAt(source, volume::timesAround(source->info().times, of.time)),
+                       other = volume::sourceAt(wanted, volume::timesAround(wanted->info().times, of.referenceTime));
+            return volume::sourceDifference({*one.source, *a, one.time}, {*other.source, *b, other.time}, progress);
         } catch (const Error&) {
             return std::nullopt; // damaged data: the picture says so
         }
@@ -271,7 +284,9 @@ void CompareFeed::draw(ViewContext& context, const std::string& pane, const std:
 }
 
 int CompareFeed::renderers() const {
-    return int(std::count_if(data_.begin(), data_.end(), [](const auto& data) { return data->renderer != nullptr; }));
+    return int(std::count_if(data_.begin(), data_.end(), [](const auto& data) { return data->renderer != nullptr; }) +
+               std::count_if(cells_.begin(), cells_.end(),
+                             [](const auto& cell) { return cell && cell->values.hasRenderer(); }));
 }
 
 double CompareFeed::showDifferences(double top, std::size_t reference) {

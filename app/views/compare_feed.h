@@ -1,6 +1,7 @@
 #pragma once
 
 #include "app/session/compare.h"
+#include "app/views/compare_values.h"
 #include "app/views/scene_feed.h"
 #include "vis/gl/plot_texture.h"
 #include "vis/image_metrics.h"
@@ -46,8 +47,8 @@ struct CompareCell {
     /// Samples of the first layer beside those of the reference: of what, and what came of it.
     struct Samples {
         std::shared_ptr<const volume::BrickSource> own, reference;
-        std::string channel;
-        double time = 0;
+        std::string channel, referenceChannel;
+        double time = 0, referenceTime = 0;
         bool operator==(const Samples&) const = default;
     } samplesOf;
     std::optional<volume::SourceDifference> samples;
@@ -55,6 +56,7 @@ struct CompareCell {
     vis::PlotTexture differencePicture;
     std::shared_ptr<const vis::Image> shownImage, shownAgainst; ///< of differencePicture
     double shownTop = -1;
+    CompareValues values; ///< how far the first layer's values are from the reference's
 
     const std::shared_ptr<const volume::BrickSource>& source(const ViewContext& context) const {
         return data ? data->source : context.source;
@@ -76,6 +78,8 @@ public:
     /// Fills the pictures of the differences, brightest at `top` of 255, or at the largest where `top` is 0; returns
     /// the one used.
     double showDifferences(double top, std::size_t reference);
+    /// Finds how the values of the first layers differ from the reference's; returns the largest difference of all.
+    double findValues(ViewContext& context, const std::string& pane, std::size_t reference);
     /// The table, as far as it is known.
     std::vector<CompareRow> rows(const ViewContext& context, std::size_t reference) const;
 

@@ -48,6 +48,10 @@ void addNames(CompareView& view, const char* path, std::span<const std::string_v
     for (const std::string_view name : names) add(view, {.name = {}, .changes = {{path, std::string(name)}}});
 }
 
+std::string otherLattice(const DataRef& data) {
+    return std::string(kPictureLatticeNames[data.lattice == PictureLattice::Grid ? 1 : 0]);
+}
+
 void drawAddMenu(ViewContext& context, CompareView& view) {
     if (ImGui::MenuItem("As it is")) add(view, {});
     ImGui::Separator();
@@ -56,7 +60,7 @@ void drawAddMenu(ViewContext& context, CompareView& view) {
     const bool unpacked =
         context.session.data.files.size() != 1 || !context.session.data.files[0].absolutePath.ends_with(".tsr");
     if (ImGui::MenuItem("The other lattice", nullptr, false, unpacked))
-        add(view, {.name = {}, .changes = {{"/data/bcc", context.session.data.bcc ? "false" : "true"}}});
+        add(view, {.name = {}, .changes = {{"/data/lattice", otherLattice(context.session.data)}}});
     const std::vector<vis::Layer>& layers = context.session.layers;
     for (std::size_t i = 0; i < layers.size(); ++i) {
         if (!std::holds_alternative<vis::VolumeLayer>(layers[i].technique)) continue;
@@ -80,7 +84,8 @@ void drawCompareToolbar(ViewContext& context, CompareView& view) {
     static constexpr const char* kNames[] = {"Grid", "Swipe", "Blink", "Difference"};
     static constexpr const char* kHelp[] = {
         "Beside each other", "Two on either side of a line: drag it; a click in the table chooses the other one",
-        "In turns in one place; B shows the next", "Difference from the reference, each place by its largest colour"};
+        "In turns in one place; B shows the next",
+        "Difference from the reference: of the colours of each place, or of the values, in their unit"};
     for (int i = 0; i < 4; ++i) {
         const bool lit = static_cast<int>(view.mode) == i;
         if (lit) ImGui::PushStyleColor(ImGuiCol_Button, ImGui::GetStyleColorVec4(ImGuiCol_ButtonActive));
@@ -108,6 +113,15 @@ void drawCompareToolbar(ViewContext& context, CompareView& view) {
         if (ImGui::IsItemHovered()) tooltip("How long each is shown in turn");
     }
     if (view.mode == CompareMode::Difference) {
+        ImGui::SameLine(0, em() * 0.8f);
+        bool values = view.differenceOf == DifferenceOf::Values;
+        if (ImGui::Checkbox("Values", &values))
+            view.differenceOf = values ? DifferenceOf::Values : DifferenceOf::Colors;
+        if (ImGui::IsItemHovered())
+            tooltip("Values of the first layer's parameter minus those of the reference, in their unit, on the planes "
+                    "through the cross-hair; off: colours of the pictures");
+    }
+    if (view.mode == CompareMode::Difference && view.differenceOf == DifferenceOf::Colors) {
         ImGui::SameLine(0, em() * 0.8f);
         ImGui::SetNextItemWidth(em() * 6);
         ImGui::SliderFloat("##top", &view.differenceTop, 0, 255, view.differenceTop > 0 ? "up to %.0f" : "own scale");

@@ -7,6 +7,7 @@
 #include "app/views/compare_menu.h"
 #include "app/views/compare_questions.h"
 #include "app/views/figure.h"
+#include "app/views/ticks.h"
 #include "app/views/view_parts.h"
 
 #include <algorithm>
@@ -113,6 +114,55 @@ void drawGrid(const Frame& frame, const std::vector<PictureBox>& boxes, bool dif
             drawLegends(draw, {legend}, box.min, box.max());
         } else if (!differences && i == frame.reference) {
             drawLegends(draw, sceneLegends(frame.context.session, frame.context.source->info()), box.min, box.max());
+        }
+        draw.PopClipRect();
+    }
+}
+
+/// What is shown, then RMS and largest difference of the samples as far as they are known.
+std::vector<std::string> valuesText(const CompareCell& cell) {
+    std::vector<std::string> lines{"minus reference, on the planes through the cross-hair"};
+    if (cell.samples && cell.samples->samples > 0)
+        lines.push_back("all samples drawn: RMS " + formatQuantity(cell.samples->rms, cell.values.unit()) +
+                        ", at most " + formatQuantity(cell.samples->largest, cell.values.unit()));
+    return lines;
+}
+
+/// The reference as it is, the others as the differences of their values.
+void drawValues(const Frame& frame, const std::string& pane, const std::vector<PictureBox>& boxes, bool moving) {
+    ImDrawList& draw = *ImGui::GetWindowDrawList();
+    CompareFeed& feed = frame.cache.feed;
+    const double top = feed.findValues(frame.context, pane, frame.reference);
+    bool legend = false;
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
+        const PictureBox& box = boxes[i];
+        CompareCell& cell = *feed.cells()[i];
+        draw.PushClipRect(box.min, box.max(), true);
+        const auto note = [&](const std::string& text, int line) {
+            const float y = box.min.y + em() * (1.7f + 1.3f * static_cast<float>(line));
+            addTextWithBackdrop(draw, {box.min.x + em() * 0.5f, y}, {0, 0}, plotColors().faint,
+                                fitText(text, box.size.x - em()).c_str());
+        };
+        const glm::ivec2 size(static_cast<int>(box.size.x), static_cast<int>(box.size.y));
+        const bool shown = i != frame.reference && cell.failure.empty() &&
+                           cell.values.draw(frame.context, cell.session, top, size, moving);
+        if (shown)
+            addPicture(draw, cell.values.texture(), box.min, box.max());
+        else
+            drawCell(frame, i, box);
+        drawOver(frame, box, frame.context.session, nameOf(frame, i), i == frame.reference);
+        if (shown)
+            for (int line = 0; const std::string& text : valuesText(cell)) note(text, line++);
+        else if (i != frame.reference && cell.failure.empty())
+            note(cell.values.failure().empty() ? "The difference is being computed" : cell.values.failure(), 0);
+        if (shown && !legend) {
+            legend = true;
+            LegendEntry entry;
+            entry.title = cell.values.name() + " minus reference";
+            entry.unit = cell.values.unit();
+            entry.function = vis::divergingFunction();
+            entry.range = entry.data = {-top, top};
+            drawLegends(draw, {entry}, box.min, box.max());
         }
         draw.PopClipRect();
     }
@@ -228,7 +278,9 @@ void drawCompareView(ViewContext& context, const std::string& pane, CompareView&
     }
     cache.feed.draw(context, pane, frame.variants, frame.reference, {size.x, size.y},
                     moving || context.interacting || context.session.animation.playing);
-    if (grid)
+    if (view.mode == CompareMode::Difference && view.differenceOf == DifferenceOf::Values)
+        drawValues(frame, pane, boxes, moving || context.interacting || context.session.animation.playing);
+    else if (grid)
         drawGrid(frame, boxes, view.mode == CompareMode::Difference);
     else if (view.mode == CompareMode::Swipe)
         drawSwipe(frame, boxes[0]);

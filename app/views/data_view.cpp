@@ -1,11 +1,19 @@
+#include "app/session/label_colors.h"
+#include "app/session/label_names.h"
+#include "app/sources.h"
 #include "app/views/derived_list.h"
+#include "app/views/focus_share.h"
 #include "app/views/statistics_feed.h"
 #include "app/views/ticks.h"
+#include "app/views/time_text.h"
 #include "app/views/view_parts.h"
+#include "codec/archive.h"
+#include "volume/derived.h"
 
 #include <algorithm>
 #include <cmath>
 #include <imgui.h>
+#include <imgui_stdlib.h>
 
 namespace tessera::app {
 
@@ -50,22 +58,90 @@ std::string sizeText(const volume::DatasetInfo& info) {
     return text;
 }
 
-void drawSummary(const volume::DatasetInfo& info) {
+/// What pictures are drawn from, where that is a choice.
+void chooseLattice(DataRef& data) {
+    static constexpr const char* kShown[] = {"the grid of the file", "body-centred, 70.7 % of the samples"};
+    ImGui::TableNextRow();
+    ImGui::TableNextColumn();
+    ImGui::TextDisabled("Drawn from");
+    ImGui::TableNextColumn();
+    const auto now = static_cast<std::size_t>(data.lattice);
+    ImGui::SetNextItemWidth(-1);
+    if (ImGui::BeginCombo("##lattice", kShown[now])) {
+        for (std::size_t i = 0; i < std::size(kShown); ++i)
+            if (ImGui::Selectable(kShown[i], i == now)) data.lattice = static_cast<PictureLattice>(i);
+        ImGui::EndCombo();
+    } else if (ImGui::IsItemHovered()) {
+        tooltip("Lattice that pictures are drawn from; numbers come from the samples of the file on either");
+    }
+}
+
+void drawSummary(const ViewContext& context) {
+    const volume::DatasetInfo& info = context.numbers->info();
     if (!ImGui::BeginTable("summary", 2)) return;
     ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthFixed, em() * 5.5f);
     ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthStretch);
     row("Name", info.name.empty() ? "unnamed" : info.name);
     row("Samples", latticeText(info));
+    row("Numbers", originText(context));
+    if (const auto* archive = dynamic_cast<const codec::Archive*>(volume::underived(context.numbers).get()))
+        row("Archive", codec::exactnessText(archive->metadata()));
+    if (!isArchive(context.session.data) && !context.session.data.packed)
+        chooseLattice(context.session.data);
+    else if (context.source != context.numbers)
+        row("Drawn from", latticeText(context.source->info()));
     row("Size", sizeText(info));
     std::string times = formatCount(static_cast<double>(info.times.size()));
     if (info.times.size() > 1)
-        times += ", " + formatNumber(info.times.front()) + " to " + formatQuantity(info.times.back(), info.timeUnit);
+        times += ", " + (timeWord(info) == "t" ? "" : timeWord(info) + " ") + formatNumber(info.times.front()) +
+                 " to " + formatQuantity(info.times.back(), info.timeUnit);
     row("Times", times);
+    std::string quantities;
+    for (const volume::Quantity& quantity : info.quantities)
+        quantities += (quantities.empty() ? "" : ", ") + titleWithUnit(quantity.name, quantity.unit);
+    if (!quantities.empty()) row("Over time", quantities);
     if (!info.provenance.empty()) row("Origin", info.provenance);
     ImGui::EndTable();
 }
 
-void drawParameters(const volume::DatasetInfo& info) {
+/// Names and colours of a label's values, to be typed and chosen.
+void editLabels(Session& session, const volume::Parameter& parameter) {
+    constexpr int kColors = 8;
+    if (!ImGui::BeginPopup("labels")) return;
+    ImGui::TextDisabled("Names of %s; remembered for these data", parameter.name.c_str());
+    volume::Parameter named = parameter;
+    named.labels = statedLabels(session, parameter);
+    for (const volume::Label& label : named.labels) {
+        ImGui::PushID(label.value);
+        const glm::vec3 color = labelColor(named, label.value);
+        if (ImGui::ColorButton("##color", {color.r, color.g, color.b, 1}, ImGuiColorEditFlags_NoTooltip))
+            ImGui::OpenPopup("colors");
+        if (ImGui::IsItemHovered()) tooltip("Click: another colour");
+        if (ImGui::BeginPopup("colors")) {
+            for (int i = 0; i < kColors; ++i) {
+                const glm::vec3 other(vis::colormapColor("labels", (i + 0.5) / kColors));
+                if (i > 0) ImGui::SameLine();
+                if (!ImGui::ColorButton(("##" + std::to_string(i)).c_str(), {other.r, other.g, other.b, 1},
+                                        ImGuiColorEditFlags_NoTooltip))
+                    continue;
+                stateLabel(session, parameter, {label.value, "", colorText(other)});
+                ImGui::CloseCurrentPopup();
+            }
+            ImGui::EndPopup();
+        }
+        ImGui::SameLine();
+        ImGui::AlignTextToFramePadding();
+        ImGui::Text("%d", label.value);
+        ImGui::SameLine(em() * 4);
+        std::string text = label.name;
+        ImGui::SetNextItemWidth(em() * 12);
+        if (ImGui::InputText("##name", &text)) stateLabel(session, parameter, {label.value, text, ""});
+        ImGui::PopID();
+    }
+    ImGui::EndPopup();
+}
+
+void drawParameters(Session& session, const volume::DatasetInfo& info) {
     constexpr ImGuiTableFlags kFlags =
         ImGuiTableFlags_RowBg | ImGuiTableFlags_SizingStretchProp | ImGuiTableFlags_PadOuterX;
     if (!ImGui::BeginTable("parameters", 4, kFlags)) return;
@@ -80,11 +156,23 @@ void drawParameters(const volume::DatasetInfo& info) {
         const double digits = parameter.categorical ? 1 : (range.hi - range.lo) / 1000;
         ImGui::TableNextRow();
         ImGui::TableNextColumn();
-        ImGui::TextUnformatted(titleWithUnit(channel.name, channel.unit).c_str());
-        if (parameter.categorical && ImGui::IsItemHovered() && !parameter.labels.empty()) {
-            std::string labels;
+        ImGui::PushID(channel.name.c_str());
+        bool over = false;
+        if (parameter.categorical && !parameter.labels.empty()) {
+            if (ImGui::Selectable(channel.name.c_str())) ImGui::OpenPopup("labels");
+            over = ImGui::IsItemHovered();
+            editLabels(session, parameter);
+        } else {
+            ImGui::TextUnformatted(
+                titleWithUnit(channel.name, channel.unit + (parameter.unitGuessed ? " (guessed)" : "")).c_str());
+            if (parameter.unitGuessed && ImGui::IsItemHovered())
+                tooltip("No file states this unit: it is the usual one of the name. --unit states another.");
+        }
+        ImGui::PopID();
+        if (over) {
+            std::string labels = "Click: name its values";
             for (const volume::Label& label : parameter.labels)
-                labels += (labels.empty() ? "" : "\n") + std::to_string(label.value) + "  " + label.name;
+                labels += "\n" + std::to_string(label.value) + "  " + label.name;
             tooltip(labels.c_str());
         }
         ImGui::TableNextColumn();
@@ -106,7 +194,7 @@ std::string rangeText(const volume::Summary& summary, double digits) {
 }
 
 void drawSelection(ViewContext& context, const StatisticsResult* result) {
-    const volume::DatasetInfo& info = context.source->info();
+    const volume::DatasetInfo& info = context.numbers->info();
     if (!context.session.selection.active()) {
         ImGui::PushTextWrapPos(0);
         ImGui::TextDisabled("Nothing is brushed: drag in a plot of the scatterplot matrix.");
@@ -117,27 +205,21 @@ void drawSelection(ViewContext& context, const StatisticsResult* result) {
         return;
     }
     const volume::Statistics& statistics = result->statistics;
-    // The parameter that exists at most points stands for the whole.
-    const volume::ChannelStatistics* whole = nullptr;
-    for (const volume::ChannelStatistics& channel : statistics.channels)
-        if (!whole || channel.all.samples > whole->all.samples) whole = &channel;
-    double inside = 0, volume = 0;
-    for (const volume::ChannelStatistics& channel : statistics.channels) {
-        inside = std::max(inside, channel.inside.samples);
-        volume = std::max(volume, channel.inside.volume);
+    ImGui::PushTextWrapPos(0);
+    if (result->brushed) {
+        const FocusShare share = focusShare(*result, info, context.numbers->grid());
+        ImGui::Text("%s samples in focus, %s%s", formatCount(std::round(share.focus)).c_str(), shareText(share).c_str(),
+                    statistics.level > 0 ? " (first estimate)" : "");
+        double volume = 0;
+        for (const volume::ChannelStatistics& channel : statistics.channels)
+            volume = std::max(volume, channel.inside.volume);
+        const glm::dvec3 size = info.bounds.size();
+        const double whole = size.x * size.y * size.z;
+        ImGui::TextDisabled("%s%s", formatVolume(volume, info.lengthUnit).c_str(),
+                            whole > 0 ? (", " + formatShare(volume / whole) + " of the whole box").c_str() : "");
     }
-    if (whole && whole->all.samples > 0 && result->brushed) {
-        ImGui::Text("%s of %s samples in focus, %s", formatCount(std::round(inside)).c_str(),
-                    formatCount(whole->all.samples).c_str(), formatShare(inside / whole->all.samples).c_str());
-        if (statistics.level > 0) {
-            ImGui::SameLine();
-            ImGui::TextDisabled("(first estimate)");
-        }
-        ImGui::PushTextWrapPos(0);
-        ImGui::TextDisabled("%s, %s of the volume that has data", formatVolume(volume, info.lengthUnit).c_str(),
-                            formatShare(whole->all.volume > 0 ? volume / whole->all.volume : 0).c_str());
-        ImGui::PopTextWrapPos();
-    }
+    ImGui::TextDisabled("%s", originText(context, result->wish.channels).c_str());
+    ImGui::PopTextWrapPos();
     constexpr ImGuiTableFlags kFlags =
         ImGuiTableFlags_RowBg | ImGuiTableFlags_SizingStretchProp | ImGuiTableFlags_PadOuterX;
     const bool brushed = result->brushed;
@@ -180,7 +262,7 @@ void drawDataView(ViewContext& context, const std::string& pane, DataView&) {
         return;
     }
     DataCache& cache = cacheOf<DataCache>(context, pane);
-    const volume::DatasetInfo& info = context.source->info();
+    const volume::DatasetInfo& info = context.numbers->info();
     const std::vector<int> channels = comparedChannels(info);
     std::shared_ptr<const StatisticsResult> result;
     if (!channels.empty()) {
@@ -192,12 +274,13 @@ void drawDataView(ViewContext& context, const std::string& pane, DataView&) {
             cache.feed.get(context, "summary " + pane, makeWish(context.session, info, channels, ranges, 16, false));
     }
     ImGui::BeginChild("data");
-    if (ImGui::CollapsingHeader("Data set", ImGuiTreeNodeFlags_DefaultOpen)) drawSummary(info);
+    if (ImGui::CollapsingHeader("Data set", ImGuiTreeNodeFlags_DefaultOpen)) drawSummary(context);
     // Above what is computed from them, which comes and goes while a formula is edited.
     if (ImGui::CollapsingHeader("Derived parameters", ImGuiTreeNodeFlags_DefaultOpen))
         drawDerivedList(context, cache.derived);
     if (ImGui::CollapsingHeader("Selection", ImGuiTreeNodeFlags_DefaultOpen)) drawSelection(context, result.get());
-    if (ImGui::CollapsingHeader("Parameters over all times", ImGuiTreeNodeFlags_DefaultOpen)) drawParameters(info);
+    if (ImGui::CollapsingHeader("Parameters over all times", ImGuiTreeNodeFlags_DefaultOpen))
+        drawParameters(context.session, info);
     if (!cache.feed.failure().empty()) ImGui::TextWrapped("%s", cache.feed.failure().c_str());
     ImGui::EndChild();
 }

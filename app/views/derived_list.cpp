@@ -2,6 +2,7 @@
 
 #include "app/ui/widgets.h"
 #include "app/views/view_parts.h"
+#include "volume/other_source.h"
 
 #include <algorithm>
 #include <imgui_stdlib.h>
@@ -29,6 +30,8 @@ volume::DerivedRecipe recipeOf(const volume::DatasetInfo& info, std::size_t kind
         return volume::PositionRecipe{};
     case 8:
         return volume::TimeRecipe{};
+    case 9:
+        return volume::DifferenceRecipe{channel};
     default:
         return volume::ExpressionRecipe{channel};
     }
@@ -38,6 +41,25 @@ volume::DerivedRecipe recipeOf(const volume::DatasetInfo& info, std::size_t kind
 bool plainName(const std::string& name) {
     return std::all_of(name.begin(), name.end(),
                        [](unsigned char c) { return std::isalnum(c) != 0 || c == '_' || c == '.' || c == '|'; });
+}
+
+std::string unitOf(const volume::DatasetInfo& info, const std::string& channel) {
+    const auto found = info.findChannel(channel);
+    return found ? info.channels()[static_cast<std::size_t>(*found)].unit : "";
+}
+
+std::string differenceName(const volume::DatasetInfo& info, const volume::DifferenceRecipe& recipe) {
+    return recipe.channel + " minus " + volume::timeText(recipe.reference(), info);
+}
+
+/// A difference that has the name and the unit it was given keeps to what is chosen: a name must be true.
+void followRecipe(volume::DerivedParameter& own, const volume::DerivedParameter& before,
+                  const volume::DatasetInfo& info) {
+    const auto *is = std::get_if<volume::DifferenceRecipe>(&own.recipe),
+               *was = std::get_if<volume::DifferenceRecipe>(&before.recipe);
+    if (!is || !was || *is == *was) return;
+    if (before.name == differenceName(info, *was)) own.name = differenceName(info, *is);
+    if (before.unit == unitOf(info, was->channel)) own.unit = unitOf(info, is->channel);
 }
 
 void drawOne(ViewContext& context, DerivedDraft& draft, std::size_t index, int& removed) {
@@ -56,13 +78,15 @@ void drawOne(ViewContext& context, DerivedDraft& draft, std::size_t index, int& 
     draft.edited |= ImGui::InputText("##name", &own.name);
     drawLabel(widgets, "Unit", "Unit of its values");
     draft.edited |= ImGui::InputText("##unit", &own.unit);
+    const volume::DerivedParameter before = own;
     draft.edited |= std::visit([&](auto& recipe) { return drawDescribed(recipe, widgets); }, own.recipe);
+    followRecipe(own, before, info);
     // Not while typing: it would lie over what is wrong with the formula.
     if (std::holds_alternative<volume::ExpressionRecipe>(own.recipe) && ImGui::IsItemHovered() &&
         !ImGui::IsItemActive())
         tooltip(
             "Parameters by name (others in `back quotes`), x y z t, + - * / ^, comparisons, a ? b : c, abs sqrt exp "
-            "ln log10 sin cos min max");
+            "ln log10 sin cos min max; at another time: at(T, first), last, previous, next, at(T, 0.3)");
     if (wrong) {
         ImGui::PushStyleColor(ImGuiCol_Text, palette().failure);
         ImGui::TextWrapped("%s", draft.problems[index].c_str());
@@ -76,12 +100,13 @@ void drawOne(ViewContext& context, DerivedDraft& draft, std::size_t index, int& 
 
 volume::DerivedParameter newDerived(const volume::DatasetInfo& info, std::size_t kind, const std::string& channel) {
     static constexpr const char* kPrefixes[] = {"new ",       "magnitude", "grad ",    "div ", "curl ",
-                                                "deviation ", "smooth ",   "position", "time"};
+                                                "deviation ", "smooth ",   "position", "time", ""};
     volume::DerivedParameter made;
     made.recipe = recipeOf(info, kind, kind == 0 && !plainName(channel) ? "`" + channel + "`" : channel);
-    const auto found = info.findChannel(channel);
-    const std::string unit = found ? info.channels()[static_cast<std::size_t>(*found)].unit : "";
+    const std::string unit = unitOf(info, channel);
     std::string of = kind == 1 || kind >= 7 ? "" : channel;
+    if (const auto* difference = std::get_if<volume::DifferenceRecipe>(&made.recipe))
+        of = differenceName(info, *difference);
     for (const auto* vector : {std::get_if<volume::DivergenceRecipe>(&made.recipe)})
         if (vector) of = vector->vector;
     if (const auto* vorticity = std::get_if<volume::VorticityRecipe>(&made.recipe)) of = vorticity->vector;
@@ -93,22 +118,71 @@ volume::DerivedParameter newDerived(const volume::DatasetInfo& info, std::size_t
                            [&](const volume::Parameter& own) { return own.name == name; });
     };
     for (int i = 2; taken(made.name); ++i) made.name = base + " " + std::to_string(i);
-    made.unit = kind == 2   ? (unit.empty() ? "1" : unit) + "/" + info.lengthUnit
-                : kind == 3 ? "1/" + info.timeUnit
-                : kind == 4 ? "1/" + info.timeUnit
-                : kind == 7 ? info.lengthUnit
-                : kind == 8 ? info.timeUnit
-                            : unit;
+    made.unit = kind == 2                ? (unit.empty() ? "1" : unit) + "/" + info.lengthUnit
+                : kind == 3 || kind == 4 ? (info.timeUnit.empty() ? std::string() : "1/" + info.timeUnit)
+                : kind == 7              ? info.lengthUnit
+                : kind == 8              ? info.timeUnit
+                                         : unit;
     return made;
 }
+
+volume::DerivedParameter newDifference(const volume::DatasetInfo& info, const std::string& channel,
+                                       const volume::TimeReference& from) {
+    const volume::DifferenceRecipe recipe{channel, from.which, from.time};
+    return {differenceName(info, recipe), unitOf(info, channel), recipe};
+}
+
+std::string addDerived(Session& session, const volume::DerivedParameter& wanted) {
+    std::vector<volume::DerivedParameter>& derived = session.data.derived;
+    for (const volume::DerivedParameter& own : derived)
+        if (own.recipe == wanted.recipe) return own.name;
+    derived.push_back(wanted);
+    colorDifferences(session);
+    return wanted.name;
+}
+
+namespace {
+
+bool hasOther(const volume::DatasetInfo& info, const std::string& channel) {
+    const auto found = info.findChannel(channel);
+    return found && volume::otherChannel(info, *found).has_value();
+}
+
+/// Times that a parameter can be compared with, one click each.
+void drawDifferences(ViewContext& context, DerivedDraft& draft, const std::string& channel) {
+    if (ImGui::SmallButton("Minus another time...")) ImGui::OpenPopup("minus another time");
+    if (ImGui::IsItemHovered())
+        tooltip("How a parameter differs from what it is at another time, as a parameter of its own");
+    if (!ImGui::BeginPopup("minus another time")) return;
+    const volume::DatasetInfo& info = context.source->info();
+    const auto item = [&](const char* label, const volume::TimeReference& from) {
+        if (!ImGui::MenuItem((channel + " minus " + label).c_str())) return;
+        draft.parameters.push_back(newDifference(info, channel, from));
+        draft.edited = true;
+    };
+    if (info.times.size() > 1) {
+        item("first", {volume::OtherTime::First});
+        item("previous", {volume::OtherTime::Previous});
+        item("last", {volume::OtherTime::Last});
+        item("next", {volume::OtherTime::Next});
+        const volume::TimeReference now{volume::OtherTime::Time, context.session.time};
+        item((volume::timeText(now, info) + ", shown now").c_str(), now);
+    }
+    if (hasOther(info, channel)) item("other data", {volume::OtherTime::Other});
+    ImGui::EndPopup();
+}
+
+} // namespace
 
 void drawDerivedList(ViewContext& context, DerivedDraft& draft) {
     std::vector<volume::DerivedParameter>& saved = context.session.data.derived;
     if (!ImGui::IsAnyItemActive()) {
-        if (draft.edited)
+        if (draft.edited) {
             saved = draft.parameters;
-        else
+            colorDifferences(context.session);
+        } else {
             draft.parameters = saved;
+        }
         draft.edited = false;
     }
     if (draft.checked != draft.parameters || draft.problems.size() != draft.parameters.size()) {
@@ -127,10 +201,14 @@ void drawDerivedList(ViewContext& context, DerivedDraft& draft) {
     }
     if (ImGui::SmallButton("Add...")) ImGui::OpenPopup("add derived");
     if (ImGui::IsItemHovered()) tooltip("A parameter computed from the others; it is used like any other");
+    const volume::DatasetInfo& info = context.source->info();
+    const auto channel = resolveChannel(info, context.session, "");
+    const std::string name = channel ? info.channels()[static_cast<std::size_t>(*channel)].name : "";
+    if (channel && (info.times.size() > 1 || hasOther(info, name))) {
+        ImGui::SameLine();
+        drawDifferences(context, draft, name);
+    }
     if (ImGui::BeginPopup("add derived")) {
-        const volume::DatasetInfo& info = context.source->info();
-        const auto channel = resolveChannel(info, context.session, "");
-        const std::string name = channel ? info.channels()[static_cast<std::size_t>(*channel)].name : "";
         for (std::size_t kind = 0; kind < std::size(kDerivedKinds); ++kind)
             if (ImGui::MenuItem(kDerivedKinds[kind])) {
                 draft.parameters.push_back(newDerived(info, kind, name));

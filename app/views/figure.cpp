@@ -67,6 +67,7 @@ public:
         image();
         axes();
         for (const FigureSeries& series : panel_.series) series.bars ? bars(series) : line(series);
+        for (const glm::dvec2& mark : panel_.marks) ring(mark, 4.5, "none", "black");
         legend();
         return out_;
     }
@@ -128,6 +129,13 @@ private:
         }
         out_ +=
             "<path d=\"" + path + "\" fill=\"none\" stroke=\"" + colorOf(series.color) + "\" stroke-width=\"1.2\"/>\n";
+        if (!series.dots) return;
+        for (const glm::dvec2& point : series.points) ring(point, 1.8, colorOf(series.color), "none");
+    }
+    void ring(const glm::dvec2& at, double radius, const std::string& fill, const std::string& stroke) {
+        if (!std::isfinite(at.x) || !std::isfinite(at.y)) return;
+        out_ += "<circle cx=\"" + number(px(at.x)) + "\" cy=\"" + number(py(at.y)) + "\" r=\"" + number(radius) +
+                "\" fill=\"" + fill + "\" stroke=\"" + stroke + "\" stroke-width=\"1.2\"/>\n";
     }
     /// As one picture of a pixel per cell, stretched without blur.
     void image() {
@@ -170,6 +178,13 @@ std::string figureSvg(const std::vector<FigurePanel>& panels, int columns) {
     return out + "</svg>\n";
 }
 
+std::string withDescription(std::string svg, const std::string& numbers) {
+    std::string text = "<desc>numbers: ";
+    for (const char c : numbers) text += c == '<' ? "&lt;" : c == '&' ? "&amp;" : std::string(1, c);
+    const std::size_t at = svg.find("<rect ");
+    return at == std::string::npos ? svg : svg.insert(at, text + "</desc>\n");
+}
+
 std::string csvField(const std::string& text) {
     if (text.find_first_of(",\"\n") == std::string::npos) return text;
     std::string out = "\"";
@@ -193,6 +208,12 @@ void exportMenu(ViewContext& context, const std::string& title, std::function<st
     if (ImGui::Button("Export")) ImGui::OpenPopup("export");
     ImGui::EndDisabled();
     if (!ImGui::BeginPopup("export")) return;
+    if (context.numbers) { // a table and a picture say where their numbers come from
+        const std::string origin = originText(context.origin, context.numbers->info());
+        if (csv)
+            csv = [csv, origin](const Progress& progress) { return "# numbers: " + origin + "\n" + csv(progress); };
+        if (svg) svg = [svg, origin](const Progress& progress) { return withDescription(svg(progress), origin); };
+    }
     if (ImGui::MenuItem("Picture (PNG)...") && context.runCommand) context.runCommand("Save picture...");
     if (svg && ImGui::MenuItem("Vector graphics (SVG)...")) context.exportText(name + ".svg", std::move(svg));
     if (csv && ImGui::MenuItem("Copy table (CSV)"))

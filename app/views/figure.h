@@ -19,6 +19,7 @@ struct FigureSeries {
     std::vector<glm::dvec2> points; ///< NaN breaks a line; bars: centre and height
     glm::vec3 color{0};
     bool bars = false;
+    bool dots = false; ///< a dot at every point, beside the line
 };
 
 /// A picture of cells between the ends of both axes: RGBA, row 0 at the top.
@@ -32,10 +33,14 @@ struct FigurePanel {
     FigureAxis x, y;
     std::vector<FigureSeries> series;
     FigureImage image;
+    std::vector<glm::dvec2> marks = {}; ///< points with a ring
 };
 
 /// Panels in rows of `columns`, black on white.
 std::string figureSvg(const std::vector<FigurePanel>& panels, int columns);
+
+/// The same with a description of where its numbers come from.
+std::string withDescription(std::string svg, const std::string& numbers);
 
 /// A text as one field of a CSV line.
 std::string csvField(const std::string& text);

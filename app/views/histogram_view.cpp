@@ -120,7 +120,7 @@ void drawToolbar(ViewContext& context, HistogramView& view, const volume::Channe
                  const std::shared_ptr<const StatisticsResult>& result) {
     std::string name = channel.name;
     ImGui::SetNextItemWidth(std::min(em() * 11, ImGui::GetContentRegionAvail().x * 0.4f));
-    if (chooseChannel("##channel", &context.source->info(), name)) view.channel = name;
+    if (chooseChannel("##channel", &context.numbers->info(), name)) view.channel = name;
     if (ImGui::IsItemHovered()) tooltip("Parameter whose values are counted");
     continueLine(em() * 3.5f);
     ImGui::Checkbox("log", &view.logCounts);
@@ -137,6 +137,7 @@ void drawToolbar(ViewContext& context, HistogramView& view, const volume::Channe
                 return histogramCsv(channel, result->statistics.channels.front().histogram, result->brushed);
             });
     }
+    if (result) drawOrigin(context, {result->wish.channels.front()});
     if (context.session.selection.brushes.empty()) {
         continueLine(ImGui::CalcTextSize("drag to brush").x);
         ImGui::TextDisabled("drag to brush");
@@ -150,7 +151,7 @@ void drawHistogramView(ViewContext& context, const std::string& pane, HistogramV
         drawHint("No data", "How often each value of a parameter occurs is shown here.");
         return;
     }
-    const volume::DatasetInfo& info = context.source->info();
+    const volume::DatasetInfo& info = context.numbers->info();
     const auto index = resolveChannel(info, context.session, view.channel);
     if (!index) {
         drawHint("No parameters", "This data set has nothing to count.");

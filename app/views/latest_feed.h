@@ -9,23 +9,23 @@
 
 namespace tessera::app {
 
-/// An answer about the data that takes too long for a frame: keeps the last one and asks for a new one in the
-/// background when the wish changes. One per view, in its cache. `Wish` can be compared.
+/// An answer about the samples of context.numbers that takes too long for a frame: keeps the last one and asks for a
+/// new one in the background when the wish changes. One per view, in its cache. `Wish` can be compared.
 template <class Wish, class Result> class LatestFeed {
 public:
     using Pointer = std::shared_ptr<const Result>;
 
     /// The answer to `wish`, else the last one while that is `alike` (called with the wish it answers), else null. Sets
-    /// context.busy while a better one is on its way; headless, computes to the end. `make(shared source, wish,
+    /// context.busy while a better one is on its way; headless, computes to the end. `make(context.numbers, wish,
     /// progress)` gives the Result and may throw Error, which is reported once. What failed or was cancelled is not
     /// tried again until the wish changes.
     template <class Make, class Alike>
     Pointer get(ViewContext& context, const std::string& jobKey, const char* title, const Wish& wish, Make make,
                 Alike alike, bool quiet = false) {
-        if (state_->source != context.source) {
+        if (state_->source != context.numbers) {
             context.jobs.cancel(jobKey);
             state_ = std::make_shared<State>(); // a job of the old source finds its state gone
-            state_->source = context.source;
+            state_->source = context.numbers;
         }
         State& state = *state_;
         const Pointer usable = state.last && alike(*state.answers) ? state.last : nullptr;
@@ -33,7 +33,7 @@ public:
         if (state.pending.refused(context.jobs, jobKey, wish)) return usable;
         if (context.headless) {
             try {
-                state.last = std::make_shared<const Result>(make(context.source, wish, Progress{}));
+                state.last = std::make_shared<const Result>(make(context.numbers, wish, Progress{}));
                 state.answers = wish;
                 return state.last;
             } catch (const Error& error) {
@@ -49,7 +49,7 @@ public:
         state.pending.start(wish);
         context.jobs.start(
             jobKey, title,
-            [weak = std::weak_ptr(state_), source = context.source, wish,
+            [weak = std::weak_ptr(state_), source = context.numbers, wish,
              make](const Progress& progress) -> Jobs::Finish {
                 std::string failure;
                 const Pointer result = attempt(

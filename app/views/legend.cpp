@@ -99,6 +99,34 @@ void drawLegendColumn(ImDrawList& draw, ImVec2 min, float height, const LegendEn
     draw.AddText({x, min.y + height - line}, colors.text, formatNumber(entry.range.lo, digits).c_str());
 }
 
+namespace {
+
+constexpr std::size_t kMostNames = 12;
+
+/// The title of a label, and under it its values with their colours.
+float drawNames(ImDrawList& draw, ImVec2 min, float width, const LegendEntry& entry) {
+    const PlotColors colors = plotColors();
+    const float line = em() * 1.2f;
+    draw.AddText(min, colors.text, fitText(entry.title, width).c_str());
+    float y = min.y + line;
+    for (std::size_t i = 0; i < entry.names.size() && i < kMostNames; ++i, y += line) {
+        const glm::vec3 color = entry.names[i].color;
+        draw.AddRectFilled({min.x, y + em() * 0.15f}, {min.x + em() * 0.8f, y + em() * 0.9f},
+                           toColor({color.r, color.g, color.b}));
+        const bool more = i + 1 == kMostNames && entry.names.size() > kMostNames;
+        draw.AddText({min.x + em() * 1.1f, y}, colors.text,
+                     fitText(more ? "..." : entry.names[i].name, width - em() * 1.1f).c_str());
+    }
+    return y - min.y;
+}
+
+float heightOf(const LegendEntry& entry) {
+    if (!entry.names.empty()) return em() * 1.2f * static_cast<float>(1 + std::min(entry.names.size(), kMostNames));
+    return entry.swatch ? em() * 1.25f : legendBarHeight();
+}
+
+} // namespace
+
 LegendArea drawLegends(ImDrawList& draw, const std::vector<LegendEntry>& entries, ImVec2 min, ImVec2 max,
                        LegendCorner corner) {
     const float pad = em() * 0.5f;
@@ -107,7 +135,7 @@ LegendArea drawLegends(ImDrawList& draw, const std::vector<LegendEntry>& entries
     std::vector<const LegendEntry*> shown;
     float height = 0;
     for (const LegendEntry& entry : entries) {
-        const float own = entry.swatch ? em() * 1.25f : legendBarHeight();
+        const float own = heightOf(entry);
         if (height + own > (max.y - min.y) * 0.6f) break;
         height += own;
         shown.push_back(&entry);
@@ -118,7 +146,9 @@ LegendArea drawLegends(ImDrawList& draw, const std::vector<LegendEntry>& entries
     draw.AddRectFilled({from.x - pad, from.y - pad * 0.5f}, {max.x, bottom}, plotColors().backdrop, em() * 0.25f);
     float y = from.y;
     for (const LegendEntry* entry : shown)
-        y += entry->swatch ? drawSwatch(draw, {from.x, y}, *entry) : drawLegendBar(draw, {from.x, y}, width, *entry);
+        y += !entry->names.empty() ? drawNames(draw, {from.x, y}, width, *entry)
+             : entry->swatch       ? drawSwatch(draw, {from.x, y}, *entry)
+                                   : drawLegendBar(draw, {from.x, y}, width, *entry);
     return {{from.x - pad, from.y - pad * 0.5f}, {max.x, bottom}};
 }
 

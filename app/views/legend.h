@@ -10,7 +10,14 @@
 /// Colour legends, painted from the same function that fills the renderer's lookup tables.
 namespace tessera::app {
 
-/// One colour bar, or one swatch with a value (an iso-surface).
+/// A label value as legends show it.
+struct NamedColor {
+    std::string name;
+    glm::vec3 color{0}; ///< sRGB
+    bool operator==(const NamedColor&) const = default;
+};
+
+/// One colour bar, one swatch with a value (an iso-surface), or the names of a label.
 struct LegendEntry {
     std::string title, unit;
     vis::TransferFunction function;
@@ -20,6 +27,7 @@ struct LegendEntry {
     bool swatch = false;           ///< only `color` and `value`
     std::array<double, 3> color{}; ///< sRGB of a swatch
     double value = 0;
+    std::vector<NamedColor> names = {}; ///< of a label: in place of a bar
     bool operator==(const LegendEntry&) const = default;
 };
 

@@ -50,7 +50,7 @@ std::string layersOf(const Session& session, const std::string& lens) {
 
 /// Mean and range of every parameter inside of a lens.
 void drawStatistics(ViewContext& context, const std::string& pane, LensStatistics& statistics, const vis::Lens& lens) {
-    const volume::DatasetInfo& info = context.source->info();
+    const volume::DatasetInfo& info = context.numbers->info();
     const std::vector<int> shown = chosenChannels(info, {}, 12);
     if (shown.empty() || !lens.enabled) return;
     StatisticsWish wish;
@@ -68,6 +68,7 @@ void drawStatistics(ViewContext& context, const std::string& pane, LensStatistic
         ImGui::TextDisabled("Counting...");
         return;
     }
+    ImGui::TextDisabled("%s", originText(context, shown).c_str());
     if (!ImGui::BeginTable("inside", 3, ImGuiTableFlags_RowBg | ImGuiTableFlags_SizingStretchProp)) return;
     for (const char* name : {"Inside", "Mean", "Range"}) ImGui::TableSetupColumn(name);
     tableHeader({"Inside", "Mean", "Range"}, 1);

@@ -1,7 +1,9 @@
 #include "app/views/profile_data.h"
 
+#include "app/views/axis_label.h"
 #include "app/views/figure.h"
 #include "app/views/ticks.h"
+#include "app/views/time_text.h"
 #include "app/views/view_parts.h"
 #include "volume/probe.h"
 
@@ -37,11 +39,44 @@ Profile readProfile(const volume::BrickSource& source, const ProfileWish& wish, 
     return out;
 }
 
-std::string profileCsv(const volume::DatasetInfo& info, const Profile& profile) {
+LineAxis lineAxis(const Session& session, const volume::DatasetInfo& info, const Profile& profile) {
+    LineAxis out{"distance", {}, profile.distance, true};
+    const double length = profile.distance.empty() ? 0 : profile.distance.back();
+    const auto& time = session.data.timeAxis;
+    const int axis = time ? static_cast<int>(time->axis) : 0;
+    bool alongTime = false, alongSpace = false;
+    for (const glm::dvec3& at : profile.positions)
+        for (int a = 0; a < 3 && time; ++a)
+            if (std::abs(at[a] - profile.positions.front()[a]) > 1e-9 * info.bounds.size()[a])
+                (a == axis ? alongTime : alongSpace) = true;
+    if (alongTime && alongSpace) {
+        out = {"share of the line", {}, {}, false};
+        for (const double distance : profile.distance) out.values.push_back(length > 0 ? distance / length : 0);
+    } else if (alongTime) {
+        const LengthUnit unit = axisLabels(session, info)[std::size_t(axis)].unit;
+        out = {timeWord(info), unit.name, {}, false};
+        for (const glm::dvec3& at : profile.positions) out.values.push_back(at[axis] * unit.perUnit);
+    } else {
+        const LengthUnit unit = suitableLength(info.lengthUnit, length);
+        out.unit = unit.name;
+        for (double& distance : out.values) distance *= unit.perUnit;
+    }
+    return out;
+}
+
+std::string profileCsv(const volume::DatasetInfo& info, const Session& session, const Profile& profile) {
     const std::vector<volume::Channel> channels = info.channels();
     const bool timed = profile.wish.over != ProfileOver::Line;
-    std::string csv = timed ? "time [" + info.timeUnit + "]," : std::string();
-    csv += "distance [" + info.lengthUnit + "],x,y,z";
+    const LineAxis along = lineAxis(session, info, profile);
+    std::string csv = timed ? csvField(titleWithUnit(info.timeName, info.timeUnit)) + "," : std::string();
+    csv += along.distance ? "distance [" + info.lengthUnit + "]" : csvField(titleWithUnit(along.title, along.unit));
+    glm::dvec3 perUnit(1); // shown in the unit of the data, times as times
+    for (int axis = 0; axis < 3; ++axis) {
+        const bool time = session.data.timeAxis && static_cast<int>(session.data.timeAxis->axis) == axis;
+        const AxisLabel label = time ? axisLabels(session, info)[std::size_t(axis)] : AxisLabel{};
+        if (time) perUnit[axis] = label.unit.perUnit;
+        csv += "," + (time ? csvField(titleWithUnit(label.name, label.unit.name)) : std::string(1, "xyz"[axis]));
+    }
     for (const int channel : profile.wish.channels) {
         const volume::Channel& own = channels[static_cast<std::size_t>(channel)];
         csv += "," + csvField(titleWithUnit(own.name, own.unit));
@@ -51,8 +86,8 @@ std::string profileCsv(const volume::DatasetInfo& info, const Profile& profile) 
     for (std::size_t row = 0; row < rows; ++row)
         for (std::size_t i = 0; i < places; ++i) {
             if (timed) csv += csvNumber(profile.times[row]) + ",";
-            csv += csvNumber(profile.distance[i]);
-            for (int axis = 0; axis < 3; ++axis) csv += "," + csvNumber(profile.positions[i][axis]);
+            csv += csvNumber(along.distance ? profile.distance[i] : along.values[i]);
+            for (int axis = 0; axis < 3; ++axis) csv += "," + csvNumber(profile.positions[i][axis] * perUnit[axis]);
             for (const std::vector<double>& values : profile.values) csv += "," + csvNumber(values[row * places + i]);
             csv += "\n";
         }
@@ -81,12 +116,11 @@ std::vector<std::uint8_t> profileImage(const volume::DatasetInfo& info, const Se
 
 std::string profileSvg(const volume::DatasetInfo& info, const Session& session, const Profile& profile) {
     const std::vector<volume::Channel> channels = info.channels();
-    const LengthUnit unit = suitableLength(info.lengthUnit, profile.distance.back());
     const bool overTime = profile.wish.over == ProfileOver::Time;
-    const FigureAxis distance{"distance [" + unit.name + "]", {0, profile.distance.back() * unit.perUnit}};
-    const auto timeAxis = [&] {
-        return FigureAxis{"t [" + info.timeUnit + "]", {info.times.front(), info.times.back()}};
-    };
+    const LineAxis along = lineAxis(session, info, profile);
+    const auto [least, most] = std::ranges::minmax(along.values);
+    const FigureAxis distance{titleWithUnit(along.title, along.unit), {least, most}};
+    const auto timeAxis = [&] { return FigureAxis{timeTitle(info), {info.times.front(), info.times.back()}}; };
     std::vector<FigurePanel> panels;
     for (std::size_t c = 0; c < profile.values.size(); ++c) {
         const volume::Channel& own = channels[static_cast<std::size_t>(profile.wish.channels[c])];
@@ -103,7 +137,7 @@ std::string profileSvg(const volume::DatasetInfo& info, const Session& session, 
             FigureSeries line{own.name, {}, {0.1f, 0.36f, 0.62f}};
             const std::vector<double>& across = profile.across();
             for (std::size_t i = 0; i < across.size(); ++i)
-                line.points.push_back({across[i] * (overTime ? 1 : unit.perUnit), profile.values[c][i]});
+                line.points.push_back({overTime ? across[i] : along.values[i], profile.values[c][i]});
             panel.series.push_back(std::move(line));
         }
         panels.push_back(std::move(panel));

@@ -36,8 +36,17 @@ struct Profile {
 /// Reads the values. Throws Error, Cancelled.
 Profile readProfile(const volume::BrickSource& source, const ProfileWish& wish, const Progress& progress = {});
 
+/// What runs along the line: a distance; a time, where time takes the place of an axis and the line runs along that one
+/// alone; a share of the line where it runs through both.
+struct LineAxis {
+    std::string title, unit;
+    std::vector<double> values; ///< at each place, in `unit`
+    bool distance = true;
+};
+LineAxis lineAxis(const Session& session, const volume::DatasetInfo& info, const Profile& profile);
+
 /// One line per place, or per time, or per time and place.
-std::string profileCsv(const volume::DatasetInfo& info, const Profile& profile);
+std::string profileCsv(const volume::DatasetInfo& info, const Session& session, const Profile& profile);
 /// A panel per channel: curves, or pictures coloured by the session's transfer functions.
 std::string profileSvg(const volume::DatasetInfo& info, const Session& session, const Profile& profile);
 

@@ -3,7 +3,9 @@
 #include "app/views/latest_feed.h"
 #include "app/views/profile_data.h"
 #include "app/views/profile_line.h"
+#include "app/views/section_view.h"
 #include "app/views/ticks.h"
+#include "app/views/time_text.h"
 #include "app/views/view_parts.h"
 #include "vis/gl/plot_texture.h"
 
@@ -24,33 +26,12 @@ struct ProfileCache : ViewCache {
     std::vector<vis::PlotTexture> pictures; ///< by channel
 };
 
-void chooseOver(ProfileOver& over) {
-    static constexpr const char* kNames[] = {"along the line", "over time", "line and time"};
-    static constexpr const char* kHelp[] = {"Values along the line at the time shown",
-                                            "Values at the linked cursor at every stored time",
-                                            "Values along the line at every stored time, as colours"};
-    const auto now = static_cast<std::size_t>(over);
-    ImGui::SetNextItemWidth(em() * 8);
-    if (ImGui::BeginCombo("##over", kNames[now])) {
-        for (std::size_t i = 0; i < std::size(kNames); ++i) {
-            if (ImGui::Selectable(kNames[i], i == now)) over = static_cast<ProfileOver>(i);
-            if (ImGui::IsItemHovered()) tooltip(kHelp[i]);
-        }
-        ImGui::EndCombo();
-    } else if (ImGui::IsItemHovered()) {
-        tooltip(kHelp[now]);
-    }
-}
-
 void drawToolbar(ViewContext& context, const std::shared_ptr<const Profile>& profile, ProfileView& view,
                  const std::vector<int>& shown) {
     Session& session = context.session;
-    const volume::DatasetInfo& info = context.source->info();
+    const volume::DatasetInfo& info = context.numbers->info();
     chooseChannels(info, view.channels, shown);
-    if (info.times.size() > 1) {
-        continueLine(em() * 8);
-        chooseOver(view.over);
-    }
+    chooseOver(view.over, info.times.size() > 1);
     if (view.over != ProfileOver::Time) {
         continueLine(buttonWidth("Corner at cursor"));
         if (ImGui::Button("Corner at cursor")) view.points.push_back(session.cursor);
@@ -80,8 +61,9 @@ void drawToolbar(ViewContext& context, const std::shared_ptr<const Profile>& pro
         exportMenu(
             context, "profile",
             [info, profile, session](const Progress&) { return profileSvg(info, session, *profile); },
-            [info, profile](const Progress&) { return profileCsv(info, *profile); });
+            [info, profile, session](const Progress&) { return profileCsv(info, session, *profile); });
     }
+    drawOrigin(context, shown);
     if (view.points.size() == 1 && view.over != ProfileOver::Time) {
         continueLine(ImGui::CalcTextSize("one corner more").x);
         ImGui::TextDisabled("one corner more");
@@ -91,7 +73,7 @@ void drawToolbar(ViewContext& context, const std::shared_ptr<const Profile>& pro
 /// What the plots share: the axis to the right and what is marked on it.
 struct Across {
     std::string title, unit;
-    double perUnit = 1; ///< shown values per stored one
+    std::vector<double> values; ///< of the places or times, as shown
     Range range;
     std::optional<std::size_t> marked; ///< element of Profile::across()
 };
@@ -102,7 +84,6 @@ void drawCurve(const std::string& title, Range range, const Profile& profile, st
     ImDrawList& draw = *ImGui::GetWindowDrawList();
     const PlotColors colors = plotColors();
     const std::vector<double>& values = profile.values[c];
-    const std::vector<double>& places = profile.across();
     draw.PushClipRect(frame.min, frame.max, true);
     std::vector<ImVec2> run;
     const auto flush = [&] {
@@ -116,11 +97,11 @@ void drawCurve(const std::string& title, Range range, const Profile& profile, st
         if (std::isnan(values[i]))
             flush();
         else
-            run.push_back(frame.pixel(places[i] * across.perUnit, values[i]));
+            run.push_back(frame.pixel(across.values[i], values[i]));
     }
     flush();
     const std::optional<std::size_t> marked = across.marked;
-    if (marked) drawCrosshair(draw, frame, places[*marked] * across.perUnit, values[*marked]);
+    if (marked) drawCrosshair(draw, frame, across.values[*marked], values[*marked]);
     draw.PopClipRect();
     draw.AddRect(frame.min, frame.max, colors.frame);
     drawAxis(draw, frame, AxisSide::Left, "", "", frame.min.y - em() * 0.3f, frame.max.y + em() * 0.3f);
@@ -159,8 +140,7 @@ void drawPicture(const Session& session, const std::string& title, const vis::Pl
     }
     draw.PopClipRect();
     draw.PushClipRect(frame.min, frame.max, true);
-    drawCrosshair(draw, frame, across.marked ? profile.distance[*across.marked] * across.perUnit : std::nan(""),
-                  session.time);
+    drawCrosshair(draw, frame, across.marked ? across.values[*across.marked] : std::nan(""), session.time);
     draw.PopClipRect();
     draw.AddRect(frame.min, frame.max, colors.frame);
     drawAxis(draw, frame, AxisSide::Left, "", "", frame.min.y - em() * 0.3f, frame.max.y + em() * 0.3f);
@@ -187,8 +167,9 @@ void drawProfileView(ViewContext& context, const std::string& pane, ProfileView&
         drawHint("No data", "Parameters along a line in space appear here.");
         return;
     }
+    if (view.over == ProfileOver::Sections) return drawSections(context, pane, view);
     Session& session = context.session;
-    const volume::DatasetInfo& info = context.source->info();
+    const volume::DatasetInfo& info = context.numbers->info();
     ProfileCache& cache = cacheOf<ProfileCache>(context, pane);
     const std::vector<int> shown = chosenChannels(info, view.channels, kMostProfiles);
     if (shown.empty()) return drawHint("No parameters", "This data set holds only labels.");
@@ -215,14 +196,13 @@ void drawProfileView(ViewContext& context, const std::string& pane, ProfileView&
         if (!profile) return ImGui::TextDisabled("Reading...");
         return drawHint("The line has no length", "Place a corner, move the cursor, and place another.");
     }
-    const LengthUnit unit = suitableLength(info.lengthUnit, profile->distance.back());
+    const LineAxis along = lineAxis(session, info, *profile);
+    const auto [least, most] = std::ranges::minmax(along.values);
     const Range times{info.times.front(), info.times.back()};
-    Across across{.title = "distance",
-                  .unit = unit.name,
-                  .perUnit = unit.perUnit,
-                  .range = {0, profile->distance.back() * unit.perUnit},
-                  .marked = {}};
-    if (overTime) across = {.title = "t", .unit = info.timeUnit, .perUnit = 1, .range = times, .marked = {}};
+    Across across{
+        .title = along.title, .unit = along.unit, .values = along.values, .range = {least, most}, .marked = {}};
+    if (overTime)
+        across = {.title = timeWord(info), .unit = info.timeUnit, .values = info.times, .range = times, .marked = {}};
     const ImVec2 origin = ImGui::GetCursorScreenPos(), room = ImGui::GetContentRegionAvail();
     const std::vector<volume::Channel> channels = info.channels();
     const auto rangeOf = [&](std::size_t c) {
@@ -245,11 +225,12 @@ void drawProfileView(ViewContext& context, const std::string& pane, ProfileView&
     const bool taken = ImGui::IsItemActive(), over = ImGui::IsItemHovered() || taken;
     const double share = std::clamp(double((mouse.x - x0) / (x1 - x0)), 0.0, 1.0);
     const auto last = static_cast<double>(profile->across().size() - 1);
+    const bool backwards = across.values.front() > across.values.back(); // from a later time to an earlier one
     if (over && overTime) {
         const double at = times.lo + (times.hi - times.lo) * share;
         across.marked = static_cast<std::size_t>(info.nearestTime(at));
     } else if (over) {
-        across.marked = static_cast<std::size_t>(std::lround(share * last));
+        across.marked = static_cast<std::size_t>(std::lround((backwards ? 1 - share : share) * last));
     } else if (overTime) {
         across.marked = static_cast<std::size_t>(info.nearestTime(session.time));
     } else {
@@ -275,7 +256,7 @@ void drawProfileView(ViewContext& context, const std::string& pane, ProfileView&
         if (pictures && taken && frame.contains(mouse))
             session.time = info.times[static_cast<std::size_t>(info.nearestTime(frame.data(mouse).y))];
         if (pictures)
-            drawPicture(session, title + ", up: t [" + info.timeUnit + "]", cache.pictures[c], *profile, frame, across);
+            drawPicture(session, title + ", up: " + timeTitle(info), cache.pictures[c], *profile, frame, across);
         else
             drawCurve(title, rangeOf(c), *profile, c, frame, across);
         if (c + 1 == profile->values.size())

@@ -1,11 +1,14 @@
 #include "app/views/readout.h"
 
 #include "app/views/axis_label.h"
+#include "app/views/figure.h"
 #include "app/views/pending_wish.h"
 #include "app/views/ticks.h"
+#include "app/views/time_text.h"
 #include "app/views/view_parts.h"
 #include "volume/background.h"
 #include "volume/error.h"
+#include "volume/quantities.h"
 
 #include <algorithm>
 #include <cmath>
@@ -42,16 +45,16 @@ std::optional<double> Readout::value(const std::string& channel) const {
 
 void updateReadout(ViewContext& context, Readout& readout) {
     Readout::State& state = *readout.state;
-    if (state.source != context.source) {
+    if (state.source != context.numbers) {
         readout.state = std::make_shared<Readout::State>();
-        readout.state->source = context.source;
-        readout.state->cache = std::make_shared<volume::BrickCache>(context.source, kCacheBytes);
-        readout.channels = context.source->info().channels();
+        readout.state->source = context.numbers;
+        readout.state->cache = std::make_shared<volume::BrickCache>(context.numbers, kCacheBytes);
+        readout.channels = context.numbers->info().channels();
         updateReadout(context, readout);
         return;
     }
     const glm::dvec3 position = context.session.cursor;
-    const volume::TimePair time = volume::timesAround(context.source->info().times, context.session.time);
+    const volume::TimePair time = volume::timesAround(context.numbers->info().times, context.session.time);
     if (state.time == time && state.position == position) return;
     if (context.headless) {
         state.values = volume::probe(*state.cache, position, time);
@@ -106,7 +109,7 @@ float readoutHeight(const Readout& readout) {
 }
 
 void drawReadout(ViewContext& context, const Readout& readout, bool compact) {
-    const volume::DatasetInfo& info = context.source->info();
+    const volume::DatasetInfo& info = context.numbers->info();
     const glm::dvec3 cursor = context.session.cursor, size = info.bounds.size();
     const AxisLabels labels = axisLabels(context.session, info);
     const glm::ivec3 index = info.lattice.nearest(cursor);
@@ -122,6 +125,7 @@ void drawReadout(ViewContext& context, const Readout& readout, bool compact) {
         at.insert(at.begin(), text);
     }
     drawFlowing(at);
+    const auto copy = [&] { return originLine(context.origin, info) + readoutCsv(context.session, info, readout); };
     if (compact) {
         std::vector<std::string> values;
         for (std::size_t i = 0; i < readout.channels.size() && i < readout.state->values.size(); ++i) {
@@ -133,17 +137,17 @@ void drawReadout(ViewContext& context, const Readout& readout, bool compact) {
                 values.push_back(channel.name + " " + valueText(info, channel, value) + " " + prettyUnit(channel.unit));
         }
         drawFlowing(values);
-        if (ImGui::SmallButton("Copy as CSV"))
-            ImGui::SetClipboardText(readoutCsv(context.session, info, readout).c_str());
+        if (ImGui::SmallButton("Copy as CSV")) ImGui::SetClipboardText(copy().c_str());
         return;
     }
     ImGui::PushTextWrapPos(0);
     const double time = std::clamp(context.session.time, info.times.front(), info.times.back());
+    const std::string origin = originText(context);
     std::string sample =
         "sample (" + std::to_string(index.x) + ", " + std::to_string(index.y) + ", " + std::to_string(index.z) + ")";
-    if (info.times.size() > 1) sample += "   t " + formatQuantity(time, info.timeUnit);
+    if (info.times.size() > 1) sample += "   " + stateText(info, time, context.session.data.axis);
     ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetStyleColorVec4(ImGuiCol_TextDisabled));
-    ImGui::TextUnformatted(sample.c_str());
+    ImGui::TextUnformatted((sample + "   " + origin).c_str());
     ImGui::PopStyleColor();
     ImGui::PopTextWrapPos();
 
@@ -168,7 +172,7 @@ void drawReadout(ViewContext& context, const Readout& readout, bool compact) {
         cell(channel, value.nearest);
     }
     ImGui::EndTable();
-    if (ImGui::SmallButton("Copy as CSV")) ImGui::SetClipboardText(readoutCsv(context.session, info, readout).c_str());
+    if (ImGui::SmallButton("Copy as CSV")) ImGui::SetClipboardText(copy().c_str());
 }
 
 std::string readoutCsv(const Session& session, const volume::DatasetInfo& info, const Readout& readout) {
@@ -185,7 +189,10 @@ std::string readoutCsv(const Session& session, const volume::DatasetInfo& info, 
         csv += std::string(name) + "," + (time ? unit.name : info.lengthUnit) + "," +
                number(session.cursor[axis] * (time ? unit.perUnit : 1)) + ",\n";
     }
-    csv += "time," + info.timeUnit + "," + number(session.time) + ",\n";
+    csv += csvField(info.timeName) + "," + csvField(info.timeUnit) + "," + number(session.time) + ",\n";
+    for (const volume::Quantity& quantity : info.quantities)
+        csv += csvField(quantity.name) + "," + csvField(quantity.unit) + "," +
+               number(volume::valueAt(info.times, quantity.values, session.time)) + ",\n";
     for (std::size_t i = 0; i < readout.channels.size() && i < readout.state->values.size(); ++i) {
         const volume::ProbeValue& value = readout.state->values[i];
         csv += readout.channels[i].name + "," + readout.channels[i].unit + "," + number(value.interpolated) + "," +

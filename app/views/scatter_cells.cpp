@@ -1,6 +1,7 @@
 #include "app/views/scatter_cells.h"
 
 #include "app/views/ticks.h"
+#include "volume/analysis/flow_channels.h"
 
 #include <algorithm>
 #include <cmath>
@@ -99,8 +100,19 @@ void drawNothingCommon(ImDrawList& draw, const PlotFrame& frame) {
         plotColors().frame, text);
 }
 
+/// What a bin says of the parameter that colours it: its mean, or the region where all samples are of one.
+std::string thirdText(const volume::DatasetInfo& info, const std::string& colorBy, double mean) {
+    const auto channel = info.findChannel(colorBy);
+    if (!channel || !volume::parameterOf(info, *channel).categorical)
+        return "mean " + colorBy + " " + formatNumber(mean);
+    const volume::Parameter& label = volume::parameterOf(info, *channel);
+    return std::abs(mean - std::round(mean)) > 0.01
+               ? "of several " + label.name + "s"
+               : label.name + " " + volume::labelName(label, static_cast<int>(std::lround(mean)));
+}
+
 void hoverText(const ScatterLayout& matrix, std::size_t column, std::size_t row, const PlotFrame& frame,
-               const StatisticsResult& result, const std::string& colorBy) {
+               const StatisticsResult& result, const volume::DatasetInfo& info, const std::string& colorBy) {
     const glm::dvec2 at = frame.data(ImGui::GetIO().MousePos);
     const volume::Statistics& statistics = result.statistics;
     const auto bin = [](double value, Range range, std::size_t bins) {
@@ -136,7 +148,7 @@ void hoverText(const ScatterLayout& matrix, std::size_t column, std::size_t row,
                        countText(static_cast<double>(joint.count[i]), static_cast<double>(joint.samples),
                                  joint.focus[i], result.brushed);
                 if (i < joint.mean.size() && !std::isnan(joint.mean[i]))
-                    text += "\nmean " + colorBy + " " + formatNumber(joint.mean[i]);
+                    text += "\n" + thirdText(info, colorBy, joint.mean[i]);
             }
         }
     }
@@ -172,6 +184,9 @@ void drawOutliers(ImDrawList& draw, const PlotFrame& frame, const volume::JointH
 }
 
 ImU32 meanColor(const vis::TransferFunction& function, Range range, double mean) {
+    // The mean of two labels is none of them.
+    constexpr double kOneLabel = 0.01;
+    if (function.colormap == "labels" && std::abs(mean - std::round(mean)) > kOneLabel) return toColor({0.5, 0.5, 0.5});
     const glm::dvec4 color = vis::evaluate(function, range, mean);
     return toColor({color.r, color.g, color.b});
 }

@@ -26,12 +26,12 @@ void drawNothingCommon(ImDrawList& draw, const PlotFrame& frame);
 void drawOutliers(ImDrawList& draw, const PlotFrame& frame, const volume::JointHistogram& joint,
                   const std::function<ImU32(std::size_t bin)>& colorOf);
 
-/// A mean's colour in a plot: opaque.
+/// A mean's colour in a plot: opaque; of labels grey where samples of several meet.
 ImU32 meanColor(const vis::TransferFunction& function, Range range, double mean);
 
 /// What is under the mouse in a cell.
 void hoverText(const ScatterLayout& matrix, std::size_t column, std::size_t row, const PlotFrame& frame,
-               const StatisticsResult& result, const std::string& colorBy);
+               const StatisticsResult& result, const volume::DatasetInfo& info, const std::string& colorBy);
 
 /// Colours of the mean of a third parameter, row 0 at the top; transparent where no sample has it. Merged like
 /// densityImage.

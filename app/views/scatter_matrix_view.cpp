@@ -122,7 +122,7 @@ void drawUpperCell(const ScatterCache& cache, const ScatterLayout& matrix, std::
         drawCorrelation(draw, frame, result->statistics.joint[static_cast<std::size_t>(joint)], result->brushed, focus);
     draw.AddRect(frame.min, frame.max, plotColors().frame);
     if (ImGui::IsMouseHoveringRect(frame.min, frame.max) && ImGui::IsWindowHovered() && !cache.drag.active && result)
-        hoverText(matrix, column, row, frame, *result, {});
+        hoverText(matrix, column, row, frame, *result, volume::DatasetInfo{}, {});
 }
 
 /// The wheel zooms about the mouse, the middle button pans, its double click shows all again; the same for every plot
@@ -221,7 +221,8 @@ bool drawPlot(ViewContext& context, ScatterCache& cache, ScatterMatrixView& view
         addTextWithBackdrop(draw, {frame.max.x - em() * 0.3f, frame.min.y + em() * 0.15f}, {1, 0}, colors.text,
                             name.c_str());
     }
-    if (hovered && !cache.drag.active && result) hoverText(matrix, column, row, frame, *result, view.colorBy);
+    if (hovered && !cache.drag.active && result)
+        hoverText(matrix, column, row, frame, *result, context.numbers->info(), view.colorBy);
     return clicked;
 }
 
@@ -255,7 +256,7 @@ void drawScatterMatrixView(ViewContext& context, const std::string& pane, Scatte
         drawHint("No data", "Plots of every pair of parameters appear here; drag in one to select.");
         return;
     }
-    const volume::DatasetInfo& info = context.source->info();
+    const volume::DatasetInfo& info = context.numbers->info();
     ScatterLayout matrix;
     matrix.channels = chosenChannels(info, view.channels, kMostPlots);
     if (matrix.channels.empty()) {

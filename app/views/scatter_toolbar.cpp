@@ -4,6 +4,7 @@
 #include "app/views/brush_edit.h"
 #include "app/views/derived_list.h"
 #include "app/views/figure.h"
+#include "app/views/focus_share.h"
 #include "app/views/ticks.h"
 #include "app/views/view_parts.h"
 
@@ -28,23 +29,10 @@ void chooseTool(BrushTool& tool) {
         tooltip("What a drag in a plot draws; Shift adds to the selection, Ctrl takes away from it");
 }
 
-/// Focus samples and all samples: of the parameter that exists at most points.
-struct Share {
-    double focus = 0, all = 0;
-};
-Share focusShare(const volume::Statistics& statistics) {
-    Share share;
-    for (const volume::ChannelStatistics& channel : statistics.channels) {
-        share.focus = std::max(share.focus, static_cast<double>(channel.inside.samples));
-        share.all = std::max(share.all, static_cast<double>(channel.all.samples));
-    }
-    return share;
-}
-
 /// Adds a derived parameter to the session, if it has none like it, and to the plots.
 void addAxis(ViewContext& context, ScatterMatrixView& view, const std::vector<int>& shown, std::size_t kind,
              const std::string& channel) {
-    const volume::DatasetInfo& info = context.source->info();
+    const volume::DatasetInfo& info = context.numbers->info();
     volume::DerivedParameter wanted = newDerived(info, kind, channel);
     std::vector<volume::DerivedParameter>& derived = context.session.data.derived;
     const auto same = std::find_if(derived.begin(), derived.end(),
@@ -115,7 +103,7 @@ std::string matrixSvg(const volume::DatasetInfo& info, const StatisticsResult& r
 /// What is seldom changed: the colours, the axes that are derived, exports.
 void drawMore(ViewContext& context, ScatterMatrixView& view, const std::vector<int>& shown,
               const std::shared_ptr<const StatisticsResult>& result) {
-    const volume::DatasetInfo& info = context.source->info();
+    const volume::DatasetInfo& info = context.numbers->info();
     if (ImGui::Button("More")) ImGui::OpenPopup("more");
     if (ImGui::IsItemHovered()) tooltip("Colours, further axes, zoom");
     if (ImGui::BeginPopup("more")) {
@@ -156,13 +144,7 @@ void drawShare(Session& session, const ViewContext& context, const StatisticsRes
     const float room = ImGui::GetContentRegionAvail().x;
     std::vector<std::string> texts; // the longest first
     if (session.selection.active() && result && result->brushed) {
-        const Share share = focusShare(result->statistics);
-        const std::string percent = formatShare(share.all > 0 ? share.focus / share.all : 0);
-        if (result->statistics.level == 0) texts.push_back("focus " + percent + " (" + formatCount(share.focus) + ")");
-        texts.push_back("focus " + percent);
-        texts.push_back(percent);
-        texts.push_back(percent);
-        std::erase(texts.back(), ' ');
+        texts = shareTexts(focusShare(*result, context.numbers->info(), context.numbers->grid()));
     } else if (!brushes) {
         texts = {"drag in a plot to brush, click to enlarge", "drag to brush"};
     }
@@ -180,7 +162,12 @@ void drawShare(Session& session, const ViewContext& context, const StatisticsRes
         ImGui::PushStyleColor(ImGuiCol_Text, brushes ? plotColors().text : ImGui::GetColorU32(ImGuiCol_TextDisabled));
         ImGui::TextUnformatted(texts.front().c_str());
         ImGui::PopStyleColor();
-        if (brushes && ImGui::IsItemHovered()) tooltip("Share of the samples that the brushes have in focus");
+        if (brushes && ImGui::IsItemHovered()) {
+            const bool counted = result && result->brushed;
+            const std::string share =
+                counted ? shareText(focusShare(*result, context.numbers->info(), context.numbers->grid())) : "";
+            tooltip(("Samples that the brushes have in focus: " + share).c_str());
+        }
     }
     ImGui::SetCursorPos(place);
     ImGui::Dummy({least, ImGui::GetFrameHeight()});
@@ -191,7 +178,7 @@ void drawShare(Session& session, const ViewContext& context, const StatisticsRes
 void drawScatterToolbar(ViewContext& context, ScatterMatrixView& view, const std::vector<int>& shown,
                         const std::shared_ptr<const StatisticsResult>& shared) {
     Session& session = context.session;
-    const volume::DatasetInfo& info = context.source->info();
+    const volume::DatasetInfo& info = context.numbers->info();
     const float gap = em() * 0.3f;
     chooseChannels(info, view.channels, shown);
     ImGui::SameLine(0, gap);
@@ -206,6 +193,7 @@ void drawScatterToolbar(ViewContext& context, ScatterMatrixView& view, const std
     float percent = view.softness * 100;
     if (ImGui::SliderFloat("##soft", &percent, 0, 50, "soft %.0f %%")) view.softness = percent / 100;
     if (ImGui::IsItemHovered()) tooltip("Soft edge of new brushes, as a share of their width");
+    drawOrigin(context, shown);
     drawShare(session, context, shared.get());
 }
 

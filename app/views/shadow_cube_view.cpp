@@ -53,9 +53,9 @@ void drawReading(ViewContext& context, const CubeFrame& frame, ShadowCubeCache& 
     const Wall& wall = wallOf(view, hit.face);
     const auto channel = resolveChannel(frame.info, context.session, wall.channel);
     if (!channel) return;
-    if (cache.bricksOf != context.source) {
-        cache.bricks = std::make_shared<volume::BrickCache>(context.source, kHoverBudget);
-        cache.bricksOf = context.source;
+    if (cache.bricksOf != context.numbers) {
+        cache.bricks = std::make_shared<volume::BrickCache>(context.numbers, kHoverBudget);
+        cache.bricksOf = context.numbers;
     }
     std::string text;
     try {

@@ -185,9 +185,9 @@ void drawToolbar(ViewContext& context, SliceMatrixView& view, const std::vector<
     const volume::TimePair time = volume::timesAround(info.times, context.session.time);
     exportMenu(
         context, "slices",
-        [source = context.source, session = context.session, shown, axes, planes = view.planes](
+        [source = context.numbers, session = context.session, shown, axes, planes = view.planes](
             const Progress& progress) { return sliceSvg(*source, session, shown, axes, planes, progress); },
-        [source = context.source, shown, axes, planes = view.planes, time](const Progress& progress) {
+        [source = context.numbers, shown, axes, planes = view.planes, time](const Progress& progress) {
             return sliceCsv(*source, shown, axes, planes, time, progress);
         });
     if (ImGui::GetItemRectMax().x + em() + ImGui::CalcTextSize(directions.c_str()).x > right) return;

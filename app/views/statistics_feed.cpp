@@ -13,13 +13,7 @@
 
 namespace tessera::app {
 
-namespace {
-
-constexpr std::size_t kKept = 32; ///< results; one of six parameters and 96 bins is 2 MB
-constexpr std::size_t kCoarseBytes = std::size_t(64) << 20;
-
-/// The wish as a query but for its time: its brushes become one function of the values.
-volume::StatisticsQuery makeQuery(const StatisticsWish& wish, const volume::DatasetInfo& info, int level) {
+volume::StatisticsQuery brushQuery(const StatisticsWish& wish, const volume::DatasetInfo& info, int level) {
     volume::StatisticsQuery query;
     query.channels = wish.channels;
     query.pairs = wish.pairs;
@@ -48,6 +42,11 @@ volume::StatisticsQuery makeQuery(const StatisticsWish& wish, const volume::Data
     };
     return query;
 }
+
+namespace {
+
+constexpr std::size_t kKept = 32; ///< results; one of six parameters and 96 bins is 2 MB
+constexpr std::size_t kCoarseBytes = std::size_t(64) << 20;
 
 /// The level to begin with: coarse enough to answer within a few milliseconds.
 int coarseLevel(const volume::BrickGrid& grid, std::size_t channels) {
@@ -80,7 +79,7 @@ std::shared_ptr<const StatisticsResult> compute(const std::shared_ptr<const volu
     result->brushed = wish.selection.active();
     if (level == source->grid().levels) {
         const volume::SourceAtTime shown = volume::sourceAt(source, wish.time);
-        volume::StatisticsQuery query = makeQuery(wish, source->info(), level);
+        volume::StatisticsQuery query = brushQuery(wish, source->info(), level);
         query.time = shown.time;
         if (auto noted = volume::notedStatistics(*shown.source, query)) {
             result->statistics = std::move(*noted);
@@ -153,18 +152,18 @@ StatisticsWish makeWish(const Session& session, const volume::DatasetInfo& info,
 volume::Statistics answer(const std::shared_ptr<const volume::BrickSource>& source, const StatisticsWish& wish,
                           int level, const Progress& progress) {
     const volume::SourceAtTime shown = volume::sourceAt(source, wish.time);
-    volume::StatisticsQuery query = makeQuery(wish, source->info(), level);
+    volume::StatisticsQuery query = brushQuery(wish, source->info(), level);
     query.time = shown.time;
     return volume::computeStatistics(*shown.source, query, progress);
 }
 
 std::shared_ptr<const StatisticsResult> StatisticsFeed::get(ViewContext& context, const std::string& jobKey,
                                                             const StatisticsWish& wish) {
-    if (state_->source != context.source) {
+    if (state_->source != context.numbers) {
         context.jobs.cancel(jobKey);
         state_ = std::make_shared<State>(); // a job of the old source finds its state gone
-        state_->source = context.source;
-        state_->coarse = std::make_shared<volume::BrickCache>(context.source, kCoarseBytes);
+        state_->source = context.numbers;
+        state_->coarse = std::make_shared<volume::BrickCache>(context.numbers, kCoarseBytes);
     }
     State& state = *state_;
     const auto keep = [](State& into, std::shared_ptr<const StatisticsResult> result) {
@@ -188,7 +187,7 @@ std::shared_ptr<const StatisticsResult> StatisticsFeed::get(ViewContext& context
     if (state.pending.refused(context.jobs, jobKey, wish)) return exact ? exact : similar;
     if (context.headless) {
         try {
-            keep(state, compute(context.source, wish, 0, {}));
+            keep(state, compute(context.numbers, wish, 0, {}));
             return state.kept.front();
         } catch (const Error& error) {
             state.pending.fail(wish, error.what());
@@ -199,19 +198,19 @@ std::shared_ptr<const StatisticsResult> StatisticsFeed::get(ViewContext& context
     context.behind = context.behind || !exact;
     // While a brush is dragged its first, coarse answer is waited for: cancelling it each frame would show none.
     const bool running = state.pending.running.has_value();
-    const int first = firstLevel(context.source->grid(), wish);
+    const int first = firstLevel(context.numbers->grid(), wish);
     const bool coarse = running && state.runningLevel == first;
     if (running && (*state.pending.running == wish || coarse)) return exact ? exact : similar;
 
     const int level = !exact                ? first
                       : context.interacting ? exact->statistics.level
-                                            : nextLevel(context.source->grid(), exact->statistics.level);
+                                            : nextLevel(context.numbers->grid(), exact->statistics.level);
     if (exact && level == exact->statistics.level) return exact;
     state.pending.start(wish);
     state.runningLevel = level;
     context.jobs.start(
         jobKey, "Statistics",
-        [weak = std::weak_ptr(state_), source = level > 0 ? state.coarse : context.source, wish, level,
+        [weak = std::weak_ptr(state_), source = level > 0 ? state.coarse : context.numbers, wish, level,
          keep](const Progress& progress) -> Jobs::Finish {
             workInBackground();
             std::string failure;

@@ -39,6 +39,9 @@ HistogramBins histogramBins(const volume::DatasetInfo& info, int channel, Range 
 StatisticsWish makeWish(const Session& session, const volume::DatasetInfo& info, const std::vector<int>& channels,
                         const std::vector<Range>& ranges, int bins, bool pairs);
 
+/// The wish as a query but for its time: its brushes become one function of the values of its channels.
+volume::StatisticsQuery brushQuery(const StatisticsWish& wish, const volume::DatasetInfo& info, int level);
+
 /// Counts what is wished for at a level of detail. Channels a brush names but the data lack count as absent. Throws
 /// Error, Cancelled.
 volume::Statistics answer(const std::shared_ptr<const volume::BrickSource>& source, const StatisticsWish& wish,

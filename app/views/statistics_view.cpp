@@ -1,8 +1,12 @@
+#include "app/session/label_names.h"
 #include "app/ui/widgets.h"
 #include "app/views/figure.h"
+#include "app/views/latest_feed.h"
+#include "app/views/region_data.h"
 #include "app/views/statistics_feed.h"
 #include "app/views/ticks.h"
 #include "app/views/view_parts.h"
+#include "volume/analysis/flow_channels.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,6 +17,8 @@ namespace {
 
 struct StatisticsCache : ViewCache {
     StatisticsFeed feed;
+    LatestFeed<RegionWish, volume::RegionStatistics> regions;
+    LatestFeed<BalanceWish, Balance> balance;
 };
 
 /// Count and volume are of samples weighted by their degree of interest, like everything else.
@@ -117,6 +123,156 @@ void drawTable(const volume::DatasetInfo& info, const StatisticsResult& result, 
     ImGui::EndTable();
 }
 
+/// The table of every region, without any brush.
+void drawRegionTable(Session& session, const volume::DatasetInfo& info, const volume::Parameter& label,
+                     const std::vector<RegionRow>& rows) {
+    constexpr ImGuiTableFlags kFlags = ImGuiTableFlags_RowBg | ImGuiTableFlags_SizingStretchProp |
+                                       ImGuiTableFlags_PadOuterX | ImGuiTableFlags_ScrollY |
+                                       ImGuiTableFlags_BordersInnerV;
+    const std::vector<std::string> heads = regionHeads();
+    if (!ImGui::BeginTable("regions", static_cast<int>(heads.size()), kFlags)) return;
+    ImGui::TableSetupScrollFreeze(1, 1);
+    for (const std::string& head : heads) ImGui::TableSetupColumn(head.c_str());
+    tableHeader({"Parameter", "Region", "Samples", "Of all", "Of its own", "Volume", "Mean", "Spread", "Least", "Most"},
+                2);
+    std::string last;
+    for (const RegionRow& row : rows) {
+        const std::vector<std::string> cells = regionCells(row, info.lengthUnit);
+        ImGui::TableNextRow();
+        for (std::size_t c = 0; c < cells.size(); ++c) {
+            ImGui::TableNextColumn();
+            if (c == 0) {
+                if (cells[0] != last) ImGui::TextUnformatted(cells[0].c_str());
+            } else if (c == 1) {
+                const ImVec2 at = ImGui::GetCursorScreenPos();
+                const glm::vec3 color = row.color;
+                if (!row.all)
+                    ImGui::GetWindowDrawList()->AddRectFilled({at.x, at.y + em() * 0.15f},
+                                                              {at.x + em() * 0.7f, at.y + em() * 0.85f},
+                                                              toColor({color.r, color.g, color.b}));
+                ImGui::SetCursorPosX(ImGui::GetCursorPosX() + em());
+                if (row.all)
+                    ImGui::TextDisabled("%s", cells[1].c_str());
+                else if (ImGui::Selectable((cells[1] + "##" + std::to_string(&row - rows.data())).c_str(),
+                                           regionBrushed(session, label, row.value)))
+                    toggleRegionBrush(session, label, row.value);
+                if (!row.all && ImGui::IsItemHovered()) tooltip("Click: brush this region, or take the brush away");
+            } else {
+                textRight(cells[c], row.all);
+            }
+        }
+        last = cells[0];
+    }
+    ImGui::EndTable();
+}
+
+/// What flows through every surface of every region.
+void drawBalanceTable(const BalanceTable& table) {
+    constexpr ImGuiTableFlags kFlags = ImGuiTableFlags_RowBg | ImGuiTableFlags_SizingStretchProp |
+                                       ImGuiTableFlags_PadOuterX | ImGuiTableFlags_ScrollY |
+                                       ImGuiTableFlags_BordersInnerV;
+    const std::vector<std::string> heads = balanceHeads(table);
+    const float notes = ImGui::GetTextLineHeightWithSpacing() * 1.2f;
+    if (ImGui::BeginTable("balance", static_cast<int>(heads.size()), kFlags, {0, -notes})) {
+        ImGui::TableSetupScrollFreeze(2, 1);
+        for (const std::string& head : heads) ImGui::TableSetupColumn(head.c_str());
+        ImGui::TableHeadersRow();
+        std::string last;
+        for (const BalanceRow& row : table.rows) {
+            const std::vector<std::string> cells = balanceCells(row);
+            ImGui::TableNextRow();
+            for (std::size_t c = 0; c < cells.size(); ++c) {
+                ImGui::TableNextColumn();
+                if (c > 1)
+                    textRight(cells[c], !row.total && c == 4);
+                else if (c == 1 || cells[0] != last)
+                    ImGui::TextUnformatted(cells[c].c_str());
+            }
+            last = cells[0];
+        }
+        ImGui::EndTable();
+    }
+    std::string text;
+    for (const std::string& note : table.notes) text += (text.empty() ? "" : "\n") + note;
+    ImGui::TextDisabled("convection alone, midpoint rule (hover)");
+    if (ImGui::IsItemHovered()) tooltip(text.c_str());
+}
+
+/// Statistics, or the balance of a parameter.
+void chooseBalance(const volume::DatasetInfo& info, StatisticsView& view) {
+    continueLine(em() * 10);
+    ImGui::SetNextItemWidth(em() * 10);
+    const std::string now = view.balance.empty() ? "statistics" : "balance of " + view.balance;
+    if (ImGui::BeginCombo("##balance", now.c_str())) {
+        if (ImGui::Selectable("statistics", view.balance.empty())) view.balance.clear();
+        for (const volume::Parameter& parameter : info.parameters)
+            if (!parameter.categorical && parameter.components == 1 &&
+                ImGui::Selectable(("balance of " + parameter.name).c_str(), view.balance == parameter.name))
+                view.balance = parameter.name;
+        ImGui::EndCombo();
+    }
+    if (ImGui::IsItemHovered())
+        tooltip("Count, mean, spread and volume; or what of a parameter flows in and out of every region, and what "
+                "reacts");
+}
+
+void drawBalance(ViewContext& context, const std::string& pane, int channel, int label, StatisticsCache& cache) {
+    const volume::DatasetInfo& info = context.numbers->info();
+    const BalanceWish wish{channel, "", label, volume::timesAround(info.times, context.session.time)};
+    const auto balance = cache.balance.get(
+        context, "balance " + pane, "Balance of every region", wish,
+        [](const auto& source, const BalanceWish& asked, const Progress& progress) {
+            return readBalance(source, asked, progress);
+        },
+        [&](const BalanceWish& answered) { return answered.channel == wish.channel; }, true);
+    if (!balance) {
+        const std::string failure = cache.balance.failure();
+        return failure.empty() ? ImGui::TextDisabled("Adding up...") : drawHint("No balance", failure.c_str());
+    }
+    const auto table = std::make_shared<BalanceTable>(balanceTable(info, *balance));
+    continueLine(buttonWidth("Export"));
+    exportMenu(context, "balance", {}, [table](const Progress&) { return balanceCsv(*table, "", ""); });
+    drawOrigin(context, {channel});
+    drawBalanceTable(*table);
+}
+
+/// Shows the numbers of every region; false where the view shows those of the selection.
+bool drawRegions(ViewContext& context, const std::string& pane, StatisticsView& view, const std::vector<int>& shown,
+                 StatisticsCache& cache) {
+    const volume::DatasetInfo& info = context.numbers->info();
+    const auto label = volume::labelChannel(info);
+    if (!label) return false;
+    const std::string& name = volume::parameterOf(info, *label).name;
+    ImGui::Checkbox(("by " + name).c_str(), &view.byRegion);
+    if (ImGui::IsItemHovered()) tooltip(("Numbers of every " + name + ", whatever is brushed").c_str());
+    if (!view.byRegion) return false;
+    chooseBalance(info, view);
+    if (const auto channel = view.balance.empty() ? std::nullopt : info.findChannel(view.balance)) {
+        drawBalance(context, pane, *channel, *label, cache);
+        return true;
+    }
+    continueLine(em() * 8);
+    chooseChannels(info, view.channels, shown);
+    const RegionWish wish{shown, *label, volume::timesAround(info.times, context.session.time)};
+    const auto numbers = cache.regions.get(
+        context, "regions " + pane, "Statistics by region", wish,
+        [](const auto& source, const RegionWish& asked, const Progress& progress) {
+            return readRegions(source, asked, progress);
+        },
+        [&](const RegionWish& answered) { return answered.channels == wish.channels; }, true);
+    if (!numbers) {
+        ImGui::TextDisabled("%s", cache.regions.failure().empty() ? "Counting..." : cache.regions.failure().c_str());
+        return true;
+    }
+    const auto rows = std::make_shared<std::vector<RegionRow>>(regionRows(info, wish, *numbers));
+    continueLine(buttonWidth("Export"));
+    exportMenu(context, "regions", {},
+               [rows, unit = info.lengthUnit](const Progress&) { return regionCsv(*rows, unit, "", ""); });
+    drawOrigin(context, shown);
+    drawRegionTable(context.session, info, volume::parameterOf(info, *label), *rows);
+    return true;
+}
+
 } // namespace
 
 void drawStatisticsView(ViewContext& context, const std::string& pane, StatisticsView& view) {
@@ -124,10 +280,11 @@ void drawStatisticsView(ViewContext& context, const std::string& pane, Statistic
         drawHint("No data", "Numbers of every parameter inside and outside of the selection appear here.");
         return;
     }
-    const volume::DatasetInfo& info = context.source->info();
+    const volume::DatasetInfo& info = context.numbers->info();
     StatisticsCache& cache = cacheOf<StatisticsCache>(context, pane);
     const std::vector<int> shown = chosenChannels(info, view.channels, 64);
     if (shown.empty()) return drawHint("No parameters", "This data set holds only labels.");
+    if (drawRegions(context, pane, view, shown, cache)) return;
     const std::vector<volume::Channel> channels = info.channels();
     std::vector<Range> ranges;
     std::size_t with = 0;
@@ -141,6 +298,7 @@ void drawStatisticsView(ViewContext& context, const std::string& pane, Statistic
         if (i != with) wish.pairs.push_back({static_cast<int>(with), static_cast<int>(i)});
     const auto result = cache.feed.get(context, "statistics " + pane, wish);
 
+    if (volume::labelChannel(info)) continueLine(em() * 8);
     chooseChannels(info, view.channels, shown);
     continueLine(em() * 9);
     ImGui::SetNextItemWidth(em() * 9);
@@ -155,7 +313,7 @@ void drawStatisticsView(ViewContext& context, const std::string& pane, Statistic
     if (ImGui::IsItemHovered()) tooltip("Parameter that every other one is correlated with (Pearson's r)");
     continueLine(buttonWidth("Export"));
     exportMenu(context, "statistics", {},
-               [source = context.source, wish, count = shown.size()](const Progress& progress) {
+               [source = context.numbers, wish, count = shown.size()](const Progress& progress) {
                    return statisticsCsv(source, wish, count, progress);
                });
     if (!result) {
@@ -167,6 +325,7 @@ void drawStatisticsView(ViewContext& context, const std::string& pane, Statistic
         (result->statistics.level > 0 ? ", first estimate" : "");
     continueLine(ImGui::CalcTextSize(state.c_str()).x);
     ImGui::TextDisabled("%s", state.c_str());
+    drawOrigin(context, shown);
     drawTable(info, *result, std::min(shown.size(), result->statistics.channels.size()),
               std::min(with, result->wish.channels.size() - 1));
 }

@@ -3,6 +3,7 @@
 #include "app/views/tesseract_feed.h"
 #include "app/views/tesseract_wire.h"
 #include "app/views/ticks.h"
+#include "app/views/time_text.h"
 #include "app/views/view_parts.h"
 #include "vis/gl/point_cloud.h"
 
@@ -264,8 +265,7 @@ void drawReading(ViewContext& context, const TesseractView& view, const Tesserac
         text += (axis == 0 ? "\n" : ", ") +
                 formatNumber(place[axis] * unit.perUnit, info.bounds.size()[axis] * unit.perUnit / 500);
     text += " " + prettyUnit(unit.name);
-    const double span = info.times.back() - info.times.front();
-    if (info.times.size() > 1) text += "\nt = " + formatQuantity(time, info.timeUnit, span / 500);
+    if (info.times.size() > 1) text += "\n" + timeText(info, time);
     ImDrawList& draw = *ImGui::GetWindowDrawList();
     const vis::Projected4 seen =
         frame.project(glm::dvec4(point.position)); // where the ring goes: the splat itself may be small
@@ -303,7 +303,7 @@ void drawTexts(ViewContext& context, const TesseractView& view, const TesseractF
         along.range = along.data = own.data;
         along.marker = own.marker;
     } else {
-        along.title = "t";
+        along.title = timeWord(info);
         along.unit = info.timeUnit;
         along.range = along.data = {info.times.front(), info.times.back()};
         along.marker = session.time;
@@ -385,7 +385,7 @@ void drawTesseractView(ViewContext& context, const std::string& pane, TesseractV
     const bool time = !fourthChannel(info, view);
     if (view.showNow && time && info.times.size() > 1) {
         const double first = info.times.front(), last = info.times.back();
-        const std::string text = "t = " + formatQuantity(context.session.time, info.timeUnit, (last - first) / 200);
+        const std::string text = timeText(info, context.session.time);
         drawNowCell(draw, frame, std::clamp((context.session.time - first) / (last - first), 0.0, 1.0), text);
     }
     drawTexts(context, view, frame, max, *channel);

@@ -2,6 +2,7 @@
 #include "app/views/playback.h"
 #include "app/views/plot.h"
 #include "app/views/ticks.h"
+#include "app/views/time_text.h"
 #include "app/views/view_parts.h"
 #include "volume/time_pair.h"
 
@@ -16,13 +17,6 @@ struct TimelineCache : ViewCache {
     Playback playback;
     bool dragging = false;
 };
-
-/// Digits that tell neighbouring times apart.
-double timeResolution(const std::vector<double>& times) {
-    double least = std::abs(times.back() - times.front());
-    for (std::size_t i = 1; i < times.size(); ++i) least = std::min(least, times[i] - times[i - 1]);
-    return least / 2;
-}
 
 void drawButtons(ViewContext& context, const std::vector<double>& times, int index) {
     Session& session = context.session;
@@ -79,9 +73,34 @@ std::string placeText(const std::vector<double>& times, double time) {
     return "between " + std::to_string(pair.earlier + 1) + " and " + std::to_string(pair.later + 1) + count;
 }
 
-std::string timeText(const volume::DatasetInfo& info, double time) {
-    const bool between = volume::timesAround(info.times, time).between();
-    return formatQuantity(time, info.timeUnit, timeResolution(info.times) / (between ? 10 : 1));
+/// The axis that times are counted by: what the data state, or a quantity over time.
+void chooseAxis(ViewContext& context, const volume::DatasetInfo& info) {
+    std::string& axis = context.session.data.axis;
+    if (info.quantities.empty() && axis.empty()) return;
+    ImGui::SameLine(0, em());
+    ImGui::SetNextItemWidth(em() * 7);
+    if (ImGui::BeginCombo("##axis", axis.empty() ? "by time" : ("by " + axis).c_str())) {
+        if (ImGui::Selectable(axis.empty() ? ("by " + info.timeName).c_str() : "as stored", axis.empty())) axis.clear();
+        for (const volume::Quantity& quantity : info.quantities)
+            if (ImGui::Selectable(("by " + quantity.name).c_str(), quantity.name == axis)) axis = quantity.name;
+        ImGui::EndCombo();
+    } else if (ImGui::IsItemHovered()) {
+        tooltip(
+            "What the times are counted by: a quantity that rises or falls all the time takes their place, any other "
+            "is shown first");
+    }
+}
+
+/// Where the plane lies whose times run along an axis.
+void drawPlace(Session& session) {
+    volume::TimeAxis& along = *session.data.timeAxis;
+    const char* const axis = volume::kSpaceAxisNames[std::size_t(along.axis)].data();
+    auto place = static_cast<float>(along.place * 100);
+    char format[48];
+    std::snprintf(format, sizeof format, "cut at %%.1f %%%% of %s", axis);
+    ImGui::SetNextItemWidth(em() * 11);
+    if (ImGui::SliderFloat("##place", &place, 0, 100, format)) along.place = static_cast<double>(place) / 100;
+    if (ImGui::IsItemHovered()) tooltip("Where along the axis the data are cut; read again when the mouse is let go");
 }
 
 /// The track: one mark per stored time, the knob at the time shown, physical time below.
@@ -128,7 +147,8 @@ void drawTrack(ViewContext& context, TimelineCache& cache, const volume::Dataset
     drawAxis(draw, frame, AxisSide::Bottom, "", "", origin.x, origin.x + width);
     if (hovered && !held) {
         const double under = timeUnder(frame, times, ImGui::GetIO().MousePos);
-        ImGui::SetTooltip("%s  (%s)", timeText(info, under).c_str(), placeText(times, under).c_str());
+        ImGui::SetTooltip("%s  (%s)", stateText(info, under, session.data.axis).c_str(),
+                          placeText(times, under).c_str());
     }
 }
 
@@ -154,11 +174,18 @@ void drawTimelineView(ViewContext& context, const std::string& pane, TimelineVie
     ImGui::AlignTextToFramePadding();
     if (many) {
         const double now = std::clamp(session.time, info.times.front(), info.times.back());
-        ImGui::Text("t = %s", timeText(info, now).c_str());
+        ImGui::TextUnformatted(timeText(info, now).c_str());
+        if (const std::string quantities = quantitiesText(info, now, session.data.axis); !quantities.empty()) {
+            ImGui::SameLine(0, em());
+            ImGui::TextUnformatted(quantities.c_str());
+        }
         ImGui::SameLine(0, em());
         ImGui::TextDisabled("%s", placeText(info.times, now).c_str());
+        chooseAxis(context, info);
     } else if (const auto& along = session.data.timeAxis) {
         ImGui::TextDisabled("Time runs along %s.", volume::kSpaceAxisNames[std::size_t(along->axis)].data());
+        ImGui::SameLine(0, em());
+        drawPlace(session);
     } else {
         ImGui::TextDisabled("This data has one time.");
     }

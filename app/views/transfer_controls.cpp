@@ -107,6 +107,8 @@ void drawOwnColors(ViewContext& context, vis::TransferFunction& function, const 
     if (iconButton(context, "own colours", icons::kColors, "Colours of one's own", true, own))
         ImGui::OpenPopup("own colours");
     if (!ImGui::BeginPopup("own colours")) return;
+    if (ImGui::MenuItem("0 in the middle", nullptr, function.autoRange && function.aboutZero, function.autoRange))
+        function.aboutZero = !function.aboutZero;
     if (ImGui::MenuItem("Edit", nullptr, own)) {
         std::vector<vis::ColorStop> colors;
         if (!own) {

@@ -222,8 +222,8 @@ void drawTransferView(ViewContext& context, const std::string& pane, TransferVie
         cache.regions.drag = {};
         cache.boundaries.from.reset();
     }
-    if (cache.source != context.source) { // gone on: what was made stays until something is changed
-        cache.source = context.source;
+    if (cache.source != context.numbers) { // gone on: what was made stays until something is changed
+        cache.source = context.numbers;
         cache.boundaries.from.reset();
     }
     const Range range = vis::effectiveRange(function, info.channelRange(shown));

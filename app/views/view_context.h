@@ -1,5 +1,6 @@
 #pragma once
 
+#include "app/number_origin.h"
 #include "app/session/session.h"
 #include "app/ui/jobs.h"
 #include "vis/renderer.h"
@@ -27,10 +28,14 @@ struct ViewCache {
 /// it with the former frame's and keeps the history.
 struct ViewContext {
     Session& session;
-    std::shared_ptr<const volume::BrickSource> source; ///< null while nothing is loaded
+    std::shared_ptr<const volume::BrickSource> source; ///< what pictures are drawn from; null while nothing is loaded
     vis::Renderer& renderer;
     Jobs& jobs;                                                ///< background work
     std::map<std::string, std::unique_ptr<ViewCache>>& caches; ///< by pane key; kept while data only grow
+    /// What numbers are read from: the samples as computed where they are at hand, whatever lattice pictures are on.
+    /// The channels and times of `source`; null when that is.
+    std::shared_ptr<const volume::BrickSource> numbers = source;
+    NumberOrigin origin = {};   ///< of `numbers`, for words beside them (originText)
     ImFont* iconFont = nullptr; ///< Font Awesome glyphs; null where the package is missing
     float scale = 1;            ///< pixels per design pixel
     bool headless = false;      ///< finish everything before the frame ends: no budget, no progressive states
@@ -80,6 +85,7 @@ void drawProfileView(ViewContext& context, const std::string& pane, ProfileView&
 void drawSliceMatrixView(ViewContext& context, const std::string& pane, SliceMatrixView& view);
 void drawShadowCubeView(ViewContext& context, const std::string& pane, ShadowCubeView& view);
 void drawTesseractView(ViewContext& context, const std::string& pane, TesseractView& view);
+void drawCurvesView(ViewContext& context, const std::string& pane, CurvesView& view);
 void drawCompareView(ViewContext& context, const std::string& pane, CompareView& view);
 
 } // namespace tessera::app

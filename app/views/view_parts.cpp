@@ -1,5 +1,6 @@
 #include "app/views/view_parts.h"
 
+#include "app/views/plot.h"
 #include "app/views/ticks.h"
 
 #include <algorithm>
@@ -67,6 +68,18 @@ void drawHint(const char* title, const char* hint) {
 void continueLine(float width) {
     const float right = ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x;
     if (ImGui::GetItemRectMax().x + ImGui::GetStyle().ItemSpacing.x + width <= right) ImGui::SameLine();
+}
+
+std::string originText(const ViewContext& context, const std::vector<int>& channels) {
+    return originText(context.origin, context.numbers->info(), channels);
+}
+
+void drawOrigin(const ViewContext& context, const std::vector<int>& channels) {
+    const std::string text = originText(context, channels);
+    continueLine(std::min(ImGui::CalcTextSize(text.c_str()).x, em() * 12));
+    const std::string shown = fitText(text, ImGui::GetContentRegionAvail().x);
+    ImGui::TextDisabled("%s", shown.c_str());
+    if (ImGui::IsItemHovered()) tooltip(("Numbers: " + text).c_str());
 }
 
 float buttonWidth(const char* text) {
@@ -181,6 +194,10 @@ LegendEntry legendOf(const Session& session, const volume::DatasetInfo& info, in
     entry.function = transferOf(session, c.name);
     entry.data = info.channelRange(c);
     entry.range = vis::effectiveRange(entry.function, entry.data);
+    const volume::Parameter& parameter = info.parameters[static_cast<std::size_t>(c.parameter)];
+    if (parameter.categorical)
+        for (const volume::Label& label : parameter.labels)
+            entry.names.push_back({label.name, glm::vec3(vis::evaluate(entry.function, entry.range, label.value))});
     return entry;
 }
 

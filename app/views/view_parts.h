@@ -43,6 +43,11 @@ float buttonWidth(const char* text);
 /// Wrapped help on hover of the last item.
 void tooltip(const char* text);
 
+/// Where the numbers of these channels (none: all) come from, in words: originText of the view's numbers.
+std::string originText(const ViewContext& context, const std::vector<int>& channels = {});
+/// The same as faint text: on in the line where it fits, cut where it does not; whole on hover.
+void drawOrigin(const ViewContext& context, const std::vector<int>& channels = {});
+
 /// The head row of a table whose columns are set up; names from column `right` on stand over right-aligned numbers.
 void tableHeader(std::initializer_list<const char*> names, int right = 1);
 /// Text at the right edge of a table cell.

@@ -24,7 +24,7 @@ int coarseLevel(const volume::BrickGrid& grid) {
 std::shared_ptr<const std::vector<double>> VisibilityFeed::get(ViewContext& context, const std::string& jobKey,
                                                                int channel, Range range, int bins) {
     const Session& session = context.session;
-    const volume::DatasetInfo& info = context.source->info();
+    const volume::DatasetInfo& info = context.numbers->info();
     const std::string name = info.channels()[std::size_t(channel)].name;
     const vis::VolumeLayer* layer = nullptr;
     for (const vis::Layer& entry : session.layers)
@@ -32,7 +32,7 @@ std::shared_ptr<const std::vector<double>> VisibilityFeed::get(ViewContext& cont
             if (!layer && entry.visible && volume->style == vis::VolumeStyle::Composite && volume->channel == name)
                 layer = volume;
     if (!layer || !(range.hi > range.lo)) return nullptr;
-    const GridWish wish{channel, coarseLevel(context.source->grid()), volume::timesAround(info.times, session.time)};
+    const GridWish wish{channel, coarseLevel(context.numbers->grid()), volume::timesAround(info.times, session.time)};
     const auto grid = grids_.get(
         context, jobKey + ":samples", "Samples for visibility", wish,
         [](const std::shared_ptr<const volume::BrickSource>& source, const GridWish& w, const Progress& progress) {

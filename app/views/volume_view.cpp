@@ -10,6 +10,7 @@
 #include "app/views/scene_feed.h"
 #include "app/views/space_handles.h"
 #include "app/views/ticks.h"
+#include "app/views/time_text.h"
 #include "app/views/view_parts.h"
 
 #include <algorithm>
@@ -170,6 +171,13 @@ void drawVolumeView(ViewContext& context, const std::string& pane, VolumeView& v
         const ImVec2 at{max.x - em() * 0.5f, picture.min.y + em() * 0.4f}, size = ImGui::CalcTextSize(text.c_str());
         addTextWithBackdrop(draw, at, {1, 0}, colors.faint, text.c_str());
         taken.push_back({{at.x - size.x, at.y}, {at.x, at.y + size.y}});
+    }
+    if (context.figure && info.times.size() > 1) { // the window has its timeline
+        const std::string text = stateText(info, session.time, session.data.axis);
+        const ImVec2 at{picture.min.x + em() * 0.5f, picture.min.y + em() * 0.4f},
+            size = ImGui::CalcTextSize(text.c_str());
+        addTextWithBackdrop(draw, at, {0, 0}, colors.text, text.c_str());
+        taken.push_back({at, {at.x + size.x, at.y + size.y}});
     }
     if (!status.complete && !context.headless && !request.moving) {
         std::string text = status.compiling ? "compiling shaders" : "refining";

@@ -1,0 +1,232 @@
+#include "app/command/command.h"
+#include "app/command/derive_option.h"
+#include "app/command/format.h"
+#include "app/command/import_options.h"
+#include "app/command/picture_options.h"
+#include "app/session/import_memory.h"
+#include "codec/pack.h"
+#include "vis/image_io.h"
+#include "volume/atomic_file.h"
+#include "volume/derived_bricks.h"
+#include "volume/error.h"
+#include "volume/export.h"
+#include "volume/other_source.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <memory>
+
+namespace tessera::app {
+
+namespace {
+
+struct DiffRequest {
+    std::string first, second, output;
+    std::vector<std::string> parameters;
+    volume::ImportOptions import;
+};
+
+/// One channel of the first data set minus that of the second at one time, over the samples of the first.
+struct DiffRow {
+    volume::Channel channel;
+    double time = 0;
+    std::size_t samples = 0, alone = 0; ///< present in both, in one of them
+    double least = std::numeric_limits<double>::infinity(), most = -least, sum = 0, squares = 0;
+
+    void add(const volume::BrickSamples& a, const volume::BrickSamples& b) {
+        for (std::size_t i = 0; i < a.values.size(); ++i) {
+            const bool inA = volume::presentAt(a, i), inB = volume::presentAt(b, i);
+            if (inA != inB) ++alone;
+            if (!inA || !inB) continue;
+            const double apart = double(a.values[i]) - double(b.values[i]);
+            ++samples;
+            least = std::min(least, apart);
+            most = std::max(most, apart);
+            sum += apart;
+            squares += apart * apart;
+        }
+    }
+    void add(const DiffRow& other) {
+        samples += other.samples;
+        alone += other.alone;
+        least = std::min(least, other.least);
+        most = std::max(most, other.most);
+        sum += other.sum;
+        squares += other.squares;
+    }
+    double mean() const { return sum / double(samples); }
+    double rms() const { return std::sqrt(squares / double(samples)); }
+};
+
+DataRef dataRef(const DiffRequest& request) {
+    const auto files = [&](const std::string& path) { return dataOf({path}, recallOptions({path}, request.import)); };
+    DataRef data = files(request.first);
+    const DataRef other = files(request.second);
+    data.other = OtherData{.files = other.files, .model = {}, .settings = {}, .import = other.import};
+    data.lattice = PictureLattice::Grid;
+    return data;
+}
+
+/// Parameters that both have in the same unit, no labels; of those asked for each must be one.
+std::vector<int> comparable(const volume::DatasetInfo& info, const DiffRequest& request) {
+    std::vector<int> out;
+    std::string left;
+    const std::vector<volume::Channel> channels = info.channels();
+    for (std::size_t i = 0; i < channels.size(); ++i) {
+        const volume::Parameter& parameter = info.parameters[std::size_t(channels[i].parameter)];
+        if (parameter.name.ends_with(volume::kOtherSuffix)) continue;
+        const auto& wanted = request.parameters;
+        const bool named = std::ranges::any_of(
+            wanted, [&](const std::string& name) { return name == channels[i].name || name == parameter.name; });
+        if (!named && !wanted.empty()) continue;
+        const std::string problem = volume::derivedProblem(
+            {"d", "", volume::DifferenceRecipe{channels[i].name, volume::OtherTime::Other}}, info);
+        if (problem.empty() && !parameter.categorical) {
+            out.push_back(int(i));
+        } else if (named) {
+            throw Error(parameter.categorical ? "labels have no difference" : problem, request.first, channels[i].name);
+        } else if (channels[i].component == 0) {
+            left += (left.empty() ? "" : ", ") + parameter.name;
+        }
+    }
+    for (const std::string& name : request.parameters)
+        if (!info.findChannel(name)) throw Error("there is no parameter \"" + name + "\"", request.first);
+    if (out.empty()) throw Error("the two have no parameter in common", request.second);
+    if (!left.empty()) std::fprintf(stderr, "tessera: not compared: %s\n", left.c_str());
+    return out;
+}
+
+std::vector<DiffRow> compare(const volume::BrickSource& source, const std::vector<int>& channels,
+                             const Progress& progress) {
+    const volume::DatasetInfo& info = source.info();
+    const glm::ivec3 count = source.grid().count();
+    const int bricks = count.x * count.y * count.z, times = int(info.times.size());
+    std::vector<DiffRow> rows;
+    const double total = double(channels.size()) * times * bricks;
+    double done = 0;
+    for (const int channel : channels)
+        for (int time = 0; time < times; ++time) {
+            DiffRow& row = rows.emplace_back();
+            row.channel = info.channels()[std::size_t(channel)];
+            row.time = info.times[std::size_t(time)];
+            for (int n = 0; n < bricks; ++n) {
+                const glm::ivec3 at(n % count.x, n / count.x % count.y, n / (count.x * count.y));
+                row.add(source.read({channel, time, 0, at}),
+                        source.read({*volume::otherChannel(info, channel), time, 0, at}));
+                progress.advance(++done / total);
+            }
+        }
+    return rows;
+}
+
+void print(const std::vector<DiffRow>& rows, const DiffRequest& request, const std::string& how) {
+    std::printf("%s minus %s, %s, over all times\n", request.first.c_str(), request.second.c_str(), how.c_str());
+    std::printf("  %-16s %-8s %12s %12s %12s %12s %10s %10s\n", "parameter", "unit", "least", "mean", "RMS", "most",
+                "samples", "in one");
+    for (std::size_t i = 0; i < rows.size();) {
+        DiffRow all = rows[i];
+        for (++i; i < rows.size() && rows[i].channel == all.channel; ++i) all.add(rows[i]);
+        const auto number = [&](double value) { return all.samples > 0 ? numberText(value) : std::string("-"); };
+        std::printf("  %-16s %-8s %12s %12s %12s %12s %10zu %10zu\n", all.channel.name.c_str(),
+                    all.channel.unit.c_str(), number(all.least).c_str(), number(all.mean()).c_str(),
+                    number(all.rms()).c_str(), number(all.most).c_str(), all.samples, all.alone);
+    }
+}
+
+std::string csv(const std::vector<DiffRow>& rows, const volume::DatasetInfo& info, const NumberOrigin& origin) {
+    std::string text = originLine(origin, info) + "parameter,unit," + info.timeName +
+                       (info.timeUnit.empty() ? "" : " [" + info.timeUnit + "]") +
+                       ",least,mean,RMS,most,samples,in one only\n";
+    for (const DiffRow& row : rows) {
+        text += row.channel.name + "," + row.channel.unit + "," + toJson(row.time).dump();
+        for (const double value : {row.least, row.mean(), row.rms(), row.most})
+            text += "," + (row.samples > 0 ? toJson(value).dump() : std::string());
+        text += "," + std::to_string(row.samples) + "," + std::to_string(row.alone) + "\n";
+    }
+    return text;
+}
+
+/// The differences as a data set of their own, named as in the window.
+volume::Dataset differences(const std::shared_ptr<const volume::BrickSource>& source,
+                            const std::vector<volume::DerivedParameter>& wanted) {
+    volume::Dataset made;
+    auto all = source;
+    for (const volume::DerivedParameter& each : wanted) all = volume::derive(all, each);
+    made.info = all->info();
+    const std::size_t before = source->info().parameters.size();
+    made.info.parameters.erase(made.info.parameters.begin(), made.info.parameters.begin() + std::ptrdiff_t(before));
+    made.load = [all, before](int parameter, int component, int time) {
+        return fieldOf(*all, int(before) + parameter, component, time);
+    };
+    return made;
+}
+
+/// The session that shows the first difference, as the window would.
+void writePicture(const DiffRequest& request, const DataRef& data, const Progress& progress) {
+    OpenRequest wanted;
+    wanted.data = data;
+    Opened opened = open(wanted, progress.part(0, 0.4));
+    Session& session = opened.document.session;
+    const std::string& name = data.derived.front().name;
+    session.layers = {{name, true, vis::VolumeLayer{.channel = name}}};
+    opened.document.history.reset(session);
+    PictureOptions options;
+    PictureRequest picture = pictureRequest(options, session);
+    for (const auto& [pane, view] : session.views)
+        if (std::holds_alternative<VolumeView>(view)) picture.pane = pane;
+    PictureMaker maker;
+    const vis::Image image = maker.render(opened.document, opened.sources(), picture);
+    vis::writePng(request.output, image, {{vis::kSessionTextKey, printSession(opened.document, request.output)}});
+    progress.advance(1);
+}
+
+void run(const DiffRequest& request) {
+    const Progress progress = terminalProgress("diff");
+    DataRef data = dataRef(request);
+    std::vector<std::string> messages;
+    const Sources sources = openSources(data, messages, progress.part(0, 0.3));
+    const auto& source = sources.numbers;
+    const std::vector<int> channels = comparable(source->info(), request);
+    const std::vector<DiffRow> rows = compare(*source, channels, progress.part(0.3, 0.6));
+    print(rows, request, originText(sources.origin, source->info()));
+    for (const int channel : channels) {
+        const volume::Channel of = source->info().channels()[std::size_t(channel)];
+        data.derived.push_back(
+            {of.name + " minus other", of.unit, volume::DifferenceRecipe{of.name, volume::OtherTime::Other}});
+    }
+    if (request.output.empty()) return;
+    const Progress rest = progress.part(0.6, 1);
+    if (hasEnding(request.output, ".csv")) {
+        AtomicFile file(request.output);
+        file.write(csv(rows, source->info(), sources.origin));
+        file.commit();
+    } else if (hasEnding(request.output, ".png")) {
+        writePicture(request, data, rest);
+    } else if (volume::Dataset made = differences(source, data.derived); hasEnding(request.output, ".tsr")) {
+        codec::pack(made, {}, request.output, rest);
+    } else {
+        for (const std::string& written : volume::exportDataset(made, {}, request.output, rest))
+            std::printf("%s\n", written.c_str());
+    }
+}
+
+} // namespace
+
+void addDiffCommand(CLI::App& app) {
+    CLI::App* command = app.add_subcommand(
+        "diff", "How the values of one data set differ from those of another, on the same grid or interpolated onto "
+                "that of the first");
+    const auto request = std::make_shared<DiffRequest>();
+    command->add_option("A", request->first, "Archive or data file")->required();
+    command->add_option("B", request->second, "What is taken away from it")->required();
+    command->add_option("-o,--output", request->output,
+                        "The table at every time (.csv), a picture (.png) or the differences as data (.tsr, .vti, "
+                        ".pvd, .nrrd, .raw)");
+    command->add_option("-p,--only", request->parameters, "Only these parameters, separated by commas")->delimiter(',');
+    addImportOptions(*command, request->import);
+    command->callback([request] { run(*request); });
+}
+
+} // namespace tessera::app

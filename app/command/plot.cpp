@@ -1,0 +1,114 @@
+#include "app/command/command.h"
+#include "app/command/format.h"
+#include "app/command/import_options.h"
+#include "app/open.h"
+#include "app/platform/headless.h"
+#include "app/session/import_memory.h"
+#include "app/views/curves_data.h"
+#include "vis/image_io.h"
+#include "volume/atomic_file.h"
+#include "volume/error.h"
+#include "volume/synthetic/models.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+
+namespace tessera::app {
+
+namespace {
+
+struct PlotRequest {
+    std::vector<std::string> inputs;
+    std::string output;
+    CurvesView view;
+    std::string axis;
+    std::optional<double> time;
+    std::string size = "1000x700";
+    volume::ImportOptions import;
+};
+
+DataRef dataRef(const PlotRequest& request) {
+    const std::vector<std::string>& inputs = request.inputs;
+    const std::vector<std::string> models = volume::modelNames();
+    DataRef data;
+    if (inputs.size() == 1 && std::ranges::find(models, inputs[0]) != models.end() &&
+        !std::filesystem::exists(inputs[0])) {
+        data.model = inputs[0];
+        data.import = request.import;
+    } else {
+        const bool archive = inputs.size() == 1 && hasEnding(inputs[0], ".tsr");
+        data = dataOf(inputs, archive ? request.import : recallOptions(inputs, request.import));
+    }
+    data.lattice = PictureLattice::Grid;
+    data.axis = request.axis;
+    return data;
+}
+
+/// The window's plot as a picture.
+void drawPicture(const PlotRequest& request, const DataRef& data, const Sources& sources) {
+    SessionDocument document;
+    document.session = defaultSession(sources.pictures->info(), data);
+    document.session.appearance.theme = Theme::Light;
+    document.session.time = request.time.value_or(sources.pictures->info().times.front());
+    const std::string pane = addView(document.session, request.view);
+    document.history.reset(document.session);
+    PictureRequest picture{.pane = pane};
+    if (std::sscanf(request.size.c_str(), "%dx%d", &picture.size.x, &picture.size.y) != 2 || picture.size.x < 64 ||
+        picture.size.y < 64 || picture.size.x > 16384 || picture.size.y > 16384)
+        throw Error("wants WIDTHxHEIGHT, 64 to 16384 each", {}, "--size");
+    PictureMaker maker;
+    vis::writePng(request.output, maker.render(document, sources, picture),
+                  {{vis::kSessionTextKey, printSession(document, request.output)}});
+}
+
+void run(const PlotRequest& request) {
+    const bool csv = hasEnding(request.output, ".csv"), svg = hasEnding(request.output, ".svg");
+    if (!csv && !svg && !hasEnding(request.output, ".png"))
+        throw Error("plots are written as .csv, .svg or .png", request.output);
+    const Progress progress = terminalProgress("plot");
+    std::vector<std::string> messages;
+    const DataRef data = dataRef(request);
+    const Sources sources = openSources(data, messages, progress.part(0, 0.4));
+    for (const std::string& message : messages) std::fprintf(stderr, "tessera: %s\n", message.c_str());
+    const volume::DatasetInfo& info = sources.numbers->info();
+    if (info.times.size() < 2) throw Error("has one time: curves run over several", request.inputs[0]);
+    if (!csv && !svg) return drawPicture(request, data, sources);
+    Session session;
+    const volume::Curves curves =
+        readCurves(*sources.numbers, curvesWish(request.view, session, info), progress.part(0.4, 1));
+    AtomicFile file(request.output);
+    file.write(csv ? originLine(sources.origin, info) + curvesCsv(curves) : curvesSvg(curves, request.time));
+    file.commit();
+}
+
+} // namespace
+
+void addPlotCommand(CLI::App& app) {
+    CLI::App* command = app.add_subcommand(
+        "plot", "Quantities and statistics over time, against time or each other: .csv, .svg or .png");
+    const auto request = std::make_shared<PlotRequest>();
+    command->add_option("IN", request->inputs, "Archive, data files that belong together, or a built-in model")
+        ->required();
+    command->add_option("-o,--output", request->output, "File to write; its ending says how")->required();
+    command->add_option(
+        "--x", request->view.x,
+        "What runs to the right: time, a quantity over time, a formula (default: for a cell the current)");
+    command
+        ->add_option("--y", request->view.y,
+                     "Curves, each after its own --y: a quantity over time, mean(T), min(T), max(T), deviation(T), "
+                     "share(T), volume(T), or a formula such as voltage*current_density (default: the polarisation "
+                     "curve, else every quantity)")
+        ->expected(1)
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+    command->add_option("--region", request->view.region,
+                        "Statistics of this region of a label: its name, or region=1 (default: everywhere)");
+    command->add_option("--by", request->axis, "Quantity that takes the place of the times");
+    command->add_option("--time", request->time, "State that is marked in a picture");
+    command->add_option("--size", request->size, "Of a .png: WIDTHxHEIGHT in pixels")->capture_default_str();
+    addImportOptions(*command, request->import);
+    command->callback([request] { run(*request); });
+}
+
+} // namespace tessera::app

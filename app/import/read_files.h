@@ -1,0 +1,19 @@
+#pragma once
+
+#include "app/import/source.h"
+
+/// Readers of the rows of app/import/formats.cpp that have a file of their own.
+namespace tessera::importer {
+
+void openCsv(Source& source);
+void openTecplot(Source& source);
+void openNumpy(Source& source);
+void openHdf(Source& source);
+void openTiff(Source& source);
+void openDicom(Source& source);
+void openCgns(Source& source);
+void openExodus(Source& source);
+void openFluent(Source& source);
+void openPlot3d(Source& source);
+
+} // namespace tessera::importer

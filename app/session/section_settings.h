@@ -1,0 +1,45 @@
+#pragma once
+
+#include "volume/analysis/section_weight.h"
+#include "volume/describe.h"
+
+#include <vector>
+
+namespace tessera::app {
+
+/// What is shown of the planes of a section (app/views/section_data.h).
+enum class SectionMeasure { Mean, Least, Most, Integral, Flux, Flow, Area };
+inline constexpr std::string_view kSectionMeasureNames[] = {"mean", "least", "most", "integral",
+                                                            "flux", "flow",  "area"};
+
+/// What the planes lie across: an axis, or the line of the view.
+enum class SectionAcross { X, Y, Z, Line };
+inline constexpr std::string_view kSectionAcrossNames[] = {"x", "y", "z", "line"};
+
+/// Averages over planes in a profile view.
+struct SectionSettings {
+    SectionAcross across = SectionAcross::Z;
+    volume::SectionWeight weight = volume::SectionWeight::Area;
+    SectionMeasure measure = SectionMeasure::Mean;
+    bool byRegion = true;
+    std::vector<int> regions; ///< values of the label shown; none: every one
+    bool operator==(const SectionSettings&) const = default;
+    static void describe(auto& self, auto&& visit) {
+        visit(self.across, FieldInfo{.key = "across",
+                                     .unit = "",
+                                     .doc = "Axis that the planes lie across, or the line through the view's corners",
+                                     .names = kSectionAcrossNames});
+        visit(self.weight, FieldInfo{.key = "weight",
+                                     .unit = "",
+                                     .doc = "What the mean over a plane is weighted by",
+                                     .names = volume::kSectionWeightNames});
+        visit(self.measure,
+              FieldInfo{
+                  .key = "measure", .unit = "", .doc = "What is shown of every plane", .names = kSectionMeasureNames});
+        visit(self.byRegion, FieldInfo{.key = "byRegion", .unit = "", .doc = "One curve for each region of the label"});
+        visit(self.regions,
+              FieldInfo{.key = "regions", .unit = "", .doc = "Values of the label that have a curve; none: all"});
+    }
+};
+
+} // namespace tessera::app
