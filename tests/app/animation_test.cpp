@@ -145,7 +145,7 @@ TEST(ParameterPaths, NameWhatCanBeSetOneByOne) {
     session.layers.push_back({"O2", true, vis::VolumeLayer{.channel = "O2"}});
     const std::vector<std::string> paths = parameterPaths(session);
     for (const char* wanted :
-         {"/render/filter", "/camera/distance", "/layers/0/technique/density", "/time", "/data/bcc"})
+         {"/render/filter", "/camera/distance", "/layers/0/technique/density", "/time", "/data/lattice"})
         EXPECT_NE(std::find(paths.begin(), paths.end(), wanted), paths.end()) << wanted;
     for (const std::string& path : paths) {
         bool found = false;

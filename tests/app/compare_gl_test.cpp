@@ -65,7 +65,7 @@ TEST(CompareView, MeasuresVariantsAgainstTheReference) {
 TEST(CompareView, OtherDataAreOpenedForTheirVariant) {
     Compared compared;
     compared.view.variants = {{"BCC", {}},
-                              {"CC", {{"/data/bcc", "false"}}},
+                              {"CC", {{"/data/lattice", "grid"}}},
                               {"packed", {{"/data/packed", "{\"lossless\": true}"}}},
                               {"lossy", {{"/data/packed", "{\"lossless\": false, \"maxError\": 0.05}"}}},
                               {"no such model", {{"/data/model", "nothing"}}}};
@@ -115,6 +115,71 @@ TEST(CompareView, DifferencesAreBrightWhereThereAreSome) {
     const vis::Image image = compared.draw({900, 300});
     EXPECT_LT(mean(image, 0.36, 0.5, 0.4, 0.9).r, 10) << "equal pictures differ nowhere";
     EXPECT_GT(mean(image, 0.69, 0.5, 0.72, 0.9).r, 150);
+}
+
+/// How rho differs at two times, that of the reference first.
+std::pair<double, double> largestAndRms(const volume::BrickSource& source, int before, int after) {
+    const int channel = *source.info().findChannel("rho");
+    const glm::ivec3 count = source.grid().count();
+    double largest = 0, squares = 0, samples = 0;
+    for (int n = 0; n < count.x * count.y * count.z; ++n) {
+        const glm::ivec3 at(n % count.x, n / count.x % count.y, n / (count.x * count.y));
+        const volume::BrickSamples a = source.read({channel, before, 0, at}), b = source.read({channel, after, 0, at});
+        for (std::size_t i = 0; i < a.values.size(); ++i) {
+            if (!a.present.empty() && (a.present[i] == 0 || b.present[i] == 0)) continue;
+            const double apart = double(b.values[i]) - double(a.values[i]);
+            largest = std::max(largest, std::abs(apart));
+            squares += apart * apart;
+            samples += 1;
+        }
+    }
+    return {largest, std::sqrt(squares / samples)};
+}
+
+/// How much more red than blue a part of a picture is.
+double warmth(const vis::Image& image, double fromX, double toX) {
+    double sum = 0;
+    for (int y = image.size.y / 4; y < image.size.y * 3 / 4; ++y)
+        for (int x = int(image.size.x * fromX); x < int(image.size.x * toX); ++x) {
+            const std::size_t at = 4 * (std::size_t(y) * std::size_t(image.size.x) + std::size_t(x));
+            sum += double(image.rgba[at]) - double(image.rgba[at + 2]);
+        }
+    return sum;
+}
+
+TEST(CompareView, ValuesDifferInTheirUnit) {
+    Compared compared;
+    DataRef moving;
+    moving.model = "marschner-lobb";
+    moving.settings = {{"nx", 12}, {"ny", 12}, {"nz", 12}, {"times", 3}};
+    std::vector<std::string> messages;
+    compared.source = openSource(moving, messages);
+    compared.document.session = defaultSession(compared.source->info(), moving);
+    const std::vector<double>& times = compared.source->info().times;
+    compared.document.session.layers = {{"rho", true, vis::VolumeLayer{.channel = "rho", .shaded = false}}};
+    compared.document.session.time = times[0];
+    compared.view.variants = {{"first", {}}, {"last", {{"/time", std::to_string(times[2])}}}};
+    compared.view.mode = CompareMode::Difference;
+    compared.view.differenceOf = DifferenceOf::Values;
+    compared.view.showTable = false;
+    const vis::Image later = compared.draw({800, 400});
+    const auto [largest, rms] = largestAndRms(*compared.source, 0, 2);
+    ASSERT_TRUE(compared.rows[1].data);
+    EXPECT_NEAR(compared.rows[1].data->largest, largest, 1e-6);
+    EXPECT_NEAR(compared.rows[1].data->rms, rms, 1e-6);
+    EXPECT_GT(largest, 0.01);
+    // Against the later one the same differences have the other sign.
+    compared.document.session.time = times[2];
+    compared.view.variants = {{"last", {}}, {"first", {{"/time", std::to_string(times[0])}}}};
+    const vis::Image earlier = compared.draw({800, 400});
+    const double up = warmth(later, 0.6, 0.9), down = warmth(earlier, 0.6, 0.9);
+    EXPECT_LT(up * down, 0) << up << " and " << down;
+    EXPECT_GT(std::abs(up), 1000);
+    // Colours alone differ: there are no values to show, and the picture says so.
+    compared.view.variants = {{"as it is", {}}, {"coarse steps", {{"/render/step", "3"}}}};
+    compared.draw({800, 400});
+    EXPECT_FALSE(compared.rows[1].data);
+    EXPECT_TRUE(compared.rows[1].measured);
 }
 
 } // namespace

@@ -58,7 +58,7 @@ TEST(Compare, ACaptionSaysWhatDiffers) {
     const Session session = withLayer();
     EXPECT_EQ(changesText(session, {}), "as it is");
     EXPECT_EQ(changesText(session, {"", {{"/render/filter", "average"}}}), "filter average");
-    EXPECT_EQ(changesText(session, {"", {{"/data/bcc", "false"}}}), "lattice CC");
+    EXPECT_EQ(changesText(session, {"", {{"/data/lattice", "grid"}}}), "lattice CC");
     EXPECT_EQ(changesText(session, {"", {{"/layers/0/technique/density", "2"}}}), "O2: density 2");
     EXPECT_EQ(
         changesText(session,

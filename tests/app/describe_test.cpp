@@ -9,15 +9,14 @@ namespace tessera::app {
 namespace {
 
 /// Every described struct of the program.
-using Structs =
-    ::testing::Types<vis::Camera, vis::VolumeLayer, vis::IsoLayer, vis::SliceLayer, vis::FlowLayer, vis::Layer,
-                     vis::RenderParams, vis::Light, vis::EnvironmentLight, vis::Shadows, vis::Lighting, vis::Clip,
-                     vis::Tone, vis::BrushInterval, vis::RangeRegion, vis::EllipseRegion, vis::LassoRegion,
-                     vis::SphereRegion, vis::BoxRegion, vis::LensRegion, vis::Lens, vis::Brush, vis::Selection,
-                     vis::TransferFunction, DockNode, FloatingPane, DockTree, DataFile, DataRef, Animation, Appearance,
-                     VolumeView, SlicesView, ScatterMatrixView, TransferView, LayersView, TimelineView, DataView,
-                     HistoryView, LogView, StatisticsView, HistogramView, ProfileView, SliceMatrixView, ShadowCubeView,
-                     TesseractView, vis::Look, vis::Paper, volume::DerivedParameter, Session>;
+using Structs = ::testing::Types<
+    vis::Camera, vis::VolumeLayer, vis::IsoLayer, vis::SliceLayer, vis::FlowLayer, vis::Layer, vis::RenderParams,
+    vis::Light, vis::EnvironmentLight, vis::Shadows, vis::Lighting, vis::Clip, vis::Tone, vis::BrushInterval,
+    vis::RangeRegion, vis::EllipseRegion, vis::LassoRegion, vis::SphereRegion, vis::BoxRegion, vis::LensRegion,
+    vis::Lens, vis::Brush, vis::Selection, vis::TransferFunction, DockNode, FloatingPane, DockTree, DataFile, OtherData,
+    DataRef, Animation, Appearance, VolumeView, SlicesView, ScatterMatrixView, TransferView, LayersView, TimelineView,
+    DataView, HistoryView, LogView, StatisticsView, HistogramView, ProfileView, SliceMatrixView, ShadowCubeView,
+    TesseractView, CurvesView, vis::Look, vis::Paper, volume::DerivedParameter, Session>;
 
 template <class T> class DescribeTest : public ::testing::Test {};
 TYPED_TEST_SUITE(DescribeTest, Structs);

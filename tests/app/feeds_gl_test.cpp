@@ -1,10 +1,13 @@
+#include "app/session/describe_json.h"
 #include "app/views/compare_feed.h"
 #include "app/views/latest_feed.h"
+#include "app/views/readout.h"
 #include "app/views/statistics_feed.h"
 #include "app/views/surface_feed.h"
 #include "app/views/tesseract_feed.h"
 #include "codec/pack.h"
 #include "tests/app/views_fixture.h"
+#include "volume/probe.h"
 
 #include <filesystem>
 #include <fstream>
@@ -56,6 +59,39 @@ struct Feeds : ViewsTest {
         EXPECT_FALSE(busy);
     }
 };
+
+// Pictures on one lattice, numbers from another: what is counted and read is of the latter.
+TEST_F(Feeds, ReadTheSamplesThatNumbersComeFrom) {
+    const auto numbers = source;
+    show(fuelCell(volume::LatticeKind::BCC));
+    const auto both = [&] {
+        ViewContext now = context();
+        now.numbers = numbers;
+        now.headless = true;
+        return now;
+    };
+    ASSERT_NE(source->grid().lattice.count(), numbers->grid().lattice.count());
+    ViewContext now = both();
+    EXPECT_EQ(context().numbers, source) << "where nothing else is said";
+    const int t = numbers->info().findChannel("T").value();
+    StatisticsFeed statistics;
+    const auto counted =
+        statistics.get(now, "statistics", makeWish(session, numbers->info(), {t}, {{0, 1000}}, 8, false));
+    ASSERT_TRUE(counted);
+    EXPECT_EQ(counted->statistics.channels[0].all.samples, double(numbers->grid().lattice.count()));
+    LatestFeed<int, std::size_t> latest;
+    const auto samples = latest.get(
+        now, "latest", "Samples", 1, [](const auto& of, int, const Progress&) { return of->grid().lattice.count(); },
+        [](int) { return true; });
+    ASSERT_TRUE(samples);
+    EXPECT_EQ(*samples, numbers->grid().lattice.count());
+    Readout readout;
+    session.cursor = numbers->info().bounds.lo + numbers->info().bounds.size() * glm::dvec3(0.37, 0.61, 0.43);
+    updateReadout(now, readout);
+    const auto time = volume::timesAround(numbers->info().times, session.time);
+    EXPECT_EQ(readout.value("T"), volume::probe(*numbers, session.cursor, time)[std::size_t(t)].interpolated);
+    EXPECT_NE(readout.value("T"), volume::probe(*source, session.cursor, time)[std::size_t(t)].interpolated);
+}
 
 // What the user cancels is not started again in the next frame, but when something else is wanted.
 TEST_F(Feeds, CancelledStatisticsWaitForAnotherWish) {

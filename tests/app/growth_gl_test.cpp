@@ -166,7 +166,7 @@ TEST_F(GrowthGl, AParameterIsDerivedThoughNewTimesCome) {
     request.paths = {path};
     Opened opened = open(request);
     const auto gated = std::make_shared<const GatedArchive>(path);
-    opened.source = gated;
+    opened.source = opened.numbers = gated;
     const vis::HeadlessContext gl;
     const Gui gui;
     Workbench workbench({.growthInterval = 1ms});
@@ -188,6 +188,42 @@ TEST_F(GrowthGl, AParameterIsDerivedThoughNewTimesCome) {
         return workbench.source()->info().findChannel("twice").has_value();
     }));
     EXPECT_EQ(workbench.source()->info().times.size(), 6u);
+}
+
+// The last time is another one when the archive has grown, and so is what was taken away.
+TEST_F(GrowthGl, ADifferenceFromTheLastTimeFollowsTheArchive) {
+    volume::Dataset early = moving(0, 2), late = moving(2, 4);
+    codec::pack(early, {}, path);
+    OpenRequest request;
+    request.data = dataOf({path}, {});
+    request.data->derived = {{"d", "", volume::DifferenceRecipe{"rho", volume::OtherTime::Last}}};
+    const vis::HeadlessContext gl;
+    const Gui gui;
+    Workbench workbench({.growthInterval = 1ms});
+    workbench.install(open(request));
+    (void)drawUntilDone(workbench, {600, 400}, 1);
+    const auto expectLast = [&] {
+        const auto source = workbench.source();
+        const int last = int(source->info().times.size()) - 1;
+        const volume::BrickKey key{*source->info().findChannel("rho"), 0, 0, {0, 0, 0}};
+        volume::BrickKey then = key, difference = key;
+        then.time = last;
+        difference.channel = *source->info().findChannel("d");
+        const volume::BrickSamples a = source->read(key), b = source->read(then), d = source->read(difference);
+        double most = 0;
+        for (std::size_t i = 0; i < d.values.size(); ++i) {
+            EXPECT_EQ(d.values[i], float(double(a.values[i]) - double(b.values[i])));
+            most = std::max(most, std::abs(double(d.values[i])));
+        }
+        EXPECT_GT(most, 0);
+    };
+    expectLast();
+    codec::append(late, path);
+    ASSERT_TRUE(comes([&] {
+        (void)drawUntilDone(workbench, {600, 400}, 1);
+        return workbench.source()->info().times.size() == 6;
+    }));
+    expectLast();
 }
 
 } // namespace

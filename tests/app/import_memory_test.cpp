@@ -28,6 +28,8 @@ TEST_F(ImportMemoryFile, WhatIsStatedOnceIsKnownTheNextTime) {
     volume::ImportOptions stated;
     stated.units = {{"O2", "mol/m3"}, {"T", "K"}};
     stated.absent = {"O2=region:0,3"};
+    stated.parts = {"T=region:1|3"};
+    stated.labels = {"region:1=cathode#0072b2"};
     stated.rename = {{"O2.air", "O2"}};
     ImportMemory memory;
     EXPECT_TRUE(remember(memory, stated, "cell"));
@@ -48,6 +50,12 @@ TEST_F(ImportMemoryFile, WhatIsStatedOnceIsKnownTheNextTime) {
     EXPECT_EQ(all.units.at("O2"), "mol/m3");
     EXPECT_EQ(all.units.at("T"), "degC");
     EXPECT_EQ(all.absent, stated.absent);
+    EXPECT_EQ(all.parts, stated.parts);
+    EXPECT_EQ(all.labels, stated.labels);
+    volume::ImportOptions renamed; // the newest rule of a label counts
+    renamed.labels = {"region:1=air,3=fuel"};
+    EXPECT_TRUE(remember(memory, renamed, "cell"));
+    EXPECT_EQ(memory.labels.at("cell"), renamed.labels);
     EXPECT_EQ(all.rename, stated.rename);
     volume::DatasetInfo other = info;
     other.name = "other";
@@ -56,6 +64,8 @@ TEST_F(ImportMemoryFile, WhatIsStatedOnceIsKnownTheNextTime) {
     other.parameters.erase(other.parameters.begin()); // no oxygen: neither the name nor the rule fits
     EXPECT_TRUE(withMemory(now, memory, other).absent.empty());
     EXPECT_TRUE(withMemory(now, memory, other).rename.empty());
+    now.parts = {"T=joined"};
+    EXPECT_EQ(withMemory(now, memory, info).parts, now.parts) << "what is stated now counts";
     now.absent = {"O2=0"};
     EXPECT_EQ(withMemory(now, memory, info).absent, now.absent);
     EXPECT_TRUE(remember(memory, now, "cell"));

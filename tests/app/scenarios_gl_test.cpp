@@ -43,16 +43,16 @@ TEST_F(ScenariosGl, ADrawingIsTheSameAfterSavingAndOpening) {
     opened.document.session.render.samples = 1;
     opened.document.history.reset(opened.document.session);
     PictureMaker maker;
-    const vis::Image first = maker.render(opened.document, opened.source, picture);
+    const vis::Image first = maker.render(opened.document, opened.sources(), picture);
     saveSession(opened.document, in("drawing.tessera.json"));
     request.paths = {in("drawing.tessera.json")};
     const Opened again = open(request);
     EXPECT_EQ(again.document.session, opened.document.session);
     PictureMaker other;
-    EXPECT_EQ(differing(first, other.render(again.document, again.source, picture)), 0u);
+    EXPECT_EQ(differing(first, other.render(again.document, again.sources(), picture)), 0u);
     SessionDocument turned = again.document;
     vis::orbit(turned.session.camera, {0, 0}, {0.2f, 0});
-    EXPECT_GT(differing(first, maker.render(turned, again.source, picture)), 1000u);
+    EXPECT_GT(differing(first, maker.render(turned, again.sources(), picture)), 1000u);
 }
 
 // A session in a folder with its data: moved as a whole, then with the data renamed, then changed.
@@ -75,7 +75,7 @@ TEST_F(ScenariosGl, ASessionOpensOnAnotherMachine) {
     EXPECT_FALSE(session.selection.brushes.empty());
     PictureMaker maker;
     const PictureRequest picture{.pane = "", .size = {480, 320}, .scale = 1};
-    const vis::Image first = maker.render(opened.document, opened.source, picture);
+    const vis::Image first = maker.render(opened.document, opened.sources(), picture);
 
     fs::rename(folder / "one", folder / "two");
     request.paths = {in("two/figure.tessera.json")};
@@ -86,7 +86,7 @@ TEST_F(ScenariosGl, ASessionOpensOnAnotherMachine) {
     EXPECT_EQ(moved.document.session.lenses, session.lenses);
     EXPECT_EQ(moved.document.session.camera, session.camera);
     EXPECT_EQ(moved.document.session.dock, session.dock);
-    EXPECT_EQ(differing(first, maker.render(moved.document, moved.source, picture)), 0u);
+    EXPECT_EQ(differing(first, maker.render(moved.document, moved.sources(), picture)), 0u);
 
     // Renamed: the chooser knows what to ask for.
     const double bytes = double(fs::file_size(folder / "two/cell.tsr"));
@@ -125,7 +125,7 @@ TEST_F(ScenariosGl, AFirstLook) {
     for (const char* pane : {"volume", "slices", "scatterMatrix", "data"}) {
         ASSERT_TRUE(session.views.contains(pane)) << pane;
         const vis::Image image =
-            maker.render(opened.document, opened.source, {.pane = pane, .size = {400, 300}, .scale = 1});
+            maker.render(opened.document, opened.sources(), {.pane = pane, .size = {400, 300}, .scale = 1});
         std::set<std::uint32_t> colors;
         for (std::size_t i = 0; i < image.rgba.size(); i += 4)
             colors.insert(std::uint32_t(image.rgba[i]) << 16 | std::uint32_t(image.rgba[i + 1]) << 8 |

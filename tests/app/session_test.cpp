@@ -47,9 +47,9 @@ volume::DatasetInfo cellInfo() {
 
 SessionDocument edited() {
     SessionDocument document;
-    document.session = defaultSession(
-        cellInfo(),
-        {.files = {}, .model = "fuel-cell", .settings = {}, .derived = {}, .import = {}, .packed = {}, .timeAxis = {}});
+    DataRef data;
+    data.model = "fuel-cell";
+    document.session = defaultSession(cellInfo(), data);
     document.history.reset(document.session);
     document.session.camera.distance = 3;
     document.history.observe(document.session, false, 0);
@@ -223,6 +223,35 @@ TEST_F(SessionFileTest, FindsDataAfterTheFolderMoved) {
     EXPECT_EQ(found.missing[0].wanted.bytes, 5);
 }
 
+TEST_F(SessionFileTest, OtherDataAreFoundAndMissedAsTheFirst) {
+    write("one/a.tsr", "12345");
+    write("one/more/b.tsr", "123");
+    SessionDocument document = edited();
+    document.session.data = {};
+    document.session.data.files = {describeFile(in("one/a.tsr"))};
+    document.session.data.other =
+        OtherData{.files = {describeFile(in("one/more/b.tsr"))}, .model = {}, .settings = {}, .import = {}};
+    document.history.setData(document.session.data);
+    saveSession(document, in("one/s.tessera.json"));
+    EXPECT_EQ(Json::parse(readText(in("one/s.tessera.json")))["data"]["other"]["files"][0]["path"], "more/b.tsr");
+    fs::rename(folder / "one", folder / "two");
+    SessionDocument moved = loadSession(in("two/s.tessera.json"));
+    ResolvedData found = resolveData(moved.session.data, in("two"));
+    EXPECT_TRUE(found.missing.empty());
+    EXPECT_EQ(found.data.other->files[0].absolutePath, in("two/more/b.tsr"));
+    write("two/more/b.tsr", "12x");
+    found = resolveData(moved.session.data, in("two"));
+    ASSERT_EQ(found.warnings.size(), 1u);
+    fs::remove(folder / "two/more/b.tsr");
+    found = resolveData(moved.session.data, in("two"));
+    ASSERT_EQ(found.missing.size(), 1u);
+    EXPECT_TRUE(found.missing[0].other);
+    EXPECT_EQ(found.missing[0].index, 0u);
+    EXPECT_EQ(found.missing[0].wanted.bytes, 3);
+    filesOf(moved.session.data, true)[0] = describeFile(in("two/a.tsr"));
+    EXPECT_TRUE(resolveData(moved.session.data, in("two")).missing.empty());
+}
+
 TEST_F(SessionFileTest, ThePictureOfTheSurroundingsMovesWithTheSession) {
     write("one/pictures/sky.hdr", "#?RADIANCE");
     SessionDocument document;
@@ -374,6 +403,27 @@ TEST(Session, TheFormerXrayIsAnAverage) {
     EXPECT_EQ(at(old, "/history/steps/0/inverse/0/value"), "composite");
     EXPECT_EQ(at(now, "/layers/0/technique/style"), "xray");
     EXPECT_EQ(at(now, "/history/steps/0/forward/0/value"), "xray");
+}
+
+TEST(SessionTest, TheLatticeWasOnceABool) {
+    const SessionDocument old = parseSession(
+        R"({"schema": 2, "data": {"model": "fuel-cell", "bcc": false},
+            "views": {"compare": {"type": "compare", "variants": [{"name": "a", "changes": {"/data/bcc": "true"}},
+                                                                  {"name": "b", "changes": {"/data/bcc": "false"}}]}}})",
+        "old");
+    EXPECT_TRUE(old.messages.empty()) << old.messages.front();
+    EXPECT_EQ(old.session.data.lattice, PictureLattice::Grid);
+    const auto& variants = std::get<CompareView>(old.session.views.at("compare")).variants;
+    ASSERT_EQ(variants.size(), 2u);
+    EXPECT_EQ(variants[0].changes, (std::map<std::string, std::string>{{"/data/lattice", "bodyCentred"}}));
+    EXPECT_EQ(variants[1].changes, (std::map<std::string, std::string>{{"/data/lattice", "grid"}}));
+    Json step = Json::parse(R"({"schema": 2, "history": [{"op": "replace", "value": "true",
+        "path": "/views/compare/variants/0/changes/~1data~1bcc"}]})");
+    migrate(step, "x");
+    EXPECT_EQ(step["history"][0]["path"], "/views/compare/variants/0/changes/~1data~1lattice");
+    EXPECT_EQ(step["history"][0]["value"], "bodyCentred");
+    EXPECT_EQ(parseSession(R"({"schema": 2, "data": {"bcc": true}})", "x").session.data.lattice,
+              PictureLattice::BodyCentred);
 }
 
 TEST(SessionTest, BrushesOfTheFirstSchemaBecomeRegions) {

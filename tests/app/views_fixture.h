@@ -57,6 +57,7 @@ protected:
         draw("sliceMatrix", sliceMatrixView, drawSliceMatrixView, size);
         draw("shadowCube", shadowCubeView, drawShadowCubeView, size);
         draw("tesseract", tesseractView, drawTesseractView, size);
+        draw("curves", curvesView, drawCurvesView, size);
     }
     void drawAllSizes() {
         for (const ImVec2 size : {ImVec2{640, 480}, ImVec2{200, 120}, ImVec2{40, 30}})
@@ -85,6 +86,7 @@ protected:
     SliceMatrixView sliceMatrixView;
     ShadowCubeView shadowCubeView;
     TesseractView tesseractView;
+    CurvesView curvesView;
 };
 
 inline std::shared_ptr<const volume::BrickSource> fuelCell(volume::LatticeKind lattice) {

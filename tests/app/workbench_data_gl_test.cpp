@@ -81,23 +81,85 @@ TEST_F(WorkbenchData, WhatIsOpenedWhilePackingStays) {
     EXPECT_TRUE(workbench.source()->info().findChannel("rho").has_value());
 }
 
+constexpr const char* kOnGrid = "Draw on the grid of the file";
+constexpr const char* kBodyCentred = "Draw on the body-centred lattice (70.7 % of the samples)";
+
 // A parameter derived meanwhile is of the new data when they come.
 TEST_F(WorkbenchData, WhatIsEditedWhileResamplingStays) {
     workbench.install(smallData());
     settle();
-    const bool bcc = workbench.session().data.bcc;
-    ASSERT_TRUE(run("Show on BCC lattice"));
+    ASSERT_EQ(workbench.session().data.lattice, PictureLattice::BodyCentred);
+    ASSERT_EQ(workbench.source()->grid().lattice.kind, volume::LatticeKind::BCC);
+    const auto numbers = workbench.numbers();
+    EXPECT_EQ(numbers->grid().lattice.kind, volume::LatticeKind::CC);
+    ASSERT_TRUE(run(kOnGrid));
     addBrush("meanwhile");
     workbench.session().data.derived = {{"twice", "", volume::ExpressionRecipe{"2*rho"}}};
     settle();
-    EXPECT_NE(workbench.session().data.bcc, bcc);
-    EXPECT_EQ(workbench.source()->grid().lattice.kind == volume::LatticeKind::BCC, !bcc);
+    EXPECT_EQ(workbench.session().data.lattice, PictureLattice::Grid);
+    EXPECT_EQ(workbench.source()->grid().lattice.kind, volume::LatticeKind::CC);
+    EXPECT_EQ(workbench.source(), workbench.numbers());
     EXPECT_TRUE(workbench.source()->info().findChannel("twice").has_value());
     EXPECT_EQ(workbench.session().selection.brushes.size(), 1u);
     while (run("Undo")) settle();
     EXPECT_TRUE(workbench.session().selection.brushes.empty());
     EXPECT_FALSE(workbench.source()->info().findChannel("twice").has_value());
-    EXPECT_NE(workbench.session().data.bcc, bcc);
+    EXPECT_EQ(workbench.session().data.lattice, PictureLattice::BodyCentred);
+    EXPECT_EQ(workbench.source()->grid().lattice.kind, volume::LatticeKind::BCC);
+    EXPECT_EQ(workbench.numbers(), numbers) << "nothing is read or derived again for a lattice";
+}
+
+TEST_F(WorkbenchData, TheLatticeIsAStepOfTheHistory) {
+    workbench.install(smallData());
+    settle();
+    const auto kind = [&] { return workbench.source()->grid().lattice.kind; };
+    ASSERT_TRUE(run(kOnGrid));
+    settle();
+    ASSERT_EQ(workbench.history().steps().size(), 1u);
+    EXPECT_EQ(workbench.history().steps().back().name, "data: lattice");
+    EXPECT_EQ(kind(), volume::LatticeKind::CC);
+    ASSERT_TRUE(run("Undo"));
+    settle();
+    EXPECT_EQ(kind(), volume::LatticeKind::BCC);
+    ASSERT_TRUE(run("Redo"));
+    settle();
+    EXPECT_EQ(kind(), volume::LatticeKind::CC);
+    ASSERT_TRUE(run(kBodyCentred));
+    settle();
+    EXPECT_EQ(kind(), volume::LatticeKind::BCC);
+}
+
+struct WorkbenchMemory : DrawnWorkbench {
+    WorkbenchMemory() : DrawnWorkbench({.stateFolder = made()}) {}
+    static std::string made() {
+        const fs::path path = fs::path(testing::TempDir()) / ("workbench_memory_" + std::to_string(::getpid()));
+        fs::create_directories(path);
+        return path.string();
+    }
+    void TearDown() override { fs::remove_all(made()); }
+    void openModel(const char* model) {
+        OpenRequest request;
+        request.data.emplace();
+        request.data->model = model;
+        request.data->settings = {{"nx", 12}, {"ny", 12}, {"nz", 12}};
+        workbench.open(request);
+        settle();
+    }
+};
+
+TEST_F(WorkbenchMemory, TheLatticeChosenHoldsForDataOpenedLater) {
+    openModel("marschner-lobb");
+    EXPECT_EQ(workbench.source()->grid().lattice.kind, volume::LatticeKind::BCC);
+    ASSERT_TRUE(run(kOnGrid));
+    settle();
+    EXPECT_EQ(rememberedChoice(made(), "lattice"), "grid");
+    workbench.install(smallData(16)); // nothing to save
+    settle();
+    openModel("marschner-lobb");
+    EXPECT_EQ(workbench.session().data.lattice, PictureLattice::Grid);
+    EXPECT_EQ(workbench.source(), workbench.numbers());
+    std::ofstream(made() + "/choices.json") << "{broken";
+    EXPECT_EQ(rememberedChoice(made(), "lattice"), "");
 }
 
 // Taken back or cancelled, it comes when it is wanted again.
@@ -122,6 +184,52 @@ TEST_F(WorkbenchData, AParameterWhoseMakingWasCancelledComesWhenItIsWantedAgain)
     ASSERT_TRUE(run("Redo"));
     settle();
     EXPECT_TRUE(known());
+}
+
+// Two clicks or a word in the palette: a parameter, its colours, and one step to take both back.
+TEST_F(WorkbenchData, ADifferenceFromTheFirstTimeIsOneStep) {
+    OpenRequest request;
+    request.data.emplace();
+    request.data->model = "marschner-lobb";
+    request.data->settings = {{"nx", 12}, {"ny", 12}, {"nz", 12}, {"times", 3}};
+    workbench.install(open(request));
+    settle();
+    const Session start = workbench.session();
+    ASSERT_TRUE(run("Minus another time: first"));
+    settle();
+    ASSERT_TRUE(workbench.source()->info().findChannel("rho minus first"));
+    EXPECT_TRUE(workbench.session().transfer.at("rho minus first").aboutZero);
+    ASSERT_TRUE(run("Undo"));
+    settle();
+    EXPECT_TRUE(workbench.session() == start);
+    EXPECT_FALSE(workbench.source()->info().findChannel("rho minus first"));
+}
+
+// A file beside the one shown, and away again.
+TEST_F(WorkbenchData, AnotherFileStandsBeside) {
+    std::ofstream("other.raw", std::ios::binary) << std::string(8 * 9 * 10, '\x05');
+    std::ofstream("other.json") << R"({"dims": [8, 9, 10], "dtype": "uint8"})";
+    std::ofstream("ramp.json") << R"({"dims": [8, 9, 10], "dtype": "uint8"})";
+    OpenRequest request;
+    request.paths = {(folder / "ramp.raw").string()};
+    workbench.install(open(request));
+    settle();
+    const std::string shown = workbench.source()->info().channels()[0].name;
+    workbench.compareWith({(folder / "other.raw").string()});
+    settle(); // the other file is read, then
+    settle(); // the difference is made
+    const auto source = workbench.source();
+    ASSERT_TRUE(source->info().findChannel(shown + " minus other"));
+    const volume::BrickSamples d =
+        workbench.source()->read({*source->info().findChannel(shown + " minus other"), 0, 0, {0, 0, 0}});
+    const volume::BrickSamples a = workbench.source()->read({0, 0, 0, {0, 0, 0}});
+    ASSERT_EQ(d.values.size(), a.values.size());
+    for (std::size_t i = 0; i < d.values.size(); ++i) EXPECT_NEAR(d.values[i], a.values[i] - 5, 1e-3);
+    EXPECT_TRUE(workbench.session().data.other);
+    ASSERT_TRUE(run("Compare with another file...")); // off
+    settle();
+    EXPECT_FALSE(workbench.session().data.other);
+    EXPECT_FALSE(workbench.source()->info().findChannel(shown + " (other)"));
 }
 
 } // namespace

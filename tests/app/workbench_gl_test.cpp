@@ -47,10 +47,10 @@ TEST(WorkbenchGl, APictureIsWhatAWorkbenchFrameShows) {
     const Opened opened = smallData();
     PictureMaker maker;
     const PictureRequest request{.pane = "", .size = {900, 600}, .scale = 1};
-    const vis::Image picture = maker.render(opened.document, opened.source, request);
+    const vis::Image picture = maker.render(opened.document, opened.sources(), request);
     EXPECT_GT(colors(picture), 300) << "nothing was drawn";
     // Again: the same bytes.
-    EXPECT_EQ(difference(picture, maker.render(opened.document, opened.source, request), 0), 0);
+    EXPECT_EQ(difference(picture, maker.render(opened.document, opened.sources(), request), 0), 0);
 
     // Frames of an interactive workbench, refined over time as in a window.
     const Gui gui;
@@ -65,11 +65,11 @@ TEST(WorkbenchGl, OneViewFillsThePicture) {
     PictureMaker maker;
     for (const auto& [pane, view] : opened.document.session.views) {
         const vis::Image image =
-            maker.render(opened.document, opened.source, {.pane = pane, .size = {400, 300}, .scale = 1});
+            maker.render(opened.document, opened.sources(), {.pane = pane, .size = {400, 300}, .scale = 1});
         EXPECT_EQ(image.size, glm::ivec2(400, 300));
         EXPECT_GT(colors(image), 3) << pane;
     }
-    EXPECT_THROW(maker.render(opened.document, opened.source, {.pane = "nothing", .size = {64, 64}, .scale = 1}),
+    EXPECT_THROW(maker.render(opened.document, opened.sources(), {.pane = "nothing", .size = {64, 64}, .scale = 1}),
                  Error);
 }
 
@@ -208,9 +208,9 @@ TEST(WorkbenchGl, WhatIsNotSavedIsNotGivenUpUnasked) {
     settle();
     EXPECT_TRUE(workbench.session() == edited);
     for (const Command& command : workbench.commands())
-        if (command.title() == "Show on BCC lattice") command.run();
+        if (command.title() == "Draw on the grid of the file") command.run();
     settle();
-    ASSERT_NE(workbench.session().data.bcc, edited.data.bcc);
+    ASSERT_NE(workbench.session().data.lattice, edited.data.lattice);
     workbench.requestQuit();
     settle();
     EXPECT_FALSE(workbench.finished());

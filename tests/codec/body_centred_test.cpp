@@ -5,6 +5,7 @@
 #include "codec/pack.h"
 #include "tests/codec/make_dataset.h"
 #include "tests/codec/plain/decoder.h"
+#include "tests/codec/plain_labels.h"
 #include "volume/resample.h"
 
 #include <gtest/gtest.h>
@@ -127,9 +128,10 @@ TEST(BodyCentred, ArchivesAreExactAndTheSecondReaderAgrees) {
                 for (int level = 0; level < decoder.levels(); ++level)
                     for (int number = 0; number < count.x * count.y * count.z; ++number) {
                         const glm::ivec3 at{number % count.x, number / count.x % count.y, number / (count.x * count.y)};
-                        const volume::BrickSamples read = archive.read({int(channel), 0, level, at});
-                        const volume::BrickStats stats = archive.stats({int(channel), 0, level, at});
-                        const plain::Brick brick = decoder.brick(frame, number, level);
+                        const volume::BrickKey key{int(channel), 0, level, at};
+                        const volume::BrickSamples read = archive.read(key);
+                        const volume::BrickStats stats = archive.stats(key);
+                        const plain::Brick brick = plainBrick(decoder, archive, key, frame, number);
                         for (std::size_t i = 0; i < brick.values.size(); ++i) {
                             auto value = float(brick.values[i]);
                             if (!brick.present[i] || !std::isfinite(value)) continue;

@@ -1,8 +1,11 @@
 #include "codec/archive.h"
 #include "codec/pack.h"
 #include "tests/codec/make_dataset.h"
+#include "volume/import/import.h"
 
 #include <cmath>
+#include <cstdlib>
+#include <filesystem>
 #include <gtest/gtest.h>
 
 namespace tessera::codec {
@@ -96,6 +99,98 @@ TEST(PackBounds, SignalToNoiseIsReachedAtEveryTimeOfASeries) {
         if (drift == 0) {
             EXPECT_EQ(summary.repeatedBricks, 4 * summary.bricks);
         }
+    }
+}
+
+/// A ball of noise in much background, of whole numbers up to `most`.
+volume::Dataset ball(ScalarType type, int most) {
+    volume::Dataset made = makeDataset({40, 36, 30}, {{"n", type, 1, Texture::Smooth, false, false}}, 1);
+    made.load = [lattice = made.info.lattice, type, most](int, int, int) {
+        volume::Field field = volume::makeField(lattice, type);
+        std::mt19937 random(5u);
+        volume::dispatch(type, [&]<class T>(T) {
+            std::size_t i = 0;
+            for (int z = 0; z < lattice.size.z; ++z)
+                for (int y = 0; y < lattice.size.y; ++y)
+                    for (int x = 0; x < lattice.size.x; ++x, ++i) {
+                        const double r = std::hypot(x - 20, y - 18, z - 15);
+                        if (r < 9)
+                            field.as<T>()[i] = static_cast<T>(most * (0.5 + 0.4 * std::sin(r)) + int(random() % 9));
+                    }
+        });
+        return field;
+    };
+    return made;
+}
+
+/// The PSNR of a frame whose numbers become multiples of a step.
+double psnrOfStep(const volume::Field& field, const Range& range, int step) {
+    double squares = 0;
+    for (std::size_t i = 0; i < field.count(); ++i) {
+        const double apart = std::remainder(field.value(i), double(step));
+        squares += apart * apart;
+    }
+    return 20 * std::log10((range.hi - range.lo) / std::sqrt(squares / double(field.count())));
+}
+
+/// Packs with a PSNR; within half a decibel of it, or no step comes nearer.
+void expectClose(volume::Dataset& made, double wanted, const std::string& path) {
+    PackOptions options = gridOptions();
+    options.psnr = wanted;
+    pack(made, options, path);
+    const Archive archive(path);
+    const double reached = errorsOf(made, archive, 0).psnr;
+    EXPECT_GE(reached, wanted);
+    if (reached <= wanted + 0.5) return;
+    const volume::Field field = made.load(0, 0, 0);
+    const Range range = archive.info().parameters[0].ranges[0];
+    const double end = made.info.parameters[0].type == ScalarType::U8 ? 255 : 1e9;
+    for (int step = 1; step < 256; ++step) {
+        if (step * std::floor((range.hi + double(step / 2)) / step) > end) continue; // beyond the type
+        const double psnr = psnrOfStep(field, range, step);
+        EXPECT_FALSE(psnr >= wanted && psnr < reached - 1e-9)
+            << wanted << ": step " << step << " gives " << psnr << " in place of " << reached;
+    }
+}
+
+TEST(PackBounds, SignalToNoiseOfIntegersIsAsCloseAsStepsAllow) {
+    const TemporaryFolder folder;
+    for (const auto& [type, most] : {std::pair(ScalarType::U8, 200), std::pair(ScalarType::I16, 3000),
+                                     std::pair(ScalarType::U16, 60000), std::pair(ScalarType::I32, 3000000)})
+        for (const double wanted : {28.0, 40.0, 47.0, 52.0}) {
+            SCOPED_TRACE(std::string(volume::name(type)) + " " + std::to_string(wanted));
+            volume::Dataset made = ball(type, most);
+            expectClose(made, wanted, folder / "a.tsr");
+        }
+}
+
+TEST(PackBounds, SignalToNoiseOfFloatsInMuchBackgroundIsClose) {
+    const TemporaryFolder folder;
+    for (const double wanted : {20.0, 40.0, 80.0}) {
+        volume::Dataset made = ball(ScalarType::F32, 1000);
+        PackOptions options = gridOptions();
+        options.psnr = wanted;
+        pack(made, options, folder / "a.tsr");
+        const double reached = errorsOf(made, Archive(folder / "a.tsr"), 0).psnr;
+        EXPECT_GE(reached, wanted);
+        EXPECT_LE(reached, wanted + 0.5);
+    }
+}
+
+TEST(PackBounds, SignalToNoiseOfScansIsAsCloseAsStepsAllow) {
+    const char* asked = std::getenv("TESSERA_DATA");
+    const std::filesystem::path folder = std::filesystem::path(asked ? asked : TESSERA_TEST_DATA) / "volumes";
+    const TemporaryFolder out;
+    for (const char* name : {"lobster", "tooth"}) {
+        std::string file;
+        std::error_code missing;
+        for (const auto& entry : std::filesystem::directory_iterator(folder, missing))
+            if (entry.path().extension() == ".json" && entry.path().stem().string().starts_with(name))
+                file = entry.path().string();
+        if (file.empty()) GTEST_SKIP() << "no " << name << " under $TESSERA_DATA";
+        volume::Dataset made = volume::openFiles({file}, {});
+        SCOPED_TRACE(file);
+        expectClose(made, 40, out / "a.tsr");
     }
 }
 

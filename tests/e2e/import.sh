@@ -29,6 +29,15 @@ TESSERA_IMPORT=/bin/false bad info c.vti
 printf '#!/bin/sh\nkill -SEGV $$\n' > crash && chmod +x crash
 TESSERA_IMPORT=$work/crash bad info c.vti
 grep -q 'crashed (signal 11)' err || die "a crash is named"
+head -c 15 /dev/zero > half
+printf '# vtk DataFile Version 3.0\nx\nBINARY\nDATASET STRUCTURED_POINTS\nDIMENSIONS 2 2 2\nORIGIN 0 0 0\nSPACING 1 1 1\n' > cut.vtk
+printf 'POINT_DATA 8\nSCALARS T float 1\nLOOKUP_TABLE default\n' >> cut.vtk
+cat half >> cut.vtk
+if [ -x "$(dirname "$tessera")/tessera-import" ]; then
+    bad info cut.vtk
+    bad pack cut.vtk -o b.tsr
+    grep -q 'cut.vtk' err || die "a truncated file is named"
+fi
 [ ! -e b.tsr ] || die "half an archive is left"
 
 data=${TESSERA_DATA:-$TESSERA_TEST_DATA}/fuel-cell

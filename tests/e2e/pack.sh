@@ -32,6 +32,22 @@ check "pack as BCC" 0 "$tessera" pack ramp.json -o bcc.tsr
 check "verify BCC" 0 "$tessera" verify bcc.tsr --json
 say '"ok": true' out.txt
 check "unpack BCC" 0 "$tessera" unpack bcc.tsr -o grid.raw
+check "info of BCC" 0 "$tessera" info bcc.tsr
+say "every sample of the BCC grid is exact; the source was resampled (PSNR " out.txt
+say "resampled: PSNR " out.txt
+check "info of BCC as JSON" 0 "$tessera" info bcc.tsr --json
+python3 - <<'EOF' || fail "another error than unpacking gives"
+import json, math, struct
+about, told = json.load(open("ramp.json")), json.load(open("out.txt"))
+a, b = (open(name, "rb").read() for name in ("ramp.raw", "grid.raw"))
+a, b = (struct.unpack("<%dH" % (len(x) // 2), x) for x in (a, b))
+n, parameters = 9 * 7 * 5, told["parameters"]
+for p, parameter in enumerate(parameters):
+    apart = [abs(a[i] - b[i]) for t in range(2) for i in range((t * 2 + p) * n, (t * 2 + p + 1) * n)]
+    extent = parameter["ranges"][0][1] - parameter["ranges"][0][0]
+    psnr = 20 * math.log10(extent / math.sqrt(sum(x * x for x in apart) / len(apart)))
+    assert parameter["resampled"]["largest"] == max(apart) and abs(parameter["resampled"]["psnr"] - psnr) < 1e-6, (psnr, parameter)
+EOF
 
 # Bricks that are alike, put together.
 check "pack small bricks" 0 "$tessera" pack ramp.json -o bricks.tsr --lattice cc --brick-size 4
@@ -94,6 +110,26 @@ extent = max(max(a) - min(a) for a in stored)
 for a, b in zip(stored, physical("lossy-back")):
     rms = math.sqrt(sum((x - y) ** 2 for x, y in zip(a, b)) / n)
     assert rms <= extent * 10 ** (-45 / 20), (rms, extent)
+EOF
+
+# Bytes packed with loss come back as bytes that hold values, in every format.
+python3 - <<'EOF'
+import json, struct
+numbers = [i * 255 // 1319 for i in range(1320)]
+open("bytes.raw", "wb").write(struct.pack("<1320B", *numbers))
+json.dump({"dims": [12, 11, 10], "dtype": "uint8"}, open("bytes.json", "w"))
+EOF
+check "pack bytes with loss" 0 "$tessera" pack bytes.json -o bytes.tsr --lattice cc --abs-error 2
+for format in raw nrrd vti; do check "unpack them to .$format" 0 "$tessera" unpack bytes.tsr -o bytes-back.$format; done
+python3 - <<'EOF' || fail "codes in place of values"
+import json
+about, data = json.load(open("bytes-back.json")), open("bytes-back.raw", "rb").read()
+assert about["dtype"] == "uint8" and "scale" not in about["components"][0], about
+before = open("bytes.raw", "rb").read()
+for i in (0, 660, 1319): assert abs(data[i] - before[i]) <= 2, (i, data[i], before[i])
+assert max(abs(a - b) for a, b in zip(data, before)) == 2
+assert open("bytes-back.nrrd", "rb").read()[-1320:] == data
+assert data in open("bytes-back.vti", "rb").read()
 EOF
 
 # A series whose files have different number types, one of them named twice.

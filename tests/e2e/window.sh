@@ -72,8 +72,8 @@ await 30 fresh || fail "Esc draws nothing"
 
 # A brush: drag across a density plot (O2 against H2O is the third row, first column of the matrix).
 mark
-xdotool mousemove 712 572 mousedown 1
-for ((x = 716; x <= 772; x += 8)); do xdotool mousemove $x $((572 + (x - 712) / 2)); sleep 0.03; done
+xdotool mousemove 712 582 mousedown 1
+for ((x = 716; x <= 772; x += 8)); do xdotool mousemove $x $((582 + (x - 712) / 3)); sleep 0.03; done
 xdotool mouseup 1
 await 60 fresh || fail "brushing draws nothing"
 
@@ -101,8 +101,8 @@ mark
 xdotool mousemove 970 468 click 1
 await 30 fresh || fail "no tool is chosen"
 mark
-xdotool mousemove 720 620 mousedown 1
-for at in "740 616" "760 620" "772 632" "765 648" "745 656" "725 648"; do
+xdotool mousemove 720 634 mousedown 1
+for at in "740 630" "760 634" "772 646" "765 662" "745 670" "725 662"; do
     xdotool mousemove $at
     sleep 0.1
 done

@@ -22,6 +22,7 @@ public:
         Function function;
         Range range{0, 1};
         bool categorical = false;
+        volume::Parts parts = {};
     };
 
     FunctionSource(volume::LatticeKind kind, glm::ivec3 size, glm::dvec3 spacing, std::vector<Channel> channels,
@@ -43,6 +44,7 @@ public:
             parameter.name = channel.name;
             parameter.categorical = channel.categorical;
             parameter.ranges = {channel.range};
+            parameter.parts = channel.parts;
             info_.parameters.push_back(parameter);
         }
     }

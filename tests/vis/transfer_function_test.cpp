@@ -123,7 +123,7 @@ TEST(TransferFunction, LabelsKeepTheirColourInAnyRange) {
     TransferFunction function;
     function.colormap = "labels";
     for (int label = -12; label <= 25; ++label) {
-        const glm::dvec3 wanted = colormapColor("labels", (((label % 10) + 10) % 10 + 0.5) / 10);
+        const glm::dvec3 wanted = colormapColor("labels", (((label % 8) + 8) % 8 + 0.5) / 8);
         for (Range range : {Range{0, 3}, Range{0, 5}, Range{-7, 1000}})
             for (double off : {-0.4, 0.0, 0.4})
                 EXPECT_EQ(glm::dvec3(evaluate(function, range, label + off)), wanted) << label << " " << off;
@@ -134,6 +134,10 @@ TEST(TransferFunction, RangeReversalAndDegenerateRange) {
     TransferFunction function;
     function.range = {2, 3};
     EXPECT_EQ(effectiveRange(function, {5, 6}), (Range{5, 6}));
+    function.aboutZero = true;
+    EXPECT_EQ(effectiveRange(function, {-1, 6}), (Range{-6, 6}));
+    EXPECT_EQ(effectiveRange(function, {-8, -2}), (Range{-8, 8}));
+    EXPECT_EQ(effectiveRange(function, {0, 0}), (Range{-1, 1}));
     function.autoRange = false;
     EXPECT_EQ(effectiveRange(function, {5, 6}), (Range{2, 3}));
     TransferFunction turned = function;

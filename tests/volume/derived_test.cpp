@@ -1,5 +1,6 @@
 #include "volume/derived.h"
 
+#include "volume/derived_names.h"
 #include "volume/error.h"
 #include "volume/expression.h"
 #include "volume/sample_position.h"
@@ -231,6 +232,22 @@ TEST(Derived, CoordinatesAreParameters) {
     const BrickStats stats = source->stats({*source->info().findChannel("time"), 2, 0, {0, 0, 0}});
     EXPECT_EQ(stats.min, 3);
     EXPECT_EQ(stats.presentFraction, 1);
+}
+
+/// What jumps at a border does so in all that is made of it.
+TEST(Derived, JumpsWhereWhatItIsMadeOfDoes) {
+    DatasetInfo info = functions(LatticeKind::CC)->info();
+    info.parameters[0].parts = {"region", {{0, 1}, {2, 3}}};
+    info.parameters[1].parts = {"region", {{0}, {1, 2, 3}}};
+    info.parameters.push_back({.name = "region", .unit = "", .categorical = true, .labels = {}, .ranges = {{0, 2}}});
+    const auto of = [&](const DerivedRecipe& recipe) { return partsOf(recipe, info); };
+    EXPECT_EQ(of(ExpressionRecipe{"f + U.x - at(f, first)"}), info.parameters[0].parts);
+    EXPECT_EQ(of(ExpressionRecipe{"f * `g g`"}), (Parts{"region", {{0}, {1}, {2, 3}}}));
+    EXPECT_EQ(of(ExpressionRecipe{"region == 1 ? U.x : 0"}), (Parts{"region", {{0}, {1}, {2}}}));
+    EXPECT_EQ(of(ExpressionRecipe{"U.x + x"}), Parts{});
+    EXPECT_EQ(of(GradientRecipe{"g g"}), info.parameters[1].parts);
+    EXPECT_EQ(of(DifferenceRecipe{"f"}), info.parameters[0].parts);
+    EXPECT_EQ(of(PositionRecipe{}), Parts{});
 }
 
 TEST(Derived, WhatCannotBeIsLeftOutWithAMessage) {

@@ -183,6 +183,62 @@ TEST_F(Export, IntegersWhoseScalingChangesInTimeBecomeFloats) {
             EXPECT_EQ(physicalValues(back.load(0, c, t)), physicalValues(dataset.load(0, c, t)));
 }
 
+/// One parameter of one component: stored numbers, their type and scaling; the last sample is absent if `hole`.
+Dataset codes(ScalarType type, const std::vector<int>& numbers, double scale, double offset, bool hole) {
+    Dataset dataset;
+    dataset.info.name = "codes";
+    dataset.info.lattice.size = {int(numbers.size()), 1, 1};
+    dataset.info.parameters = {{"n", "", 1, type, false, {}, {}}};
+    dataset.load = [=, lattice = dataset.info.lattice](int, int, int) {
+        Field field = makeField(lattice, type);
+        dispatch(type, [&]<class T>(T) {
+            for (std::size_t i = 0; i < numbers.size(); ++i) field.as<T>()[i] = static_cast<T>(numbers[i]);
+        });
+        field.scale = scale, field.offset = offset;
+        if (hole) withHole(field, numbers.size() - 1);
+        return field;
+    };
+    return dataset;
+}
+
+/// As many numbers as there are bytes for.
+template <class T> std::vector<T> numbersOf(const std::string& path) {
+    std::ifstream in(path, std::ios::binary);
+    const std::string bytes{std::istreambuf_iterator<char>(in), {}};
+    std::vector<T> numbers(bytes.size() / sizeof(T));
+    std::memcpy(numbers.data(), bytes.data(), numbers.size() * sizeof(T));
+    return numbers;
+}
+
+TEST_F(Export, ValuesInPlaceOfCodes) {
+    using testing::ElementsAre;
+    const std::string path = (folder_ / "out.raw").string();
+    ExportSelection values;
+    values.values = true;
+    exportDataset(codes(ScalarType::U8, {0, 25, 51}, 5, 0, false), values, path);
+    EXPECT_THAT(numbersOf<std::uint8_t>(path), ElementsAre(0, 125, 255));
+    exportDataset(codes(ScalarType::U8, {0, 25, 51}, 6, 0, false), values, path); // 306 takes 16 bits
+    EXPECT_THAT(numbersOf<std::int16_t>(path), ElementsAre(0, 150, 306));
+    exportDataset(codes(ScalarType::U16, {0, 25, 60000}, 100, -7, false), values, path);
+    EXPECT_THAT(numbersOf<std::int32_t>(path), ElementsAre(-7, 2493, 5999993));
+    exportDataset(codes(ScalarType::I16, {-4, 25, 51}, 0.5, 1, false), values, path);
+    EXPECT_THAT(numbersOf<float>(path), ElementsAre(-1.f, 13.5f, 26.5f));
+    exportDataset(codes(ScalarType::U8, {1, 25, 51}, 5, 0, true), values, path);
+    EXPECT_THAT(numbersOf<std::uint8_t>(path), ElementsAre(5, 125, 0));
+    const Dataset back = openFiles({path}, {});
+    EXPECT_EQ(back.load(0, 0, 0).value(1), 125);
+    EXPECT_FALSE(back.load(0, 0, 0).present(2));
+    // Not asked for, they are written as they are stored.
+    exportDataset(codes(ScalarType::U8, {0, 25, 51}, 5, 0, false), {}, path);
+    EXPECT_THAT(numbersOf<std::uint8_t>(path), ElementsAre(0, 25, 51));
+    const std::string nrrd = (folder_ / "out.nrrd").string();
+    exportDataset(codes(ScalarType::U8, {0, 25, 51}, 5, 0, false), values, nrrd);
+    std::ifstream in(nrrd, std::ios::binary);
+    const std::string bytes{std::istreambuf_iterator<char>(in), {}};
+    EXPECT_THAT(bytes, testing::HasSubstr("type: uint8\n"));
+    EXPECT_EQ(bytes.substr(bytes.find("\n\n") + 2), std::string("\0\x7d\xff", 3));
+}
+
 TEST_F(Export, ComponentsThatLackOtherSamplesBecomeFloats) {
     // No number tells the absent sample from the present ones, and one array of flags cannot speak for three.
     const Dataset dataset = integerVector([](Field& field, int c, int) {

@@ -122,6 +122,7 @@ void expectEqual(const Dataset& a, const Dataset& b) {
 TEST_F(ImportVtk, VtiComesBackBitForBit) {
     ImportOptions asIs;
     asIs.autoAbsent = false;
+    asIs.parts = {"*=joined"}; // noise jumps everywhere
     for (const glm::ivec3 size : {glm::ivec3(3, 2, 17), glm::ivec3(1, 1, 1), glm::ivec3(5, 1, 4)}) {
         const Dataset dataset = sample(size);
         const std::string path = (folder_ / "series.vti").string();
@@ -289,7 +290,7 @@ TEST_F(ImportVtk, BadFilesGiveOneLine) {
                                "ORIGIN 0 0 0\nSPACING 1 2 3\nPOINT_DATA 4\nFIELD FieldData 2\nT 1 4 double\n1 2 3 4\n";
     EXPECT_EQ(failure(write("whole.vtk", legacy + "p 1 4 double\n5 6 7 8\n")), "");
     EXPECT_THAT(failure(write("cut.vtk", legacy)), testing::HasSubstr("ends too early"));
-    EXPECT_THAT(failure(write("a.xyz", "1")), testing::HasSubstr("unknown ending"));
+    EXPECT_THAT(failure(write("a.unheard", "1")), testing::HasSubstr("unknown ending"));
     EXPECT_THAT(
         failure(write("none.vti", "<VTKFile type=\"ImageData\"><ImageData WholeExtent=\"0 1 0 1 0 1\" Origin=\"0 0 0\" "
                                   "Spacing=\"1 1 1\"><Piece Extent=\"0 1 0 1 0 1\"/></ImageData></VTKFile>")),

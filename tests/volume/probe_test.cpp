@@ -59,6 +59,20 @@ TEST(Probe, AbsentIsEmptyAndSoIsOutside) {
     for (const ProbeValue& value : probe(*source, {7.01, 2, 2}, 0)) EXPECT_FALSE(value.nearest.has_value());
 }
 
+// Two gases on either side of a membrane: no point has both, and none between them has neither.
+TEST(Probe, APointIsOnOneSideOnly) {
+    Field air = sampled<float>(ccLattice({8, 8, 8}), [](glm::dvec3) { return 5.0; });
+    Field fuel = air;
+    test::removeWhere(air, [](glm::dvec3 p) { return p.x > 3; });
+    test::removeWhere(fuel, [](glm::dvec3 p) { return p.x <= 3; });
+    const auto source = makeMemorySource(test::datasetOf({air, fuel}), {LatticeKind::CC, 8, 1 << 30});
+    for (const double x : {3.0, 3.25, 3.5, 3.75, 4.0}) {
+        const auto at = probe(*source, {x, 2, 2}, 0);
+        EXPECT_NE(at[0].interpolated.has_value(), at[1].interpolated.has_value()) << x;
+        EXPECT_EQ(at[0].interpolated.has_value(), at[0].nearest.has_value()) << x;
+    }
+}
+
 /// Counts what is read of it.
 class CountingSource final : public BrickSource {
 public:

@@ -1,0 +1,328 @@
+#include "app/open.h"
+#include "app/views/focus_share.h"
+#include "app/views/profile_data.h"
+#include "app/views/statistics_feed.h"
+#include "codec/pack.h"
+#include "volume/probe.h"
+#include "volume/synthetic/models.h"
+
+#include <cmath>
+#include <filesystem>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+/// Numbers are those of the samples as computed, on whatever lattice pictures are drawn.
+namespace tessera::app {
+namespace {
+
+constexpr int kBins = 24, kTime = 1;
+
+DataRef smallCell() {
+    DataRef data;
+    data.model = "fuel-cell";
+    data.settings = {{"nx", 9}, {"ny", 11}, {"nz", 23}, {"times", 2}};
+    data.derived = {{"ratio", "", volume::ExpressionRecipe{"O2 / (O2 + H2O)"}},
+                    {"slope", "", volume::GradientRecipe{"T"}}};
+    return data;
+}
+
+DataRef with(const std::function<void(DataRef&)>& change) {
+    DataRef data = smallCell();
+    change(data);
+    return data;
+}
+
+Sources opened(const DataRef& data) {
+    std::vector<std::string> messages;
+    Sources sources = openSources(data, messages);
+    EXPECT_TRUE(messages.empty()) << messages.front();
+    return sources;
+}
+
+using codec::StoredLattice;
+
+codec::PackOptions packing(StoredLattice lattice, double maxError = 0) {
+    codec::PackOptions options;
+    options.lattice = lattice;
+    options.lossless = maxError == 0;
+    options.maxError = maxError;
+    return options;
+}
+
+std::vector<DataRef> shownOtherwise() {
+    return {
+        with([](DataRef& data) { data.lattice = PictureLattice::Grid; }),
+        with([](DataRef& data) { data.packed = packing(StoredLattice::CC); }),
+        with([](DataRef& data) { data.packed = packing(StoredLattice::BCC); }),
+        with([](DataRef& data) { data.packed = packing(StoredLattice::BCC, 0.05); }),
+        with([](DataRef& data) { data.packed = packing(StoredLattice::D4, 0.05); }),
+    };
+}
+
+constexpr const char* kShown[] = {"O2", "H2O", "T", "|U|", "ratio", "slope.z"};
+
+/// Everything a view counts or reads: with a brush in two parameters and one in space.
+struct Numbers {
+    volume::Statistics statistics;
+    std::string share;
+    std::vector<volume::ProbeValue> readout;
+    Profile profile;
+    std::vector<Range> ranges;
+};
+
+Session brushed(const volume::DatasetInfo& info) {
+    Session session;
+    session.time = info.times[kTime];
+    const auto range = [&](const char* name) {
+        return info.channelRange(info.channels()[std::size_t(info.findChannel(name).value())]);
+    };
+    const Range o2 = range("O2"), t = range("T");
+    vis::Brush values, space;
+    values.region = vis::RangeRegion{{{.channel = "O2", .lo = o2.lo + 0.3 * (o2.hi - o2.lo), .hi = o2.hi},
+                                      {.channel = "T", .lo = t.lo, .hi = t.lo + 0.8 * (t.hi - t.lo)}}};
+    space.region = vis::SphereRegion{.center = info.bounds.center(), .radius = 0.45 * info.bounds.size(), .soft = 0.2};
+    session.selection.brushes = {values, space};
+    return session;
+}
+
+std::vector<int> channelsOf(const volume::DatasetInfo& info, const std::string& ending = {}) {
+    std::vector<int> channels;
+    for (const char* name : kShown) channels.push_back(info.findChannel(name + ending).value());
+    return channels;
+}
+
+Numbers read(const volume::BrickSource& source, std::shared_ptr<const volume::BrickSource> shared,
+             const std::string& ending = {}) {
+    const volume::DatasetInfo& info = source.info();
+    Numbers out;
+    const std::vector<int> channels = channelsOf(info, ending);
+    for (const int channel : channels) out.ranges.push_back(info.channelRange(info.channels()[std::size_t(channel)]));
+    StatisticsResult result;
+    result.wish = makeWish(brushed(info), info, channels, out.ranges, kBins, true);
+    result.brushed = true;
+    result.statistics = answer(shared, result.wish, 0);
+    out.statistics = result.statistics;
+    out.share = shareText(focusShare(result, info, source.grid()));
+    const glm::dvec3 at = info.bounds.lo + info.bounds.size() * glm::dvec3(0.31, 0.57, 0.43);
+    const auto values = volume::probe(source, at, volume::timesAround(info.times, info.times[kTime]));
+    for (const int channel : channels) out.readout.push_back(values[std::size_t(channel)]);
+    ProfileWish wish;
+    wish.channels = channels;
+    wish.corners = {info.bounds.lo, info.bounds.hi};
+    wish.samples = 41;
+    wish.time = volume::timesAround(info.times, 0.4 * info.times.back());
+    out.profile = readProfile(source, wish);
+    return out;
+}
+
+void expectSame(double a, double b, const std::string& what) {
+    EXPECT_TRUE(a == b || (std::isnan(a) && std::isnan(b))) << what << ": " << a << " and " << b;
+}
+
+void expectSame(const volume::Summary& a, const volume::Summary& b, const std::string& what) {
+    expectSame(a.samples, b.samples, what + " samples");
+    expectSame(a.volume, b.volume, what + " volume");
+    expectSame(a.mean, b.mean, what + " mean");
+    expectSame(a.deviation, b.deviation, what + " deviation");
+    expectSame(a.min, b.min, what + " least");
+    expectSame(a.max, b.max, what + " most");
+}
+
+/// Equal to the last digit.
+void expectSame(const Numbers& a, const Numbers& b) {
+    EXPECT_EQ(a.share, b.share);
+    EXPECT_EQ(a.ranges, b.ranges);
+    ASSERT_EQ(a.statistics.joint.size(), b.statistics.joint.size());
+    for (std::size_t c = 0; c < std::size(kShown); ++c) {
+        const std::string name = kShown[c];
+        const volume::ChannelStatistics &x = a.statistics.channels[c], &y = b.statistics.channels[c];
+        expectSame(x.all, y.all, name + " all");
+        expectSame(x.inside, y.inside, name + " inside");
+        expectSame(x.outside, y.outside, name + " outside");
+        EXPECT_EQ(x.histogram.count, y.histogram.count) << name;
+        EXPECT_EQ(x.histogram.focus, y.histogram.focus) << name;
+        EXPECT_EQ(a.readout[c].interpolated, b.readout[c].interpolated) << name;
+        EXPECT_EQ(a.readout[c].nearest, b.readout[c].nearest) << name;
+        for (std::size_t i = 0; i < a.profile.values[c].size(); ++i)
+            expectSame(a.profile.values[c][i], b.profile.values[c][i], name + " along the line");
+    }
+    for (std::size_t p = 0; p < a.statistics.joint.size(); ++p) {
+        const volume::JointHistogram &x = a.statistics.joint[p], &y = b.statistics.joint[p];
+        EXPECT_EQ(x.count, y.count);
+        EXPECT_EQ(x.focus, y.focus);
+        expectSame(x.correlation, y.correlation, "r");
+        expectSame(x.focusCorrelation, y.focusCorrelation, "r inside");
+        expectSame(x.outsideCorrelation, y.outsideCorrelation, "r outside");
+    }
+}
+
+TEST(Numbers, AreTheSameOnEveryLattice) {
+    const Sources first = opened(smallCell());
+    ASSERT_EQ(first.pictures->grid().lattice.kind, volume::LatticeKind::BCC);
+    ASSERT_EQ(first.numbers->grid().lattice.kind, volume::LatticeKind::CC);
+    const Numbers wanted = read(*first.numbers, first.numbers);
+    EXPECT_NE(wanted.share.find("of where O2 exists"), std::string::npos) << wanted.share;
+    for (const DataRef& data : shownOtherwise()) {
+        SCOPED_TRACE(toJson(data).dump());
+        const Sources other = opened(data);
+        EXPECT_EQ(other.pictures->info().parameters.size(), other.numbers->info().parameters.size());
+        EXPECT_EQ(other.pictures->info().channels(), other.numbers->info().channels());
+        if (!data.packed || data.packed->lattice != codec::StoredLattice::D4) {
+            EXPECT_EQ(other.pictures->info().times, other.numbers->info().times);
+        }
+        expectSame(wanted, read(*other.numbers, other.numbers));
+    }
+    // What is drawn has other samples: read from those, the same numbers differ.
+    EXPECT_NE(read(*first.pictures, first.pictures).statistics.channels[0].all.mean,
+              wanted.statistics.channels[0].all.mean);
+}
+
+// With the originals at hand the packed parameters are what unpacking gives, at the points of the file.
+TEST(Numbers, OfOriginalsBesideWhatWasPacked) {
+    const Sources plain = opened(smallCell());
+    const auto count = [](const Sources& sources, const std::vector<std::string>& names, Range range) {
+        StatisticsWish wish;
+        for (const std::string& name : names) {
+            wish.channels.push_back(sources.numbers->info().findChannel(name).value());
+            wish.ranges.push_back(range);
+        }
+        if (names.size() == 2) wish.pairs = {{0, 1}};
+        wish.bins = kBins;
+        wish.time = {kTime, kTime, 0};
+        return answer(sources.numbers, wish, 0);
+    };
+    for (const auto lattice : {StoredLattice::CC, StoredLattice::BCC}) {
+        const Sources sources = opened(with([&](DataRef& of) {
+            of.derived.clear();
+            of.packed = packing(lattice, 0.02);
+            of.originals = true;
+        }));
+        EXPECT_EQ(sources.numbers->info().lattice, plain.numbers->info().lattice);
+        for (const std::string name : {"O2", "H2O", "T"}) {
+            const volume::DatasetInfo& info = plain.numbers->info();
+            const Range range = info.channelRange(info.channels()[std::size_t(info.findChannel(name).value())]);
+            const volume::ChannelStatistics wanted = count(plain, {name}, range).channels[0];
+            const volume::Statistics found = count(sources, {name + " as computed", name}, range);
+            expectSame(found.channels[0].all, wanted.all, name);
+            EXPECT_EQ(found.channels[0].histogram.count, wanted.histogram.count);
+            EXPECT_NE(found.channels[1].all.mean, wanted.all.mean) << "it has losses";
+            EXPECT_GT(found.joint[0].correlation, 0.9) << "of the same points";
+        }
+    }
+}
+
+/// Samples of a parameter as the model gives them, NaN where absent.
+std::vector<double> samplesOf(const volume::Dataset& cell, const std::string& name) {
+    for (std::size_t p = 0; p < cell.info.parameters.size(); ++p) {
+        if (cell.info.parameters[p].name != name) continue;
+        const volume::Field field = cell.load(int(p), 0, kTime);
+        std::vector<double> values(field.count());
+        for (std::size_t i = 0; i < values.size(); ++i) values[i] = field.present(i) ? field.value(i) : std::nan("");
+        return values;
+    }
+    return {};
+}
+
+// Counted anew in the plainest way.
+TEST(Numbers, AreThoseOfTheSamplesAsComputed) {
+    const DataRef data = smallCell();
+    const Sources sources = opened(data);
+    const volume::Dataset cell = volume::makeModel(data.model, data.settings);
+    const volume::Lattice& lattice = cell.info.lattice;
+    EXPECT_EQ(sources.numbers->info().lattice, lattice);
+    const Numbers found = read(*sources.numbers, sources.numbers);
+    const std::vector<double> o2 = samplesOf(cell, "O2"), t = samplesOf(cell, "T"), h2o = samplesOf(cell, "H2O");
+    ASSERT_EQ(o2.size(), lattice.count());
+    const vis::Selection selection = brushed(cell.info).selection;
+    const auto& box = std::get<vis::SphereRegion>(selection.brushes[1].region);
+    const auto& ranges = std::get<vis::RangeRegion>(selection.brushes[0].region).intervals;
+    double n = 0, sum = 0, inside = 0;
+    std::vector<std::uint64_t> bins(kBins, 0), joint(kBins * kBins, 0);
+    const auto binOf = [&](double value, const Range& range) {
+        return std::min(kBins - 1, int((value - range.lo) / (range.hi - range.lo) * kBins));
+    };
+    double sa = 0, sb = 0, saa = 0, sbb = 0, sab = 0, pairs = 0;
+    for (std::size_t i = 0; i < o2.size(); ++i) {
+        if (std::isnan(o2[i])) continue;
+        ++n;
+        sum += o2[i];
+        ++bins[std::size_t(binOf(o2[i], found.ranges[0]))];
+        const glm::ivec3 at(int(i) % lattice.size.x, int(i) / lattice.size.x % lattice.size.y,
+                            int(i) / lattice.size.x / lattice.size.y);
+        const glm::dvec3 away = (lattice.position(at) - box.center) / box.radius;
+        const double distance = std::sqrt(away.x * away.x + away.y * away.y + away.z * away.z);
+        const bool brushedValue =
+            o2[i] >= ranges[0].lo && o2[i] <= ranges[0].hi && t[i] >= ranges[1].lo && t[i] <= ranges[1].hi;
+        if (brushedValue && distance < 1 - box.soft) ++inside; // wholly in focus
+        if (std::isnan(h2o[i])) continue;
+        ++joint[std::size_t(binOf(h2o[i], found.ranges[1]) * kBins + binOf(o2[i], found.ranges[0]))];
+        ++pairs;
+        sa += o2[i], sb += h2o[i], saa += o2[i] * o2[i], sbb += h2o[i] * h2o[i], sab += o2[i] * h2o[i];
+    }
+    const volume::ChannelStatistics& own = found.statistics.channels[0];
+    EXPECT_EQ(own.all.samples, n);
+    EXPECT_LT(n, double(o2.size())) << "O2 exists on one side only";
+    EXPECT_NEAR(own.all.mean, sum / n, 1e-9 * std::abs(sum / n));
+    EXPECT_EQ(own.histogram.count, bins);
+    EXPECT_GE(own.inside.samples, inside);
+    EXPECT_GT(inside, 0);
+    for (const volume::JointHistogram& pair : found.statistics.joint)
+        if (pair.x == 0 && pair.y == 1) {
+            EXPECT_EQ(pair.count, joint);
+            const double r = (pairs * sab - sa * sb) / std::sqrt((pairs * saa - sa * sa) * (pairs * sbb - sb * sb));
+            EXPECT_NEAR(pair.correlation, r, 1e-6);
+        }
+    // At a sample the read-out is that sample.
+    for (std::size_t i = 0; i < o2.size(); i += 7) {
+        const glm::ivec3 at(int(i) % lattice.size.x, int(i) / lattice.size.x % lattice.size.y,
+                            int(i) / lattice.size.x / lattice.size.y);
+        const auto value = volume::probeChannel(*sources.numbers, sources.numbers->info().findChannel("O2").value(),
+                                                lattice.position(at), kTime);
+        EXPECT_EQ(value.nearest.has_value(), !std::isnan(o2[i]));
+        if (value.nearest) {
+            EXPECT_EQ(*value.nearest, o2[i]);
+        }
+    }
+}
+
+TEST(Numbers, OfAnArchiveAreItsOwn) {
+    const std::string path =
+        (std::filesystem::temp_directory_path() / ("tessera-numbers-" + std::to_string(getpid()) + ".tsr")).string();
+    const DataRef data = smallCell();
+    volume::Dataset cell = volume::makeModel(data.model, data.settings);
+    codec::pack(cell, packing(StoredLattice::BCC), path);
+    const Sources sources = opened(dataOf({path}, {}));
+    EXPECT_EQ(sources.pictures, sources.numbers);
+    EXPECT_EQ(originText(sources.origin, sources.numbers->info()), "resampled to BCC, stored without loss");
+    std::filesystem::remove(path);
+}
+
+TEST(Numbers, WhatIsDrawnOnAnotherLatticeHasTheSameNumbers) {
+    const DataRef data = smallCell();
+    const Sources first = opened(data);
+    const Sources other = drawnOn(PictureLattice::Grid, first, data.derived);
+    EXPECT_EQ(other.numbers, first.numbers);
+    EXPECT_EQ(other.pictures->info().lattice, first.numbers->info().lattice);
+    const Sources back = drawnOn(PictureLattice::BodyCentred, other, data.derived);
+    EXPECT_EQ(back.pictures->info(), first.pictures->info());
+    const volume::BrickKey key{first.pictures->info().findChannel("slope.z").value(), kTime, 0, {0, 0, 0}};
+    EXPECT_EQ(back.pictures->read(key).values, first.pictures->read(key).values);
+}
+
+TEST(Numbers, WithTimeAlongAnAxisAreTheSameOnEveryLattice) {
+    const auto along = [](PictureLattice lattice) {
+        return opened(with([&](DataRef& data) {
+            data.lattice = lattice;
+            data.timeAxis = volume::TimeAxis{volume::SpaceAxis::Z, 0.5};
+        }));
+    };
+    const Sources grid = along(PictureLattice::Grid), bcc = along(PictureLattice::BodyCentred);
+    EXPECT_EQ(bcc.pictures->grid().lattice.kind, volume::LatticeKind::BCC);
+    EXPECT_EQ(grid.numbers->info(), bcc.numbers->info());
+    for (int channel = 0; channel < int(grid.numbers->info().channels().size()); ++channel)
+        EXPECT_EQ(grid.numbers->read({channel, 0, 0, {0, 0, 0}}).values,
+                  bcc.numbers->read({channel, 0, 0, {0, 0, 0}}).values);
+}
+
+} // namespace
+} // namespace tessera::app

@@ -1,0 +1,216 @@
+#include "app/views/region_data.h"
+
+#include "app/sources.h"
+#include "app/views/section_data.h"
+#include "tests/volume/cell_data.h"
+#include "volume/analysis/flow_channels.h"
+#include "volume/import/foreign.h"
+#include "volume/memory_source.h"
+
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <gtest/gtest.h>
+#include <sstream>
+
+/// The numbers of regions, planes and balances as tables, files and the command line show them.
+namespace tessera::app {
+namespace {
+
+using volume::test::cellData;
+using volume::test::cellSource;
+
+std::vector<std::vector<std::string>> rowsOf(const std::string& csv) {
+    std::vector<std::vector<std::string>> rows;
+    std::istringstream lines(csv);
+    for (std::string line; std::getline(lines, line);) {
+        std::vector<std::string>& row = rows.emplace_back();
+        std::istringstream fields(line);
+        for (std::string field; std::getline(fields, field, ',');) row.push_back(field);
+    }
+    return rows;
+}
+
+const volume::Lattice kGrid = volume::test::ccLattice({6, 5, 9}, {1e-3, 2e-3, 5e-3}, {0, 0, 0.1});
+
+volume::Dataset cell() {
+    return cellData(kGrid, volume::test::boxOf(kGrid));
+}
+
+TEST(RegionData, RowsSayOfWhatTheirSharesAre) {
+    const auto source = cellSource(cell());
+    const volume::DatasetInfo& info = source->info();
+    const RegionWish wish{{0, 2}, 1, {}};
+    const volume::RegionStatistics statistics = readRegions(source, wish);
+    const std::vector<RegionRow> rows = regionRows(info, wish, statistics);
+    ASSERT_EQ(rows.size(), 8u); // three regions and the whole, of both parameters
+    EXPECT_EQ(rows[1].region, "air");
+    EXPECT_EQ(rows[1].parameter, "O2");
+    EXPECT_TRUE(rows[3].all);
+    double samples = 0;
+    for (int r = 0; r < 3; ++r) samples += rows[std::size_t(r)].summary.samples;
+    EXPECT_LT(samples, rows[3].summary.samples); // some lie in no region
+    EXPECT_DOUBLE_EQ(rows[3].ofExisting, 1);
+    EXPECT_DOUBLE_EQ(rows[1].ofAll, rows[1].summary.samples / double(kGrid.count()));
+    EXPECT_DOUBLE_EQ(rows[1].ofExisting, rows[1].summary.samples / rows[3].summary.samples);
+    const auto csv = rowsOf(regionCsv(rows, "m", "time [s]", "0.5"));
+    ASSERT_EQ(csv.size(), 9u);
+    EXPECT_EQ(csv[0][0], "time [s]");
+    EXPECT_EQ(csv[2][0], "0.5");
+    EXPECT_EQ(csv[2][3], "air");
+    EXPECT_NEAR(std::stod(csv[2][8]), rows[1].summary.mean, 1e-8);
+    EXPECT_NEAR(std::stod(csv[2][7]), rows[1].summary.volume, 1e-8 * rows[1].summary.volume);
+    const std::vector<std::string> cells = regionCells(rows[1], "m");
+    ASSERT_EQ(cells.size(), regionHeads().size());
+    EXPECT_EQ(cells[0], "O2 [mol/m\u00b3]");
+    EXPECT_EQ(cells[1], "air");
+}
+
+TEST(RegionData, SectionsHaveUnitsAndCurvesARegionEach) {
+    const auto source = cellSource(cell());
+    const volume::DatasetInfo& info = source->info();
+    SectionWish wish;
+    wish.channels = {0, 2};
+    wish.label = 1;
+    const SectionCurves curves = readSections(source, wish);
+    EXPECT_EQ(curves.velocity, "U");
+    EXPECT_EQ(curves.wish.regions, (std::vector<int>{0, 1, 3}));
+    EXPECT_EQ(measureUnit(info, 0, "U", SectionMeasure::Mean).unit, "mol/m3");
+    EXPECT_EQ(measureUnit(info, 0, "U", SectionMeasure::Integral).unit, "mol/m");
+    EXPECT_EQ(measureUnit(info, 0, "U", SectionMeasure::Flux).unit, "mol/s");
+    EXPECT_EQ(measureUnit(info, 2, "U", SectionMeasure::Flux).unit, "kg/s");
+    EXPECT_EQ(measureUnit(info, 0, "U", SectionMeasure::Flow).unit, "m3/s");
+    volume::DatasetInfo inMillimetres = info;
+    inMillimetres.lengthUnit = "mm";
+    EXPECT_NEAR(measureUnit(inMillimetres, 0, "U", SectionMeasure::Flux).factor, 1e-6, 1e-18);
+
+    const auto csv = rowsOf(sectionCsv(info, curves));
+    ASSERT_EQ(csv.size(), 1u + 3 * 2 * 9);
+    EXPECT_EQ(csv[0][0], "z [m]");
+    const std::vector<std::string>& third = csv[1 + 9 * 2 + 2]; // air, O2, third plane
+    EXPECT_EQ(third[1], "air");
+    EXPECT_EQ(third[2], "O2");
+    EXPECT_NEAR(std::stod(third[0]), 0.11, 1e-12);
+    const volume::SectionValues& values = curves.sections.values[1][0][2];
+    EXPECT_NEAR(std::stod(third[6]), values.mean, 1e-8);
+    EXPECT_NEAR(std::stod(third[11]), values.flux, 1e-8 * std::abs(values.flux));
+    EXPECT_EQ(third[12], "mol/s");
+
+    const auto panels = sectionPanels(info, curves, SectionMeasure::Flux);
+    ASSERT_EQ(panels.size(), 2u);
+    EXPECT_EQ(panels[0].y.title, "flux of O2 [mol/s]");
+    EXPECT_EQ(panels[0].x.title, "z [mm]");
+    ASSERT_EQ(panels[0].series.size(), 3u);
+    EXPECT_EQ(panels[0].series[2].name, "fuel");
+    EXPECT_NEAR(panels[0].series[1].points[2].y, values.flux, 1e-12);
+    EXPECT_NE(panels[0].series[1].color, panels[0].series[2].color);
+}
+
+TEST(RegionData, WithoutAVelocityThereIsNoFlux) {
+    volume::Dataset data = cell();
+    data.info.parameters[3].name = "gradient";
+    data.info.parameters[3].unit = "K/m";
+    const auto source = cellSource(data);
+    SectionWish wish;
+    wish.channels = {0};
+    const SectionCurves curves = readSections(source, wish);
+    EXPECT_EQ(curves.velocity, "");
+    EXPECT_THROW(sectionPanels(source->info(), curves, SectionMeasure::Flux), Error);
+    EXPECT_EQ(rowsOf(sectionCsv(source->info(), curves))[1][11], ""); // no number rather than 0
+    wish.weight = volume::SectionWeight::MassFlow;
+    EXPECT_THROW(readSections(source, wish), Error);
+    EXPECT_THROW(readBalance(source, {}), Error);
+}
+
+TEST(RegionData, SectionsCountWhatIsBrushed) {
+    const auto source = cellSource(cell());
+    SectionWish wish;
+    wish.channels = {0};
+    wish.selection.brushes = {vis::rangeBrush({{"region", 0.75, 1.25, 0}})};
+    const SectionCurves brushed = readSections(source, wish);
+    EXPECT_EQ(curveLooks(source->info(), wish)[0].name, "selection");
+    wish.selection = {};
+    wish.label = 1;
+    wish.regions = {1};
+    const SectionCurves region = readSections(source, wish);
+    for (std::size_t p = 0; p < region.sections.place.size(); ++p)
+        EXPECT_DOUBLE_EQ(brushed.sections.values[0][0][p].mean, region.sections.values[0][0][p].mean);
+}
+
+TEST(RegionData, BalancesAreInMolesPerSecond) {
+    const auto source = cellSource(cell());
+    const volume::DatasetInfo& info = source->info();
+    const Balance balance = readBalance(source, {0, "", 1, {}});
+    const BalanceTable table = balanceTable(info, balance);
+    EXPECT_EQ(table.unit, "mol/s");
+    EXPECT_EQ(table.insideUnit, "mol");
+    ASSERT_EQ(balance.regions.size(), 3u);
+    for (const volume::RegionBalance& region : balance.regions) {
+        double in = 0, out = 0;
+        const BalanceRow* total = nullptr;
+        for (const BalanceRow& row : table.rows) {
+            if (row.region != volume::labelName(info.parameters[1], region.region)) continue;
+            if (row.total) {
+                total = &row;
+                continue;
+            }
+            in += row.in;
+            out += row.out;
+        }
+        ASSERT_NE(total, nullptr);
+        EXPECT_NEAR(total->in, in, 1e-12 * in);
+        EXPECT_NEAR(total->net, out - in, 1e-12 * (in + out));
+        EXPECT_NEAR(total->net, region.residual(), 1e-15);
+        EXPECT_NEAR(total->relative, region.residual() / region.total().in, 1e-12);
+        EXPECT_NEAR(total->inside, region.amount, 1e-15);
+    }
+    const auto csv = rowsOf(balanceCsv(table, "", ""));
+    EXPECT_EQ(csv[0][3], "in [mol/s]");
+    EXPECT_EQ(csv.size(), table.rows.size() + 1);
+    EXPECT_EQ(balanceCells(table.rows[0]).size(), balanceHeads(table).size());
+    EXPECT_GE(table.notes.size(), 3u);
+}
+
+TEST(RegionData, TablesLineUp) {
+    EXPECT_EQ(alignedTable({"Name", "n"}, {{"\u00b5", "10"}, {"longer", "7"}}, 1), "Name     n\n"
+                                                                                   "\u00b5       10\n"
+                                                                                   "longer   7\n");
+}
+
+/// The curve of this field, through everything that opens a file for the command line.
+TEST(RegionData, OxygenOfTheSharedCellFallsAlongItsChannel) {
+    const char* stated = std::getenv("TESSERA_DATA");
+    const std::filesystem::path file =
+        std::filesystem::path(stated != nullptr ? stated : TESSERA_TEST_DATA) / "fuel-cell/grid/large_0260.vti";
+    if (!std::filesystem::exists(file) || volume::findImporter().empty()) GTEST_SKIP() << "no " << file;
+    DataRef data;
+    data.files = {{.path = file.string(), .absolutePath = file.string(), .bytes = 0, .hash = ""}};
+    data.import.labels = {"region:1=cathode,3=anode,0=solid"};
+    std::vector<std::string> messages;
+    const Sources sources = openSources(data, messages); // pictures are on BCC
+    const volume::DatasetInfo& info = sources.numbers->info();
+    SectionWish wish;
+    wish.channels = {*info.findChannel("O2"), *info.findChannel("H2")};
+    wish.label = *volume::labelChannel(info);
+    const SectionCurves curves = readSections(sources.numbers, wish);
+    const auto panels = sectionPanels(info, curves, SectionMeasure::Mean);
+    ASSERT_EQ(panels[0].series.size(), 1u);
+    EXPECT_EQ(panels[0].title, "cathode");
+    EXPECT_EQ(panels[0].x.title, "z [mm]");
+    EXPECT_EQ(panels[0].series[0].points.size(), 88u);
+    EXPECT_NEAR(panels[0].series[0].points.front().y, 5.28, 0.01);
+    EXPECT_NEAR(panels[0].series[0].points.back().y, 3.02, 0.01);
+    EXPECT_EQ(panels[1].title, "anode");
+    EXPECT_NEAR(panels[1].series[0].points.front().y, 21.80, 0.01);
+    EXPECT_NEAR(panels[1].series[0].points.back().y, 20.78, 0.01);
+    const BalanceTable balance =
+        balanceTable(info, readBalance(sources.numbers, {wish.channels[0], "", wish.label, {}}));
+    for (const BalanceRow& row : balance.rows)
+        if (row.total && row.region == "cathode") {
+            EXPECT_LT(row.relative, -0.2); // much of the oxygen is used up
+            EXPECT_GT(row.relative, -0.6);
+        }
+}
+
+} // namespace
+} // namespace tessera::app

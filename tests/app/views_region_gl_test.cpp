@@ -1,0 +1,102 @@
+#include "app/session/label_names.h"
+#include "tests/app/fed_imgui.h"
+#include "tests/volume/cell_data.h"
+#include "vis/gl/headless.h"
+
+#include "app/ui/theme.h"
+#include "app/views/view_context.h"
+
+#include <gtest/gtest.h>
+
+/// Statistics by region, balances and averages over planes in their views.
+namespace tessera::app {
+namespace {
+
+class RegionViews : public FedImGui {
+protected:
+    RegionViews() : FedImGui({1280, 800}) {}
+    void SetUp() override {
+        fonts = loadFonts(1);
+        applyTheme(Theme::Dark, 1);
+        const volume::Lattice grid = volume::test::ccLattice({9, 11, 19}, {1e-3, 1e-3, 2e-3});
+        data = volume::test::cellData(grid, volume::test::boxOf(grid));
+        source = volume::test::cellSource(data);
+        renderer.setSource(source);
+        session = defaultSession(source->info(), {});
+    }
+    template <class View>
+    void draw(View& view, void (*function)(ViewContext&, const std::string&, View&), ImVec2 size = {900, 700}) {
+        feed([&] {
+            ViewContext context{session, source, renderer, jobs, caches};
+            context.numbers = source;
+            context.headless = true;
+            ImGui::SetNextWindowPos({0, 0});
+            ImGui::SetNextWindowSize(size);
+            ImGui::Begin("view", nullptr, ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove);
+            function(context, "view", view);
+            busy = context.busy;
+            ImGui::End();
+        });
+        drawn = ImGui::GetDrawData()->TotalVtxCount;
+    }
+
+    vis::HeadlessContext gl;
+    Fonts fonts;
+    vis::Renderer renderer;
+    Jobs jobs;
+    std::map<std::string, std::unique_ptr<ViewCache>> caches;
+    volume::Dataset data;
+    std::shared_ptr<const volume::BrickSource> source;
+    Session session;
+    int drawn = 0;
+    bool busy = false;
+};
+
+TEST_F(RegionViews, DrawEveryMeasureAcrossEveryAxis) {
+    ProfileView view;
+    view.over = ProfileOver::Sections;
+    view.channels = {"O2", "rho"};
+    for (const SectionAcross across : {SectionAcross::X, SectionAcross::Z, SectionAcross::Line})
+        for (int m = 0; m < int(std::size(kSectionMeasureNames)); ++m)
+            for (const bool byRegion : {true, false}) {
+                view.sections = {across, volume::SectionWeight::MassFlow, SectionMeasure(m), byRegion, {}};
+                draw(view, drawProfileView);
+                draw(view, drawProfileView);
+                EXPECT_GT(drawn, 500) << m;
+                EXPECT_FALSE(busy);
+            }
+    // A curve for each region more.
+    view.sections = {};
+    view.sections.regions = {1};
+    draw(view, drawProfileView);
+    draw(view, drawProfileView);
+    const int one = drawn;
+    view.sections.regions = {};
+    draw(view, drawProfileView);
+    draw(view, drawProfileView);
+    EXPECT_GT(drawn, one + 100);
+    for (const ImVec2 size : {ImVec2{200, 120}, ImVec2{40, 30}}) draw(view, drawProfileView, size);
+}
+
+TEST_F(RegionViews, ShowStatisticsAndBalances) {
+    StatisticsView view;
+    draw(view, drawStatisticsView);
+    draw(view, drawStatisticsView);
+    const int selection = drawn;
+    view.byRegion = true;
+    draw(view, drawStatisticsView);
+    draw(view, drawStatisticsView);
+    EXPECT_GT(drawn, selection); // four rows in place of one
+    toggleRegionBrush(session, data.info.parameters[1], 3);
+    draw(view, drawStatisticsView);
+    view.balance = "O2";
+    draw(view, drawStatisticsView);
+    draw(view, drawStatisticsView);
+    EXPECT_GT(drawn, 500);
+    EXPECT_FALSE(busy);
+    view.balance = "gone"; // other data: statistics again
+    draw(view, drawStatisticsView, {40, 30});
+}
+
+} // namespace
+} // namespace tessera::app

@@ -1,0 +1,119 @@
+#include "codec/archive.h"
+#include "codec/pack.h"
+#include "codec/unpack.h"
+#include "tests/codec/make_dataset.h"
+#include "tests/volume/regions.h"
+#include "volume/part_masks.h"
+
+#include <gtest/gtest.h>
+
+/// Two regions of different constants through archives: nothing but what each region holds comes out.
+namespace tessera::codec {
+namespace {
+
+using namespace testing;
+using volume::BrickSamples;
+using volume::Dataset;
+using volume::Field;
+
+Dataset regionsData(int times) {
+    volume::test::TwoRegions regions;
+    regions.place = 9;
+    return volume::test::twoRegions(volume::test::ccLattice({25, 22, 21}), volume::test::constantIn, regions, times);
+}
+
+void expectPure(const volume::BrickSource& source, int time) {
+    const volume::BrickGrid& grid = source.grid();
+    const glm::ivec3 count = grid.count();
+    const int label = *source.info().findChannel("region"), value = *source.info().findChannel("v");
+    std::size_t seen[4] = {};
+    for (int level = 0; level < grid.levels; ++level)
+        for (int n = 0; n < count.x * count.y * count.z; ++n) {
+            const glm::ivec3 at(n % count.x, n / count.x % count.y, n / (count.x * count.y));
+            const BrickSamples values = source.read({value, time, level, at}),
+                               labels = source.read({label, time, level, at});
+            for (std::size_t i = 0; i < values.values.size(); ++i) {
+                if (!values.present.empty() && values.present[i] == 0) continue;
+                const int own = int(labels.values[i]);
+                ++seen[own];
+                ASSERT_NEAR(values.values[i], volume::test::constantIn(own, {}), 1e-5) << "level " << level;
+            }
+        }
+    EXPECT_GT(seen[1], 100u);
+    EXPECT_GT(seen[3], 100u);
+}
+
+void expectPure(const Dataset& dataset) {
+    for (int t = 0; t < int(dataset.info.times.size()); ++t) {
+        const Field values = dataset.load(0, 0, t), labels = dataset.load(1, 0, t);
+        for (std::size_t i = 0; i < values.count(); ++i)
+            if (values.present(i)) {
+                ASSERT_NEAR(values.value(i), volume::test::constantIn(int(labels.value(i)), {}), 1e-5) << t;
+            }
+    }
+}
+
+TEST(RegionsInArchives, StayApartOnEveryLatticeAndLevel) {
+    const TemporaryFolder folder;
+    for (const StoredLattice lattice : {StoredLattice::CC, StoredLattice::BCC, StoredLattice::D4})
+        for (const WaveletChoice wavelet :
+             {WaveletChoice::Auto, WaveletChoice::W22, WaveletChoice::W13, WaveletChoice::N4})
+            for (const int brick : {8, 32})
+                for (const bool slabs : {false, true}) {
+                    SCOPED_TRACE(std::string(kStoredLatticeNames[std::size_t(lattice)]) + " " +
+                                 std::string(kWaveletChoiceNames[std::size_t(wavelet)]) + " brick " +
+                                 std::to_string(brick));
+                    Dataset made = regionsData(4);
+                    PackOptions options;
+                    options.lattice = lattice;
+                    options.wavelet = wavelet;
+                    options.brickSize = brick;
+                    SlabInput input;
+                    if (slabs) {
+                        input.slices = [load = made.load](int p, int c, int t, int first, int count) {
+                            return volume::slicesOf(load(p, c, t), first, count);
+                        };
+                        input.layers = 1;
+                    }
+                    const std::string path = folder / "regions.tsr";
+                    pack(made, options, path, {}, input);
+                    const auto source = openArchive(path);
+                    EXPECT_EQ(source->info().parameters[0].parts, made.info.parameters[0].parts);
+                    for (int t = 0; t < int(source->info().times.size()); ++t) expectPure(*source, t);
+                    const auto archive = std::make_shared<const Archive>(path);
+                    for (int level = 0; level < archive->grid().levels; ++level)
+                        expectPure(gridDataset(archive, level));
+                }
+}
+
+TEST(RegionsInArchives, WholeFramesAndSlabsAreTheSame) {
+    const TemporaryFolder folder;
+    for (const StoredLattice lattice : {StoredLattice::BCC, StoredLattice::D4}) {
+        Dataset made = volume::test::twoRegions(volume::test::ccLattice({19, 18, 40}), volume::test::linearIn, {}, 3);
+        PackOptions options;
+        options.lattice = lattice;
+        options.brickSize = 8;
+        pack(made, options, folder / "whole.tsr");
+        const SlabInput input{[load = made.load](int p, int c, int t, int first, int count) {
+                                  return volume::slicesOf(load(p, c, t), first, count);
+                              },
+                              1};
+        pack(made, options, folder / "slabs.tsr", {}, input);
+        const Archive whole(folder / "whole.tsr"), slabs(folder / "slabs.tsr");
+        for (int t = 0; t < int(whole.info().times.size()); ++t)
+            EXPECT_EQ(readField(whole, 0, 0, t).samples, readField(slabs, 0, 0, t).samples) << t;
+    }
+}
+
+TEST(RegionsInArchives, LosslessOnTheSourceGridStaysBitForBit) {
+    const TemporaryFolder folder;
+    Dataset made = volume::test::twoRegions(volume::test::ccLattice({19, 18, 17}), volume::test::linearIn);
+    PackOptions options;
+    options.lattice = StoredLattice::CC;
+    pack(made, options, folder / "cc.tsr");
+    const Archive archive(folder / "cc.tsr");
+    EXPECT_EQ(readField(archive, 0, 0, 0).samples, made.load(0, 0, 0).samples);
+}
+
+} // namespace
+} // namespace tessera::codec

@@ -1,0 +1,158 @@
+#include "codec/resample_error.h"
+
+#include "codec/archive.h"
+#include "codec/error_bound.h"
+#include "codec/unpack.h"
+#include "tests/codec/make_dataset.h"
+#include "tests/codec/plain/decoder.h"
+#include "volume/resample.h"
+
+#include <cmath>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace tessera::codec {
+namespace {
+
+using namespace testing;
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+using volume::ScalarType;
+
+volume::Dataset madeOf(int times) {
+    return makeDataset({20, 17, 16},
+                       {{"T", ScalarType::F32, 1, Texture::Smooth, false, false},
+                        {"n", ScalarType::U8, 1, Texture::Noise, true, false},
+                        {"U", ScalarType::F32, 2, Texture::Noise, false, false},
+                        {"region", ScalarType::U8, 1, Texture::Noise, false, true}},
+                       times);
+}
+
+/// What unpacking gives beside the source, sample by sample.
+ResampleError unpackedError(const volume::Dataset& made, const volume::Dataset& unpacked, int parameter) {
+    double squares = 0;
+    ResampleError error;
+    const volume::Parameter& about = made.info.parameters[std::size_t(parameter)];
+    for (int t = 0; t < int(made.info.times.size()); ++t)
+        for (int c = 0; c < about.components; ++c) {
+            const volume::Field a = made.load(parameter, c, t), b = unpacked.load(parameter, c, t);
+            for (std::size_t i = 0; i < a.count(); ++i) {
+                if (!a.present(i) || !b.present(i)) continue;
+                double apart = std::abs(a.value(i) - b.value(i));
+                if (about.categorical) apart = apart > 0 ? 1 : 0;
+                squares += apart * apart;
+                error.largest = std::max(error.largest, apart);
+                error.samples += 1;
+            }
+        }
+    error.meanSquare = squares / error.samples;
+    return error;
+}
+
+void expectNear(const ResampleError& a, const ResampleError& b) {
+    EXPECT_NEAR(a.meanSquare, b.meanSquare, 1e-9 * b.meanSquare);
+    EXPECT_DOUBLE_EQ(a.largest, b.largest);
+    EXPECT_EQ(a.samples, b.samples);
+    EXPECT_EQ(a.share, 1);
+}
+
+TEST(ResampleErrors, AreThoseOfWhatUnpackingGives) {
+    const TemporaryFolder folder;
+    volume::Dataset made = madeOf(2);
+    pack(made, {}, folder / "a.tsr");
+    const auto archive = std::make_shared<const Archive>(folder / "a.tsr");
+    const Metadata& metadata = archive->metadata();
+    ASSERT_EQ(metadata.resampled.size(), 4u);
+    const volume::Dataset unpacked = gridDataset(archive, 0);
+    for (int p = 0; p < 4; ++p) {
+        SCOPED_TRACE(p);
+        ASSERT_TRUE(metadata.resampled[std::size_t(p)]);
+        const ResampleError expected = unpackedError(made, unpacked, p);
+        EXPECT_GT(expected.largest, 0);
+        expectNear(*metadata.resampled[std::size_t(p)], expected);
+    }
+    EXPECT_TRUE(metadata.lossless);
+    EXPECT_THAT(exactnessText(metadata),
+                StartsWith("every sample of the BCC grid is exact; the source was resampled (PSNR "));
+    const ResampleError& noise = *metadata.resampled[1];
+    char words[64];
+    std::snprintf(words, sizeof words, "PSNR %.1f dB, error at most %.4g K",
+                  10 * std::log10(99 * 99 / noise.meanSquare), noise.largest);
+    EXPECT_EQ(resampledText(metadata, 1), "resampled: " + std::string(words));
+    EXPECT_THAT(resampledText(metadata, 3), HasSubstr("% of the samples have another label"));
+    // As another reader finds it.
+    const nlohmann::json plain = plain::Decoder(readFile(folder / "a.tsr")).metadata()["resampled"];
+    ASSERT_EQ(plain.size(), 4u);
+    EXPECT_EQ(plain[1]["largest"].get<double>(), noise.largest);
+    EXPECT_EQ(plain[1]["meanSquare"].get<double>(), noise.meanSquare);
+    EXPECT_EQ(plain[1]["samples"].get<double>(), noise.samples);
+}
+
+TEST(ResampleErrors, NothingIsSaidOfWhatWasNotResampled) {
+    const TemporaryFolder folder;
+    volume::Dataset made = madeOf(1);
+    PackOptions options;
+    options.lattice = StoredLattice::CC;
+    pack(made, options, folder / "a.tsr");
+    EXPECT_TRUE(Archive(folder / "a.tsr").metadata().resampled.empty());
+    EXPECT_EQ(exactnessText(Archive(folder / "a.tsr").metadata()), "lossless: every sample is exact");
+    volume::Dataset series = madeOf(3);
+    options.lattice = StoredLattice::D4;
+    pack(series, options, folder / "a.tsr");
+    EXPECT_EQ(exactnessText(Archive(folder / "a.tsr").metadata()),
+              "every sample of the D4* grid is exact; the source was resampled (at a cost that is not known)");
+}
+
+TEST(ResampleErrors, GoWithSamplesThatArePackedAgain) {
+    const TemporaryFolder folder;
+    volume::Dataset made = madeOf(1);
+    pack(made, {}, folder / "a.tsr");
+    const auto archive = std::make_shared<const Archive>(folder / "a.tsr");
+    volume::Dataset stored = storedDataset(archive), grid = gridDataset(archive, 0);
+    pack(stored, {}, folder / "bcc.tsr", {}, {storedSlices(archive), 0}, packedBefore(*archive));
+    EXPECT_EQ(Archive(folder / "bcc.tsr").metadata().resampled, archive->metadata().resampled);
+    PackOptions cc;
+    cc.lattice = StoredLattice::CC;
+    pack(grid, cc, folder / "cc.tsr", {}, {}, packedBefore(*archive));
+    const Archive back(folder / "cc.tsr");
+    EXPECT_EQ(back.metadata().resampled, archive->metadata().resampled);
+    EXPECT_THAT(exactnessText(back.metadata()), StartsWith("every sample of the CC grid is exact; the source was"));
+    // Once more on BCC: no less than either, the largest at most their sum.
+    const auto again = std::make_shared<const Archive>(folder / "cc.tsr");
+    volume::Dataset twice = storedDataset(again);
+    pack(twice, {}, folder / "twice.tsr", {}, {}, packedBefore(*again));
+    const Archive end(folder / "twice.tsr");
+    for (std::size_t p = 0; p < 3; ++p)
+        EXPECT_GE(end.metadata().resampled[p]->largest, archive->metadata().resampled[p]->largest);
+}
+
+TEST(ResampleErrors, AreJoinedWhenAnArchiveGrows) {
+    const TemporaryFolder folder;
+    volume::Dataset made = madeOf(3), first = made, last = made;
+    first.info.times.resize(2);
+    last.info.times.erase(last.info.times.begin(), last.info.times.begin() + 2);
+    last.load = [load = made.load](int p, int c, int) { return load(p, c, 2); };
+    pack(made, {}, folder / "whole.tsr");
+    pack(first, {}, folder / "grown.tsr");
+    append(last, folder / "grown.tsr");
+    const Archive whole(folder / "whole.tsr"), grown(folder / "grown.tsr");
+    for (std::size_t p = 0; p < 4; ++p) {
+        ASSERT_TRUE(grown.metadata().resampled[p]);
+        expectNear(*grown.metadata().resampled[p], *whole.metadata().resampled[p]);
+    }
+}
+
+TEST(ResampleErrors, OfLargeFramesAreThoseOfSomeSlices) {
+    volume::Dataset made = makeDataset({112, 112, 350}, {{"n", ScalarType::U8, 1, Texture::Noise, false, false}}, 1);
+    const volume::Field source = made.load(0, 0, 0), stored = volume::toBcc(source, false);
+    const ResampleError some = resampleError(source, stored, false);
+    EXPECT_NEAR(some.share, 256.0 / 350, 1e-9);
+    EXPECT_EQ(some.samples, 256.0 * 112 * 112);
+    const volume::Field back = volume::resample(stored, source.lattice, volume::ResampleFilter::Cubic);
+    double squares = 0;
+    for (std::size_t i = 0; i < source.count(); ++i) squares += std::pow(source.value(i) - back.value(i), 2);
+    EXPECT_NEAR(some.meanSquare, squares / double(source.count()), 0.02 * some.meanSquare);
+}
+
+} // namespace
+} // namespace tessera::codec

@@ -1,0 +1,54 @@
+#!/bin/bash
+# Differences as a user runs them: arguments TESSERA SOURCE_DIR.
+tessera=$1
+source "$2/tests/e2e/common.bash"
+
+check "data" 0 "$tessera" generate marschner-lobb -o a.vti --size 20x20x20
+cat >write.py <<'PYTHON'
+import json, struct, sys
+# T = 300 + x + 2 t on 5 x 4 x 3 at times 0 and 1, and the same on a finer grid, 1.5 lower.
+def write(name, n, h, lower):
+    values = [300 + h[0] * i + 2 * t - lower for t in (0, 1) for k in range(n[2]) for j in range(n[1]) for i in range(n[0])]
+    open(name + ".raw", "wb").write(struct.pack("<%df" % len(values), *values))
+    json.dump({"dims": n, "dtype": "float32", "spacing": h, "times": [0, 1],
+               "components": [{"name": "T", "unit": "K"}]}, open(name + ".json", "w"))
+write("coarse", [5, 4, 3], [1, 1, 1], 0)
+write("fine", [9, 7, 5], [0.5, 0.5, 0.5], 1.5)
+PYTHON
+python3 write.py || die "no python3"
+check "two files on unlike grids" 0 "$tessera" diff coarse.raw fine.raw -o table.csv
+say "interpolated onto the grid of coarse" out.txt
+say "# numbers: as computed; other data: as computed, interpolated onto the grid of coarse" table.csv
+[ "$(sed -n 3p table.csv)" = "T,K,0.0,1.5,1.5,1.5,1.5,60,0" ] || fail "not 1.5 K everywhere: $(cat table.csv)"
+check "the field" 0 "$tessera" diff coarse.raw fine.raw -o field.raw
+python3 - <<'PYTHON' || fail "the field is another"
+import struct
+values = struct.unpack("<120f", open("field.raw", "rb").read())
+assert all(abs(v - 1.5) < 1e-4 for v in values), values[:5]
+PYTHON
+check "as an archive" 0 "$tessera" diff coarse.raw fine.raw -o field.tsr
+check "what it holds" 0 "$tessera" info field.tsr
+say "T minus other" out.txt
+check "a file and itself" 0 "$tessera" diff fine.raw fine.raw
+say "on the same grid" out.txt
+check "nothing in common" 2 "$tessera" diff coarse.raw a.vti
+check "an unknown parameter" 2 "$tessera" diff coarse.raw fine.raw -p nothing
+say "nothing" err.txt
+check "no such file" 2 "$tessera" diff coarse.raw none.raw
+
+check "an archive" 0 "$tessera" pack coarse.raw -o coarse.tsr --lattice cc --lossless
+check "T minus its first time" 0 "$tessera" unpack coarse.tsr --derive "dT [K] = T - at(T, first)" -p dT -o dT.raw
+python3 - <<'PYTHON' || fail "T minus its first time is another"
+import struct
+values = struct.unpack("<120f", open("dT.raw", "rb").read())
+assert all(abs(v) < 1e-4 for v in values[:60]) and all(abs(v - 2) < 1e-4 for v in values[60:]), values
+PYTHON
+check "a time that is not there" 2 "$tessera" unpack coarse.tsr --derive "d = at(T, 7)" -o d.raw
+say "position 7: time 7 lies outside those of the data, 0 to 1" err.txt
+check "in the statistics" 0 "$tessera" stats coarse.tsr --derive "dT [K] = T - at(T, first)" --of dT -o dT.csv
+say ",2.0," dT.csv
+check "a wrong one there" 2 "$tessera" stats coarse.tsr --derive "dT = T - at(T, then)" --of dT
+say "dT: position 11: a time is expected here" err.txt
+check "no formula" 1 "$tessera" unpack coarse.tsr --derive "d" -o d.raw
+
+exit $((failures > 0))

@@ -1,0 +1,41 @@
+#!/bin/bash
+# Numbers without a window: regions, sections, balances, as text, CSV, SVG and JSON.
+tessera=$1
+source "$2/tests/e2e/common.bash"
+
+"$tessera" generate fuel-cell -o cell.raw --size 11x13x21 --times 2 > /dev/null 2>err || die "make a cell"
+"$tessera" stats cell.raw --time 0 > out.txt 2>err || die "statistics of regions"
+say 'Parameter' out.txt
+say 'numbers as computed' out.txt
+"$tessera" stats cell.raw --all-times -o regions.csv > /dev/null 2>err || die "regions over time"
+[ "$(cut -d, -f1 regions.csv | sort -u | wc -l)" -eq 4 ] || die "origin, head and two times: $(head -3 regions.csv)"
+"$tessera" stats cell.raw --along z --of O2,T --weight massflow -o along.csv > /dev/null 2>err || die "sections"
+[ "$(grep -c ',O2,' along.csv)" -ge 21 ] || die "a line for each plane"
+"$tessera" stats cell.raw --along z --of O2 -o along.svg > /dev/null 2>err || die "sections as a figure"
+say '<svg' along.svg
+say 'mean of O2' along.svg
+"$tessera" stats cell.raw --line 0,0,0,0.001,0.002,0.04 --planes 5 --of T --json > line.json 2>err || die "a line"
+say '"kind": "statistics"' line.json
+"$tessera" stats cell.raw --balance O2 > out.txt 2>err || die "a balance"
+say 'mol/s' out.txt
+say 'reacts' out.txt
+
+# Names of regions, stated once, are known the next time, and go into archives.
+"$tessera" pack cell.raw -o named.tsr --lattice cc --lossless --label 'region:0=plate#112233' > /dev/null 2>err || die "pack with names"
+"$tessera" info named.tsr > out.txt
+say 'plate' out.txt
+"$tessera" stats cell.raw --by region --of T > out.txt 2>err || die "remembered names"
+say 'plate' out.txt
+"$tessera" stats named.tsr --by region --of T --label region:0=rib > out.txt 2>err || die "names over those of an archive"
+say 'rib' out.txt
+
+# Wrong words: status 2 and one line.
+for words in "--of nothing" "--by T" "--along w" "--line 1,2,3" "--balance nothing" "--regions nowhere" \
+    "--along z --balance O2" "--velocity T --balance O2" "--label region:x=a" "--label nothing:1=a" "-o out.txt" \
+    "-o regions.svg"; do
+    # shellcheck disable=SC2086
+    check "$words" 2 "$tessera" stats cell.raw $words
+    [ "$(wc -l < err.txt)" -eq 1 ] || fail "not one line: $words: $(cat err.txt)"
+done
+check "a weight that is none" 1 "$tessera" stats cell.raw --along z --weight heavy
+[ "$failures" -eq 0 ]

@@ -1,0 +1,239 @@
+// Curves over time against sums over the samples and numbers read from the files here.
+#include "volume/analysis/curves.h"
+
+#include "volume/axis_source.h"
+#include "volume/error.h"
+#include "volume/import/foreign.h"
+#include "volume/import/import.h"
+#include "volume/memory_source.h"
+#include "volume/quantities.h"
+#include "volume/synthetic/models.h"
+
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <gtest/gtest.h>
+#include <iterator>
+#include <regex>
+
+namespace tessera::volume {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Sums over the samples of one parameter, those `inside` says.
+struct Sums {
+    double count = 0, all = 0, sum = 0, squares = 0, volume = 0;
+    double least = std::numeric_limits<double>::infinity(), most = -std::numeric_limits<double>::infinity();
+    double mean() const { return sum / count; }
+};
+
+Sums sumsOf(const Dataset& dataset, int parameter, int time, const std::function<bool(std::size_t)>& inside) {
+    const Field field = dataset.load(parameter, 0, time);
+    const Lattice& lattice = dataset.info.lattice;
+    Sums sums;
+    for (int z = 0; z < lattice.size.z; ++z)
+        for (int y = 0; y < lattice.size.y; ++y)
+            for (int x = 0; x < lattice.size.x; ++x) {
+                const std::size_t i = lattice.index({x, y, z});
+                if (!field.present(i)) continue;
+                ++sums.all;
+                if (!inside(i)) continue;
+                const double value = double(float(field.value(i)));
+                double cell = 1; // half of it lies outside at the faces
+                for (int a = 0; a < 3; ++a) {
+                    const int at = a == 0 ? x : a == 1 ? y : z;
+                    cell *= lattice.spacing[a] * (at == 0 || at == lattice.size[a] - 1 ? 0.5 : 1);
+                }
+                ++sums.count;
+                sums.volume += cell;
+                sums.sum += value;
+                sums.squares += value * value;
+                sums.least = std::min(sums.least, value);
+                sums.most = std::max(sums.most, value);
+            }
+    return sums;
+}
+
+int numberOfParameter(const DatasetInfo& info, const std::string& name) {
+    return info.channels()[std::size_t(*info.findChannel(name))].parameter;
+}
+
+/// Compares every statistic with the sums, everywhere and in one region.
+void expectStatistics(const Dataset& dataset, const std::string& parameter, const std::string& label, int value) {
+    const auto source = makeMemorySource(dataset, {.lattice = LatticeKind::CC, .brickSize = 8});
+    CurvesQuery query;
+    for (const char* kind : {"mean", "min", "max", "deviation", "share", "volume"})
+        query.y.push_back(std::string(kind) + "(" + parameter + ")");
+    for (const bool region : {false, true}) {
+        if (region) {
+            query.label = *dataset.info.findChannel(label);
+            query.regions = {value};
+        }
+        const Curves curves = computeCurves(*source, query);
+        EXPECT_EQ(curves.times, dataset.info.times);
+        EXPECT_EQ(curves.x.values, dataset.info.times);
+        for (std::size_t t = 0; t < dataset.info.times.size(); ++t) {
+            const Field labels = dataset.load(numberOfParameter(dataset.info, label), 0, int(t));
+            const Sums sums = sumsOf(dataset, numberOfParameter(dataset.info, parameter), int(t), [&](std::size_t i) {
+                return !region || (labels.present(i) && labels.value(i) == value);
+            });
+            ASSERT_GT(sums.count, 20);
+            if (region) {
+                ASSERT_LT(sums.count, sums.all);
+            }
+            const double spread = sums.most - sums.least;
+            EXPECT_NEAR(curves.y[0].values[t], sums.mean(), 1e-5 * spread + 1e-9);
+            EXPECT_EQ(curves.y[1].values[t], sums.least);
+            EXPECT_EQ(curves.y[2].values[t], sums.most);
+            EXPECT_NEAR(curves.y[3].values[t], std::sqrt(sums.squares / sums.count - sums.mean() * sums.mean()),
+                        1e-3 * spread);
+            EXPECT_NEAR(curves.y[4].values[t], sums.count / sums.all, 1e-3);
+            EXPECT_NEAR(curves.y[5].values[t], sums.volume, 2e-3 * sums.volume);
+        }
+    }
+}
+
+TEST(Curves, StatisticsOfTheBuiltInCellAreSumsOverItsSamples) {
+    Dataset cell = makeModel("fuel-cell", {{"nx", 9}, {"ny", 13}, {"nz", 21}, {"times", 3}});
+    std::string label;
+    for (const Parameter& parameter : cell.info.parameters)
+        if (parameter.categorical) label = parameter.name;
+    ASSERT_FALSE(label.empty());
+    const int value = cell.info.parameters[std::size_t(numberOfParameter(cell.info, label))].labels.at(0).value;
+    expectStatistics(cell, "T", label, value);
+}
+
+/// Three times of one scalar, with quantities.
+Dataset small() {
+    Dataset dataset;
+    dataset.info.lattice.size = {2, 2, 2};
+    dataset.info.bounds = {glm::dvec3(0), glm::dvec3(1)};
+    dataset.info.times = {1, 2, 4};
+    dataset.info.timeName = "operating point";
+    dataset.info.timeUnit = "";
+    dataset.info.parameters = {{"T", "K", 1, ScalarType::F32, false, {}, {{0, 10}}}};
+    dataset.info.quantities = {
+        {"cell voltage", "V", {0.7, 0.5, 0.6}}, {"j", "A/m2", {1000, 5000, std::nan("")}}, {"falling", "", {9, 8, 2}}};
+    dataset.load = [lattice = dataset.info.lattice](int, int, int time) {
+        Field field = makeField(lattice, ScalarType::F32);
+        for (std::size_t i = 0; i < field.count(); ++i) field.as<float>()[i] = float(time + 1) * float(i);
+        return field;
+    };
+    return dataset;
+}
+
+TEST(Curves, QuantitiesAndFormulasOfThemRunOverEachOther) {
+    const auto source = makeMemorySource(small(), {.lattice = LatticeKind::CC});
+    CurvesQuery query;
+    query.x = "j";
+    query.y = {"cell voltage", "`cell voltage` * j", "mean(T) - min(T) + `operating point`", "max(T)", "j / falling"};
+    const Curves curves = computeCurves(*source, query);
+    EXPECT_EQ(curves.x.name, "j");
+    EXPECT_EQ(curves.x.unit, "A/m2");
+    EXPECT_EQ(curves.y[0].values, (std::vector<double>{0.7, 0.5, 0.6}));
+    EXPECT_EQ(curves.y[0].unit, "V");
+    EXPECT_DOUBLE_EQ(curves.y[1].values[0], 700);
+    EXPECT_DOUBLE_EQ(curves.y[1].values[1], 2500);
+    EXPECT_TRUE(std::isnan(curves.y[1].values[2]));
+    EXPECT_EQ(curves.y[1].unit, "W/m2");
+    for (int t = 0; t < 3; ++t) {
+        EXPECT_NEAR(curves.y[2].values[std::size_t(t)], 3.5 * (t + 1) + source->info().times[std::size_t(t)], 1e-6);
+        EXPECT_EQ(curves.y[3].values[std::size_t(t)], 7 * (t + 1));
+    }
+    EXPECT_EQ(curves.y[2].unit, "");
+    EXPECT_EQ(curves.y[3].unit, "K");
+    EXPECT_EQ(curves.y[4].unit, ""); // one has no unit: none is invented
+    const auto rows = curveRows(curves);
+    ASSERT_EQ(rows.size(), 3u);
+    EXPECT_EQ(rows[1], (std::vector<double>{2, 5000, 0.5, 2500, 9, 14, 625}));
+    query.x = "time"; // another word for the axis
+    EXPECT_EQ(computeCurves(*source, query).x.values, source->info().times);
+    query.y = {"mean(nothing)"};
+    EXPECT_THROW(computeCurves(*source, query), Error);
+    EXPECT_EQ(cellQuantities(source->info()).voltage, "cell voltage");
+    EXPECT_EQ(cellQuantities(source->info()).current, "j");
+}
+
+TEST(Curves, CountSamplesByTheirDegreeOfInterest) {
+    const auto source = makeMemorySource(small(), {.lattice = LatticeKind::CC});
+    CurvesQuery query;
+    query.y = {"share(T)", "mean(T)", "min(T)"};
+    query.doiChannels = {0};
+    query.doi = [](std::span<const float> values, glm::dvec3 place) {
+        return values[0] > 5 && place.z > 0.5 ? 1.0 : 0.0;
+    };
+    const Curves curves = computeCurves(*source, query);
+    // Samples 4..7 lie at z = 1; their values are (t + 1) i.
+    EXPECT_NEAR(curves.y[0].values[0], 2 / 8.0, 1e-3); // 6, 7
+    EXPECT_NEAR(curves.y[0].values[1], 4 / 8.0, 1e-3);
+    EXPECT_NEAR(curves.y[1].values[0], 6.5, 1e-3);
+    EXPECT_EQ(curves.y[2].values[1], 8);
+}
+
+TEST(Curves, ThePolarisationCurveOfTheSharedCellIsThatOfItsFiles) {
+    const char* named = std::getenv("TESSERA_DATA");
+    const fs::path folder = fs::path(named != nullptr ? named : TESSERA_TEST_DATA) / "fuel-cell/grid";
+    if (!fs::exists(folder / "small.pvd") || findImporter().empty())
+        GTEST_SKIP() << "no fuel cell or no tessera-import";
+    Dataset cell = openFiles({(folder / "small.pvd").string()}, {});
+    scanRanges(cell);
+    const CellQuantities quantities = cellQuantities(cell.info);
+    EXPECT_EQ(quantities.voltage, "voltage");
+    EXPECT_EQ(quantities.current, "current_density");
+    CurvesQuery query;
+    query.x = quantities.current;
+    query.y = {quantities.voltage, "voltage*current_density"};
+    const Curves curves = computeCurves(*makeMemorySource(cell, {.lattice = LatticeKind::CC}), query);
+    for (std::size_t t = 0; t < 26; ++t) {
+        char name[32];
+        std::snprintf(name, sizeof name, "small_%04ld.vti", std::lround(1000 * cell.info.times[t]));
+        std::ifstream in(folder / name, std::ios::binary);
+        const std::string head = std::string(std::istreambuf_iterator<char>(in), {}).substr(0, 2000);
+        const auto value = [&head](const std::string& quantity) {
+            std::smatch found;
+            EXPECT_TRUE(std::regex_search(
+                head, found, std::regex("Name=\"" + quantity + "\" NumberOfTuples=\"1\"[^>]*RangeMin=\"([^\" ]+)")));
+            return std::stod(found[1]);
+        };
+        EXPECT_NEAR(curves.x.values[t], value("current_density"), 1e-3);
+        EXPECT_NEAR(curves.y[0].values[t], value("voltage"), 1e-12);
+        EXPECT_NEAR(curves.y[1].values[t], value("voltage") * value("current_density"), 1e-3);
+    }
+    // The steps of the voltage: 0.70, 0.50, 0.60, 0.40 V.
+    EXPECT_EQ(curves.y[0].values.front(), 0.7);
+    EXPECT_EQ(curves.y[0].values.back(), 0.4);
+    cell.info.times.resize(3);
+    for (Quantity& quantity : cell.info.quantities) quantity.values.resize(3);
+    expectStatistics(cell, "T", "region", 1);
+}
+
+TEST(AxisBy, AQuantityThatRisesOrFallsTakesThePlaceOfTheTimes) {
+    const DatasetInfo info = small().info;
+    EXPECT_FALSE(axisBy(info, "cell voltage")); // up and down
+    EXPECT_FALSE(axisBy(info, "j"));            // not known at every time
+    EXPECT_FALSE(axisBy(info, "none"));
+    const auto falling = axisBy(info, "falling");
+    ASSERT_TRUE(falling);
+    EXPECT_EQ(falling->info.times, (std::vector<double>{2, 8, 9}));
+    EXPECT_EQ(falling->info.timeName, "falling");
+    EXPECT_EQ(falling->order, (std::vector<int>{2, 1, 0}));
+    EXPECT_EQ(falling->info.quantities[0].values, (std::vector<double>{0.6, 0.5, 0.7}));
+    EXPECT_EQ(falling->info.quantities[2], (Quantity{"operating point", "", {4, 2, 1}}));
+    const auto source = onAxis(makeMemorySource(small(), {.lattice = LatticeKind::CC}), *falling);
+    const Dataset dataset = onAxis(small(), *falling);
+    for (int t = 0; t < 3; ++t) {
+        EXPECT_EQ(source->read({0, t, 0, {0, 0, 0}}).values[1], float(3 - t));
+        EXPECT_EQ(dataset.load(0, 0, t).value(1), 3 - t);
+        EXPECT_EQ(source->stats({0, t, 0, {0, 0, 0}}).max, float(7 * (3 - t)));
+    }
+    // And back again.
+    const auto back = axisBy(falling->info, "operating point");
+    ASSERT_TRUE(back);
+    EXPECT_EQ(back->info.times, info.times);
+    EXPECT_EQ(back->order, (std::vector<int>{2, 1, 0}));
+}
+
+} // namespace
+} // namespace tessera::volume
