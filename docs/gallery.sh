@@ -60,7 +60,7 @@ for proxy in rays slices shells stacks; do
     picture "proxy-$proxy" --set "/layers=[$(volume T '"shaded":false')]" --set "/render/proxy=\"$proxy\""
 done
 # Lattices and filters
-signal lattice-cc --set /data/bcc=false --set "/layers=[$(surface rho 0.5 0.85,0.6,0.3 1)]" --set '/render/filter="average"'
+signal lattice-cc --set /data/lattice='"grid"' --set "/layers=[$(surface rho 0.5 0.85,0.6,0.3 1)]" --set '/render/filter="average"'
 signal lattice-bcc-average --set "/layers=[$(surface rho 0.5 0.85,0.6,0.3 1)]" --set '/render/filter="average"'
 signal lattice-bcc-tetrahedral --set "/layers=[$(surface rho 0.5 0.85,0.6,0.3 1)]" --set '/render/filter="tetrahedral"'
 signal lattice-bcc --set "/layers=[$(surface rho 0.5 0.85,0.6,0.3 1)]" --set '/render/filter="quasi"'
@@ -82,7 +82,7 @@ scan surfaces "$(surface density 60 0.75,0.78,0.82 0.35),$(surface density 165 0
 scan xray "$(volume density '"style":"xray","density":0.12')"
 scan maximum "$(volume density '"style":"maximum"')"
 steel="$(surface density 60 0.6,0.68,0.75 1)"
-scan cc "$steel" --set '/data={"model":"casting","bcc":false}'
+scan cc "$steel" --set '/data={"model":"casting","lattice":"grid"}'
 scan bcc "$steel"
 scan half "$steel" --set '/data={"model":"casting","settings":{"nx":56,"ny":44,"nz":52}}'
 scan half-average "$steel" --set '/data={"model":"casting","settings":{"nx":56,"ny":44,"nz":52}}' --set '/render/filter="average"'
