@@ -119,7 +119,9 @@ public:
           onto_(other_, source_->grid(), source_->info().lengthUnit), info_(source_->info()),
           own_(int(info_.channels().size())) {
         matchTimes();
+        const bool single = info_.parameters.size() == 1 && other_->info().parameters.size() == 1;
         for (Parameter parameter : other_->info().parameters) {
+            if (single) parameter.name = info_.parameters.front().name;
             parameter.name += kOtherSuffix;
             if (!parameter.parts.label.empty()) parameter.parts.label += kOtherSuffix;
             if (!onto_.sameGrid() && !parameter.categorical) parameter.type = ScalarType::F32;

@@ -205,16 +205,19 @@ TEST_F(WorkbenchData, ADifferenceFromTheFirstTimeIsOneStep) {
     EXPECT_FALSE(workbench.source()->info().findChannel("rho minus first"));
 }
 
-// A file beside the one shown, and away again.
+// A file beside the one shown, and away again: the only parameters of both are compared, whatever their names.
 TEST_F(WorkbenchData, AnotherFileStandsBeside) {
     std::ofstream("other.raw", std::ios::binary) << std::string(8 * 9 * 10, '\x05');
     std::ofstream("other.json") << R"({"dims": [8, 9, 10], "dtype": "uint8"})";
     std::ofstream("ramp.json") << R"({"dims": [8, 9, 10], "dtype": "uint8"})";
     OpenRequest request;
     request.paths = {(folder / "ramp.raw").string()};
+    request.import.emplace();
+    request.import->rename = {{"value", "slope"}};
     workbench.install(open(request));
     settle();
     const std::string shown = workbench.source()->info().channels()[0].name;
+    ASSERT_EQ(shown, "slope");
     workbench.compareWith({(folder / "other.raw").string()});
     settle(); // the other file is read, then
     settle(); // the difference is made

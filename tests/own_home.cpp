@@ -1,0 +1,31 @@
+#include <cstdlib>
+#include <filesystem>
+#include <gtest/gtest.h>
+#include <string>
+#include <unistd.h>
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// What the program remembers for its user (units, names, recent files) is not carried from one test to another: every
+/// run of a test program has a home of its own.
+class OwnHome final : public testing::Environment {
+public:
+    void SetUp() override {
+        fs::create_directories(home_);
+        for (const char* name : {"XDG_CONFIG_HOME", "XDG_STATE_HOME", "XDG_DATA_HOME"})
+            ::setenv(name, (home_ / name).c_str(), 1);
+    }
+    void TearDown() override {
+        std::error_code ignored;
+        fs::remove_all(home_, ignored);
+    }
+
+private:
+    fs::path home_ = fs::path(testing::TempDir()) / ("tessera_home_" + std::to_string(::getpid()));
+};
+
+const testing::Environment* const kOwnHome = testing::AddGlobalTestEnvironment(new OwnHome);
+
+} // namespace
