@@ -27,6 +27,7 @@ struct PictureRequest {
     std::string pane;            ///< "" = the whole window
     glm::ivec2 size{1920, 1080}; ///< pixels
     float scale = 1;             ///< pixels per design pixel
+    bool controls = false;       ///< one pane with its rows of tools
 };
 
 struct WorkbenchOptions {
@@ -34,6 +35,7 @@ struct WorkbenchOptions {
     vis::RendererOptions render = {};             ///< for one of its own
     bool headless = false;        ///< pictures: no messages, dialogs or remembered files; every frame is finished
     std::string onlyPane = {};    ///< shows this pane alone, without its strip
+    bool controls = false;        ///< with its rows of tools, headless too
     std::string stateFolder = {}; ///< recent files and autosave; "" remembers nothing
     std::string program = "/proc/self/exe"; ///< is run as a child to pack
     /// How often an archive that is shown is looked at for new times.
@@ -91,6 +93,12 @@ public:
     const ViewCache* cache(const std::string& pane) const {
         const auto found = caches_.find(pane);
         return found == caches_.end() ? nullptr : found->second.get();
+    }
+
+    /// What the view of a pane can be exported as, headless; null where it offers nothing.
+    const ViewExport* exported(const std::string& pane) const {
+        const auto found = exports_.find(pane);
+        return found == exports_.end() ? nullptr : &found->second;
     }
 
     /// Makes a picture of a session; given by the platform.
@@ -197,7 +205,8 @@ private:
     std::vector<std::string> labelsShown_, labelsWanted_; ///< names of labels, likewise
     std::string sessionPath_;
     std::map<std::string, std::unique_ptr<ViewCache>> caches_;
-    int renderers_ = 1; ///< the window's and those of views, which share the limits of memory
+    std::map<std::string, ViewExport> exports_; ///< by pane, headless
+    int renderers_ = 1;                         ///< the window's and those of views, which share the limits of memory
     Fonts fonts_;
     float scale_ = 0, contentScale_ = 1;
     Theme theme_ = Theme::Dark;

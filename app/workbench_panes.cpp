@@ -51,7 +51,7 @@ void Workbench::drawPane(const std::string& pane) {
                         .scale = scale_,
                         .headless = options_.headless,
                         .renderers = renderers_,
-                        .figure = options_.headless && !options_.onlyPane.empty(),
+                        .figure = options_.headless && !options_.onlyPane.empty() && !options_.controls,
                         .runCommand =
                             [this](const std::string& name) {
                                 for (const Command& command : commands_)
@@ -72,6 +72,7 @@ void Workbench::drawPane(const std::string& pane) {
                         .cameraKey = cameraPane_ == pane ? std::exchange(cameraKey_, 0) : 0,
                         .busy = false,
                         .interacting = interacting_};
+    if (options_.headless) context.offerExport = [&](ViewExport made) { exports_[pane] = std::move(made); };
     ImGui::PushID(pane.c_str());
     std::visit(
         [&](auto& view) {

@@ -23,6 +23,17 @@ void applySetting(Json& document, const std::string& setting) {
     }
 }
 
+/// The pane of this key, or the first view of this kind; "" where there is none.
+std::string paneOf(const Session& session, const std::string& view) {
+    if (session.views.contains(view)) return view;
+    for (const auto& [pane, state] : session.views) {
+        const auto kind =
+            std::visit([](const auto& v) { return std::string_view(std::decay_t<decltype(v)>::kType); }, state);
+        if (kind == view) return pane;
+    }
+    return {};
+}
+
 } // namespace
 
 void addLayoutOption(CLI::App& command, std::string& layout) {
@@ -35,7 +46,7 @@ void addPictureOptions(CLI::App& command, PictureOptions& options) {
     command.add_option("input", options.inputs, "Session, layout, picture of ours or data files; none: built-in data")
         ->type_name("SESSION|LAYOUT|DATA");
     addLayoutOption(command, options.layout);
-    command.add_option("--view", options.view, "One view alone, e.g. volume; else the whole window");
+    command.add_option("--view", options.view, "One view alone, e.g. volume or histogram; else the whole window");
     command.add_option("--size", options.size, "Pixels of the picture")->type_name("WxH")->capture_default_str();
     command.add_option("--scale", options.scale, "Size of text and lines")
         ->check(CLI::Range(0.25, 8.0))
@@ -62,6 +73,8 @@ Opened openForPicture(const PictureOptions& options, const Progress& progress) {
         const DataFile& wanted = opened.missing.front().wanted;
         throw Error("data file not found; it was at " + wanted.absolutePath, wanted.path);
     }
+    if (const auto view = viewOfKind(options.view); view && paneOf(opened.document.session, options.view).empty())
+        addView(opened.document.session, *view);
     if (!options.settings.empty()) {
         Json document = toJson(opened.document.session);
         for (const std::string& setting : options.settings) applySetting(document, setting);
@@ -84,17 +97,8 @@ PictureRequest pictureRequest(const PictureOptions& options, const Session& sess
         end != static_cast<int>(options.size.size()) || request.size.x < 16 || request.size.y < 16 ||
         request.size.x > 16384 || request.size.y > 16384)
         throw CLI::ValidationError("--size", "needs WIDTHxHEIGHT, 16 to 16384, e.g. 1600x1000");
-    request.pane = options.view;
-    if (!options.view.empty() && !session.views.contains(options.view)) {
-        for (const auto& [pane, view] : session.views) {
-            const std::string_view kind =
-                std::visit([](const auto& v) { return std::string_view(std::decay_t<decltype(v)>::kType); }, view);
-            if (kind == options.view) {
-                request.pane = pane;
-                break;
-            }
-        }
-    }
+    request.pane = paneOf(session, options.view);
+    if (request.pane.empty()) request.pane = options.view; // named when it is drawn
     return request;
 }
 

@@ -1,11 +1,21 @@
 #include "app/command/command.h"
 #include "app/command/picture_options.h"
+#include "volume/atomic_file.h"
 #include "volume/error.h"
 
 #include <filesystem>
 #include <memory>
 
 namespace tessera::app {
+
+namespace {
+
+/// "svg" or "csv" for such a file, else "".
+std::string textEnding(const std::string& path) {
+    return path.ends_with(".svg") ? "svg" : path.ends_with(".csv") ? "csv" : "";
+}
+
+} // namespace
 
 void addRenderCommand(CLI::App& app) {
     struct Options {
@@ -14,14 +24,21 @@ void addRenderCommand(CLI::App& app) {
         std::optional<double> time;
     };
     auto options = std::make_shared<Options>();
-    CLI::App* command = app.add_subcommand("render", "Draw the window or one view into a PNG, without a window");
+    CLI::App* command = app.add_subcommand(
+        "render", "Draw the window or one view into a PNG, or write the figure or table of a view, without a window");
     addPictureOptions(*command, options->picture);
     command->add_option("--time", options->time, "Time to show, in the unit of the data");
-    command->add_option("-o,--output", options->output, "PNG to write; it carries the session")->required();
+    command
+        ->add_option("-o,--output", options->output,
+                     "PNG to write, which carries the session; of one view also its figure (.svg) or table (.csv)")
+        ->required();
     command->callback([options] {
         const Progress progress = terminalProgress("render");
         // The wrong size or a folder that does not exist is said before the work, not after it.
         pictureRequest(options->picture, Session{});
+        const std::string ending = textEnding(options->output);
+        if (!ending.empty() && options->picture.view.empty())
+            throw Error("a figure or table is of one view: name it by --view", options->output);
         const auto folder = std::filesystem::absolute(options->output).parent_path();
         if (!std::filesystem::is_directory(folder)) throw MachineError("no such folder", folder.string());
         Opened opened = openForPicture(options->picture, progress);
@@ -35,8 +52,13 @@ void addRenderCommand(CLI::App& app) {
         }
         opened.document.history.reset(session);
         PictureMaker maker;
-        const vis::Image image =
-            maker.render(opened.document, opened.sources(), pictureRequest(options->picture, session));
+        const PictureRequest request = pictureRequest(options->picture, session);
+        if (!ending.empty()) {
+            AtomicFile file(options->output);
+            file.write(maker.exportText(opened.document, opened.sources(), request, ending, progress));
+            return file.commit();
+        }
+        const vis::Image image = maker.render(opened.document, opened.sources(), request);
         vis::writePng(options->output, image, {{vis::kSessionTextKey, printSession(opened.document, options->output)}});
     });
 }

@@ -18,7 +18,7 @@ vis::Image renderAndInspect(const SessionDocument& document, const Sources& sour
     }
     const Gui gui;
     Workbench workbench(
-        {.renderer = std::move(renderer), .render = {}, .headless = true, .onlyPane = request.pane, .stateFolder = {}});
+        {.renderer = std::move(renderer), .headless = true, .onlyPane = request.pane, .controls = request.controls});
     Opened opened;
     opened.document = document;
     opened.document.session.animation.playing = false;
@@ -48,6 +48,19 @@ PictureMaker::PictureMaker(const vis::RendererOptions& options) : impl_(std::mak
 }
 
 PictureMaker::~PictureMaker() = default;
+
+std::string PictureMaker::exportText(const SessionDocument& document, const Sources& sources, PictureRequest request,
+                                     const std::string& ending, const Progress& progress) {
+    request.controls = true;
+    std::string text;
+    renderAndInspect(document, sources, impl_->renderer, request, [&](const Workbench& workbench) {
+        const ViewExport* offered = workbench.exported(request.pane);
+        const auto make = !offered ? nullptr : ending == "svg" ? offered->svg : offered->csv;
+        if (!make) throw Error("has no " + ending + " of what it shows", "--view", request.pane);
+        text = make(progress);
+    });
+    return text;
+}
 
 vis::Image PictureMaker::render(const SessionDocument& document, const Sources& sources, const PictureRequest& request,
                                 const Inspect& inspect) {

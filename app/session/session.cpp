@@ -116,6 +116,18 @@ std::string paneTitle(const Session& session, const std::string& pane) {
     return title;
 }
 
+std::optional<ViewState> viewOfKind(std::string_view kind) {
+    std::optional<ViewState> view;
+    [&]<std::size_t... kinds>(std::index_sequence<kinds...>) {
+        ((std::variant_alternative_t<kinds, ViewState>::kType == kind
+              ? void(view = std::variant_alternative_t<kinds, ViewState>{})
+              : void()),
+         ...);
+    }
+    (std::make_index_sequence<std::variant_size_v<ViewState>>{});
+    return view;
+}
+
 std::string addView(Session& session, const ViewState& view) {
     const std::string base(std::visit([](const auto& v) { return std::decay_t<decltype(v)>::kType; }, view));
     std::string key = base;

@@ -190,6 +190,9 @@ vis::LensSpace lensSpace(const Session& session, const volume::DatasetInfo& info
 std::vector<std::string> paneKeys(const Session& session);
 std::string paneTitle(const Session& session, const std::string& pane);
 
+/// A view of a kind ("volume", "slices", ...) as it is at first; nothing for a kind that there is not.
+std::optional<ViewState> viewOfKind(std::string_view kind);
+
 /// Adds a view of a kind ("volume", "slices", ...) as a tab beside the first pane; returns its key.
 std::string addView(Session& session, const ViewState& view);
 

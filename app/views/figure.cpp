@@ -203,24 +203,31 @@ void exportMenu(ViewContext& context, const std::string& title, std::function<st
                 std::function<std::string(const Progress&)> csv) {
     std::string name = title; // as a file
     std::replace(name.begin(), name.end(), '/', '_');
-    const bool possible = context.exportText != nullptr;
-    ImGui::BeginDisabled(!possible);
+    const auto described = [&]() -> ViewExport { // a table and a picture say where their numbers come from
+        if (!context.numbers) return {name, svg, csv};
+        const std::string origin = originText(context.origin, context.numbers->info());
+        ViewExport made{name, {}, {}};
+        if (csv)
+            made.csv = [csv, origin](const Progress& progress) {
+                return "# numbers: " + origin + "\n" + csv(progress);
+            };
+        if (svg) made.svg = [svg, origin](const Progress& progress) { return withDescription(svg(progress), origin); };
+        return made;
+    };
+    if (context.offerExport) context.offerExport(described());
+    ImGui::BeginDisabled(!context.exportText);
     if (ImGui::Button("Export")) ImGui::OpenPopup("export");
     ImGui::EndDisabled();
     if (!ImGui::BeginPopup("export")) return;
-    if (context.numbers) { // a table and a picture say where their numbers come from
-        const std::string origin = originText(context.origin, context.numbers->info());
-        if (csv)
-            csv = [csv, origin](const Progress& progress) { return "# numbers: " + origin + "\n" + csv(progress); };
-        if (svg) svg = [svg, origin](const Progress& progress) { return withDescription(svg(progress), origin); };
-    }
+    const ViewExport made = described();
     if (ImGui::MenuItem("Picture (PNG)...") && context.runCommand) context.runCommand("Save picture...");
-    if (svg && ImGui::MenuItem("Vector graphics (SVG)...")) context.exportText(name + ".svg", std::move(svg));
-    if (csv && ImGui::MenuItem("Copy table (CSV)"))
-        context.jobs.start("copy " + title, "Copying " + title, [csv](const Progress& progress) -> Jobs::Finish {
-            return [text = csv(progress)] { ImGui::SetClipboardText(text.c_str()); };
-        });
-    if (csv && ImGui::MenuItem("Table (CSV)...")) context.exportText(name + ".csv", std::move(csv));
+    if (made.svg && ImGui::MenuItem("Vector graphics (SVG)...")) context.exportText(name + ".svg", made.svg);
+    if (made.csv && ImGui::MenuItem("Copy table (CSV)"))
+        context.jobs.start("copy " + title, "Copying " + title,
+                           [csv = made.csv](const Progress& progress) -> Jobs::Finish {
+                               return [text = csv(progress)] { ImGui::SetClipboardText(text.c_str()); };
+                           });
+    if (made.csv && ImGui::MenuItem("Table (CSV)...")) context.exportText(name + ".csv", made.csv);
     ImGui::EndPopup();
 }
 

@@ -24,6 +24,12 @@ struct ViewCache {
     virtual int renderers() const { return 0; }
 };
 
+/// What a view can be exported as beside its picture; either may be empty.
+struct ViewExport {
+    std::string name; ///< of a file, without ending
+    std::function<std::string(const Progress&)> svg, csv;
+};
+
 /// What one frame of the window gives to each view. Views read and edit `session`, nothing else; the workbench compares
 /// it with the former frame's and keeps the history.
 struct ViewContext {
@@ -45,6 +51,8 @@ struct ViewContext {
     std::function<void(const std::string& command)> runCommand = {};
     /// Asks where to save, then writes what `make` returns, in the background; null in tests.
     std::function<void(const std::string& fileName, std::function<std::string(const Progress&)> make)> exportText = {};
+    /// Takes what a view can be exported as, once its numbers are there; null where nobody asks.
+    std::function<void(ViewExport)> offerExport = {};
     /// Asks for a file to open, then changes the session by it as an edit; an Error goes to the log. Null in tests.
     std::function<void(const std::string& title, std::function<void(Session&, const std::string& path)> take)> askFile =
         {};
