@@ -5,6 +5,9 @@
 #include <array>
 #include <cmath>
 #include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
+#include <glm/matrix.hpp>
 #include <optional>
 
 /// How a part of a field (volume/parts.h) goes on beyond its border: extrapolated from its own samples.
@@ -42,21 +45,52 @@ inline glm::ivec3 storageOf(LatticeKind kind, glm::ivec3 half) {
     return {half.x >> 1, half.y >> 1, half.z};
 }
 
+/// The lesser of two numbers of one sign, else 0.
+inline double lesserOf(double a, double b) {
+    return a * b <= 0 ? 0 : std::abs(a) < std::abs(b) ? a : b;
+}
+
+/// The two lattices' directions, made once.
+inline const std::array<LineDirection, 26>& directionsOf(LatticeKind kind) {
+    static const std::array<LineDirection, 26> kDirections[] = {lineDirections(LatticeKind::CC),
+                                                                lineDirections(LatticeKind::BCC)};
+    return kDirections[kind == LatticeKind::BCC ? 1 : 0];
+}
+
+/// Change per half cell around a sample of value `here`, by least squares over its neighbours; 0 across the directions
+/// that these do not span. `sampleAt(place)`, of half cells, gives samples.
+template <class Sampled>
+glm::dvec3 slopeAround(LatticeKind kind, glm::ivec3 place, double here, const Sampled& sampleAt) {
+    glm::dmat3 squares(0);
+    glm::dvec3 changes(0);
+    for (const LineDirection& direction : directionsOf(kind)) {
+        const std::optional<double> there = sampleAt(place + direction.step);
+        if (!there) continue;
+        const glm::dvec3 step = glm::dvec3(direction.step) / direction.length;
+        squares += glm::outerProduct(step, step);
+        changes += step * ((*there - here) / direction.length);
+    }
+    constexpr double kUnspanned = 1e-9; // of the trace: what makes the slope across these directions 0
+    const double trace = squares[0][0] + squares[1][1] + squares[2][2];
+    if (trace == 0) return glm::dvec3(0);
+    return glm::inverse(squares + glm::dmat3(kUnspanned * trace)) * changes;
+}
+
 /// The value with which a part goes on at a storage index that it has no sample at; `own(index)` gives its samples,
-/// nothing elsewhere and beyond the lattice. The two nearest samples along each line to neighbours are continued
-/// linearly: of all lines the one counts whose samples are nearest, of equals the mean. A line with one sample counts
-/// where the others' are half as far again. `counts(index)`: whether a line may begin at a sample, so that none does
-/// beyond a gap. Nothing where no sample lies within kLineReach steps.
+/// nothing elsewhere and beyond the lattice. The nearest samples along the lines to neighbours are continued: of all
+/// lines those count whose samples are nearest, of equals the mean. Two samples of a line go on linearly, four with the
+/// lesser of their two bends where these have one sign: an even bend is kept, noise and kinks make none. Lines of one
+/// sample, as where a layer is one sample thick, count where no other is as near, and go on with the slope around it.
+/// `counts(index)`: whether a line may begin at a sample, so that none does beyond a gap. Nothing where no sample lies
+/// within kLineReach steps.
 inline constexpr int kLineReach = 3;
 template <class Own, class Counts>
 std::optional<double> continued(LatticeKind kind, glm::ivec3 at, const Own& own, const Counts& counts) {
-    static const std::array<LineDirection, 26> kDirections[] = {lineDirections(LatticeKind::CC),
-                                                                lineDirections(LatticeKind::BCC)};
+    constexpr double kSame = 1e-6;
     struct Mean {
         double sum = 0, distance = 1e300;
         int count = 0;
         void add(double value, double from) {
-            constexpr double kSame = 1e-6;
             if (from > distance + kSame) return;
             if (from < distance - kSame) sum = 0, count = 0, distance = from;
             sum += value;
@@ -64,21 +98,25 @@ std::optional<double> continued(LatticeKind kind, glm::ivec3 at, const Own& own,
         }
     } lines, single;
     const glm::ivec3 place = halfCellsOf(kind, at);
-    for (const LineDirection& direction : kDirections[kind == LatticeKind::BCC ? 1 : 0])
-        for (int m = 1; m <= kLineReach && m * direction.length < lines.distance + 1e-6; ++m) {
-            const auto sample = [&](int n) { return own(storageOf(kind, place + n * direction.step)); };
+    const auto sampleAt = [&](glm::ivec3 half) { return own(storageOf(kind, half)); };
+    for (const LineDirection& direction : directionsOf(kind))
+        for (int m = 1; m <= kLineReach && m * direction.length < lines.distance + kSame; ++m) {
+            const auto sample = [&](int n) { return sampleAt(place + n * direction.step); };
             const std::optional<double> a = sample(m);
             if (!a) continue;
-            if (!counts(storageOf(kind, place + m * direction.step))) break;
+            const glm::ivec3 first = place + m * direction.step;
+            if (!counts(storageOf(kind, first))) break;
             if (const std::optional<double> b = sample(m + 1)) {
-                lines.add(*a + m * (*a - *b), m * direction.length);
-            } else {
-                single.add(*a, m * direction.length);
+                const std::optional<double> c = sample(m + 2), d = c ? sample(m + 3) : std::nullopt;
+                const double bend = d ? lesserOf(*a - 2 * *b + *c, *b - 2 * *c + *d) : 0;
+                lines.add(*a + m * (*a - *b) + m * (m + 1) / 2.0 * bend, m * direction.length);
+            } else if (m * direction.length < single.distance + kSame) {
+                const glm::dvec3 slope = slopeAround(kind, first, *a, sampleAt);
+                single.add(*a - glm::dot(slope, glm::dvec3(m * direction.step)), m * direction.length);
             }
             break;
         }
-    constexpr double kFurther = 1.5;
-    const Mean& best = lines.count > 0 && lines.distance <= kFurther * single.distance ? lines : single;
+    const Mean& best = lines.count > 0 && lines.distance <= single.distance + kSame ? lines : single;
     if (best.count == 0) return std::nullopt;
     return best.sum / best.count;
 }
@@ -88,6 +126,9 @@ inline bool isBeside(LatticeKind kind, glm::ivec3 a, glm::ivec3 b) {
     const glm::ivec3 apart = glm::abs(halfCellsOf(kind, a) - halfCellsOf(kind, b));
     return apart.x <= 2 && apart.y <= 2 && apart.z <= 2;
 }
+
+/// Of the neighbours of a sample, OwnPart looks no further than so many samples of a sublattice away from it.
+inline constexpr int kOwnPartReach = 4;
 
 /// A sample accessor (volume/reconstruct.h) that shows one part of another: that of the sample at `near`, a storage
 /// index inside a lattice of `size`, continued to the places of other parts. `partOf(at)` may be asked for any place,
