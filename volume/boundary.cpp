@@ -1,11 +1,16 @@
 #include "volume/boundary.h"
 
 #include "volume/boundary_derivatives.h"
+#include "volume/continued.h"
 #include "volume/parallel.h"
+#include "volume/parts_bricks.h"
+#include "volume/stencil.h"
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <map>
 
@@ -46,18 +51,52 @@ void add(DerivativeHistogram& to, const Derivatives& at) {
     ++to.samples;
 }
 
-/// The samples of one brick that have all their neighbours.
-void addBrick(DerivativeHistogram& to, const BrickGrid& grid, const BrickKey& key, const BrickSamples& withHalo) {
+/// A brick with samples around it, and the part of each of them; no parts: all are of one.
+struct Surrounded {
+    BrickSamples samples;
+    int halo = 1; ///< of each sublattice
+    std::vector<std::uint8_t> parts;
+};
+
+/// The samples of one brick that have all their neighbours; those of other parts are continued from its own.
+void addBrick(DerivativeHistogram& to, const BrickGrid& grid, const BrickKey& key, const Surrounded& brick) {
     const LatticeKind kind = grid.lattice.kind;
-    const glm::ivec3 halo(1, 1, kind == LatticeKind::BCC ? 2 : 1);
-    const glm::ivec3 begin = grid.begin(key.index);
-    const BrickView view{withHalo, kind, begin - halo};
-    const glm::ivec3 lo = glm::max(begin, halo), hi = glm::min(grid.end(key.index), grid.lattice.size - halo);
+    const glm::ivec3 slices(1, 1, kind == LatticeKind::BCC ? 2 : 1);
+    const glm::ivec3 begin = grid.begin(key.index), first = begin - brick.halo * slices;
+    const BrickView view{brick.samples, kind, first};
+    const auto partOf = [&](glm::ivec3 at) {
+        const glm::ivec3 size = brick.samples.size, in = clampToLattice(kind, size, at - first);
+        return int(brick.parts[(std::size_t(in.z) * std::size_t(size.y) + std::size_t(in.y)) * std::size_t(size.x) +
+                               std::size_t(in.x)]);
+    };
+    const glm::ivec3 lo = glm::max(begin, slices), hi = glm::min(grid.end(key.index), grid.lattice.size - slices);
     Derivatives at;
     for (int z = lo.z; z < hi.z; ++z)
         for (int y = lo.y; y < hi.y; ++y)
-            for (int x = lo.x; x < hi.x; ++x)
-                if (derivativesAt(kind, view, {x, y, z}, at)) add(to, at);
+            for (int x = lo.x; x < hi.x; ++x) {
+                const glm::ivec3 here(x, y, z);
+                if (brick.parts.empty()) {
+                    if (derivativesAt(kind, view, here, at)) add(to, at);
+                    continue;
+                }
+                const OwnPart own(kind, grid.lattice.size, view, partOf, here);
+                const auto continuedOwn = [&](glm::ivec3 there) {
+                    const Sample sample = view(there);
+                    return sample.present ? own(there) : sample;
+                };
+                if (derivativesAt(kind, continuedOwn, here, at)) add(to, at);
+            }
+}
+
+/// The brick with what its derivatives need around it.
+Surrounded surrounded(const BrickGrid& grid, BrickKey key, const ReadSamples& read,
+                      const std::optional<PartLabel>& label) {
+    if (!label) return {gather(grid, key, 1, read), 1, {}};
+    Surrounded out{gather(grid, key, kOwnPartReach, read), kOwnPartReach, {}};
+    key.channel = label->channel;
+    out.parts = partsOfSamples(gather(grid, key, kOwnPartReach, read), label->parts);
+    if (std::ranges::adjacent_find(out.parts, std::not_equal_to<>()) == out.parts.end()) out.parts.clear();
+    return out;
 }
 
 } // namespace
@@ -67,20 +106,22 @@ DerivativeHistogram derivativeHistogram(const BrickSource& source, const Derivat
     const BrickGrid& grid = source.grid();
     const glm::ivec3 bricks = grid.count();
     DerivativeHistogram out = emptyHistogram(source, query);
+    const std::optional<PartLabel> label = partLabel(source.info(), query.channel);
     std::vector<DerivativeHistogram> slabs(static_cast<std::size_t>(bricks.z), out);
     std::atomic<int> done = 0;
     parallelFor(slabs.size(), [&](std::size_t z) {
         // A slab looks at the bricks of its neighbours too: each is decoded once per slab.
-        std::map<std::array<int, 3>, BrickSamples> read;
+        std::map<std::array<int, 4>, BrickSamples> read;
         const auto once = [&](const BrickKey& key) {
-            const auto [entry, added] = read.try_emplace({key.index.x, key.index.y, key.index.z});
+            const auto [entry, added] = read.try_emplace({key.index.x, key.index.y, key.index.z, key.channel});
             if (added) entry->second = source.read(key);
             return entry->second;
         };
         for (int y = 0; y < bricks.y; ++y) {
             for (int x = 0; x < bricks.x; ++x) {
                 const BrickKey key{query.channel, query.time, 0, {x, y, static_cast<int>(z)}};
-                if (source.stats(key).presentFraction > 0) addBrick(slabs[z], grid, key, gather(grid, key, 1, once));
+                if (source.stats(key).presentFraction > 0)
+                    addBrick(slabs[z], grid, key, surrounded(grid, key, once, label));
             }
             std::erase_if(read, [&](const auto& entry) { return entry.first[1] < y; });
         }

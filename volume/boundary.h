@@ -23,7 +23,8 @@ struct DerivativeQuery {
 };
 
 /// The histogram volume of Kindlmann and Durkin, its axis of second derivatives reduced to their sum. Samples on the
-/// surface of the lattice and those with an absent neighbour take no part. Element gradient * valueBins + value; a
+/// surface of the lattice and those with an absent neighbour take no part. Where a neighbour is of another part
+/// (volume/parts.h), the sample's own part is continued to it. Element gradient * valueBins + value; a
 /// gradient beyond the top counts in the last bin.
 struct DerivativeHistogram {
     int valueBins = 0, gradientBins = 0;

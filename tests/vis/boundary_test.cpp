@@ -1,4 +1,5 @@
 #include "tests/vis/function_source.h"
+#include "tests/vis/parts_scene.h"
 #include "vis/model/boundary_opacity.h"
 #include "volume/boundary_derivatives.h"
 
@@ -85,6 +86,36 @@ TEST(Boundary, DoesNotDependOnTheBricks) {
         for (std::size_t i = 0; i < fine.second.size(); ++i) EXPECT_NEAR(fine.second[i], large.second[i], 1e-6);
         const auto again = volume::derivativeHistogram(source(kind, 8), {.valueBins = 32, .gradientBins = 16});
         EXPECT_EQ(fine.second, again.second) << "bit for bit";
+    }
+}
+
+TEST(Boundary, AJumpBetweenPartsIsNoBoundary) {
+    for (LatticeKind kind : kKinds) {
+        const auto counted = [&](Regions regions, const char* channel, bool parts) {
+            const auto from = regionSource(kind, regions, parts);
+            return volume::derivativeHistogram(*from, {.channel = *from->info().findChannel(channel),
+                                                       .valueBins = 32,
+                                                       .gradientBins = 100,
+                                                       .gradientTop = 0.02});
+        };
+        const auto inBin = [](const volume::DerivativeHistogram& histogram, std::size_t gradient) {
+            std::uint64_t count = 0;
+            for (std::size_t v = 0; v < 32; ++v) count += histogram.count[gradient * 32 + v];
+            return count;
+        };
+        const auto flat = counted(Regions::Constant, "heat", true);
+        EXPECT_GT(flat.samples, 2000u);
+        EXPECT_EQ(inBin(flat, 0), flat.samples) << "two constants have no gradient";
+        const auto joined = counted(Regions::Constant, "heat", false);
+        EXPECT_LT(inBin(joined, 0), joined.samples);
+        EXPECT_EQ(joined.samples, flat.samples);
+        // |(0.008, 0, 0.004)| and |(0, 0.009, 0.003)|
+        const auto sloped = counted(Regions::Sloped, "heat", true);
+        EXPECT_EQ(inBin(sloped, 44) + inBin(sloped, 47), sloped.samples);
+        EXPECT_GT(inBin(sloped, 44), 100u);
+        EXPECT_GT(inBin(sloped, 47), 100u);
+        // Absent neighbours still leave a sample out, whatever part their label says.
+        EXPECT_EQ(counted(Regions::Sloped, "gas", true).samples, counted(Regions::Sloped, "gas", false).samples);
     }
 }
 
