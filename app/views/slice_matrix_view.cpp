@@ -87,8 +87,9 @@ std::string sliceCsv(const volume::BrickSource& source, const std::vector<int>& 
             for (int i = 0; i < across; ++i) {
                 glm::dvec3 at(0);
                 at[axes.normal] = planePosition(info.bounds, axes.normal, plane, planes);
-                at[axes.right] = info.bounds.lo[axes.right] + size[axes.right] * i / (across - 1);
-                at[axes.up] = info.bounds.lo[axes.up] + size[axes.up] * j / (up - 1);
+                // The last ones lie on the border exactly: beyond it there are no values.
+                at[axes.right] = std::lerp(info.bounds.lo[axes.right], info.bounds.hi[axes.right], i / (across - 1.0));
+                at[axes.up] = std::lerp(info.bounds.lo[axes.up], info.bounds.hi[axes.up], j / (up - 1.0));
                 row.push_back(at);
             }
             std::vector<std::vector<volume::ProbeValue>> values;

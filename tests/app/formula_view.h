@@ -1,0 +1,51 @@
+#pragma once
+
+#include "app/platform/gui.h"
+#include "app/workbench.h"
+#include "tests/app/formula_cell.h"
+#include "vis/gl/headless.h"
+#include "volume/memory_source.h"
+
+#include <gtest/gtest.h>
+
+namespace tessera::app {
+
+/// One view of the formula cell, numbers as computed and pictures on BCC, in a workbench without a window.
+class FormulaView : public testing::Test {
+protected:
+    /// Shows the cell in this view alone, at the second time.
+    void install(const ViewState& view, const std::string& unit = "K") {
+        Opened opened;
+        opened.numbers = volume::makeMemorySource(formula::makeCell(unit), {});
+        opened.source = volume::makeMemorySource(formula::makeCell(unit), {.lattice = volume::LatticeKind::BCC});
+        DataRef data;
+        data.model = "fuel-cell"; // has no file
+        opened.document.session = defaultSession(opened.source->info(), data);
+        Session& session = opened.document.session;
+        session.views.clear();
+        session.views["pane"] = view;
+        session.cursor = {0.0123, 0.0041, -0.0009};
+        session.time = 0.5;
+        session.render.samples = 1; // soon drawn
+        opened.document.history.reset(session);
+        workbench.install(std::move(opened));
+        start = workbench.session();
+    }
+    vis::Image picture(const Session& session, glm::ivec2 size = {420, 640}) {
+        workbench.session() = session;
+        return drawUntilDone(workbench, size, 1);
+    }
+    /// What Export writes of the view as it shows a session.
+    std::string table(const Session& session) {
+        picture(session);
+        const ViewExport* offered = workbench.exported("pane");
+        return offered && offered->csv ? offered->csv({}) : std::string();
+    }
+
+    vis::HeadlessContext gl;
+    Gui gui;
+    Workbench workbench{{.headless = true, .onlyPane = "pane", .controls = true}};
+    Session start; ///< as it was installed
+};
+
+} // namespace tessera::app

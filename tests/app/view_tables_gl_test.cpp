@@ -1,0 +1,368 @@
+#include "tests/app/formula_view.h"
+
+#include <map>
+#include <sstream>
+
+/// What views export, read back and compared with numbers computed from the formulas, for several times and selections.
+namespace tessera::app {
+namespace {
+
+using formula::Place;
+
+/// A table as text and numbers: the first line that is no comment names the columns.
+struct Table {
+    std::vector<std::string> heads;
+    std::vector<std::vector<std::string>> rows;
+    std::size_t column(const std::string& head) const {
+        const auto found = std::ranges::find(heads, head);
+        EXPECT_NE(found, heads.end()) << "no column " << head;
+        return found == heads.end() ? 0 : std::size_t(found - heads.begin());
+    }
+    std::string text(std::size_t row, const std::string& head) const { return rows[row][column(head)]; }
+    /// Nothing where the field is empty.
+    std::optional<double> number(std::size_t row, const std::string& head) const {
+        const std::string field = text(row, head);
+        return field.empty() ? std::nullopt : std::optional(std::stod(field));
+    }
+};
+
+Table tableOf(const std::string& csv) {
+    Table table;
+    std::istringstream in(csv);
+    for (std::string line; std::getline(in, line);) {
+        if (line.starts_with("#")) continue;
+        std::vector<std::string> fields(1);
+        bool quoted = false;
+        for (const char c : line) {
+            if (c == '"')
+                quoted = !quoted;
+            else if (c == ',' && !quoted)
+                fields.emplace_back();
+            else
+                fields.back() += c;
+        }
+        if (table.heads.empty())
+            table.heads = fields;
+        else
+            table.rows.push_back(fields);
+        EXPECT_EQ(fields.size(), table.heads.size()) << line;
+    }
+    return table;
+}
+
+/// Times, with and without a brush of T, that every table is read at.
+struct Case {
+    double time = 0;
+    std::optional<Range> brush; ///< of T
+    bool inverted = false;
+};
+
+std::vector<Case> cases() {
+    return {{0.5, {}}, {0, {}}, {2, {}}, {0.875, {}}, {0.5, Range{318.5, 1e9}}, {2, Range{340.2, 352.9}, true}};
+}
+
+/// Degree of interest of a sample.
+double interest(const Case& of, Place at) {
+    if (!of.brush) return 1;
+    const double t = formula::valueAt("T", at, of.time).value();
+    return (t >= of.brush->lo && t <= of.brush->hi) != of.inverted ? 1 : 0;
+}
+
+struct Sum {
+    double samples = 0, mean = 0, least = 1e300, most = -1e300, deviation = 0;
+};
+
+/// Of a channel over the samples that `counts` says.
+template <class Counts> Sum summed(const std::string& channel, double time, Counts&& counts) {
+    Sum sum;
+    std::vector<double> values;
+    formula::forEachPlace([&](Place at) {
+        const auto v = formula::valueAt(channel, at, time);
+        if (v && counts(at)) values.push_back(*v);
+    });
+    for (const double v : values) {
+        ++sum.samples;
+        sum.mean += v / double(values.size());
+        sum.least = std::min(sum.least, v), sum.most = std::max(sum.most, v);
+    }
+    for (const double v : values) sum.deviation += (v - sum.mean) * (v - sum.mean) / double(values.size());
+    sum.deviation = std::sqrt(sum.deviation);
+    return sum;
+}
+
+double correlation(const std::string& a, const std::string& b, double time) {
+    double n = 0, sa = 0, sb = 0, aa = 0, bb = 0, ab = 0;
+    formula::forEachPlace([&](Place at) {
+        const auto x = formula::valueAt(a, at, time), y = formula::valueAt(b, at, time);
+        if (!x || !y) return;
+        const double u = *x - 300, v = *y;
+        n += 1, sa += u, sb += v, aa += u * u, bb += v * v, ab += u * v;
+    });
+    return (ab / n - sa / n * sb / n) / std::sqrt((aa / n - sa / n * sa / n) * (bb / n - sb / n * sb / n));
+}
+
+/// What plots reach over: the range of all times and a fiftieth of it beyond either end.
+Range plotted(const std::string& channel) {
+    const Range range = formula::rangeOf(channel);
+    const double margin = 0.02 * (range.hi - range.lo);
+    return {range.lo - margin, range.hi + margin};
+}
+
+class ViewTables : public FormulaView {
+protected:
+    Table shownAt(const Case& of) {
+        Session session = start;
+        session.time = of.time;
+        if (of.brush) {
+            session.selection.brushes = {vis::rangeBrush({{.channel = "T", .lo = of.brush->lo, .hi = of.brush->hi}})};
+            session.selection.brushes[0].inverted = of.inverted;
+        }
+        return tableOf(table(session));
+    }
+};
+
+TEST_F(ViewTables, StatisticsAreThoseOfTheSamples) {
+    install(StatisticsView{});
+    for (const Case& of : cases()) {
+        SCOPED_TRACE(of.time);
+        const Table table = shownAt(of);
+        ASSERT_EQ(table.rows.size(), of.brush ? 9u : 3u);
+        for (std::size_t row = 0; row < table.rows.size(); ++row) {
+            const std::string name = table.text(row, "parameter"), part = table.text(row, "part");
+            EXPECT_EQ(table.text(row, "unit"), name == "T" ? "K" : name == "c" ? "mol/m3" : "m/s");
+            const Sum sum = summed(name, of.time, [&](Place at) {
+                return part == "all" || (part == "inside") == (interest(of, at) == 1);
+            });
+            SCOPED_TRACE(name + " " + part);
+            EXPECT_GT(sum.samples, 0);
+            EXPECT_EQ(table.number(row, "samples"), sum.samples);
+            EXPECT_NEAR(*table.number(row, "mean"), sum.mean, 2e-4);
+            EXPECT_NEAR(*table.number(row, "deviation"), sum.deviation, 2e-4);
+            EXPECT_NEAR(*table.number(row, "min"), sum.least, 2e-4);
+            EXPECT_NEAR(*table.number(row, "max"), sum.most, 2e-4);
+            if (part == "all" && name == "T") {
+                EXPECT_NEAR(*table.number(row, "correlation with c"), correlation("T", "c", of.time), 1e-3);
+            }
+        }
+    }
+}
+
+TEST_F(ViewTables, RegionsAreCountedEachByItself) {
+    StatisticsView view;
+    view.byRegion = true;
+    install(view);
+    for (const Case& of : cases()) {
+        SCOPED_TRACE(of.time);
+        const Table table = shownAt(of);
+        ASSERT_EQ(table.rows.size(), 8u); // T and |U| in west, east, all; c in west and all
+        for (std::size_t row = 0; row < table.rows.size(); ++row) {
+            const std::string name = table.text(row, "parameter"), region = table.text(row, "region");
+            SCOPED_TRACE(name + " " + region);
+            const Sum sum =
+                summed(name, of.time, [&](Place at) { return region == "all" || (region == "west") == (at.x < 4); });
+            EXPECT_EQ(table.number(row, "samples"), sum.samples);
+            EXPECT_NEAR(*table.number(row, "mean"), sum.mean, 2e-4);
+            EXPECT_NEAR(*table.number(row, "least"), sum.least, 2e-4);
+            EXPECT_NEAR(*table.number(row, "most"), sum.most, 2e-4);
+            EXPECT_NEAR(*table.number(row, "share of all samples"), sum.samples / (8 * 7 * 9), 1e-9);
+        }
+    }
+}
+
+TEST_F(ViewTables, HistogramsCountEachSampleInItsBin) {
+    for (const char* channel : {"T", "c"}) {
+        HistogramView view;
+        view.channel = channel;
+        view.bins = 37;
+        install(view);
+        const Range range = plotted(channel);
+        for (const Case& of : cases()) {
+            SCOPED_TRACE(std::string(channel) + " at " + std::to_string(of.time));
+            const Table table = shownAt(of);
+            const std::string title = channel == std::string("T") ? "T [K]" : "c [mol/m³]";
+            ASSERT_EQ(table.rows.size(), 37u);
+            std::vector<double> count(37), focus(37);
+            formula::forEachPlace([&](Place at) {
+                const auto v = formula::valueAt(channel, at, of.time);
+                if (!v) return;
+                const auto bin = std::min(36, int((*v - range.lo) / (range.hi - range.lo) * 37));
+                count[std::size_t(bin)] += 1;
+                focus[std::size_t(bin)] += interest(of, at);
+            });
+            for (std::size_t i = 0; i < 37; ++i) {
+                EXPECT_NEAR(*table.number(i, "from"), range.lo + (range.hi - range.lo) * double(i) / 37,
+                            1e-6 * range.hi);
+                EXPECT_EQ(table.number(i, title + " samples"), count[i]) << i;
+                if (of.brush) {
+                    EXPECT_NEAR(*table.number(i, "in focus"), focus[i], 1e-6) << i;
+                }
+            }
+        }
+    }
+}
+
+TEST_F(ViewTables, ScatterplotsCountPairsInTheirBins) {
+    ScatterMatrixView view;
+    view.channels = {"T", "c"};
+    view.bins = 19;
+    install(view);
+    const Range t = plotted("T"), c = plotted("c");
+    for (const Case& of : cases()) {
+        SCOPED_TRACE(of.time);
+        std::map<std::pair<int, int>, std::pair<double, double>> wanted;
+        formula::forEachPlace([&](Place at) {
+            const auto x = formula::valueAt("T", at, of.time), y = formula::valueAt("c", at, of.time);
+            if (!x || !y) return;
+            const auto bin = [](double v, Range range) {
+                return std::min(18, int((v - range.lo) / (range.hi - range.lo) * 19));
+            };
+            auto& [count, focus] = wanted[{bin(*x, t), bin(*y, c)}];
+            count += 1, focus += interest(of, at);
+        });
+        const Table table = shownAt(of);
+        EXPECT_EQ(table.rows.size(), wanted.size());
+        for (std::size_t row = 0; row < table.rows.size(); ++row) {
+            EXPECT_EQ(table.text(row, "x parameter"), "T [K]");
+            EXPECT_EQ(table.text(row, "y parameter"), "c [mol/m³]");
+            const auto bin = [&](const char* head, Range range) {
+                return int((*table.number(row, head) - range.lo) / (range.hi - range.lo) * 19);
+            };
+            const auto found = wanted.find({bin("x", t), bin("y", c)});
+            ASSERT_NE(found, wanted.end()) << row;
+            EXPECT_EQ(table.number(row, "samples"), found->second.first);
+            EXPECT_NEAR(*table.number(row, "in focus"), found->second.second, 1e-6);
+        }
+    }
+}
+
+/// A channel between samples: linear along each axis, as T is.
+double between(const std::string& channel, glm::dvec3 at, double time) {
+    double cell[3], sum = 0;
+    int base[3];
+    for (int axis = 0; axis < 3; ++axis) {
+        const double place = (at[axis] - formula::kOrigin[axis]) / formula::kSpacing[axis];
+        base[axis] = std::clamp(int(std::floor(place + 1e-9)), 0, formula::kSize[axis] - 2);
+        cell[axis] = place - base[axis];
+    }
+    for (int corner = 0; corner < 8; ++corner) {
+        double weight = 1;
+        int index[3];
+        for (int axis = 0; axis < 3; ++axis) {
+            const int up = corner >> axis & 1;
+            weight *= up ? cell[axis] : 1 - cell[axis];
+            index[axis] = base[axis] + up;
+        }
+        sum += weight * formula::valueAt(channel, {index[0], index[1], index[2]}, time).value();
+    }
+    return sum;
+}
+
+TEST_F(ViewTables, ProfilesAreReadAlongTheirLine) {
+    ProfileView view;
+    view.channels = {"T", "c"};
+    view.samples = 33;
+    view.points = {{0.0101, 0.0007, -0.0018}, {0.0168, 0.0113, 0.0019}};
+    install(view);
+    for (const Case& of : cases()) {
+        SCOPED_TRACE(of.time);
+        const Table table = shownAt(of);
+        ASSERT_EQ(table.rows.size(), 33u);
+        const double length = glm::distance(view.points[0], view.points[1]);
+        for (std::size_t i = 0; i < 33; ++i) {
+            const double along = double(i) / 32;
+            const glm::dvec3 at = glm::mix(view.points[0], view.points[1], along);
+            EXPECT_NEAR(*table.number(i, "distance [m]"), length * along, 1e-9);
+            for (int axis = 0; axis < 3; ++axis)
+                EXPECT_NEAR(*table.number(i, std::string(1, "xyz"[axis])), at[axis], 1e-9);
+            EXPECT_NEAR(*table.number(i, "T [K]"), between("T", at, of.time), 3e-4);
+            if (at.x < 0.0129) {
+                EXPECT_NEAR(*table.number(i, "c [mol/m³]"), between("c", at, of.time), 3e-5);
+            } else if (at.x > 0.0136) {
+                EXPECT_FALSE(table.number(i, "c [mol/m³]"));
+            }
+        }
+    }
+}
+
+TEST_F(ViewTables, ProfilesOverTimeAreReadAtTheCursor) {
+    ProfileView view;
+    view.channels = {"T"};
+    view.over = ProfileOver::Time;
+    install(view);
+    Session session = start;
+    session.cursor = {0.0137, 0.0066, 0.0003};
+    const Table table = tableOf(this->table(session));
+    ASSERT_EQ(table.rows.size(), 3u);
+    for (std::size_t i = 0; i < 3; ++i) {
+        EXPECT_EQ(table.number(i, "time [s]"), formula::kTimes[i]);
+        EXPECT_NEAR(*table.number(i, "T [K]"), between("T", session.cursor, formula::kTimes[i]), 3e-4);
+    }
+}
+
+TEST_F(ViewTables, SectionsAreOfTheirPlaneAndRegion) {
+    ProfileView view;
+    view.channels = {"T", "c"};
+    view.over = ProfileOver::Sections;
+    view.sections.across = SectionAcross::Z;
+    install(view);
+    for (const Case& of : cases()) {
+        SCOPED_TRACE(of.time);
+        const Table table = shownAt(of);
+        std::size_t checked = 0;
+        for (std::size_t row = 0; row < table.rows.size(); ++row) {
+            EXPECT_NEAR(*table.number(row, "time [s]"), of.time, 1e-9);
+            const double place = *table.number(row, "z [m]");
+            const std::string region = table.text(row, "region"), name = table.text(row, "parameter");
+            const Sum sum = summed(name, of.time, [&](Place at) {
+                const double z = formula::kOrigin[2] + formula::kSpacing[2] * at.z;
+                const bool inside = region.starts_with("west")   ? at.x < 4
+                                    : region.starts_with("east") ? at.x >= 4
+                                                                 : true;
+                return std::abs(z - place) < 1e-9 && inside && interest(of, at) == 1;
+            });
+            SCOPED_TRACE(name + " " + region + " " + std::to_string(place));
+            EXPECT_NEAR(*table.number(row, "samples"), sum.samples, 1e-6);
+            if (sum.samples == 0) continue;
+            EXPECT_NEAR(*table.number(row, "least"), sum.least, 2e-4);
+            EXPECT_NEAR(*table.number(row, "most"), sum.most, 2e-4);
+            ++checked;
+        }
+        EXPECT_GE(checked, of.brush ? 9u : 27u);
+    }
+}
+
+TEST_F(ViewTables, PlanesAreReadWhereTheyStand) {
+    SliceMatrixView view;
+    view.channels = {"T"};
+    view.planes = 2;
+    install(view);
+    for (const Case& of : cases()) {
+        SCOPED_TRACE(of.time);
+        const Table table = shownAt(of);
+        ASSERT_GT(table.rows.size(), 1000u);
+        for (const std::size_t row : {std::size_t(0), std::size_t(1), table.rows.size() / 3, table.rows.size() - 1}) {
+            const glm::dvec3 at{*table.number(row, "x"), *table.number(row, "y"), *table.number(row, "z")};
+            EXPECT_NEAR(*table.number(row, "T [K]"), between("T", at, of.time), 3e-4) << row;
+        }
+    }
+}
+
+TEST_F(ViewTables, CurvesAreStatisticsOfEveryTime) {
+    CurvesView view;
+    view.x = "time";
+    view.y = {"mean(T)", "max(T)", "voltage * current"};
+    install(view);
+    const Table table = shownAt({0.5, {}});
+    ASSERT_EQ(table.rows.size(), 3u);
+    constexpr double kPower[] = {4200, 5580, 8500};
+    for (std::size_t i = 0; i < 3; ++i) {
+        const Sum sum = summed("T", formula::kTimes[i], [](Place) { return true; });
+        EXPECT_EQ(table.number(i, "time [s]"), formula::kTimes[i]);
+        EXPECT_NEAR(*table.number(i, "mean(T) [K]"), sum.mean, 2e-4);
+        EXPECT_NEAR(*table.number(i, "max(T) [K]"), sum.most, 2e-4);
+        EXPECT_NEAR(std::stod(table.rows[i].back()), kPower[i], 1e-6) << table.heads.back();
+    }
+}
+
+} // namespace
+} // namespace tessera::app
