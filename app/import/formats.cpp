@@ -14,7 +14,6 @@
 #include <vtkNIFTIImageReader.h>
 #include <vtkNetCDFCFReader.h>
 #include <vtkNew.h>
-#include <vtkNrrdReader.h>
 #include <vtkOpenFOAMReader.h>
 #include <vtkStringArray.h>
 #include <vtkXMLImageDataReader.h>
@@ -112,30 +111,9 @@ void openLegacy(Source& source) {
 }
 
 constexpr Reader kReaders[] = {
-    {"vti", openXml<vtkXMLImageDataReader>},
-    {"pvti", openXml<vtkXMLPImageDataReader>},
-    {"vtu", openXml<vtkXMLUnstructuredGridReader>},
-    {"pvtu", openXml<vtkXMLPUnstructuredGridReader>},
-    {"vtr", openXml<vtkXMLRectilinearGridReader>},
-    {"vts", openXml<vtkXMLStructuredGridReader>},
-    {"vtm", openXml<vtkXMLMultiBlockDataReader>},
-    {"vtk", openLegacy},
-    {"nrrd", openImage<vtkNrrdReader, checkNrrd>},
-    {"MetaImage", openImage<vtkMetaImageReader, checkMetaImage>},
-    {"NIfTI", openImage<vtkNIFTIImageReader, checkNifti>},
-    {"OpenFOAM", openFoam},
-    {"EnSight", openEnSight},
-    {"NetCDF", openNetCdf},
-    {"CSV", openCsv},
-    {"Tecplot ASCII", openTecplot},
-    {"NumPy", openNumpy},
-    {"HDF5", openHdf},
-    {"TIFF", openTiff},
-    {"CGNS", openCgns},
-    {"Exodus", openExodus},
-    {"Fluent", openFluent},
-    {"PLOT3D", openPlot3d},
-    {"DICOM", openDicom},
+#define TESSERA_FORMAT(name, suffixes, lengthUnit, slices, ...) Reader{name, __VA_ARGS__},
+#define TESSERA_UNREAD(name, suffixes, advice)
+#include "volume/import/format_rows.inc"
 };
 
 } // namespace

@@ -7,7 +7,7 @@
 
 namespace tessera::importer {
 
-/// What reads a row of volume/import/formats.cpp: `open` reads the header of `source.path` (and `source.files`) and
+/// What reads a row of volume/import/format_rows.inc: `open` reads the header of `source.path` (and `source.files`) and
 /// fills in the rest of the source. Throws std::runtime_error with one line of reason.
 struct Reader {
     std::string_view format;

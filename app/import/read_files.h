@@ -2,10 +2,11 @@
 
 #include "app/import/source.h"
 
-/// Readers of the rows of app/import/formats.cpp that have a file of their own.
+/// Readers of the rows of volume/import/format_rows.inc that have a file of their own.
 namespace tessera::importer {
 
 void openCsv(Source& source);
+void openNrrd(Source& source);
 void openTecplot(Source& source);
 void openNumpy(Source& source);
 void openHdf(Source& source);

@@ -18,11 +18,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-std::string besides(const std::string& list, const std::string& name) {
-    const fs::path path(name);
-    return path.is_absolute() ? name : (fs::path(list).parent_path() / path).string();
-}
-
 void checkXml(const std::string& path, std::set<std::string>& seen) {
     if (!seen.insert(path).second) return;
     constexpr std::size_t kTail = 4096;
@@ -47,6 +42,11 @@ void checkXml(const std::string& path, std::set<std::string>& seen) {
 }
 
 } // namespace
+
+std::string besides(const std::string& file, const std::string& name) {
+    const fs::path path(name);
+    return path.is_absolute() ? name : (fs::path(file).parent_path() / path).string();
+}
 
 std::string readPart(const std::string& path, std::size_t begin, std::size_t count) {
     std::ifstream in(path, std::ios::binary);

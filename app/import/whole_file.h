@@ -1,12 +1,16 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <string_view>
 
 /// Checks that a file holds all that its own words announce. VTK's readers fill what a truncated file lacks with
 /// whatever was in memory, or with zeros. Each check throws std::runtime_error with one line of reason.
 namespace tessera::importer {
+
+/// Path of a file that `file` names: from its folder.
+std::string besides(const std::string& file, const std::string& name);
 
 /// Bytes [begin, begin + count) of a file, fewer where it ends.
 std::string readPart(const std::string& path, std::size_t begin, std::size_t count);
@@ -25,6 +29,10 @@ void checkDeflated(const std::string& path, std::size_t begin, double wanted);
 void checkMetaImage(const std::string& path);
 void checkNifti(const std::string& path);
 void checkNrrd(const std::string& path);
+
+/// The samples of a NRRD file that are written as text, in it or in the file that it names; nothing where they are not,
+/// or in several files. Throws where the last line is cut.
+std::optional<std::string> textOfNrrd(const std::string& path);
 
 /// NetCDF of the classic formats (CDF 1, 2 and 5): where the header says its last value lies. HDF5 files are left to
 /// their library.

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cctype>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
@@ -19,11 +20,6 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::size_t kHead = 1 << 20;
-
-std::string besides(const std::string& header, const std::string& name) {
-    const fs::path path(name);
-    return path.is_absolute() ? name : (fs::path(header).parent_path() / path).string();
-}
 
 void wantBytes(double has, double wanted, const std::string& where = {}) {
     if (has < wanted)
@@ -84,6 +80,32 @@ double product(const std::string& sizes) {
     double all = 1;
     for (double one = 0; in >> one;) all *= one;
     return all;
+}
+
+/// Where the samples of a NRRD file are.
+struct NrrdPlace {
+    std::string type, encoding; ///< as its header says them
+    std::string file, name;     ///< what holds the samples, and how the header calls it: "" = the file itself
+    std::size_t begin = 0;
+    double samples = 0;
+    bool severalFiles = false;
+};
+
+NrrdPlace placeOfNrrd(const std::string& path) {
+    const std::string head = readPart(path, 0, kHead);
+    if (!head.starts_with("NRRD")) throw std::runtime_error("is damaged or not of this format");
+    NrrdPlace place;
+    std::map<std::string, std::string> fields = readFields(head, ": ", "", place.begin);
+    place.type = fields["type"];
+    place.encoding = fields["encoding"];
+    std::ranges::transform(place.encoding, place.encoding.begin(),
+                           [](unsigned char c) { return char(std::tolower(c)); });
+    place.samples = product(fields["sizes"]);
+    place.name = fields["data file"] + fields["datafile"];
+    place.severalFiles = place.name.find(' ') != std::string::npos || place.name == "LIST";
+    place.file = place.name.empty() ? path : besides(path, place.name);
+    if (!place.name.empty()) place.begin = 0;
+    return place;
 }
 
 } // namespace
@@ -163,34 +185,34 @@ void checkNifti(const std::string& path) {
 }
 
 void checkNrrd(const std::string& path) {
-    const std::string head = readPart(path, 0, kHead);
-    if (!head.starts_with("NRRD")) throw std::runtime_error("is damaged or not of this format");
-    std::size_t begin = 0;
-    std::map<std::string, std::string> fields = readFields(head, ": ", "", begin);
+    const NrrdPlace place = placeOfNrrd(path);
     static const std::map<std::string, int> kBytes = {{"char", 1},     {"int8", 1},   {"short", 2}, {"int16", 2},
                                                       {"ushort", 2},   {"uint16", 2}, {"int", 4},   {"int32", 4},
                                                       {"uint", 4},     {"uint32", 4}, {"float", 4}, {"double", 8},
                                                       {"longlong", 8}, {"int64", 8},  {"uint64", 8}};
-    std::string word = fields["type"];
+    std::string word = place.type;
     if (word.starts_with("unsigned ")) word = word.substr(9);
     if (word.starts_with("signed ")) word = word.substr(7);
     if (word.ends_with("_t")) word.resize(word.size() - 2);
     if (word.ends_with(" int") && word != "int") word.resize(word.size() - 4);
     const auto type = kBytes.find(word);
-    const double size = type == kBytes.end() ? 1 : type->second, wanted = product(fields["sizes"]) * size;
-    std::string data = fields["data file"] + fields["datafile"];
-    if (data.find(' ') != std::string::npos || data == "LIST") return; // several files: VTK says what is missing
-    const std::string file = data.empty() ? path : besides(path, data), encoding = fields["encoding"];
-    if (!data.empty()) begin = 0;
-    if (encoding == "raw") {
-        wantBytes(fileBytes(file, data) - double(begin), wanted, data);
-    } else if (encoding == "gzip" || encoding == "gz") {
-        checkDeflated(file, begin, wanted);
-    } else if (encoding == "ascii" || encoding == "text" || encoding == "txt") {
-        const std::string text = readWhole(file).substr(begin);
-        checkLastLine(text);
-        if (double(countWords(text)) * size < wanted) throw std::runtime_error("holds fewer samples than it announces");
-    }
+    const double wanted = place.samples * (type == kBytes.end() ? 1 : type->second);
+    if (place.severalFiles) return; // VTK says what is missing
+    if (place.encoding == "raw")
+        wantBytes(fileBytes(place.file, place.name) - double(place.begin), wanted, place.name);
+    else if (place.encoding == "gzip" || place.encoding == "gz")
+        checkDeflated(place.file, place.begin, wanted);
+    else if (const auto text = textOfNrrd(path); text && double(countWords(*text)) < place.samples)
+        throw std::runtime_error("holds fewer samples than it announces");
+}
+
+std::optional<std::string> textOfNrrd(const std::string& path) {
+    const NrrdPlace place = placeOfNrrd(path);
+    if (place.severalFiles || (place.encoding != "ascii" && place.encoding != "text" && place.encoding != "txt"))
+        return std::nullopt;
+    std::string text = readWhole(place.file).substr(place.begin);
+    checkLastLine(text);
+    return text;
 }
 
 } // namespace tessera::importer

@@ -102,6 +102,36 @@ TEST_F(WholeFile, Nrrd) {
     }
 }
 
+TEST_F(WholeFile, NrrdAsTextHoldsItsNumbers) {
+    const std::string head = "NRRD0004\ntype: float\ndimension: 3\nsizes: 5 4 6\nspacings: 1 2 3\nencoding: ascii\n";
+    const std::vector<float> values = numbers<float>(1);
+    const std::string bytes =
+        "NRRD0004\ntype: unsigned char\ndimension: 4\nsizes: 2 5 4 6\nkinds: vector domain domain "
+        "domain\nencoding: text\n\n";
+    const std::vector<std::uint8_t> pairs = numbers<std::uint8_t>(1, 2 * kCount);
+    std::string pairText;
+    for (const std::uint8_t value : pairs) pairText += std::to_string(value) + (value % 2 == 0 ? "\n" : " ");
+    write("b.dat", asText(values));
+    // In the file of the header or in one beside it; with blanks only behind the last number, or no line end.
+    for (const std::string& path :
+         {write("a.nrrd", head + "\n" + asText(values, "\n")), write("c.nrrd", head + "\n" + asText(values) + " \n"),
+          write("d.nrrd", head + "\n" + asText(values)), write("b.nhdr", head + "data file: b.dat\n\n")}) {
+        const Dataset dataset = openFiles({path}, {});
+        ASSERT_EQ(dataset.info.lattice.size, glm::ivec3(kX, kY, kZ));
+        EXPECT_EQ(dataset.info.lattice.spacing, glm::dvec3(1, 2, 3));
+        const Field field = dataset.load(0, 0, 0);
+        for (std::size_t i = 0; i < values.size(); ++i)
+            ASSERT_EQ(field.value(i), double(values[i])) << path << " " << i;
+    }
+    const Dataset dataset = openFiles({write("e.nrrd", bytes + pairText + "\n")}, {});
+    ASSERT_EQ(dataset.info.parameters.size(), 2u);
+    for (int c = 0; c < 2; ++c) {
+        const Field field = dataset.load(c, 0, 0);
+        for (std::size_t i = 0; i < field.count(); ++i) ASSERT_EQ(field.value(i), pairs[2 * i + std::size_t(c)]);
+    }
+    EXPECT_THAT(failure(write("g.nrrd", head + "\nx " + asText(values) + "\n")), testing::HasSubstr("\"x\" where"));
+}
+
 TEST_F(WholeFile, MetaImage) {
     const std::string samples = bytesOf(numbers<float>(1));
     const auto head = [](const std::string& more, const std::string& data) {

@@ -9,52 +9,10 @@ namespace tessera::volume {
 
 namespace {
 
-constexpr FileFormat without(std::string_view name, std::string_view suffixes, std::string_view advice) {
-    return {name, suffixes, advice, "", false};
-}
-
-// Name, suffixes, advice where there is no reader, unit of lengths where files say none, slices.
 constexpr FileFormat kFormats[] = {
-    {"vti", ".vti", ""},
-    {"pvti", ".pvti", ""},
-    {"vtu", ".vtu", ""},
-    {"pvtu", ".pvtu", ""},
-    {"vtr", ".vtr", ""},
-    {"vts", ".vts", ""},
-    {"vtm", ".vtm", ""},
-    {"vtk", ".vtk", ""},
-    {"nrrd", ".nrrd .nhdr", "", ""},
-    {"MetaImage", ".mha .mhd", "", ""},
-    {"NIfTI", ".nii .nii.gz", ""},
-    {"OpenFOAM", ".foam", ""},
-    {"EnSight", ".case .encas", ""},
-    {"NetCDF", ".nc", ""},
-    {"CSV", ".csv .tsv .txt", ""},
-    {"Tecplot ASCII", ".dat .tec .tp", ""},
-    {"NumPy", ".npy .npz", "", ""},
-    {"HDF5", ".h5 .hdf5 .hdf .vtkhdf", "", ""},
-    {"TIFF", ".tif .tiff", "", "", true},
-    {"CGNS", ".cgns", ""},
-    {"Exodus", ".exo .ex2 .exii .e", ""},
-    {"Fluent", ".cas .msh", ""},
-    {"PLOT3D", ".xyz .p3d .x", ""},
-    {"DICOM", ".dcm .ima", "", "mm", true},
-    // No reader: what to export instead.
-    without("Fluent in HDF5", ".cas.h5 .dat.h5 .msh.h5", "export as CGNS or EnSight Gold from Fluent"),
-    without("binary Tecplot", ".plt .szplt", "write it as Tecplot ASCII (.dat), or as CGNS or EnSight Gold"),
-    without("CFD-Post, CFX", ".res .cst", "export as CGNS or EnSight Gold from CFX"),
-    without("STAR-CCM+", ".sim .ccm .ccmt", "export as CGNS or EnSight Gold from STAR-CCM+"),
-    without("COMSOL", ".mph", "export as VTK (.vtu), or as a text file on a grid, from COMSOL"),
-    without("MATLAB", ".mat", "write it as HDF5 (h5write), or as raw"),
-    without("Abaqus", ".odb", "export as Exodus or VTK (.vtu)"),
-    without("Ansys", ".rst .rth .cdb", "export as EnSight Gold or CGNS from Ansys"),
-    without("XDMF", ".xdmf .xmf", "open the HDF5 file beside it, or write it as VTK (.vtu) from ParaView"),
-    without("GRIB", ".grib .grb .grib2 .grb2", "convert it to NetCDF (cdo -f nc copy)"),
-    without("ParaView state", ".pvsm", "open the data files that it names"),
-    without("a picture", ".jpg .jpeg .bmp .gif", "write slices as TIFF"),
-    without("SILO", ".silo", "write it as VTK (.vtu) or Exodus from VisIt"),
-    without("OpenVDB", ".vdb", "write it as NumPy (.npy) or raw"),
-    without("a surface", ".stl .obj .ply .vtp", "it holds no volume: write the volume as VTK (.vtu)"),
+#define TESSERA_FORMAT(name, suffixes, lengthUnit, slices, ...) FileFormat{name, suffixes, "", lengthUnit, slices},
+#define TESSERA_UNREAD(name, suffixes, advice) FileFormat{name, suffixes, advice, "", false},
+#include "volume/import/format_rows.inc"
 };
 
 /// Calls body(suffix) for each suffix of a row.

@@ -4,15 +4,15 @@
 #include <string>
 #include <string_view>
 
-/// The file formats known, one row each. app/import/formats.cpp has the reader of each row of tessera-import.
+/// The file formats known: the rows of volume/import/format_rows.inc.
 namespace tessera::volume {
 
 struct FileFormat {
-    std::string_view name;             ///< as `tessera info` says it
-    std::string_view suffixes;         ///< in small letters, separated by blanks; the longest that fits a file counts
-    std::string_view advice;           ///< for formats without a reader: which one the program that wrote it can write
-    std::string_view lengthUnit = "m"; ///< taken where a file says none; simulations write metres
-    bool slices = false;               ///< files numbered alike are slices of one volume (single-page TIFF, DICOM)
+    std::string_view name;       ///< as `tessera info` says it
+    std::string_view suffixes;   ///< in small letters, separated by blanks; the longest that fits a file counts
+    std::string_view advice;     ///< for formats without a reader: which one the program that wrote it can write
+    std::string_view lengthUnit; ///< taken where a file says none; simulations write metres
+    bool slices = false;         ///< files numbered alike are slices of one volume (single-page TIFF, DICOM)
 };
 
 std::span<const FileFormat> fileFormats();

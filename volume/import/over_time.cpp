@@ -22,7 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
-constexpr std::uintmax_t kMostBytes = 256u << 20;
+constexpr std::uintmax_t kMostTableBytes = 256u << 20;
 constexpr std::size_t kMostColumns = 4096;
 
 std::string lower(std::string_view text) {
@@ -181,7 +181,7 @@ TimeTable readTimeTable(const std::string& path) {
     const auto size = fs::file_size(path, failed);
     std::ifstream in(path, std::ios::binary);
     if (failed || !in) throw Error("cannot be read", path);
-    if (size > kMostBytes) throw Error("is too large for a table over time", path);
+    if (size > kMostTableBytes) throw Error("is too large for a table over time", path);
     const std::string text{std::istreambuf_iterator<char>(in), {}};
     return parseTimeTable(text, path);
 }
