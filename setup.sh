@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
 # Installs the distribution's packages that Tessera is built and tested with, if any is missing. Debian 12 or later.
+# --tests: those of ./test.sh too; --fuzz: the compiler of the preset "fuzz".
 set -euo pipefail
 
 packages=(
@@ -12,7 +13,9 @@ packages=(
     libvtk9-dev libtiff-dev zlib1g-dev                               # tessera-import: readers of foreign formats
 )
 test_packages=(libgtest-dev libgmock-dev clang-format xvfb xdotool xauth x11-utils) # only ./test.sh needs these
+fuzz_packages=(clang-16 libclang-rt-16-dev libgtest-dev libgmock-dev) # clang 14 cannot compile <ranges> of gcc 12
 [ "${1:-}" = --tests ] && packages+=("${test_packages[@]}")
+[ "${1:-}" = --fuzz ] && packages+=("${fuzz_packages[@]}")
 
 missing=()
 for package in "${packages[@]}"; do

@@ -3,13 +3,16 @@ find_package(VTK 9.1 QUIET COMPONENTS CommonCore CommonDataModel CommonExecution
              IOEnSight IOExodus IOGeometry IOHDF IOImage IOLegacy IONetCDF IOParallel IOXML hdf5)
 if(VTK_FOUND)
   file(GLOB import_sources CONFIGURE_DEPENDS app/import/*.cpp)
-  add_executable(tessera-import ${import_sources})
+  list(REMOVE_ITEM import_sources ${CMAKE_SOURCE_DIR}/app/import/main.cpp)
   find_package(ZLIB REQUIRED)
   find_package(TIFF REQUIRED)
-  target_link_libraries(tessera-import PRIVATE volume nlohmann_json::nlohmann_json ${VTK_LIBRARIES} TIFF::TIFF
-                        ZLIB::ZLIB)
-  target_include_directories(tessera-import SYSTEM PRIVATE ${VTK_INCLUDE_DIRS})
-  vtk_module_autoinit(TARGETS tessera-import MODULES ${VTK_LIBRARIES})
+  # The readers, which fuzz targets link too.
+  add_library(importer STATIC ${import_sources})
+  target_link_libraries(importer PUBLIC volume nlohmann_json::nlohmann_json ${VTK_LIBRARIES} TIFF::TIFF ZLIB::ZLIB)
+  target_include_directories(importer SYSTEM PUBLIC ${VTK_INCLUDE_DIRS})
+  add_executable(tessera-import app/import/main.cpp)
+  target_link_libraries(tessera-import PRIVATE importer)
+  vtk_module_autoinit(TARGETS importer tessera-import MODULES ${VTK_LIBRARIES})
 else()
   message(STATUS "VTK not found: tessera reads raw files and archives only, "
                  "not those of other programs (install libvtk9-dev)")

@@ -2,6 +2,7 @@
 // none, and leaves what was in memory.
 #include "app/import/read_files.h"
 #include "app/import/whole_file.h"
+#include "volume/import/nrrd.h"
 
 #include <cctype>
 #include <charconv>
@@ -51,21 +52,36 @@ void openNrrd(Source& source) {
     form->SetExtent(reader->GetDataExtent());
     form->SetSpacing(reader->GetDataSpacing());
     form->SetOrigin(reader->GetDataOrigin());
+    std::string name = "value";
+    int components = reader->GetNumberOfScalarComponents();
+    // VTK takes a first axis of up to nine samples for components; the header says more.
+    constexpr std::size_t kHead = 1 << 20;
+    const std::string head = readPart(source.path, 0, kHead);
+    if (const auto scalar = volume::parseNrrd(head, {}, volume::NrrdEncoding::Text)) {
+        const volume::Lattice& lattice = scalar->lattice;
+        form->SetDimensions(lattice.size.x, lattice.size.y, lattice.size.z);
+        form->SetSpacing(lattice.spacing.x, lattice.spacing.y, lattice.spacing.z);
+        form->SetOrigin(lattice.origin.x, lattice.origin.y, lattice.origin.z);
+        name = scalar->components[0].name;
+        components = 1;
+        source.units[name] = scalar->components[0].unit;
+        source.times = scalar->times;
+    }
     source.read = [path = source.path, form = vtkSmartPointer<vtkImageData>(form), type = reader->GetDataScalarType(),
-                   components = reader->GetNumberOfScalarComponents()](std::size_t) {
+                   name, components](std::size_t) {
         checkNrrd(path);
         const std::string all = textOfNrrd(path).value_or("");
         vtkNew<vtkImageData> image;
         image->CopyStructure(form);
         auto array = vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(type));
-        array->SetName("ImageFile"); // as VTK's reader calls it
+        array->SetName(name.c_str());
         array->SetNumberOfComponents(components);
         array->SetNumberOfTuples(image->GetNumberOfPoints());
         std::string_view rest = all;
         for (vtkIdType i = 0; i < array->GetNumberOfTuples(); ++i)
             for (int c = 0; c < components; ++c) array->SetComponent(i, c, takeNumber(rest));
         image->GetPointData()->SetScalars(array);
-        return image;
+        return vtkSmartPointer<vtkDataObject>(image);
     };
 }
 

@@ -119,7 +119,7 @@ void checkLegacy(const std::string& path, std::size_t arrays) {
     const std::string text = readWhole(path);
     const std::string head = text.substr(0, 1024);
     if (head.find("\nASCII") != std::string::npos) checkLastLine(text);
-    std::size_t announced = 0;
+    std::size_t announced = 0, attributes = std::string::npos;
     for (std::size_t at = text.find('\n'); at != std::string::npos; at = text.find('\n', at + 1)) {
         static constexpr const char* kWords[] = {"SCALARS ", "VECTORS ", "NORMALS ", "TENSORS ", "COLOR_SCALARS "};
         for (const char* word : kWords)
@@ -128,7 +128,11 @@ void checkLegacy(const std::string& path, std::size_t arrays) {
         if (text.compare(at + 1, 6, "FIELD ") == 0 && std::sscanf(text.c_str() + at + 7, "%*255s %u", &number) == 1)
             announced += number;
         if (text.compare(at + 1, 10, "NULL_ARRAY") == 0 && announced > 0) --announced;
+        if (text.compare(at + 1, 11, "POINT_DATA ") == 0 || text.compare(at + 1, 10, "CELL_DATA ") == 0)
+            attributes = text.find('\n', at + 1);
     }
+    if (attributes != std::string::npos && text.find_first_not_of(" \t\r\n", attributes) == std::string::npos)
+        throw std::runtime_error("ends too early: announces values of points or cells, and none follow");
     if (arrays < announced)
         throw std::runtime_error("ends too early: announces " + std::to_string(announced) + " arrays, holds " +
                                  std::to_string(arrays));

@@ -44,7 +44,8 @@ void checkFoam(const std::string& path, double time);
 /// EnSight Gold, step of so many: the geometry's parts, and in each variable a value for each point or cell.
 void checkEnSight(const std::string& path, std::size_t step, std::size_t steps);
 
-/// Legacy files: the reader stops at the end of a truncated one without a word. `arrays` is what it gave.
+/// Legacy files: the reader stops at the end of a truncated one without a word. `arrays` is what it gave. Nothing in
+/// such a file says how many arrays it has (but for those of a FIELD): one cut exactly between two is one of fewer.
 void checkLegacy(const std::string& path, std::size_t arrays);
 
 } // namespace tessera::importer

@@ -36,6 +36,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     attempt([&] {
         if (const auto form = volume::parseNrrd(text, "a.nrrd")) check(*form);
     });
+    attempt([&] {
+        if (const auto form = volume::parseNrrd(text, "a.nrrd", volume::NrrdEncoding::Text)) check(*form);
+    });
     attempt([&] { volume::parsePvd(text, "a.pvd"); });
     attempt([&] { volume::parseSeries(text, "a.series"); });
     attempt([&] { volume::parseAbsentRule(text); });

@@ -315,7 +315,8 @@ std::set<std::string> suffixesOfReadme() {
 }
 
 TEST(FileFormats, TheReadmeListsTheTableAndNothingElse) {
-    std::set<std::string> wanted{".tsr", ".raw", ".pvd", ".series"}; // read by the program itself
+    // Read by the program itself, and the values of PLOT3D.
+    std::set<std::string> wanted{".tsr", ".raw", ".pvd", ".series", ".q", ".f"};
     std::istringstream suffixes(readableSuffixes());
     for (std::string suffix; suffixes >> suffix;)
         EXPECT_TRUE(wanted.insert(suffix).second) << suffix << " stands twice";

@@ -202,8 +202,25 @@ TEST_F(MeshFormats, Fluent) {
         EXPECT_LT(field.value(0), field.value(3)) << parameter.name;
     }
     expectCutsAreTold(cas, cas, options, 30);
-    // A file cut exactly between two sections is a whole one of fewer variables: these cuts lie within.
+    // These cuts lie within sections.
     expectCutsAreTold(cas, dat, options, 19);
+    // Between two sections nothing tells how many follow: no variables are an error, fewer are as in the whole file.
+    const std::string whole = read(dat);
+    for (std::size_t at = whole.find("\n(", 1); at != std::string::npos; at = whole.find("\n(", at + 1)) {
+        write("a.dat", whole.substr(0, at + 1));
+        const bool none = whole.substr(0, at).find("(300 ") == std::string::npos;
+        EXPECT_EQ(failure(cas, options).empty(), !none);
+        if (none) continue;
+        const Dataset cut = openFiles({cas}, options);
+        ASSERT_EQ(cut.info.parameters.size(), 1u);
+        const auto same = std::ranges::find(dataset.info.parameters, cut.info.parameters[0].name, &Parameter::name);
+        ASSERT_NE(same, dataset.info.parameters.end());
+        const Field some = cut.load(0, 0, 0);
+        write("a.dat", whole);
+        const Field all = openFiles({cas}, options).load(int(same - dataset.info.parameters.begin()), 0, 0);
+        for (std::size_t i = 0; i < some.count(); ++i) EXPECT_EQ(some.value(i), all.value(i));
+    }
+    write("a.dat", whole);
     EXPECT_THAT(failure(dat), testing::HasSubstr("open the .cas file"));
     fs::remove(dat);
     EXPECT_THAT(failure(cas), testing::HasSubstr("without values"));

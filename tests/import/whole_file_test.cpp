@@ -39,6 +39,52 @@ TEST_F(WholeFile, LegacyVtk) {
     }
 }
 
+/// Where the bytes can tell that something is missing they do; where they cannot, arrays are fewer and the rest is as
+/// in the whole file.
+TEST_F(WholeFile, LegacyVtkCutBetweenItsSections) {
+    for (const bool binary : {true, false}) {
+        const auto values = [&](int seed, std::size_t count) {
+            return (binary ? bytesOf(numbers<float>(seed, count), true) : asText(numbers<float>(seed, count))) + "\n";
+        };
+        const std::vector<std::pair<std::string, std::string>> sections{
+            {"# vtk DataFile Version 3.0\nx\n" + std::string(binary ? "BINARY" : "ASCII") + "\n", ""},
+            {"DATASET STRUCTURED_POINTS\nDIMENSIONS 5 4 6\nORIGIN 0 0 0\nSPACING 1 2 3\n", ""},
+            {"POINT_DATA 120\n", ""},
+            {"SCALARS T float 1\n", ""},
+            {"LOOKUP_TABLE default\n", ""},
+            {values(1, kCount), "T"},
+            {"FIELD FieldData 2\n", ""},
+            {"p 1 120 float\n", ""},
+            {values(2, kCount), ""},
+            {"q 1 120 float\n", ""},
+            {values(3, kCount), "T p q"},
+            {"VECTORS U float\n", ""},
+            {values(4, 3 * kCount), "T p q U"},
+            {"CELL_DATA 60\n", ""},
+            {"SCALARS c float 1\nLOOKUP_TABLE default\n", ""},
+            {values(5, 60), "T p q U"}}; // of cells beside points none are taken
+        std::string text, whole;
+        for (const auto& section : sections) whole += section.first;
+        const Dataset wanted = openFiles({write("whole.vtk", whole)}, {});
+        for (const auto& [section, arrays] : sections) {
+            text += section;
+            const std::string path = write("cut.vtk", text);
+            if (arrays.empty()) {
+                EXPECT_NE(failure(path), "") << text.size() << (binary ? " bytes" : " characters");
+                continue;
+            }
+            const Dataset dataset = openFiles({path}, {});
+            std::string found;
+            for (std::size_t p = 0; p < dataset.info.parameters.size(); ++p) {
+                found += (found.empty() ? "" : " ") + dataset.info.parameters[p].name;
+                const Field field = dataset.load(int(p), 0, 0), same = wanted.load(int(p), 0, 0);
+                for (std::size_t i = 0; i < field.count(); ++i) ASSERT_EQ(field.value(i), same.value(i));
+            }
+            EXPECT_EQ(found, arrays);
+        }
+    }
+}
+
 TEST_F(WholeFile, LegacyVtkOfTheFuelCellAsItWasReported) {
     const std::string archive = testData("fuel-cell/other-formats.tar.xz");
     if (archive.empty()) GTEST_SKIP() << "no test data";

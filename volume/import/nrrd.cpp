@@ -57,7 +57,7 @@ std::vector<double> lengths(const std::string& text, const std::string& file, co
 
 } // namespace
 
-std::optional<RawForm> parseNrrd(std::string_view head, const std::string& file) {
+std::optional<RawForm> parseNrrd(std::string_view head, const std::string& file, NrrdEncoding wanted) {
     if (!head.starts_with("NRRD")) throw Error("is no NRRD file", file);
     RawForm form;
     RawForm::Component component;
@@ -117,7 +117,9 @@ std::optional<RawForm> parseNrrd(std::string_view head, const std::string& file)
     if (sizes.empty()) throw Error("is missing", file, "sizes");
     const bool vector = kinds.find("vector") != std::string::npos || kinds.find("color") != std::string::npos ||
                         kinds.find("list") != std::string::npos || kinds.find("matrix") != std::string::npos;
-    if (encoding != "raw" || !type || sizes.size() > 3 || vector || form.dataFile.find(' ') != std::string::npos ||
+    const bool text = encoding == "ascii" || encoding == "text" || encoding == "txt";
+    const bool asWanted = wanted == NrrdEncoding::Raw ? encoding == "raw" : text;
+    if (!asWanted || !type || sizes.size() > 3 || vector || form.dataFile.find(' ') != std::string::npos ||
         form.dataFile == "LIST")
         return std::nullopt;
     for (std::size_t axis = 0; axis < sizes.size(); ++axis) {
