@@ -111,6 +111,7 @@ bool peerDraws(const vis::Scene& scene) {
     const bool plainLight = scene.lighting.model == vis::LightModel::Phong && scene.lighting.shadows.strength == 0 &&
                             scene.lighting.shadows.occlusion == 0;
     if (scene.layers.size() != 1 || !plainLight) return false;
+    if (!vis::colorByOf(scene.layers.front().technique).empty()) return false;
     if (std::holds_alternative<vis::IsoLayer>(scene.layers.front().technique)) return true;
     const auto* volume = std::get_if<vis::VolumeLayer>(&scene.layers.front().technique);
     return volume != nullptr && volume->quantity == vis::Quantity::Value && styleName(volume->style) != nullptr &&

@@ -187,6 +187,12 @@ void fitSession(Session& session, const volume::DatasetInfo& info, std::vector<s
                 }
                 if constexpr (requires { technique.weight; })
                     if (!known(technique.weight)) technique.weight.clear();
+                if constexpr (requires { technique.colorBy; })
+                    if (!technique.colorBy.empty() && !known(technique.colorBy)) {
+                        messages.push_back("layer " + layer.name + " has its own colours: " + technique.colorBy +
+                                           " is not in the data");
+                        technique.colorBy.clear();
+                    }
                 const bool replaced = replace(technique.channel);
                 if (replaced) layer.name = technique.channel;
                 if (technique.channel.empty()) technique.channel = fallback;

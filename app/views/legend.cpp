@@ -3,6 +3,7 @@
 #include "app/views/ticks.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace tessera::app {
@@ -56,6 +57,31 @@ void drawColorStrip(ImDrawList& draw, ImVec2 min, ImVec2 max, const vis::Transfe
     draw.AddRect(min, max, colors.frame);
 }
 
+void drawOpacityStrip(ImDrawList& draw, ImVec2 min, ImVec2 max, const vis::TransferFunction& function) {
+    constexpr int kGradients = 32;
+    const PlotColors colors = plotColors();
+    std::array<double, kStripParts + 1> opacity{};
+    double most = 0;
+    for (int i = 0; i <= kStripParts; ++i) {
+        double& own = opacity[static_cast<std::size_t>(i)];
+        for (int k = 0; k <= (function.kind == vis::TransferKind::Regions ? kGradients : 0); ++k)
+            own = std::max(own, vis::evaluate(function, {0, 1}, static_cast<double>(i) / kStripParts,
+                                              static_cast<double>(function.gradientTop) * k / kGradients)
+                                    .a);
+        most = std::max(most, own);
+    }
+    const ImVec4 ink = ImGui::ColorConvertU32ToFloat4(colors.text);
+    const auto color = [&](int i) {
+        const double share = most > 0 ? opacity[static_cast<std::size_t>(i)] / most : 0;
+        return toColor({ink.x, ink.y, ink.z}, share);
+    };
+    for (int i = 0; i < kStripParts; ++i) {
+        const auto x = [&](int k) { return min.x + (max.x - min.x) * static_cast<float>(k) / kStripParts; };
+        draw.AddRectFilledMultiColor({x(i), min.y}, {x(i + 1), max.y}, color(i), color(i + 1), color(i + 1), color(i));
+    }
+    draw.AddRect(min, max, colors.frame);
+}
+
 float legendBarHeight() {
     return barHeight() + em() * 2.75f;
 }
@@ -64,10 +90,13 @@ float drawLegendBar(ImDrawList& draw, ImVec2 min, float width, const LegendEntry
     const PlotColors colors = plotColors();
     const float height = barHeight(), arrow = height * 0.6f;
     const ImVec2 lo{min.x + arrow + 1, min.y + em() * 0.2f}, hi{min.x + width - arrow - 1, lo.y + height};
-    drawColorStrip(draw, lo, hi, entry.function);
+    if (entry.opacity)
+        drawOpacityStrip(draw, lo, hi, entry.function);
+    else
+        drawColorStrip(draw, lo, hi, entry.function);
     const auto end = [&](double x) {
         const glm::dvec4 c = vis::evaluate(entry.function, {0, 1}, x);
-        return toColor({c.r, c.g, c.b});
+        return entry.opacity ? colors.frame : toColor({c.r, c.g, c.b});
     };
     const double slack = (entry.range.hi - entry.range.lo) * 1e-6;
     if (entry.data.lo < entry.range.lo - slack) drawArrow(draw, {lo.x - 1, lo.y}, height, -1, end(0));

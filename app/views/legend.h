@@ -28,6 +28,7 @@ struct LegendEntry {
     std::array<double, 3> color{}; ///< sRGB of a swatch
     double value = 0;
     std::vector<NamedColor> names = {}; ///< of a label: in place of a bar
+    bool opacity = false;               ///< the bar shows the function's opacity and not its colours
     bool operator==(const LegendEntry&) const = default;
 };
 
@@ -35,6 +36,9 @@ struct LegendEntry {
 /// wanted.
 void drawColorStrip(ImDrawList& draw, ImVec2 min, ImVec2 max, const vis::TransferFunction& function,
                     bool withOpacity = false);
+
+/// The same of the opacity alone, as parts of the greatest: regions count with their most at any gradient.
+void drawOpacityStrip(ImDrawList& draw, ImVec2 min, ImVec2 max, const vis::TransferFunction& function);
 
 /// Legends stacked in a right corner of a rectangle, at most as many as fit; returns the pixels they cover.
 struct LegendArea {

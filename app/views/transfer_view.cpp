@@ -31,7 +31,10 @@ struct TransferCache : ViewCache {
     double grab = 0;                                   ///< from the mouse to that end, in values
 };
 
+/// The parameter that a layer's own function is of: of a surface, the one that colours it.
 std::string channelOf(const vis::Technique& technique) {
+    const auto* surface = std::get_if<vis::IsoLayer>(&technique);
+    if (surface && !surface->colorBy.empty()) return surface->colorBy;
     return std::visit([](const auto& own) { return own.channel; }, technique);
 }
 

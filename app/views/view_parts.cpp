@@ -186,12 +186,13 @@ vis::TransferFunction& transferOf(Session& session, const std::string& channel) 
     return session.transfer[channel];
 }
 
-LegendEntry legendOf(const Session& session, const volume::DatasetInfo& info, int channel) {
+LegendEntry legendOf(const Session& session, const volume::DatasetInfo& info, int channel,
+                     const std::string& function) {
     const volume::Channel c = info.channels()[static_cast<std::size_t>(channel)];
     LegendEntry entry;
     entry.title = c.name;
     entry.unit = c.unit;
-    entry.function = transferOf(session, c.name);
+    entry.function = transferOf(session, function.empty() ? c.name : function);
     entry.data = info.channelRange(c);
     entry.range = vis::effectiveRange(entry.function, entry.data);
     const volume::Parameter& parameter = info.parameters[static_cast<std::size_t>(c.parameter)];
@@ -211,19 +212,28 @@ std::vector<LegendEntry> sceneLegends(const Session& session, const volume::Data
         const auto channel = info.findChannel(name);
         if (!channel) continue;
         LegendEntry entry = legendOf(session, info, *channel);
-        if (const auto* iso = std::get_if<vis::IsoLayer>(&layer.technique)) {
+        const std::string& colorBy = vis::colorByOf(layer.technique);
+        const auto color = colorBy.empty() ? std::nullopt : info.findChannel(colorBy);
+        const auto* iso = std::get_if<vis::IsoLayer>(&layer.technique);
+        if (iso) {
             entry.swatch = true;
             entry.color = {iso->color.r, iso->color.g, iso->color.b};
+            if (color) entry.color = {0.5, 0.5, 0.5};
             entry.value = iso->value;
             entries.push_back(entry);
-            const auto color = info.findChannel(iso->colorBy);
-            if (iso->method == vis::SurfaceMethod::Polygons && color && !iso->colorBy.empty()) {
-                entries.back().color = {0.5, 0.5, 0.5};
-                if (seen.insert(iso->colorBy).second) entries.push_back(legendOf(session, info, *color));
-            }
+        } else if (color) {
+            entry = legendOf(session, info, *channel, layer.transfer);
+            entry.opacity = true;
+            entry.title = "opacity by " + entry.title;
+            entry.names.clear();
+            if (seen.insert(entry.title + " " + layer.transfer).second) entries.push_back(entry);
         } else if (seen.insert(name).second) {
             entries.push_back(entry);
         }
+        // A surface's own function is that of its colours.
+        const std::string function = iso && !layer.transfer.empty() ? layer.transfer : colorBy;
+        if (color && seen.insert(function).second)
+            entries.push_back(legendOf(session, info, *color, iso ? layer.transfer : std::string()));
     }
     return entries;
 }

@@ -72,10 +72,11 @@ const vis::TransferFunction& transferOf(const Session& session, const std::strin
 /// The same to edit: made on first use.
 vis::TransferFunction& transferOf(Session& session, const std::string& channel);
 
-/// Legend of a channel as it is drawn now.
-LegendEntry legendOf(const Session& session, const volume::DatasetInfo& info, int channel);
+/// Legend of a channel as it is drawn now, by the function of that name; "": its own.
+LegendEntry legendOf(const Session& session, const volume::DatasetInfo& info, int channel,
+                     const std::string& function = {});
 
-/// Legends of the visible layers, each channel once.
+/// Legends of the visible layers, each channel once; of a layer that is coloured by another parameter both.
 std::vector<LegendEntry> sceneLegends(const Session& session, const volume::DatasetInfo& info);
 
 /// The scene of the session with the theme's colours, and its share of the limits of memory.

@@ -220,6 +220,7 @@ TEST_F(ShaderLib, TablesAreLookedUpAlike) {
         prepare(program);
         vis::RayPlan plan;
         plan.layers.resize(1);
+        plan.rows = 1;
         program.set("layerOpaque", std::vector<glm::vec2>{*vis::opaqueIntervals(plan, table).front()});
     });
     for (int i = 0; i < kCases; ++i) EXPECT_EQ(within[i].x, opaque[i].x) << a[i].x;

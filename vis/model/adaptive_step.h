@@ -61,7 +61,8 @@ double stepOfCode(int code, double unit);
 double stepUnit(glm::dvec3 worldCell);
 
 /// Whether a scene has longer steps at all: composite layers by a curve of values (after interpolation or before it)
-/// and iso-surfaces, without looks, lenses, holes cut by clips, light inside the volume and brushes that act on them.
+/// and of their own colours, and iso-surfaces, without looks, lenses, holes cut by clips, light inside the volume and
+/// brushes that act on them.
 bool stepsAdapt(const Scene& scene, const volume::DatasetInfo& info);
 
 } // namespace tessera::vis

@@ -34,10 +34,16 @@ struct VolumeLayer {
     double threshold = 0;                                 ///< physical; local maximum only
     bool shaded = true;                                   ///< Phong by the gradient; composite only
     float density = 1;                                    ///< factor on optical depth
+    std::string colorBy = {};                             ///< "" = `channel`
     Look look = {};                                       ///< composite only
     bool operator==(const VolumeLayer&) const = default;
     static void describe(auto& self, auto&& visit) {
         visit(self.channel, FieldInfo{.key = "channel", .unit = "", .doc = "Parameter shown", .refersTo = "channel"});
+        visit(self.colorBy, FieldInfo{.key = "colorBy",
+                                      .unit = "",
+                                      .doc = "Parameter whose transfer function gives the colours; the opacity stays "
+                                             "that of the parameter shown; gray where it has no value",
+                                      .refersTo = "colorChannel"});
         visit(self.style, FieldInfo{.key = "style",
                                     .unit = "",
                                     .doc = "How samples along a ray become one colour",
@@ -99,9 +105,9 @@ struct IsoLayer {
                                      .names = kSurfaceMethodNames});
         visit(self.colorBy, FieldInfo{.key = "colorBy",
                                       .unit = "",
-                                      .doc = "Parameter whose transfer function colours the surface; polygons only",
-                                      .refersTo = "colorChannel",
-                                      .applies = self.method == SurfaceMethod::Polygons});
+                                      .doc = "Parameter whose transfer function colours the surface; where it has no "
+                                             "value the surface has its own colour",
+                                      .refersTo = "colorChannel"});
         visit(self.look, lookField());
     }
 };
@@ -146,6 +152,22 @@ struct SliceLayer {
 };
 
 using Technique = std::variant<VolumeLayer, IsoLayer, SliceLayer, FlowLayer>;
+
+/// Colour of a volume (sRGB) where the parameter that it is coloured by has no value.
+inline constexpr glm::vec3 kNoValueColor{0.5f};
+
+/// The parameter that gives a technique its colours beside the one it shows; "": none does.
+inline const std::string& colorByOf(const Technique& technique) {
+    static const std::string kNone;
+    return std::visit(
+        [](const auto& own) -> const std::string& {
+            if constexpr (requires { own.colorBy; })
+                return own.colorBy;
+            else
+                return kNone;
+        },
+        technique);
+}
 
 /// The look of a technique that takes one, else null.
 inline const Look* lookOf(const Technique& technique) {

@@ -50,6 +50,11 @@
 /// Pre-classification and pre-integration are of values by the curve: layers that show the gradient, functions of
 /// regions and categorical channels are classified after interpolation.
 ///
+/// A layer with `colorBy` keeps all of that but its colours: these come from the curve of the other channel at its
+/// value (interpolated, whatever the classification) at the sample, at an iso-surface's place, at the sample that a
+/// projection shows; of averages and x-rays at its mean over the samples, weighted by f, or by what each takes of the
+/// light. Where that channel is absent the colour is kNoValueColor, an iso-surface's its own.
+///
 /// The degree of interest d of a place multiplies the opacity (of the curve before correctedOpacity, of an iso-surface
 /// or a slice) by f = mix(contextOpacity, 1, d) and pulls the colour towards its luminance: mix(luminance, colour,
 /// mix(contextSaturation, 1, d)), in linear light before shading. The colours of averages and x-rays keep their

@@ -65,7 +65,18 @@ Prepared::Prepared(const Scene& drawn, const volume::BrickSource& source, glm::i
         if (one.samples == nullptr) continue;
         if (layer.lens.empty()) one.lens = -1;
         const volume::Channel channel = info.channels()[std::size_t(*info.findChannel(name))];
-        one.function = &transferFor(scene, layer.transfer.empty() ? channel.name : layer.transfer);
+        const auto functionOf = [&](const volume::Channel& of, bool own) -> const TransferFunction& {
+            return transferFor(scene, own && !layer.transfer.empty() ? layer.transfer : of.name);
+        };
+        const std::string& colorBy = colorByOf(layer.technique);
+        const bool surface = std::holds_alternative<IsoLayer>(layer.technique);
+        one.colors = colorBy.empty() ? nullptr : load(colorBy, false, layer.timeShift);
+        if (one.colors) {
+            const volume::Channel other = info.channels()[std::size_t(*info.findChannel(colorBy))];
+            one.colorFunction = &functionOf(other, surface);
+            one.colorRange = effectiveRange(*one.colorFunction, info.channelRange(other));
+        }
+        one.function = &functionOf(channel, !surface || !one.colors);
         one.range = effectiveRange(*one.function, info.channelRange(channel));
         const auto* volume = std::get_if<VolumeLayer>(one.technique);
         if (volume != nullptr && volume->style == VolumeStyle::Composite && volume->quantity == Quantity::Value &&
@@ -155,7 +166,8 @@ glm::dvec4 matterAt(const Prepared& scene, const LightGrid& grid, glm::dvec3 cen
             slope += way * value / edges; // kPoints (1/2) / 4 (upper mean - lower mean) / (edge / 2)
             if (!volume || !kept(scene.clips, world)) continue;
             const Interest doi = scene.interest(world);
-            const glm::dvec4 color = scene.colorAt(layer, value, world);
+            glm::dvec4 color = scene.colorAt(layer, value, world);
+            color = {scene.tinted(layer, glm::dvec3(color), world), color.a};
             const LensAction lens = scene.lensAction(layer, world);
             const double own =
                 -std::log(1 - std::min(color.a * scene.opacityFactor(layer, doi) * lens.opacity, kThickest)) *
@@ -168,7 +180,8 @@ glm::dvec4 matterAt(const Prepared& scene, const LightGrid& grid, glm::dvec3 cen
         const LensAction lens = scene.lensAction(layer, center);
         const double alpha = std::min(double(iso->opacity) * scene.opacityFactor(layer, doi) * lens.opacity, kThickest);
         const double own = -std::log(1 - alpha) * std::max(0.0, 1 - away / longest) / longest;
-        sum += glm::dvec4(scene.focused(layer, linearFromSrgb(glm::dvec3(iso->color)), doi, lens.saturation), 1) * own;
+        const glm::dvec3 color = scene.tinted(layer, linearFromSrgb(glm::dvec3(iso->color)), center);
+        sum += glm::dvec4(scene.focused(layer, color, doi, lens.saturation), 1) * own;
     }
     return sum;
 }
@@ -205,6 +218,13 @@ glm::dvec3 Prepared::focused(const DrawnLayer& layer, glm::dvec3 color, const In
     color = glm::mix(color * std::min(lightness, 1.0), glm::dvec3(1), std::max(lightness - 1, 0.0));
     const double held = layer.brushes == BrushEffect::None ? 0 : doi.held * doi.doi;
     return glm::mix(color, doi.color, held * double(selection.brushColor));
+}
+
+glm::dvec3 Prepared::tint(const DrawnLayer& layer, std::optional<double> value) {
+    const auto* iso = std::get_if<IsoLayer>(layer.technique);
+    const glm::dvec3 srgb = value ? glm::dvec3(evaluate(*layer.colorFunction, layer.colorRange, *value))
+                                  : glm::dvec3(iso ? iso->color : kNoValueColor);
+    return linearFromSrgb(srgb);
 }
 
 glm::dvec4 Prepared::colorAt(const DrawnLayer& layer, double value, glm::dvec3 world) const {

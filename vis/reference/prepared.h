@@ -26,6 +26,9 @@ struct DrawnLayer {
     int lens = -1;                              ///< of Prepared::lenses that it is drawn in, -1: everywhere
     Plane plane;                                ///< of a slice
     std::optional<IntegralFunctions> integrals; ///< of a pre-integrated layer
+    const Samples* colors = nullptr;            ///< that it is coloured by; null: by its own
+    Range colorRange;
+    const TransferFunction* colorFunction = nullptr;
     Classification classification = Classification::Post;
 
     /// Place in the range of the transfer function, before it is clamped to 0..1; the middle where that has no width.
@@ -89,6 +92,13 @@ struct Prepared {
     }
     /// Colour (linear light) and opacity of a volume layer at a place, classified after interpolation.
     glm::dvec4 colorAt(const DrawnLayer& layer, double value, glm::dvec3 world) const;
+    /// Colour (linear light) of a layer for a value of what it is coloured by, nullopt where that is absent: then the
+    /// layer's plain one.
+    static glm::dvec3 tint(const DrawnLayer& layer, std::optional<double> value);
+    /// Colour (linear light) of a layer at a place: `own`, unless another channel gives it.
+    glm::dvec3 tinted(const DrawnLayer& layer, glm::dvec3 own, glm::dvec3 world) const {
+        return layer.colors ? tint(layer, layer.colors->value(cells(world))) : own;
+    }
     /// Gradient of a channel as it is seen, per cell of the sublattice and axis, by the samples of one part.
     glm::dvec3 gradient(const Samples& of, glm::dvec3 world, int part) const {
         const auto seen = [&](glm::dvec3 at) {

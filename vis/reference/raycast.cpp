@@ -2,6 +2,7 @@
 
 #include "vis/model/jitter.h"
 #include "vis/reference/prepared.h"
+#include "vis/reference/projection.h"
 #include "volume/parallel.h"
 
 #include <algorithm>
@@ -164,7 +165,8 @@ template <class Number> struct Caster {
         if (layer.samples->part(scene.cells(place)) != now->part || !shows(inSamples(double(lo + hi) / 2))) return;
         const Interest doi = scene.interest(place);
         const LensAction lens = scene.lensAction(layer, place);
-        const glm::dvec3 albedo = scene.focused(layer, linearFromSrgb(glm::dvec3(iso.color)), doi, lens.saturation);
+        const glm::dvec3 plain = scene.tinted(layer, linearFromSrgb(glm::dvec3(iso.color)), place);
+        const glm::dvec3 albedo = scene.focused(layer, plain, doi, lens.saturation);
         const double opacity = std::min(double(iso.opacity) * scene.opacityFactor(layer, doi) * lens.opacity, 1.0);
         const Drawn at = drawn(layer, iso.look, albedo, opacity, true, place, double(lo + hi) / 2, doi.doi);
         events.push_back({(lo + hi) / 2, at.color, at.opacity, doi.seen(layer)});
@@ -226,65 +228,10 @@ template <class Number> struct Caster {
         const double opacity = classified.color.a * scene.opacityFactor(layer, doi) * lens.opacity;
         const double thickness = double(volume.density) * classified.share * coverage(holes, k) * count;
         if (opacity <= 0 || thickness <= 0) return;
-        const Drawn at =
-            drawn(layer, volume.look, scene.focused(layer, glm::dvec3(classified.color), doi, lens.saturation), opacity,
-                  volume.shaded, place, double(t), doi.doi);
+        const glm::dvec3 color = scene.tinted(layer, glm::dvec3(classified.color), place);
+        const Drawn at = drawn(layer, volume.look, scene.focused(layer, color, doi, lens.saturation), opacity,
+                               volume.shaded, place, double(t), doi.doi);
         blend(at.color, correctedOpacity(at.opacity, double(step), thickness), doi.seen(layer));
-    }
-
-    /// What a projection has seen.
-    struct Seen {
-        double best = -1, bestPlace = 0;
-        Interest bestInterest = {};
-        LensAction bestLens = {};
-        bool found = false; ///< a local maximum
-        double factors = 0, weighted = 0, absorbed = 0;
-        int count = 0;
-    };
-
-    /// A sample of a projection; absent ones end the rise to a local maximum.
-    void look(const DrawnLayer& layer, Seen& seen, std::optional<Reading> found, glm::dvec3 place) const {
-        const auto& volume = std::get<VolumeLayer>(*layer.technique);
-        const double threshold = std::max(0.0, layer.unclamped(volume.threshold));
-        if (!found) {
-            if (volume.style == VolumeStyle::LocalMaximum) seen.found = seen.found || seen.best >= threshold;
-            return;
-        }
-        const LensAction lens = scene.lensAction(layer, place);
-        const Interest doi = scene.interest(place);
-        const double factor = scene.opacityFactor(layer, doi) * lens.opacity;
-        const double along =
-            volume.quantity == Quantity::Gradient ? scene.steepPlace(layer, place) : layer.unclamped(found->value);
-        const double x = std::clamp(along, 0.0, 1.0);
-        seen.factors += factor;
-        seen.weighted += factor * along;
-        const double absorbed =
-            correctedOpacity(layer.classifyPlace(x).a * factor, double(step), double(volume.density));
-        seen.absorbed += (1 - seen.absorbed) * absorbed;
-        ++seen.count;
-        const double score = (volume.style == VolumeStyle::Minimum ? 1 - x : x) * factor;
-        if (volume.style == VolumeStyle::LocalMaximum)
-            seen.found = seen.found || (seen.best >= threshold && score < seen.best);
-        if (score > seen.best && !seen.found)
-            seen.best = score, seen.bestPlace = x, seen.bestInterest = doi, seen.bestLens = lens;
-    }
-
-    void drawSeen(const DrawnLayer& layer, const Seen& seen) {
-        const auto& volume = std::get<VolumeLayer>(*layer.technique);
-        if (seen.count == 0 || !(seen.factors > 0)) return;
-        const auto opacity = [&](glm::dvec4 color) { return std::min(1.0, double(volume.density) * color.a); };
-        if (volume.style == VolumeStyle::XRay) {
-            blend(glm::dvec3(layer.classifyPlace(seen.absorbed)), seen.absorbed, 1);
-        } else if (volume.style == VolumeStyle::Average) {
-            // The mean belongs to no place: brushes act on it through its weights alone.
-            const glm::dvec4 color = layer.classifyPlace(std::clamp(seen.weighted / seen.factors, 0.0, 1.0));
-            blend(glm::dvec3(color), std::min(opacity(color) * seen.factors / seen.count, 1.0), 1);
-        } else {
-            const glm::dvec4 color = layer.classifyPlace(seen.bestPlace);
-            const double factor = scene.opacityFactor(layer, seen.bestInterest) * seen.bestLens.opacity;
-            blend(scene.focused(layer, glm::dvec3(color), seen.bestInterest, seen.bestLens.saturation),
-                  std::min(opacity(color) * factor, 1.0), seen.bestInterest.seen(layer));
-        }
     }
 
     /// Where samples lie; false where the ray meets nothing.
@@ -315,7 +262,7 @@ template <class Number> struct Caster {
             return volume != nullptr && (volume->style == VolumeStyle::Composite) == composite;
         };
         std::vector<std::optional<Reading>> before(scene.layers.size()), now(scene.layers.size());
-        std::vector<Seen> seen(scene.layers.size());
+        std::vector<Projected> seen(scene.layers.size());
         std::vector<Event> events;
         Number last = Number(samples.enter - kFaceTolerance);
         std::vector<double> slices; // in samples
@@ -348,7 +295,7 @@ template <class Number> struct Caster {
             for (std::size_t i = 0; i < now.size(); ++i) {
                 if (isVolume(scene.layers[i], true)) drawSample(scene.layers[i], count > 1 ? middle : t, k, count);
                 if (isVolume(scene.layers[i], false))
-                    look(scene.layers[i], seen[i], shows(k) ? now[i] : std::nullopt, place);
+                    seen[i].add(scene, scene.layers[i], shows(k) ? now[i] : std::nullopt, place, double(step));
             }
             std::swap(before, now);
             last = t;
@@ -358,7 +305,8 @@ template <class Number> struct Caster {
             drawEvents(events);
         }
         for (std::size_t i = 0; i < seen.size(); ++i)
-            if (seen[i].count > 0) drawSeen(scene.layers[i], seen[i]);
+            if (const auto shown = seen[i].shown(scene, scene.layers[i]))
+                blend(shown->color, shown->opacity, shown->interest);
     }
 };
 

@@ -12,6 +12,7 @@
 
 #if LAYERS > 0
 #include "lib/classify.glsl"
+#include "lib/color_by.glsl"
 #endif
 
 layout(location = 0) out vec4 outMatter;
@@ -60,6 +61,7 @@ void main() {
             bool is = present(s);
             if (LAYER_STYLE(i) == COMPOSITE) {
                 vec4 c = colorAt(i, p, s.xy);
+                c.rgb = colorBy(i, p, c.rgb);
                 vec2 lens = lensAction(LAYER_LENS(i), world);
                 float factor = kept * focusOpacity(doi, LAYER_BRUSHED(i));
                 float own = -log(1.0 - min(c.a * factor * lens.x, kThickest)) * layerMap[i].z * REFERENCE_LENGTHS;
@@ -81,9 +83,10 @@ void main() {
         float away = abs(mean[i] - layerMap[i].z) / max(length(slope[i]), 1e-20);
         vec2 lens = lensAction(LAYER_LENS(i), center);
         float alpha = min(layerMap[i].w * focusOpacity(middle, LAYER_BRUSHED(i)) * lens.x, kThickest);
-        float own = -log(1.0 - alpha) * max(0.0, 1.0 - away / longest) / longest;
+        float dense = -log(1.0 - alpha) * max(0.0, 1.0 - away / longest) / longest;
         bool is = points[i] > 7.5 && clipKept(center);
-        sum += is ? vec4(focusColor(layerColor[i], middle, lens.y, LAYER_BRUSHED(i)), 1.0) * own : vec4(0.0);
+        vec3 own = colorBy(i, toCells(center), layerColor[i]);
+        sum += is ? vec4(focusColor(own, middle, lens.y, LAYER_BRUSHED(i)), 1.0) * dense : vec4(0.0);
     }
 #endif
     outMatter = sum;

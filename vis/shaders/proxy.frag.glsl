@@ -11,6 +11,7 @@
 #include <slot:reconstruct>
 #include "lib/gradient.glsl"
 #include "lib/doi.glsl"
+#include "lib/color_by.glsl"
 
 flat in int surface;
 
@@ -44,6 +45,7 @@ void main() {
     for (int i = 0; i < LAYERS; ++i) {
         vec2 s = reconstruct(LAYER_FIELD(i), p);
         vec4 c = transfer(i, s.x * layerMap[i].x + layerMap[i].y);
+        c.rgb = colorBy(i, p, c.rgb);
         float doi = degreeOfInterest(p);
         vec2 lens = lensAction(LAYER_LENS(i), world);
         c.rgb = focusColor(c.rgb, doi, lens.y, LAYER_BRUSHED(i));

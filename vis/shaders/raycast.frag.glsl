@@ -63,6 +63,7 @@ int samples = 0;
 
 // Of each layer what is known at the sample under way.
 #include "lib/classify.glsl"
+#include "lib/color_by.glsl"
 vec2 here[LAYERS];   // composite: value
 Noted before[LAYERS]; // iso: value at sample k - 1; slab: place at the front of sample k's part
 #if HAS_SLABS

@@ -159,6 +159,13 @@ brickDemands(RayPlan plan, const Scene& scene, const volume::DatasetInfo& info, 
         plan.fields[f].blocks = ranges[f];
         if (ranges[f]) markShown(shown[f], plan, int(f), scene, info);
     }
+    // What gives a layer its colours is looked at where the layer shows.
+    if (std::ranges::any_of(plan.layers, [](const RayLayer& layer) { return layer.color >= 0; })) {
+        const std::vector<std::vector<std::uint8_t>> shapes = shown;
+        for (const RayLayer& layer : plan.layers)
+            for (std::size_t i = 0; layer.color >= 0 && i < total; ++i)
+                if (shapes[std::size_t(layer.field)][i]) shown[std::size_t(layer.color)][i] = 1;
+    }
     std::vector<Plane> planes;
     for (const SliceUse& use : plan.slices)
         planes.push_back(

@@ -133,6 +133,11 @@ void planLayers(RayPlan& plan, const Scene& scene, const volume::DatasetInfo& in
         const std::optional<int> lens = lensOf(lenses, layer.lens);
         if (!layer.visible || !channel || !lens) continue;
         const auto* surface = std::get_if<IsoLayer>(&layer.technique);
+        const std::optional<int> color =
+            colorByOf(layer.technique).empty() ? std::nullopt : info.findChannel(colorByOf(layer.technique));
+        // A function of its own is that of what it shows by colours: of a surface, that which colours it.
+        Layer shape = layer, colors = layer;
+        (surface && color ? shape : colors).transfer.clear();
         if (surface && surface->method == SurfaceMethod::Polygons) continue; // comes as Scene::geometry
         if (std::holds_alternative<FlowLayer>(layer.technique)) continue;    // so does this
         if (const auto* volume = std::get_if<VolumeLayer>(&layer.technique))
@@ -140,7 +145,7 @@ void planLayers(RayPlan& plan, const Scene& scene, const volume::DatasetInfo& in
         else if (surface)
             plan.layers.push_back({.layer = int(i),
                                    .style = RayStyle::Iso,
-                                   .field = fieldOf(plan, info, *channel, false, layer),
+                                   .field = fieldOf(plan, info, *channel, false, shape),
                                    .shaded = true,
                                    .look = lookBits(surface->look)});
         else
@@ -148,6 +153,7 @@ void planLayers(RayPlan& plan, const Scene& scene, const volume::DatasetInfo& in
         if (std::holds_alternative<SliceLayer>(layer.technique)) continue;
         plan.layers.back().lens = *lens;
         plan.layers.back().brushes = layer.brushes;
+        if (color) plan.layers.back().color = fieldOf(plan, info, *color, false, colors);
     }
 }
 
@@ -177,6 +183,8 @@ RayPlan planRays(const Scene& scene, const volume::DatasetInfo& info, int mostFi
     addParts(plan, info, mostFields);
     for (RayLayer& layer : plan.layers) layer.row = plan.rows++;
     for (SliceUse& slice : plan.slices) slice.row = plan.rows++;
+    for (RayLayer& layer : plan.layers)
+        if (layer.color >= 0) layer.colorRow = plan.rows++;
     plan.brushDefines = brushDefines(brushes ? brushTests(plan, scene, info) : BrushTests(), scene);
     return plan;
 }
@@ -220,6 +228,11 @@ ProgramRecipe rayRecipe(const RayPlan& plan, const Scene& scene, const volume::B
     define("LAYERS", std::to_string(plan.layers.size()));
     define("LAYER_STYLE(i)", choice(plan.layers, [](const RayLayer& layer) { return int(layer.style); }));
     define("LAYER_FIELD(i)", choice(plan.layers, [](const RayLayer& layer) { return layer.field; }));
+    define("COLORED", any([](const RayLayer& layer) { return layer.color >= 0; }));
+    define("LAYER_COLORED(i)", choice(plan.layers, [](const RayLayer& layer) { return layer.color >= 0; }));
+    define("LAYER_COLOR(i)", choice(plan.layers, [](const RayLayer& layer) { return std::max(layer.color, 0); }));
+    define("LAYER_COLOR_ROW(i)",
+           choice(plan.layers, [](const RayLayer& layer) { return std::max(layer.colorRow, 0); }));
     define("LAYER_SHADED(i)", choice(plan.layers, [](const RayLayer& layer) { return layer.shaded; }));
     define("LAYER_LENS(i)", choice(plan.layers, [](const RayLayer& layer) { return layer.lens; }));
     define("SLICE_LENS(i)", choice(plan.slices, [](const SliceUse& slice) { return slice.lens; }));

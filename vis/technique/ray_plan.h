@@ -52,6 +52,8 @@ struct RayLayer {
     int page = -1;         ///< of the plane tables, for Plane and Slab
     int lens = -1;         ///< of placeLenses() that it is drawn in, -1: everywhere
     int look = 0;          ///< parts of the look: LookBits of look_uniforms.h
+    int color = -1;        ///< field that gives the colours, -1: its own
+    int colorRow = -1;     ///< of the transfer tables, for these
     /// The places between which all opacity lies, filled with the tables; none: there are gaps between.
     std::optional<glm::vec2> opaque = {};
     BrushEffect brushes = BrushEffect::Fade;
@@ -75,7 +77,7 @@ struct RayPlan {
     std::vector<std::pair<std::string, std::string>> brushDefines; ///< which tests of brushes the program needs
     int peels = 0;     ///< layers of rasterised geometry that lie among the samples
     int pages = 0;     ///< of the plane tables
-    int rows = 0;      ///< of the transfer tables: of layers, then of slices
+    int rows = 0;      ///< of the transfer tables: of layers, then of slices, then of layers' colours
     std::string limit; ///< what there is no room for; "": nothing
     bool empty() const { return layers.empty() && slices.empty() && peels == 0; }
 };

@@ -75,6 +75,8 @@ std::vector<glm::vec4> transferTables(const RayPlan& plan, const Scene& scene, c
     };
     for (const RayLayer& layer : plan.layers) add(layer.field);
     for (const SliceUse& slice : plan.slices) add(slice.field);
+    for (const RayLayer& layer : plan.layers)
+        if (layer.color >= 0) add(layer.color);
     for (std::size_t row = 0; row < plan.layers.size(); ++row) {
         const RayLayer& layer = plan.layers[row];
         std::vector<float> regions;
@@ -94,7 +96,7 @@ std::vector<std::optional<glm::vec2>> opaqueIntervals(const RayPlan& plan, const
     constexpr float kAny = std::numeric_limits<float>::max();
     std::vector<std::optional<glm::vec2>> out;
     for (std::size_t layer = 0; layer < plan.layers.size(); ++layer) {
-        const glm::vec4* row = &tables[(plan.layers.size() + plan.slices.size() + layer) * kTableSize];
+        const glm::vec4* row = &tables[(std::size_t(plan.rows) + layer) * kTableSize];
         const auto opaque = [](const glm::vec4& entry) { return entry.a > 0; };
         const glm::vec4* begin = std::find_if(row, row + kTableSize, opaque);
         const glm::vec4* end = std::find_if_not(begin, row + kTableSize, opaque);

@@ -6,8 +6,9 @@
 namespace tessera::vis {
 
 inline constexpr int kTableSize = 2048;
-/// Transfer tables of layers, then slices: kTableSize x rows, linear light, not premultiplied; then one row per layer
-/// whose opacity at i is the greater one of entries i and i + 1 (of regions: of any gradient).
+/// Transfer tables of layers, then slices, then what colours layers by another channel: kTableSize x rows, linear
+/// light, not premultiplied; then one row per layer whose opacity at i is the greater one of entries i and i + 1 (of
+/// regions: of any gradient).
 std::vector<glm::vec4> transferTables(const RayPlan& plan, const Scene& scene, const volume::DatasetInfo& info);
 
 /// The places between which the layers of a plan have all their opacity, from its transfer tables: beyond every number

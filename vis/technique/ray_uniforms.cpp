@@ -32,7 +32,7 @@ void setLayers(const Program& program, const RayPlan& plan, const Scene& scene, 
                const WorldFrame& frame) {
     std::vector<glm::vec4> maps, slices, planes;
     std::vector<glm::vec3> colors;
-    std::vector<glm::vec2> more;
+    std::vector<glm::vec2> more, colorMaps;
     for (const RayLayer& use : plan.layers) {
         const Layer& layer = scene.layers[std::size_t(use.layer)];
         const BoundField& field = plan.fields[std::size_t(use.field)];
@@ -46,10 +46,12 @@ void setLayers(const Program& program, const RayPlan& plan, const Scene& scene, 
             const glm::dvec2 map = transferMap(field, scene, info);
             const double top = double(transferOf(scene, info, field).function.gradientTop);
             maps.emplace_back(map, volume.density, 1);
-            colors.emplace_back(1);
+            colors.emplace_back(linearFromSrgb(glm::dvec3(kNoValueColor)));
             // Nothing is below a threshold under the range.
             more.emplace_back(std::abs(map.x) / top, std::max(toTexel(field, volume.threshold) * map.x + map.y, 0.0));
         }
+        colorMaps.emplace_back(use.color >= 0 ? transferMap(plan.fields[std::size_t(use.color)], scene, info)
+                                              : glm::dvec2(0));
     }
     for (const SliceUse& use : plan.slices) {
         const auto& slice = std::get<SliceLayer>(scene.layers[std::size_t(use.layer)].technique);
@@ -64,6 +66,7 @@ void setLayers(const Program& program, const RayPlan& plan, const Scene& scene, 
     program.set("layerMap", maps);
     program.set("layerColor", colors);
     program.set("layerMore", more);
+    program.set("layerColorMap", colorMaps);
     program.set("slicePlane", planes);
     program.set("sliceMap", slices);
 }

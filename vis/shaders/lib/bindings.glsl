@@ -4,7 +4,8 @@
 //   LAYERS    ray layers; LAYER_STYLE(i) (below), LAYER_FIELD(i), LAYER_SHADED(i); LAYER_LOOKUP(i): how a composite
 //             layer is classified (below); LAYER_GRADIENT(i): 1 where the gradient's magnitude is shown;
 //             LAYER_LOOK(i) (lib/draw_look.glsl); LAYER_INTERVAL(i): 1 where all opacity lies between layerOpaque[i];
-//             LAYER_PLANE(i): page of planeTable of LOOKUP_PLANE and LOOKUP_SLAB
+//             LAYER_PLANE(i): page of planeTable of LOOKUP_PLANE and LOOKUP_SLAB; COLORED, LAYER_COLORED(i),
+//             LAYER_COLOR(i), LAYER_COLOR_ROW(i): see lib/color_by.glsl
 //   ISOS      iso layers; ISO_LAYER(n)
 //   SLICES    slice planes; SLICE_FIELD(i)
 //   GEOMETRY  layers of rasterised surfaces
@@ -68,7 +69,10 @@ uniform int passNumber;
 uniform sampler1DArray transferTable;
 #if LAYERS > 0
 uniform vec4 layerMap[LAYERS];
-uniform vec3 layerColor[LAYERS];
+uniform vec3 layerColor[LAYERS]; // of a surface; of a volume where what it is coloured by is absent
+#if COLORED
+uniform vec2 layerColorMap[LAYERS]; // transfer coordinate of what it is coloured by = value * x + y
+#endif
 uniform vec2 layerMore[LAYERS]; // factor from gradient magnitude (texels per cell) to its place; place of the threshold
 uniform vec2 layerOpaque[LAYERS]; // of LAYER_INTERVAL(i): the places between which there is opacity
 #endif

@@ -25,6 +25,7 @@ void showComposites(int k, float at, int together) {
         if (LAYER_LOOKUP(i) == LOOKUP_LATTICE) c = latticeColor(i, p, share); else
 #endif
         c = transfer(i, x);
+        c.rgb = colorBy(i, p, c.rgb);
         float doi = degreeOfInterest(p);
         vec2 lens = lensAction(LAYER_LENS(i), world);
         c.rgb = focusColor(c.rgb, doi, lens.y, LAYER_BRUSHED(i));

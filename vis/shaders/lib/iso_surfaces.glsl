@@ -32,7 +32,7 @@ void showSurfaces(int k) {
         float alpha = crossed ? min(layerMap[i].w * focusOpacity(doi, LAYER_BRUSHED(i)) * lens.x, 1.0) : 0.0;
         float centre = FIELD_COVERAGE(field) == 1 ? reconstruct(field, q).x : 0.0;
         vec3 g = cellGradient(field, q, centre, crossed);
-        vec3 albedo = focusColor(layerColor[i], doi, lens.y, LAYER_BRUSHED(i)), c = albedo;
+        vec3 albedo = focusColor(colorBy(i, q, layerColor[i]), doi, lens.y, LAYER_BRUSHED(i)), c = albedo;
 #if LOOKS
         LookSample look;
         if (LAYER_LOOK(i) != 0) {

@@ -11,6 +11,9 @@ vec4 keptMaterial[1];
 vec4 keptMap[LAYERS];
 vec3 keptColor[LAYERS];
 vec2 keptMore[LAYERS], keptOpaque[LAYERS];
+#if COLORED
+vec2 keptColorMap[LAYERS];
+#endif
 #endif
 #if LIGHTS > 0 && LIGHTS <= 2
 vec4 keptPlace[LIGHTS];
@@ -38,6 +41,9 @@ void keepUniforms() {
         keptColor[i] = layerColor[i];
         keptMore[i] = layerMore[i];
         keptOpaque[i] = layerOpaque[i];
+#if COLORED
+        keptColorMap[i] = layerColorMap[i];
+#endif
     }
 #endif
 #if LIGHTS > 0 && LIGHTS <= 2
@@ -65,6 +71,7 @@ void keepUniforms() {
 #define layerColor keptColor
 #define layerMore keptMore
 #define layerOpaque keptOpaque
+#define layerColorMap keptColorMap
 #endif
 #if LIGHTS > 0 && LIGHTS <= 2
 #define lightPlace keptPlace

@@ -4,6 +4,9 @@
 
 // Best score and its sample; sums. A local maximum that is found has weight 1.
 float best[LAYERS], bestAt[LAYERS], sum[LAYERS], weight[LAYERS], factor[LAYERS];
+#if COLORED
+vec2 tint[LAYERS]; // of sums: what they are coloured by, times its weight; that weight
+#endif
 
 void beginProjections() {
     for (int i = 0; i < LAYERS; ++i) {
@@ -12,6 +15,9 @@ void beginProjections() {
         sum[i] = 0.0;
         weight[i] = 0.0;
         factor[i] = 0.0;
+#if COLORED
+        tint[i] = vec2(0.0);
+#endif
     }
 }
 
@@ -19,14 +25,15 @@ void beginProjections() {
 // nothing but that is seen.
 void project(int i, int k, vec3 p, float x, float lens, bool is) {
     float f = is ? focusOpacity(degreeOfInterest(p), LAYER_BRUSHED(i)) * lens : 0.0;
-    float place = clamp(x, 0.0, 1.0);
+    float place = clamp(x, 0.0, 1.0), share = f; // of the sum
     if (LAYER_STYLE(i) == AVERAGE) {
         sum[i] += is ? f * x : 0.0;
         weight[i] += f;
         factor[i] += is ? 1.0 : 0.0;
     } else if (LAYER_STYLE(i) == XRAY) {
         float a = is ? correctedOpacity(transfer(i, x).a * f, ray.stepLength * REFERENCE_LENGTHS * layerMap[i].z) : 0.0;
-        sum[i] += (1.0 - sum[i]) * a;
+        share = (1.0 - sum[i]) * a;
+        sum[i] += share;
     } else {
         float score = (LAYER_STYLE(i) == MINIMUM ? 1.0 - place : place) * f;
         // A local maximum stands when the values fall again above the threshold.
@@ -36,6 +43,21 @@ void project(int i, int k, vec3 p, float x, float lens, bool is) {
         bestAt[i] = better ? float(k) : bestAt[i];
         best[i] = better ? score : best[i];
     }
+#if COLORED
+    if (LAYER_COLORED(i) == 1 && (LAYER_STYLE(i) == AVERAGE || LAYER_STYLE(i) == XRAY)) {
+        vec2 s = reconstruct(LAYER_COLOR(i), p);
+        tint[i] += is && present(s) ? share * vec2(s.x, 1.0) : vec2(0.0);
+    }
+#endif
+}
+
+// Colour (linear) of a layer that shows a sum.
+vec3 colorOfSum(int i, vec3 own) {
+#if COLORED
+    return colorOfReading(i, tint[i].x / max(tint[i].y, 1e-20), tint[i].y > 0.0, own);
+#else
+    return own;
+#endif
 }
 
 void showProjections() {
@@ -46,8 +68,10 @@ void showProjections() {
         if (LAYER_STYLE(i) == XRAY) {
             alpha = sum[i];
             c = transfer(i, alpha);
+            c.rgb = colorOfSum(i, c.rgb);
         } else if (LAYER_STYLE(i) == AVERAGE) {
             c = transfer(i, sum[i] / max(weight[i], 1e-6));
+            c.rgb = colorOfSum(i, c.rgb);
             alpha = weight[i] > 0.0
                         ? min(min(1.0, layerMap[i].z * c.a) * (weight[i] / max(factor[i], 1.0)), 1.0) : 0.0;
         } else {
@@ -58,6 +82,7 @@ void showProjections() {
             if (LAYER_GRADIENT(i) == 1) x = gradientPlace(i, cellGradient(LAYER_FIELD(i), p, s.x, best[i] >= 0.0));
             doi = degreeOfInterest(p);
             c = transfer(i, x);
+            c.rgb = colorBy(i, p, c.rgb);
             vec2 lens = lensAction(LAYER_LENS(i), worldAt(at));
             c.rgb = focusColor(c.rgb, doi, lens.y, LAYER_BRUSHED(i));
             alpha = best[i] >= 0.0

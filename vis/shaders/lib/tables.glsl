@@ -2,11 +2,15 @@
 
 const int kTableSize = TABLE_SIZE;
 
-// Colour (linear) and opacity of a layer, or of slice `use` - LAYERS, at x, clamped to 0..1: linear between the two
-// nearest entries.
-vec4 transfer(int use, float x) {
+// Colour (linear) and opacity of a row at x, clamped to 0..1: linear between the two nearest entries.
+vec4 tableAt(int row, float x) {
     float u = clamp(x, 0.0, 1.0) * float(kTableSize - 1) + 0.5;
-    return textureLod(transferTable, vec2(u / float(kTableSize), float(TABLE_ROW(use))), 0.0);
+    return textureLod(transferTable, vec2(u / float(kTableSize), float(row)), 0.0);
+}
+
+// The same of a layer, or of slice `use` - LAYERS.
+vec4 transfer(int use, float x) {
+    return tableAt(TABLE_ROW(use), x);
 }
 
 #if PLANES > 0

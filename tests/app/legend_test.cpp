@@ -1,0 +1,79 @@
+#include "app/session/session.h"
+#include "app/views/ticks.h"
+#include "app/views/view_parts.h"
+
+#include <gtest/gtest.h>
+
+/// What the legends of a scene say.
+namespace tessera::app {
+namespace {
+
+volume::DatasetInfo gasInfo() {
+    volume::DatasetInfo info;
+    for (const auto& [name, unit] : {std::pair{"O2", "mol/m3"}, {"H2O", "mol/m3"}, {"T", "K"}}) {
+        volume::Parameter parameter;
+        parameter.name = name;
+        parameter.unit = unit;
+        parameter.ranges = {{1, 9}};
+        info.parameters.push_back(parameter);
+    }
+    return info;
+}
+
+/// Each legend as one line: title and unit, and what it shows.
+std::vector<std::string> rows(const Session& session) {
+    std::vector<std::string> out;
+    for (const LegendEntry& entry : sceneLegends(session, gasInfo()))
+        out.push_back(entry.swatch
+                          ? entry.title + " = " + formatQuantity(entry.value, entry.unit, 0.01)
+                          : titleWithUnit(entry.title, entry.unit) + (entry.opacity ? ", opacity" : ", colours"));
+    return out;
+}
+
+using Rows = std::vector<std::string>;
+
+TEST(LegendTest, OfALayerColouredByAnotherParameterShowsBoth) {
+    Session session;
+    session.layers = {{"", true, vis::VolumeLayer{.channel = "H2O", .colorBy = "T"}},
+                      {"", true, vis::IsoLayer{.channel = "O2", .value = 5, .colorBy = "T"}}};
+    const std::string opacity = titleWithUnit("opacity by H2O", "mol/m3") + ", opacity",
+                      colors = titleWithUnit("T", "K") + ", colours",
+                      surface = "O2 = " + formatQuantity(5, "mol/m3", 0.01);
+    EXPECT_EQ(rows(session), (Rows{opacity, colors, surface})) << "T once";
+    std::get<vis::IsoLayer>(session.layers[1].technique).method = vis::SurfaceMethod::Polygons;
+    EXPECT_EQ(rows(session), (Rows{opacity, colors, surface})) << "as of rays";
+    std::get<vis::VolumeLayer>(session.layers[0].technique).colorBy = "nowhere";
+    EXPECT_EQ(rows(session), (Rows{titleWithUnit("H2O", "mol/m3") + ", colours", surface, colors}));
+}
+
+TEST(LegendTest, IsOfTheFunctionsInUse) {
+    Session session;
+    session.transfer["T"].colormap = "inferno";
+    session.transfer["own"].colormap = "magma";
+    session.transfer["own"].opacity = {{0, 1}, {1, 0}};
+    session.layers = {{"", true, vis::VolumeLayer{.channel = "H2O", .colorBy = "T"}, "", "own"}};
+    auto legends = sceneLegends(session, gasInfo());
+    ASSERT_EQ(legends.size(), 2u);
+    EXPECT_EQ(legends[0].function, session.transfer["own"]) << "a volume's own function gives the opacity";
+    EXPECT_EQ(legends[1].function, session.transfer["T"]);
+    session.layers = {{"", true, vis::IsoLayer{.channel = "O2", .value = 5, .colorBy = "T"}, "", "own"}};
+    legends = sceneLegends(session, gasInfo());
+    ASSERT_EQ(legends.size(), 2u);
+    EXPECT_EQ(legends[1].function, session.transfer["own"]) << "a surface's the colours";
+    EXPECT_EQ(legends[1].title, "T");
+}
+
+TEST(LegendTest, ParametersThatTheDataLackColourNothing) {
+    Session session = defaultSession(gasInfo(), {});
+    session.layers = {{"rays", true, vis::VolumeLayer{.channel = "O2", .colorBy = "salt"}},
+                      {"shape", true, vis::IsoLayer{.channel = "O2", .value = 5, .colorBy = "T"}}};
+    std::vector<std::string> messages;
+    fitSession(session, gasInfo(), messages);
+    EXPECT_EQ(vis::colorByOf(session.layers[0].technique), "");
+    EXPECT_EQ(vis::colorByOf(session.layers[1].technique), "T");
+    ASSERT_EQ(messages.size(), 1u);
+    EXPECT_NE(messages[0].find("salt"), std::string::npos);
+}
+
+} // namespace
+} // namespace tessera::app

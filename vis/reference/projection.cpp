@@ -1,0 +1,61 @@
+#include "vis/reference/projection.h"
+
+#include <algorithm>
+
+namespace tessera::vis::reference {
+
+void Projected::add(const Prepared& scene, const DrawnLayer& layer, std::optional<Reading> found, glm::dvec3 place,
+                    double step) {
+    const auto& volume = std::get<VolumeLayer>(*layer.technique);
+    const double threshold = std::max(0.0, layer.unclamped(volume.threshold));
+    if (!found) {
+        if (volume.style == VolumeStyle::LocalMaximum) found_ = found_ || best_ >= threshold;
+        return;
+    }
+    const LensAction lens = scene.lensAction(layer, place);
+    const Interest doi = scene.interest(place);
+    const double factor = scene.opacityFactor(layer, doi) * lens.opacity;
+    const double along =
+        volume.quantity == Quantity::Gradient ? scene.steepPlace(layer, place) : layer.unclamped(found->value);
+    const double x = std::clamp(along, 0.0, 1.0);
+    factors_ += factor;
+    weighted_ += factor * along;
+    const double absorbed =
+        (1 - absorbed_) * correctedOpacity(layer.classifyPlace(x).a * factor, step, double(volume.density));
+    absorbed_ += absorbed;
+    ++count_;
+    const bool sums = volume.style == VolumeStyle::Average || volume.style == VolumeStyle::XRay;
+    if (const auto tint = sums && layer.colors ? layer.colors->value(scene.cells(place)) : std::nullopt) {
+        const double weight = volume.style == VolumeStyle::XRay ? absorbed : factor;
+        tint_ += weight * *tint;
+        tintWeight_ += weight;
+    }
+    const double score = (volume.style == VolumeStyle::Minimum ? 1 - x : x) * factor;
+    if (volume.style == VolumeStyle::LocalMaximum) found_ = found_ || (best_ >= threshold && score < best_);
+    if (score > best_ && !found_)
+        best_ = score, bestPlace_ = x, bestWorld_ = place, bestInterest_ = doi, bestLens_ = lens;
+}
+
+glm::dvec3 Projected::colorOfSum(const DrawnLayer& layer, glm::dvec4 own) const {
+    if (!layer.colors) return glm::dvec3(own);
+    return Prepared::tint(layer, tintWeight_ > 0 ? std::optional(tint_ / tintWeight_) : std::nullopt);
+}
+
+std::optional<Projected::Shown> Projected::shown(const Prepared& scene, const DrawnLayer& layer) const {
+    if (count_ == 0 || !(factors_ > 0)) return std::nullopt;
+    const auto& volume = std::get<VolumeLayer>(*layer.technique);
+    const auto opacity = [&](glm::dvec4 color) { return std::min(1.0, double(volume.density) * color.a); };
+    if (volume.style == VolumeStyle::XRay) return Shown{colorOfSum(layer, layer.classifyPlace(absorbed_)), absorbed_};
+    if (volume.style == VolumeStyle::Average) {
+        // The mean belongs to no place: brushes act on it through its weights alone.
+        const glm::dvec4 color = layer.classifyPlace(std::clamp(weighted_ / factors_, 0.0, 1.0));
+        return Shown{colorOfSum(layer, color), std::min(opacity(color) * factors_ / count_, 1.0)};
+    }
+    const glm::dvec4 color = layer.classifyPlace(bestPlace_);
+    const double factor = scene.opacityFactor(layer, bestInterest_) * bestLens_.opacity;
+    const glm::dvec3 tinted = scene.tinted(layer, glm::dvec3(color), bestWorld_);
+    return Shown{scene.focused(layer, tinted, bestInterest_, bestLens_.saturation),
+                 std::min(opacity(color) * factor, 1.0), bestInterest_.seen(layer)};
+}
+
+} // namespace tessera::vis::reference
