@@ -107,9 +107,10 @@ void addImportOptions(CLI::App& command, volume::ImportOptions& options) {
     };
     repeated("--label", options.labels,
              "Names, and colours, of label values: region:0=cathode,1=anode#e07b39; may be repeated");
-    repeated("--parts", options.parts,
-             "Regions whose samples are never mixed: p=region:1|3, or T=joined (default: found from the data); may be "
-             "repeated");
+    repeated(
+        "--parts", options.parts,
+        "Regions whose samples are never mixed: p=region:1|3, T=joined, or p=jumps, what the jumps of its own samples "
+        "enclose (default: found by a label); may be repeated");
     command.add_option("--time-name", options.timeName, "Name of the axis of a series, e.g. \"operating point\"")
         ->group("Import");
     command.add_option("--time-unit", options.timeUnit, "Unit of the axis of a series")->group("Import");

@@ -1,6 +1,7 @@
 #include "volume/import/find_parts.h"
 
 #include "volume/error.h"
+#include "volume/import/data_jumps.h"
 
 #include <algorithm>
 #include <array>
@@ -199,14 +200,18 @@ PartsRule parsePartsRule(std::string_view text) {
     const std::string place = "--parts " + std::string(text);
     const std::size_t equals = text.find('=');
     if (equals == std::string_view::npos || equals == 0 || equals + 1 == text.size())
-        throw Error("wants NAME=LABEL:VALUES|VALUES or NAME=joined", {}, place);
+        throw Error("wants NAME=LABEL:VALUES|VALUES, NAME=joined or NAME=jumps", {}, place);
     PartsRule rule;
     rule.parameter = std::string(text.substr(0, equals));
     const std::string_view right = text.substr(equals + 1);
     if (right == "joined") return rule;
+    if (right == "jumps") {
+        rule.jumps = true;
+        return rule;
+    }
     const std::size_t colon = right.find(':');
     if (colon == std::string_view::npos || colon == 0)
-        throw Error("wants NAME=LABEL:VALUES|VALUES or NAME=joined", {}, place);
+        throw Error("wants NAME=LABEL:VALUES|VALUES, NAME=joined or NAME=jumps", {}, place);
     rule.label = std::string(right.substr(0, colon));
     for (const std::string& group : split(right.substr(colon + 1), '|')) {
         rule.groups.push_back(split(group, ','));
@@ -219,7 +224,8 @@ PartsRule parsePartsRule(std::string_view text) {
 std::string partsText(const Parameter& parameter) {
     const Parts& parts = parameter.parts;
     if (parts.count() < 2) return {};
-    std::string text = std::to_string(parts.count()) + " parts by " + parts.label + ": ";
+    std::string text = std::to_string(parts.count()) + " parts by " +
+                       (parts.label == jumpsLabel(parameter.name) ? "jumps of the data" : parts.label) + ": ";
     for (std::size_t p = 0; p < parts.regions.size(); ++p) {
         if (p > 0) text += " | ";
         for (std::size_t i = 0; i < parts.regions[p].size(); ++i)
@@ -230,6 +236,7 @@ std::string partsText(const Parameter& parameter) {
 
 void setParts(DatasetInfo& info, const std::vector<PartsRule>& rules) {
     for (const PartsRule& rule : rules) {
+        if (rule.jumps) continue;
         const Parts parts = partsOfRule(info, rule);
         if (rule.parameter != "*") {
             Parameter& parameter = info.parameters[std::size_t(parameterNamed(info, rule.parameter, placeOf(rule)))];

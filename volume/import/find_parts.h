@@ -10,22 +10,24 @@
 /// Which regions a parameter jumps between: stated by rules, or found from the samples on either side of their borders.
 namespace tessera::volume {
 
-/// One rule of ImportOptions::parts: "p=region:1|3", "T=region:0,1,3" (one part), "T=joined".
+/// One rule of ImportOptions::parts: "p=region:1|3", "T=region:0,1,3" (one part), "T=joined", "p=jumps".
 struct PartsRule {
     std::string parameter;                        ///< "*" = every one that is no label
     std::string label;                            ///< "" = joined
     std::vector<std::vector<std::string>> groups; ///< values of the label, or their names; empty = joined
+    bool jumps = false;                           ///< by what its own samples show (volume/import/data_jumps.h)
     bool operator==(const PartsRule&) const = default;
 };
 
 /// Throws Error when the text is no rule.
 PartsRule parsePartsRule(std::string_view text);
 
-/// "2 parts by region: 1 | 3", "" where all of a parameter is one part.
+/// "2 parts by region: 1 | 3", "2 parts by jumps of the data: ..." where the label was made from these, "" where all of
+/// a parameter is one part.
 std::string partsText(const Parameter& parameter);
 
-/// Sets the parts that rules state. Throws Error for a parameter, label or value that does not exist, or a value in two
-/// parts. Of two rules for a parameter the last one counts.
+/// Sets the parts that rules state, but for those that say jumps. Throws Error for a parameter, label or value that
+/// does not exist, or a value in two parts. Of two rules for a parameter the last one counts.
 void setParts(DatasetInfo& info, const std::vector<PartsRule>& rules);
 
 /// Samples of two regions this far apart along an axis, with only absent ones between, meet in no filter.

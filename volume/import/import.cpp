@@ -3,6 +3,7 @@
 #include "volume/error.h"
 #include "volume/import/absent.h"
 #include "volume/import/assemble.h"
+#include "volume/import/data_jumps.h"
 #include "volume/import/find_parts.h"
 #include "volume/import/foreign.h"
 #include "volume/import/formats.h"
@@ -289,8 +290,9 @@ Opened open(const std::vector<std::string>& paths, const ImportOptions& options,
     if (meshRanges && assembled.ranges) stateRanges(dataset.info, assembled, rules, options, progress.part(0.8, 0.85));
     if (readSamples) {
         setParts(dataset.info, parts);
-        for (std::string& note : findParts(dataset, parts, options.parameters, progress.part(0.85, 1)))
+        for (std::string& note : findParts(dataset, parts, options.parameters, progress.part(0.85, 0.95)))
             opened.notes.push_back(std::move(note));
+        opened.data = withJumps(std::move(opened.data), parts, opened.notes, progress.part(0.95, 1));
     }
     opened.data = withParameters(std::move(opened.data), options.parameters);
     if (!unitsStated && formatNamed(opened.format) != nullptr) guessUnits(dataset, readSamples);

@@ -30,7 +30,8 @@ struct ImportOptions {
     /// Names, and after a '#' colours, of label values: "region:0=cathode,1=anode#e07b39".
     std::vector<std::string> labels;
     /// Regions whose samples are never mixed, by parameter: "p=region:1|3" (1 and 3 are two parts), "T=region:0,1,3"
-    /// (one part), "T=joined" (one part, whatever the data show). Parameters not named: found from the data.
+    /// (one part), "T=joined" (one part, whatever the data show), "p=jumps" (what the jumps of its own samples enclose,
+    /// without a label; volume/import/data_jumps.h). Parameters not named: found from the data.
     std::vector<std::string> parts;
     std::string timeName, timeUnit; ///< of the axis of a series; "" = what the files say
     std::string overTime;           ///< CSV file with quantities over time, "" = none
@@ -55,7 +56,7 @@ struct ImportOptions {
                                      .doc = "Names and colours of label values: region:0=cathode,1=anode#e07b39"});
         visit(self.parts, FieldInfo{.key = "parts",
                                     .unit = "",
-                                    .doc = "Regions whose samples are never mixed: p=region:1|3, T=joined"});
+                                    .doc = "Regions whose samples are never mixed: p=region:1|3, T=joined, p=jumps"});
         visit(self.timeName, FieldInfo{.key = "timeName", .unit = "", .doc = "Name of the axis of a series"});
         visit(self.timeUnit, FieldInfo{.key = "timeUnit", .unit = "", .doc = "Unit of the axis of a series"});
         visit(self.overTime, FieldInfo{.key = "overTime", .unit = "", .doc = "CSV file with quantities over time"});
