@@ -1,5 +1,6 @@
 #include "app/command/command.h"
 #include "app/command/picture_options.h"
+#include "app/views/ticks.h"
 #include "volume/atomic_file.h"
 #include "volume/error.h"
 
@@ -46,8 +47,8 @@ void addRenderCommand(CLI::App& app) {
         if (options->time) {
             const auto& times = opened.source->info().times;
             if (*options->time < times.front() || *options->time > times.back())
-                throw Error("is not in " + std::to_string(times.front()) + " .. " + std::to_string(times.back()),
-                            "--time", std::to_string(*options->time));
+                throw Error("is not in " + formatNumber(times.front()) + " .. " + formatNumber(times.back()), "--time",
+                            formatNumber(*options->time));
             session.time = *options->time;
         }
         opened.document.history.reset(session);

@@ -2,10 +2,13 @@
 
 #include "volume/dataset.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <memory>
 #include <optional>
+#include <string>
+#include <vector>
 
 /// A small data set of which every number follows from a formula of place and time, so that whatever the program says
 /// of it can be computed again in another way.
@@ -70,6 +73,51 @@ inline Range rangeOf(std::string_view name) {
             if (v) range = {std::min(range.lo, double(*v)), std::max(range.hi, double(*v))};
         });
     return range;
+}
+
+/// Plain statistics of samples, none weighted.
+struct Sum {
+    double samples = 0, mean = 0, least = 1e300, most = -1e300, deviation = 0;
+};
+
+/// Of a channel over the samples that `counts` says.
+template <class Counts> Sum summed(const std::string& channel, double time, Counts&& counts) {
+    Sum sum;
+    std::vector<double> values;
+    forEachPlace([&](Place at) {
+        const auto v = valueAt(channel, at, time);
+        if (v && counts(at)) values.push_back(*v);
+    });
+    for (const double v : values) {
+        ++sum.samples;
+        sum.mean += v / double(values.size());
+        sum.least = std::min(sum.least, v), sum.most = std::max(sum.most, v);
+    }
+    for (const double v : values) sum.deviation += (v - sum.mean) * (v - sum.mean) / double(values.size());
+    sum.deviation = std::sqrt(sum.deviation);
+    return sum;
+}
+
+/// A channel between samples: linear along each axis, as T is.
+inline double between(const std::string& channel, glm::dvec3 at, double time) {
+    double cell[3], sum = 0;
+    int base[3];
+    for (int axis = 0; axis < 3; ++axis) {
+        const double place = (at[axis] - kOrigin[axis]) / kSpacing[axis];
+        base[axis] = std::clamp(int(std::floor(place + 1e-9)), 0, kSize[axis] - 2);
+        cell[axis] = place - base[axis];
+    }
+    for (int corner = 0; corner < 8; ++corner) {
+        double weight = 1;
+        int index[3];
+        for (int axis = 0; axis < 3; ++axis) {
+            const int up = corner >> axis & 1;
+            weight *= up ? cell[axis] : 1 - cell[axis];
+            index[axis] = base[axis] + up;
+        }
+        sum += weight * valueAt(channel, {index[0], index[1], index[2]}, time).value();
+    }
+    return sum;
 }
 
 /// The data set; `unit` is that of T.

@@ -1,54 +1,16 @@
 #include "tests/app/formula_view.h"
+#include "tests/app/table_text.h"
 
 #include <map>
-#include <sstream>
 
 /// What views export, read back and compared with numbers computed from the formulas, for several times and selections.
 namespace tessera::app {
 namespace {
 
+using formula::between;
 using formula::Place;
-
-/// A table as text and numbers: the first line that is no comment names the columns.
-struct Table {
-    std::vector<std::string> heads;
-    std::vector<std::vector<std::string>> rows;
-    std::size_t column(const std::string& head) const {
-        const auto found = std::ranges::find(heads, head);
-        EXPECT_NE(found, heads.end()) << "no column " << head;
-        return found == heads.end() ? 0 : std::size_t(found - heads.begin());
-    }
-    std::string text(std::size_t row, const std::string& head) const { return rows[row][column(head)]; }
-    /// Nothing where the field is empty.
-    std::optional<double> number(std::size_t row, const std::string& head) const {
-        const std::string field = text(row, head);
-        return field.empty() ? std::nullopt : std::optional(std::stod(field));
-    }
-};
-
-Table tableOf(const std::string& csv) {
-    Table table;
-    std::istringstream in(csv);
-    for (std::string line; std::getline(in, line);) {
-        if (line.starts_with("#")) continue;
-        std::vector<std::string> fields(1);
-        bool quoted = false;
-        for (const char c : line) {
-            if (c == '"')
-                quoted = !quoted;
-            else if (c == ',' && !quoted)
-                fields.emplace_back();
-            else
-                fields.back() += c;
-        }
-        if (table.heads.empty())
-            table.heads = fields;
-        else
-            table.rows.push_back(fields);
-        EXPECT_EQ(fields.size(), table.heads.size()) << line;
-    }
-    return table;
-}
+using formula::Sum;
+using formula::summed;
 
 /// Times, with and without a brush of T, that every table is read at.
 struct Case {
@@ -66,28 +28,6 @@ double interest(const Case& of, Place at) {
     if (!of.brush) return 1;
     const double t = formula::valueAt("T", at, of.time).value();
     return (t >= of.brush->lo && t <= of.brush->hi) != of.inverted ? 1 : 0;
-}
-
-struct Sum {
-    double samples = 0, mean = 0, least = 1e300, most = -1e300, deviation = 0;
-};
-
-/// Of a channel over the samples that `counts` says.
-template <class Counts> Sum summed(const std::string& channel, double time, Counts&& counts) {
-    Sum sum;
-    std::vector<double> values;
-    formula::forEachPlace([&](Place at) {
-        const auto v = formula::valueAt(channel, at, time);
-        if (v && counts(at)) values.push_back(*v);
-    });
-    for (const double v : values) {
-        ++sum.samples;
-        sum.mean += v / double(values.size());
-        sum.least = std::min(sum.least, v), sum.most = std::max(sum.most, v);
-    }
-    for (const double v : values) sum.deviation += (v - sum.mean) * (v - sum.mean) / double(values.size());
-    sum.deviation = std::sqrt(sum.deviation);
-    return sum;
 }
 
 double correlation(const std::string& a, const std::string& b, double time) {
@@ -233,28 +173,6 @@ TEST_F(ViewTables, ScatterplotsCountPairsInTheirBins) {
             EXPECT_NEAR(*table.number(row, "in focus"), found->second.second, 1e-6);
         }
     }
-}
-
-/// A channel between samples: linear along each axis, as T is.
-double between(const std::string& channel, glm::dvec3 at, double time) {
-    double cell[3], sum = 0;
-    int base[3];
-    for (int axis = 0; axis < 3; ++axis) {
-        const double place = (at[axis] - formula::kOrigin[axis]) / formula::kSpacing[axis];
-        base[axis] = std::clamp(int(std::floor(place + 1e-9)), 0, formula::kSize[axis] - 2);
-        cell[axis] = place - base[axis];
-    }
-    for (int corner = 0; corner < 8; ++corner) {
-        double weight = 1;
-        int index[3];
-        for (int axis = 0; axis < 3; ++axis) {
-            const int up = corner >> axis & 1;
-            weight *= up ? cell[axis] : 1 - cell[axis];
-            index[axis] = base[axis] + up;
-        }
-        sum += weight * formula::valueAt(channel, {index[0], index[1], index[2]}, time).value();
-    }
-    return sum;
 }
 
 TEST_F(ViewTables, ProfilesAreReadAlongTheirLine) {
