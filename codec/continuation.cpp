@@ -1,6 +1,9 @@
 #include "codec/continuation.h"
 
+#include "volume/part_masks.h"
 #include "volume/quantities.h"
+#include "volume/resample.h"
+#include "volume/series_dataset.h"
 
 #include <algorithm>
 #include <cmath>
@@ -89,6 +92,60 @@ bool bringsTimes(const Archive& archive, const DatasetInfo& added) {
     return std::any_of(added.parameters.begin(), added.parameters.end(), [&](const Parameter& parameter) {
         return find(archive.metadata().info, parameter.name) != nullptr;
     });
+}
+
+namespace {
+
+bool sameSamples(const volume::Field& a, const volume::Field& b) {
+    if (!(a.lattice.size == b.lattice.size)) return false;
+    for (std::size_t i = 0; i < a.count(); ++i)
+        if (a.present(i) != b.present(i) || (a.present(i) && a.value(i) != b.value(i))) return false;
+    return true;
+}
+
+/// The label, as packing would store it, is that of the archive at all times.
+void requireSameLabel(const volume::Dataset& source, int label, const Archive& archive) {
+    const Metadata& metadata = archive.metadata();
+    const Parameter& added = source.info.parameters[std::size_t(label)];
+    const Parameter* const old = find(metadata.info, added.name);
+    requireSame(*old, added, archive.path());
+    const volume::Dataset stored =
+        metadata.alternating ? volume::framesOfD4(source, metadata.options.resample, {}).frames : source;
+    if (stored.info.times != metadata.info.times)
+        throw Error("parameters can only be added at all times of the archive, " +
+                        std::to_string(metadata.info.times.size()) + " of them",
+                    archive.path());
+    const bool toBcc = !metadata.alternating && metadata.info.lattice.kind == volume::LatticeKind::BCC;
+    for (int time = 0; time < int(stored.info.times.size()); ++time) {
+        volume::Field field = stored.load(label, 0, time);
+        if (toBcc) field = volume::toBcc(field, true);
+        if (!sameSamples(field, readField(archive, int(old - metadata.info.parameters.data()), 0, time)))
+            throw Error("the archive has another label " + added.name, archive.path());
+    }
+}
+
+} // namespace
+
+std::optional<FurtherParameters> withoutKnownLabels(const volume::Dataset& source, const volume::SliceLoad& slices,
+                                                    const Archive& archive) {
+    std::vector<int> known, further;
+    for (std::size_t p = 0; p < source.info.parameters.size(); ++p)
+        (find(archive.info(), source.info.parameters[p].name) != nullptr ? known : further).push_back(int(p));
+    const auto isLabel = [&](int p) { return source.info.parameters[std::size_t(p)].categorical; };
+    if (known.empty() || further.empty() || !std::ranges::all_of(known, isLabel)) return std::nullopt;
+    for (const int label : known) requireSameLabel(source, label, archive);
+    FurtherParameters out{volume::withParts(source), volume::withParts(source.info, slices)};
+    out.dataset.info.parameters.clear();
+    for (const int p : further) out.dataset.info.parameters.push_back(source.info.parameters[std::size_t(p)]);
+    out.dataset.load = [inner = std::move(out.dataset.load), further](int parameter, int component, int time) {
+        return inner(further[std::size_t(parameter)], component, time);
+    };
+    if (out.slices)
+        out.slices = [inner = std::move(out.slices), further](int parameter, int component, int time, int first,
+                                                              int count) {
+            return inner(further[std::size_t(parameter)], component, time, first, count);
+        };
+    return out;
 }
 
 Continuation continuationOf(const Archive& archive, Metadata& metadata) {

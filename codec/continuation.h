@@ -1,7 +1,10 @@
 #pragma once
 
 #include "codec/archive.h"
+#include "volume/dataset.h"
+#include "volume/slices.h"
 
+#include <optional>
 #include <vector>
 
 namespace tessera::codec {
@@ -26,6 +29,16 @@ struct Continuation {
 
 /// True if a data set brings later times of parameters of the archive, not further parameters.
 bool bringsTimes(const Archive& archive, const volume::DatasetInfo& added);
+
+/// Further parameters for an archive, without labels that it holds already.
+struct FurtherParameters {
+    volume::Dataset dataset; ///< its frames say the parts of their samples (volume/part_masks.h)
+    volume::SliceLoad slices;
+};
+/// Nothing where a data set brings no such label, or other parameters that the archive has. `slices` may be null.
+/// Throws Error where the archive's label is not that of the data.
+std::optional<FurtherParameters> withoutKnownLabels(const volume::Dataset& source, const volume::SliceLoad& slices,
+                                                    const Archive& archive);
 
 /// How the data set of `metadata`, made as for an archive of its own, continues an archive; `metadata` becomes that of
 /// both together. Throws Error when lattice, bricks, parameters or times do not fit.

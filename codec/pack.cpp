@@ -390,7 +390,14 @@ PackSummary append(volume::Dataset& source, const std::string& path, double memo
     const Archive grown(path);
     PackOptions options = grown.metadata().options;
     options.memoryMb = memoryMb;
-    return Packing(source, slabs, before, options, path, &grown).run(progress);
+    std::optional<FurtherParameters> further = withoutKnownLabels(source, slabs.slices, grown);
+    if (!further) return Packing(source, slabs, before, options, path, &grown).run(progress);
+    const SlabInput own{further->slices, slabs.layers};
+    const PackSummary summary = Packing(further->dataset, own, before, options, path, &grown).run(progress);
+    for (volume::Parameter& parameter : source.info.parameters)
+        for (const volume::Parameter& made : further->dataset.info.parameters)
+            if (made.name == parameter.name) parameter.ranges = made.ranges;
+    return summary;
 }
 
 } // namespace tessera::codec

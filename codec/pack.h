@@ -181,8 +181,9 @@ PackSummary pack(volume::Dataset& source, const PackOptions& options, const std:
                  const Progress& progress = {}, const SlabInput& slabs = {}, const PackedBefore& before = {});
 
 /// Appends to an archive with its own options: times later than its last of the same parameters (with d4 the last times
-/// again before them, volume::continueD4), or further parameters at the same times. Whole times that were appended stay
-/// when it throws; of parameters all or none. `memoryMb` as in the options. Error when the data do not continue it.
+/// again before them, volume::continueD4), or further parameters at the same times; beside these the source may have
+/// labels that the archive holds already, sample for sample. Whole times that were appended stay when it throws; of
+/// parameters all or none. `memoryMb` as in the options. Error when the data do not continue it.
 PackSummary append(volume::Dataset& source, const std::string& path, double memoryMb = 0, const Progress& progress = {},
                    const SlabInput& slabs = {}, const PackedBefore& before = {});
 

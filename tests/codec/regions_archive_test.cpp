@@ -115,5 +115,48 @@ TEST(RegionsInArchives, LosslessOnTheSourceGridStaysBitForBit) {
     EXPECT_EQ(readField(archive, 0, 0, 0).samples, made.load(0, 0, 0).samples);
 }
 
+TEST(RegionsInArchives, AFurtherParameterFindsTheLabelInTheArchive) {
+    const TemporaryFolder folder;
+    const auto labelOf = [](Dataset data) {
+        data.info.parameters.erase(data.info.parameters.begin());
+        data.load = [load = data.load](int, int c, int t) { return load(1, c, t); };
+        return data;
+    };
+    for (const StoredLattice lattice : {StoredLattice::CC, StoredLattice::BCC, StoredLattice::D4})
+        for (const int layers : {0, 1}) {
+            Dataset made = regionsData(2), label = labelOf(made);
+            PackOptions options;
+            options.lattice = lattice;
+            options.brickSize = 8;
+            pack(label, options, folder / "grown.tsr");
+            SlabInput slabs;
+            slabs.layers = layers;
+            if (layers > 0)
+                slabs.slices = [load = made.load](int p, int c, int t, int first, int count) {
+                    return volume::slicesOf(load(p, c, t), first, count);
+                };
+            append(made, folder / "grown.tsr", 0, {}, slabs);
+            const Archive archive(folder / "grown.tsr");
+            ASSERT_EQ(archive.info().parameters.size(), 2u);
+            EXPECT_EQ(archive.info().parameters[1].parts, made.info.parameters[0].parts);
+            EXPECT_EQ(made.info.parameters[0].ranges.size(), 1u);
+            for (int t = 0; t < int(archive.info().times.size()); ++t) expectPure(archive, t);
+        }
+    // Another label is refused, and nothing changes.
+    volume::test::TwoRegions elsewhere;
+    elsewhere.place = 12;
+    Dataset other =
+        volume::test::twoRegions(volume::test::ccLattice({25, 22, 21}), volume::test::constantIn, elsewhere, 2);
+    Dataset label = labelOf(regionsData(2));
+    pack(label, {}, folder / "label.tsr");
+    try {
+        append(other, folder / "label.tsr");
+        FAIL();
+    } catch (const Error& error) {
+        EXPECT_NE(std::string(error.what()).find("another label region"), std::string::npos) << error.what();
+    }
+    EXPECT_EQ(Archive(folder / "label.tsr").info().parameters.size(), 1u);
+}
+
 } // namespace
 } // namespace tessera::codec
