@@ -122,6 +122,7 @@ class Trials:
                 continue
             lines = open(os.path.join(folder, file)).read().split("\n")
             name, source, passed, seconds = lines[0].split("\t")
+            source = os.path.normpath(os.path.join(self.build, source))  # a compiler cache makes it relative
             notes[f"{program}:{name}"] = {"program": program, "name": name, "file": source, "digest": digest(source),
                                           "passed": passed == "1", "seconds": float(seconds),
                                           "reaches": [int(l) for l in lines[1:] if l]}
