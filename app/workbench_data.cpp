@@ -199,11 +199,7 @@ void Workbench::followLabels() {
     // On its way, or cancelled; or still being typed.
     if (wanted == labelsWanted_ || ImGui::IsAnyItemActive()) return;
     labelsWanted_ = wanted;
-    if (!options_.headless) {
-        volume::ImportOptions stated;
-        stated.labels = wanted;
-        rememberStated(stated, source_->info().name);
-    }
+    if (!options_.headless) rememberLabels(wanted, labelsShown_, source_->info().name);
     showAs(session_.data, "Naming regions");
 }
 

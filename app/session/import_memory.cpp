@@ -183,6 +183,25 @@ void rememberStated(const volume::ImportOptions& stated, const std::string& data
     }
 }
 
+void rememberLabels(const std::vector<std::string>& now, const std::vector<std::string>& before,
+                    const std::string& dataName, const std::string& path) {
+    if (path.empty() || dataName.empty()) return;
+    try {
+        ImportMemory memory = loadImportMemory(path);
+        std::vector<std::string>& known = memory.labels[dataName];
+        std::erase_if(known, [&](const std::string& rule) {
+            const auto same = [&](const std::string& other) {
+                return parameterOfLabels(other) == parameterOfLabels(rule);
+            };
+            return std::ranges::any_of(before, same) || std::ranges::any_of(now, same);
+        });
+        known.insert(known.end(), now.begin(), now.end());
+        if (known.empty()) memory.labels.erase(dataName);
+        saveImportMemory(memory, path);
+    } catch (const Error&) { // as in rememberStated
+    }
+}
+
 bool remember(ImportMemory& memory, const volume::ImportOptions& stated, const std::string& dataName) {
     const ImportMemory before = memory;
     for (const auto& [name, unit] : stated.units) memory.units[name] = unit;

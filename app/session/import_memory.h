@@ -44,6 +44,10 @@ volume::ImportOptions recallOptions(const std::vector<std::string>& paths, const
 void rememberStated(const volume::ImportOptions& stated, const std::string& dataName,
                     const std::string& path = importMemoryPath());
 
+/// Remembers the rules for the labels of a data set as they are now; parameters that only `before` names are forgotten.
+void rememberLabels(const std::vector<std::string>& now, const std::vector<std::string>& before,
+                    const std::string& dataName, const std::string& path = importMemoryPath());
+
 /// Remembers what was stated. True when something is new.
 bool remember(ImportMemory& memory, const volume::ImportOptions& stated, const std::string& dataName);
 

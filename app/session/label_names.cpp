@@ -67,6 +67,23 @@ void stateLabel(Session& session, const volume::Parameter& parameter, const volu
         }
 }
 
+void unstateLabelName(Session& session, const volume::Parameter& parameter, int value) {
+    std::vector<std::string>& rules = session.data.import.labels;
+    for (std::string& text : rules) {
+        volume::LabelRule rule = volume::parseLabelRule(text);
+        if (rule.parameter != parameter.name) continue;
+        std::erase_if(rule.labels, [&](volume::Label& label) {
+            if (label.value == value) label.name.clear();
+            return label.name.empty() && label.color.empty();
+        });
+        text = rule.labels.empty() ? std::string() : volume::toText(rule);
+    }
+    std::erase(rules, std::string());
+    // The data's own name is known when they are open again.
+    for (vis::Brush& brush : session.selection.brushes)
+        if (holdsRegion(brush, parameter.name, value)) brush.name = parameter.name + " " + std::to_string(value);
+}
+
 bool regionBrushed(const Session& session, const volume::Parameter& parameter, int value) {
     return std::ranges::any_of(session.selection.brushes, [&](const vis::Brush& brush) {
         return brush.enabled && !brush.inverted && holdsRegion(brush, parameter.name, value);

@@ -13,6 +13,9 @@ std::vector<volume::Label> statedLabels(const Session& session, const volume::Pa
 /// as it was.
 void stateLabel(Session& session, const volume::Parameter& parameter, const volume::Label& label);
 
+/// Takes the stated name of a value back: the data then have the one of their own again. A stated colour stays.
+void unstateLabelName(Session& session, const volume::Parameter& parameter, int value);
+
 /// Adds a brush that holds a region, with its name and colour; with other regions of the label it makes a union. One
 /// that is there already goes instead.
 void toggleRegionBrush(Session& session, const volume::Parameter& parameter, int value);

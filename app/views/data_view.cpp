@@ -3,6 +3,7 @@
 #include "app/sources.h"
 #include "app/views/derived_list.h"
 #include "app/views/focus_share.h"
+#include "app/views/selection_rows.h"
 #include "app/views/statistics_feed.h"
 #include "app/views/ticks.h"
 #include "app/views/time_text.h"
@@ -135,7 +136,13 @@ void editLabels(Session& session, const volume::Parameter& parameter) {
         ImGui::SameLine(em() * 4);
         std::string text = label.name;
         ImGui::SetNextItemWidth(em() * 12);
-        if (ImGui::InputText("##name", &text)) stateLabel(session, parameter, {label.value, text, ""});
+        if (ImGui::InputText("##name", &text)) {
+            if (text.empty())
+                unstateLabelName(session, parameter, label.value);
+            else
+                stateLabel(session, parameter, {label.value, text, ""});
+        }
+        if (ImGui::IsItemHovered()) tooltip("An empty field: the name that the data themselves have");
         ImGui::PopID();
     }
     ImGui::EndPopup();
@@ -188,11 +195,6 @@ void drawParameters(Session& session, const volume::DatasetInfo& info) {
     ImGui::EndTable();
 }
 
-std::string rangeText(const volume::Summary& summary, double digits) {
-    if (summary.samples == 0) return "-";
-    return formatNumber(summary.min, digits) + " .. " + formatNumber(summary.max, digits);
-}
-
 void drawSelection(ViewContext& context, const StatisticsResult* result) {
     const volume::DatasetInfo& info = context.numbers->info();
     if (!context.session.selection.active()) {
@@ -231,24 +233,19 @@ void drawSelection(ViewContext& context, const StatisticsResult* result) {
         tableHeader({"Parameter", "In focus", "Outside"});
     else
         tableHeader({"Parameter", "Mean and range now"});
-    const std::vector<volume::Channel> channels = info.channels();
-    for (std::size_t i = 0; i < statistics.channels.size(); ++i) {
-        const volume::Channel& channel = channels[static_cast<std::size_t>(result->wish.channels[i])];
-        const volume::ChannelStatistics& own = statistics.channels[i];
-        const Range range = info.channelRange(channel);
-        const double digits = (range.hi - range.lo) / 1000;
-        // Mean above, range below: side by side they do not fit a narrow pane.
-        const auto cell = [&](const volume::Summary& summary) {
-            ImGui::TableNextColumn();
-            textRight(summary.samples > 0 ? formatNumber(summary.mean, digits) : "-");
-            textRight(rangeText(summary, digits * 10), true);
-        };
+    // Mean above, range below: side by side they do not fit a narrow pane.
+    const auto cell = [](const SelectionCell& texts) {
+        ImGui::TableNextColumn();
+        textRight(texts[0]);
+        textRight(texts[1], true);
+    };
+    for (const SelectionRow& row : selectionRows(info, *result)) {
         ImGui::TableNextRow();
         ImGui::TableNextColumn();
-        ImGui::TextUnformatted(titleWithUnit(channel.name, channel.unit).c_str());
-
-        cell(brushed ? own.inside : own.all);
-        if (brushed) cell(own.outside);
+        ImGui::TextUnformatted(row.what.c_str());
+        if (row.region) ImGui::TextDisabled("share, samples");
+        cell(brushed ? row.inside : row.all);
+        if (brushed) cell(row.outside);
     }
     ImGui::EndTable();
     if (context.runCommand && ImGui::SmallButton("Open the full table")) context.runCommand("New: Statistics");
@@ -263,16 +260,9 @@ void drawDataView(ViewContext& context, const std::string& pane, DataView&) {
     }
     DataCache& cache = cacheOf<DataCache>(context, pane);
     const volume::DatasetInfo& info = context.numbers->info();
-    const std::vector<int> channels = comparedChannels(info);
+    const StatisticsWish wish = selectionWish(context.session, info);
     std::shared_ptr<const StatisticsResult> result;
-    if (!channels.empty()) {
-        std::vector<Range> ranges;
-        const std::vector<volume::Channel> all = info.channels();
-        for (int channel : channels)
-            ranges.push_back(paddedRange(info.channelRange(all[static_cast<std::size_t>(channel)])));
-        result =
-            cache.feed.get(context, "summary " + pane, makeWish(context.session, info, channels, ranges, 16, false));
-    }
+    if (!wish.channels.empty()) result = cache.feed.get(context, "summary " + pane, wish);
     ImGui::BeginChild("data");
     if (ImGui::CollapsingHeader("Data set", ImGuiTreeNodeFlags_DefaultOpen)) drawSummary(context);
     // Above what is computed from them, which comes and goes while a formula is edited.

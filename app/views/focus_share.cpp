@@ -1,6 +1,7 @@
 #include "app/views/focus_share.h"
 
 #include "app/views/ticks.h"
+#include "volume/analysis/flow_channels.h"
 
 #include <algorithm>
 #include <cmath>
@@ -24,6 +25,7 @@ FocusShare focusShare(const StatisticsResult& result, const volume::DatasetInfo&
         share.focus = std::max(share.focus, own.inside.samples);
         const int channel = result.wish.channels[i];
         if (!brushed.empty() && !brushed.contains(channel)) continue;
+        if (brushed.empty() && volume::parameterOf(info, channel).categorical) continue;
         // Of what is brushed that which exists at the fewest points, else what exists at the most.
         const bool better =
             !where || (brushed.empty() ? own.all.samples > where->all.samples : own.all.samples < where->all.samples);

@@ -6,6 +6,7 @@
 #include "app/views/ticks.h"
 #include "app/views/time_text.h"
 #include "app/views/view_parts.h"
+#include "volume/analysis/flow_channels.h"
 #include "volume/background.h"
 #include "volume/error.h"
 #include "volume/quantities.h"
@@ -24,6 +25,18 @@ std::string labelName(const volume::Parameter& parameter, double value) {
     for (const volume::Label& label : parameter.labels)
         if (label.value == static_cast<int>(std::lround(value))) return label.name;
     return formatNumber(value);
+}
+
+/// The region of the point as the label of a parameter's parts says it, else the first label; "" where none does.
+std::string regionText(const volume::DatasetInfo& info, const Readout& readout, int parameter) {
+    const volume::Parameter& own = info.parameters[static_cast<std::size_t>(parameter)];
+    if (own.categorical) return {};
+    std::optional<int> label;
+    if (own.parts.count() > 1) label = volume::labelChannel(info, own.parts.label);
+    if (!label) label = volume::labelChannel(info);
+    if (!label || static_cast<std::size_t>(*label) >= readout.state->values.size()) return {};
+    const auto& value = readout.state->values[static_cast<std::size_t>(*label)].nearest;
+    return value ? volume::labelName(volume::parameterOf(info, *label), static_cast<int>(std::lround(*value))) : "";
 }
 
 std::string valueText(const volume::DatasetInfo& info, const volume::Channel& channel,
@@ -151,28 +164,51 @@ void drawReadout(ViewContext& context, const Readout& readout, bool compact) {
     ImGui::PopStyleColor();
     ImGui::PopTextWrapPos();
 
-    if (!ImGui::BeginTable("values", 3,
+    const std::vector<std::string> heads = readoutHeads(info);
+    if (!ImGui::BeginTable("values", static_cast<int>(heads.size()),
                            ImGuiTableFlags_SizingStretchProp | ImGuiTableFlags_RowBg | ImGuiTableFlags_PadOuterX))
         return;
-    ImGui::TableSetupColumn("Parameter", ImGuiTableColumnFlags_WidthStretch, 1.4f);
-    ImGui::TableSetupColumn("Value", ImGuiTableColumnFlags_WidthStretch, 1);
-    ImGui::TableSetupColumn("Nearest", ImGuiTableColumnFlags_WidthStretch, 1);
-    tableHeader({"Parameter", "Value", "Nearest"});
-    const auto cell = [&](const volume::Channel& channel, const std::optional<double>& value) {
-        ImGui::TableNextColumn();
-        textRight(valueText(info, channel, value), !value);
-    };
-    for (std::size_t i = 0; i < readout.channels.size() && i < readout.state->values.size(); ++i) {
-        const volume::Channel& channel = readout.channels[i];
+    for (const std::string& head : heads)
+        ImGui::TableSetupColumn(head.c_str(), ImGuiTableColumnFlags_WidthStretch, &head == &heads[0] ? 1.4f : 1);
+    if (heads.size() > 3)
+        tableHeader({"Parameter", "Value", "Nearest", "Region"});
+    else
+        tableHeader({"Parameter", "Value", "Nearest"});
+    const std::vector<std::vector<std::string>> rows = readoutRows(info, readout);
+    for (std::size_t i = 0; i < rows.size(); ++i) {
         const volume::ProbeValue& value = readout.state->values[i];
         ImGui::TableNextRow();
         ImGui::TableNextColumn();
-        ImGui::TextUnformatted(titleWithUnit(channel.name, channel.unit).c_str());
-        cell(channel, value.interpolated);
-        cell(channel, value.nearest);
+        ImGui::TextUnformatted(rows[i][0].c_str());
+        ImGui::TableNextColumn();
+        textRight(rows[i][1], !value.interpolated);
+        ImGui::TableNextColumn();
+        textRight(rows[i][2], !value.nearest);
+        if (heads.size() < 4) continue;
+        ImGui::TableNextColumn();
+        textRight(rows[i][3], true);
     }
     ImGui::EndTable();
     if (ImGui::SmallButton("Copy as CSV")) ImGui::SetClipboardText(copy().c_str());
+}
+
+std::vector<std::string> readoutHeads(const volume::DatasetInfo& info) {
+    std::vector<std::string> heads{"Parameter", "Value", "Nearest"};
+    if (volume::labelChannel(info)) heads.emplace_back("Region");
+    return heads;
+}
+
+std::vector<std::vector<std::string>> readoutRows(const volume::DatasetInfo& info, const Readout& readout) {
+    const bool regions = volume::labelChannel(info).has_value();
+    std::vector<std::vector<std::string>> rows;
+    for (std::size_t i = 0; i < readout.channels.size() && i < readout.state->values.size(); ++i) {
+        const volume::Channel& channel = readout.channels[i];
+        const volume::ProbeValue& value = readout.state->values[i];
+        rows.push_back({titleWithUnit(channel.name, channel.unit), valueText(info, channel, value.interpolated),
+                        valueText(info, channel, value.nearest)});
+        if (regions) rows.back().push_back(regionText(info, readout, channel.parameter));
+    }
+    return rows;
 }
 
 std::string readoutCsv(const Session& session, const volume::DatasetInfo& info, const Readout& readout) {
@@ -181,22 +217,26 @@ std::string readoutCsv(const Session& session, const volume::DatasetInfo& info, 
         if (value) std::snprintf(text, sizeof text, "%.9g", *value);
         return std::string(text);
     };
-    std::string csv = "parameter,unit,interpolated,nearest\n";
+    const bool regions = volume::labelChannel(info).has_value();
+    std::string csv =
+        regions ? "parameter,unit,interpolated,nearest,region\n" : "parameter,unit,interpolated,nearest\n";
+    const std::string end = regions ? ",\n" : "\n";
     const AxisLabels labels = axisLabels(session, info);
     for (int axis = 0; axis < 3; ++axis) {
         const bool time = session.data.timeAxis && static_cast<int>(session.data.timeAxis->axis) == axis;
         const auto& [name, unit] = labels[static_cast<std::size_t>(axis)];
         csv += std::string(name) + "," + (time ? unit.name : info.lengthUnit) + "," +
-               number(session.cursor[axis] * (time ? unit.perUnit : 1)) + ",\n";
+               number(session.cursor[axis] * (time ? unit.perUnit : 1)) + "," + end;
     }
-    csv += csvField(info.timeName) + "," + csvField(info.timeUnit) + "," + number(session.time) + ",\n";
+    csv += csvField(info.timeName) + "," + csvField(info.timeUnit) + "," + number(session.time) + "," + end;
     for (const volume::Quantity& quantity : info.quantities)
         csv += csvField(quantity.name) + "," + csvField(quantity.unit) + "," +
-               number(volume::valueAt(info.times, quantity.values, session.time)) + ",\n";
+               number(volume::valueAt(info.times, quantity.values, session.time)) + "," + end;
     for (std::size_t i = 0; i < readout.channels.size() && i < readout.state->values.size(); ++i) {
         const volume::ProbeValue& value = readout.state->values[i];
         csv += readout.channels[i].name + "," + readout.channels[i].unit + "," + number(value.interpolated) + "," +
-               number(value.nearest) + "\n";
+               number(value.nearest) +
+               (regions ? "," + csvField(regionText(info, readout, readout.channels[i].parameter)) : "") + "\n";
     }
     return csv;
 }

@@ -39,7 +39,13 @@ void drawReadout(ViewContext& context, const Readout& readout, bool compact = fa
 /// Pixels that the table needs.
 float readoutHeight(const Readout& readout);
 
-/// The same as comma-separated text: parameter, unit, interpolated, nearest; absent values are empty.
+/// The table as texts: parameter with unit, value, nearest and, where a label says regions, the region that the point
+/// lies in (of a parameter whose regions are kept apart, by their label).
+std::vector<std::string> readoutHeads(const volume::DatasetInfo& info);
+std::vector<std::vector<std::string>> readoutRows(const volume::DatasetInfo& info, const Readout& readout);
+
+/// The same as comma-separated text: parameter, unit, interpolated, nearest and, where a label says it, region; absent
+/// values are empty.
 std::string readoutCsv(const Session& session, const volume::DatasetInfo& info, const Readout& readout);
 
 } // namespace tessera::app

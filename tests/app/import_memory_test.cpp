@@ -72,6 +72,17 @@ TEST_F(ImportMemoryFile, WhatIsStatedOnceIsKnownTheNextTime) {
     EXPECT_EQ(memory.absent.at("cell"), now.absent);
 }
 
+TEST_F(ImportMemoryFile, NamesTakenBackAreForgotten) {
+    rememberLabels({"region:1=air", "zone:2=hot"}, {}, "cell", path_);
+    rememberLabels({"region:1=air"}, {}, "other", path_);
+    EXPECT_EQ(loadImportMemory(path_).labels.at("cell"), (std::vector<std::string>{"region:1=air", "zone:2=hot"}));
+    rememberLabels({"zone:2=cold"}, {"region:1=air", "zone:2=hot"}, "cell", path_);
+    EXPECT_EQ(loadImportMemory(path_).labels.at("cell"), std::vector<std::string>{"zone:2=cold"});
+    rememberLabels({}, {"zone:2=cold"}, "cell", path_);
+    EXPECT_FALSE(loadImportMemory(path_).labels.contains("cell"));
+    EXPECT_TRUE(loadImportMemory(path_).labels.contains("other"));
+}
+
 TEST_F(ImportMemoryFile, DamagedFileIsAnErrorWithItsPlace) {
     fs::create_directories(fs::path(path_).parent_path());
     for (const char* text : {"", "[]", "{\"units\": 3}", "{\"units\": {\"T\": 1}}", "{\"absent\": {\"a\": [\"x\"]}}",

@@ -47,6 +47,23 @@ TEST(LabelNames, AreStatedOneByOneAndColourThePicture) {
     EXPECT_EQ(statedLabels(session, label)[1].name, "air side");
 }
 
+TEST(LabelNames, AreTakenBackAsIfNeverStated) {
+    Session session;
+    volume::Parameter label = region();
+    session.data.import.labels = {"other:1=x"};
+    stateLabel(session, label, {1, "air", ""});
+    stateLabel(session, label, {0, "land", "#e07b39"});
+    toggleRegionBrush(session, label, 1);
+    unstateLabelName(session, label, 1);
+    EXPECT_EQ(session.data.import.labels, (std::vector<std::string>{"other:1=x", "region:0=land#e07b39"}));
+    EXPECT_EQ(statedLabels(session, label)[1], label.labels[1]);
+    EXPECT_EQ(session.selection.brushes[0].name, "region 1");
+    unstateLabelName(session, label, 0);
+    EXPECT_EQ(statedLabels(session, label)[0], (volume::Label{0, "region 0", "#e07b39"})) << "a colour stays";
+    unstateLabelName(session, label, 3); // never stated
+    EXPECT_EQ(session.data.import.labels, (std::vector<std::string>{"other:1=x", "region:0=#e07b39"}));
+}
+
 TEST(LabelNames, BrushesHoldARegionAndAreCalledLikeIt) {
     Session session;
     const volume::Parameter label = region();
