@@ -42,6 +42,7 @@ public:
             }
         }
         context.busy = context.behind = true;
+        if (state.pending.running && *state.pending.running == wish) return usable; // on its way
         // While something is dragged or played the running answer is waited for: cancelling it each frame would show
         // none.
         if (state.pending.running && (usable || !state.last)) return usable;

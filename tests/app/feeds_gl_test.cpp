@@ -9,9 +9,12 @@
 #include "tests/app/views_fixture.h"
 #include "volume/probe.h"
 
+#include <atomic>
+#include <chrono>
 #include <filesystem>
 #include <fstream>
 #include <gmock/gmock.h>
+#include <thread>
 #include <unistd.h>
 
 namespace tessera::app {
@@ -91,6 +94,37 @@ TEST_F(Feeds, ReadTheSamplesThatNumbersComeFrom) {
     const auto time = volume::timesAround(numbers->info().times, session.time);
     EXPECT_EQ(readout.value("T"), volume::probe(*numbers, session.cursor, time)[std::size_t(t)].interpolated);
     EXPECT_NE(readout.value("T"), volume::probe(*source, session.cursor, time)[std::size_t(t)].interpolated);
+}
+
+// An answer that takes longer than a frame comes although the last one is of no use meanwhile.
+TEST_F(Feeds, AnAnswerOnItsWayIsNotAskedForAgain) {
+    LatestFeed<int, int> feed;
+    std::atomic<int> asked = 0;
+    const auto get = [&](int wish) {
+        ViewContext now = context();
+        return feed.get(
+            now, "slow", "Slow", wish,
+            [&](const auto&, int of, const Progress& progress) {
+                ++asked;
+                for (int i = 0; i < 30; ++i) {
+                    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+                    progress.advance(i / 30.0);
+                }
+                return of;
+            },
+            [&](int answered) { return answered == wish; });
+    };
+    for (const int wish : {1, 2}) {
+        std::shared_ptr<const int> answer;
+        for (int i = 0; i < 400 && !answer; ++i) {
+            answer = get(wish);
+            jobs.collect();
+            std::this_thread::sleep_for(std::chrono::milliseconds(5));
+        }
+        ASSERT_TRUE(answer) << wish;
+        EXPECT_EQ(*answer, wish);
+        EXPECT_EQ(asked, wish);
+    }
 }
 
 // What the user cancels is not started again in the next frame, but when something else is wanted.
