@@ -32,6 +32,8 @@ struct SlicesView {
     static constexpr std::string_view kType = "slices";
     std::string channel; ///< "" = the channel of the first layer
     int contours = 0;
+    std::string contourOf; ///< "" = the channel shown
+    bool contourValues = false;
     bool showReadout = true;
     bool operator==(const SlicesView&) const = default;
     static void describe(auto& self, auto&& visit) {
@@ -39,6 +41,13 @@ struct SlicesView {
         visit(self.contours,
               FieldInfo{
                   .key = "contours", .unit = "", .doc = "Number of contour lines, 0 = none", .range = Range{0, 50}});
+        visit(self.contourOf,
+              FieldInfo{.key = "contourOf",
+                        .unit = "",
+                        .doc = "Parameter that the contour lines are of, at round values; none: the one shown",
+                        .refersTo = "optionalChannel"});
+        visit(self.contourValues,
+              FieldInfo{.key = "contourValues", .unit = "", .doc = "Lines at round values, which are written on them"});
         visit(self.showReadout, FieldInfo{.key = "readout", .unit = "", .doc = "List every parameter at the cursor"});
     }
 };

@@ -13,7 +13,8 @@ namespace tessera::app {
 namespace {
 
 // In points: a panel with room for its numbers and titles.
-constexpr double kWidth = 300, kHeight = 240, kLeft = 62, kBottom = 42, kTop = 22, kRight = 12;
+constexpr double kLeft = 62, kBottom = 42, kTop = 22, kRight = 12;
+constexpr double kWidth = kLeft + kFigurePlot.x + kRight, kHeight = kTop + kFigurePlot.y + kBottom;
 
 std::string number(double value) {
     char text[32];
@@ -66,6 +67,8 @@ public:
     std::string svg() {
         image();
         axes();
+        for (const std::vector<glm::dvec2>& contour : panel_.contours) haloed(contour);
+        for (const FigureLabel& each : panel_.labels) label(each);
         for (const FigureSeries& series : panel_.series) series.bars ? bars(series) : line(series);
         for (const glm::dvec2& mark : panel_.marks) ring(mark, 4.5, "none", "black");
         legend();
@@ -106,7 +109,24 @@ private:
         };
         text((x0_ + x1_) / 2, y0_ + 30, noted(panel_.x, across), "middle");
         text(x0_ - 46, (y0_ + y1_) / 2, noted(panel_.y, up), "middle", -90);
-        text(x0_, y1_ - 7, panel_.title, "start");
+        text(x0_, y1_ - (panel_.note.empty() ? 7 : 13), panel_.title, "start");
+        if (!panel_.note.empty()) text(x0_, y1_ - 4, panel_.note, "start");
+    }
+    /// Dark on any colour: with a light edge.
+    void haloed(const std::vector<glm::dvec2>& points) {
+        std::string path;
+        for (const glm::dvec2& point : points)
+            path += (path.empty() ? "M" : "L") + number(px(point.x)) + " " + number(py(point.y));
+        for (const char* stroke : {"stroke=\"white\" stroke-opacity=\"0.5\" stroke-width=\"1.8\"",
+                                   "class=\"contour\" stroke=\"#111\" stroke-width=\"0.7\""})
+            out_ += "<path d=\"" + path + "\" fill=\"none\" " + stroke + "/>\n";
+    }
+    void label(const FigureLabel& label) {
+        const std::string x = number(px(label.at.x)), y = number(py(label.at.y));
+        out_ += "<text class=\"contour\" x=\"" + x + "\" y=\"" + y + "\" dy=\"0.35em\" text-anchor=\"middle\"" +
+                " transform=\"rotate(" + number(label.angle) + " " + x + " " + y +
+                ")\" stroke=\"white\" stroke-opacity=\"0.5\" stroke-width=\"1.8\" paint-order=\"stroke\">" +
+                escaped(label.text) + "</text>\n";
     }
     void bars(const FigureSeries& series) {
         if (series.points.size() < 2) return;
@@ -164,6 +184,12 @@ private:
 
 } // namespace
 
+double figureTextWidth(const std::string& text) {
+    double width = 0; // in heights of the letters: Helvetica's digits are wider than its points and minus signs
+    for (const char c : text) width += c == '.' ? 0.28 : c == '-' ? 0.34 : 0.56;
+    return width * kFigureText;
+}
+
 std::string figureSvg(const std::vector<FigurePanel>& panels, int columns) {
     const int across = std::max(1, std::min(columns, static_cast<int>(panels.size())));
     const int rows = (static_cast<int>(panels.size()) + across - 1) / across;
@@ -171,7 +197,8 @@ std::string figureSvg(const std::vector<FigurePanel>& panels, int columns) {
     std::string out =
         "<svg xmlns=\"http://www.w3.org/2000/svg\" xmlns:xlink=\"http://www.w3.org/1999/xlink\" width=\"" + width +
         "pt\" height=\"" + height + "pt\" viewBox=\"0 0 " + width + " " + height +
-        "\" font-family=\"Helvetica, Arial, sans-serif\" font-size=\"9\" fill=\"#222\">\n"
+        "\" font-family=\"Helvetica, Arial, sans-serif\" font-size=\"" + number(kFigureText) +
+        "\" fill=\"#222\">\n"
         "<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n";
     for (std::size_t i = 0; i < panels.size(); ++i)
         out += Panel(panels[i], static_cast<int>(i) % across * kWidth, static_cast<int>(i) / across * kHeight).svg();

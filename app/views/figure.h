@@ -28,13 +28,29 @@ struct FigureImage {
     std::vector<std::uint8_t> rgba;
 };
 
+/// A text on a line, with a halo.
+struct FigureLabel {
+    std::string text;
+    glm::dvec2 at{0}; ///< of its middle, in the values of the axes
+    double angle = 0; ///< degrees, clockwise
+};
+
 struct FigurePanel {
     std::string title;
     FigureAxis x, y;
     std::vector<FigureSeries> series;
     FigureImage image;
     std::vector<glm::dvec2> marks = {}; ///< points with a ring
+    std::string note = {};              ///< a second line below the title
+    std::vector<std::vector<glm::dvec2>> contours = {};
+    std::vector<FigureLabel> labels = {};
 };
+
+/// What is between the axes of a panel, and the height of texts, in points.
+inline constexpr glm::dvec2 kFigurePlot{226, 176};
+inline constexpr double kFigureText = 9;
+/// About the width of a number's text in points, in the letters of a figure.
+double figureTextWidth(const std::string& text);
 
 /// Panels in rows of `columns`, black on white.
 std::string figureSvg(const std::vector<FigurePanel>& panels, int columns);

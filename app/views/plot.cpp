@@ -165,7 +165,10 @@ void drawAxis(ImDrawList& draw, const PlotFrame& frame, AxisSide side, std::stri
     }
 }
 
-void addTextUpwards(ImDrawList& draw, ImVec2 center, ImU32 color, const char* text) {
+namespace {
+
+/// Text centred at a point, each of its places moved by `turn`, which gets the way from a middle on whole pixels.
+template <class Turn> void addMoved(ImDrawList& draw, ImVec2 center, ImU32 color, const char* text, const Turn& turn) {
     const ImVec2 size = ImGui::CalcTextSize(text);
     const ImVec2 origin{std::round(center.x - size.x / 2), std::round(center.y - size.y / 2)};
     const ImVec2 middle{origin.x + std::floor(size.x / 2), origin.y + std::floor(size.y / 2)};
@@ -175,9 +178,21 @@ void addTextUpwards(ImDrawList& draw, ImVec2 center, ImU32 color, const char* te
                                  text + std::strlen(text));
     for (int i = first; i < draw.VtxBuffer.Size; ++i) {
         ImVec2& p = draw.VtxBuffer[i].pos;
-        const ImVec2 d{p.x - middle.x, p.y - middle.y};
-        p = {middle.x + d.y, middle.y - d.x};
+        p = turn(middle, ImVec2{p.x - middle.x, p.y - middle.y});
     }
+}
+
+} // namespace
+
+void addTextTurned(ImDrawList& draw, ImVec2 center, float angle, ImU32 color, const char* text) {
+    const float c = std::cos(angle), s = std::sin(angle);
+    addMoved(draw, center, color, text, [&](ImVec2, ImVec2 d) {
+        return ImVec2{center.x + c * d.x - s * d.y, center.y + s * d.x + c * d.y};
+    });
+}
+
+void addTextUpwards(ImDrawList& draw, ImVec2 center, ImU32 color, const char* text) {
+    addMoved(draw, center, color, text, [](ImVec2 middle, ImVec2 d) { return ImVec2{middle.x + d.y, middle.y - d.x}; });
 }
 
 void addTextWithBackdrop(ImDrawList& draw, ImVec2 at, ImVec2 pivot, ImU32 color, const char* text) {

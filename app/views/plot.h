@@ -64,6 +64,9 @@ float axisRoom(AxisSide side, Range range, bool title);
 void drawAxis(ImDrawList& draw, const PlotFrame& frame, AxisSide side, std::string_view title, std::string_view unit,
               float lo, float hi, const AxisOptions& options = {});
 
+/// Text turned clockwise by an angle in radians, centred at a point.
+void addTextTurned(ImDrawList& draw, ImVec2 center, float angle, ImU32 color, const char* text);
+
 /// Text turned by 90 degrees, reading upwards, centred at a point.
 void addTextUpwards(ImDrawList& draw, ImVec2 center, ImU32 color, const char* text);
 

@@ -1,5 +1,5 @@
 #include "app/views/axis_label.h"
-#include "app/views/figure.h"
+#include "app/views/slice_figure.h"
 #include "app/views/ticks.h"
 #include "app/views/view_parts.h"
 #include "volume/error.h"
@@ -14,19 +14,15 @@ namespace tessera::app {
 namespace {
 
 constexpr std::size_t kMostRows = 6; ///< where the user has not chosen
-constexpr int kExported = 96;        ///< places along the longer edge of an exported slice
 
 struct SliceMatrixCache : ViewCache {
     std::vector<vis::ViewTargetPtr> targets;
 };
 
-/// The axes that run to the right and up in a slice; the longer one lies level.
-struct PlaneAxes {
-    int right = 0, up = 1, normal = 2;
-};
-PlaneAxes axesOf(volume::SpaceAxis axis, const vis::WorldFrame& world) {
+/// The longer axis of a slice lies level.
+SliceAxes axesOf(volume::SpaceAxis axis, const vis::WorldFrame& world) {
     const int normal = static_cast<int>(axis);
-    PlaneAxes out{normal == 0 ? 1 : 0, normal == 2 ? 1 : 2, normal};
+    SliceAxes out{normal == 0 ? 1 : 0, normal == 2 ? 1 : 2, normal};
     if (world.halfSize[out.up] > world.halfSize[out.right]) std::swap(out.right, out.up);
     return out;
 }
@@ -36,7 +32,7 @@ double planePosition(const volume::Box& bounds, int axis, int index, int count) 
     return bounds.lo[axis] + bounds.size()[axis] * (index + 0.5) / count;
 }
 
-void drawSlice(ViewContext& context, vis::ViewTargetPtr& target, const std::string& channel, const PlaneAxes& axes,
+void drawSlice(ViewContext& context, vis::ViewTargetPtr& target, const std::string& channel, const SliceAxes& axes,
                double position, ImVec2 min, glm::ivec2 pixels, double budget) {
     const volume::DatasetInfo& info = context.source->info();
     vis::Scene scene = themedScene(context);
@@ -64,7 +60,7 @@ void drawSlice(ViewContext& context, vis::ViewTargetPtr& target, const std::stri
 }
 
 /// Every slice as numbers: plane, position in it, values.
-std::string sliceCsv(const volume::BrickSource& source, const std::vector<int>& channels, const PlaneAxes& axes,
+std::string sliceCsv(const volume::BrickSource& source, const std::vector<int>& channels, const SliceAxes& axes,
                      int planes, const volume::TimePair& time, const Progress& progress) {
     const volume::DatasetInfo& info = source.info();
     const std::vector<volume::Channel> all = info.channels();
@@ -77,7 +73,7 @@ std::string sliceCsv(const volume::BrickSource& source, const std::vector<int>& 
     const glm::dvec3 size = info.bounds.size();
     const double longest = std::max(size[axes.right], size[axes.up]);
     const auto places = [&](int axis) {
-        return std::max(2, static_cast<int>(std::lround(kExported * (longest > 0 ? size[axis] / longest : 1))));
+        return std::max(2, static_cast<int>(std::lround(kSliceCells * (longest > 0 ? size[axis] / longest : 1))));
     };
     const int across = places(axes.right), up = places(axes.up);
     for (int plane = 0; plane < planes; ++plane)
@@ -103,56 +99,16 @@ std::string sliceCsv(const volume::BrickSource& source, const std::vector<int>& 
     return csv;
 }
 
-/// The slices as vector graphics, coloured by their transfer functions; titles say which values the colours span.
+/// The slices as vector graphics.
 std::string sliceSvg(const volume::BrickSource& source, const Session& session, const std::vector<int>& channels,
-                     const PlaneAxes& axes, int planes, const Progress& progress) {
-    const volume::DatasetInfo& info = source.info();
-    const std::vector<volume::Channel> all = info.channels();
-    const AxisLabels labels = axisLabels(session, info);
-    const auto& [nameX, unitX] = labels[static_cast<std::size_t>(axes.right)];
-    const auto& [nameY, unitY] = labels[static_cast<std::size_t>(axes.up)];
-    const auto& [name, unit] = labels[static_cast<std::size_t>(axes.normal)];
-    const double depth = info.bounds.size()[axes.normal] * unit.perUnit;
+                     const SliceAxes& axes, int planes, const Progress& progress) {
     std::vector<FigurePanel> panels;
     for (const int channel : channels)
         for (int plane = 0; plane < planes; ++plane) {
             progress.advance(static_cast<double>(panels.size()) /
                              static_cast<double>(channels.size() * static_cast<std::size_t>(planes)));
-            const volume::Channel& own = all[static_cast<std::size_t>(channel)];
-            const vis::TransferFunction& function = transferOf(session, own.name);
-            const Range range = vis::effectiveRange(function, info.channelRange(own));
-            FigurePanel panel;
-            const double digits = (range.hi - range.lo) / 100;
-            const double position = planePosition(info.bounds, axes.normal, plane, planes);
-            panel.title = name + (" = " + formatQuantity(position * unit.perUnit, unit.name, depth / 100)) + ", " +
-                          own.name + " " + formatNumber(range.lo, digits) + " .. " +
-                          formatQuantity(range.hi, own.unit, digits);
-            panel.x = {std::string(nameX) + " [" + unitX.name + "]",
-                       {info.bounds.lo[axes.right] * unitX.perUnit, info.bounds.hi[axes.right] * unitX.perUnit}};
-            panel.y = {std::string(nameY) + " [" + unitY.name + "]",
-                       {info.bounds.lo[axes.up] * unitY.perUnit, info.bounds.hi[axes.up] * unitY.perUnit}};
-            panel.image.width = panel.image.height = kExported;
-            for (int j = kExported - 1; j >= 0; --j) {
-                std::vector<glm::dvec3> row;
-                for (int i = 0; i < kExported; ++i) {
-                    glm::dvec3 at(0);
-                    at[axes.normal] = position;
-                    at[axes.right] =
-                        info.bounds.lo[axes.right] + info.bounds.size()[axes.right] * (i + 0.5) / kExported;
-                    at[axes.up] = info.bounds.lo[axes.up] + info.bounds.size()[axes.up] * (j + 0.5) / kExported;
-                    row.push_back(at);
-                }
-                for (const volume::ProbeValue& value :
-                     volume::probeAlong(source, channel, row, volume::timesAround(info.times, session.time))) {
-                    const glm::dvec4 color =
-                        value.interpolated ? vis::evaluate(function, range, *value.interpolated) : glm::dvec4(0);
-                    for (int k = 0; k < 3; ++k)
-                        panel.image.rgba.push_back(
-                            static_cast<std::uint8_t>(std::lround(255 * std::clamp(color[k], 0.0, 1.0))));
-                    panel.image.rgba.push_back(value.interpolated ? 255 : 0);
-                }
-            }
-            panels.push_back(std::move(panel));
+            panels.push_back(slicePanel(source, session, channel, axes,
+                                        planePosition(source.info().bounds, axes.normal, plane, planes)));
         }
     return figureSvg(panels, planes);
 }
@@ -163,7 +119,7 @@ std::string rowTitle(const volume::Channel& channel, float room) {
     return ImGui::CalcTextSize(whole.c_str()).x <= room ? whole : fitText(channel.name, room);
 }
 
-void drawToolbar(ViewContext& context, SliceMatrixView& view, const std::vector<int>& shown, const PlaneAxes& axes) {
+void drawToolbar(ViewContext& context, SliceMatrixView& view, const std::vector<int>& shown, const SliceAxes& axes) {
     const volume::DatasetInfo& info = context.source->info();
     const AxisLabels labels = axisLabels(context.session, info);
     const std::string directions = std::string(labels[static_cast<std::size_t>(axes.right)].name) + " to the right, " +
@@ -207,7 +163,7 @@ void drawSliceMatrixView(ViewContext& context, const std::string& pane, SliceMat
     SliceMatrixCache& cache = cacheOf<SliceMatrixCache>(context, pane);
     const std::vector<int> shown = chosenChannels(info, view.channels, kMostRows);
     const vis::WorldFrame world = vis::worldFrame(info.bounds, context.session.stretch);
-    const PlaneAxes axes = axesOf(view.axis, world);
+    const SliceAxes axes = axesOf(view.axis, world);
     view.planes = std::clamp(view.planes, 1, 12);
     if (!context.figure) drawToolbar(context, view, shown, axes);
     if (shown.empty()) return drawHint("No parameters", "This data set holds only labels.");

@@ -1,9 +1,11 @@
 #include "app/ui/widgets.h"
 #include "app/views/axes3d.h"
 #include "app/views/brush_list.h"
+#include "app/views/contour_lines.h"
 #include "app/views/lens_outline.h"
 #include "app/views/profile_line.h"
 #include "app/views/readout.h"
+#include "app/views/slice_figure.h"
 #include "app/views/space_handles.h"
 #include "app/views/ticks.h"
 #include "app/views/view_parts.h"
@@ -16,20 +18,12 @@ namespace tessera::app {
 
 namespace {
 
-/// A slice: the axes that run to the right and up, and the one it is perpendicular to.
-struct Plane {
-    int right, up, normal;
-    vis::SliceOrientation orientation;
-};
-/// Top left, top right (shares the upright axis), bottom left (shares the level one).
-constexpr std::array<Plane, 3> kPlanes{
-    {{0, 1, 2, vis::SliceOrientation::Z}, {2, 1, 0, vis::SliceOrientation::X}, {0, 2, 1, vis::SliceOrientation::Y}}};
-
 struct SlicesCache : ViewCache {
     std::array<vis::ViewTargetPtr, 3> targets;
     int dragging = -1;
     int lens = -1; ///< that is dragged, in place of the cursor
     std::array<HandleDrag, 3> handles;
+    std::array<ContourCache, 3> contours;
     Readout readout;
 };
 
@@ -49,7 +43,7 @@ void stepCursor(Session& session, const volume::DatasetInfo& info, int axis, flo
 }
 
 /// The pinned lens whose middle is at a pixel of a slice, -1 if none; later ones lie over those before them.
-int lensAt(const Session& session, const PlotFrame& frame, const Plane& plane, glm::dvec2 perUnit, ImVec2 mouse) {
+int lensAt(const Session& session, const PlotFrame& frame, const SliceAxes& plane, glm::dvec2 perUnit, ImVec2 mouse) {
     for (int i = static_cast<int>(session.lenses.size()) - 1; i >= 0; --i) {
         const vis::Lens& lens = session.lenses[static_cast<std::size_t>(i)];
         const ImVec2 at = frame.pixel(lens.center[plane.right] * perUnit.x, lens.center[plane.up] * perUnit.y);
@@ -74,9 +68,15 @@ void addInnerSlices(vis::Scene& scene, const Session& session, const vis::SliceL
         }
 }
 
-void drawPlane(ViewContext& context, SlicesCache& cache, const SlicesView& view, const std::string& channel, int index,
-               ImVec2 min, ImVec2 max) {
-    const Plane& plane = kPlanes[static_cast<std::size_t>(index)];
+/// The lines that a view draws itself, not the picture: those of another parameter and those with values.
+struct DrawnContours {
+    std::optional<int> channel; ///< nothing: none
+    ContourLevels levels;
+};
+
+void drawPlane(ViewContext& context, SlicesCache& cache, const std::string& pane, const SlicesView& view,
+               const std::string& channel, const DrawnContours& lines, int index, ImVec2 min, ImVec2 max) {
+    const SliceAxes& plane = kSlicePlanes[index];
     const volume::DatasetInfo& info = context.source->info();
     Session& session = context.session;
     const vis::WorldFrame world = vis::worldFrame(info.bounds, session.stretch);
@@ -162,8 +162,8 @@ void drawPlane(ViewContext& context, SlicesCache& cache, const SlicesView& view,
     scene.showBox = false;
     vis::SliceLayer layer;
     layer.channel = channel;
-    layer.orientation = plane.orientation;
-    layer.contours = view.contours;
+    layer.orientation = static_cast<vis::SliceOrientation>(plane.normal);
+    if (view.contourOf.empty() && !view.contourValues) layer.contours = view.contours;
     scene.layers = {vis::Layer{"slice", true, layer}};
     addInnerSlices(scene, session, layer);
     // Only the place along the normal matters: dragging within a slice leaves its picture as it is.
@@ -184,6 +184,12 @@ void drawPlane(ViewContext& context, SlicesCache& cache, const SlicesView& view,
              {.inlineTitle = true});
     drawAxis(draw, frame, AxisSide::Left, nameY, unitY.name, min.y, max.y, {.inlineTitle = true, .room = left});
     draw.PushClipRect(frame.min, frame.max, true);
+    if (lines.channel)
+        drawContours(context, cache.contours[static_cast<std::size_t>(index)],
+                     "contours " + pane + std::to_string(index),
+                     {*lines.channel, plane, session.cursor[plane.normal],
+                      volume::timesAround(info.times, session.time), lines.levels.values},
+                     lines.levels.step, view.contourValues, frame, perUnit);
     drawBrushSections(draw, frame, session.selection, plane.right, plane.up, plane.normal, session.cursor[plane.normal],
                       {unitX.perUnit, unitY.perUnit});
     drawLensSections(draw, frame, session, info, plane.right, plane.up, plane.normal, session.cursor[plane.normal],
@@ -192,6 +198,31 @@ void drawPlane(ViewContext& context, SlicesCache& cache, const SlicesView& view,
     drawHandles(draw, handles, frame, session, info, plane.right, plane.up, perUnit);
     drawCrosshair(draw, frame, session.cursor[plane.right] * unitX.perUnit, session.cursor[plane.up] * unitY.perUnit);
     draw.PopClipRect();
+}
+
+/// What the lines are of, and whether their values are written.
+void chooseContours(const volume::DatasetInfo& info, SlicesView& view) {
+    continueLine(em() * 8);
+    ImGui::SetNextItemWidth(em() * 8);
+    ImGui::SliderInt("##contours", &view.contours, 0, 50, view.contours == 0 ? "no contours" : "%d contours");
+    if (ImGui::IsItemHovered())
+        tooltip("Contour lines over the colour range; of another parameter or with values at most so many, at round "
+                "values");
+    if (view.contours == 0) return;
+    continueLine(em() * 8);
+    ImGui::SetNextItemWidth(em() * 8);
+    chooseChannel("##contourOf", &info, view.contourOf, "of the same");
+    if (ImGui::IsItemHovered()) tooltip("Parameter that the contour lines are of");
+    continueLine(buttonWidth("values") + em());
+    ImGui::Checkbox("values", &view.contourValues);
+    if (ImGui::IsItemHovered()) tooltip("Lines at round values, which are written on them");
+}
+
+/// The line below the legend that says what the contour lines are.
+std::string contourNote(const volume::DatasetInfo& info, const SlicesView& view, const DrawnContours& lines) {
+    if (view.contours == 0 || (view.contourOf.empty() && !view.contourValues)) return {};
+    if (lines.channel) return contourTitle(info.channels()[static_cast<std::size_t>(*lines.channel)], lines.levels);
+    return "no lines: " + (info.findChannel(view.contourOf) ? "a label has none" : "there is no " + view.contourOf);
 }
 
 } // namespace
@@ -213,11 +244,18 @@ void drawSlicesView(ViewContext& context, const std::string& pane, SlicesView& v
         ImGui::SetNextItemWidth(std::min(em() * 11, ImGui::GetContentRegionAvail().x * 0.4f));
         if (chooseChannel("##channel", &info, name)) view.channel = name;
         if (ImGui::IsItemHovered()) tooltip("Parameter that colours the slices");
-        ImGui::SameLine();
-        ImGui::SetNextItemWidth(em() * 8);
-        ImGui::SliderInt("##contours", &view.contours, 0, 50, view.contours == 0 ? "no contours" : "%d contours");
-        if (ImGui::IsItemHovered()) tooltip("Contour lines over the colour range");
+        chooseContours(info, view);
+        continueLine(buttonWidth("Export"));
+        exportMenu(
+            context, "slices",
+            [source = context.numbers, session = context.session, view, channel = *channel](const Progress& progress) {
+                return slicesSvg(*source, session, view, channel, progress);
+            },
+            nullptr);
     }
+    DrawnContours lines;
+    if (!view.contourOf.empty() || view.contourValues) lines.channel = contourChannel(info, view, *channel);
+    if (lines.channel) lines.levels = contourLevels(context.session, info, *lines.channel, view.contours);
     if (const std::string text = stretchText(context.session.stretch); !text.empty()) {
         const float width = ImGui::CalcTextSize(text.c_str()).x;
         if (!context.figure) ImGui::SameLine();
@@ -239,9 +277,9 @@ void drawSlicesView(ViewContext& context, const std::string& pane, SlicesView& v
     const float x = min.x + std::clamp(columns, std::min(em() * 12.5f, room.x / 2), room.x - em() * 8),
                 y = min.y + split(half.y, half.z, room.y, em() * 2.8f, 0.4);
     const float gap = em() * 0.3f;
-    drawPlane(context, cache, view, name, 0, min, {x - gap, y - gap});
-    drawPlane(context, cache, view, name, 1, {x + gap, min.y}, {max.x, y - gap});
-    drawPlane(context, cache, view, name, 2, {min.x, y + gap}, {x - gap, max.y});
+    drawPlane(context, cache, pane, view, name, lines, 0, min, {x - gap, y - gap});
+    drawPlane(context, cache, pane, view, name, lines, 1, {x + gap, min.y}, {max.x, y - gap});
+    drawPlane(context, cache, pane, view, name, lines, 2, {min.x, y + gap}, {x - gap, max.y});
 
     ImGui::SetCursorScreenPos({x + gap * 2, y + gap});
     ImGui::BeginChild("readout", {max.x - x - gap * 2, max.y - y - gap}, false);
@@ -249,12 +287,18 @@ void drawSlicesView(ViewContext& context, const std::string& pane, SlicesView& v
     updateReadout(context, cache.readout);
     if (const auto value = cache.readout.value(name)) legend.marker = *value;
     // Where the table does not fit below the legend, the values come first and in running lines.
-    const bool compact =
-        view.showReadout && legendBarHeight() + readoutHeight(cache.readout) > ImGui::GetContentRegionAvail().y;
+    const std::string note = contourNote(info, view, lines);
+    const float legends = legendBarHeight() + (note.empty() ? 0 : ImGui::GetTextLineHeightWithSpacing());
+    const bool compact = view.showReadout && legends + readoutHeight(cache.readout) > ImGui::GetContentRegionAvail().y;
     if (compact) drawReadout(context, cache.readout, true);
     const ImVec2 at = ImGui::GetCursorScreenPos();
     const float width = std::min(ImGui::GetContentRegionAvail().x, em() * 20);
     ImGui::Dummy({width, drawLegendBar(*ImGui::GetWindowDrawList(), at, width, legend) + em() * 0.3f});
+    if (!note.empty()) {
+        ImGui::PushTextWrapPos(0);
+        ImGui::TextUnformatted(note.c_str());
+        ImGui::PopTextWrapPos();
+    }
     if (view.showReadout && !compact) drawReadout(context, cache.readout);
     ImGui::EndChild();
 }

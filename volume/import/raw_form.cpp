@@ -19,7 +19,7 @@ namespace {
 using nlohmann::json;
 namespace fs = std::filesystem;
 
-constexpr double kMostBytes = 1e15;
+constexpr double kMostRawBytes = 1e15;
 constexpr std::size_t kMostComponents = 4096;
 
 std::optional<RawType> parseType(std::string_view word) {
@@ -59,7 +59,7 @@ void check(const RawForm& form, const std::string& file) {
             throw Error("must increase", file, "times[" + std::to_string(i) + "]");
     const double bytes = 8.0 * form.lattice.size.x * form.lattice.size.y * form.lattice.size.z *
                          double(form.components.size()) * double(form.frames());
-    if (!(bytes <= kMostBytes)) throw Error("asks for more than 10^15 bytes", file, "dims");
+    if (!(bytes <= kMostRawBytes)) throw Error("asks for more than 10^15 bytes", file, "dims");
 }
 
 /// Typed access to a JSON object that reports the place of a mistake.
@@ -306,7 +306,7 @@ RawForm parseRawOption(std::string_view text) {
     if (!type) throw Error("wants type=u8, i16, u16, i32, f32 or f64", {}, kRawPlace);
     if (components < 1 || components > kMostComponents) throw Error("is out of range", {}, kRawPlace + " components");
     if (times < 1 || times > kMostTimes) throw Error("is out of range", {}, kRawPlace + " times");
-    if (form.skip > std::size_t(kMostBytes)) throw Error("is out of range", {}, kRawPlace + " skip");
+    if (form.skip > std::size_t(kMostRawBytes)) throw Error("is out of range", {}, kRawPlace + " skip");
     for (std::size_t i = 0; i < components; ++i) {
         RawForm::Component component;
         component.name = components == 1 ? "value" : "value" + std::to_string(i);
