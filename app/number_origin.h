@@ -2,8 +2,13 @@
 
 #include "volume/dataset.h"
 
+#include <memory>
 #include <string>
 #include <vector>
+
+namespace tessera::volume {
+class BrickSource;
+}
 
 namespace tessera::codec {
 struct Metadata;
@@ -22,6 +27,7 @@ struct NumberOrigin {
     double absError = 0;    ///< in the unit of the parameter; 0 = no such bound
     bool discarded = false; ///< bricks of little importance are left out
     bool alongTime = false; ///< time takes the place of an axis: read between times
+    std::shared_ptr<const volume::BrickSource> cutFrom = {}; ///< then: the data in space that the plane is of
     std::string other = {}; ///< where those of the other data beside (volume/other_source.h) come from, "" = none
     /// Parameters that are read; those after them are derived from these. -1: all.
     int parameters = -1;

@@ -206,6 +206,7 @@ Sources openStored(const DataRef& data, std::vector<std::string>& messages, cons
     const auto numbers = along(whole.numbers);
     NumberOrigin origin = whole.origin;
     origin.alongTime = true;
+    origin.cutFrom = whole.numbers;
     origin.parameters = int(numbers->info().parameters.size());
     return {drawnOn(data.packed ? along(whole.pictures) : numbers, whole.pictures->info().lattice.kind), numbers,
             std::move(origin)};

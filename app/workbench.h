@@ -126,6 +126,7 @@ private:
     void addEditCommands();                                  // workbench_commands.cpp
     void addDifferenceCommands();                            // workbench_commands.cpp
     void addHelpCommands();                                  // workbench_commands.cpp
+    void showSpaceBeside(bool wanted);                       // workbench_view_commands.cpp
     void addViewCommands();                                  // workbench_view_commands.cpp
     void addLayoutCommands();                                // workbench_view_commands.cpp
     void drawMenus();                                        // workbench_commands.cpp

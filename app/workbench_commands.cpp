@@ -204,7 +204,8 @@ void Workbench::addEditCommands() {
         const auto shown = [this, axis] { return session_.data.timeAxis && session_.data.timeAxis->axis == axis; };
         add({.menu = "Edit",
              .name = "Time along " + std::string(volume::kSpaceAxisNames[std::size_t(axis)]),
-             .help = "The plane through the cross-hair at all times, time in place of the axis",
+             .help =
+                 "The plane through the cross-hair at all times, time in place of the axis; the data in space beside",
              .run =
                  [this, axis, shown] {
                      DataRef data = session_.data;
@@ -212,6 +213,7 @@ void Workbench::addEditCommands() {
                      const volume::Box& box = source_->info().bounds;
                      const int a = static_cast<int>(axis);
                      if (!shown()) data.timeAxis = {axis, (session_.cursor[a] - box.lo[a]) / box.size()[a]};
+                     showSpaceBeside(data.timeAxis.has_value());
                      showAs(data, "Times as an axis");
                  },
              .enabled =

@@ -85,7 +85,37 @@ int stackFor(const Session& session, const std::string& beside, const std::map<i
     return chosen;
 }
 
+/// The stack that holds a pane; 0: none.
+int stackOf(const DockNode& node, const std::string& pane) {
+    if (std::ranges::find(node.tabs, pane) != node.tabs.end()) return node.id;
+    for (const DockNode& child : node.children)
+        if (const int id = stackOf(child, pane)) return id;
+    return 0;
+}
+
 } // namespace
+
+/// A view of the data in space to the right of the first volume view, or none any more.
+void Workbench::showSpaceBeside(bool wanted) {
+    const auto inSpace = [](const auto& view) {
+        const auto* volume = std::get_if<VolumeView>(&view.second);
+        return volume && volume->inSpace;
+    };
+    if (!wanted) {
+        std::erase_if(session_.views, inSpace);
+        repair(session_.dock, paneKeys(session_));
+        return;
+    }
+    const auto first = std::ranges::find_if(
+        session_.views, [](const auto& view) { return std::holds_alternative<VolumeView>(view.second); });
+    if (first == session_.views.end() || std::ranges::any_of(session_.views, inSpace)) return;
+    const std::string beside = first->first;
+    VolumeView view = std::get<VolumeView>(first->second);
+    view.inSpace = true;
+    const std::string pane = addView(session_, view);
+    if (const int id = stackOf(session_.dock.root, beside)) insertPane(session_.dock, pane, id, DockSide::Right);
+    session_.dock.maximised.clear();
+}
 
 void Workbench::addViewCommands() {
     const auto add = [this](Command command) { commands_.push_back(std::move(command)); };

@@ -14,6 +14,7 @@ struct VolumeView {
     static constexpr std::string_view kType = "volume";
     bool showBox = true, showAxes = true, showLegend = true, showCursor = true, showGizmo = true, showScaleBar = true,
          showLenses = true;
+    bool inSpace = false; ///< where time runs along an axis: the data that are cut
     bool operator==(const VolumeView&) const = default;
     static void describe(auto& self, auto&& visit) {
         visit(self.showBox, FieldInfo{.key = "box", .unit = "", .doc = "Draw the box around the data"});
@@ -25,6 +26,10 @@ struct VolumeView {
         visit(self.showScaleBar, FieldInfo{.key = "scaleBar", .unit = "", .doc = "Draw a bar of a round length"});
         visit(self.showLenses,
               FieldInfo{.key = "lenses", .unit = "", .doc = "Draw outlines of lenses, and handles under the mouse"});
+        visit(self.inSpace, FieldInfo{.key = "inSpace",
+                                      .unit = "",
+                                      .doc = "While time runs along an axis: the data in space at the time of the "
+                                             "cross-hair, with the plane that is shown at all times"});
     }
 };
 

@@ -160,6 +160,33 @@ void addProfile(std::vector<HandledObject>& objects, const Session& session, con
     objects.push_back(std::move(object));
 }
 
+/// The plane that is shown at all times, in the data that it is cut from.
+void addCut(std::vector<HandledObject>& objects, const Session& session, const volume::DatasetInfo& info) {
+    const auto& cut = session.data.timeAxis;
+    if (!cut || timeAxisOf(session, info)) return;
+    const int axis = static_cast<int>(cut->axis), right = (axis + 1) % 3, up = (axis + 2) % 3;
+    const glm::dvec3 lo = info.bounds.lo, size = info.bounds.size();
+    HandledObject object;
+    object.key = "cut";
+    object.name = "shown at all times";
+    object.color = axisColor(axis);
+    object.outlined = true;
+    glm::dvec3 middle = info.bounds.center();
+    middle[axis] = lo[axis] + cut->place * size[axis];
+    object.handles = {{.at = middle, .axis = axis}};
+    const auto corner = [&](int n) { // around the plane
+        glm::dvec3 at = middle;
+        at[right] = n % 4 == 1 || n % 4 == 2 ? info.bounds.hi[right] : lo[right];
+        at[up] = n % 4 >= 2 ? info.bounds.hi[up] : lo[up];
+        return at;
+    };
+    for (int n = 0; n < 4; ++n) object.lines.emplace_back(corner(n), corner(n + 1));
+    object.move = [axis, lo, size](Session& edited, std::size_t, glm::dvec3 to) {
+        if (size[axis] > 0) edited.data.timeAxis->place = std::clamp((to[axis] - lo[axis]) / size[axis], 0.0, 1.0);
+    };
+    objects.push_back(std::move(object));
+}
+
 } // namespace
 
 std::vector<HandledObject> handledObjects(const Session& session, const volume::DatasetInfo& info) {
@@ -167,6 +194,7 @@ std::vector<HandledObject> handledObjects(const Session& session, const volume::
     for (std::size_t i = 0; i < session.layers.size(); ++i) addRake(objects, session, info, i);
     for (std::size_t i = 0; i < session.selection.brushes.size(); ++i) addBrush(objects, session, info, i);
     for (const auto& [pane, view] : session.views) addProfile(objects, session, info, pane);
+    addCut(objects, session, info);
     return objects;
 }
 

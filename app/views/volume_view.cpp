@@ -8,6 +8,7 @@
 #include "app/views/profile_line.h"
 #include "app/views/scale_bar.h"
 #include "app/views/scene_feed.h"
+#include "app/views/space_beside.h"
 #include "app/views/space_handles.h"
 #include "app/views/ticks.h"
 #include "app/views/time_text.h"
@@ -28,6 +29,13 @@ struct VolumeCache : ViewCache {
     HandleDrag handles;
 };
 
+/// Of a view of the data in space beside a plane whose times run along an axis.
+struct SpaceCache : ViewCache {
+    std::unique_ptr<vis::Renderer> renderer;
+    std::map<std::string, std::unique_ptr<ViewCache>> caches; // gone before the renderer
+    int renderers() const override { return renderer ? 1 : 0; }
+};
+
 void drawMenu(ViewContext& context, const char* id, VolumeView& view, const vis::WorldFrame& world, double aspect) {
     if (!ImGui::BeginPopup(id)) return;
     if (pressed({.key = key::kEscape})) ImGui::CloseCurrentPopup();
@@ -45,10 +53,14 @@ void drawMenu(ViewContext& context, const char* id, VolumeView& view, const vis:
     if (ImGui::MenuItem("Parallel projection", "5", &parallel))
         camera.projection = parallel ? vis::Projection::Orthographic : vis::Projection::Perspective;
     ImGui::Separator();
-    drawBrushMenu(context);
-    ImGui::Separator();
-    drawLensMenu(context);
-    ImGui::Separator();
+    const bool along = timeAxisOf(context.session, context.source->info()) != nullptr;
+    if (along || !context.session.data.timeAxis) { // places in the plane at all times are no places in space
+        drawBrushMenu(context);
+        ImGui::Separator();
+        drawLensMenu(context);
+        ImGui::Separator();
+    }
+    if (context.session.data.timeAxis) ImGui::MenuItem("Data in space", "", &view.inSpace);
     ImGui::MenuItem("Box", "", &view.showBox);
     ImGui::MenuItem("Axes", "", &view.showAxes);
     ImGui::MenuItem("Legends", "", &view.showLegend);
@@ -80,13 +92,7 @@ struct InkOnPaper {
     }
 };
 
-} // namespace
-
-void drawVolumeView(ViewContext& context, const std::string& pane, VolumeView& view) {
-    if (!context.source) {
-        drawHint("No data", "Open a file, drop one onto the window, or choose built-in data in the File menu.");
-        return;
-    }
+void drawSpace(ViewContext& context, const std::string& pane, VolumeView& view) {
     VolumeCache& cache = cacheOf<VolumeCache>(context, pane);
     const volume::DatasetInfo& info = context.source->info();
     Session& session = context.session;
@@ -157,7 +163,7 @@ void drawVolumeView(ViewContext& context, const std::string& pane, VolumeView& v
         if (clicked) lookAlong(session.camera, *clicked, world, picture.aspect());
         taken.push_back({{triadAt.x - triad, triadAt.y - triad}, {triadAt.x + triad, triadAt.y + triad}});
     }
-    if (view.showScaleBar && !session.data.timeAxis) {
+    if (view.showScaleBar && !timeAxisOf(session, info)) {
         const float left = showTriad ? triadAt.x + triad + em() : picture.min.x + em();
         const float right = taken.empty() || !view.showLegend ? max.x : taken.front().first.x;
         const float most = std::min(em() * 9, right - left - em());
@@ -172,7 +178,8 @@ void drawVolumeView(ViewContext& context, const std::string& pane, VolumeView& v
         addTextWithBackdrop(draw, at, {1, 0}, colors.faint, text.c_str());
         taken.push_back({{at.x - size.x, at.y}, {at.x, at.y + size.y}});
     }
-    if (context.figure && info.times.size() > 1) { // the window has its timeline
+    // The window has its timeline, but not where time runs along an axis.
+    if ((context.figure || session.data.timeAxis) && info.times.size() > 1) {
         const std::string text = stateText(info, session.time, session.data.axis);
         const ImVec2 at{picture.min.x + em() * 0.5f, picture.min.y + em() * 0.4f},
             size = ImGui::CalcTextSize(text.c_str());
@@ -189,6 +196,51 @@ void drawVolumeView(ViewContext& context, const std::string& pane, VolumeView& v
     }
     if (view.showAxes) drawAxes3d(draw, space, session.camera, labels, taken);
     draw.PopClipRect();
+}
+
+/// The data that a plane at all times is cut from, through a renderer of their own.
+void drawBeside(ViewContext& context, const std::string& pane, VolumeView& view,
+                const std::shared_ptr<const volume::BrickSource>& space) {
+    SpaceCache& cache = cacheOf<SpaceCache>(context, pane);
+    if (!cache.renderer) cache.renderer = std::make_unique<vis::Renderer>();
+    if (cache.renderer->source() != space.get()) {
+        cache.caches.clear();
+        cache.renderer->setSource(space);
+    }
+    const Session before = sessionInSpace(context.session, context.numbers->info(), space->info());
+    Session edited = before;
+    ViewContext own{.session = edited,
+                    .source = space,
+                    .renderer = *cache.renderer,
+                    .jobs = context.jobs,
+                    .caches = cache.caches,
+                    .iconFont = context.iconFont,
+                    .scale = context.scale,
+                    .headless = context.headless,
+                    .renderers = std::max(context.renderers, 2),
+                    .figure = context.figure,
+                    .runCommand = context.runCommand,
+                    .cameraKey = context.cameraKey,
+                    .interacting = context.interacting};
+    drawSpace(own, pane, view);
+    takeFromSpace(context.session, before, edited, space->info());
+    for (std::string& text : cache.renderer->takeMessages()) own.messages.push_back(std::move(text));
+    for (std::string& text : own.messages) context.messages.push_back("data in space: " + std::move(text));
+    context.busy = context.busy || own.busy;
+    context.behind = context.behind || own.behind;
+    context.compiling = context.compiling || own.compiling;
+    context.interacting = context.interacting || own.interacting;
+}
+
+} // namespace
+
+void drawVolumeView(ViewContext& context, const std::string& pane, VolumeView& view) {
+    if (!context.source) {
+        drawHint("No data", "Open a file, drop one onto the window, or choose built-in data in the File menu.");
+        return;
+    }
+    const auto space = view.inSpace ? cutFrom(context) : nullptr;
+    space ? drawBeside(context, pane, view, space) : drawSpace(context, pane, view);
 }
 
 } // namespace tessera::app
