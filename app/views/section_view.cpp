@@ -210,7 +210,7 @@ void drawSections(ViewContext& context, const std::string& pane, ProfileView& vi
     const volume::DatasetInfo& info = context.numbers->info();
     const std::vector<int> shown = chosenChannels(info, view.channels, kMostSections);
     if (shown.empty()) return drawHint("No parameters", "This data set holds only labels.");
-    SectionCache& cache = cacheOf<SectionCache>(context, pane + " sections");
+    SectionCache& cache = cacheOf<SectionCache>(context, pane);
     const SectionWish wish = wishOf(context, view, shown);
     const auto curves = cache.feed.get(
         context, "sections " + pane, "Averages over planes", wish,

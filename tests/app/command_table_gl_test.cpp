@@ -1,0 +1,281 @@
+#include "app/open.h"
+#include "tests/app/workbench_fixture.h"
+
+#include <gtest/gtest.h>
+#include <map>
+#include <set>
+
+/// Every command of the menus and the palette: what it changes, by menu and by key, and that undo takes it back
+/// exactly.
+namespace tessera::app {
+namespace {
+
+using Check = std::function<void(const Session& before, const Session& after)>;
+
+/// Commands that change no session, with the test that tries them.
+const std::set<std::string> kElsewhere = {
+    "Open...",                      // tests/e2e/window.sh
+    "Save session",                 // WorkbenchLeaving.ACancelledSaveLeavesEverythingAsItIs
+    "Save session as...",           // the same
+    "Pack into an archive...",      // WorkbenchData.WhatIsEditedWhilePackingStays
+    "Compare with another file...", // WorkbenchData.AnotherFileStandsBeside
+    "Save picture...",              // tests/e2e/window.sh
+    "Export surface...",            // Feeds, tests/e2e/mesh.sh
+    "Copy session",                 // CommandTable.ASessionGoesThroughTheClipboard
+    "Paste session",                // the same
+    "Quit",                         // WorkbenchGl.WhatIsNotSavedIsNotGivenUpUnasked
+    "Undo",                         // every case here
+    "Redo",                         // every case here
+    "Shortcuts",                    // CommandTable.HelpAndPaletteOpen
+    "Command palette",              // the same
+    "About Tessera",
+    "Play",                // tests/app/views_playback_test.cpp, and below for its state
+    "Look from the front", // WorkbenchMenus.CameraCommandsActOnAVolume, tests/app/camera_hand_gl_test.cpp
+    "Look from the right",
+    "Look from the top",
+    "Look isometric",
+    "Parallel projection",
+    "Reset the camera",
+};
+
+Check added(const char* kind) {
+    return [kind](const Session& before, const Session& after) {
+        ASSERT_EQ(after.views.size(), before.views.size() + 1);
+        std::string pane;
+        for (const auto& [name, view] : after.views)
+            if (!before.views.contains(name)) pane = name;
+        const ViewState wanted = *viewOfKind(kind);
+        EXPECT_TRUE(after.views.at(pane) == wanted);
+        EXPECT_TRUE(std::ranges::count(paneKeys(after), pane) == 1);
+    };
+}
+
+Check scaled(float by) {
+    return [by](const Session& before, const Session& after) {
+        EXPECT_NEAR(after.appearance.scale, before.appearance.scale * by, 0.03);
+        EXPECT_EQ(after.appearance.scale > before.appearance.scale, by > 1);
+    };
+}
+
+Check timeOf(double time) {
+    return [time](const Session&, const Session& after) { EXPECT_NEAR(after.time, time, 1e-9); };
+}
+
+Check difference(const char* name) {
+    return [name](const Session& before, const Session& after) {
+        ASSERT_EQ(after.data.derived.size(), before.data.derived.size() + 1);
+        EXPECT_EQ(after.data.derived.back().name, name);
+        EXPECT_TRUE(after.transfer.at(name).aboutZero);
+    };
+}
+
+Check timeAlong(volume::SpaceAxis axis) {
+    return [axis](const Session& before, const Session& after) {
+        EXPECT_FALSE(before.data.timeAxis);
+        ASSERT_TRUE(after.data.timeAxis);
+        EXPECT_EQ(after.data.timeAxis->axis, axis);
+    };
+}
+
+const std::map<std::string, Check>& checks() {
+    static const std::map<std::string, Check> all = [] {
+        std::map<std::string, Check> made = {
+            {"Clear brushes",
+             [](const Session&, const Session& after) { EXPECT_TRUE(after.selection.brushes.empty()); }},
+            {"Invert brushes",
+             [](const Session& before, const Session& after) {
+                 ASSERT_EQ(after.selection.brushes.size(), before.selection.brushes.size());
+                 for (std::size_t i = 0; i < after.selection.brushes.size(); ++i)
+                     EXPECT_NE(after.selection.brushes[i].inverted, before.selection.brushes[i].inverted);
+             }},
+            {"Previous time", timeOf(0)},
+            {"Next time", timeOf(2.0 / 3)},
+            {"Draw on the grid of the file",
+             [](const Session&, const Session& after) { EXPECT_EQ(after.data.lattice, PictureLattice::Grid); }},
+            {"Draw on the body-centred lattice (70.7 % of the samples)", // it is already
+             [](const Session& before, const Session& after) { EXPECT_TRUE(after == before); }},
+            {"Time along x", timeAlong(volume::SpaceAxis::X)},
+            {"Time along y", timeAlong(volume::SpaceAxis::Y)},
+            {"Time along z", timeAlong(volume::SpaceAxis::Z)},
+            {"Minus another time: first", difference("rho minus first")},
+            {"Minus another time: previous", difference("rho minus previous")},
+            {"Minus another time: last", difference("rho minus last")},
+            {"Maximise pane", [](const Session& before,
+                                 const Session& after) { EXPECT_NE(after.dock.maximised, before.dock.maximised); }},
+            {"Duplicate pane",
+             [](const Session& before, const Session& after) {
+                 EXPECT_EQ(after.views.size(), before.views.size() + 1);
+                 EXPECT_TRUE(after.views.at("layers-2") == before.views.at("layers"));
+             }},
+            {"Light theme",
+             [](const Session&, const Session& after) { EXPECT_EQ(after.appearance.theme, Theme::Light); }},
+            {"Larger text", scaled(1.125f)},
+            {"Smaller text", scaled(1 / 1.125f)},
+            {"Reset arrangement",
+             [](const Session&, const Session& after) {
+                 EXPECT_TRUE(after.dock.maximised.empty());
+                 for (const char* pane : {"volume", "slices", "scatterMatrix", "layers"})
+                     EXPECT_TRUE(after.views.contains(pane)) << pane;
+             }},
+            {"New: Region table",
+             [](const Session&, const Session& after) {
+                 EXPECT_TRUE(std::get<StatisticsView>(after.views.at("statistics")).byRegion);
+             }},
+            {"New: Section averages", [](const Session&, const Session& after) {
+                 EXPECT_EQ(std::get<ProfileView>(after.views.at("profile")).over, ProfileOver::Sections);
+             }}};
+        for (const auto& [name, kind] : std::map<const char*, const char*>{{"Volume", "volume"},
+                                                                           {"Slices", "slices"},
+                                                                           {"Scatterplots", "scatterMatrix"},
+                                                                           {"Transfer function", "transfer"},
+                                                                           {"Layers", "layers"},
+                                                                           {"Timeline", "timeline"},
+                                                                           {"Data", "data"},
+                                                                           {"History", "history"},
+                                                                           {"Messages", "log"},
+                                                                           {"Statistics", "statistics"},
+                                                                           {"Histogram", "histogram"},
+                                                                           {"Line profile", "profile"},
+                                                                           {"Curves", "curves"},
+                                                                           {"Slice matrix", "sliceMatrix"},
+                                                                           {"Shadow cube", "shadowCube"},
+                                                                           {"Tesseract", "tesseract"},
+                                                                           {"Side by side", "compare"}})
+            made["New: " + std::string(name)] = added(kind);
+        return made;
+    }();
+    return all;
+}
+
+class CommandTable : public DrawnWorkbench {
+protected:
+    /// Three times of a small volume, the second one shown, one brush; only the list of layers is drawn, which is
+    /// quick.
+    void begin() {
+        OpenRequest request;
+        request.data.emplace();
+        request.data->model = "marschner-lobb";
+        request.data->settings = {{"nx", 12}, {"ny", 12}, {"nz", 12}, {"times", 3}};
+        Opened opened = open(request);
+        Session& session = opened.document.session;
+        session.time = 1.0 / 3;
+        session.selection.brushes = {vis::rangeBrush({{.channel = "rho", .lo = 0.2, .hi = 0.6}}, "half")};
+        session.dock.maximised = "layers";
+        workbench.session().appearance = {};
+        opened.document.history.reset(session);
+        workbench.install(std::move(opened));
+        settle();
+    }
+    const Command& command(const std::string& title) const {
+        return *std::ranges::find_if(workbench.commands(), [&](const Command& each) { return each.title() == title; });
+    }
+    void pressShortcut(const Shortcut& shortcut) {
+        for (const bool down : {true, false})
+            frame([&](ImGuiIO& io) {
+                io.KeyCtrl = shortcut.ctrl, io.KeyShift = shortcut.shift, io.KeyAlt = shortcut.alt;
+                io.KeysDown[shortcut.key] = down;
+            });
+        frame([](ImGuiIO& io) { io.KeyCtrl = io.KeyShift = io.KeyAlt = false; });
+    }
+};
+
+TEST_F(CommandTable, HasACheckForEveryCommand) {
+    begin();
+    const std::vector<std::string> layouts = layoutNames();
+    std::set<std::string> known;
+    for (const Command& each : workbench.commands()) {
+        const std::string title = each.title();
+        known.insert(title);
+        if (each.menu == "Layout" && title != "Reset arrangement") continue; // EveryLayoutIsOneStep
+        if (title.starts_with("Example data: ") || title == "Minus another time: shown now") continue;
+        EXPECT_TRUE(checks().contains(title) != kElsewhere.contains(title)) << title;
+        EXPECT_FALSE(each.help.empty()) << title;
+    }
+    for (const auto& [title, check] : checks()) EXPECT_TRUE(known.contains(title)) << title << " is no command";
+    for (const std::string& title : kElsewhere) EXPECT_TRUE(known.contains(title)) << title << " is no command";
+}
+
+TEST_F(CommandTable, EveryCommandDoesWhatItSaysAndUndoTakesItBack) {
+    for (const auto& [title, check] : checks()) {
+        SCOPED_TRACE(title);
+        begin();
+        const Session before = workbench.session();
+        ASSERT_TRUE(run(title));
+        settle();
+        const Session after = workbench.session();
+        check(before, after);
+        if (const Shortcut shortcut = command(title).shortcut; shortcut.key != 0) {
+            begin();
+            pressShortcut(shortcut);
+            settle();
+            EXPECT_TRUE(workbench.session() == after) << "by its key";
+        }
+        if (after == before) continue;
+        if (title.starts_with("Time along ")) { // other data, no edit of these: the same command goes back
+            ASSERT_TRUE(run(title));
+            settle();
+            EXPECT_TRUE(workbench.session().data == before.data);
+            EXPECT_TRUE(workbench.session().views == before.views);
+            EXPECT_NEAR(workbench.session().time, before.time, 1e-6);
+            EXPECT_NEAR(glm::distance(workbench.session().cursor, before.cursor), 0, 1e-6);
+            continue;
+        }
+        ASSERT_TRUE(run("Undo"));
+        settle();
+        EXPECT_TRUE(workbench.session() == before) << "undone";
+        ASSERT_TRUE(run("Redo"));
+        settle();
+        EXPECT_TRUE(workbench.session() == after) << "done again";
+    }
+}
+
+TEST_F(CommandTable, ASessionGoesThroughTheClipboard) {
+    begin();
+    const Session before = workbench.session();
+    ASSERT_TRUE(run("Copy session"));
+    OpenRequest other;
+    other.data.emplace();
+    other.data->model = "marschner-lobb";
+    other.data->settings = {{"nx", 14}, {"ny", 14}, {"nz", 14}};
+    workbench.install(open(other));
+    settle();
+    ASSERT_FALSE(workbench.session() == before);
+    ASSERT_TRUE(run("Paste session"));
+    settle();
+    EXPECT_TRUE(workbench.session().selection == before.selection);
+    EXPECT_EQ(workbench.session().data.settings, before.data.settings);
+    EXPECT_EQ(workbench.session().time, before.time);
+    ImGui::SetClipboardText("no session");
+    const Session shown = workbench.session();
+    ASSERT_TRUE(run("Paste session"));
+    settle();
+    EXPECT_TRUE(workbench.session() == shown);
+}
+
+TEST_F(CommandTable, HelpAndPaletteOpen) {
+    begin();
+    const auto popups = [] {
+        return ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel);
+    };
+    for (const char* title : {"Shortcuts", "Command palette", "About Tessera"}) {
+        ASSERT_FALSE(popups()) << title;
+        ASSERT_TRUE(run(title));
+        for (int i = 0; i < 3; ++i) frame();
+        EXPECT_TRUE(popups()) << title;
+        press(key::kEscape);
+        for (int i = 0; i < 3; ++i) frame();
+    }
+}
+
+TEST_F(CommandTable, PlayIsNoEdit) {
+    begin();
+    ASSERT_TRUE(run("Play"));
+    frame();
+    EXPECT_TRUE(workbench.session().animation.playing);
+    ASSERT_TRUE(run("Play"));
+    frame();
+    EXPECT_FALSE(workbench.session().animation.playing);
+}
+
+} // namespace
+} // namespace tessera::app
