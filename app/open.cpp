@@ -7,6 +7,7 @@
 #include "volume/error.h"
 #include "volume/import/import.h"
 #include "volume/quantities.h"
+#include "volume/synthetic/models.h"
 
 #include <algorithm>
 #include <cctype>
@@ -123,6 +124,18 @@ DataRef dataOf(const std::vector<std::string>& paths, const volume::ImportOption
         if (!fs::exists(path, problem)) throw Error("no such file", path);
         data.files.push_back(describeFile(path));
     }
+    return data;
+}
+
+DataRef dataNamed(const std::vector<std::string>& inputs, const volume::ImportOptions& stated,
+                  const Progress& progress) {
+    const std::vector<std::string> models = volume::modelNames();
+    std::error_code problem;
+    if (inputs.size() != 1 || std::ranges::find(models, inputs[0]) == models.end() || fs::exists(inputs[0], problem))
+        return dataOf(inputs, recallOptions(inputs, stated, progress));
+    DataRef data;
+    data.model = inputs[0];
+    data.import = stated;
     return data;
 }
 

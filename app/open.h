@@ -51,6 +51,11 @@ void moveTo(Session& session, History& history, const volume::DatasetInfo* from,
 /// The data set that files given together make.
 DataRef dataOf(const std::vector<std::string>& paths, const volume::ImportOptions& options);
 
+/// What the words of a command name: a built-in model (where no file is called so), or files with what has been stated
+/// of them before. Throws Error.
+DataRef dataNamed(const std::vector<std::string>& inputs, const volume::ImportOptions& stated,
+                  const Progress& progress = {});
+
 /// The session text inside a PNG of ours. Throws Error when there is none.
 std::string sessionTextOfPicture(const std::string& path);
 

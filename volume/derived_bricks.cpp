@@ -108,8 +108,11 @@ struct DerivedBricks::Impl {
                 times_.emplace_back(cached_, names_.channel[std::size_t(input.name)],
                                     input.at.value_or(TimeReference{}));
         }
-        if (const auto* difference = std::get_if<DifferenceRecipe>(&recipe_))
-            times_.emplace_back(cached_, channelOf(difference->channel), difference->reference());
+        if (const auto* difference = std::get_if<DifferenceRecipe>(&recipe_)) {
+            const int channel = channelOf(difference->channel);
+            times_.emplace_back(cached_, channel, difference->reference());
+            if (difference->from == OtherTime::Other) toOwnUnit_ = otherConversion(source_->info(), channel).value();
+        }
     }
 
     /// A channel of the source below, at a brick.
@@ -294,7 +297,7 @@ struct DerivedBricks::Impl {
         const BrickSamples other = input(times_.front(), key);
         for (std::size_t i = 0; i < out.values.size(); ++i) {
             if (presentAt(out, i) && presentAt(other, i))
-                set(out, i, double(out.values[i]) - double(other.values[i]));
+                set(out, i, double(out.values[i]) - toOwnUnit_(double(other.values[i])));
             else
                 setAbsent(out, i);
         }
@@ -344,6 +347,7 @@ struct DerivedBricks::Impl {
     DerivedRecipe recipe_;
     FormulaNames names_;
     std::optional<Expression> expression_;
+    UnitConversion toOwnUnit_;     ///< of the other data of a difference
     std::vector<InputTime> times_; ///< of the inputs of the expression, or of the difference
     mutable LoadOnce<BrickKey, Bricks, BrickKeyHash> results_, means_;
 };

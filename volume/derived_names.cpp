@@ -1,5 +1,6 @@
 #include "volume/derived_names.h"
 
+#include "volume/analysis/unit_conversion.h"
 #include "volume/error.h"
 #include "volume/expression.h"
 #include "volume/other_source.h"
@@ -84,10 +85,9 @@ struct Problem {
         if (recipe.from != OtherTime::Other) return {};
         const std::vector<Channel> channels = info.channels();
         const Channel &own = channels[std::size_t(of)], &other = channels[std::size_t(*otherChannel(info, of))];
-        return own.unit == other.unit
-                   ? ""
-                   : own.name + " is in " + (own.unit.empty() ? "no unit" : own.unit) + ", in the other data in " +
-                         (other.unit.empty() ? "no unit" : other.unit) + ": a formula can convert it";
+        if (unitConversion(other.unit, own.unit)) return {};
+        return own.name + " is in " + (own.unit.empty() ? "no unit" : own.unit) + ", in the other data in " +
+               (other.unit.empty() ? "no unit" : other.unit) + ": they have no difference";
     }
     std::string operator()(const PositionRecipe&) const { return {}; }
     std::string operator()(const TimeRecipe&) const { return {}; }

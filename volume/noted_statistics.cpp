@@ -99,9 +99,9 @@ struct NotedSums {
     }
     Summary summary() const {
         constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-        if (samples == 0) return {0, 0, kNone, kNone, kNone, kNone};
+        if (samples == 0) return {0, 0, kNone, kNone, kNone, kNone, kNone};
         const double mean = sum / samples, variance = std::max(squares / samples - mean * mean, 0.0);
-        return {samples, volume, shift + mean, std::sqrt(variance), min, max};
+        return {samples, volume, shift + mean, std::sqrt(variance), min, max, kNone};
     }
 };
 

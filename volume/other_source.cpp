@@ -206,9 +206,11 @@ public:
           minusChannel_(minus.channel) {
         const DatasetInfo &left = of.source->info(), &right = minus.source->info();
         const Channel a = left.channels()[std::size_t(of.channel)], b = right.channels()[std::size_t(minus.channel)];
-        if (a.unit != b.unit)
+        const auto toUnit = unitConversion(b.unit, a.unit);
+        if (!toUnit)
             throw Error(a.name + " in " + (a.unit.empty() ? "no unit" : a.unit) + " and " + b.name + " in " +
                         (b.unit.empty() ? "no unit" : b.unit) + " have no difference");
+        toUnit_ = *toUnit;
         info_.name = left.name;
         info_.lattice = right.lattice;
         info_.bounds = right.bounds;
@@ -233,7 +235,7 @@ public:
         const BrickSamples other = minus_.source->read({minusChannel_, minus_.time, key.level, key.index});
         for (std::size_t i = 0; i < out.values.size(); ++i) {
             const bool there = presentAt(out, i) && presentAt(other, i);
-            out.values[i] = there ? float(double(out.values[i]) - double(other.values[i])) : 0;
+            out.values[i] = there ? float(double(out.values[i]) - toUnit_(double(other.values[i]))) : 0;
             if (there) continue;
             if (out.present.empty()) out.present.assign(out.values.size(), 1);
             out.present[i] = 0;
@@ -265,6 +267,7 @@ private:
     SampledOnto onto_;
     SourceAtTime of_, minus_;
     int ofChannel_, minusChannel_;
+    UnitConversion toUnit_; ///< of what is taken away
     DatasetInfo info_;
 };
 
@@ -286,7 +289,17 @@ std::shared_ptr<const BrickSource> besideOther(const BrickSource& source) {
 }
 
 std::string otherText(const BrickSource& source, const BrickSource& other) {
-    return samePlaces(source, other) ? "on the same grid" : "interpolated onto the grid of " + source.info().name;
+    std::string text =
+        samePlaces(source, other) ? "on the same grid" : "interpolated onto the grid of " + source.info().name;
+    const bool single = source.info().parameters.size() == 1 && other.info().parameters.size() == 1;
+    for (const Parameter& own : source.info().parameters) {
+        const auto same = std::ranges::find_if(other.info().parameters, [&](const Parameter& candidate) {
+            return (single || candidate.name == own.name) && candidate.components == own.components;
+        });
+        if (same != other.info().parameters.end() && same->unit != own.unit && unitConversion(same->unit, own.unit))
+            text += ", " + own.name + " from " + same->unit + " to " + (own.unit.empty() ? "1" : own.unit);
+    }
+    return text;
 }
 
 std::optional<int> otherChannel(const DatasetInfo& info, int channel) {
@@ -300,6 +313,13 @@ std::optional<int> otherChannel(const DatasetInfo& info, int channel) {
             return int(i);
     }
     return std::nullopt;
+}
+
+std::optional<UnitConversion> otherConversion(const DatasetInfo& info, int channel) {
+    const std::optional<int> other = otherChannel(info, channel);
+    if (!other) return std::nullopt;
+    const std::vector<Channel> channels = info.channels();
+    return unitConversion(channels[std::size_t(*other)].unit, channels[std::size_t(channel)].unit);
 }
 
 std::shared_ptr<const BrickSource> differenceSource(const FieldAt& of, const FieldAt& minus, const Progress& progress) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "volume/analysis/unit_conversion.h"
 #include "volume/brick_source.h"
 #include "volume/progress.h"
 #include "volume/source_at_time.h"
@@ -47,11 +48,16 @@ std::shared_ptr<const BrickSource> otherOf(const BrickSource& source);
 /// And the first one.
 std::shared_ptr<const BrickSource> besideOther(const BrickSource& source);
 
-/// "interpolated onto the grid of A" or, where nothing is interpolated, "on the same grid".
+/// "interpolated onto the grid of A" or, where nothing is interpolated, "on the same grid", and which parameters are
+/// converted before their difference is taken: ", p from bar to Pa".
 std::string otherText(const BrickSource& source, const BrickSource& other);
 
 /// The channel of the other data that is called as this one; nothing where there is none.
 std::optional<int> otherChannel(const DatasetInfo& info, int channel);
+
+/// What makes values of otherChannel(info, channel) ones in the unit of the channel. Nothing where there is none, or
+/// one that measures something else.
+std::optional<UnitConversion> otherConversion(const DatasetInfo& info, int channel);
 
 /// One channel of a source at a time.
 struct FieldAt {
@@ -61,7 +67,8 @@ struct FieldAt {
 };
 
 /// One field minus another at the samples of the latter, as a data set of one parameter "difference" and one time;
-/// absent where either is. Its range is that of a coarse level. Throws Error when the units differ, Cancelled.
+/// absent where either is, in the unit of the former. Its range is that of a coarse level. Throws Error when the units
+/// cannot be converted, Cancelled.
 std::shared_ptr<const BrickSource> differenceSource(const FieldAt& of, const FieldAt& minus,
                                                     const Progress& progress = {});
 

@@ -155,7 +155,7 @@ private:
             for (std::size_t i = 0; i < count; ++i)
                 if (columns[c].present[i] != 0) histogram[columns[c].bin[i]] += packed[i];
             if (!query_.doi && columns[c].whole) {
-                sums.inside[c].add(columns[c], shifts_[c], volume);
+                sums.inside[c].add(columns[c], shifts_[c], cell, volume);
                 continue;
             }
             for (std::size_t i = 0; i < count; ++i) {

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
@@ -55,6 +56,8 @@ struct Summary {
     double volume = 0;  ///< they stand for, in cubic length units: every sample's cell within DatasetInfo::bounds
     double mean = 0, deviation = 0; ///< over samples, not volume; deviation: population
     double min = 0, max = 0;        ///< of samples with a weight of at least 1/2
+    /// Values times the volume they stand for, in the channel's unit times cubic length units; NaN where not summed.
+    double integral = std::numeric_limits<double>::quiet_NaN();
 };
 
 struct ChannelStatistics {

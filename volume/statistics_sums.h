@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <vector>
 
 /// Sums and histograms on their way, whose order of adding is either fixed or does not matter: inside of
@@ -66,7 +67,7 @@ struct Moments {
 
 /// Weighted sums of one channel over a set of samples, relative to a shift so that close values keep their digits.
 struct Sums {
-    double n = 0, volume = 0, sum = 0, squares = 0;
+    double n = 0, volume = 0, sum = 0, squares = 0, integral = 0;
     float min = std::numeric_limits<float>::infinity(), max = -std::numeric_limits<float>::infinity();
 
     void add(float value, double shift, double cell, double weight) {
@@ -76,22 +77,25 @@ struct Sums {
         volume += weight * cell;
         sum += weight * v;
         squares += weight * v * v;
+        integral += weight * cell * v;
         if (weight < 0.5) return;
         min = std::min(min, value);
         max = std::max(max, value);
     }
-    /// All of a whole column with weight 1; `cells`: the volume of all of them together.
-    void add(const Column& column, double shift, double cells) {
+    /// All of a whole column with weight 1; `cells`: the volume of each sample, `volumes`: of all together.
+    void add(const Column& column, double shift, std::span<const double> cells, double volumes) {
         const Stretch all{0, column.value.size(), nullptr};
-        const auto [first, second] = laneSums<2>(all, [&](std::size_t i, auto& lanes, std::size_t lane) {
+        const auto [first, second, third] = laneSums<3>(all, [&](std::size_t i, auto& lanes, std::size_t lane) {
             const double v = double(column.value[i]) - shift;
             lanes[0][lane] += v;
             lanes[1][lane] += v * v;
+            lanes[2][lane] += v * cells[i];
         });
         n += double(column.value.size());
-        volume += cells;
+        volume += volumes;
         sum += first;
         squares += second;
+        integral += third;
         for (const float value : column.value) {
             min = std::min(min, value);
             max = std::max(max, value);
@@ -102,15 +106,22 @@ struct Sums {
         volume += other.volume;
         sum += other.sum;
         squares += other.squares;
+        integral += other.integral;
         min = std::min(min, other.min);
         max = std::max(max, other.max);
     }
     Summary summary(double shift) const {
-        if (n <= 0) return {0, 0, kNan, kNan, kNan, kNan};
+        if (n <= 0) return {0, 0, kNan, kNan, kNan, kNan, 0};
         const double mean = sum / n;
         const double variance = std::max(0.0, squares / n - mean * mean);
         const bool any = min <= max;
-        return {n, volume, shift + mean, std::sqrt(variance), any ? double(min) : kNan, any ? double(max) : kNan};
+        return {n,
+                volume,
+                shift + mean,
+                std::sqrt(variance),
+                any ? double(min) : kNan,
+                any ? double(max) : kNan,
+                shift * volume + integral};
     }
 };
 

@@ -3,7 +3,7 @@
 #include "app/command/format.h"
 #include "app/command/import_options.h"
 #include "app/command/picture_options.h"
-#include "app/session/import_memory.h"
+#include "app/open.h"
 #include "codec/pack.h"
 #include "vis/image_io.h"
 #include "volume/atomic_file.h"
@@ -35,12 +35,12 @@ struct DiffRow {
     std::size_t samples = 0, alone = 0; ///< present in both, in one of them
     double least = std::numeric_limits<double>::infinity(), most = -least, sum = 0, squares = 0;
 
-    void add(const volume::BrickSamples& a, const volume::BrickSamples& b) {
+    void add(const volume::BrickSamples& a, const volume::BrickSamples& b, const volume::UnitConversion& convert) {
         for (std::size_t i = 0; i < a.values.size(); ++i) {
             const bool inA = volume::presentAt(a, i), inB = volume::presentAt(b, i);
             if (inA != inB) ++alone;
             if (!inA || !inB) continue;
-            const double apart = double(a.values[i]) - double(b.values[i]);
+            const double apart = double(a.values[i]) - convert(double(b.values[i]));
             ++samples;
             least = std::min(least, apart);
             most = std::max(most, apart);
@@ -61,15 +61,15 @@ struct DiffRow {
 };
 
 DataRef dataRef(const DiffRequest& request) {
-    const auto files = [&](const std::string& path) { return dataOf({path}, recallOptions({path}, request.import)); };
-    DataRef data = files(request.first);
-    const DataRef other = files(request.second);
-    data.other = OtherData{.files = other.files, .model = {}, .settings = {}, .import = other.import};
+    DataRef data = dataNamed({request.first}, request.import);
+    const DataRef other = dataNamed({request.second}, request.import);
+    data.other =
+        OtherData{.files = other.files, .model = other.model, .settings = other.settings, .import = other.import};
     data.lattice = PictureLattice::Grid;
     return data;
 }
 
-/// Parameters that both have in the same unit, no labels; of those asked for each must be one.
+/// Parameters that both have in units that can be converted, no labels; of those asked for each must be one.
 std::vector<int> comparable(const volume::DatasetInfo& info, const DiffRequest& request) {
     std::vector<int> out;
     std::string left;
@@ -106,7 +106,8 @@ std::vector<DiffRow> compare(const volume::BrickSource& source, const std::vecto
     std::vector<DiffRow> rows;
     const double total = double(channels.size()) * times * bricks;
     double done = 0;
-    for (const int channel : channels)
+    for (const int channel : channels) {
+        const volume::UnitConversion convert = volume::otherConversion(info, channel).value();
         for (int time = 0; time < times; ++time) {
             DiffRow& row = rows.emplace_back();
             row.channel = info.channels()[std::size_t(channel)];
@@ -114,10 +115,11 @@ std::vector<DiffRow> compare(const volume::BrickSource& source, const std::vecto
             for (int n = 0; n < bricks; ++n) {
                 const glm::ivec3 at(n % count.x, n / count.x % count.y, n / (count.x * count.y));
                 row.add(source.read({channel, time, 0, at}),
-                        source.read({*volume::otherChannel(info, channel), time, 0, at}));
+                        source.read({*volume::otherChannel(info, channel), time, 0, at}), convert);
                 progress.advance(++done / total);
             }
         }
+    }
     return rows;
 }
 

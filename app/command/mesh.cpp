@@ -5,12 +5,10 @@
 #include "app/views/surface_feed.h"
 #include "volume/error.h"
 #include "volume/mesh/mesh_file.h"
-#include "volume/synthetic/models.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <filesystem>
 #include <memory>
 
 namespace tessera::app {
@@ -46,16 +44,10 @@ struct MeshRequest {
 };
 
 std::shared_ptr<const volume::BrickSource> openInput(const MeshRequest& request, const Progress& progress) {
-    DataRef data;
-    const std::vector<std::string> models = volume::modelNames();
-    if (request.inputs.size() == 1 && std::ranges::find(models, request.inputs[0]) != models.end() &&
-        !std::filesystem::exists(request.inputs[0]))
-        data.model = request.inputs[0];
-    else
-        data = dataOf(request.inputs, request.import);
+    DataRef data = dataNamed(request.inputs, request.import, progress.part(0, 0.1));
     data.lattice = request.mesh.bcc ? PictureLattice::BodyCentred : PictureLattice::Grid;
     std::vector<std::string> messages;
-    auto source = openSource(data, messages, progress);
+    auto source = openSource(data, messages, progress.part(0.1, 1));
     for (const std::string& message : messages) std::fprintf(stderr, "tessera: %s\n", message.c_str());
     return source;
 }

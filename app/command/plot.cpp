@@ -3,16 +3,12 @@
 #include "app/command/import_options.h"
 #include "app/open.h"
 #include "app/platform/headless.h"
-#include "app/session/import_memory.h"
 #include "app/views/curves_data.h"
 #include "vis/image_io.h"
 #include "volume/atomic_file.h"
 #include "volume/error.h"
-#include "volume/synthetic/models.h"
 
-#include <algorithm>
 #include <cstdio>
-#include <filesystem>
 #include <memory>
 
 namespace tessera::app {
@@ -30,17 +26,7 @@ struct PlotRequest {
 };
 
 DataRef dataRef(const PlotRequest& request) {
-    const std::vector<std::string>& inputs = request.inputs;
-    const std::vector<std::string> models = volume::modelNames();
-    DataRef data;
-    if (inputs.size() == 1 && std::ranges::find(models, inputs[0]) != models.end() &&
-        !std::filesystem::exists(inputs[0])) {
-        data.model = inputs[0];
-        data.import = request.import;
-    } else {
-        const bool archive = inputs.size() == 1 && hasEnding(inputs[0], ".tsr");
-        data = dataOf(inputs, archive ? request.import : recallOptions(inputs, request.import));
-    }
+    DataRef data = dataNamed(request.inputs, request.import);
     data.lattice = PictureLattice::Grid;
     data.axis = request.axis;
     return data;
@@ -98,8 +84,8 @@ void addPlotCommand(CLI::App& app) {
     command
         ->add_option("--y", request->view.y,
                      "Curves, each after its own --y: a quantity over time, mean(T), min(T), max(T), deviation(T), "
-                     "share(T), volume(T), or a formula such as voltage*current_density (default: the polarisation "
-                     "curve, else every quantity)")
+                     "share(T), volume(T), integral(T), or a formula such as voltage*current_density (default: the "
+                     "polarisation curve, else every quantity)")
         ->expected(1)
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
     command->add_option("--region", request->view.region,

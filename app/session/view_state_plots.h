@@ -143,8 +143,8 @@ struct CurvesView {
         visit(self.y, FieldInfo{.key = "y",
                                 .unit = "",
                                 .doc = "Curves: quantities over time, mean(T), min(T), max(T), deviation(T), share(T), "
-                                       "volume(T), formulas of them; none: the polarisation curve, else every "
-                                       "quantity, else a mean"});
+                                       "volume(T), integral(T), formulas of them; none: the polarisation curve, "
+                                       "else every quantity, else a mean"});
         visit(self.region, FieldInfo{.key = "region",
                                      .unit = "",
                                      .doc = "Region of a label that statistics are of; none: everywhere"});

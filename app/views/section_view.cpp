@@ -18,7 +18,7 @@ namespace tessera::app {
 namespace {
 
 constexpr std::size_t kMostSections = 6; ///< where the user has not chosen
-constexpr int kPlanes = 200;             ///< across a line
+constexpr int kLinePlanes = 200;         ///< across a line
 
 struct SectionCache : ViewCache {
     LatestFeed<SectionWish, SectionCurves> feed;
@@ -80,7 +80,7 @@ SectionWish wishOf(const ViewContext& context, const ProfileView& view, const st
     if (settings.across == SectionAcross::Line) {
         const std::vector<glm::dvec3> corners = profileCorners(view, context.session, info.bounds);
         wish.line = {corners.front(), corners.back()};
-        wish.planes = kPlanes;
+        wish.planes = kLinePlanes;
     } else {
         wish.axis = volume::SpaceAxis(settings.across);
     }

@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
 
 /// Sums over the samples of one parameter, those `inside` says.
 struct Sums {
-    double count = 0, all = 0, sum = 0, squares = 0, volume = 0;
+    double count = 0, all = 0, sum = 0, squares = 0, volume = 0, integral = 0;
     double least = std::numeric_limits<double>::infinity(), most = -std::numeric_limits<double>::infinity();
     double mean() const { return sum / count; }
 };
@@ -48,6 +48,7 @@ Sums sumsOf(const Dataset& dataset, int parameter, int time, const std::function
                 }
                 ++sums.count;
                 sums.volume += cell;
+                sums.integral += cell * value;
                 sums.sum += value;
                 sums.squares += value * value;
                 sums.least = std::min(sums.least, value);
@@ -60,11 +61,12 @@ int numberOfParameter(const DatasetInfo& info, const std::string& name) {
     return info.channels()[std::size_t(*info.findChannel(name))].parameter;
 }
 
-/// Compares every statistic with the sums, everywhere and in one region.
-void expectStatistics(const Dataset& dataset, const std::string& parameter, const std::string& label, int value) {
+/// Compares every statistic with the sums, everywhere and in one region; integrals with `inUnit` times theirs.
+void expectStatistics(const Dataset& dataset, const std::string& parameter, const std::string& label, int value,
+                      double inUnit = 1) {
     const auto source = makeMemorySource(dataset, {.lattice = LatticeKind::CC, .brickSize = 8});
     CurvesQuery query;
-    for (const char* kind : {"mean", "min", "max", "deviation", "share", "volume"})
+    for (const char* kind : {"mean", "min", "max", "deviation", "share", "volume", "integral"})
         query.y.push_back(std::string(kind) + "(" + parameter + ")");
     for (const bool region : {false, true}) {
         if (region) {
@@ -91,6 +93,7 @@ void expectStatistics(const Dataset& dataset, const std::string& parameter, cons
                         1e-3 * spread);
             EXPECT_NEAR(curves.y[4].values[t], sums.count / sums.all, 1e-3);
             EXPECT_NEAR(curves.y[5].values[t], sums.volume, 2e-3 * sums.volume);
+            EXPECT_NEAR(curves.y[6].values[t], inUnit * sums.integral, 2e-3 * std::abs(inUnit * sums.integral));
         }
     }
 }
@@ -103,6 +106,37 @@ TEST(Curves, StatisticsOfTheBuiltInCellAreSumsOverItsSamples) {
     ASSERT_FALSE(label.empty());
     const int value = cell.info.parameters[std::size_t(numberOfParameter(cell.info, label))].labels.at(0).value;
     expectStatistics(cell, "T", label, value);
+}
+
+TEST(Curves, IntegralsAreInAUnitThatIsTheirs) {
+    Dataset dataset;
+    dataset.info.lattice = {LatticeKind::CC, {9, 7, 5}, {0.5, 1, 2}, {0, 0, 0}};
+    dataset.info.bounds = {glm::dvec3(0), glm::dvec3(4, 6, 8)};
+    dataset.info.times = {0, 1};
+    dataset.info.lengthUnit = "mm";
+    dataset.info.parameters = {{"O2", "mol/m3", 1, ScalarType::F32, false, {}, {{0, 100}}},
+                               {"region", "", 1, ScalarType::U8, true, {{0, "a"}, {1, "b"}}, {{0, 1}}}};
+    dataset.load = [lattice = dataset.info.lattice](int parameter, int, int time) {
+        Field field = makeField(lattice, parameter == 0 ? ScalarType::F32 : ScalarType::U8);
+        for (std::size_t i = 0; i < field.count(); ++i) {
+            if (parameter == 1)
+                field.as<std::uint8_t>()[i] = std::uint8_t(i % 9 > 3 ? 1 : 0);
+            else
+                field.as<float>()[i] = float(5 + (i * 37 + std::size_t(time)) % 41);
+        }
+        return field;
+    };
+    expectStatistics(dataset, "O2", "region", 1, 1e-9);
+    CurvesQuery query;
+    query.y = {"integral(O2)", "integral(O2)/volume(O2)"};
+    const Curves curves = computeCurves(*makeMemorySource(dataset, {.lattice = LatticeKind::CC}), query);
+    EXPECT_EQ(curves.y[0].unit, "mol");
+    EXPECT_EQ(curves.y[1].unit, "") << "mol per mm3: the numbers would have to change";
+    // A degree of interest of one half everywhere is half of it.
+    CurvesQuery half = query;
+    half.doi = [](std::span<const float>, glm::dvec3) { return 0.5; };
+    const Curves halved = computeCurves(*makeMemorySource(dataset, {.lattice = LatticeKind::CC}), half);
+    EXPECT_NEAR(halved.y[0].values[1], curves.y[0].values[1] / 2, 1e-9 * curves.y[0].values[1]);
 }
 
 /// Three times of one scalar, with quantities.

@@ -203,14 +203,48 @@ TEST(OtherSource, WhatCannotBeComparedIsSaid) {
     EXPECT_EQ(reason([&] { withOther(a, make({.timeUnit = "V", .form = other}, "b")); }),
               "times in time [s] and time [V] cannot be compared");
     const auto celsius = withOther(a, make({.unit = "degC", .form = other}, "b"));
-    EXPECT_EQ(derivedProblem({"d", "K", DifferenceRecipe{"T", OtherTime::Other}}, celsius->info()),
-              "T is in K, in the other data in degC: a formula can convert it");
+    EXPECT_EQ(derivedProblem({"d", "K", DifferenceRecipe{"T", OtherTime::Other}}, celsius->info()), "");
+    EXPECT_EQ(derivedProblem({"d", "K", DifferenceRecipe{"T", OtherTime::Other}},
+                             withOther(a, make({.unit = "bar", .form = other}, "b"))->info()),
+              "T is in K, in the other data in bar: they have no difference");
     EXPECT_EQ(derivedProblem({"d", "K", ExpressionRecipe{"T - at(T, other) - 273.15"}}, celsius->info()), "");
     EXPECT_EQ(derivedProblem({"d", "K", ExpressionRecipe{"at(t, other)"}}, celsius->info()),
               "position 7: only parameters have values in other data");
     const auto more = derive(celsius, {"e", "", ExpressionRecipe{"2 * T"}});
     EXPECT_EQ(derivedProblem({"d", "K", ExpressionRecipe{"at(e, other)"}}, more->info()),
               "position 7: the other data have no parameter \"e\"");
+}
+
+TEST(OtherSource, DifferencesAreInTheUnitOfTheFirst) {
+    struct Case {
+        std::string own, others;
+        std::function<double(double)> inOwn;
+    };
+    const Case cases[] = {{"K", "degC", [](double v) { return v + 273.15; }},
+                          {"degC", "K", [](double v) { return v - 273.15; }},
+                          {"degC", "degF", [](double v) { return (v - 32) / 1.8; }},
+                          {"Pa", "bar", [](double v) { return v * 1e5; }},
+                          {"bar", "kPa", [](double v) { return v / 100; }},
+                          {"mol/m3", "mmol/l", [](double v) { return v; }},
+                          {"1", "%", [](double v) { return v / 100; }}};
+    for (const Case& one : cases) {
+        const auto a = make({.unit = one.own, .form = linear}, "a"), b = make({.unit = one.others, .form = other}, "b");
+        const auto both = withOther(a, b);
+        EXPECT_EQ(otherText(*a, *b), "on the same grid, T from " + one.others + " to " + one.own);
+        EXPECT_NE(both->info().provenance.find("T from " + one.others + " to " + one.own), std::string::npos);
+        EXPECT_EQ(both->info().parameters[2].unit, one.others) << "shown as they are";
+        const auto made = derive(both, {"d", one.own, DifferenceRecipe{"T", OtherTime::Other}});
+        const TimePair late = timesAround({0, 1, 3}, 3);
+        const auto fields = differenceSource({a, 0, late}, {b, 0, late});
+        EXPECT_EQ(fields->info().parameters[0].unit, one.own);
+        const int channel = *made->info().findChannel("d");
+        const auto check = [&](glm::dvec3 p, double time, std::optional<double> value) {
+            const double wanted = linear(p, time) - one.inOwn(other(p, time));
+            EXPECT_NEAR(value.value_or(1e30), wanted, 2e-6 * (std::abs(wanted) + 1000)) << one.own << one.others;
+        };
+        forSamples(*made, channel, check);
+        forSamples(*fields, 0, check);
+    }
 }
 
 TEST(OtherSource, ADifferenceOfTwoFieldsIsThatOfTheirValues) {

@@ -16,8 +16,8 @@ namespace tessera::volume {
 
 namespace {
 
-enum class Kind { Mean, Min, Max, Deviation, Share, Volume };
-constexpr std::array<std::string_view, 6> kKinds = {"mean", "min", "max", "deviation", "share", "volume"};
+enum class Kind { Mean, Min, Max, Deviation, Share, Volume, Integral };
+constexpr std::array<std::string_view, 7> kKinds = {"mean", "min", "max", "deviation", "share", "volume", "integral"};
 
 /// What a name of a formula stands for.
 struct Term {
@@ -49,11 +49,18 @@ Terms termsOf(const DatasetInfo& info) {
     return out;
 }
 
+/// Of a parameter's values times volumes: mol/m3 in a cell measured in mm are 1e-9 mol.
+ComposedUnit integralUnit(const DatasetInfo& info, int channel) {
+    const std::array<UnitPower, 2> factors{{{info.channels()[std::size_t(channel)].unit, 1}, {info.lengthUnit, 3}}};
+    return composedUnit(factors);
+}
+
 std::string unitOf(const DatasetInfo& info, const Term& term) {
     if (term.what == Term::What::Time) return info.timeUnit;
     if (term.what == Term::What::Quantity) return info.quantities[std::size_t(term.index)].unit;
     if (term.kind == Kind::Share) return {};
     if (term.kind == Kind::Volume) return info.lengthUnit.empty() ? std::string() : info.lengthUnit + "3";
+    if (term.kind == Kind::Integral) return integralUnit(info, term.index).unit;
     return info.channels()[std::size_t(term.index)].unit;
 }
 
@@ -143,6 +150,8 @@ double valueOf(const ChannelStatistics& statistics, bool parted, Kind kind) {
         return statistics.all.samples > 0 ? of.samples / statistics.all.samples : std::nan("");
     case Kind::Volume:
         return of.volume;
+    case Kind::Integral:
+        return of.integral;
     }
     return std::nan("");
 }
@@ -173,7 +182,9 @@ Curves computeCurves(const BrickSource& source, const CurvesQuery& query, const 
         if (term.what == Term::What::Quantity) return info.quantities[std::size_t(term.index)].values;
         const auto position = static_cast<std::size_t>(std::ranges::find(channels, term.index) - channels.begin());
         std::vector<double> values;
-        for (const Statistics& at : statistics) values.push_back(valueOf(at.channels[position], parted, term.kind));
+        const double factor = term.kind == Kind::Integral ? integralUnit(info, term.index).factor : 1;
+        for (const Statistics& at : statistics)
+            values.push_back(factor * valueOf(at.channels[position], parted, term.kind));
         return values;
     };
     const auto curveOf = [&](const Formula& formula) {

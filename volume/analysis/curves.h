@@ -11,7 +11,7 @@
 namespace tessera::volume {
 
 /// What is wanted. A formula (volume/expression.h) may name "time" or the axis by its own name, quantities, and
-/// statistics of a parameter: mean(T), min(T), max(T), deviation(T), share(T), volume(T).
+/// statistics of a parameter: mean(T), min(T), max(T), deviation(T), share(T), volume(T), integral(T).
 struct CurvesQuery {
     std::string x = "time";
     std::vector<std::string> y;
@@ -40,7 +40,8 @@ struct Curves {
 };
 
 /// mean, min, max and deviation are of samples present, those inside the region and the degree of interest; share is
-/// what those are of all present samples; volume what they stand for, in cubic length units. Extremes count samples
+/// what those are of all present samples; volume what they stand for, in cubic length units; integral the parameter
+/// over that volume, its unit the product of both with lengths in metres (mol/m3 gives mol). Extremes count samples
 /// with a degree of at least 1/2.
 Curves computeCurves(const BrickSource& source, const CurvesQuery& query, const Progress& progress = {});
 

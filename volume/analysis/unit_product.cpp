@@ -127,12 +127,17 @@ std::string joined(const Powers& all) {
 
 } // namespace
 
+std::optional<std::vector<std::pair<std::string, int>>> unitPowers(std::string_view unit) {
+    if (unit == "-") return Powers{};
+    return UnitReader(unit).read();
+}
+
 ComposedUnit composedUnit(std::span<const UnitPower> factors) {
     ComposedUnit out;
     Powers all;
     for (const UnitPower& factor : factors) {
         if (factor.unit.empty() || factor.unit == "-") continue;
-        const std::optional<Powers> read = UnitReader(factor.unit).read();
+        const std::optional<Powers> read = unitPowers(factor.unit);
         if (!read) {
             multiply(all, factor.unit, factor.power);
             continue;

@@ -1,7 +1,11 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
 
 namespace tessera::volume {
 
@@ -16,6 +20,10 @@ struct ComposedUnit {
     double factor = 1;
     std::string unit;
 };
+
+/// The names in a unit with their powers, in order of first mention: "mol/(m2 s)" is mol, m to the -2, s to the -1.
+/// "1" and "-" name none. Nothing where the text cannot be read.
+std::optional<std::vector<std::pair<std::string, int>>> unitPowers(std::string_view unit);
 
 /// The product of units with equal ones cancelled: mol/m3, m/s and mm to the power 2 give {1e-6, "mol/s"}. Reads "*",
 /// ".", "·" and blanks between factors, "/" before a divisor or a bracket, exponents as "m3", "m^3", "m-3", "m³".

@@ -1,0 +1,31 @@
+#pragma once
+
+#include "app/command/stats_question.h"
+#include "app/session/describe_json.h"
+#include "app/views/figure.h"
+#include "volume/progress.h"
+
+#include <string>
+#include <vector>
+
+/// The numbers that `tessera stats` prints, writes and draws.
+namespace tessera::app {
+
+/// Numbers as rows of a text, of CSV, and of JSON.
+struct Answer {
+    std::string text, csv;
+    Json json = Json::array();
+    std::vector<std::string> notes;
+    std::vector<FigurePanel> panels;
+};
+
+/// Adds what is asked for at one time: averages over planes, a balance, or statistics of regions.
+void addAnswer(Answer& answer, const StatsRequest& request, const Question& question, double time,
+               const Progress& progress);
+
+/// The figure of a request that is not one of planes: means over all times, a panel for each parameter and a line for
+/// each region; or balances, a panel for each region and a line for each surface over the times of the question, or a
+/// bar where it is of one time.
+std::vector<FigurePanel> figureOf(const StatsRequest& request, const Question& question, const Progress& progress);
+
+} // namespace tessera::app

@@ -1,0 +1,73 @@
+#include "app/command/stats_question.h"
+
+#include "app/views/region_data.h"
+#include "app/views/view_parts.h"
+#include "volume/analysis/flow_channels.h"
+#include "volume/error.h"
+
+#include <cstdlib>
+#include <utility>
+
+namespace tessera::app {
+
+namespace {
+
+std::vector<std::string> splitList(const std::string& text) {
+    std::vector<std::string> parts;
+    std::string part;
+    for (const char c : text + ",")
+        if (c != ',')
+            part += c;
+        else if (!part.empty())
+            parts.push_back(std::exchange(part, {}));
+    return parts;
+}
+
+int channelNamed(const Question& question, const std::string& name) {
+    if (const auto channel = question.info().findChannel(name)) return *channel;
+    std::string known;
+    for (const volume::Channel& channel : question.info().channels())
+        known += (known.empty() ? "" : ", ") + channel.name;
+    throw Error("there is no parameter \"" + name + "\"; there are " + known, question.info().name);
+}
+
+} // namespace
+
+Question questionOf(const StatsRequest& request, const Sources& sources) {
+    const StatsOptions& options = request.options;
+    Question out{sources.numbers, sources.origin, {}, -1, -1, {}, {}, {}};
+    const volume::DatasetInfo& info = out.info();
+    for (const std::string& name : splitList(options.of)) out.channels.push_back(channelNamed(out, name));
+    if (out.channels.empty()) out.channels = comparedChannels(info);
+    if (options.by != "none") {
+        const auto label = volume::labelChannel(info, options.by);
+        if (!label && !options.by.empty())
+            throw Error("there is no label \"" + options.by + "\" that says which region a sample is in", info.name);
+        out.label = label.value_or(-1);
+    }
+    if (!options.balance.empty()) out.balance = channelNamed(out, options.balance);
+    for (const std::string& name : splitList(options.regions)) {
+        const auto value =
+            out.label < 0 ? std::nullopt : volume::labelValue(volume::parameterOf(info, out.label), name);
+        if (!value) throw Error("there is no region \"" + name + "\"", info.name);
+        out.regions.push_back(*value);
+    }
+    if (!options.line.empty()) {
+        const std::vector<std::string> parts = splitList(options.line);
+        glm::dvec3 ends[2];
+        bool numbers = parts.size() == 6;
+        for (std::size_t i = 0; numbers && i < 6; ++i) {
+            char* end = nullptr;
+            ends[i / 3][static_cast<int>(i % 3)] = std::strtod(parts[i].c_str(), &end);
+            numbers = *end == '\0';
+        }
+        if (!numbers) throw Error("wants x,y,z,x,y,z, not \"" + options.line + "\"", "--line");
+        out.line = {ends[0], ends[1]};
+    }
+    if (!options.along.empty() && options.along != "x" && options.along != "y" && options.along != "z")
+        throw Error("wants x, y or z, not \"" + options.along + "\"", "--along");
+    out.times = options.allTimes ? info.times : std::vector<double>{options.time.value_or(info.times.back())};
+    return out;
+}
+
+} // namespace tessera::app

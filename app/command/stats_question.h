@@ -1,0 +1,92 @@
+#pragma once
+
+#include "app/session/section_settings.h"
+#include "app/sources.h"
+#include "app/views/section_data.h"
+#include "volume/derived.h"
+#include "volume/describe.h"
+#include "volume/import/import.h"
+#include "volume/labelled_source.h"
+#include "volume/time_pair.h"
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+/// What `tessera stats` is asked, in words and as the data understand it.
+namespace tessera::app {
+
+struct StatsOptions {
+    std::optional<double> time;
+    bool allTimes = false;
+    std::string by, of, along, line, balance, velocity, regions;
+    volume::SectionWeight weight = volume::SectionWeight::Area;
+    SectionMeasure show = SectionMeasure::Mean;
+    int planes = 100;
+    bool json = false;
+    bool planesAcross() const { return !along.empty() || !line.empty(); }
+    static void describe(auto& self, auto&& visit) {
+        visit(self.time, FieldInfo{.key = "time", .unit = "", .doc = "Time, in the unit of the data (last)"});
+        visit(self.allTimes, FieldInfo{.key = "allTimes", .unit = "", .doc = "Every time instead of one"});
+        visit(self.by, FieldInfo{.key = "by",
+                                 .unit = "",
+                                 .doc = "Label whose values are the regions, or none (first label of the data)"});
+        visit(self.regions,
+              FieldInfo{.key = "regions", .unit = "", .doc = "Only these regions, by name or value: cathode,3"});
+        visit(self.of, FieldInfo{.key = "of", .unit = "", .doc = "Only these parameters: O2,H2O (all)"});
+        visit(self.along,
+              FieldInfo{.key = "along", .unit = "", .doc = "Averages over planes across an axis: x, y or z"});
+        visit(
+            self.line,
+            FieldInfo{.key = "line",
+                      .unit = "",
+                      .doc = "Averages over planes across a line: x,y,z,x,y,z of its ends, in the data's length unit"});
+        visit(self.planes,
+              FieldInfo{.key = "planes", .unit = "", .doc = "Planes across the line", .range = Range{1, 100000}});
+        visit(self.weight, FieldInfo{.key = "weight",
+                                     .unit = "",
+                                     .doc = "What the mean over a plane is weighted by",
+                                     .names = volume::kSectionWeightNames});
+        visit(self.show, FieldInfo{.key = "show",
+                                   .unit = "",
+                                   .doc = "What of the planes is printed and drawn (CSV has all of it)",
+                                   .names = kSectionMeasureNames});
+        visit(
+            self.balance,
+            FieldInfo{.key = "balance", .unit = "", .doc = "What of this parameter flows in and out of every region"});
+        visit(self.velocity,
+              FieldInfo{.key = "velocity", .unit = "", .doc = "Vector that carries (found by its name and unit)"});
+        visit(self.json, FieldInfo{.key = "json", .unit = "", .doc = "Print JSON with stable keys"});
+    }
+};
+
+struct StatsRequest {
+    std::vector<std::string> inputs;
+    std::string output;
+    StatsOptions options;
+    std::vector<volume::DerivedParameter> derived;
+    volume::ImportOptions import;
+};
+
+/// Everything about the request that the data decide.
+struct Question {
+    std::shared_ptr<const volume::BrickSource> source;
+    NumberOrigin origin;
+    std::vector<int> channels;
+    int label = -1, balance = -1;
+    std::vector<int> regions; ///< stated ones; empty: all
+    std::vector<glm::dvec3> line;
+    std::vector<double> times;
+    const volume::DatasetInfo& info() const { return source->info(); }
+    volume::TimePair at(double time) const { return volume::timesAround(info().times, time); }
+    bool several() const { return info().times.size() > 1; }
+    std::string timeTitle() const {
+        return info().timeName + (info().timeUnit.empty() ? "" : " [" + info().timeUnit + "]");
+    }
+};
+
+/// What a request means for these data. Throws Error for a parameter, label, region, axis or line that is none.
+Question questionOf(const StatsRequest& request, const Sources& sources);
+
+} // namespace tessera::app
