@@ -159,37 +159,46 @@ PackSummary packToSize(const PackOptions& asked, SizeControl control, const std:
     if (asked.maxError > 0 || asked.absError > 0 || asked.psnr > 0)
         throw Error("either a size or an error bound can be asked for, not both");
     if (asked.threshold.kind != ThresholdChoice::None) throw Error("a size cannot be asked for with a threshold");
-    constexpr int kTrials = 10;
+    constexpr int kTrials = 10, kNeighbours = 5;
     constexpr double kFull = 0.96, kAim = 0.98; // of the size
     constexpr double kSame = 1.01;              // ratio of bounds between which nothing is looked for: 0.09 dB
+    constexpr double kNextStep = 1.12;          // of integers: a step of 9 is 1.13 times one of 8
     const double wanted = asked.sizeMb * 1e6, aim = kAim * wanted;
     const std::vector<SizeAtBound> curve = estimate(progress.part(0, 0.1));
     const Scratch trial(path + ".trial-" + std::to_string(::getpid()));
     const Scratch best(path + ".best-" + std::to_string(::getpid()));
     PackSummary found;
+    double foundBound = 0;
     std::optional<SizeAtBound> above, below; // the nearest trials that came out too large, and small enough
     int trials = 0;
-    while (trials < kTrials) {
-        const double bound = std::min(nextBound(curve, above, below, aim), kLargestBound);
+    const auto attempt = [&](double bound) {
         PackOptions options = withBound(asked, control, bound);
         options.sizeMb = 0;
-        const double begin = 0.1 + 0.9 * trials / kTrials;
-        const PackSummary summary = pack(options, trial.path, progress.part(begin, begin + 0.9 / kTrials));
-        ++trials;
+        const double share = 0.9 / (kTrials + kNeighbours), begin = 0.1 + share * trials++;
+        const PackSummary summary = pack(options, trial.path, progress.part(begin, begin + share));
         const SizeAtBound came{bound, double(summary.archiveBytes)};
+        if (came.bytes <= wanted && (found.archiveBytes == 0 || bound < foundBound)) {
+            found = summary;
+            foundBound = bound;
+            std::filesystem::rename(trial.path, best.path);
+        }
+        return came;
+    };
+    while (trials < kTrials) {
+        const SizeAtBound came = attempt(std::min(nextBound(curve, above, below, aim), kLargestBound));
         if (came.bytes > wanted) {
             above = came;
             if (came.bound >= kLargestBound) break;
             continue;
         }
         below = came;
-        if (summary.archiveBytes > found.archiveBytes) {
-            found = summary;
-            std::filesystem::rename(trial.path, best.path);
-        }
         if (came.bound == 0 || came.bytes >= kFull * wanted) break;
         if (above && below && below->bound <= kSame * above->bound) break;
     }
+    // Sizes of integers do not fall steadily with the step: one or two finer than the last that was too large may fit.
+    const bool steps = control == SizeControl::Psnr && above && double(found.archiveBytes) < kFull * wanted;
+    for (int n = 1; steps && n <= kNeighbours; ++n)
+        if (attempt(above->bound / std::pow(kNextStep, n)).bytes <= wanted) break;
     if (found.archiveBytes == 0)
         throw Error("the archive cannot be made so small: " + std::to_string(std::llround(above->bytes)) +
                         " bytes even with the largest error tried (labels are stored exactly)",

@@ -32,8 +32,9 @@ std::vector<SizeAtBound> estimateSizes(const volume::Dataset& dataset, FeedOptio
 
 /// Packs into `path` with the least relative bound for which the archive is at most options.sizeMb large: starts from
 /// the estimates and corrects them by what packing came to, until at least 0.96 of the size are used, no bound is left
-/// between those tried or a few trials are over. `path` appears with the best of them. Throws Error when no bound makes
-/// the archive so small.
+/// between those tried or a few trials are over. Of integers, whose sizes do not fall steadily with the step, a few
+/// finer steps than the last that was too large are tried then. `path` appears with the best of them. Throws Error when
+/// no bound makes the archive so small.
 PackSummary packToSize(const PackOptions& options, SizeControl control, const std::string& path,
                        const std::function<std::vector<SizeAtBound>(const Progress&)>& estimate,
                        const std::function<PackSummary(const PackOptions&, const std::string&, const Progress&)>& pack,

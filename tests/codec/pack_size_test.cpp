@@ -1,8 +1,11 @@
 #include "codec/archive.h"
 #include "codec/pack.h"
+#include "codec/pack_size.h"
 #include "tests/codec/make_dataset.h"
 
 #include <atomic>
+#include <cmath>
+#include <fstream>
 #include <gtest/gtest.h>
 #include <set>
 #include <thread>
@@ -73,6 +76,48 @@ TEST(PackSize, IsUsedAsFarAsStepsOfIntegersAllow) {
         options.sizeMb = (bytes[i] + 50) / 1e6;
         const PackSummary summary = pack(data, options, folder / "a.tsr");
         EXPECT_NEAR(double(summary.archiveBytes), bytes[i], 50) << "step " << i + 2 << ", trials " << summary.trials;
+    }
+}
+
+/// Sizes of whole numbers as measured of a scan: a finer step may take less than a coarser one.
+TEST(PackSize, OfStepsThatTakeMoreThanFinerOnesTheFinestThatFitsIsTaken) {
+    const TemporaryFolder folder;
+    const std::string path = folder / "a.tsr";
+    const std::vector<std::pair<double, double>> sizes{
+        // from a bound on, MB
+        {0, 0.919},      {0.004, 0.548},  {0.008, 0.419},  {0.0118, 0.341}, {0.0157, 0.275}, {0.0196, 0.286},
+        {0.0275, 0.154}, {0.0314, 0.156}, {0.0392, 0.165}, {0.0588, 0.195}, {0.1, 0.05}};
+    const auto sizeAt = [&](double bound) {
+        double size = 0;
+        for (const auto& [from, megabytes] : sizes)
+            if (bound >= from) size = megabytes * 1e6;
+        return std::uint64_t(size);
+    };
+    const auto estimate = [&](const Progress&) {
+        std::vector<SizeAtBound> curve{{0, 9.2e5}};
+        for (int exponent = -26; exponent <= -2; ++exponent)
+            curve.push_back({std::ldexp(1.0, exponent), std::min(9.2e5, 4e3 * std::ldexp(1.0, -exponent))});
+        return curve;
+    };
+    const auto boundOf = [](const PackOptions& options) {
+        return options.psnr > 0 ? std::sqrt(3.0) * std::pow(10.0, -options.psnr / 20) : 0;
+    };
+    const auto packed = [&](const PackOptions& options, const std::string& to, const Progress&) {
+        PackSummary summary;
+        summary.archiveBytes = sizeAt(boundOf(options));
+        std::ofstream(to) << summary.archiveBytes;
+        return summary;
+    };
+    const std::pair<double, double> wanted[] = {{0.35, 0.341}, {0.33, 0.275}, {0.29, 0.275}, {0.28, 0.275},
+                                                {0.43, 0.419}, {0.2, 0.154},  {0.6, 0.548}};
+    for (const auto& [asked, best] : wanted) {
+        PackOptions options;
+        options.sizeMb = asked;
+        const PackSummary summary = packToSize(options, SizeControl::Psnr, path, estimate, packed, {});
+        EXPECT_LE(double(summary.archiveBytes), asked * 1e6);
+        EXPECT_NEAR(double(summary.archiveBytes), best * 1e6, best * 0.05e6) << asked << " after " << summary.trials;
+        EXPECT_EQ(std::stoull(std::string(readFile(path).data(), readFile(path).size())), summary.archiveBytes);
+        EXPECT_LE(summary.trials, 15);
     }
 }
 
