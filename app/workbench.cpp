@@ -327,7 +327,7 @@ void Workbench::answerFile(const FileDialog::Answer& answer) {
         exportSurface(answer.paths.front());
     } else if (answer.purpose == "locate" && missing_) {
         const MissingData& found = missing_->missing[locating_];
-        filesOf(missing_->document.session.data, found.other)[found.index] = describeFile(answer.paths.front());
+        locate(missing_->document.session.data, found, answer.paths.front());
         missing_->missing.erase(missing_->missing.begin() + static_cast<std::ptrdiff_t>(locating_));
     } else if (answer.purpose == "export" && exportText_) {
         const std::string path = answer.paths.front(), name = fs::path(path).filename().string();

@@ -1,5 +1,6 @@
 #include "app/pack_child.h"
 #include "app/session/import_memory.h"
+#include "app/session/session_file.h"
 #include "app/ui/file_dialog.h"
 #include "app/views/derived_list.h"
 #include "app/views/view_parts.h"
@@ -182,7 +183,7 @@ void Workbench::addTable(const std::string& path) {
                     volume::addTable(info, table);
                     return [this, path, from, columns = table.columns.size()] {
                         if (source_ != from) return;
-                        session_.data.import.overTime = fs::absolute(path).string();
+                        session_.data.import.overTime = absolutePath(path).generic_string();
                         message(std::to_string(columns) + (columns == 1 ? " quantity" : " quantities") +
                                 " over time from " + path);
                     };

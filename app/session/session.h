@@ -46,12 +46,14 @@ struct OtherData {
     std::string model;
     std::map<std::string, double> settings;
     volume::ImportOptions import;
+    std::optional<DataFile> table = {}; ///< import.overTime when saved
     bool operator==(const OtherData&) const = default;
     static void describe(auto& self, auto&& visit) {
         visit(self.files, FieldInfo{.key = "files", .unit = "", .doc = "Files of the other data set"});
         visit(self.model, FieldInfo{.key = "model", .unit = "", .doc = "Built-in model where there is no file"});
         visit(self.settings, FieldInfo{.key = "settings", .unit = "", .doc = "Settings of the model"});
         visit(self.import, FieldInfo{.key = "import", .unit = "", .doc = "What was stated about the files"});
+        visit(self.table, FieldInfo{.key = "table", .unit = "", .doc = "The table over time when saved"});
     }
 };
 
@@ -68,6 +70,7 @@ struct DataRef {
     std::string axis;                              ///< quantity that takes the place of the times, "" = none
     std::optional<volume::TimeAxis> timeAxis;      ///< a plane at all times is shown in place of the data
     std::optional<OtherData> other = {};           ///< its parameters stand beside these as "T (other)"
+    std::optional<DataFile> table = {};            ///< import.overTime when saved: found again as the files are
     bool operator==(const DataRef&) const = default;
     static void describe(auto& self, auto&& visit) {
         visit(self.files, FieldInfo{.key = "files", .unit = "", .doc = "Files that are shown together"});
@@ -99,6 +102,7 @@ struct DataRef {
                                     .unit = "",
                                     .doc = "Another data set, whose parameters stand beside these as \"T (other)\" on "
                                            "their grid"});
+        visit(self.table, FieldInfo{.key = "table", .unit = "", .doc = "The table over time when saved"});
     }
 };
 

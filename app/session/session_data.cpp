@@ -123,8 +123,51 @@ DataFile describeFile(const std::string& path) {
     return file;
 }
 
-std::vector<DataFile>& filesOf(DataRef& data, bool other) {
-    return other && data.other ? data.other->files : data.files;
+namespace {
+
+/// The parts of a data set, or of the other one beside it, that name files.
+struct Named {
+    std::vector<DataFile>& files;
+    volume::ImportOptions& import;
+    std::optional<DataFile>& table;
+};
+
+Named named(DataRef& data, bool other) {
+    if (other && data.other) return {data.other->files, data.other->import, data.other->table};
+    return {data.files, data.import, data.table};
+}
+
+/// What is known of the table over time; of one that was stated since it was noted, its path.
+DataFile tableOf(const Named& of) {
+    if (of.table && of.table->absolutePath == of.import.overTime) return *of.table;
+    DataFile file;
+    file.path = file.absolutePath = of.import.overTime;
+    return file;
+}
+
+} // namespace
+
+void noteTables(DataRef& data) {
+    for (const bool other : {false, true}) {
+        if (other && !data.other) break;
+        const Named of = named(data, other);
+        if (of.import.overTime.empty()) {
+            of.table.reset();
+            continue;
+        }
+        of.import.overTime = absolutePath(of.import.overTime).generic_string();
+        if (!of.table || of.table->absolutePath != of.import.overTime) of.table = describeFile(of.import.overTime);
+    }
+}
+
+void locate(DataRef& data, const MissingData& missing, const std::string& path) {
+    const Named of = named(data, missing.other);
+    if (!missing.table) {
+        of.files[missing.index] = describeFile(path);
+        return;
+    }
+    of.table = describeFile(path);
+    of.import.overTime = of.table->absolutePath;
 }
 
 ResolvedData resolveData(const DataRef& data, const std::string& folder) {
@@ -151,9 +194,17 @@ ResolvedData resolveData(const DataRef& data, const std::string& folder) {
     };
     for (const bool other : {false, true}) {
         if (other && !data.other) break;
-        std::vector<DataFile>& files = filesOf(resolved.data, other);
-        for (std::size_t i = 0; i < files.size(); ++i)
-            if (!find(files[i])) resolved.missing.push_back({i, files[i], other});
+        const Named of = named(resolved.data, other);
+        for (std::size_t i = 0; i < of.files.size(); ++i)
+            if (!find(of.files[i])) resolved.missing.push_back({i, of.files[i], other, false});
+        if (of.import.overTime.empty()) continue;
+        DataFile table = tableOf(of);
+        if (!find(table)) {
+            resolved.missing.push_back({0, table, other, true});
+            continue;
+        }
+        of.import.overTime = table.absolutePath;
+        of.table = std::move(table);
     }
     return resolved;
 }

@@ -243,10 +243,14 @@ SessionDocument loadSession(const std::string& path) {
 std::string printSession(const SessionDocument& document, const std::string& path) {
     Session session = document.session;
     const fs::path folder = absolutePath(path).parent_path();
+    noteTables(session.data);
     std::vector<DataFile*> files;
     for (DataFile& file : session.data.files) files.push_back(&file);
-    if (session.data.other)
+    if (session.data.table) files.push_back(&*session.data.table);
+    if (session.data.other) {
         for (DataFile& file : session.data.other->files) files.push_back(&file);
+        if (session.data.other->table) files.push_back(&*session.data.other->table);
+    }
     for (DataFile* each : files) {
         DataFile& file = *each;
         const fs::path where = absolutePath(file.absolutePath.empty() ? file.path : file.absolutePath);

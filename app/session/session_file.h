@@ -49,18 +49,22 @@ struct MissingData {
     std::size_t index = 0; ///< into DataRef::files
     DataFile wanted;
     bool other = false; ///< into those of DataRef::other instead
+    bool table = false; ///< none of the files, but the table over time
 };
 struct ResolvedData {
     DataRef data; ///< `path` and `absolutePath` both absolute where found
     std::vector<MissingData> missing;
     std::vector<std::string> warnings; ///< e.g. a file that has changed since
 };
-/// Finds data files, those of DataRef::other too: relative to the session's folder, then at the absolute path, then by
-/// name in the folder.
+/// Finds data files and tables over time, those of DataRef::other too: relative to the session's folder, then at the
+/// absolute path, then by name in the folder.
 ResolvedData resolveData(const DataRef& data, const std::string& folder);
 
-/// The files of a data set or those of the other one beside it.
-std::vector<DataFile>& filesOf(DataRef& data, bool other);
+/// States where a file that was missing is.
+void locate(DataRef& data, const MissingData& missing, const std::string& path);
+
+/// Notes size and hash of the tables over time, where that has not been done.
+void noteTables(DataRef& data);
 
 /// A whole file as text. Throws Error.
 std::string readText(const std::string& path);

@@ -56,6 +56,48 @@ TEST_F(SessionDataTest, EveryFileOfASeriesIsCovered) {
     EXPECT_TRUE(resolve("two").missing.empty());
 }
 
+TEST_F(SessionDataTest, TablesOverTimeAreFoundAgainAsFilesAre) {
+    fs::create_directories(folder_ / "one/more");
+    write("one/a.tsr", "12345"), write("one/b.tsr", "123");
+    write("one/more/history.csv", "time,U\n0,1\n"), write("one/other.csv", "time,I\n0,1\n");
+    SessionDocument document;
+    DataRef& data = document.session.data;
+    data.files = {describeFile(in("one/a.tsr"))};
+    data.import.overTime = in("one/more/history.csv");
+    data.other = OtherData{.files = {describeFile(in("one/b.tsr"))}, .model = {}, .settings = {}, .import = {}};
+    data.other->import.overTime = in("one/other.csv");
+    saveSession(document, in("one/a.tessera.json"));
+    const Json saved = Json::parse(readText(in("one/a.tessera.json")))["data"];
+    EXPECT_EQ(saved["table"]["path"], "more/history.csv");
+    EXPECT_EQ(saved["other"]["table"]["path"], "other.csv");
+    fs::rename(folder_ / "one", folder_ / "two");
+    const ResolvedData moved = resolve("two");
+    EXPECT_TRUE(moved.missing.empty());
+    EXPECT_THAT(moved.warnings, IsEmpty());
+    EXPECT_EQ(moved.data.import.overTime, in("two/more/history.csv"));
+    EXPECT_EQ(moved.data.other->import.overTime, in("two/other.csv"));
+    write("two/more/history.csv", "time,U\n0,2\n");
+    EXPECT_THAT(resolve("two").warnings, ElementsAre(HasSubstr("history.csv has changed since the session was saved")));
+    fs::remove(folder_ / "two/more/history.csv"), fs::remove(folder_ / "two/other.csv");
+    const ResolvedData gone = resolve("two");
+    ASSERT_EQ(gone.missing.size(), 2u);
+    EXPECT_TRUE(gone.missing[0].table && gone.missing[1].table && gone.missing[1].other);
+    EXPECT_EQ(gone.missing[0].wanted.bytes, 11);
+    // Where the user says they are, and that is what is saved.
+    write("elsewhere.csv", "time,U\n0,1\n");
+    SessionDocument located = loadSession(in("two/a.tessera.json"));
+    for (const MissingData& missing : gone.missing) locate(located.session.data, missing, in("elsewhere.csv"));
+    EXPECT_TRUE(resolveData(located.session.data, in("two")).missing.empty());
+    saveSession(located, in("two/a.tessera.json"));
+    EXPECT_EQ(resolve("two").data.other->import.overTime, in("elsewhere.csv"));
+    // A table that is no longer stated is no longer looked for; sessions of before name its path alone.
+    located.session.data.import.overTime.clear();
+    located.session.data.other->table.reset();
+    const Json plain = Json::parse(printSession(located, in("two/b.tessera.json")))["data"];
+    EXPECT_TRUE(!plain.contains("table") || plain["table"].is_null());
+    EXPECT_TRUE(resolveData(located.session.data, in("two")).missing.empty());
+}
+
 TEST_F(SessionDataTest, AFolderIsFoundAgainAndItsFilesCompared) {
     fs::create_directories(folder_ / "one/series");
     write("one/series/t1.vti", "a"), write("one/series/t2.vti", "b");

@@ -248,7 +248,7 @@ TEST_F(SessionFileTest, OtherDataAreFoundAndMissedAsTheFirst) {
     EXPECT_TRUE(found.missing[0].other);
     EXPECT_EQ(found.missing[0].index, 0u);
     EXPECT_EQ(found.missing[0].wanted.bytes, 3);
-    filesOf(moved.session.data, true)[0] = describeFile(in("two/a.tsr"));
+    locate(moved.session.data, found.missing[0], in("two/a.tsr"));
     EXPECT_TRUE(resolveData(moved.session.data, in("two")).missing.empty());
 }
 
