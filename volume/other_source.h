@@ -37,9 +37,9 @@ private:
 };
 
 /// A data set with the parameters of another one after its own, named "T (other)": on its grid and at its times. Where
-/// either has a single parameter, that of the other one is named after the first, however it is called. The other one is taken at the same time, between its stored times interpolated and absent beyond them; one of a single
-/// time is compared with every time. The provenance says so. Throws Error when units of length or time cannot be
-/// converted.
+/// either has a single parameter, that of the other one is named after the first, however it is called. The other one
+/// is taken at the same time, between its stored times interpolated and absent beyond them; one of a single time is
+/// compared with every time. The provenance says so. Throws Error when units of length or time cannot be converted.
 std::shared_ptr<const BrickSource> withOther(std::shared_ptr<const BrickSource> source,
                                              std::shared_ptr<const BrickSource> other);
 
