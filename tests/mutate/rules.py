@@ -11,10 +11,14 @@ for one, two in PAIRS:
     OTHER_MEMBER.setdefault(two, one)
 OTHER_FUNCTION = {"min": "max", "max": "min", "floor": "ceil", "ceil": "floor", "sin": "cos", "cos": "sin",
                   "lower_bound": "upper_bound", "upper_bound": "lower_bound", "front": "back", "back": "front",
-                  "any_of": "all_of", "all_of": "any_of", "push_back": None}
+                  "any_of": "all_of", "all_of": "any_of"}
 BOUNDS = {"<": "<=", "<=": "<", ">": ">=", ">=": ">"}
 EQUALS = {"==": "!=", "!=": "=="}
 LOGIC = {"&&": "||", "||": "&&"}
+
+
+def one_line(text):
+    return re.sub(r"\s*\n\s*", " ", text)
 
 
 def edit(start, end, before, after=""):
@@ -24,8 +28,14 @@ def edit(start, end, before, after=""):
 
 def instead(rule, source, start, end, new):
     """The expression from `start` to `end`, or `new` where the fault is on."""
-    new = re.sub(r"\s*\n\s*", " ", new)
+    new = one_line(new)
     return rule, start, end, source.text(start, end), new, [edit(start, end, f"(@ ? ({new}) : (", "))")]
+
+
+def instead_bool(rule, source, start, end, new):
+    """The same for a condition, which may be a pointer or an optional."""
+    return (rule, start, end, source.text(start, end), new,
+            [edit(start, end, f"(@ ? ({new}) : static_cast<bool>(", "))")])
 
 
 def faults_in(source, function, body):
@@ -33,8 +43,10 @@ def faults_in(source, function, body):
     k = source.k
     yield from nothing_done(source, function, body)
 
-    def walk(node, parent):
+    def walk(node, parent, result_known=True):
         kind = node.kind
+        if kind == k.LAMBDA_EXPR:
+            result_known = "->" in source.text(*source.span(node)).split("{")[0]
         if kind == k.STATIC_ASSERT or (kind == k.VAR_DECL and is_constant(source, node)):
             return
         children = list(node.get_children())
@@ -51,7 +63,7 @@ def faults_in(source, function, body):
             yield from member(source, node, parent)
         elif kind in (k.INTEGER_LITERAL, k.FLOATING_LITERAL, k.CXX_BOOL_LITERAL_EXPR):
             yield from literal(source, node, parent)
-        elif kind == k.RETURN_STMT and children:
+        elif kind == k.RETURN_STMT and children and result_known:
             yield from early_return(source, start, end, children[0])
         if kind in (k.IF_STMT, k.WHILE_STMT) and children:
             if re.match(r"if\s+constexpr", source.text(start, start + 20)):
@@ -63,7 +75,7 @@ def faults_in(source, function, body):
         if kind == k.FOR_STMT:  # never the step: a loop without end costs a time limit and teaches nothing
             children = [c for c in children if not is_step(source, node, c)]
         for child in children:
-            yield from walk(child, node)
+            yield from walk(child, node, result_known)
 
     yield from walk(body, None)
 
@@ -124,7 +136,7 @@ def operation(source, a, b, c, d, left, right, result):
         yield instead("plus-minus", source, a, d, f"{one} {'-' if op == '+' else '+'} ({two})")
     if op == "*" and numbers and is_real(right):
         yield instead("times-over", source, a, d, f"({one}) / ({two})")
-    if op in ("+=", "-="):
+    if op in ("+=", "-=") and numbers:
         yield instead("plus-minus", source, a, d, f"{one} {'-=' if op == '+=' else '+='} {two}")
 
 
@@ -140,7 +152,7 @@ def unary(source, start, end, operand):
 def negated(rule, source, expression):
     start, end = source.span(expression)
     if source.plain(start, end):
-        yield instead(rule, source, start, end, f"!({source.text(start, end)})")
+        yield instead_bool(rule, source, start, end, f"!({one_line(source.text(start, end))})")
 
 
 def condition(source, node, children):
@@ -154,7 +166,7 @@ def condition(source, node, children):
         return
     choices = ("false",) if node.kind == k.WHILE_STMT else ("true", "false")
     for choice in choices:
-        yield instead("condition", source, start, end, choice)
+        yield instead_bool("condition", source, start, end, choice)
 
 
 def call(source, node, parent):
@@ -176,10 +188,11 @@ def call(source, node, parent):
         return
     for argument, (a, b) in zip(arguments, spans):
         kind = spelled(argument.type)
-        literal_text = re.fullmatch(r"[-\w.\"]*", source.text(a, b)) and not re.match(r"[A-Za-z_]", source.text(a, b))
+        text = source.text(a, b)
+        plain_value = re.fullmatch(r"-?[\d.][\w.]*|true|false|\{.*|\".*", text, re.DOTALL)
         if (is_number(argument.type) or is_vector(argument.type) or "bool" == kind.replace("const ", "") or
-                kind.replace("const ", "").startswith("std::basic_string<") or is_enum(argument.type)) and not literal_text:
-            yield instead("ignore-argument", source, a, b, f"std::decay_t<decltype({source.text(a, b)})>{{}}")
+                kind.replace("const ", "").startswith("std::basic_string<") or is_enum(argument.type)) and not plain_value:
+            yield instead("ignore-argument", source, a, b, f"std::decay_t<decltype({text})>{{}}")
     for i in range(len(arguments) - 1):
         (a, b), (c, d) = spans[i], spans[i + 1]
         one, two = source.text(a, b), source.text(c, d)
