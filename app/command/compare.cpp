@@ -16,8 +16,9 @@ namespace {
 CompareVariant parseVariant(const std::string& text) {
     CompareVariant variant;
     std::string rest = text;
-    if (!rest.starts_with('/')) {
-        const auto colon = rest.find(':');
+    const auto colon = rest.find(':');
+    const bool named = colon != std::string::npos || rest.find('=') == std::string::npos;
+    if (named && !rest.starts_with('/')) {
         variant.name = rest.substr(0, colon);
         rest = colon == std::string::npos ? std::string() : rest.substr(colon + 1);
     }

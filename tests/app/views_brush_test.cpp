@@ -214,6 +214,45 @@ TEST_F(BrushEdit, ALassoFollowsTheMouse) {
     ASSERT_EQ(selection.brushes.size(), 1u);
 }
 
+TEST_F(BrushEdit, ALassoTakesACornerEveryThreePixels) {
+    tool = BrushTool::Lasso;
+    const auto corners = [&] { return std::get<vis::LassoRegion>(selection.brushes.at(0).region).points.size(); };
+    const auto moveTo = [&](float x, float y) {
+        mouse = {x, y};
+        frame();
+    };
+    moveTo(100, 100);
+    button(0, true);
+    moveTo(120, 100); // far enough to be a drag
+    EXPECT_EQ(corners(), 2u);
+    moveTo(122, 100);
+    EXPECT_EQ(corners(), 2u) << "two pixels on is no corner";
+    moveTo(123, 100);
+    EXPECT_EQ(corners(), 3u);
+    moveTo(123, 103);
+    EXPECT_EQ(corners(), 4u) << "in any direction";
+    button(0, false);
+}
+
+TEST_F(BrushEdit, TheMouseShowsWhichWayAnEdgeGoes) {
+    dragFromTo(2, 0.2, 6, 0.8);
+    const auto cursorAt = [&](double x, double y) {
+        moveTo(x, y);
+        frame();
+        return ImGui::GetMouseCursor();
+    };
+    EXPECT_EQ(cursorAt(2, 0.8), ImGuiMouseCursor_ResizeNWSE) << "top left";
+    EXPECT_EQ(cursorAt(6, 0.2), ImGuiMouseCursor_ResizeNWSE) << "bottom right";
+    EXPECT_EQ(cursorAt(6, 0.8), ImGuiMouseCursor_ResizeNESW) << "top right";
+    EXPECT_EQ(cursorAt(2, 0.2), ImGuiMouseCursor_ResizeNESW) << "bottom left";
+    EXPECT_EQ(cursorAt(2, 0.5), ImGuiMouseCursor_ResizeEW) << "left";
+    EXPECT_EQ(cursorAt(6, 0.5), ImGuiMouseCursor_ResizeEW) << "right";
+    EXPECT_EQ(cursorAt(4, 0.8), ImGuiMouseCursor_ResizeNS) << "top";
+    EXPECT_EQ(cursorAt(4, 0.2), ImGuiMouseCursor_ResizeNS) << "bottom";
+    EXPECT_EQ(cursorAt(4, 0.5), ImGuiMouseCursor_ResizeAll) << "inside";
+    EXPECT_EQ(cursorAt(9, 0.95), ImGuiMouseCursor_Arrow) << "elsewhere";
+}
+
 TEST(BrushList, SaysHowBrushesMeet) {
     vis::Selection selection;
     EXPECT_EQ(combinationText(selection), "");

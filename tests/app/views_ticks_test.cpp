@@ -123,6 +123,8 @@ TEST(Numbers, LengthsSuitTheBox) {
     EXPECT_EQ(suitableLength("m", 0.0009).name, "mm");
     EXPECT_EQ(suitableLength("voxel", 100).name, "voxel");
     EXPECT_EQ(suitableLength("m", 3).name, "m");
+    EXPECT_EQ(suitableLength("mm", 0).name, "mm") << "nothing to go by";
+    EXPECT_DOUBLE_EQ(suitableLength("mm", 0).perUnit, 1);
 }
 
 } // namespace

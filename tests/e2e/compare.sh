@@ -28,6 +28,10 @@ grep -q 'again,as it is,no,.*,0.0,0.0,inf,1.0,' again.csv || die "equal variants
 # What does not fit is said before anything is drawn.
 compare -o bad.png --variant "/render/nothing=1" && die "an unknown setting passes"
 [ $? = 0 ] || grep -q '/render/nothing' err || die "an unknown setting is not named"
+for change in "/render/step" "render/step=1" "name: step=1"; do
+    compare -o bad.png --variant "$change" && die "the change \"$change\" passes"
+    grep -q 'needs NAME: /json/pointer=value' err || die "of \"$change\" is said: $(cat err)"
+done
 compare -o bad.png --reference 7 && die "a reference that is none passes"
 [ -e bad.png ] && die "a failed comparison left a picture"
 

@@ -47,6 +47,7 @@ def options():
     parser.add_argument("--only", default="", help="numbers of faults to try again")
     parser.add_argument("--report", action="store_true", help="only print what is known")
     parser.add_argument("--fresh", action="store_true", help="choose the faults again, as after a change of seed or rules")
+    parser.add_argument("--as-built", action="store_true", help="go on with what is built, whatever changed since")
     parser.add_argument("--build-only", action="store_true", help="make and build the copy, run nothing")
     return parser.parse_args()
 
@@ -120,7 +121,7 @@ def main():
     copy = build.Copy(root, folder)
     verdict_path = os.path.join(folder, "verdicts.json")
     verdicts, reasons = load(verdict_path, {}), report.equivalents()
-    if args.report:
+    if args.report or args.as_built:
         numbered = build.load_placed(folder)
     else:
         copy.mirror(but=build.placed_files(folder))
@@ -131,7 +132,7 @@ def main():
         return
     data = os.path.join(os.path.dirname(root), "shared", "data")
     trials = trial.Trials(folder, copy.build, copy.sources, room["tests"], room["scripts"], data if os.path.isdir(data) else "")
-    if args.report:
+    if args.report or args.as_built:
         trials.remember()
     else:
         trials.learn(numbered, say)

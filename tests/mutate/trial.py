@@ -8,6 +8,7 @@ import shutil
 import signal
 import subprocess
 import tempfile
+import time
 
 MEMORY, FILE_SIZE = 12 << 30, 4 << 30  # bytes: a fault may ask for any amount
 
@@ -58,10 +59,7 @@ class Trials:
             with open(os.path.join(work, "said"), "wb") as said:
                 process = subprocess.Popen(command, stdout=said, stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL, cwd=work,
                                            env=env, preexec_fn=limits, start_new_session=True)
-                try:
-                    status = process.wait(timeout=60 + 6 * seconds)  # others may be using the machine
-                except subprocess.TimeoutExpired:
-                    status = None
+                status = wait_while_busy(process, 60 + 3 * seconds, command[0] != "bash")
                 try:
                     os.killpg(process.pid, signal.SIGKILL)
                 except ProcessLookupError:
@@ -129,7 +127,6 @@ class Trials:
         shutil.rmtree(folder)
 
     def learn_script(self, script, path):
-        import time
         cover = os.path.join(self.folder, "script.reached")
         if os.path.exists(cover):
             os.remove(cover)
@@ -152,16 +149,17 @@ class Trials:
         for batch in batches(tests):
             rest = batch
             while rest:
-                failed = self.first_failure(number, rest)
+                failed, hung = self.first_failure(number, rest)
                 if failed is None:
                     break
-                if len(rest) == 1 or self.first_failure(number, [failed]):
+                if hung or len(rest) == 1 or self.first_failure(number, [failed])[0]:
                     return "killed", f"{failed.program}:{failed.name}"
                 # By itself it passes: the failure came of the company it was in, or of the load.
                 rest = [t for t in rest if t is not failed]
         return "survived", ""
 
     def first_failure(self, number, tests):
+        """(the first of the tests that fails with this fault or None, whether it did not come to an end)"""
         seconds = 20 + 5 * sum(t.seconds for t in tests)
         program = tests[0].program
         settings = {"TESSERA_MUTANT": str(number)}
@@ -172,10 +170,31 @@ class Trials:
                        "--gtest_filter=" + ":".join(t.name for t in tests)]
         status, text = self.run(command, seconds, settings)
         if status == 0:
-            return None
+            return None, False
         found = re.search(r"\[  FAILED  \] ([^\s,]+)", text) or (re.findall(r"\[ RUN      \] (\S+)", text) or [None])[-1]
         name = found if isinstance(found, str) else found[1] if found else ""
-        return next((t for t in tests if t.name == name), tests[-1])
+        return next((t for t in tests if t.name == name), tests[-1]), status is None
+
+
+def wait_while_busy(process, longest, alone):
+    """Exit status of a process; None where it took longer than `longest` seconds (others may be using the machine), or,
+    if it does its work `alone`, did nothing at all for 40 seconds."""
+    began = idle_since = time.monotonic()
+    before = None
+    while True:
+        try:
+            return process.wait(timeout=0.5)
+        except subprocess.TimeoutExpired:
+            now = time.monotonic()
+        try:
+            fields = open(f"/proc/{process.pid}/stat").read().rpartition(")")[2].split()
+            used = (fields[11], fields[12], fields[13], fields[14])  # its own time and that of children that have ended
+        except OSError:
+            continue
+        if used != before:
+            before, idle_since = used, now
+        if now - began > longest or (alone and now - idle_since > 40):
+            return None
 
 
 def list_tests(binary, env):
