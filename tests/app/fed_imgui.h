@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 #include <imgui.h>
+#include <string>
 
 namespace tessera::app {
 
@@ -41,6 +42,20 @@ protected:
                 ImGui::End();
             },
             seconds);
+    }
+    /// The texts of the widgets that `body` makes in a frame of its own (not what it draws by itself).
+    template <class Body> std::string said(Body&& body) {
+        std::string out;
+        ImGuiIO& io = ImGui::GetIO();
+        io.ClipboardUserData = &out;
+        io.SetClipboardTextFn = [](void* into, const char* text) { *static_cast<std::string*>(into) += text; };
+        feed([&] {
+            ImGui::LogToClipboard();
+            body();
+            ImGui::LogFinish();
+        });
+        io.ClipboardUserData = nullptr;
+        return out;
     }
     /// An item from `min` to `max` that takes both mouse buttons.
     static void surface(ImVec2 min, ImVec2 max) {

@@ -54,6 +54,7 @@ TEST(FirstView, TheFirstLayersSurroundingsAreClear) {
     const auto& opacity = session.transfer.at("air").opacity;
     ASSERT_EQ(opacity.size(), 3u);
     // 10 of 0..200 is the value around it; up to somewhat above that nothing is seen, and the body is.
+    EXPECT_EQ(opacity[0], glm::vec2(0));
     EXPECT_EQ(opacity[1].y, 0);
     EXPECT_GT(opacity[1].x, 10.0f / 200);
     EXPECT_LT(opacity[1].x, 0.25f);

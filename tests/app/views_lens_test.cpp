@@ -164,6 +164,38 @@ TEST(LensSection, LiesOnTheLensAndInThePlane) {
     }
 }
 
+/// Where a plane cuts a lens far from its middle, the section lies there, on either side.
+TEST(LensSection, FollowsATiltedLensToBothSides) {
+    const vis::Lens lens{.shape = vis::LensShape::Sphere, .size = {0.6f, 0.05f, 0.05f}, .rotation = {0, 45, 0}};
+    const vis::PlacedLens placed = vis::placeLenses({lens}, {}, {}, {}).front();
+    const auto middleAt = [&](double z) {
+        const auto points = lensSection(placed, 0, 1, 2, z);
+        glm::dvec3 sum(0);
+        for (const glm::dvec3& point : points) sum += point / double(std::max<std::size_t>(points.size(), 1));
+        EXPECT_FALSE(points.empty()) << z;
+        return sum;
+    };
+    const glm::dvec3 above = middleAt(0.3), below = middleAt(-0.3);
+    EXPECT_NEAR(std::abs(above.x), 0.3, 0.02) << "along the diagonal";
+    EXPECT_NEAR(above.x, -below.x, 1e-3);
+    EXPECT_NEAR(above.y, 0, 1e-3);
+    EXPECT_NEAR(below.y, 0, 1e-3);
+}
+
+TEST_F(LensEdit, TheHandleThatTurnsStandsAboveTheOthers) {
+    session.lenses[0].rotation = {0, 0, 90}; // the longest axis upright
+    frame();
+    const LensHandles at = handles();
+    ASSERT_TRUE(at.turn && at.middle);
+    EXPECT_EQ(at.turn->x, at.middle->x);
+    float farthest = 0;
+    for (const auto& axis : at.axes)
+        if (axis) farthest = std::max(farthest, std::hypot(axis->x - at.middle->x, axis->y - at.middle->y));
+    EXPECT_GT(farthest, 20);
+    EXPECT_LT(at.turn->y, at.middle->y - farthest);
+    EXPECT_GT(at.turn->y, at.middle->y - farthest - 40);
+}
+
 TEST(LensList, NamesAreHeldTogether) {
     volume::DatasetInfo info;
     info.bounds = {glm::dvec3(0), {2, 1, 1}};

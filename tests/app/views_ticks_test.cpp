@@ -106,6 +106,8 @@ TEST(Numbers, UnitsCountsAndShares) {
     EXPECT_EQ(prettyUnit("m/s"), "m/s");
     EXPECT_EQ(prettyUnit("m^2"), "m\u00b2");
     EXPECT_EQ(prettyUnit("m^-1"), "m^-1");
+    EXPECT_EQ(prettyUnit("m2/s"), "m\u00b2/s");
+    EXPECT_EQ(prettyUnit("m24"), "m24") << "not an exponent";
     EXPECT_EQ(formatCount(1234567), "1 234 567");
     EXPECT_EQ(formatCount(999), "999");
     EXPECT_EQ(formatShare(0), "0 %");

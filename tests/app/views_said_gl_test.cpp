@@ -1,0 +1,91 @@
+#include "app/views/ticks.h"
+#include "tests/app/views_fixture.h"
+
+#include <gmock/gmock.h>
+
+/// What views say in words: that there is nothing to show, and where there is, what it is.
+namespace tessera::app {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+class SaidViews : public ViewsTest {
+protected:
+    /// What a view says once it has settled.
+    template <class View>
+    std::string of(const char* pane, View& view, void (*function)(ViewContext&, const std::string&, View&)) {
+        const auto body = [&] { draw(pane, view, function, {720, 560}); };
+        for (int i = 0; i < 3 || (busy && i < 200); ++i) {
+            jobs.wait();
+            frame(body);
+        }
+        return said(body);
+    }
+};
+
+TEST_F(SaidViews, WithDataAndRoomNothingIsMissing) {
+    show(fuelCell(volume::LatticeKind::CC));
+    const auto expectShown = [&](const std::string& text, const char* pane) {
+        for (const char* hint : {"Not enough room", "No data", "No parameters", "Averaging", "Reading"})
+            EXPECT_THAT(text, Not(HasSubstr(hint))) << pane;
+    };
+    expectShown(of("layers", layersView, drawLayersView), "layers");
+    expectShown(of("timeline", timelineView, drawTimelineView), "timeline");
+    expectShown(of("data", dataView, drawDataView), "data");
+    expectShown(of("statistics", statisticsView, drawStatisticsView), "statistics");
+    expectShown(of("histogram", histogramView, drawHistogramView), "histogram");
+    expectShown(of("profile", profileView, drawProfileView), "profile");
+    expectShown(of("sliceMatrix", sliceMatrixView, drawSliceMatrixView), "sliceMatrix");
+    expectShown(of("curves", curvesView, drawCurvesView), "curves");
+    expectShown(of("transfer", transferView, drawTransferView), "transfer");
+    expectShown(of("scatterMatrix", scatterView, drawScatterMatrixView), "scatterMatrix");
+}
+
+TEST_F(SaidViews, WithoutDataEachSaysSo) {
+    show(nullptr);
+    EXPECT_THAT(of("layers", layersView, drawLayersView), HasSubstr("No data"));
+    EXPECT_THAT(of("timeline", timelineView, drawTimelineView), HasSubstr("No data"));
+    EXPECT_THAT(of("data", dataView, drawDataView), HasSubstr("No data"));
+    EXPECT_THAT(of("statistics", statisticsView, drawStatisticsView), HasSubstr("No data"));
+    EXPECT_THAT(of("histogram", histogramView, drawHistogramView), HasSubstr("No data"));
+    EXPECT_THAT(of("profile", profileView, drawProfileView), HasSubstr("No data"));
+    EXPECT_THAT(of("sliceMatrix", sliceMatrixView, drawSliceMatrixView), HasSubstr("No data"));
+    EXPECT_THAT(of("curves", curvesView, drawCurvesView), HasSubstr("No data"));
+    EXPECT_THAT(of("transfer", transferView, drawTransferView), HasSubstr("No data"));
+    EXPECT_THAT(of("scatterMatrix", scatterView, drawScatterMatrixView), HasSubstr("No data"));
+}
+
+TEST_F(SaidViews, TheTableOfTheSelectionHasItsHeads) {
+    show(fuelCell(volume::LatticeKind::CC));
+    const std::string plain = of("data", dataView, drawDataView);
+    EXPECT_THAT(plain, HasSubstr("Mean and range now"));
+    EXPECT_THAT(plain, Not(HasSubstr("Outside")));
+    const volume::DatasetInfo& info = source->info();
+    const std::string name = info.channels().front().name;
+    const Range range = info.channelRange(info.channels().front());
+    session.selection.brushes = {
+        vis::rangeBrush({{.channel = name, .lo = range.lo, .hi = 0.5 * (range.lo + range.hi)}})};
+    const std::string brushed = of("data", dataView, drawDataView);
+    EXPECT_THAT(brushed, HasSubstr("samples in focus"));
+    for (const char* head : {"Parameter", "In focus", "Outside"}) EXPECT_THAT(brushed, HasSubstr(head));
+    // The means of the samples on either side, inside first.
+    const volume::Dataset cell = volume::makeModel("fuel-cell", {{"nx", 7}, {"ny", 9}, {"nz", 21}, {"times", 2}});
+    const volume::Field field = cell.load(0, 0, 0);
+    double sum[2] = {}, count[2] = {};
+    for (std::size_t i = 0; i < field.count(); ++i) {
+        if (field.mask && (*field.mask)[i] == 0) continue;
+        const double value = double(field.as<float>()[i]);
+        const int side = value <= 0.5 * (range.lo + range.hi) ? 0 : 1;
+        sum[side] += value;
+        count[side] += 1;
+    }
+    ASSERT_GT(count[0], 0);
+    ASSERT_GT(count[1], 0);
+    const double digits = (range.hi - range.lo) / 1000;
+    EXPECT_THAT(brushed, testing::ContainsRegex("\\| " + formatNumber(sum[0] / count[0], digits) + "[^|]*\\| " +
+                                                formatNumber(sum[1] / count[1], digits)));
+}
+
+} // namespace
+} // namespace tessera::app
