@@ -56,6 +56,20 @@ BenchTable benchResample() {
         addRow(table, "256^3 u8 -> BCC", std::string(volume::kResampleFilterNames[std::size_t(options.filter)]),
                double(cube.count()), best([&] { (void)volume::toBcc(cube, false, options); }));
 
+    // A parameter of two parts (volume/part_masks.h) beside the same samples as one, and with as many absent ones.
+    const volume::Dataset parted = volume::makeMarschnerLobb({{"nx", 128}, {"ny", 128}, {"nz", 128}});
+    const auto halves = [&](std::uint8_t low, std::uint8_t high) {
+        volume::Field field = parted.load(0, 0, 0);
+        auto mask = std::make_shared<volume::Mask>(field.count());
+        for (std::size_t i = 0; i < mask->size(); ++i) (*mask)[i] = i / 128 % 128 < 64 ? low : high;
+        if (low != high) field.mask = std::move(mask);
+        return field;
+    };
+    for (const auto& [name, field] : {std::pair{"one part", halves(1, 1)}, std::pair{"half absent", halves(1, 0)},
+                                      std::pair{"two parts", halves(1, 2)}})
+        addRow(table, std::string("128^3 f32 -> BCC, ") + name, "default", double(field.count()),
+               best([&, each = &field] { (void)volume::toBcc(*each, false); }));
+
     const volume::Dataset moving =
         volume::makeMarschnerLobb({{"nx", 90}, {"ny", 90}, {"nz", 80}, {"times", 64}, {"bits", 8}});
     std::vector<std::shared_ptr<const volume::Field>> frames;

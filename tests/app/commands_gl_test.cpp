@@ -157,9 +157,9 @@ TEST_F(Commands, UnpackWritesTheTimesAskedFor) {
 }
 
 TEST_F(Commands, GenerateMakesAsManyTimes) {
-    ASSERT_EQ(
-        run({"generate", "marschner-lobb", "--size", "12x12x12", "--times", "4", "--set", "alpha=0.5", "-o", in("ml.tsr")}),
-        0);
+    ASSERT_EQ(run({"generate", "marschner-lobb", "--size", "12x12x12", "--times", "4", "--set", "alpha=0.5", "-o",
+                   in("ml.tsr")}),
+              0);
     EXPECT_EQ(run({"generate", "marschner-lobb", "--size", "12x12x12", "--times", "4", "-o", in("other.tsr")}), 0);
     const auto table = [&](const char* name) {
         EXPECT_EQ(run({"stats", in(name), "--all-times", "--by", "none", "-o", in("s.csv")}), 0);

@@ -47,6 +47,9 @@ struct Consumer {
     const char* kind;
     const char* effects;
 };
+void PrintTo(const Consumer& each, std::ostream* out) {
+    *out << each.kind;
+}
 // clang-format off
 //                       time
 //                       | between
