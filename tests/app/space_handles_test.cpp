@@ -41,10 +41,10 @@ protected:
         if (slice) {
             // x to the right, y up; the frame's values are centimetres.
             const PlotFrame plot{{50, 50}, {450, 350}, {0, 200}, {0, 100}};
-            editHandles(drag, session, info, plot, 0, 1, glm::dvec2(100), ImGui::IsItemHovered());
+            edited = editHandles(drag, session, info, plot, 0, 1, glm::dvec2(100), ImGui::IsItemHovered());
             drawHandles(*ImGui::GetWindowDrawList(), drag, plot, session, info, 0, 1, glm::dvec2(100));
         } else {
-            editHandles(drag, session, info, space(), ImGui::IsItemHovered());
+            edited = editHandles(drag, session, info, space(), ImGui::IsItemHovered());
             drawHandles(*ImGui::GetWindowDrawList(), drag, space(), session, info);
         }
         ImGui::End();
@@ -60,6 +60,7 @@ protected:
         if (escape) {
             ImGui::GetIO().KeysDown[256] = true;
             frame();
+            EXPECT_TRUE(edited) << "the picture is to be drawn anew";
             ImGui::GetIO().KeysDown[256] = false;
         }
         ImGui::GetIO().MouseDown[0] = false;
@@ -81,7 +82,7 @@ protected:
     volume::DatasetInfo info;
     HandleDrag drag;
     ImVec2 mouse{0, 0};
-    bool slice = false;
+    bool slice = false, edited = false;
 };
 
 TEST_F(SpaceHandles, EndsOfALineMoveAlone) {

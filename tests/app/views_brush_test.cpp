@@ -234,6 +234,17 @@ TEST_F(BrushEdit, ALassoTakesACornerEveryThreePixels) {
     button(0, false);
 }
 
+TEST_F(BrushEdit, ASmallBrushHasAMiddleToMoveItBy) {
+    selection.brushes = {
+        vis::rangeBrush({{.channel = "T", .lo = 4, .hi = 4.4}, {.channel = "O2", .lo = 0.5, .hi = 0.58}})};
+    dragFromTo(4.2, 0.54, 6.2, 0.74); // eight pixels wide and high
+    ASSERT_EQ(selection.brushes.size(), 1u);
+    EXPECT_NEAR(interval(0, 0).lo, 6, 0.06);
+    EXPECT_NEAR(interval(0, 0).hi, 6.4, 0.06);
+    EXPECT_NEAR(interval(0, 1).lo, 0.7, 0.012);
+    EXPECT_NEAR(interval(0, 1).hi, 0.78, 0.012);
+}
+
 TEST_F(BrushEdit, TheMouseShowsWhichWayAnEdgeGoes) {
     dragFromTo(2, 0.2, 6, 0.8);
     const auto cursorAt = [&](double x, double y) {

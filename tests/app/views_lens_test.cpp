@@ -94,6 +94,17 @@ TEST_F(LensEdit, SquaresResizeAndKeepTheShape) {
     EXPECT_FALSE(handles().axes[2]) << "points at the viewer";
 }
 
+TEST_F(LensEdit, OnlyTheWayAlongItsAxisMovesASquare) {
+    session.lenses[0].shape = vis::LensShape::Box;
+    session.lenses[0].rotation = {0, 0, 30};
+    frame();
+    const ImVec2 end = *handles().axes[0], middle = *handles().middle, way{end.x - middle.x, end.y - middle.y};
+    dragBy(end, {-0.5f * way.y, 0.5f * way.x}); // across
+    EXPECT_NEAR(lens().size.x, 0.2f, 0.004f);
+    dragBy(*handles().axes[0], {0.5f * way.x, 0.5f * way.y});
+    EXPECT_NEAR(lens().size.x, 0.3f, 0.006f);
+}
+
 TEST_F(LensEdit, TheRingTurnsLikeABall) {
     const ImVec2 at = *handles().turn;
     moveTo(*handles().middle);

@@ -87,5 +87,29 @@ TEST_F(SaidViews, TheTableOfTheSelectionHasItsHeads) {
                                                 formatNumber(sum[1] / count[1], digits)));
 }
 
+TEST_F(SaidViews, LayersAreListedByNameAndParameter) {
+    show(fuelCell(volume::LatticeKind::CC));
+    session.layers = {{"hot gas", true, vis::VolumeLayer{.channel = "T"}},
+                      {"T above", true, vis::IsoLayer{.channel = "T", .value = 353}},
+                      {"", false, vis::VolumeLayer{.channel = "H2"}}};
+    const std::string text = of("layers", layersView, drawLayersView);
+    for (const char* word : {"hot gas", "T above", "H2"}) EXPECT_THAT(text, HasSubstr(word));
+}
+
+TEST_F(SaidViews, FluxIsShownWhereThereIsAVelocity) {
+    const auto sections = [&](SectionMeasure measure) {
+        profileView.over = ProfileOver::Sections;
+        profileView.sections.measure = measure;
+        return of("profile", profileView, drawProfileView);
+    };
+    show(fuelCell(volume::LatticeKind::CC));
+    for (const SectionMeasure measure : {SectionMeasure::Mean, SectionMeasure::Flux, SectionMeasure::Flow})
+        EXPECT_THAT(sections(measure), Not(HasSubstr("No flux")));
+    show(volume::makeMemorySource(volume::makeModel("marschner-lobb", {{"nx", 12}, {"ny", 12}, {"nz", 12}}), {}));
+    EXPECT_THAT(sections(SectionMeasure::Mean), Not(HasSubstr("No flux")));
+    EXPECT_THAT(sections(SectionMeasure::Flux), HasSubstr("No flux"));
+    EXPECT_THAT(sections(SectionMeasure::Flow), HasSubstr("No flux"));
+}
+
 } // namespace
 } // namespace tessera::app
