@@ -106,7 +106,9 @@ bool handleMouse(ViewContext& context, CameraHand& hand, vis::ViewTarget* target
                 vis::zoom(camera, std::exp((to.y - from.y) * 1.5f));
                 break;
             case CameraDrag::Roll:
-                vis::roll(camera, std::atan2(to.y, to.x) - std::atan2(from.y, from.x));
+                // The angle on screen, where a picture is seldom square.
+                vis::roll(camera,
+                          static_cast<float>(std::atan2(to.y, to.x * aspect) - std::atan2(from.y, from.x * aspect)));
                 break;
             case CameraDrag::None:
                 break;
@@ -117,8 +119,9 @@ bool handleMouse(ViewContext& context, CameraHand& hand, vis::ViewTarget* target
         const bool held = ImGui::IsMouseDown(ImGuiMouseButton_Left) || ImGui::IsMouseDown(ImGuiMouseButton_Middle) ||
                           ImGui::IsMouseDown(ImGuiMouseButton_Right);
         const auto clicked = [&](ImGuiMouseButton button) {
-            const ImVec2 way = ImGui::GetMouseDragDelta(button, 0);
-            return ImGui::IsMouseReleased(button) && std::hypot(way.x, way.y) < io.MouseDragThreshold;
+            // The furthest it was from where it went down: a drag that comes back is none.
+            return ImGui::IsMouseReleased(button) &&
+                   io.MouseDragMaxDistanceSqr[button] < io.MouseDragThreshold * io.MouseDragThreshold;
         };
         if (!held) {
             if (hand.drag == CameraDrag::Zoom && clicked(ImGuiMouseButton_Right)) ImGui::OpenPopup(menu);
