@@ -114,6 +114,30 @@ std::vector<std::uint8_t> profileImage(const volume::DatasetInfo& info, const Se
     return rgba;
 }
 
+namespace {
+
+constexpr int kLeastRows = 256; ///< of a figure over time: as even as a line's samples
+
+/// The picture of a parameter along the line at every time, each as high as the time axis has it: half way to the times
+/// before and after it.
+FigureImage imageOverTime(const volume::DatasetInfo& info, const Session& session, const Profile& profile,
+                          std::size_t channel) {
+    const std::vector<std::uint8_t> rows = profileImage(info, session, profile, channel);
+    const std::vector<double>& times = profile.times;
+    const std::size_t bytes = profile.positions.size() * 4;
+    FigureImage image{
+        static_cast<int>(profile.positions.size()), std::max(kLeastRows, static_cast<int>(times.size())), {}};
+    for (int row = 0; row < image.height; ++row) {
+        const double time = std::lerp(times.back(), times.front(), (row + 0.5) / image.height);
+        const std::size_t stored = times.size() - 1 - static_cast<std::size_t>(info.nearestTime(time));
+        const auto from = rows.begin() + static_cast<std::ptrdiff_t>(stored * bytes);
+        image.rgba.insert(image.rgba.end(), from, from + static_cast<std::ptrdiff_t>(bytes));
+    }
+    return image;
+}
+
+} // namespace
+
 std::string profileSvg(const volume::DatasetInfo& info, const Session& session, const Profile& profile) {
     const std::vector<volume::Channel> channels = info.channels();
     const bool overTime = profile.wish.over == ProfileOver::Time;
@@ -130,8 +154,7 @@ std::string profileSvg(const volume::DatasetInfo& info, const Session& session, 
         if (profile.wish.over == ProfileOver::LineAndTime) {
             panel.title = titleWithUnit(own.name, own.unit);
             panel.y = timeAxis();
-            panel.image = {static_cast<int>(profile.positions.size()), static_cast<int>(profile.times.size()),
-                           profileImage(info, session, profile, c)};
+            panel.image = imageOverTime(info, session, profile, c);
         } else {
             panel.y = {titleWithUnit(own.name, own.unit), paddedRange(range, 0.03)};
             FigureSeries line{own.name, {}, {0.1f, 0.36f, 0.62f}};
