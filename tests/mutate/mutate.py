@@ -8,6 +8,7 @@ its place while its own function does.
 
   mutate.py app                    makes, builds and tries 200 faults in app; goes on where it was stopped
   mutate.py app --again            tries survivors again, with tests that were added or changed since
+  mutate.py app --as-built         goes on with the copy as it was built, whatever changed since
   mutate.py app --fresh            chooses again: after much new code, or with another --seed, --faults or --placed
   mutate.py app --report           prints the table and the survivors, runs nothing
   mutate.py app --only 17,23       tries these again and says by what they are killed

@@ -41,6 +41,7 @@ class Trials:
         env["MESA_SHADER_CACHE_DIR"] = os.path.join(self.folder, "shaders")
         if self.data:
             env.setdefault("TESSERA_DATA", self.data)
+            env["TESSERA_TEST_DATA"] = self.data
         return env
 
     def run(self, command, seconds, settings):
