@@ -1,17 +1,19 @@
 #pragma once
 
-#include <array>
+#include "codec/container.h"
+
 #include <atomic>
 #include <chrono>
 #include <functional>
+#include <optional>
 #include <string>
 #include <thread>
 
 namespace tessera::app {
 
-/// Notices that a file has been appended to or replaced. A thread of its own looks at size and time of change and, when
-/// they are other ones, at the first bytes, where an archive says up to where it is whole: it is cheap, and a file that
-/// is being written is not told of before its next whole state.
+/// Notices that an archive has been appended to or replaced. A thread of its own reads its header, which says up to
+/// where it is whole, as every reader does: it is cheap, and an archive that is being written is not told of before its
+/// next whole state.
 class GrowthWatch {
 public:
     /// `wake` is called from the thread after each change. What happened before counts as one.
@@ -23,10 +25,9 @@ public:
     bool changed() { return changed_.exchange(false); }
 
 private:
-    static constexpr std::size_t kHead = 160; ///< both headers of an archive
-    using Head = std::array<char, kHead>;
-    Head head() const;
-    void watch(const std::stop_token& stop, std::chrono::milliseconds interval, Head seen);
+    using State = std::optional<codec::Header>;
+    State state() const;
+    void watch(const std::stop_token& stop, std::chrono::milliseconds interval, State seen);
 
     std::string path_;
     std::function<void()> wake_;
