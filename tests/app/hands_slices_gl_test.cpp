@@ -1,0 +1,250 @@
+#include "tests/app/hands_fixture.h"
+
+/// The mouse in pictures of planes: which axis a drag or the wheel moves, which way, and where it ends.
+namespace tessera::app {
+namespace {
+
+constexpr double kTiny = 1e-9; ///< metres; a pixel is about 1e-4
+
+class SliceHands : public Hands {
+protected:
+    /// Axes of the three slices: to the right, up, across.
+    static constexpr int kAxes[3][3] = {{0, 1, 2}, {2, 1, 0}, {0, 2, 1}};
+
+    void showSlices(const std::function<void(Session&)>& prepare = {}) {
+        SlicesView slices;
+        slices.channel = "T";
+        slices.showReadout = false;
+        show(slices, {460, 420}, prepare);
+        planes = pictures();
+        ASSERT_EQ(planes.size(), 3u);
+    }
+    std::vector<ImRect> planes;
+};
+
+TEST_F(SliceHands, TheCrossHairGoesUnderTheMouse) {
+    for (const double stretch : {1.0, 0.4}) {
+        showSlices([&](Session& edited) { edited.stretch.y = stretch; });
+        for (int plane = 0; plane < 3; ++plane) {
+            SCOPED_TRACE(plane);
+            const ImRect& picture = planes[std::size_t(plane)];
+            const auto [right, up, normal] = kAxes[plane];
+            const Session before = session();
+            const auto expectAt = [&](ImVec2 at) {
+                EXPECT_NEAR(session().cursor[right], across(picture, extent(right), at), kTiny);
+                EXPECT_NEAR(session().cursor[up], upwards(picture, extent(up), at), kTiny);
+                EXPECT_EQ(session().cursor[normal], before.cursor[normal]);
+            };
+            moveTo(within(picture, 0.2, 0.3));
+            EXPECT_TRUE(session() == before) << "the mouse alone moves nothing";
+            button(0, true);
+            expectAt(mouse);
+            moveTo(within(picture, 0.8, 0.6));
+            expectAt(mouse);
+            moveTo({picture.Max.x + 30, picture.Min.y - 30}); // also over another slice
+            EXPECT_EQ(session().cursor[right], extent(right).hi);
+            EXPECT_EQ(session().cursor[up], extent(up).hi);
+            moveTo({picture.Min.x - 20, picture.Max.y + 20});
+            EXPECT_EQ(session().cursor[right], extent(right).lo);
+            EXPECT_EQ(session().cursor[up], extent(up).lo);
+            moveTo(within(picture, 0.4, 0.7));
+            button(0, false);
+            const ImVec2 left = mouse;
+            moveTo(within(picture, 0.9, 0.1));
+            expectAt(left);
+            EXPECT_EQ(steps(), 1u) << "one drag is one step";
+            undo();
+            EXPECT_TRUE(session() == before) << apart(before);
+        }
+    }
+}
+
+TEST_F(SliceHands, TheWheelGoesThroughThePlanes) {
+    showSlices();
+    for (int plane = 0; plane < 3; ++plane) {
+        SCOPED_TRACE(plane);
+        const int normal = kAxes[plane][2];
+        const double step = formula::kSpacing[normal];
+        glm::dvec3 expected = session().cursor;
+        moveTo(within(planes[std::size_t(plane)], 0.5, 0.5));
+        turnWheel(1);
+        expected[normal] += step;
+        EXPECT_NEAR(session().cursor[normal], expected[normal], kTiny) << "away from the hand: to larger coordinates";
+        turnWheel(-2);
+        expected[normal] -= 2 * step;
+        EXPECT_NEAR(session().cursor[normal], expected[normal], kTiny);
+        for (const int other : {kAxes[plane][0], kAxes[plane][1]}) EXPECT_EQ(session().cursor[other], expected[other]);
+        session().cursor[normal] = extent(normal).lo;
+        shift = true;
+        turnWheel(0.3f);
+        EXPECT_NEAR(session().cursor[normal], extent(normal).lo + 3 * step, 1e-6 * step) << "Shift: ten samples";
+        turnWheel(1);
+        EXPECT_EQ(session().cursor[normal], extent(normal).hi);
+        turnWheel(-1);
+        EXPECT_EQ(session().cursor[normal], extent(normal).lo);
+        shift = false;
+        turnWheel(-1);
+        EXPECT_EQ(session().cursor[normal], extent(normal).lo);
+    }
+    const glm::dvec3 before = session().cursor;
+    moveTo({planes[0].Max.x + 4, planes[0].Min.y - 6});
+    turnWheel(1);
+    EXPECT_EQ(session().cursor, before) << "beside the slices the wheel is not theirs";
+}
+
+TEST_F(SliceHands, TheMiddleOfALensMovesTheLens) {
+    const vis::Lens lens{.name = "a", .center = {0.0135, 0.006, 0.0003}, .size = {0.2f, 0.2f, 0.2f}};
+    for (int plane = 0; plane < 3; ++plane) {
+        SCOPED_TRACE(plane);
+        showSlices([&](Session& edited) { edited.lenses = {lens}; });
+        const ImRect& picture = planes[std::size_t(plane)];
+        const auto [right, up, normal] = kAxes[plane];
+        const auto share = [&](int axis) {
+            return (lens.center[axis] - extent(axis).lo) / (extent(axis).hi - extent(axis).lo);
+        };
+        const glm::dvec3 cursor = session().cursor;
+        drag(within(picture, share(right), 1 - share(up)), within(picture, 0.75, 0.8));
+        const glm::dvec3 center = session().lenses[0].center;
+        EXPECT_NEAR(center[right], across(picture, extent(right), mouse), kTiny);
+        EXPECT_NEAR(center[up], upwards(picture, extent(up), mouse), kTiny);
+        EXPECT_EQ(center[normal], lens.center[normal]);
+        EXPECT_EQ(session().cursor, cursor);
+        EXPECT_EQ(steps(), 1u);
+        // What is switched off or goes with the cross-hair leaves the mouse to it.
+        for (const bool follows : {false, true}) {
+            vis::Lens& other = session().lenses[0];
+            other.center = lens.center;
+            other.enabled = follows, other.followsCursor = follows;
+            drag(within(picture, share(right), 1 - share(up)), within(picture, 0.3, 0.3));
+            EXPECT_EQ(session().lenses[0].center, lens.center);
+            EXPECT_NEAR(session().cursor[right], across(picture, extent(right), mouse), kTiny);
+        }
+    }
+}
+
+TEST_F(SliceHands, CornersOfAProfileLineMoveInThePlane) {
+    const std::vector<glm::dvec3> corners{{0.012, 0.009, 0.001}, {0.015, 0.003, -0.0005}};
+    for (int plane = 0; plane < 3; ++plane)
+        for (std::size_t held = 0; held < 2; ++held) {
+            SCOPED_TRACE(plane);
+            showSlices([&](Session& edited) {
+                ProfileView profile;
+                profile.points = corners;
+                edited.views["line"] = profile;
+            });
+            const ImRect& picture = planes[std::size_t(plane)];
+            const auto [right, up, normal] = kAxes[plane];
+            const auto pixel = [&](glm::dvec3 at) {
+                const auto share = [&](int axis) {
+                    return (at[axis] - extent(axis).lo) / (extent(axis).hi - extent(axis).lo);
+                };
+                return ImVec2(float(picture.Min.x + share(right) * picture.GetWidth()),
+                              float(picture.Max.y - share(up) * picture.GetHeight()));
+            };
+            const auto points = [&] { return std::get<ProfileView>(session().views.at("line")).points; };
+            const glm::dvec3 cursor = session().cursor;
+            const ImVec2 from = pixel(corners[held]);
+            moveTo(from);
+            const ImVec2 start = mouse;
+            const float x = start.x < picture.GetCenter().x ? 12 : -12, y = start.y < picture.GetCenter().y ? 9 : -9;
+            button(0, true);
+            moveTo({start.x + x, start.y + y});
+            const glm::dvec3 moved = points()[held];
+            EXPECT_NEAR(pixel(moved).x, from.x + x, 1.01);
+            EXPECT_NEAR(pixel(moved).y, from.y + y, 1.01);
+            EXPECT_EQ(moved[normal], corners[held][normal]);
+            EXPECT_EQ(points()[1 - held], corners[1 - held]);
+            moveTo({picture.Max.x + 50, picture.Max.y + 50});
+            EXPECT_EQ(points()[held][right], extent(right).hi) << "stays in the box";
+            EXPECT_EQ(points()[held][up], extent(up).lo);
+            press(key::kEscape);
+            EXPECT_EQ(points(), corners) << "Esc takes the drag back";
+            button(0, false);
+            EXPECT_EQ(points(), corners);
+            EXPECT_EQ(session().cursor, cursor) << "the cross-hair stays";
+            EXPECT_EQ(steps(), 0u);
+        }
+}
+
+TEST_F(SliceHands, TheRightButtonOpensTheMenuAndMovesNothing) {
+    showSlices();
+    const Session before = session();
+    click(within(planes[1], 0.6, 0.4), 1);
+    EXPECT_TRUE(popup());
+    EXPECT_TRUE(session() == before) << apart(before);
+    drag(within(planes[0], 0.2, 0.2), within(planes[0], 0.7, 0.7), 2);
+    EXPECT_TRUE(session() == before) << "nor does the middle one";
+}
+
+class PlaneHands : public Hands {};
+
+TEST_F(PlaneHands, AClickInASliceOfTheMatrixGoesThere) {
+    struct Case {
+        volume::SpaceAxis normal;
+        int right, up; ///< the longer edge lies level
+    };
+    // The edges of the cell are 7, 12 and 4 mm.
+    for (const auto& [normal, right, up] :
+         {Case{volume::SpaceAxis::Z, 1, 0}, Case{volume::SpaceAxis::Y, 0, 2}, Case{volume::SpaceAxis::X, 1, 2}}) {
+        SliceMatrixView matrix;
+        matrix.channels = {"T", "|U|"};
+        matrix.planes = 3;
+        matrix.axis = normal;
+        show(matrix, {640, 320});
+        const std::vector<ImRect> slices = pictures(); // plane by plane, parameter by parameter
+        ASSERT_EQ(slices.size(), 6u);
+        for (const std::size_t index : {std::size_t(0), std::size_t(3), std::size_t(5)}) {
+            SCOPED_TRACE(index);
+            const ImRect& slice = slices[index];
+            click(within(slice, 0.25, 0.2));
+            const int across0 = int(normal);
+            const Range deep = extent(across0);
+            EXPECT_NEAR(session().cursor[across0], deep.lo + (deep.hi - deep.lo) * (2.0 * double(index / 2) + 1) / 6,
+                        kTiny);
+            // Columns need not begin at whole pixels.
+            const auto pixels = [&](int axis, float count) {
+                return (extent(axis).hi - extent(axis).lo) / double(count);
+            };
+            EXPECT_NEAR(session().cursor[right], across(slice, extent(right), mouse), pixels(right, slice.GetWidth()));
+            EXPECT_NEAR(session().cursor[up], upwards(slice, extent(up), mouse), pixels(up, slice.GetHeight()));
+        }
+        const glm::dvec3 before = session().cursor;
+        click({slices[0].Min.x + 10, slices[0].Min.y - 8});
+        EXPECT_EQ(session().cursor, before) << "the head line is no slice";
+    }
+}
+
+TEST_F(PlaneHands, AveragesOverPlanesTakeTheCrossHairAlong) {
+    for (int axis = 0; axis < 3; ++axis) {
+        SCOPED_TRACE(axis);
+        ProfileView profile;
+        profile.over = ProfileOver::Sections;
+        profile.channels = {"T"};
+        profile.sections.across = SectionAcross(axis);
+        show(profile, {640, 320});
+        const ImRect plots = inPane({"plots"});
+        const Session before = session();
+        moveTo(within(plots, 0.3, 0.5));
+        EXPECT_TRUE(session() == before) << "the mouse alone only reads";
+        button(0, true);
+        for (const double share : {0.3, 0.85}) {
+            moveTo(within(plots, share, 0.5));
+            glm::dvec3 expected = before.cursor;
+            expected[axis] = across(plots, extent(axis), mouse);
+            for (int i = 0; i < 3; ++i) EXPECT_NEAR(session().cursor[i], expected[i], kTiny);
+        }
+        moveTo({plots.Min.x - 40, mouse.y});
+        EXPECT_NEAR(session().cursor[axis], extent(axis).lo, 1e-15);
+        moveTo({plots.Max.x + 40, mouse.y});
+        EXPECT_NEAR(session().cursor[axis], extent(axis).hi, 1e-15);
+        EXPECT_LE(session().cursor[axis], extent(axis).hi);
+        button(0, false);
+        frame();
+        EXPECT_EQ(steps(), 1u);
+        undo();
+        EXPECT_TRUE(session() == before) << apart(before);
+    }
+}
+
+} // namespace
+} // namespace tessera::app
