@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace tessera::app {
 
@@ -60,7 +61,7 @@ void drawTrack(ViewContext& context, std::size_t index, const Row& row) {
     const PlotColors colors = plotColors();
     draw.AddLine({row.left, row.y}, {row.right, row.y}, colors.grid);
     std::size_t moved = 0, removedKey = 0;
-    double movedTo = -1;
+    std::optional<double> movedTo; ///< also before the beginning, where the mouse is left of the row
     bool remove = false;
     const std::vector<Keyframe>& keys = session.animation.tracks[index].keys;
     for (std::size_t k = 0; k + 1 < keys.size(); ++k)
@@ -93,12 +94,12 @@ void drawTrack(ViewContext& context, std::size_t index, const Row& row) {
         }
         ImGui::PopID();
     }
-    if (movedTo >= 0) {
+    if (movedTo) {
         // One key never passes another: the mouse would hold the wrong one.
         const double gap = session.animation.duration * 1e-3;
         const double lo = moved > 0 ? keys[moved - 1].at + gap : 0,
                      hi = moved + 1 < keys.size() ? keys[moved + 1].at - gap : session.animation.duration;
-        if (lo <= hi) moveKey(session.animation, index, moved, std::clamp(movedTo, lo, hi));
+        if (lo <= hi) moveKey(session.animation, index, moved, std::clamp(*movedTo, lo, hi));
     }
     if (remove) removeKey(session.animation, index, removedKey);
 }
