@@ -163,14 +163,15 @@ bool editBrushes(BrushDrag& drag, vis::Selection& selection, const PlotFrame& fr
                 selection.brushes.clear();
         }
     }
-    if (drag.active && !ImGui::IsMouseDown(ImGuiMouseButton_Left)) {
+    // Esc comes first: steering by keys, ImGui lets go of the item before anyone else hears of it.
+    if (drag.active && ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape))) {
+        selection = drag.original;
+        drag = {};
+    } else if (drag.active && !ImGui::IsMouseDown(ImGuiMouseButton_Left)) {
         drag = {};
     } else if (drag.active && drag.plot == plot && ImGui::IsItemActive()) {
         // The same channels may be plotted twice; the drag belongs to the plot it began in.
-        if (ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape))) {
-            selection = drag.original;
-            drag = {};
-        } else if (drag.brush >= static_cast<int>(selection.brushes.size()) && !drag.made) {
+        if (drag.brush >= static_cast<int>(selection.brushes.size()) && !drag.made) {
             drag = {}; // somebody else (undo) took the brush away
         } else {
             if (drag.brush < 0 && ImGui::IsMouseDragging(ImGuiMouseButton_Left, reach()))

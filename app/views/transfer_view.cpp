@@ -28,6 +28,7 @@ struct TransferCache : ViewCache {
     std::string shown;                                 ///< function that the pages were last drawn for
     std::shared_ptr<const volume::BrickSource> source; ///< and data
     int rangeEnd = 0;                                  ///< end of the range that is dragged: -1 low, 1 high
+    HistogramBins bins;                                ///< of the plot: as they were while an end is dragged
     double grab = 0;                                   ///< from the mouse to that end, in values
 };
 
@@ -110,8 +111,11 @@ void drawPlot(ViewContext& context, TransferCache& cache, const TransferView& vi
     const volume::Channel channel = info.channels()[static_cast<std::size_t>(index)];
     vis::TransferFunction& function = transferOf(context.session, functionName(context.session, view, channel.name));
     const Range data = info.channelRange(channel), range = vis::effectiveRange(function, data);
-    const HistogramBins bins =
-        histogramBins(info, index, paddedRange({std::min(data.lo, range.lo), std::max(data.hi, range.hi)}, 0.03), 192);
+    // An axis that grew with the range it shows would carry the end away from the mouse that holds it.
+    if (cache.rangeEnd == 0)
+        cache.bins = histogramBins(info, index,
+                                   paddedRange({std::min(data.lo, range.lo), std::max(data.hi, range.hi)}, 0.03), 192);
+    const HistogramBins bins = cache.bins;
     const Range span = bins.range;
     const StatisticsWish wish = makeWish(context.session, info, {index}, {span}, bins.count, false);
     const auto result = cache.feed.get(context, "histogram " + pane, wish);
