@@ -1,0 +1,358 @@
+#include "app/views/axes3d.h"
+#include "tests/app/hands_fixture.h"
+
+#include <glm/gtc/constants.hpp>
+
+/// The mouse in pictures of space: the camera, the faces of the shadow cube, comparisons.
+namespace tessera::app {
+namespace {
+
+volume::Box cellBox() {
+    const glm::dvec3 lo(formula::kOrigin[0], formula::kOrigin[1], formula::kOrigin[2]);
+    return {lo, lo + glm::dvec3(formula::kSpacing[0] * 7, formula::kSpacing[1] * 6, formula::kSpacing[2] * 8)};
+}
+
+class SpaceHands : public Hands {
+protected:
+    /// An empty scene seen along -z, x to the right, y up, without perspective.
+    static void fromFront(Session& edited) {
+        edited.layers.clear();
+        edited.camera = {};
+        edited.camera.orientation = glm::quat(1, 0, 0, 0);
+        edited.camera.projection = vis::Projection::Orthographic;
+    }
+    void showSpace(const ViewState& view, glm::ivec2 size = {400, 300},
+                   const std::function<void(Session&)>& prepare = {}) {
+        show(view, size, [&](Session& edited) {
+            fromFront(edited);
+            if (prepare) prepare(edited);
+        });
+        ASSERT_FALSE(pictures().empty());
+        picture = pictures().back();
+    }
+    void showVolume() {
+        VolumeView volume;
+        volume.showGizmo = volume.showLegend = false;
+        showSpace(volume);
+    }
+    vis::Camera& camera() { return session().camera; }
+    double aspect() const { return double(picture.GetWidth()) / double(picture.GetHeight()); }
+    glm::vec2 ndc(ImVec2 at) const {
+        return {(at.x - picture.Min.x) / picture.GetWidth() * 2 - 1,
+                1 - (at.y - picture.Min.y) / picture.GetHeight() * 2};
+    }
+    ImVec2 pixel(glm::dvec3 physical) {
+        return *spaceFrame(picture.Min, picture.Max, camera(), cellBox(), session().stretch).pixel(physical);
+    }
+    /// Where a direction of the world points to for the viewer.
+    static glm::dvec3 seen(const vis::Camera& by, glm::dvec3 direction) {
+        return glm::dmat3(vis::viewMatrix(by)) * direction;
+    }
+    void expectSame(const vis::Camera& expected) {
+        EXPECT_LT(glm::length(camera().orientation - expected.orientation), 1e-5f);
+        EXPECT_LT(glm::length(camera().target - expected.target), 1e-5f);
+        EXPECT_NEAR(camera().distance, expected.distance, 1e-5f);
+    }
+    ImRect picture;
+};
+
+TEST_F(SpaceHands, ADragTurnsTheObjectWithTheMouse) {
+    showVolume();
+    const Session before = session();
+    const ImVec2 middle = within(picture, 0.5, 0.5);
+    const auto from = [&](ImVec2 by) {
+        camera() = before.camera;
+        drag(middle, {middle.x + by.x, middle.y + by.y});
+        EXPECT_EQ(camera().distance, before.camera.distance);
+        EXPECT_EQ(camera().target, before.camera.target);
+        return seen(camera(), {0, 0, 1}); // what faced the viewer
+    };
+    const glm::dvec3 right = from({60, 0}), up = from({0, -60}), left = from({-60, 0}), lower = from({0, 60});
+    for (const glm::dvec3& front : {right, up, left, lower}) EXPECT_LT(front.z, 0.97);
+    EXPECT_GT(right.x, 0.25);
+    EXPECT_NEAR(right.y, 0, 0.01) << "about the upright axis";
+    EXPECT_LT(left.x, -0.25);
+    EXPECT_GT(up.y, 0.25);
+    EXPECT_NEAR(up.x, 0, 0.01);
+    EXPECT_LT(lower.y, -0.25);
+    camera() = before.camera;
+    frame();
+    vis::Camera expected = before.camera;
+    moveTo(within(picture, 0.3, 0.4));
+    button(0, true);
+    for (const ImVec2 to : {within(picture, 0.6, 0.5), within(picture, 0.7, 0.2)}) {
+        vis::orbit(expected, ndc(mouse), ndc(to));
+        moveTo(to);
+        expectSame(expected);
+    }
+    button(0, false);
+    moveTo(middle);
+    expectSame(expected);
+}
+
+TEST_F(SpaceHands, OneTurnIsOneStep) {
+    showVolume();
+    const Session before = session();
+    moveTo(within(picture, 0.3, 0.4));
+    EXPECT_TRUE(session() == before) << apart(before);
+    drag(mouse, within(picture, 0.7, 0.6));
+    EXPECT_FALSE(session() == before);
+    settle();
+    EXPECT_EQ(steps(), 1u);
+    undo();
+    EXPECT_TRUE(session() == before) << apart(before);
+}
+
+TEST_F(SpaceHands, PanningTakesThePictureAlong) {
+    for (const vis::Projection projection : {vis::Projection::Orthographic, vis::Projection::Perspective})
+        for (const bool middle : {true, false}) {
+            showVolume();
+            camera().projection = projection;
+            const vis::Camera before = camera();
+            const ImVec2 target = pixel(cellBox().center());
+            shift = !middle;
+            drag(within(picture, 0.3, 0.6), within(picture, 0.55, 0.2), middle ? 2 : 0);
+            shift = false;
+            const ImVec2 by{within(picture, 0.55, 0).x - within(picture, 0.3, 0).x,
+                            within(picture, 0, 0.2).y - within(picture, 0, 0.6).y};
+            EXPECT_NEAR(pixel(cellBox().center()).x, target.x + by.x, 0.01);
+            EXPECT_NEAR(pixel(cellBox().center()).y, target.y + by.y, 0.01);
+            EXPECT_EQ(camera().orientation, before.orientation);
+            EXPECT_EQ(camera().distance, before.distance);
+        }
+}
+
+TEST_F(SpaceHands, WheelAndRightButtonZoom) {
+    showVolume();
+    const vis::Camera before = camera();
+    const ImVec2 at = within(picture, 0.8, 0.3);
+    moveTo(at);
+    turnWheel(2);
+    EXPECT_NEAR(camera().distance, before.distance / (1.15f * 1.15f), 1e-5f) << "away from the hand: nearer";
+    EXPECT_EQ(camera().target, before.target);
+    turnWheel(-2);
+    EXPECT_NEAR(camera().distance, before.distance, 1e-5f);
+    // With Ctrl what is under the mouse, at the target's depth, stays there.
+    const double width = 2 * double(before.distance) * std::tan(glm::radians(before.fieldOfView / 2.0)) * aspect();
+    const auto under = [&] {
+        return double(camera().target.x) + double(ndc(at).x) / 2 * width * double(camera().distance / before.distance);
+    };
+    const double held = under();
+    ctrl = true;
+    turnWheel(3);
+    ctrl = false;
+    EXPECT_NEAR(camera().distance, before.distance / std::pow(1.15f, 3.0f), 1e-5f);
+    EXPECT_NEAR(under(), held, 1e-5);
+    EXPECT_GT(camera().target.x, 0.1f) << "the target moves towards the mouse";
+    camera() = before;
+    drag(within(picture, 0.5, 0.75), within(picture, 0.5, 0.25), 1);
+    const float risen = ndc(within(picture, 0, 0.25)).y - ndc(within(picture, 0, 0.75)).y;
+    EXPECT_NEAR(camera().distance, before.distance / std::exp(1.5f * risen), 1e-4f) << "up: nearer";
+    EXPECT_FALSE(popup()) << "a drag opens no menu";
+    camera() = before;
+    click(at, 1);
+    EXPECT_TRUE(popup());
+    expectSame(before);
+    press(key::kEscape);
+    moveTo(at);
+    for (int i = 0; i < 4; ++i) turnWheel(30);
+    EXPECT_EQ(camera().distance, 0.01f);
+    for (int i = 0; i < 4; ++i) turnWheel(-30);
+    EXPECT_EQ(camera().distance, 100.0f);
+}
+
+TEST_F(SpaceHands, CtrlRollsAboutTheMiddle) {
+    showVolume();
+    const vis::Camera before = camera();
+    const ImVec2 c = picture.GetCenter();
+    ctrl = true;
+    drag({c.x + 90, c.y}, {c.x, c.y - 90}); // a quarter, counter-clockwise
+    ctrl = false;
+    const glm::dvec3 x = seen(camera(), {1, 0, 0});
+    EXPECT_NEAR(x.x, 0, 0.02);
+    EXPECT_NEAR(x.y, 1, 0.02);
+    EXPECT_EQ(camera().distance, before.distance);
+}
+
+TEST_F(SpaceHands, KeysLookAlongTheAxes) {
+    showVolume();
+    moveTo(within(picture, 0.5, 0.5));
+    const auto looks = [&](int key, bool shifted, glm::dvec3 towards, glm::dvec3 up) {
+        SCOPED_TRACE(char(key));
+        shift = shifted;
+        press(key);
+        shift = false;
+        EXPECT_LT(glm::length(seen(camera(), towards) - glm::dvec3(0, 0, -1)), 1e-6);
+        EXPECT_LT(glm::length(seen(camera(), up) - glm::dvec3(0, 1, 0)), 1e-6);
+    };
+    looks('1', false, {0, 0, -1}, {0, 1, 0});
+    looks('1', true, {0, 0, 1}, {0, 1, 0});
+    looks('3', false, {-1, 0, 0}, {0, 1, 0});
+    looks('3', true, {1, 0, 0}, {0, 1, 0});
+    looks('7', false, {0, -1, 0}, {0, 0, -1});
+    looks('7', true, {0, 1, 0}, {0, 0, 1});
+    EXPECT_EQ(camera().projection, vis::Projection::Orthographic);
+    press('5');
+    EXPECT_EQ(camera().projection, vis::Projection::Perspective);
+    press('5');
+    EXPECT_EQ(camera().projection, vis::Projection::Orthographic);
+    press('R');
+    EXPECT_EQ(camera().orientation, vis::Camera{}.orientation);
+    const vis::Camera before = camera();
+    moveTo({-1000, -1000});
+    ImGui::SetWindowFocus(nullptr);
+    press('1');
+    EXPECT_TRUE(camera() == before) << "keys are for the view under the mouse or in use";
+}
+
+TEST_F(SpaceHands, TheFacesOfTheCubeAreBrushed) {
+    ShadowCubeView cube;
+    cube.brushing = true;
+    showSpace(cube);
+    const glm::dvec3 a{0.0121, 0.0093, 0}, b{0.0152, 0.0031, 0};
+    const Session before = session();
+    const volume::Box box = cellBox();
+    const double exact = 1.1 * (box.hi.x - box.lo.x) / double(pixel(box.hi).x - pixel(box.lo).x); // a pixel
+    const auto& brushes = session().selection.brushes;
+    const auto expectPrism = [&](std::size_t index, glm::dvec3 from, glm::dvec3 to, vis::BrushCombine combine) {
+        ASSERT_GT(brushes.size(), index);
+        const auto& region = std::get<vis::BoxRegion>(brushes[index].region);
+        for (int axis = 0; axis < 2; ++axis) {
+            EXPECT_NEAR(region.center[axis], (from[axis] + to[axis]) / 2, exact);
+            EXPECT_NEAR(region.radius[axis], std::abs(from[axis] - to[axis]) / 2, exact);
+        }
+        EXPECT_NEAR(region.center.z, box.center().z, 1e-12) << "through all that lies before the face";
+        EXPECT_GE(region.radius.z, (box.hi.z - box.lo.z) / 2);
+        EXPECT_EQ(brushes[index].combine, combine);
+    };
+    drag(pixel(a), pixel(b));
+    EXPECT_EQ(brushes.size(), 1u);
+    expectPrism(0, a, b, vis::BrushCombine::And);
+    expectSame(before.camera);
+    settle();
+    EXPECT_EQ(steps(), 1u);
+    undo();
+    EXPECT_TRUE(session() == before) << apart(before);
+    drag(pixel(a), pixel(b));
+    shift = true;
+    const glm::dvec3 c{0.0105, 0.001, 0}, d{0.0115, 0.005, 0};
+    drag(pixel(c), pixel(d));
+    shift = false;
+    EXPECT_EQ(brushes.size(), 2u);
+    expectPrism(1, c, d, vis::BrushCombine::Or);
+    ctrl = true;
+    drag(pixel(d), pixel(a));
+    ctrl = false;
+    EXPECT_EQ(brushes.size(), 3u);
+    expectPrism(2, d, a, vis::BrushCombine::Minus);
+    const vis::Selection three = session().selection;
+    moveTo(pixel(b));
+    button(0, true);
+    moveTo(pixel(c));
+    EXPECT_EQ(brushes.size(), 1u) << "without them it takes the others' place";
+    press(key::kEscape);
+    EXPECT_TRUE(session().selection == three) << "Esc gives up";
+    button(0, false);
+    EXPECT_TRUE(session().selection == three);
+    drag(pixel(a), {picture.Max.x + 100, picture.Min.y - 100});
+    expectPrism(0, a, {box.hi.x, box.hi.y, 0}, vis::BrushCombine::And); // no farther than the data
+}
+
+TEST_F(SpaceHands, TheCubeTurnsWithTheObjectOrAlone) {
+    ShadowCubeView cube;
+    showSpace(cube);
+    const vis::Camera before = camera();
+    vis::Camera turned = before;
+    const ImVec2 from = within(picture, 0.3, 0.5), to = within(picture, 0.6, 0.4);
+    moveTo(from);
+    button(0, true);
+    vis::orbit(turned, ndc(from), ndc(to));
+    moveTo(to);
+    button(0, false);
+    expectSame(turned);
+    EXPECT_GT(seen(camera(), {0, 0, 1}).x, 0.2) << "as the mouse went";
+    EXPECT_EQ(view<ShadowCubeView>().orientation, cube.orientation);
+    // Unlocked, a drag beside the object turns the cube alone.
+    camera() = before;
+    view<ShadowCubeView>().together = false;
+    view<ShadowCubeView>().orientation = before.orientation;
+    frame();
+    moveTo(from);
+    button(0, true);
+    moveTo(to);
+    button(0, false);
+    expectSame(before);
+    EXPECT_LT(glm::length(view<ShadowCubeView>().orientation - turned.orientation), 1e-5f);
+    view<ShadowCubeView>().orientation = before.orientation;
+    const glm::dvec3 cursor = session().cursor, place{0.0152, 0.0093, 0};
+    ImGui::GetIO().MouseDoubleClickTime = 0.3f;
+    for (int i = 0; i < 2; ++i) click(pixel(place));
+    EXPECT_NEAR(session().cursor.x, place.x, 1e-4);
+    EXPECT_NEAR(session().cursor.y, place.y, 1e-4);
+    EXPECT_EQ(session().cursor.z, cursor.z) << "a double click on a face says nothing about the depth";
+}
+
+CompareView twoVariants(CompareMode mode) {
+    CompareView compare;
+    compare.mode = mode;
+    compare.showTable = false;
+    compare.variants = {{}, {.name = "other", .changes = {{"/lighting/ambient", "0.5"}}}};
+    return compare;
+}
+
+TEST_F(SpaceHands, TheSwipeLineGoesWithTheMouse) {
+    showSpace(twoVariants(CompareMode::Swipe));
+    const Session before = session();
+    const auto swipe = [&] { return view<CompareView>().swipe; };
+    moveTo(within(picture, 0.5, 0.4));
+    EXPECT_TRUE(session() == before);
+    button(0, true);
+    for (const double share : {0.8, 0.25}) {
+        moveTo(within(picture, share, 0.6));
+        EXPECT_NEAR(swipe(), (mouse.x - picture.Min.x) / picture.GetWidth(), 1e-6f);
+    }
+    moveTo({picture.Max.x + 90, mouse.y});
+    EXPECT_EQ(swipe(), 1);
+    moveTo({picture.Min.x - 90, mouse.y});
+    EXPECT_EQ(swipe(), 0);
+    moveTo(within(picture, 0.3, 0.5));
+    button(0, false);
+    expectSame(before.camera);
+    settle();
+    EXPECT_EQ(steps(), 1u);
+    undo();
+    EXPECT_TRUE(session() == before) << apart(before);
+    const ImVec2 from = within(picture, 0.7, 0.5), to = within(picture, 0.9, 0.4);
+    vis::Camera turned = before.camera;
+    moveTo(from);
+    button(0, true);
+    vis::orbit(turned, ndc(from), ndc(to));
+    moveTo(to);
+    button(0, false);
+    expectSame(turned); // beside the line the pictures are turned
+    EXPECT_EQ(swipe(), 0.5f);
+}
+
+TEST_F(SpaceHands, ADragInOnePictureOfAComparisonTurnsAll) {
+    showSpace(twoVariants(CompareMode::Grid), {500, 260});
+    const std::vector<ImRect> both = pictures();
+    ASSERT_EQ(both.size(), 2u);
+    for (const ImRect& one : both) {
+        picture = one;
+        const vis::Camera before = camera();
+        const ImVec2 from = within(one, 0.4, 0.6), to = within(one, 0.7, 0.3);
+        vis::Camera turned = before;
+        moveTo(from);
+        button(0, true);
+        vis::orbit(turned, ndc(from), ndc(to));
+        moveTo(to);
+        button(0, false);
+        expectSame(turned);
+        const float distance = camera().distance;
+        turnWheel(1);
+        EXPECT_NEAR(camera().distance, distance / 1.15f, 1e-5f);
+    }
+}
+
+} // namespace
+} // namespace tessera::app
