@@ -1,0 +1,145 @@
+#include "tests/app/hands_fixture.h"
+
+#include <algorithm>
+
+/// The mouse in lists: layers and lenses are ordered, hidden and removed; what the pane of the data offers.
+namespace tessera::app {
+namespace {
+
+class ListHands : public Hands {
+protected:
+    void showLists() {
+        show(LayersView{.selected = 1}, {420, 1400}, [](Session& edited) {
+            edited.layers.clear();
+            for (const char* name : {"a", "b", "c", "d"})
+                edited.layers.push_back({name, true, vis::SliceLayer{.channel = "T"}});
+            for (const char* name : {"p", "q", "r"})
+                edited.lenses.push_back({.name = name, .center = {0.0135, 0.006, 0}});
+        });
+    }
+    ImVec2 at(std::vector<std::variant<std::string, int>> path) { return item(window("layers"), path).GetCenter(); }
+    std::string layers() {
+        std::string names;
+        for (const vis::Layer& layer : session().layers) names += layer.name;
+        return names;
+    }
+    std::string lenses() {
+        std::string names;
+        for (const vis::Lens& lens : session().lenses) names += lens.name;
+        return names;
+    }
+    int selected() { return view<LayersView>().selected; }
+};
+
+TEST_F(ListHands, LayersTakeThePlaceTheyAreDroppedOn) {
+    showLists();
+    const Session before = session();
+    drag(at({0, "##row"}), at({2, "##row"}));
+    EXPECT_EQ(layers(), "bcad");
+    EXPECT_EQ(selected(), 2) << "what was dragged is selected";
+    settle();
+    EXPECT_EQ(steps(), 1u);
+    undo();
+    EXPECT_TRUE(session() == before) << apart(before);
+    drag(at({3, "##row"}), at({1, "##row"}));
+    EXPECT_EQ(layers(), "adbc");
+    EXPECT_EQ(selected(), 1);
+    const ImVec2 row = at({1, "##row"});
+    drag(row, {row.x, row.y + 4000});
+    EXPECT_EQ(layers(), "adbc") << "dropped nowhere";
+}
+
+TEST_F(ListHands, LayersAreSelectedHiddenCopiedAndRemoved) {
+    showLists();
+    click(at({2, "##row"}));
+    EXPECT_EQ(selected(), 2);
+    click(at({3, "##eye"}));
+    for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(session().layers[i].visible, i != 3);
+    EXPECT_EQ(selected(), 2) << "the eye selects nothing";
+    click(at({3, "##eye"}));
+    EXPECT_TRUE(session().layers[3].visible);
+    click(at({"##copy"}));
+    EXPECT_EQ(layers(), "abcc copyd");
+    EXPECT_EQ(selected(), 3);
+    EXPECT_EQ(session().layers[3].technique, session().layers[2].technique);
+    click(at({"##remove"}));
+    EXPECT_EQ(layers(), "abcd");
+    click(at({"##remove"}));
+    EXPECT_EQ(layers(), "abc");
+    EXPECT_EQ(selected(), 2) << "the last one after the last one was removed";
+    for (int i = 0; i < 3; ++i) click(at({"##remove"}));
+    EXPECT_TRUE(session().layers.empty());
+    click(at({"##add"}));
+    ASSERT_TRUE(popup());
+    click(item(popup(), {"Iso-surface"}).GetCenter());
+    ASSERT_EQ(session().layers.size(), 1u);
+    EXPECT_TRUE(std::holds_alternative<vis::IsoLayer>(session().layers[0].technique));
+}
+
+TEST_F(ListHands, LensesAreOrderedByTheirGripsAndSwitches) {
+    showLists();
+    drag(at({0, "##grip"}), at({2, "##grip"}));
+    EXPECT_EQ(lenses(), "qrp");
+    settle();
+    EXPECT_EQ(steps(), 1u);
+    drag(at({2, "##grip"}), at({0, "##grip"}));
+    EXPECT_EQ(lenses(), "pqr");
+    click(at({1, "##up"}));
+    EXPECT_EQ(lenses(), "qpr");
+    click(at({0, "##up"}));
+    EXPECT_EQ(lenses(), "qpr") << "the first one has none above";
+    click(at({1, "##enabled"}));
+    click(at({2, "##invert"}));
+    for (std::size_t i = 0; i < 3; ++i) {
+        EXPECT_EQ(session().lenses[i].enabled, i != 1);
+        EXPECT_EQ(session().lenses[i].inverted, i == 2);
+    }
+    click(at({0, "##delete"}));
+    EXPECT_EQ(lenses(), "pr");
+}
+
+class DataHands : public Hands {
+protected:
+    ImVec2 at(std::vector<std::variant<std::string, int>> path) { return item(window("data"), path).GetCenter(); }
+};
+
+TEST_F(DataHands, ANameOfALabelOpensTheNamesOfItsValues) {
+    show(DataView{}, {460, 1000});
+    click(at({"parameters", "region", "region"}));
+    ASSERT_TRUE(popup());
+    const ImRect west = item(popup(), {formula::kWest, "##name"}), east = item(popup(), {formula::kEast, "##name"});
+    EXPECT_LT(west.Max.y, east.Min.y + 1) << "in the order of the values";
+    press(key::kEscape);
+    EXPECT_FALSE(popup());
+}
+
+TEST_F(DataHands, ADerivedParameterIsAddedAndRemoved) {
+    show(DataView{}, {460, 1000});
+    click(at({"Add..."}));
+    ASSERT_TRUE(popup());
+    click(item(popup(), {"Gradient"}).GetCenter());
+    settle();
+    ASSERT_EQ(session().data.derived.size(), 1u);
+    const volume::DerivedParameter& made = session().data.derived[0];
+    EXPECT_EQ(made.name, "grad T");
+    EXPECT_EQ(made.unit, "K/m");
+    EXPECT_TRUE(workbench.numbers()->info().findChannel("grad T")) << "it is there like any other";
+    click(at({0, "###one", "Remove"}));
+    settle();
+    EXPECT_TRUE(session().data.derived.empty());
+    EXPECT_FALSE(workbench.numbers()->info().findChannel("grad T"));
+}
+
+TEST_F(DataHands, TheLatticeOfPicturesIsChosen) {
+    show(DataView{}, {460, 1000});
+    ASSERT_EQ(session().data.lattice, PictureLattice::BodyCentred);
+    click(at({"summary", "##lattice"}));
+    ASSERT_TRUE(popup());
+    moveTo(item(popup(), {"the grid of the file"}).GetCenter());
+    button(0, true);
+    button(0, false); // no frame more: the workbench would compute them
+    EXPECT_EQ(session().data.lattice, PictureLattice::Grid);
+}
+
+} // namespace
+} // namespace tessera::app
