@@ -232,6 +232,12 @@ TEST_F(TransferHands, OpacityPointsAreAddedDraggedAndRemoved) {
     EXPECT_EQ(steps(), 1u);
     undo();
     EXPECT_TRUE(session() == before) << apart(before);
+    click(within(curve, 0.3, 0.3));
+    const glm::vec2 first = function().opacity.at(1);
+    drag(within(curve, 0.6, 0.5), {curve.Min.x - 50, curve.GetCenter().y});
+    EXPECT_EQ(function().opacity.at(1), first);
+    EXPECT_EQ(function().opacity.at(2).x, first.x) << "a point never passes its neighbour";
+    function().opacity = before.transfer.at("T").opacity;
     // The ends can be lifted and drawn in.
     drag({pixelOf(data.hi), curve.Min.y + 0.2f * curve.GetHeight()}, within(curve, 0.8, 0.9));
     ASSERT_EQ(function().opacity.size(), 2u);

@@ -1,9 +1,7 @@
 #include "app/views/axes3d.h"
 #include "tests/app/hands_fixture.h"
 
-#include <glm/gtc/constants.hpp>
-
-/// The mouse in pictures of space: the camera, the faces of the shadow cube, comparisons.
+/// The mouse in views of space: volume, shadow cube, comparisons. The camera's own hand: camera_hand_gl_test.cpp.
 namespace tessera::app {
 namespace {
 
@@ -103,25 +101,6 @@ TEST_F(SpaceHands, OneTurnIsOneStep) {
     EXPECT_TRUE(session() == before) << apart(before);
 }
 
-TEST_F(SpaceHands, PanningTakesThePictureAlong) {
-    for (const vis::Projection projection : {vis::Projection::Orthographic, vis::Projection::Perspective})
-        for (const bool middle : {true, false}) {
-            showVolume();
-            camera().projection = projection;
-            const vis::Camera before = camera();
-            const ImVec2 target = pixel(cellBox().center());
-            shift = !middle;
-            drag(within(picture, 0.3, 0.6), within(picture, 0.55, 0.2), middle ? 2 : 0);
-            shift = false;
-            const ImVec2 by{within(picture, 0.55, 0).x - within(picture, 0.3, 0).x,
-                            within(picture, 0, 0.2).y - within(picture, 0, 0.6).y};
-            EXPECT_NEAR(pixel(cellBox().center()).x, target.x + by.x, 0.01);
-            EXPECT_NEAR(pixel(cellBox().center()).y, target.y + by.y, 0.01);
-            EXPECT_EQ(camera().orientation, before.orientation);
-            EXPECT_EQ(camera().distance, before.distance);
-        }
-}
-
 TEST_F(SpaceHands, WheelAndRightButtonZoom) {
     showVolume();
     const vis::Camera before = camera();
@@ -159,50 +138,6 @@ TEST_F(SpaceHands, WheelAndRightButtonZoom) {
     EXPECT_EQ(camera().distance, 0.01f);
     for (int i = 0; i < 4; ++i) turnWheel(-30);
     EXPECT_EQ(camera().distance, 100.0f);
-}
-
-TEST_F(SpaceHands, CtrlRollsAboutTheMiddle) {
-    showVolume();
-    const vis::Camera before = camera();
-    const ImVec2 c = picture.GetCenter();
-    ctrl = true;
-    drag({c.x + 90, c.y}, {c.x, c.y - 90}); // a quarter, counter-clockwise
-    ctrl = false;
-    const glm::dvec3 x = seen(camera(), {1, 0, 0});
-    EXPECT_NEAR(x.x, 0, 0.02);
-    EXPECT_NEAR(x.y, 1, 0.02);
-    EXPECT_EQ(camera().distance, before.distance);
-}
-
-TEST_F(SpaceHands, KeysLookAlongTheAxes) {
-    showVolume();
-    moveTo(within(picture, 0.5, 0.5));
-    const auto looks = [&](int key, bool shifted, glm::dvec3 towards, glm::dvec3 up) {
-        SCOPED_TRACE(char(key));
-        shift = shifted;
-        press(key);
-        shift = false;
-        EXPECT_LT(glm::length(seen(camera(), towards) - glm::dvec3(0, 0, -1)), 1e-6);
-        EXPECT_LT(glm::length(seen(camera(), up) - glm::dvec3(0, 1, 0)), 1e-6);
-    };
-    looks('1', false, {0, 0, -1}, {0, 1, 0});
-    looks('1', true, {0, 0, 1}, {0, 1, 0});
-    looks('3', false, {-1, 0, 0}, {0, 1, 0});
-    looks('3', true, {1, 0, 0}, {0, 1, 0});
-    looks('7', false, {0, -1, 0}, {0, 0, -1});
-    looks('7', true, {0, 1, 0}, {0, 0, 1});
-    EXPECT_EQ(camera().projection, vis::Projection::Orthographic);
-    press('5');
-    EXPECT_EQ(camera().projection, vis::Projection::Perspective);
-    press('5');
-    EXPECT_EQ(camera().projection, vis::Projection::Orthographic);
-    press('R');
-    EXPECT_EQ(camera().orientation, vis::Camera{}.orientation);
-    const vis::Camera before = camera();
-    moveTo({-1000, -1000});
-    ImGui::SetWindowFocus(nullptr);
-    press('1');
-    EXPECT_TRUE(camera() == before) << "keys are for the view under the mouse or in use";
 }
 
 TEST_F(SpaceHands, TheFacesOfTheCubeAreBrushed) {

@@ -240,6 +240,7 @@ TEST_F(KeyHands, KeysAreSetAndRemoved) {
     EXPECT_EQ(keys()[1].easing, Easing::In);
     choose(1, "Remove");
     ASSERT_EQ(keys().size(), 2u);
+    EXPECT_EQ(keys()[0].at, 0);
     EXPECT_EQ(keys()[1].at, 10);
     choose(0, "Remove");
     ASSERT_EQ(keys().size(), 1u);
