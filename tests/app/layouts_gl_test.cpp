@@ -1,0 +1,212 @@
+#include "app/open.h"
+#include "app/platform/headless.h"
+#include "app/views/ticks.h"
+#include "app/views/view_parts.h"
+
+#include <algorithm>
+#include <gtest/gtest.h>
+#include <ostream>
+#include <set>
+
+/// What the layouts that ship show of the built-in data: which views, what the legends say, and how much of a picture
+/// has which colours. Measured once on a small cell; a share may be a quarter more or less.
+namespace tessera::app {
+namespace {
+
+enum class Hue { Orange, Warm, Cold, Green, Light, Dark };
+
+struct Share {
+    const char* pane;
+    Hue hue;
+    double measured; ///< of the pixels; 0: none at all
+};
+
+struct Shipped {
+    const char* name;
+    const char* views;
+    const char* legends;
+    std::vector<Share> shares;
+    bool brushed = false; ///< what its brushes hold is orange in the scatterplots, and nothing is without them
+};
+
+void PrintTo(const Shipped& layout, std::ostream* out) {
+    *out << layout.name;
+}
+
+constexpr const char* kTemperature = "T [K] 353.16 .. 356.85";
+
+const std::vector<Shipped>& shipped() {
+    using enum Hue;
+    static const std::vector<Shipped> layouts = {
+        {"animation",
+         "data layers slices timeline transfer volume",
+         "O2 [mol/m³] = 2.5; T [K] 353.16 .. 356.85",
+         {{"volume", Orange, 0.0299}, {"volume", Cold, 0.0401}, {"slices", Green, 0.0374}}},
+        {"charcoal",
+         "data layers timeline transfer volume",
+         "rho = 0.5",
+         {{"volume", Light, 0.86}, {"volume", Warm, 0}, {"volume", Cold, 0}}},
+        // Several pictures beside each other are under test with the view itself.
+        {"compare_compression", "compare data layers transfer", "O2 [mol/m³] = 2.5; T [K] 353.16 .. 356.85", {}},
+        {"compare_lattice", "compare data layers transfer", "rho = 0.5", {}},
+        {"compare_techniques",
+         "compare data layers scatterMatrix transfer",
+         kTemperature,
+         {{"scatterMatrix", Orange, 0.0146}},
+         true},
+        {"compression_error",
+         "data histogram history layers log scatterMatrix slices timeline transfer volume",
+         "T error [K] -0.354 .. 0.194",
+         {{"slices", Warm, 0.067}, {"histogram", Orange, 0}, {"scatterMatrix", Orange, 0}}},
+        {"evening",
+         "data layers transfer volume",
+         "rho = 0.5",
+         {{"volume", Warm, 0.132}, {"volume", Dark, 0.556}, {"volume", Cold, 0}}},
+        {"flow",
+         "data layers slices timeline transfer volume",
+         "O2 [mol/m³] 0.06 .. 6.22; H2 [mol/m³] 24.48 .. 29.50; T [K] 353.16 .. 356.85",
+         {{"volume", Cold, 0.0755}, {"volume", Green, 0.0796}}},
+        {"focus",
+         "data history layers log scatterMatrix slices timeline transfer volume",
+         "T [K] 353.16 .. 356.85; T [K] = 354.3",
+         {{"volume", Warm, 0.0277}, {"scatterMatrix", Orange, 0.0048}},
+         true},
+        {"gases",
+         "data layers slices timeline transfer volume",
+         "O2 [mol/m³] = 2.5; H2 [mol/m³] = 26.5; T [K] 353.16 .. 356.85",
+         {{"volume", Orange, 0.0426}, {"volume", Cold, 0.0334}}},
+        {"illustration",
+         "data layers timeline transfer volume",
+         "O2 [mol/m³] = 2.5; T [K] 353.16 .. 356.85",
+         {{"volume", Light, 0.825}, {"volume", Orange, 0.0837}}},
+        {"lens",
+         "data history layers scatterMatrix slices statistics timeline transfer volume",
+         "T [K] 353.16 .. 356.85; O2 [mol/m³] 0.06 .. 6.22; O2 [mol/m³] = 2.2; |U| [m/s] 0.00 .. 2.76",
+         {{"volume", Cold, 0.0251}, {"volume", Warm, 0.0489}, {"scatterMatrix", Orange, 0}}},
+        {"over_time",
+         "data layers profile profile-2 slices timeline transfer volume",
+         "H2 [mol/m³] 24.48 .. 33.11",
+         {{"profile", Cold, 0.0173},
+          {"profile", Orange, 0.0073},
+          {"profile-2", Cold, 0.229},
+          {"profile-2", Green, 0.0798}}},
+        {"overview",
+         "data history layers log scatterMatrix slices timeline transfer volume",
+         kTemperature,
+         {{"volume", Warm, 0.0674}, {"slices", Warm, 0.03}, {"scatterMatrix", Orange, 0}}},
+        {"shadowcube",
+         "data layers shadowCube slices timeline transfer",
+         kTemperature,
+         {{"shadowCube", Warm, 0.118}, {"shadowCube", Green, 0.0311}}},
+        {"starved",
+         "data history layers log scatterMatrix slices timeline transfer volume",
+         kTemperature,
+         {{"volume", Warm, 0.0286}, {"slices", Warm, 0.0029}, {"scatterMatrix", Orange, 0.0048}},
+         true},
+        {"statistics",
+         "data histogram history layers log profile scatterMatrix sliceMatrix statistics timeline transfer volume",
+         kTemperature,
+         {{"histogram", Orange, 0.0893}, {"scatterMatrix", Orange, 0.018}, {"sliceMatrix", Cold, 0.011}},
+         true},
+        {"tesseract",
+         "data layers tesseract timeline transfer volume",
+         "H2O [mol/m³] 4.86 .. 14.78",
+         {{"tesseract", Green, 0.114},
+          {"tesseract", Cold, 0.0945},
+          {"tesseract", Warm, 0.0615},
+          {"volume", Green, 0.149}}},
+    };
+    return layouts;
+}
+
+bool has(Hue hue, int r, int g, int b) {
+    switch (hue) {
+    case Hue::Orange:
+        return r > 190 && g > 110 && g < 210 && b < 130;
+    case Hue::Warm:
+        return r > b + 40;
+    case Hue::Cold:
+        return b > r + 40;
+    case Hue::Green:
+        return g > r + 30;
+    case Hue::Light:
+        return r + g + b > 630;
+    case Hue::Dark:
+        return r + g + b < 150;
+    }
+    return false;
+}
+
+double shareOf(const vis::Image& image, Hue hue) {
+    double count = 0;
+    for (std::size_t i = 0; i < image.rgba.size(); i += 4)
+        count += has(hue, image.rgba[i], image.rgba[i + 1], image.rgba[i + 2]);
+    return count / (double(image.size.x) * image.size.y);
+}
+
+class Layouts : public testing::TestWithParam<Shipped> {
+protected:
+    /// The layout on fewer samples than it comes with.
+    void SetUp() override {
+        OpenRequest request;
+        request.layout = GetParam().name;
+        request.data = loadSession(findLayout(request.layout)).session.data;
+        std::map<std::string, double>& settings = request.data->settings;
+        if (request.data->model == "marschner-lobb")
+            settings["nx"] = settings["ny"] = settings["nz"] = 24;
+        else
+            settings = {{"nx", 7}, {"ny", 13}, {"nz", 40}};
+        opened = open(request);
+        session().render.samples = 1;
+    }
+    Session& session() { return opened.document.session; }
+    vis::Image picture(const std::string& pane) {
+        opened.document.history.reset(session());
+        return maker.render(opened.document, opened.sources(), {.pane = pane, .size = {320, 240}, .scale = 1});
+    }
+    Opened opened;
+    PictureMaker maker;
+};
+
+TEST_P(Layouts, ShowWhatTheyAreFor) {
+    EXPECT_TRUE(opened.messages.empty()) << opened.messages.front();
+    std::string views, legends;
+    for (const auto& [pane, state] : session().views) views += (views.empty() ? "" : " ") + pane;
+    EXPECT_EQ(views, GetParam().views);
+    std::vector<std::string> docked = panesOf(session().dock);
+    std::ranges::sort(docked);
+    EXPECT_EQ(docked, paneKeys(session())) << "each has its place";
+    for (const LegendEntry& each : sceneLegends(session(), opened.source->info())) {
+        legends += (legends.empty() ? "" : "; ") + titleWithUnit(each.title, each.unit) + " ";
+        const double digits = (each.range.hi - each.range.lo) / 100;
+        legends += each.swatch ? "= " + formatNumber(each.value)
+                               : formatNumber(each.range.lo, digits) + " .. " + formatNumber(each.range.hi, digits);
+    }
+    EXPECT_EQ(legends, GetParam().legends);
+
+    std::map<std::string, vis::Image> drawn;
+    for (const Share& each : GetParam().shares) {
+        SCOPED_TRACE(std::string(each.pane) + ", hue " + std::to_string(int(each.hue)));
+        if (!drawn.contains(each.pane)) drawn[each.pane] = picture(each.pane);
+        const double share = shareOf(drawn[each.pane], each.hue);
+        EXPECT_GE(share, each.measured / 1.25);
+        EXPECT_LE(share, each.measured * 1.25);
+    }
+    EXPECT_EQ(!session().selection.brushes.empty() && session().views.contains("scatterMatrix"), GetParam().brushed);
+    if (!GetParam().brushed) return;
+    session().selection.brushes.clear();
+    EXPECT_EQ(shareOf(picture("scatterMatrix"), Hue::Orange), 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(Shipped, Layouts, testing::ValuesIn(shipped()),
+                         [](const auto& each) { return std::string(each.param.name); });
+
+TEST(LayoutsTable, HasEveryLayout) {
+    std::set<std::string> known;
+    for (const Shipped& each : shipped()) known.insert(each.name);
+    const std::vector<std::string> names = layoutNames();
+    EXPECT_EQ(known, std::set<std::string>(names.begin(), names.end()));
+}
+
+} // namespace
+} // namespace tessera::app
