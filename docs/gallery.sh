@@ -1,17 +1,35 @@
 #!/usr/bin/env bash
-# Renders the pictures of docs/gallery.md from the built-in models: gallery.sh [TESSERA] [FOLDER] [WIDTHxHEIGHT].
+# Renders the pictures of docs/gallery.md from the built-in models: gallery.sh [TESSERA] [FOLDER] [WIDTHxHEIGHT] [CELL],
+# where CELL are the settings of the fuel cell as JSON.
 set -euo pipefail
 here=$(cd "$(dirname "$0")/.." && pwd)
 tessera="${1:-$here/build/release/tessera}"
 out="${2:-$here/docs/pictures/gallery}"
 size="${3:-480x320}"
+cell='/data={"model":"fuel-cell","settings":'"${4:-{\}}"'}'
 mkdir -p "$out"
 
-# picture NAME ARGUMENTS...: the volume view of the overview layout with changes
-picture() {
-    local name=$1
-    shift
-    "$tessera" render overview -o "$out/$name.png" --view volume --size "$size" --set /views/volume/cursor=false "$@"
+# A picture is a session: what many have in common is opened from one of them, and no data are computed but those shown.
+bases=$(mktemp -d)
+trap 'rm -rf "$bases"' EXIT
+base() { # base NAME FROM ARGUMENTS...
+    local name=$1 from=$2
+    shift 2
+    "$tessera" render "$from" -o "$bases/$name.png" --view volume --size 16x16 --set /views/volume/cursor=false "$@"
+}
+base cell overview --set "$cell"
+base signal "$bases/cell.png" --set '/data={"model":"marschner-lobb","settings":{"nx":48,"ny":48,"nz":48,"times":1}}' \
+    --set '/stretch=[1,1,1]' --set /time=0 --set /camera/distance=3.2 --set '/selection/brushes=[]'
+base scan "$bases/cell.png" --set '/data={"model":"casting"}' --set '/stretch=[1,1,1]' --set /time=0 \
+    --set '/selection/brushes=[]' --set /camera/distance=2.3 --set /views/volume/legend=false
+
+picture_of() { # picture_of BASE NAME ARGUMENTS...: the volume view of a base with changes
+    local from=$1 name=$2
+    shift 2
+    "$tessera" render "$bases/$from.png" -o "$out/$name.png" --view volume --size "$size" "$@"
+}
+picture() { # picture NAME ARGUMENTS...: of the cell
+    picture_of cell "$@"
 }
 volume() { # volume CHANNEL [MORE]: a volume layer as JSON
     echo "{\"name\":\"$1\",\"technique\":{\"type\":\"volume\",\"channel\":\"$1\"${2:+,$2}}}"
@@ -19,11 +37,8 @@ volume() { # volume CHANNEL [MORE]: a volume layer as JSON
 surface() { # surface CHANNEL VALUE COLOUR OPACITY [MORE]
     echo "{\"name\":\"$1 $2\",\"technique\":{\"type\":\"iso\",\"channel\":\"$1\",\"value\":$2,\"color\":[$3],\"opacity\":$4${5:+,$5}}}"
 }
-signal() { # signal NAME ARGUMENTS...: the Marschner-Lobb signal instead of the cell; ends on the given layers
-    local name=$1
-    shift
-    picture "$name" --set '/data={"model":"marschner-lobb","settings":{"nx":48,"ny":48,"nz":48,"times":1}}' \
-        --set '/stretch=[1,1,1]' --set /time=0 --set /camera/distance=3.2 --set '/selection/brushes=[]' "$@"
+signal() { # signal NAME ARGUMENTS...: of the Marschner-Lobb signal; ends on the given layers
+    picture_of signal "$@"
 }
 
 # How samples along a ray become one colour
@@ -68,8 +83,7 @@ signal lattice-bcc --set "/layers=[$(surface rho 0.5 0.85,0.6,0.3 1)]" --set '/r
 scan() { # scan NAME LAYERS [MORE]: the computed scan of a casting
     local name=$1 layers=$2
     shift 2
-    picture "scan-$name" --set '/data={"model":"casting"}' --set '/stretch=[1,1,1]' --set /time=0 --set '/selection/brushes=[]' \
-        --set /camera/distance=2.3 --set /views/volume/legend=false --set "/layers=[$layers]" \
+    picture_of scan "scan-$name" --set "/layers=[$layers]" \
         --set '/transfer/density={"colormap":"cividis","opacity":[[0,0],[0.25,0],[0.4,0.1],[0.5,0.1],[0.7,0.9],[1,0.9]]}' "$@"
 }
 scan pre "$(volume density '"classification":"pre","shaded":false')"
@@ -93,8 +107,9 @@ signal light-physical --set "/layers=[$shape]" --set '/lighting/model="physical"
 signal light-studio --set "/layers=[$shape]" --set '/lighting/model="physical"' --set '/lighting/environment/kind="studio"' \
     --set /lighting/roughness=0.2
 signal light-shadows --set "/layers=[$shape]" --set /lighting/shadows/strength=0.8 --set /lighting/shadows/occlusion=0.8
+base flow flow --set "$cell"
 for cast in true false; do # tubes above the hot sheet
-    "$tessera" render flow -o "$out/light-meshes-$cast.png" --view volume --size "$size" --set /views/volume/cursor=false \
+    picture_of flow "light-meshes-$cast" \
         --set /views/volume/legend=false --set /camera/distance=1.5 --set /lighting/shadows/resolution=128 --set "/lighting/shadows/meshes=$cast" \
         --set '/layers=[{"name":"air","technique":{"type":"flow","vector":"U","channel":"O2","count":24,"from":[0,0.75,0],"to":[1,1,1],"length":4,"radius":0.007}},{"name":"temperature","technique":{"type":"volume","channel":"T","shaded":false,"density":3}}]' \
         --set '/transfer/T={"colormap":"inferno","opacity":[[0,0],[0.45,0],[0.6,0.3],[1,0.5]]}' \
@@ -109,10 +124,11 @@ done
 signal clip-sphere --set "/layers=[$shape,$(volume rho '"density":0.5')]" \
     --set '/clips=[{"kind":"sphere","keep":"outside","center":[0.6,0.6,0.6],"radius":0.7}]'
 # Space and time
+"$tessera" render tesseract -o "$bases/tesseract.png" --view tesseract --size 16x16 --set "$cell"
 tesseract() { # tesseract NAME ARGUMENTS...: the tesseract view of its layout with changes
     local name=$1
     shift
-    "$tessera" render tesseract -o "$out/$name.png" --view tesseract --size "$((${size%x*} * 4 / 3))x${size%x*}" \
+    "$tessera" render "$bases/tesseract.png" -o "$out/$name.png" --view tesseract --size "$((${size%x*} * 4 / 3))x${size%x*}" \
         --set /views/tesseract/controls=false "$@"
 }
 tesseract tesseract
