@@ -12,6 +12,7 @@
 #include "app/views/view_context.h"
 #include "vis/image_io.h"
 
+#include <array>
 #include <chrono>
 #include <deque>
 #include <memory>
@@ -245,8 +246,8 @@ private:
     double lastAutosave_ = 0, lastFrame_ = 0;
     bool unsavedEdits_ = false;
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-    std::unique_ptr<GrowthWatch> growth_; ///< of the archive that is shown
-    Jobs jobs_;                           ///< last: its threads end before what they refer to
+    std::array<std::unique_ptr<GrowthWatch>, 2> growth_; ///< of the archives that are shown, the first and the other
+    Jobs jobs_;                                          ///< last: its threads end before what they refer to
 };
 
 } // namespace tessera::app

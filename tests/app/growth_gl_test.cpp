@@ -5,6 +5,7 @@
 #include "codec/container.h"
 #include "codec/pack.h"
 #include "vis/gl/headless.h"
+#include "volume/derived_bricks.h"
 #include "volume/synthetic/models.h"
 
 #include <condition_variable>
@@ -22,7 +23,11 @@ using namespace std::chrono_literals;
 
 struct GrowthGl : ::testing::Test {
     std::string path = ::testing::TempDir() + "growth_" + std::to_string(::getpid()) + ".tsr";
-    void TearDown() override { std::filesystem::remove(path); }
+    std::string beside = ::testing::TempDir() + "growth_beside_" + std::to_string(::getpid()) + ".tsr";
+    void TearDown() override {
+        std::filesystem::remove(path);
+        std::filesystem::remove(beside);
+    }
 };
 
 /// Some times of a signal that moves.
@@ -259,6 +264,55 @@ TEST_F(GrowthGl, ADifferenceFromTheLastTimeFollowsTheArchive) {
         return workbench.source()->info().times.size() == 6;
     }));
     expectLast();
+}
+
+// Of two archives either may grow, the other one at times of the first that it did not reach.
+TEST_F(GrowthGl, TheOtherDataGrowToo) {
+    volume::Dataset most = moving(0, 5), last = moving(5, 1), early = moving(0, 2), late = moving(2, 4);
+    codec::pack(most, {}, path);
+    codec::pack(early, {}, beside);
+    OpenRequest request;
+    request.data = dataOf({path}, {});
+    request.data->other = OtherData{.files = dataOf({beside}, {}).files, .model = {}, .settings = {}, .import = {}};
+    const vis::HeadlessContext gl;
+    const Gui gui;
+    Workbench workbench({.onlyPane = "volume", .growthInterval = 1ms});
+    workbench.install(open(request));
+    vis::Layer layer;
+    layer.name = "other";
+    layer.technique = vis::VolumeLayer{.channel = "rho (other)"};
+    workbench.session().layers = {layer};
+    workbench.session().time = workbench.source()->info().times[4];
+    const vis::Image before = drawUntilDone(workbench, {600, 400}, 1);
+    // Whether the other data are there at this time; then they are the same as the first.
+    const auto both = [&](int time) {
+        const auto source = workbench.source();
+        const volume::BrickKey key{*source->info().findChannel("rho"), time, 0, {0, 0, 0}};
+        volume::BrickKey otherKey = key;
+        otherKey.channel = *source->info().findChannel("rho (other)");
+        const volume::BrickSamples own = source->read(key), other = source->read(otherKey);
+        const bool there = volume::presentAt(other, 0);
+        if (there) {
+            EXPECT_EQ(other.values, own.values) << time;
+        }
+        return there;
+    };
+    EXPECT_TRUE(both(1));
+    EXPECT_FALSE(both(4));
+    codec::append(late, beside);
+    ASSERT_TRUE(comes([&] {
+        (void)drawUntilDone(workbench, {600, 400}, 1);
+        return both(4);
+    }));
+    EXPECT_NE(before.rgba, drawUntilDone(workbench, {600, 400}, 1).rgba);
+    EXPECT_EQ(workbench.source()->info().times.size(), 5u);
+    codec::append(last, path);
+    ASSERT_TRUE(comes([&] {
+        (void)drawUntilDone(workbench, {600, 400}, 1);
+        return workbench.source()->info().times.size() == 6;
+    }));
+    EXPECT_TRUE(both(5));
+    EXPECT_FALSE(workbench.busy());
 }
 
 } // namespace
