@@ -116,7 +116,7 @@ TEST_F(Feeds, AnAnswerOnItsWayIsNotAskedForAgain) {
     };
     for (const int wish : {1, 2}) {
         std::shared_ptr<const int> answer;
-        for (int i = 0; i < 400 && !answer; ++i) {
+        for (int i = 0; i < 20000 && !answer; ++i) {
             answer = get(wish);
             jobs.collect();
             std::this_thread::sleep_for(std::chrono::milliseconds(5));

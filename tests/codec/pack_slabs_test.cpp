@@ -73,7 +73,7 @@ TEST(PackSlabs, GiveTheArchiveThatWholeFramesGive) {
             });
         // Of D4* two frames, of which none has one before on its own grid.
         const int times = options.lattice == StoredLattice::D4 ? 2 : 1;
-        volume::Dataset whole = makeDataset({19, 17, 45}, kinds, times), parts = whole;
+        volume::Dataset whole = makeDataset({11, 9, 29}, kinds, times), parts = whole;
         const PackSummary expected = pack(whole, options, folder / "whole.tsr");
         const int layers = 1 + number++ % 3;
         const PackSummary summary = pack(parts, options, folder / "parts.tsr", {}, PartReader{}.input(parts, layers));

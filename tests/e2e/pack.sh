@@ -196,27 +196,28 @@ check "a negative bound" 1 "$tessera" pack wave.json -o x.tsr --psnr -3
 # frames go through in slabs.
 python3 - <<'EOF'
 import array, json, os, random
-n = 160
+n = 112
 frame = [random.random() for _ in range(n * n * n)]
 with open("noise.raw", "wb") as file:
     for t in range(3): array.array("f", frame[t:] + frame[:t]).tofile(file)
 json.dump({"dims": [n, n, n], "dtype": "float32", "times": [0, 1, 2], "components": [{"name": "x"}]},
           open("noise.json", "w"))
-dims = [100, 100, 1000]
+dims = [64, 64, 1000]
 with open("tall.raw", "wb") as file: file.write(os.urandom(2 * 2 * dims[0] * dims[1] * dims[2]))
 json.dump({"dims": dims, "dtype": "uint16", "times": [0, 1], "components": [{"name": "x"}]}, open("tall.json", "w"))
 EOF
 for what in "noise --lattice cc" "noise --lattice bcc" "noise --lattice bcc --resample.filter bspline5" \
     "noise --lattice d4" "noise --lattice d4 --resample.filter sinc" "noise --lattice cc --max-error 0.001" \
-    "noise --lattice bcc --resample.sharpen 1" "noise --lattice bcc --target-size 20" \
+    "noise --lattice bcc --resample.sharpen 1" "noise --lattice bcc --target-size 7" \
     "tall --lattice cc" "tall --lattice bcc --resample.filter bspline5" "tall --lattice d4" \
-    "tall --lattice d4 --resample.filter bspline5" "tall --lattice cc --target-size 10" \
-    "tall --lattice d4 --target-size 10"; do
+    "tall --lattice d4 --resample.filter bspline5" "tall --lattice cc --target-size 4" \
+    "tall --lattice d4 --target-size 4"; do
     data=${what%% *} how=${what#* }
     # shellcheck disable=SC2086
-    check "too little memory, $what" 2 "$tessera" pack "$data.json" -o noise.tsr $how --memory 20
+    check "too little memory, $what" 2 "$tessera" pack "$data.json" -o noise.tsr $how --memory 12
     least=$(sed 's/.*takes about \([0-9]*\) MB.*/\1/' err.txt)
-    for memory in $((least + 1)) $((least + 20)); do
+    [ "$data" = tall ] && more=8 || more=20
+    for memory in $((least + 1)) $((least + more)); do
         # shellcheck disable=SC2086
         check "memory $memory, $what" 0 "$tessera" pack "$data.json" -o noise.tsr $how --memory $memory --json
         python3 - $memory "$data" <<'EOF' || fail "more than $memory MB, or no slabs, with $what"

@@ -40,14 +40,18 @@ await() {
     return 1
 }
 fresh() { [ "$work/shot.png" -nt "$work/mark" ]; }
-# A complete picture of the window after what follows `mark`, which waits until no more come of what was before.
-mark() {
+# Waits until no more pictures come of what was done before.
+still() {
     local try
     sleep 0.3
-    for ((try = 0; try < 50; ++try)); do
+    for ((try = 0; try < 100; ++try)); do
         [ -n "$(find "$work/shot.png" -newermt '0.8 seconds ago')" ] || break
         sleep 0.2
     done
+}
+# `fresh` means a complete picture of the window after what follows `mark`.
+mark() {
+    still
     touch "$work/mark"
     sleep 0.05
 }
@@ -83,14 +87,14 @@ xdotool key ctrl+s
 await 30 fresh || fail "Ctrl+S opens no dialog"
 xdotool key Return
 await 30 test -f session.tessera.json || fail "Ctrl+S saves nothing"
-sleep 1
 grep -q '"intervals": \[' session.tessera.json || fail "the saved session holds no brush"
 grep -q '"history"' session.tessera.json || fail "the saved session holds no history"
 cp session.tessera.json brushed.tessera.json
 
 # Undo, then a lasso chosen in the toolbar, saving each; quit: no question is asked.
+mark
 xdotool key ctrl+z
-sleep 1
+await 30 fresh || fail "Ctrl+Z draws nothing"
 xdotool key ctrl+s
 cleared() { grep -q '"brushes": \[\]' session.tessera.json; }
 await 30 cleared || fail "undo did not take the brush back"
@@ -104,7 +108,7 @@ mark
 xdotool mousemove 720 634 mousedown 1
 for at in "740 630" "760 634" "772 646" "765 662" "745 670" "725 662"; do
     xdotool mousemove $at
-    sleep 0.1
+    sleep 0.3
 done
 xdotool mouseup 1
 await 60 fresh || fail "a lasso draws nothing"
@@ -126,7 +130,7 @@ if command -v python3 >/dev/null; then
     await 30 title session || fail "the other session dropped does not open"
 fi
 xdotool key ctrl+q
-for ((i = 0; i < 100; ++i)); do kill -0 "$app" 2>/dev/null || break; sleep 0.2; done
+for ((i = 0; i < 300; ++i)); do kill -0 "$app" 2>/dev/null || break; sleep 0.2; done
 kill -0 "$app" 2>/dev/null && fail "Ctrl+Q does not end the program"
 wait "$app"
 status=$?
@@ -140,7 +144,7 @@ touch mark
 app=$!
 pids+=("$app")
 await 120 fresh || fail "the saved session does not open"
-sleep 1
+still
 cp shot.png window.png
 # kill -9: the next start finds nothing to recover, for nothing was changed.
 kill -9 "$app"

@@ -312,7 +312,7 @@ TEST_P(RaycastReference, CoarseLevelsLieWhereTheFineOnesDo) {
     request.budgetMs = 10000;
     Image coarse;
     coarse.size = kSize;
-    for (int frame = 0; frame < 2000; ++frame) {
+    for (int frame = 0; frame < 20000; ++frame) {
         const FrameStatus status = renderer.render(*target, scene, request);
         ASSERT_FALSE(status.complete);
         coarse.pixels.clear();

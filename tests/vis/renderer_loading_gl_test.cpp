@@ -68,7 +68,7 @@ TEST_F(RendererLoading, CoarseLevelsLieWhereFineOnesDo) {
         vis::FrameRequest request;
         request.size = {32, 32};
         std::vector<glm::vec4> coarse;
-        for (int i = 0; i < 2000 && (coarse.empty() || coarse[16 * 32 + 16].a == 0); ++i) {
+        for (int i = 0; i < 20000 && (coarse.empty() || coarse[16 * 32 + 16].a == 0); ++i) {
             const vis::FrameStatus status = renderer.render(*target, scene, request);
             EXPECT_FALSE(status.complete);
             EXPECT_GT(status.bricksMissing, 0);

@@ -127,7 +127,7 @@ TEST_F(ResidencyTest, ManyViewsComeToRestWithinTheBudget) {
     vis::FrameRequest request;
     request.size = {16, 16};
     bool rest = false;
-    for (int frame = 0; frame < 3000 && !rest; ++frame) {
+    for (int frame = 0; frame < 20000 && !rest; ++frame) {
         rest = true;
         for (View& view : views) rest &= renderer.render(*view.target, view.scene, request).complete;
         std::this_thread::sleep_for(std::chrono::milliseconds(1));
@@ -153,7 +153,7 @@ TEST_F(ResidencyTest, RefusedMemoryIsSharedByTwoViews) {
     vis::FrameRequest request;
     request.size = {16, 16};
     bool rest = false;
-    for (int frame = 0; frame < 3000 && !rest; ++frame) {
+    for (int frame = 0; frame < 20000 && !rest; ++frame) {
         rest = renderer.render(*a, scene, request).complete;
         rest &= renderer.render(*b, other, request).complete;
         std::this_thread::sleep_for(std::chrono::milliseconds(1));

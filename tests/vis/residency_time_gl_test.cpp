@@ -20,7 +20,7 @@ TEST_F(ResidencyTest, NextTimeIsPrefetched) {
             refine(renderer, *target, scene, request.size);
         }
         const auto coming = [&] { return source->count(2, 0) + source->count(2, 1) + source->count(2, 2); };
-        for (int frame = 0; frame < 500 && coming() == 0; ++frame) {
+        for (int frame = 0; frame < 20000 && coming() == 0; ++frame) {
             renderer.render(*target, scene, request);
             std::this_thread::sleep_for(std::chrono::milliseconds(2));
         }

@@ -12,6 +12,7 @@
 #include <fstream>
 #include <gtest/gtest.h>
 #include <random>
+#include <unistd.h>
 
 namespace tessera::volume {
 namespace {
@@ -124,7 +125,7 @@ TEST(DataJumps, AnyComponentOfAVectorCounts) {
 
 TEST(DataJumps, RulesAreReadFromFilesAndRefused) {
     const std::filesystem::path path =
-        std::filesystem::temp_directory_path() / "tessera_data_jumps_12x10x9_float32.raw";
+        std::filesystem::temp_directory_path() / ("tessera_data_jumps_" + std::to_string(getpid()) + ".raw");
     std::vector<float> values;
     for (int i = 0; i < 12 * 10 * 9; ++i) values.push_back(i / 12 % 10 < 5 ? 1 : 2);
     std::ofstream(path, std::ios::binary)
