@@ -72,6 +72,91 @@ TEST_F(ImportMemoryFile, WhatIsStatedOnceIsKnownTheNextTime) {
     EXPECT_EQ(memory.absent.at("cell"), now.absent);
 }
 
+/// Everything that options change in the file written below.
+std::string effectOf(const std::string& path, const volume::ImportOptions& options) {
+    const volume::Dataset data = volume::openFiles({path}, options);
+    std::string out;
+    for (std::size_t p = 0; p < data.info.parameters.size(); ++p) {
+        const volume::Parameter& parameter = data.info.parameters[p];
+        out += parameter.name + " [" + parameter.unit + "]";
+        for (const volume::Label& label : parameter.labels)
+            out += " " + std::to_string(label.value) + "=" + label.name + label.color;
+        out += " parts " + parameter.parts.label;
+        for (const std::vector<int>& part : parameter.parts.regions) {
+            out += " |";
+            for (const int value : part) out += " " + std::to_string(value);
+        }
+        out += " present ";
+        const volume::Field field = data.load(int(p), 0, 0);
+        for (std::size_t i = 0; i < field.count(); ++i) out += field.present(i) ? '1' : '0';
+        out += "\n";
+    }
+    return out;
+}
+
+/// Statements of one kind about that file, which mean something else each.
+struct Statements {
+    const char* kind;
+    volume::ImportOptions once, later;
+};
+std::vector<Statements> everyKindOfStatement() {
+    std::vector<Statements> all(6);
+    all[0].kind = "units", all[0].once.units = {{"T", "K"}}, all[0].later.units = {{"T", "degC"}};
+    all[1].kind = "absent", all[1].once.absent = {"T=region:1"}, all[1].later.absent = {"T=3"};
+    all[2].kind = "parts", all[2].once.parts = {"T=region:1|2"}, all[2].later.parts = {"T=region:1,2|3"};
+    all[3].kind = "labels", all[3].once.labels = {"region:1=cathode"}, all[3].later.labels = {"region:1=anode#e07b39"};
+    all[4].kind = "rename", all[4].once.rename = {{"oxy", "O2"}}, all[4].later.rename = {{"oxy", "oxygen"}};
+    all[5].kind = "of a renamed parameter";
+    all[5].once.rename = {{"oxy", "O2"}}, all[5].once.units = {{"O2", "mol/m3"}}, all[5].once.absent = {"O2=4"};
+    all[5].later.rename = {{"oxy", "oxygen"}}, all[5].later.absent = {"oxygen=5"};
+    return all;
+}
+
+TEST_F(ImportMemoryFile, EveryKindIsRecalledForTheFileAndOverriddenByWhatIsStated) {
+    fs::create_directories(folder_);
+    const auto write = [&](const std::string& name) {
+        std::string bytes;
+        for (int array = 0; array < 3; ++array)
+            for (int i = 0; i < 5 * 6 * 7; ++i) bytes += char(array == 0 ? 1 + i % 5 / 2 : array + i % 6);
+        std::ofstream(folder_ / (name + ".raw"), std::ios::binary) << bytes;
+        std::ofstream(folder_ / (name + ".json")) << R"({"dims": [5, 6, 7], "dtype": "uint8", "components": [
+            {"name": "region", "categorical": true}, {"name": "T"}, {"name": "oxy"}]})";
+        return (folder_ / (name + ".json")).string();
+    };
+    const std::string file = write("cell"), other = write("other");
+    const std::string plain = effectOf(file, {});
+    ASSERT_EQ(effectOf(other, {}), plain);
+    const fs::path known = importMemoryPath();
+    for (const Statements& statements : everyKindOfStatement()) {
+        SCOPED_TRACE(statements.kind);
+        fs::remove(known);
+        const std::string once = effectOf(file, statements.once), later = effectOf(file, statements.later);
+        ASSERT_NE(once, plain);
+        ASSERT_NE(later, plain);
+        ASSERT_NE(once, later);
+        EXPECT_EQ(effectOf(file, recallOptions({file}, {})), plain) << "nothing is known yet";
+        rememberStated(statements.once, volume::openFiles({file}, statements.once).info.name);
+        EXPECT_EQ(effectOf(file, recallOptions({file}, {})), once) << "recalled";
+        EXPECT_EQ(effectOf(file, recallOptions({file}, statements.later)), later) << "overridden";
+        EXPECT_EQ(effectOf(file, recallOptions({file}, {})), once) << "once is not for ever";
+        // Units go by the parameter alone, all else by the data too.
+        volume::ImportOptions ofAll;
+        ofAll.units = statements.once.units;
+        EXPECT_EQ(effectOf(other, recallOptions({other}, {})), effectOf(other, ofAll));
+        rememberStated(statements.later, volume::openFiles({file}, statements.later).info.name);
+        EXPECT_EQ(effectOf(file, recallOptions({file}, {})), later) << "the newest counts";
+        // One kind that is stated leaves what is known of the others.
+        volume::ImportOptions more;
+        more.lengthUnit = "mm";
+        more.units = {{"region", "1"}};
+        volume::ImportOptions both = statements.later;
+        both.units.insert(more.units.begin(), more.units.end());
+        EXPECT_EQ(effectOf(file, recallOptions({file}, more)), effectOf(file, both));
+        EXPECT_EQ(recallOptions({file}, more).lengthUnit, "mm");
+    }
+    fs::remove(known);
+}
+
 TEST_F(ImportMemoryFile, NamesTakenBackAreForgotten) {
     rememberLabels({"region:1=air", "zone:2=hot"}, {}, "cell", path_);
     rememberLabels({"region:1=air"}, {}, "other", path_);
