@@ -1,4 +1,5 @@
 // What comes through tessera-import. Skipped where it was not built.
+#include "tests/import/foreign_files.h"
 #include "volume/error.h"
 #include "volume/export.h"
 #include "volume/import/foreign.h"
@@ -18,44 +19,7 @@
 namespace tessera::volume {
 namespace {
 
-namespace fs = std::filesystem;
-
-class ImportVtk : public testing::Test {
-protected:
-    void SetUp() override {
-        if (findImporter().empty()) GTEST_SKIP() << "tessera-import was not built";
-        folder_ = fs::temp_directory_path() / ("tessera_vtk_" + std::to_string(getpid()));
-        fs::create_directories(folder_);
-    }
-    void TearDown() override {
-        if (!folder_.empty()) fs::remove_all(folder_);
-    }
-    std::string write(const std::string& name, const std::string& bytes) const {
-        std::ofstream(folder_ / name, std::ios::binary) << bytes;
-        return (folder_ / name).string();
-    }
-    static std::string read(const std::string& path) {
-        std::ifstream in(path, std::ios::binary);
-        return {std::istreambuf_iterator<char>(in), {}};
-    }
-    static std::string failure(const std::string& path, const ImportOptions& options = {}) {
-        try {
-            const Dataset dataset = openFiles({path}, options);
-            dataset.load(0, 0, 0);
-            return "";
-        } catch (const Error& error) {
-            return error.what();
-        }
-    }
-    fs::path folder_;
-};
-
-/// Path of optional data; "" when absent.
-std::string testData(const std::string& name) {
-    const char* named = std::getenv("TESSERA_DATA");
-    const fs::path path = fs::path(named != nullptr ? named : TESSERA_TEST_DATA) / name;
-    return fs::exists(path) ? path.string() : std::string();
-}
+class ImportVtk : public ForeignFiles {};
 
 Dataset sample(glm::ivec3 size) {
     Dataset dataset;
