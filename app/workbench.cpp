@@ -18,7 +18,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr double kAutosaveSeconds = 10;
 constexpr std::size_t kMessages = 500;
 
 } // namespace
@@ -241,8 +240,12 @@ void Workbench::watchEdits() {
     if (history_.observe(session_, editing, now())) unsavedEdits_ = true;
 }
 
+double Workbench::nextAutosave() const {
+    return lastAutosave_ + std::chrono::duration<double>(options_.autosaveInterval).count();
+}
+
 void Workbench::autosave() {
-    if (!autosave_ || !unsavedEdits_ || now() - lastAutosave_ < kAutosaveSeconds) return;
+    if (!autosave_ || !unsavedEdits_ || now() < nextAutosave()) return;
     lastAutosave_ = now();
     unsavedEdits_ = false;
     if (session_ == saved_) return;
@@ -372,7 +375,7 @@ double Workbench::idleSeconds() const {
     for (const Jobs::Status& job : jobs_.list()) wait = std::min(wait, job.quiet ? 0.25 : 0.1);
     for (const Message& each : messages_)
         if (!each.gone) wait = std::min(wait, std::max(0.05, each.born + each.toastSeconds() - now()));
-    if (unsavedEdits_) wait = std::min(wait, std::max(0.1, lastAutosave_ + kAutosaveSeconds - now()));
+    if (unsavedEdits_) wait = std::min(wait, std::max(0.1, nextAutosave() - now()));
     return wait;
 }
 

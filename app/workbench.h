@@ -41,6 +41,8 @@ struct WorkbenchOptions {
     std::string program = "/proc/self/exe"; ///< is run as a child to pack
     /// How often an archive that is shown is looked at for new times.
     std::chrono::milliseconds growthInterval = std::chrono::seconds(1);
+    /// How often what has been edited is kept for the case that the program ends by itself.
+    std::chrono::milliseconds autosaveInterval = std::chrono::seconds(10);
     /// Called after each pane is drawn, for measurements: `behind` while it still shows an older state of the session.
     std::function<void(const std::string& pane, bool behind)> paneDrawn = {};
 };
@@ -169,6 +171,7 @@ private:
     void replace(Session session);
     void watchEdits();
     void autosave();
+    double nextAutosave() const; ///< s, as now()
     Sources sources() const { return {source_, numbers_, origin_}; }
     void take(Sources sources, std::optional<vis::SameSamples> grown = {}); // workbench_data.cpp
     void followLattice();                                                   // workbench_data.cpp

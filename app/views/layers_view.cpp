@@ -1,3 +1,4 @@
+#include "app/views/layers_view.h"
 #include "app/session/context_style.h"
 #include "app/ui/widgets.h"
 #include "app/views/brush_list.h"
@@ -55,15 +56,6 @@ vis::Layer newLayer(const Session& session, const volume::DatasetInfo& info, std
     }
     layer.name = std::string(kindName(layer.technique)) + " of " + name;
     return layer;
-}
-
-/// A name that is made of the parameter ("O2", "O2 slice", "Volume of O2") follows when another is chosen.
-void followChannel(std::string& name, const std::string& before, const std::string& now) {
-    if (before.empty() || before == now) return;
-    if (name == before || name.starts_with(before + " "))
-        name = now + name.substr(before.size());
-    else if (name.ends_with(" of " + before))
-        name = name.substr(0, name.size() - before.size()) + now;
 }
 
 void drawList(ViewContext& context, int& selected) {
@@ -208,6 +200,14 @@ void drawListButtons(ViewContext& context, const volume::DatasetInfo& info, int&
 }
 
 } // namespace
+
+void followChannel(std::string& name, const std::string& before, const std::string& now) {
+    if (before.empty() || before == now) return;
+    if (name == before || name.starts_with(before + " "))
+        name = now + name.substr(before.size());
+    else if (name.ends_with(" of " + before))
+        name = name.substr(0, name.size() - before.size()) + now;
+}
 
 void drawLayersView(ViewContext& context, const std::string& pane, LayersView& view) {
     if (!context.source) {

@@ -213,7 +213,7 @@ std::string fitText(std::string_view text, float width) {
         if (!out.empty()) out.pop_back();
         if (ImGui::CalcTextSize((out + "...").c_str()).x <= width) return out.empty() ? out : out + "...";
     }
-    return out;
+    return {};
 }
 
 void drawBars(ImDrawList& draw, const PlotFrame& frame, std::span<const float> heights, ImU32 color) {

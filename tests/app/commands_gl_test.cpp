@@ -1,4 +1,6 @@
 #include "app/command/command.h"
+#include "app/command/format.h"
+#include "codec/archive.h"
 #include "codec/pack.h"
 #include "tests/app/formula_cell.h"
 #include "tests/app/table_text.h"
@@ -70,6 +72,30 @@ TEST(CommandsTable, HasEveryOptionThatChoosesAState) {
                 if (option->check_name(name)) found.insert({command->get_name(), name});
         }
     EXPECT_EQ(found, kStateOptions);
+}
+
+TEST(CommandsTable, HelpOfEachCommandIsItsOwn) {
+    for (const char* name : {"bench", "compare", "convert", "diff", "generate", "info", "mesh", "pack", "plot",
+                             "render", "replay", "stats", "unpack", "verify"}) {
+        const char* words[] = {"tessera", name, "--help"};
+        testing::internal::CaptureStdout();
+        EXPECT_EQ(runCommandLine(3, words), 0);
+        EXPECT_NE(testing::internal::GetCapturedStdout().find("tessera " + std::string(name)), std::string::npos)
+            << name;
+    }
+}
+
+TEST_F(Commands, InfoSaysTheBytesOfEachLevel) {
+    testing::internal::CaptureStdout();
+    ASSERT_EQ(run({"info", in("cell.tsr")}), 0);
+    const std::string said = testing::internal::GetCapturedStdout();
+    const codec::Archive archive(in("cell.tsr"));
+    std::string levels = "levels:";
+    for (int level = 0; level < archive.grid().levels; ++level) {
+        EXPECT_GT(archive.levelBytes(level), 0u);
+        levels += " " + bytesText(double(archive.levelBytes(level)));
+    }
+    EXPECT_NE(said.find(levels + "\n"), std::string::npos) << said;
 }
 
 TEST_F(Commands, StatsAreOfTheTimeAndRegions) {

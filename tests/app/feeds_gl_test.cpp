@@ -178,6 +178,40 @@ TEST_F(Feeds, CancelledLatestAnswerWaitsForAnotherWish) {
     EXPECT_EQ(*get(now), 4) << "what was there stays";
 }
 
+TEST_F(Feeds, TheNewestAnswerOfTheSamePlotsIsShownMeanwhile) {
+    StatisticsFeed feed;
+    const int t = source->info().findChannel("T").value();
+    const auto wish = [&](double most, int bins) {
+        return makeWish(session, source->info(), {t}, {{0, most}}, bins, false);
+    };
+    ViewContext now = context();
+    now.headless = true;
+    const auto other = feed.get(now, "statistics", wish(500, 16));
+    const auto older = feed.get(now, "statistics", wish(500, 8)), newer = feed.get(now, "statistics", wish(600, 8));
+    ASSERT_NE(older, newer);
+    now.headless = false;
+    EXPECT_EQ(feed.get(now, "statistics", wish(700, 8)), newer);
+    EXPECT_EQ(feed.get(now, "statistics", wish(700, 16)), other);
+    EXPECT_EQ(feed.get(now, "statistics", wish(700, 32)), nullptr);
+    jobs.wait();
+    jobs.collect();
+}
+
+TEST_F(Feeds, ASurfaceInTwoPartsTellsItsProgressInOne) {
+    for (const char* colorBy : {"", "H2"}) {
+        const Range range = source->info().channelRange(
+            source->info().channels()[std::size_t(source->info().findChannel("T").value())]);
+        const vis::IsoLayer layer{.channel = "T", .value = 0.5 * (range.lo + range.hi), .colorBy = colorBy};
+        std::vector<double> told;
+        Progress progress;
+        progress.report = [&](double fraction, const std::string&) { told.push_back(fraction); };
+        ASSERT_TRUE(extractLayer(source, layer, volume::timesAround(source->info().times, session.time), 0, progress));
+        ASSERT_FALSE(told.empty());
+        EXPECT_TRUE(std::is_sorted(told.begin(), told.end())) << colorBy;
+        EXPECT_LE(told.back(), 1);
+    }
+}
+
 TEST_F(Feeds, CancelledSurfaceWaitsForAnotherWish) {
     SurfaceFeed feed;
     vis::IsoLayer layer{.channel = "T"};

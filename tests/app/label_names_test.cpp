@@ -81,6 +81,7 @@ TEST(LabelNames, BrushesHoldARegionAndAreCalledLikeIt) {
     EXPECT_EQ(interest(1), 1); // both together
     EXPECT_EQ(interest(2), 0);
     EXPECT_EQ(interest(3), 1);
+    for (const double between : {0.5, 1.5, 2.5, 3.5}) EXPECT_EQ(interest(between), 0) << "in pictures, of no region";
     EXPECT_TRUE(regionBrushed(session, label, 1));
     EXPECT_FALSE(regionBrushed(session, label, 0));
     stateLabel(session, label, {3, "anode", ""});

@@ -39,6 +39,21 @@ protected:
     fs::path folder;
 };
 
+TEST_F(OpenTest, ProgressRunsFromNoughtToOne) {
+    OpenRequest request;
+    request.data.emplace();
+    request.data->model = "fuel-cell";
+    request.data->settings = {{"nx", 9}, {"ny", 9}, {"nz", 21}, {"times", 2}};
+    std::vector<double> told;
+    Progress progress;
+    progress.report = [&](double fraction, const std::string&) { told.push_back(fraction); };
+    open(request, progress);
+    ASSERT_GT(told.size(), 2u);
+    EXPECT_TRUE(std::is_sorted(told.begin(), told.end()));
+    EXPECT_GE(told.front(), 0);
+    EXPECT_LE(told.back(), 1);
+}
+
 TEST_F(OpenTest, ADataFileGetsTheDefaultSession) {
     const Opened opened = open(rawRequest(raw("a.raw")));
     ASSERT_TRUE(opened.source);

@@ -171,6 +171,40 @@ TEST(RegionData, BalancesAreInMolesPerSecond) {
     EXPECT_GE(table.notes.size(), 3u);
 }
 
+// In millimetres a mole per second comes out of other numbers, by a factor that every column takes over.
+TEST(RegionData, BalancesFollowTheUnitOfLength) {
+    const auto source = cellSource(cell());
+    volume::DatasetInfo info = source->info();
+    const Balance balance = readBalance(source, {0, "", 1, {}});
+    const BalanceTable metres = balanceTable(info, balance);
+    info.lengthUnit = "mm";
+    const BalanceTable table = balanceTable(info, balance);
+    EXPECT_EQ(balanceHeads(table),
+              (std::vector<std::string>{"Region", "Surface", "In [mol/s]", "Out [mol/s]", "Out - in [mol/s]", "Of in",
+                                        "Volume flow [m\u00b3/s]", "Area [m\u00b2]", "Inside [mol]"}));
+    ASSERT_EQ(table.rows.size(), metres.rows.size());
+    double moved = 0;
+    for (std::size_t i = 0; i < table.rows.size(); ++i) {
+        const BalanceRow &row = table.rows[i], &of = metres.rows[i];
+        EXPECT_NEAR(row.in, 1e-6 * of.in, 1e-15 * of.in);
+        EXPECT_NEAR(row.net, row.out - row.in, 1e-12 * (row.in + row.out));
+        EXPECT_NEAR(row.area, 1e-6 * of.area, 1e-15 * of.area);
+        moved += std::abs(row.net);
+    }
+    EXPECT_GT(moved, 0);
+}
+
+TEST(RegionData, CellsOfABalanceStandUnderTheirHeads) {
+    const std::vector<std::string> cells =
+        balanceCells({"air", "total: reacts", 1.5, 2.5, 3.5, 4.5, 5.5, true, 0.25, 7.5});
+    ASSERT_EQ(cells.size(), 9u);
+    EXPECT_EQ(cells[0], "air");
+    EXPECT_EQ(cells[1], "total: reacts");
+    EXPECT_EQ(cells[5], "+25.0000 %");
+    for (const auto& [column, value] : {std::pair{2, 1.5}, {3, 2.5}, {4, 3.5}, {6, 4.5}, {7, 5.5}, {8, 7.5}})
+        EXPECT_DOUBLE_EQ(std::stod(cells[std::size_t(column)]), value) << column;
+}
+
 TEST(RegionData, TablesLineUp) {
     EXPECT_EQ(alignedTable({"Name", "n"}, {{"\u00b5", "10"}, {"longer", "7"}}, 1), "Name     n\n"
                                                                                    "\u00b5       10\n"

@@ -57,6 +57,7 @@ protected:
         frame();
         mouse = {from.x + by.x, from.y + by.y};
         frame();
+        moved = edited;
         if (escape) {
             ImGui::GetIO().KeysDown[256] = true;
             frame();
@@ -83,6 +84,7 @@ protected:
     HandleDrag drag;
     ImVec2 mouse{0, 0};
     bool slice = false, edited = false;
+    bool moved = false; ///< the drag changed the session, as it said
 };
 
 TEST_F(SpaceHandles, EndsOfALineMoveAlone) {
@@ -92,6 +94,7 @@ TEST_F(SpaceHandles, EndsOfALineMoveAlone) {
     EXPECT_NEAR(flow.to.y, 0.7f, 0.01f);
     EXPECT_EQ(flow.from, glm::vec3(0.2f, 0.3f, 0.5f));
     EXPECT_FALSE(drag.active);
+    EXPECT_TRUE(moved) << "the mouse does nothing else meanwhile";
 }
 
 TEST_F(SpaceHandles, TheMiddleMovesTheWholeAndStaysInside) {
@@ -163,6 +166,7 @@ TEST_F(SpaceHandles, ElsewhereTheMouseIsFree) {
     const Session before = session;
     dragBy(pixelOf({1, 0.5, 0.5}), {30, 10}); // the whole data cannot be moved: no dot in its middle
     EXPECT_TRUE(session == before);
+    EXPECT_FALSE(moved);
 }
 
 } // namespace

@@ -5,6 +5,7 @@
 #include "app/ui/parameter_widget.h"
 #include "app/ui/theme.h"
 #include "app/ui/widgets.h"
+#include "tests/app/drawn_text.h"
 
 #include <algorithm>
 #include <cmath>
@@ -207,6 +208,27 @@ TEST_F(DockTest, ASplitterFollowsTheMouseInTheSameFrame) {
     EXPECT_NEAR(tree.root.ratio, shown / (800 - (rects.at(tree.root.children[1].id).lo.x - shown)), 1e-3);
     held = false;
     step();
+}
+
+TEST_F(DockTest, ASplitterUnderTheMouseIsLitAndNothingElse) {
+    insertPane(tree, "c", tree.root.id, DockSide::Right);
+    step(2);
+    const auto rects = layoutDock(tree, {{0, 0}, {800, 600}}, 1).rects;
+    const float left = rects.at(tree.root.children[0].id).hi.x, right = rects.at(tree.root.children[1].id).lo.x;
+    const auto lit = [] {
+        std::vector<ImVec2> below; // the strips of tabs
+        for (const ImVec2& corner : drawnIn(palette().accentSoft))
+            if (corner.y > 500) below.push_back(corner);
+        return below;
+    };
+    EXPECT_TRUE(lit().empty());
+    mouse = {left + 2, 300};
+    step(2);
+    ASSERT_FALSE(lit().empty());
+    for (const ImVec2& corner : lit()) {
+        EXPECT_GE(corner.x, left - 1);
+        EXPECT_LE(corner.x, right + 1);
+    }
 }
 
 TEST_F(DockTest, RectanglesTileTheWindow) {
