@@ -10,7 +10,9 @@ mkdir -p "$out"
 "$tessera" render gases -o "$out/gases.png" --view volume --size 1200x700
 "$tessera" render lens -o "$out/lens.png" --view volume --size 1200x700
 "$tessera" render flow -o "$out/flow.png" --view volume --size 1200x700
-"$tessera" render overview -o "$out/slices.png" --view slices --size 1200x700 --time 0.6 --set /views/slices/contours=12
+"$tessera" render overview -o "$out/slices.png" --view slices --size 1200x700 --time 0.6 \
+    --set '/views/slices/channel="O2"' --set '/views/slices/contourOf="T"' \
+    --set /views/slices/contours=12 --set /views/slices/contourValues=true
 "$tessera" render overview -o "$out/marschner-lobb.png" --view volume --size 900x700 \
     --set '/data={"model":"marschner-lobb","settings":{"nx":64,"ny":64,"nz":64,"times":1}}' \
     --set '/title="Marschner-Lobb signal"' --set '/stretch=[1,1,1]' --set /time=0 --set /camera/distance=3.4 \
