@@ -79,45 +79,80 @@ std::string statisticsCsv(const std::shared_ptr<const volume::BrickSource>& sour
     return csv;
 }
 
-void drawTable(const volume::DatasetInfo& info, const StatisticsResult& result, std::size_t shown, std::size_t with) {
-    constexpr ImGuiTableFlags kFlags = ImGuiTableFlags_RowBg | ImGuiTableFlags_SizingStretchProp |
-                                       ImGuiTableFlags_PadOuterX | ImGuiTableFlags_ScrollY |
-                                       ImGuiTableFlags_BordersInnerV;
+/// Begins a table whose heads stay, with the first `frozen` columns: stretched where every text has room, else as wide
+/// as its texts, to be scrolled: half a number is a wrong one.
+bool beginTable(const char* id, const std::vector<std::string>& heads,
+                const std::vector<std::vector<std::string>>& rows, int frozen, ImVec2 size) {
+    std::vector<float> widths;
+    float wanted = ImGui::GetStyle().ScrollbarSize;
+    for (std::size_t c = 0; c < heads.size(); ++c) {
+        float width = ImGui::CalcTextSize(heads[c].c_str()).x;
+        for (const std::vector<std::string>& row : rows) width = std::max(width, ImGui::CalcTextSize(row[c].c_str()).x);
+        widths.push_back(width + em()); // a mark of the region's colour, or air
+        wanted += widths.back() + 2 * ImGui::GetStyle().CellPadding.x + 1;
+    }
+    const bool room = wanted <= ImGui::GetContentRegionAvail().x;
+    const ImGuiTableFlags flags =
+        ImGuiTableFlags_RowBg | ImGuiTableFlags_PadOuterX | ImGuiTableFlags_ScrollY | ImGuiTableFlags_BordersInnerV |
+        (room ? ImGuiTableFlags_SizingStretchProp : ImGuiTableFlags_SizingFixedFit | ImGuiTableFlags_ScrollX);
+    // A table keeps the widths it had: the other way is another table.
+    const std::string name = id + std::string(room ? "" : " scrolled");
+    if (!ImGui::BeginTable(name.c_str(), static_cast<int>(heads.size()), flags, size)) return false;
+    ImGui::TableSetupScrollFreeze(frozen, 1);
+    for (std::size_t c = 0; c < heads.size(); ++c)
+        ImGui::TableSetupColumn(heads[c].c_str(), room ? ImGuiTableColumnFlags_None : ImGuiTableColumnFlags_WidthFixed,
+                                room ? 0 : widths[c]);
+    return true;
+}
+
+/// Rows of the table: parameter, part, samples, volume, mean, deviation, least, most, correlation.
+std::vector<std::vector<std::string>> statisticsRows(const volume::DatasetInfo& info, const StatisticsResult& result,
+                                                     std::size_t shown, std::size_t with) {
     const std::vector<volume::Channel> channels = info.channels();
-    const std::string other = "r with " + channels[static_cast<std::size_t>(result.wish.channels[with])].name;
-    if (!ImGui::BeginTable("statistics", 9, kFlags)) return;
-    ImGui::TableSetupScrollFreeze(1, 1);
-    for (const char* name : {"Parameter", "Part", "Samples", "Volume", "Mean", "Std. deviation", "Least", "Most"})
-        ImGui::TableSetupColumn(name);
-    ImGui::TableSetupColumn(other.c_str());
-    tableHeader({"Parameter", "Part", "Samples", "Volume", "Mean", "Std. deviation", "Least", "Most", other.c_str()},
-                2);
+    std::vector<std::vector<std::string>> rows;
     for (std::size_t i = 0; i < shown; ++i) {
         const volume::Channel& channel = channels[static_cast<std::size_t>(result.wish.channels[i])];
         const Range range = info.channelRange(channel);
         const double digits = (range.hi - range.lo) / 10000;
-        bool first = true;
         for (const Part& part : partsOf(result.statistics.channels[i], result.brushed)) {
             const volume::Summary& of = part.summary;
-            ImGui::TableNextRow();
-            ImGui::TableNextColumn();
-            if (first) ImGui::TextUnformatted(titleWithUnit(channel.name, channel.unit).c_str());
-            first = false;
-            ImGui::TableNextColumn();
-            ImGui::TextDisabled("%s", part.name);
-            const auto cell = [&](const std::string& text) {
-                ImGui::TableNextColumn();
-                textRight(of.samples > 0 ? text : "-");
-            };
-            cell(formatCount(std::round(of.samples)));
-            cell(formatVolume(of.volume, info.lengthUnit));
-            cell(formatNumber(of.mean, digits));
-            cell(formatNumber(of.deviation, digits));
-            cell(formatNumber(of.min, digits));
-            cell(formatNumber(of.max, digits));
             const volume::JointHistogram* joint = jointOf(result.statistics, i, with);
             const double r = joint ? correlationOf(*joint, part.name) : std::nan("");
-            cell(i == with ? "1" : std::isnan(r) ? "-" : formatNumber(r, 0.001));
+            std::vector<std::string> row{titleWithUnit(channel.name, channel.unit), part.name};
+            for (const std::string& text :
+                 {formatCount(std::round(of.samples)), formatVolume(of.volume, info.lengthUnit),
+                  formatNumber(of.mean, digits), formatNumber(of.deviation, digits), formatNumber(of.min, digits),
+                  formatNumber(of.max, digits),
+                  i == with       ? std::string("1")
+                  : std::isnan(r) ? std::string("-")
+                                  : formatNumber(r, 0.001)})
+                row.push_back(of.samples > 0 ? text : "-");
+            rows.push_back(std::move(row));
+        }
+    }
+    return rows;
+}
+
+void drawTable(const volume::DatasetInfo& info, const StatisticsResult& result, std::size_t shown, std::size_t with) {
+    const std::string other = "r with " + info.channels()[static_cast<std::size_t>(result.wish.channels[with])].name;
+    const std::vector<std::vector<std::string>> rows = statisticsRows(info, result, shown, with);
+    if (!beginTable("statistics",
+                    {"Parameter", "Part", "Samples", "Volume", "Mean", "Std. deviation", "Least", "Most", other}, rows,
+                    2, {}))
+        return;
+    tableHeader({"Parameter", "Part", "Samples", "Volume", "Mean", "Std. deviation", "Least", "Most", other.c_str()},
+                2);
+    std::string last;
+    for (const std::vector<std::string>& row : rows) {
+        ImGui::TableNextRow();
+        ImGui::TableNextColumn();
+        if (row[0] != last) ImGui::TextUnformatted(row[0].c_str());
+        last = row[0];
+        ImGui::TableNextColumn();
+        ImGui::TextDisabled("%s", row[1].c_str());
+        for (std::size_t c = 2; c < row.size(); ++c) {
+            ImGui::TableNextColumn();
+            textRight(row[c]);
         }
     }
     ImGui::EndTable();
@@ -126,18 +161,15 @@ void drawTable(const volume::DatasetInfo& info, const StatisticsResult& result, 
 /// The table of every region, without any brush.
 void drawRegionTable(Session& session, const volume::DatasetInfo& info, const volume::Parameter& label,
                      const std::vector<RegionRow>& rows) {
-    constexpr ImGuiTableFlags kFlags = ImGuiTableFlags_RowBg | ImGuiTableFlags_SizingStretchProp |
-                                       ImGuiTableFlags_PadOuterX | ImGuiTableFlags_ScrollY |
-                                       ImGuiTableFlags_BordersInnerV;
     const std::vector<std::string> heads = regionHeads();
-    if (!ImGui::BeginTable("regions", static_cast<int>(heads.size()), kFlags)) return;
-    ImGui::TableSetupScrollFreeze(1, 1);
-    for (const std::string& head : heads) ImGui::TableSetupColumn(head.c_str());
+    std::vector<std::vector<std::string>> texts;
+    for (const RegionRow& row : rows) texts.push_back(regionCells(row, info.lengthUnit));
+    if (!beginTable("regions", heads, texts, 2, {})) return;
     tableHeader({"Parameter", "Region", "Samples", "Of all", "Of its own", "Volume", "Mean", "Spread", "Least", "Most"},
                 2);
     std::string last;
     for (const RegionRow& row : rows) {
-        const std::vector<std::string> cells = regionCells(row, info.lengthUnit);
+        const std::vector<std::string>& cells = texts[static_cast<std::size_t>(&row - rows.data())];
         ImGui::TableNextRow();
         for (std::size_t c = 0; c < cells.size(); ++c) {
             ImGui::TableNextColumn();
@@ -168,18 +200,15 @@ void drawRegionTable(Session& session, const volume::DatasetInfo& info, const vo
 
 /// What flows through every surface of every region.
 void drawBalanceTable(const BalanceTable& table) {
-    constexpr ImGuiTableFlags kFlags = ImGuiTableFlags_RowBg | ImGuiTableFlags_SizingStretchProp |
-                                       ImGuiTableFlags_PadOuterX | ImGuiTableFlags_ScrollY |
-                                       ImGuiTableFlags_BordersInnerV;
     const std::vector<std::string> heads = balanceHeads(table);
+    std::vector<std::vector<std::string>> texts;
+    for (const BalanceRow& row : table.rows) texts.push_back(balanceCells(row));
     const float notes = ImGui::GetTextLineHeightWithSpacing() * 1.2f;
-    if (ImGui::BeginTable("balance", static_cast<int>(heads.size()), kFlags, {0, -notes})) {
-        ImGui::TableSetupScrollFreeze(2, 1);
-        for (const std::string& head : heads) ImGui::TableSetupColumn(head.c_str());
+    if (beginTable("balance", heads, texts, 2, {0, -notes})) {
         ImGui::TableHeadersRow();
         std::string last;
         for (const BalanceRow& row : table.rows) {
-            const std::vector<std::string> cells = balanceCells(row);
+            const std::vector<std::string>& cells = texts[static_cast<std::size_t>(&row - table.rows.data())];
             ImGui::TableNextRow();
             for (std::size_t c = 0; c < cells.size(); ++c) {
                 ImGui::TableNextColumn();

@@ -1,4 +1,5 @@
 #include "app/session/label_names.h"
+#include "tests/app/drawn_text.h"
 #include "tests/app/fed_imgui.h"
 #include "tests/volume/cell_data.h"
 #include "vis/gl/headless.h"
@@ -7,6 +8,7 @@
 #include "app/views/view_context.h"
 
 #include <gtest/gtest.h>
+#include <set>
 
 /// Statistics by region, balances and averages over planes in their views.
 namespace tessera::app {
@@ -96,6 +98,28 @@ TEST_F(RegionViews, ShowStatisticsAndBalances) {
     EXPECT_FALSE(busy);
     view.balance = "gone"; // other data: statistics again
     draw(view, drawStatisticsView, {40, 30});
+}
+
+// Half a number is a wrong one: where there is no room a table is scrolled, and only its right edge cuts.
+TEST_F(RegionViews, TablesAreNeverCutWithin) {
+    StatisticsView view;
+    for (const char* shown : {"statistics", "regions", "balance"}) {
+        SCOPED_TRACE(shown);
+        view.byRegion = shown != std::string("statistics");
+        view.balance = shown == std::string("balance") ? "O2" : "";
+        for (int i = 0; i < 3; ++i) draw(view, drawStatisticsView, {1270, 790});
+        std::set<std::string> whole;
+        for (const DrawnText& text : drawnTexts()) whole.insert(text.text);
+        constexpr float kWidth = 430;
+        for (int i = 0; i < 3; ++i) draw(view, drawStatisticsView, {kWidth, 790});
+        int read = 0;
+        for (const DrawnText& text : drawnTexts()) {
+            if (text.min.y < 90 || text.max.x > kWidth - 30) continue; // the row of tools; the edge
+            EXPECT_TRUE(whole.contains(text.text)) << text.text;
+            ++read;
+        }
+        EXPECT_GT(read, 6);
+    }
 }
 
 } // namespace
