@@ -2,15 +2,15 @@
 find_package(VTK 9.1 QUIET COMPONENTS CommonCore CommonDataModel CommonExecutionModel FiltersCore IOCGNSReader
              IOEnSight IOExodus IOGeometry IOHDF IOImage IOLegacy IONetCDF IOParallel IOXML hdf5)
 if(VTK_FOUND)
-  file(GLOB import_sources CONFIGURE_DEPENDS app/import/*.cpp)
-  list(REMOVE_ITEM import_sources ${CMAKE_SOURCE_DIR}/app/import/main.cpp)
+  file(GLOB_RECURSE import_sources CONFIGURE_DEPENDS app/importer/*.cpp)
+  list(REMOVE_ITEM import_sources ${CMAKE_SOURCE_DIR}/app/importer/main.cpp)
   find_package(ZLIB REQUIRED)
   find_package(TIFF REQUIRED)
   # The readers, which fuzz targets link too.
   add_library(importer STATIC ${import_sources})
   target_link_libraries(importer PUBLIC volume nlohmann_json::nlohmann_json ${VTK_LIBRARIES} TIFF::TIFF ZLIB::ZLIB)
   target_include_directories(importer SYSTEM PUBLIC ${VTK_INCLUDE_DIRS})
-  add_executable(tessera-import app/import/main.cpp)
+  add_executable(tessera-import app/importer/main.cpp)
   target_link_libraries(tessera-import PRIVATE importer)
   vtk_module_autoinit(TARGETS importer tessera-import MODULES ${VTK_LIBRARIES})
 else()

@@ -1,6 +1,6 @@
 #include "app/command/command.h"
 
-#include "volume/error.h"
+#include "volume/base/error.h"
 
 #include <cmath>
 #include <csignal>

@@ -1,9 +1,9 @@
-#include "app/session/compare.h"
+#include "app/edits/compare.h"
 #include "app/command/command.h"
 #include "app/command/picture_options.h"
-#include "app/views/compare_view.h"
-#include "volume/atomic_file.h"
-#include "volume/error.h"
+#include "app/views/compare/compare_view.h"
+#include "volume/base/error.h"
+#include "volume/system/atomic_file.h"
 
 #include <filesystem>
 #include <memory>

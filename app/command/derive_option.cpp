@@ -1,8 +1,8 @@
 #include "app/command/derive_option.h"
 
-#include "volume/error.h"
-#include "volume/memory_source.h"
-#include "volume/mesh/sample_grid.h"
+#include "volume/base/error.h"
+#include "volume/reconstruct/sample_grid.h"
+#include "volume/sources/memory_source.h"
 
 #include <algorithm>
 #include <memory>

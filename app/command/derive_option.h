@@ -1,6 +1,6 @@
 #pragma once
 
-#include "volume/derived.h"
+#include "volume/derived/derived.h"
 
 #include <CLI/CLI.hpp>
 #include <string>

@@ -1,9 +1,9 @@
 #include "app/command/command.h"
-#include "app/command/import_options.h"
-#include "app/open.h"
-#include "app/session/describe_cli.h"
-#include "app/views/surface_feed.h"
-#include "volume/error.h"
+#include "app/data/import_options.h"
+#include "app/data/open.h"
+#include "app/described/describe_cli.h"
+#include "app/queries/surface_feed.h"
+#include "volume/base/error.h"
 #include "volume/mesh/mesh_file.h"
 
 #include <algorithm>

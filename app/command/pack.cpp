@@ -1,10 +1,10 @@
-#include "codec/pack.h"
+#include "codec/pack/pack.h"
 #include "app/command/command.h"
-#include "app/command/format.h"
-#include "app/command/import_options.h"
-#include "app/session/describe_cli.h"
-#include "app/session/import_memory.h"
-#include "codec/unpack.h"
+#include "app/data/format.h"
+#include "app/data/import_options.h"
+#include "app/described/describe_cli.h"
+#include "app/user_files/import_memory.h"
+#include "codec/pack/unpack.h"
 #include "volume/import/sliced.h"
 
 #include <algorithm>

@@ -1,8 +1,8 @@
 #include "app/command/picture_options.h"
 
-#include "app/command/import_options.h"
+#include "app/data/import_options.h"
 #include "app/session/parameter_path.h"
-#include "volume/error.h"
+#include "volume/base/error.h"
 
 #include <cstdio>
 #include <filesystem>

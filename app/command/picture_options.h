@@ -1,6 +1,6 @@
 #pragma once
 
-#include "app/open.h"
+#include "app/data/open.h"
 #include "app/platform/headless.h"
 #include "app/session/session_file.h"
 

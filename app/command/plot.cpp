@@ -1,12 +1,12 @@
 #include "app/command/command.h"
-#include "app/command/format.h"
-#include "app/command/import_options.h"
-#include "app/open.h"
+#include "app/data/format.h"
+#include "app/data/import_options.h"
+#include "app/data/open.h"
 #include "app/platform/headless.h"
-#include "app/views/curves_data.h"
-#include "vis/image_io.h"
-#include "volume/atomic_file.h"
-#include "volume/error.h"
+#include "app/views/curves/curves_data.h"
+#include "vis/image/image_io.h"
+#include "volume/base/error.h"
+#include "volume/system/atomic_file.h"
 
 #include <cstdio>
 #include <memory>

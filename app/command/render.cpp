@@ -1,8 +1,8 @@
 #include "app/command/command.h"
 #include "app/command/picture_options.h"
-#include "app/views/ticks.h"
-#include "volume/atomic_file.h"
-#include "volume/error.h"
+#include "app/ui/ticks.h"
+#include "volume/base/error.h"
+#include "volume/system/atomic_file.h"
 
 #include <filesystem>
 #include <memory>

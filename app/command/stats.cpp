@@ -1,14 +1,14 @@
 #include "app/command/command.h"
 #include "app/command/derive_option.h"
-#include "app/command/format.h"
-#include "app/command/import_options.h"
 #include "app/command/stats_answer.h"
-#include "app/open.h"
-#include "app/session/describe_cli.h"
-#include "app/session/import_memory.h"
-#include "app/views/ticks.h"
-#include "volume/atomic_file.h"
-#include "volume/error.h"
+#include "app/data/format.h"
+#include "app/data/import_options.h"
+#include "app/data/open.h"
+#include "app/described/describe_cli.h"
+#include "app/ui/ticks.h"
+#include "app/user_files/import_memory.h"
+#include "volume/base/error.h"
+#include "volume/system/atomic_file.h"
 
 #include <cstdio>
 #include <memory>

@@ -1,13 +1,13 @@
 #include "app/command/stats_answer.h"
 
-#include "app/command/format.h"
+#include "app/data/format.h"
+#include "app/pane/view_parts.h"
 #include "app/session/label_colors.h"
-#include "app/views/region_data.h"
-#include "app/views/section_data.h"
-#include "app/views/ticks.h"
-#include "app/views/view_parts.h"
-#include "volume/analysis/flow_channels.h"
-#include "volume/analysis/unit_product.h"
+#include "app/ui/ticks.h"
+#include "app/views/curves/section_data.h"
+#include "app/views/statistics/region_data.h"
+#include "volume/base/unit_product.h"
+#include "volume/flow/flow_channels.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,9 +1,9 @@
 #pragma once
 
 #include "app/command/stats_question.h"
-#include "app/session/describe_json.h"
-#include "app/views/figure.h"
-#include "volume/progress.h"
+#include "app/described/describe_json.h"
+#include "app/pane/figure.h"
+#include "volume/base/progress.h"
 
 #include <string>
 #include <vector>

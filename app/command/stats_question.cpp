@@ -1,9 +1,9 @@
 #include "app/command/stats_question.h"
 
-#include "app/views/region_data.h"
-#include "app/views/view_parts.h"
-#include "volume/analysis/flow_channels.h"
-#include "volume/error.h"
+#include "app/pane/view_parts.h"
+#include "app/views/statistics/region_data.h"
+#include "volume/base/error.h"
+#include "volume/flow/flow_channels.h"
 
 #include <cstdlib>
 #include <utility>

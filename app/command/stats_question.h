@@ -1,13 +1,13 @@
 #pragma once
 
+#include "app/data/sources.h"
 #include "app/session/section_settings.h"
-#include "app/sources.h"
-#include "app/views/section_data.h"
-#include "volume/derived.h"
-#include "volume/describe.h"
+#include "app/views/curves/section_data.h"
+#include "volume/base/describe.h"
+#include "volume/derived/derived.h"
+#include "volume/field/time_pair.h"
 #include "volume/import/import.h"
-#include "volume/labelled_source.h"
-#include "volume/time_pair.h"
+#include "volume/sources/labelled_source.h"
 
 #include <memory>
 #include <optional>

@@ -1,9 +1,9 @@
-#include "codec/unpack.h"
+#include "codec/pack/unpack.h"
 #include "app/command/command.h"
 #include "app/command/derive_option.h"
-#include "app/command/format.h"
-#include "volume/export.h"
-#include "volume/hyperplane.h"
+#include "app/data/format.h"
+#include "volume/export/export.h"
+#include "volume/resample/hyperplane.h"
 
 #include <algorithm>
 #include <cstdio>

@@ -1,6 +1,6 @@
 #include "app/command/command.h"
-#include "app/command/format.h"
-#include "codec/archive.h"
+#include "app/data/format.h"
+#include "codec/archive/archive.h"
 
 #include <cstdio>
 #include <memory>

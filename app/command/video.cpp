@@ -1,7 +1,7 @@
 #include "app/command/video.h"
 
-#include "volume/error.h"
-#include "volume/import/process.h"
+#include "volume/base/error.h"
+#include "volume/system/process.h"
 
 #include <array>
 #include <cstdlib>

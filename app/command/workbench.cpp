@@ -1,9 +1,9 @@
 #include "app/command/command.h"
-#include "app/command/import_options.h"
 #include "app/command/picture_options.h"
+#include "app/data/import_options.h"
 #include "app/platform/window.h"
 
-#include "volume/error.h"
+#include "volume/base/error.h"
 
 #include <algorithm>
 #include <filesystem>

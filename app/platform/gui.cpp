@@ -1,8 +1,8 @@
 #include "app/platform/gui.h"
 
 #include "app/ui/keys.h"
-#include "app/workbench.h"
-#include "volume/error.h"
+#include "app/workbench/workbench.h"
+#include "volume/base/error.h"
 
 #include <algorithm>
 #include <backends/imgui_impl_opengl3.h>

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "app/session/session.h"
-#include "vis/image_io.h"
+#include "vis/image/image_io.h"
 
 #include <functional>
 #include <glm/vec2.hpp>

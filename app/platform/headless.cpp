@@ -2,7 +2,7 @@
 
 #include "app/platform/gui.h"
 #include "vis/gl/headless.h"
-#include "volume/error.h"
+#include "volume/base/error.h"
 
 namespace tessera::app {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "app/workbench.h"
+#include "app/workbench/workbench.h"
 
 /// The workbench without a window: the same frames, drawn into memory.
 namespace tessera::app {

@@ -3,9 +3,9 @@
 #include "app/platform/gui.h"
 #include "app/platform/headless.h"
 #include "app/platform/input_queue.h"
-#include "app/workbench.h"
+#include "app/workbench/workbench.h"
 #include "vis/gl/requirements.h"
-#include "volume/error.h"
+#include "volume/base/error.h"
 
 #include <epoxy/gl.h>
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "app/open.h"
+#include "app/data/open.h"
 
 namespace tessera::app {
 

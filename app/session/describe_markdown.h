@@ -1,6 +1,6 @@
 #pragma once
 
-#include "app/session/describe_json.h"
+#include "app/described/describe_json.h"
 
 #include <string>
 

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "vis/model/transfer_function.h"
-#include "volume/dataset.h"
+#include "vis/transfer/transfer_function.h"
+#include "volume/field/dataset.h"
 
 #include <glm/vec3.hpp>
 #include <optional>

@@ -2,7 +2,7 @@
 
 #include "app/session/history.h"
 #include "app/session/session.h"
-#include "volume/error.h"
+#include "volume/base/error.h"
 
 #include <algorithm>
 #include <charconv>

@@ -1,13 +1,13 @@
 #pragma once
 
-#include "volume/analysis/section_weight.h"
-#include "volume/describe.h"
+#include "volume/base/describe.h"
+#include "volume/flow/section_weight.h"
 
 #include <vector>
 
 namespace tessera::app {
 
-/// What is shown of the planes of a section (app/views/section_data.h).
+/// What is shown of the planes of a section (app/views/curves/section_data.h).
 enum class SectionMeasure { Mean, Least, Most, Integral, Flux, Flow, Area };
 inline constexpr std::string_view kSectionMeasureNames[] = {"mean", "least", "most", "integral",
                                                             "flux", "flow",  "area"};

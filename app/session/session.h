@@ -3,12 +3,12 @@
 #include "app/session/animation.h"
 #include "app/session/dock_tree.h"
 #include "app/session/view_state.h"
-#include "codec/pack.h"
-#include "vis/model/scene.h"
-#include "volume/dataset.h"
-#include "volume/derived.h"
+#include "codec/pack/pack.h"
+#include "vis/scene/scene.h"
+#include "volume/derived/derived.h"
+#include "volume/field/dataset.h"
 #include "volume/import/import.h"
-#include "volume/time_axis.h"
+#include "volume/sources/time_axis.h"
 
 #include <map>
 #include <optional>

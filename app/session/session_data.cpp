@@ -1,5 +1,5 @@
 #include "app/session/session_file.h"
-#include "volume/import/named_files.h"
+#include "volume/import/files/named_files.h"
 
 #include <algorithm>
 #include <cstdio>

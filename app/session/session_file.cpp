@@ -1,6 +1,6 @@
 #include "app/session/session_file.h"
 
-#include "volume/error.h"
+#include "volume/base/error.h"
 
 #include <algorithm>
 #include <cerrno>

@@ -1,6 +1,6 @@
 #include "app/session/session_json.h"
 
-#include "volume/error.h"
+#include "volume/base/error.h"
 
 namespace tessera::app {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "app/session/describe_json.h"
+#include "app/described/describe_json.h"
 #include "app/session/session.h"
 
 /// A session as JSON. Its conversions are the largest templates of the program: session_json.cpp alone holds them.

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "volume/describe.h"
+#include "volume/base/describe.h"
 
 #include <map>
 #include <string>

@@ -1,8 +1,8 @@
 #pragma once
 
 #include "app/session/section_settings.h"
-#include "volume/describe.h"
-#include "volume/space_axis.h"
+#include "volume/base/describe.h"
+#include "volume/field/space_axis.h"
 
 #include <glm/vec3.hpp>
 #include <map>

@@ -1,6 +1,6 @@
 #include "app/ui/jobs.h"
 
-#include "volume/error.h"
+#include "volume/base/error.h"
 
 #include <algorithm>
 #include <chrono>

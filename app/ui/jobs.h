@@ -1,6 +1,6 @@
 #pragma once
 
-#include "volume/progress.h"
+#include "volume/base/progress.h"
 
 #include <functional>
 #include <memory>

@@ -1,8 +1,8 @@
 #include "app/ui/widgets.h"
 
 #include "app/ui/theme.h"
-#include "app/views/ticks.h"
-#include "vis/model/transfer_function.h"
+#include "app/ui/ticks.h"
+#include "vis/transfer/transfer_function.h"
 
 #include <algorithm>
 #include <cctype>

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "app/session/describe_json.h"
-#include "volume/dataset.h"
+#include "app/described/describe_json.h"
+#include "volume/field/dataset.h"
 
 #include <algorithm>
 #include <functional>

@@ -1,7 +1,7 @@
-#include "app/open.h"
+#include "app/data/open.h"
+#include "app/edits/compare.h"
 #include "app/session/animation.h"
-#include "app/session/compare.h"
-#include "volume/error.h"
+#include "volume/base/error.h"
 
 #include <gtest/gtest.h>
 

@@ -1,8 +1,8 @@
 #pragma once
 
 #include "app/session/session.h"
-#include "vis/image_io.h"
-#include "volume/dataset.h"
+#include "vis/image/image_io.h"
+#include "volume/field/dataset.h"
 
 #include <cmath>
 #include <gtest/gtest.h>

@@ -1,8 +1,8 @@
-#include "app/views/camera_hand.h"
+#include "app/tools/camera_hand.h"
 #include "tests/app/fed_imgui.h"
 #include "tests/app/formula_cell.h"
 #include "vis/gl/headless.h"
-#include "volume/memory_source.h"
+#include "volume/sources/memory_source.h"
 
 #include <cmath>
 #include <glm/geometric.hpp>

@@ -1,5 +1,5 @@
-#include "app/session/colormap_file.h"
-#include "volume/error.h"
+#include "app/user_files/colormap_file.h"
+#include "volume/base/error.h"
 
 #include <gtest/gtest.h>
 

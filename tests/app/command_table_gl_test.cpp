@@ -1,4 +1,4 @@
-#include "app/open.h"
+#include "app/data/open.h"
 #include "tests/app/workbench_fixture.h"
 
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
 #include "app/command/command.h"
-#include "app/command/format.h"
-#include "codec/archive.h"
-#include "codec/pack.h"
+#include "app/data/format.h"
+#include "codec/archive/archive.h"
+#include "codec/pack/pack.h"
 #include "tests/app/formula_cell.h"
 #include "tests/app/table_text.h"
 

@@ -1,8 +1,8 @@
+#include "app/edits/compare.h"
 #include "app/platform/headless.h"
-#include "app/session/compare.h"
-#include "app/views/compare_view.h"
-#include "volume/error.h"
-#include "volume/memory_source.h"
+#include "app/views/compare/compare_view.h"
+#include "volume/base/error.h"
+#include "volume/sources/memory_source.h"
 #include "volume/synthetic/models.h"
 
 #include <cmath>

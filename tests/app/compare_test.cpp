@@ -1,7 +1,7 @@
-#include "app/session/compare.h"
+#include "app/edits/compare.h"
 
 #include "app/session/history.h"
-#include "volume/error.h"
+#include "volume/base/error.h"
 
 #include <gtest/gtest.h>
 #include <limits>

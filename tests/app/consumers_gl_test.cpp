@@ -1,4 +1,4 @@
-#include "app/session/describe_json.h"
+#include "app/described/describe_json.h"
 #include "tests/app/formula_view.h"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-#include "app/session/context_style.h"
+#include "app/edits/context_style.h"
 
 #include <gtest/gtest.h>
 

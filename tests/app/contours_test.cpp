@@ -1,9 +1,9 @@
 #include "app/session/session_json.h"
-#include "app/views/contour_data.h"
-#include "app/views/contour_labels.h"
-#include "app/views/slice_figure.h"
+#include "app/views/slices/contour_data.h"
+#include "app/views/slices/contour_labels.h"
+#include "app/views/slices/slice_figure.h"
 #include "tests/volume/regions.h"
-#include "volume/memory_source.h"
+#include "volume/sources/memory_source.h"
 
 #include <cmath>
 #include <glm/geometric.hpp>

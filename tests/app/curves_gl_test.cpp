@@ -1,7 +1,7 @@
 // The view of curves over time, by the mouse: its default, the polarisation curve, and going to a state.
-#include "app/views/curves_data.h"
+#include "app/views/curves/curves_data.h"
 #include "tests/app/views_fixture.h"
-#include "volume/error.h"
+#include "volume/base/error.h"
 
 #include <cmath>
 #include <set>

@@ -1,4 +1,4 @@
-#include "app/views/curves_data.h"
+#include "app/views/curves/curves_data.h"
 
 #include <gtest/gtest.h>
 #include <limits>

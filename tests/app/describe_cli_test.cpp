@@ -1,7 +1,7 @@
-#include "app/session/describe_cli.h"
+#include "app/described/describe_cli.h"
 
 #include "app/session/session.h"
-#include "codec/pack.h"
+#include "codec/pack/pack.h"
 
 #include <gtest/gtest.h>
 

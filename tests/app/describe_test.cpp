@@ -1,6 +1,6 @@
 #include "app/session/session.h"
 #include "randomise.h"
-#include "volume/error.h"
+#include "volume/base/error.h"
 
 #include <gtest/gtest.h>
 #include <set>

@@ -1,11 +1,11 @@
 #include "app/command/derive_option.h"
-#include "app/open.h"
-#include "app/views/derived_list.h"
-#include "volume/derived_bricks.h"
-#include "volume/error.h"
+#include "app/data/open.h"
+#include "app/views/data/derived_list.h"
+#include "volume/base/error.h"
+#include "volume/derived/derived_bricks.h"
+#include "volume/derived/other_source.h"
 #include "volume/import/import.h"
-#include "volume/memory_source.h"
-#include "volume/other_source.h"
+#include "volume/sources/memory_source.h"
 #include "volume/synthetic/models.h"
 
 #include <cmath>

@@ -1,13 +1,13 @@
-#include "app/session/describe_json.h"
-#include "app/views/compare_feed.h"
-#include "app/views/latest_feed.h"
-#include "app/views/readout.h"
-#include "app/views/statistics_feed.h"
-#include "app/views/surface_feed.h"
-#include "app/views/tesseract_feed.h"
-#include "codec/pack.h"
+#include "app/described/describe_json.h"
+#include "app/queries/latest_feed.h"
+#include "app/queries/readout.h"
+#include "app/queries/statistics_feed.h"
+#include "app/queries/surface_feed.h"
+#include "app/views/compare/compare_feed.h"
+#include "app/views/tesseract/tesseract_feed.h"
+#include "codec/pack/pack.h"
 #include "tests/app/views_fixture.h"
-#include "volume/probe.h"
+#include "volume/reconstruct/probe.h"
 
 #include <atomic>
 #include <chrono>

@@ -1,6 +1,6 @@
-#include "app/views/figure.h"
+#include "app/pane/figure.h"
 
-#include "vis/image_io.h"
+#include "vis/image/image_io.h"
 
 #include <algorithm>
 #include <cmath>

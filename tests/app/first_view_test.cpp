@@ -1,6 +1,6 @@
-#include "app/first_view.h"
+#include "app/data/first_view.h"
 #include "app/session/session.h"
-#include "volume/memory_source.h"
+#include "volume/sources/memory_source.h"
 
 #include <gtest/gtest.h>
 

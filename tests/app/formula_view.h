@@ -1,10 +1,10 @@
 #pragma once
 
 #include "app/platform/gui.h"
-#include "app/workbench.h"
+#include "app/workbench/workbench.h"
 #include "tests/app/formula_cell.h"
 #include "vis/gl/headless.h"
-#include "volume/memory_source.h"
+#include "volume/sources/memory_source.h"
 
 #include <functional>
 #include <gtest/gtest.h>

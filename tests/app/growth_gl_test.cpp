@@ -1,11 +1,11 @@
-#include "app/growth_watch.h"
+#include "app/data/growth_watch.h"
 #include "app/platform/gui.h"
 #include "app/platform/headless.h"
-#include "codec/archive.h"
-#include "codec/container.h"
-#include "codec/pack.h"
+#include "codec/archive/archive.h"
+#include "codec/container/container.h"
+#include "codec/pack/pack.h"
 #include "vis/gl/headless.h"
-#include "volume/derived_bricks.h"
+#include "volume/derived/derived_bricks.h"
 #include "volume/synthetic/models.h"
 
 #include <condition_variable>

@@ -3,10 +3,10 @@
 #include "app/platform/gui.h"
 #include "app/session/session_json.h"
 #include "app/ui/keys.h"
-#include "app/workbench.h"
+#include "app/workbench/workbench.h"
 #include "tests/app/formula_cell.h"
 #include "vis/gl/headless.h"
-#include "volume/memory_source.h"
+#include "volume/sources/memory_source.h"
 
 #include <cmath>
 #include <gtest/gtest.h>

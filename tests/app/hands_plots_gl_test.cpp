@@ -1,4 +1,4 @@
-#include "app/views/scatter_layout.h"
+#include "app/views/scatter/scatter_layout.h"
 #include "tests/app/hands_fixture.h"
 
 /// The mouse in plots of values: zoom and pan of scatterplots, brushes of a histogram, transfer functions.

@@ -1,4 +1,4 @@
-#include "app/views/axes3d.h"
+#include "app/pane/axes3d.h"
 #include "tests/app/hands_fixture.h"
 
 /// The mouse in views of space: volume, shadow cube, comparisons. The camera's own hand: camera_hand_gl_test.cpp.

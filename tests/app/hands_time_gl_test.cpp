@@ -1,4 +1,4 @@
-#include "app/views/plot.h"
+#include "app/pane/plot.h"
 #include "tests/app/hands_fixture.h"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
-#include "app/session/import_memory.h"
+#include "app/user_files/import_memory.h"
 
-#include "volume/error.h"
+#include "volume/base/error.h"
 
 #include <filesystem>
 #include <fstream>

@@ -1,8 +1,8 @@
-#include "app/session/label_names.h"
+#include "app/edits/label_names.h"
 
 #include "app/session/label_colors.h"
-#include "volume/analysis/flow_channels.h"
-#include "volume/import/labels.h"
+#include "volume/field/labels.h"
+#include "volume/flow/flow_channels.h"
 
 #include <gtest/gtest.h>
 

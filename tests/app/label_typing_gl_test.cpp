@@ -1,7 +1,7 @@
 #include "tests/app/workbench_fixture.h"
 
-#include "app/session/import_memory.h"
-#include "volume/analysis/flow_channels.h"
+#include "app/user_files/import_memory.h"
+#include "volume/flow/flow_channels.h"
 
 #include <cstdlib>
 #include <filesystem>

@@ -1,7 +1,7 @@
-#include "app/open.h"
+#include "app/data/open.h"
+#include "app/pane/view_parts.h"
 #include "app/platform/headless.h"
-#include "app/views/ticks.h"
-#include "app/views/view_parts.h"
+#include "app/ui/ticks.h"
 
 #include <algorithm>
 #include <gtest/gtest.h>

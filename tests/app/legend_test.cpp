@@ -1,6 +1,6 @@
+#include "app/pane/view_parts.h"
 #include "app/session/session.h"
-#include "app/views/ticks.h"
-#include "app/views/view_parts.h"
+#include "app/ui/ticks.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
-#include "app/session/describe_json.h"
-#include "vis/model/scene.h"
+#include "app/described/describe_json.h"
+#include "vis/scene/scene.h"
 
 #include <gtest/gtest.h>
 #include <set>

@@ -1,9 +1,9 @@
-#include "app/number_origin.h"
+#include "app/data/number_origin.h"
 
-#include "app/views/figure.h"
-#include "app/views/focus_share.h"
-#include "codec/metadata.h"
-#include "volume/mesh_origin.h"
+#include "app/pane/figure.h"
+#include "app/queries/focus_share.h"
+#include "codec/container/metadata.h"
+#include "volume/field/mesh_origin.h"
 
 #include <gtest/gtest.h>
 

@@ -1,9 +1,9 @@
-#include "app/open.h"
-#include "app/views/focus_share.h"
-#include "app/views/profile_data.h"
-#include "app/views/statistics_feed.h"
-#include "codec/pack.h"
-#include "volume/probe.h"
+#include "app/data/open.h"
+#include "app/queries/focus_share.h"
+#include "app/queries/statistics_feed.h"
+#include "app/views/curves/profile_data.h"
+#include "codec/pack/pack.h"
+#include "volume/reconstruct/probe.h"
 #include "volume/synthetic/models.h"
 
 #include <cmath>

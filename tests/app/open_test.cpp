@@ -1,7 +1,7 @@
-#include "app/open.h"
-#include "app/session/state_dir.h"
-#include "vis/image_io.h"
-#include "volume/error.h"
+#include "app/data/open.h"
+#include "app/user_files/state_dir.h"
+#include "vis/image/image_io.h"
+#include "volume/base/error.h"
 
 #include <algorithm>
 #include <fcntl.h>

@@ -1,6 +1,6 @@
-#include "app/open.h"
+#include "app/data/open.h"
 #include "app/session/session_file.h"
-#include "codec/pack.h"
+#include "codec/pack/pack.h"
 #include "tests/app/beacon.h"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
-#include "app/views/plot.h"
-#include "app/views/scatter_layout.h"
+#include "app/pane/plot.h"
+#include "app/views/scatter/scatter_layout.h"
 #include "tests/app/beacon.h"
 #include "tests/app/formula_view.h"
 

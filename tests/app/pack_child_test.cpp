@@ -1,7 +1,7 @@
-#include "app/pack_child.h"
+#include "app/data/pack_child.h"
 
-#include "codec/archive.h"
-#include "volume/error.h"
+#include "codec/archive/archive.h"
+#include "volume/base/error.h"
 
 #include <filesystem>
 #include <fstream>

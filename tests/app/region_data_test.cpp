@@ -1,11 +1,11 @@
-#include "app/views/region_data.h"
+#include "app/views/statistics/region_data.h"
 
-#include "app/sources.h"
-#include "app/views/section_data.h"
+#include "app/data/sources.h"
+#include "app/views/curves/section_data.h"
 #include "tests/volume/cell_data.h"
-#include "volume/analysis/flow_channels.h"
+#include "volume/flow/flow_channels.h"
 #include "volume/import/foreign.h"
-#include "volume/memory_source.h"
+#include "volume/sources/memory_source.h"
 
 #include <cmath>
 #include <cstdlib>

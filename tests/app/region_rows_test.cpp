@@ -1,8 +1,8 @@
-#include "app/views/focus_share.h"
-#include "app/views/readout.h"
-#include "app/views/selection_rows.h"
+#include "app/queries/focus_share.h"
+#include "app/queries/readout.h"
+#include "app/views/data/selection_rows.h"
 #include "tests/volume/regions.h"
-#include "volume/memory_source.h"
+#include "volume/sources/memory_source.h"
 
 #include <gtest/gtest.h>
 

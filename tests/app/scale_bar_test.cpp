@@ -1,4 +1,4 @@
-#include "app/views/scale_bar.h"
+#include "app/pane/scale_bar.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 #include "app/platform/headless.h"
-#include "codec/pack.h"
-#include "volume/error.h"
+#include "codec/pack/pack.h"
+#include "volume/base/error.h"
 #include "volume/synthetic/models.h"
 
 #include <filesystem>

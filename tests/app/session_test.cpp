@@ -1,7 +1,7 @@
 #include "app/session/history.h"
 #include "app/session/session_file.h"
 #include "randomise.h"
-#include "volume/error.h"
+#include "volume/base/error.h"
 
 #include <algorithm>
 #include <filesystem>

@@ -1,4 +1,4 @@
-#include "app/views/space_handles.h"
+#include "app/tools/space_handles.h"
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>

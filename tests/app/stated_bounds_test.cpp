@@ -1,11 +1,11 @@
 // Error bounds as users state them (options, presets, the JSON of a session), for files whose numbers are stored with
 // scales below and above 1: what comes back is compared with what was written.
-#include "app/session/describe_json.h"
+#include "app/data/sources.h"
+#include "app/described/describe_json.h"
 #include "app/session/session.h"
-#include "app/sources.h"
-#include "codec/archive.h"
-#include "volume/import/process.h"
-#include "volume/probe.h"
+#include "codec/archive/archive.h"
+#include "volume/reconstruct/probe.h"
+#include "volume/system/process.h"
 
 #include <algorithm>
 #include <array>

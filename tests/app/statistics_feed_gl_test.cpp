@@ -1,7 +1,7 @@
-#include "app/views/statistics_feed.h"
+#include "app/queries/statistics_feed.h"
 
-#include "codec/archive.h"
-#include "codec/pack.h"
+#include "codec/archive/archive.h"
+#include "codec/pack/pack.h"
 #include "vis/gl/headless.h"
 
 #include <atomic>

@@ -1,6 +1,6 @@
-#include "app/views/statistics_feed.h"
+#include "app/queries/statistics_feed.h"
 
-#include "app/views/brush_edit.h"
+#include "app/tools/brush_edit.h"
 #include "tests/app/fed_imgui.h"
 
 #include <cmath>

@@ -1,11 +1,11 @@
-#include "app/views/axes3d.h"
-#include "app/views/camera_hand.h"
-#include "app/views/profile_data.h"
-#include "app/views/space_beside.h"
-#include "app/views/time_text.h"
+#include "app/pane/axes3d.h"
+#include "app/tools/camera_hand.h"
+#include "app/ui/time_text.h"
+#include "app/views/curves/profile_data.h"
+#include "app/views/volume/space_beside.h"
 #include "tests/app/views_fixture.h"
 #include "tests/app/workbench_fixture.h"
-#include "volume/time_axis.h"
+#include "volume/sources/time_axis.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "app/views/time_text.h"
+#include "app/ui/time_text.h"
 
 #include <cmath>
 #include <gtest/gtest.h>

@@ -1,12 +1,12 @@
+#include "app/pane/view_parts.h"
+#include "app/queries/derivative_feed.h"
 #include "app/ui/theme.h"
-#include "app/views/color_edit.h"
-#include "app/views/derivative_feed.h"
-#include "app/views/transfer_pages.h"
-#include "app/views/view_parts.h"
+#include "app/views/transfer/color_edit.h"
+#include "app/views/transfer/transfer_pages.h"
 #include "tests/app/fed_imgui.h"
 #include "vis/gl/headless.h"
-#include "vis/model/boundary_opacity.h"
-#include "volume/memory_source.h"
+#include "vis/transfer/boundary_opacity.h"
+#include "volume/sources/memory_source.h"
 #include "volume/synthetic/models.h"
 
 namespace tessera::app {

@@ -1,5 +1,5 @@
-#include "app/views/brush_edit.h"
-#include "app/views/brush_list.h"
+#include "app/tools/brush_edit.h"
+#include "app/tools/brush_list.h"
 #include "tests/app/fed_imgui.h"
 
 namespace tessera::app {

@@ -1,5 +1,5 @@
-#include "app/views/scatter_layout.h"
-#include "app/views/statistics_feed.h"
+#include "app/queries/statistics_feed.h"
+#include "app/views/scatter/scatter_layout.h"
 #include "tests/app/views_fixture.h"
 
 #include <cmath>

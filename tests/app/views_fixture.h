@@ -1,11 +1,11 @@
 #pragma once
 
+#include "app/pane/view_context.h"
+#include "app/pane/view_parts.h"
 #include "app/ui/theme.h"
-#include "app/views/view_context.h"
-#include "app/views/view_parts.h"
 #include "tests/app/fed_imgui.h"
 #include "vis/gl/headless.h"
-#include "volume/memory_source.h"
+#include "volume/sources/memory_source.h"
 #include "volume/synthetic/models.h"
 
 namespace tessera::app {

@@ -1,6 +1,6 @@
-#include "app/views/flow_feed.h"
+#include "app/queries/flow_feed.h"
 #include "tests/app/views_fixture.h"
-#include "volume/error.h"
+#include "volume/base/error.h"
 
 #include <cmath>
 #include <limits>

@@ -1,6 +1,6 @@
-#include "app/views/lens_edit.h"
-#include "app/views/lens_list.h"
-#include "app/views/lens_outline.h"
+#include "app/tools/lens_edit.h"
+#include "app/tools/lens_list.h"
+#include "app/tools/lens_outline.h"
 #include "tests/app/fed_imgui.h"
 
 #include <cmath>

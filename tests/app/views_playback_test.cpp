@@ -1,5 +1,5 @@
-#include "app/views/opacity_edit.h"
-#include "app/views/playback.h"
+#include "app/views/timeline/playback.h"
+#include "app/views/transfer/opacity_edit.h"
 #include "tests/app/fed_imgui.h"
 
 #include <gmock/gmock.h>

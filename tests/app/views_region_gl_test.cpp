@@ -1,11 +1,11 @@
-#include "app/session/label_names.h"
+#include "app/edits/label_names.h"
 #include "tests/app/drawn_text.h"
 #include "tests/app/fed_imgui.h"
 #include "tests/volume/cell_data.h"
 #include "vis/gl/headless.h"
 
+#include "app/pane/view_context.h"
 #include "app/ui/theme.h"
-#include "app/views/view_context.h"
 
 #include <gtest/gtest.h>
 #include <set>

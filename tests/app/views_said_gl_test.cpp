@@ -1,4 +1,4 @@
-#include "app/views/ticks.h"
+#include "app/ui/ticks.h"
 #include "tests/app/views_fixture.h"
 
 #include <gmock/gmock.h>

@@ -1,4 +1,4 @@
-#include "app/views/ticks.h"
+#include "app/ui/ticks.h"
 
 #include <cmath>
 #include <gmock/gmock.h>

@@ -2,7 +2,7 @@
 
 #include "app/platform/gui.h"
 #include "app/ui/keys.h"
-#include "app/workbench.h"
+#include "app/workbench/workbench.h"
 #include "vis/gl/headless.h"
 
 #include <gtest/gtest.h>

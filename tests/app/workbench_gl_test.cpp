@@ -3,7 +3,7 @@
 #include "app/ui/keys.h"
 #include "tests/app/workbench_fixture.h"
 #include "vis/gl/headless.h"
-#include "volume/error.h"
+#include "volume/base/error.h"
 
 #include <algorithm>
 #include <filesystem>

@@ -5,8 +5,8 @@
 // Prints one line a coder, cells apart by tabs: data, coder, ratio, encode and decode MB of samples per CPU second,
 // decode relative to zstd -3 on the same samples, largest error relative to the range. First a line "absent" with the
 // names of coders that were not installed when this was built.
-#include "codec/archive.h"
-#include "codec/pack.h"
+#include "codec/archive/archive.h"
+#include "codec/pack/pack.h"
 #include "tests/bench/peer_codecs.h"
 #include "volume/import/import.h"
 

@@ -1,9 +1,9 @@
-#include "codec/archive.h"
+#include "codec/archive/archive.h"
 
-#include "codec/pack.h"
+#include "codec/pack/pack.h"
 #include "tests/codec/compare_fields.h"
 #include "tests/codec/make_dataset.h"
-#include "volume/resample.h"
+#include "volume/resample/resample.h"
 
 #include <cstring>
 #include <gtest/gtest.h>

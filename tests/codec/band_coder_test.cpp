@@ -1,4 +1,4 @@
-#include "codec/band_coder.h"
+#include "codec/bands/band_coder.h"
 
 #include <algorithm>
 #include <gtest/gtest.h>

@@ -1,12 +1,12 @@
-#include "codec/archive.h"
-#include "codec/body_centred.h"
-#include "codec/brick_codec.h"
-#include "codec/level_box.h"
-#include "codec/pack.h"
+#include "codec/archive/archive.h"
+#include "codec/brick/brick_codec.h"
+#include "codec/pack/pack.h"
+#include "codec/wavelet/body_centred.h"
+#include "codec/wavelet/level_box.h"
 #include "tests/codec/make_dataset.h"
 #include "tests/codec/plain/decoder.h"
 #include "tests/codec/plain_labels.h"
-#include "volume/resample.h"
+#include "volume/resample/resample.h"
 
 #include <gtest/gtest.h>
 #include <random>

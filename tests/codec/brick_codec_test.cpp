@@ -1,4 +1,4 @@
-#include "codec/brick_codec.h"
+#include "codec/brick/brick_codec.h"
 
 #include "tests/codec/make_dataset.h"
 

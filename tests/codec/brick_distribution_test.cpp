@@ -1,12 +1,12 @@
-#include "codec/archive.h"
-#include "codec/brick_tally.h"
-#include "codec/container.h"
-#include "codec/lzma.h"
-#include "codec/pack.h"
+#include "codec/archive/archive.h"
+#include "codec/brick/brick_tally.h"
+#include "codec/bytes/lzma.h"
+#include "codec/container/container.h"
+#include "codec/pack/pack.h"
 #include "tests/codec/make_dataset.h"
 #include "tests/codec/plain/decoder.h"
 #include "tests/codec/sealed_file.h"
-#include "volume/statistics.h"
+#include "volume/analysis/statistics.h"
 
 #include <cmath>
 #include <functional>

@@ -1,8 +1,8 @@
-#include "codec/archive.h"
-#include "codec/pack.h"
+#include "codec/archive/archive.h"
+#include "codec/pack/pack.h"
 #include "tests/codec/make_dataset.h"
 #include "tests/codec/plain/decoder.h"
-#include "volume/memory_source.h"
+#include "volume/sources/memory_source.h"
 
 #include <cmath>
 #include <gtest/gtest.h>

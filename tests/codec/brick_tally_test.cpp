@@ -1,4 +1,4 @@
-#include "codec/brick_tally.h"
+#include "codec/brick/brick_tally.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "codec/archive.h"
+#include "codec/archive/archive.h"
 
 #include <algorithm>
 #include <cmath>

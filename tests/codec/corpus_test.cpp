@@ -1,6 +1,6 @@
-#include "codec/archive.h"
-#include "codec/brick_codec.h"
-#include "codec/pack.h"
+#include "codec/archive/archive.h"
+#include "codec/brick/brick_codec.h"
+#include "codec/pack/pack.h"
 #include "tests/codec/make_dataset.h"
 #include "tests/fuzz/fuzz_model.h"
 

@@ -1,9 +1,9 @@
 // Crashes while an archive is written. The writes, syncs and renames of packing and appending are recorded; for every
 // prefix of them the file is made as a disk may hold it then, with what was not yet synced there, torn, or missing in
 // part, and opened: it shows what was there before or a whole later state, and never less than what was synced.
-#include "codec/archive.h"
-#include "codec/container.h"
-#include "codec/pack.h"
+#include "codec/archive/archive.h"
+#include "codec/container/container.h"
+#include "codec/pack/pack.h"
 #include "tests/codec/make_dataset.h"
 
 #include <algorithm>

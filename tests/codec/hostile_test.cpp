@@ -1,6 +1,6 @@
-#include "codec/archive.h"
-#include "codec/container.h"
-#include "codec/pack.h"
+#include "codec/archive/archive.h"
+#include "codec/container/container.h"
+#include "codec/pack/pack.h"
 #include "tests/codec/make_dataset.h"
 
 #include <cstring>

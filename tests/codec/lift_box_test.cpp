@@ -1,6 +1,6 @@
-#include "codec/lift_box.h"
+#include "codec/wavelet/lift_box.h"
 
-#include "codec/filter.h"
+#include "codec/wavelet/filter.h"
 
 #include <algorithm>
 #include <cmath>
@@ -25,7 +25,7 @@ template <class Visit> void forPlaces(glm::ivec3 size, Visit&& visit) {
             for (int x = 0; x < size.x; ++x) visit(x, y, z);
 }
 
-/// Lines and boxes agree with codec/lifting.h, on every kind of processor.
+/// Lines and boxes agree with codec/wavelet/lifting.h, on every kind of processor.
 template <class Word> void agrees(unsigned seed, std::uint32_t mask, bool wide) {
     constexpr int kSizes[] = {1, 2, 3, 4, 5, 17, 32, 33, 64};
     std::mt19937 random(seed);

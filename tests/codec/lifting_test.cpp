@@ -1,4 +1,4 @@
-#include "codec/lifting.h"
+#include "codec/wavelet/lifting.h"
 
 #include <bit>
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
-#include "codec/archive.h"
-#include "codec/lossy_field.h"
-#include "codec/pack.h"
+#include "codec/archive/archive.h"
+#include "codec/pack/lossy_field.h"
+#include "codec/pack/pack.h"
 #include "tests/codec/compare_fields.h"
 #include "tests/codec/make_dataset.h"
 

@@ -1,6 +1,6 @@
-#include "codec/lzma.h"
+#include "codec/bytes/lzma.h"
 
-#include "codec/rans_model.h"
+#include "codec/bands/rans_model.h"
 
 #include <gtest/gtest.h>
 #include <random>

@@ -1,6 +1,6 @@
-#include "codec/merged_bytes.h"
+#include "codec/pack/merged_bytes.h"
 
-#include "codec/pack.h"
+#include "codec/pack/pack.h"
 #include "tests/codec/make_dataset.h"
 
 #include <gtest/gtest.h>

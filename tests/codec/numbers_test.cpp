@@ -1,4 +1,4 @@
-#include "codec/numbers.h"
+#include "codec/brick/numbers.h"
 
 #include <bit>
 #include <cmath>

@@ -1,8 +1,8 @@
-#include "codec/unpack.h"
+#include "codec/pack/unpack.h"
 
-#include "codec/pack.h"
-#include "volume/memory_source.h"
-#include "volume/series_dataset.h"
+#include "codec/pack/pack.h"
+#include "volume/resample/series_dataset.h"
+#include "volume/sources/memory_source.h"
 
 #include <cmath>
 #include <filesystem>

@@ -1,6 +1,6 @@
-#include "codec/archive.h"
-#include "codec/pack.h"
-#include "codec/pack_size.h"
+#include "codec/archive/archive.h"
+#include "codec/pack/pack.h"
+#include "codec/pack/pack_size.h"
 #include "tests/codec/make_dataset.h"
 
 #include <atomic>

@@ -1,9 +1,9 @@
-#include "codec/archive.h"
-#include "codec/pack.h"
-#include "codec/unpack.h"
+#include "codec/archive/archive.h"
+#include "codec/pack/pack.h"
+#include "codec/pack/unpack.h"
 #include "tests/codec/compare_fields.h"
 #include "tests/codec/make_dataset.h"
-#include "volume/error.h"
+#include "volume/base/error.h"
 
 #include <filesystem>
 #include <gtest/gtest.h>

@@ -1,8 +1,8 @@
 #include "tests/codec/plain/decoder.h"
 
-#include "codec/archive.h"
-#include "codec/brick_codec.h"
-#include "codec/pack.h"
+#include "codec/archive/archive.h"
+#include "codec/brick/brick_codec.h"
+#include "codec/pack/pack.h"
 #include "tests/codec/make_dataset.h"
 #include "tests/codec/plain_labels.h"
 

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "codec/archive.h"
+#include "codec/archive/archive.h"
 #include "tests/codec/plain/decoder.h"
-#include "volume/parts_bricks.h"
+#include "volume/bricks/parts_bricks.h"
 
 namespace tessera::codec::testing {
 

@@ -1,7 +1,7 @@
 // Quantities over time in archives: as packed, appended, unpacked, and with D4*.
-#include "codec/archive.h"
-#include "codec/pack.h"
-#include "codec/unpack.h"
+#include "codec/archive/archive.h"
+#include "codec/pack/pack.h"
+#include "codec/pack/unpack.h"
 
 #include <cmath>
 #include <filesystem>

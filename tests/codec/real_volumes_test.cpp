@@ -1,5 +1,5 @@
-#include "codec/archive.h"
-#include "codec/pack.h"
+#include "codec/archive/archive.h"
+#include "codec/pack/pack.h"
 #include "tests/codec/make_dataset.h"
 #include "volume/import/import.h"
 

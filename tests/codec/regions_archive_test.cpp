@@ -1,9 +1,9 @@
-#include "codec/archive.h"
-#include "codec/pack.h"
-#include "codec/unpack.h"
+#include "codec/archive/archive.h"
+#include "codec/pack/pack.h"
+#include "codec/pack/unpack.h"
 #include "tests/codec/make_dataset.h"
 #include "tests/volume/regions.h"
-#include "volume/part_masks.h"
+#include "volume/field/part_masks.h"
 
 #include <gtest/gtest.h>
 

@@ -1,11 +1,11 @@
-#include "codec/resample_error.h"
+#include "codec/container/resample_error.h"
 
-#include "codec/archive.h"
-#include "codec/error_bound.h"
-#include "codec/unpack.h"
+#include "codec/archive/archive.h"
+#include "codec/pack/error_bound.h"
+#include "codec/pack/unpack.h"
 #include "tests/codec/make_dataset.h"
 #include "tests/codec/plain/decoder.h"
-#include "volume/resample.h"
+#include "volume/resample/resample.h"
 
 #include <cmath>
 #include <gmock/gmock.h>

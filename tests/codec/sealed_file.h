@@ -1,6 +1,6 @@
 #pragma once
 
-#include "codec/container.h"
+#include "codec/container/container.h"
 
 #include <algorithm>
 #include <cstring>

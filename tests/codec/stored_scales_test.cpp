@@ -1,8 +1,8 @@
 // Error bounds are in the unit of the parameter, whatever number a sample is stored as: scales below and above 1,
 // negative ones, offsets, and others at every time.
-#include "codec/archive.h"
-#include "codec/pack.h"
-#include "codec/unpack.h"
+#include "codec/archive/archive.h"
+#include "codec/pack/pack.h"
+#include "codec/pack/unpack.h"
 #include "tests/codec/make_dataset.h"
 
 #include <algorithm>

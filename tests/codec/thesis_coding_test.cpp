@@ -1,8 +1,8 @@
-#include "codec/thesis_coding.h"
+#include "codec/pack/thesis_coding.h"
 
-#include "codec/run_length.h"
+#include "codec/bytes/run_length.h"
 #include "tests/codec/make_dataset.h"
-#include "volume/error.h"
+#include "volume/base/error.h"
 
 #include <gtest/gtest.h>
 #include <numeric>

@@ -1,6 +1,6 @@
-#include "codec/whole_brick.h"
+#include "codec/brick/whole_brick.h"
 
-#include "codec/brick_codec.h"
+#include "codec/brick/brick_codec.h"
 
 #include <cmath>
 #include <cstring>

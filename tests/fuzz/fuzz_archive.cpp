@@ -1,6 +1,6 @@
 // A whole archive. Header, metadata and index get right checksums first, so that what lies behind them is reached.
-#include "codec/archive.h"
-#include "codec/container.h"
+#include "codec/archive/archive.h"
+#include "codec/container/container.h"
 
 #include <cstdint>
 #include <cstring>

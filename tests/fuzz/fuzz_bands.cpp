@@ -1,5 +1,5 @@
 // A model and bands coded with it: every kind of processor gives the same answer.
-#include "codec/band_coder.h"
+#include "codec/bands/band_coder.h"
 
 #include <cstdint>
 #include <cstdlib>

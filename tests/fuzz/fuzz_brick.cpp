@@ -1,5 +1,5 @@
 // A coded brick of any format: the first bytes say which, the rest are its segments and mask.
-#include "codec/brick_codec.h"
+#include "codec/brick/brick_codec.h"
 #include "tests/fuzz/fuzz_model.h"
 
 #include <cstdint>

@@ -1,9 +1,9 @@
 // Forms of raw files: the JSON sidecar, the text of --raw, NRRD headers, and lists of files.
-#include "volume/error.h"
+#include "volume/base/error.h"
 #include "volume/import/absent.h"
-#include "volume/import/nrrd.h"
-#include "volume/import/raw.h"
-#include "volume/import/series.h"
+#include "volume/import/files/nrrd.h"
+#include "volume/import/files/raw.h"
+#include "volume/import/files/series.h"
 
 #include <cstdint>
 #include <cstdlib>

@@ -1,8 +1,8 @@
 // What the user states: tables over time, names of labels, parts, absent samples.
-#include "volume/error.h"
+#include "volume/base/error.h"
+#include "volume/field/labels.h"
 #include "volume/import/absent.h"
 #include "volume/import/find_parts.h"
-#include "volume/import/labels.h"
 #include "volume/import/over_time.h"
 
 #include <cstdint>

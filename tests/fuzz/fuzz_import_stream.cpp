@@ -1,6 +1,6 @@
 // What a broken tessera-import could send: heads, headers and frames.
-#include "volume/error.h"
-#include "volume/import/stream.h"
+#include "volume/base/error.h"
+#include "volume/import/files/stream.h"
 
 #include <cstdint>
 #include <cstdlib>

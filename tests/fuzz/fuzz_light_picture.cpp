@@ -1,6 +1,6 @@
 // A picture of surroundings, Radiance or PNG.
-#include "vis/light_picture.h"
-#include "volume/error.h"
+#include "vis/image/light_picture.h"
+#include "volume/base/error.h"
 
 using namespace tessera;
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "codec/band_coder.h"
+#include "codec/bands/band_coder.h"
 
 /// One model for the bricks of the fuzz targets, and one by band, whose seeds were written with them.
 namespace tessera::codec {

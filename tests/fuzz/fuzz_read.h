@@ -1,7 +1,7 @@
 #pragma once
 
-#include "app/import/describe_source.h"
-#include "app/import/source.h"
+#include "app/importer/describe_source.h"
+#include "app/importer/readers/source.h"
 
 #include <cstdint>
 #include <cstdio>

@@ -1,6 +1,6 @@
 // Any bytes as a session file: an Error or a session whose history can be walked and which saves and loads again.
 #include "app/session/session_file.h"
-#include "volume/error.h"
+#include "volume/base/error.h"
 
 #include <cstdint>
 #include <cstdlib>

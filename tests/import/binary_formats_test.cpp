@@ -1,7 +1,7 @@
 // NumPy, HDF5, TIFF and DICOM: files written here byte by byte or by their libraries.
 #include "tests/import/foreign_files.h"
-#include "volume/import/formats.h"
-#include "volume/import/named_files.h"
+#include "volume/import/files/formats.h"
+#include "volume/import/files/named_files.h"
 
 #include <hdf5.h>
 #include <map>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "volume/error.h"
+#include "volume/base/error.h"
 #include "volume/import/foreign.h"
 #include "volume/import/import.h"
 

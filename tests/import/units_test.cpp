@@ -1,6 +1,6 @@
 // Units that files state, and those that only a name tells.
 #include "tests/import/foreign_files.h"
-#include "volume/export.h"
+#include "volume/export/export.h"
 
 namespace tessera::volume {
 namespace {

@@ -1,7 +1,7 @@
 // What comes through tessera-import. Skipped where it was not built.
 #include "tests/import/foreign_files.h"
-#include "volume/error.h"
-#include "volume/export.h"
+#include "volume/base/error.h"
+#include "volume/export/export.h"
 #include "volume/import/foreign.h"
 #include "volume/import/import.h"
 

@@ -1,6 +1,6 @@
 // Truncated files: one line of reason, or exactly what the whole file holds. Never zeros.
 #include "tests/import/foreign_files.h"
-#include "volume/export.h"
+#include "volume/export/export.h"
 
 namespace tessera::volume {
 namespace {

@@ -1,6 +1,6 @@
-#include "vis/model/adaptive_step.h"
+#include "vis/optics/adaptive_step.h"
 
-#include "vis/model/ray_setup.h"
+#include "vis/scene/ray_setup.h"
 
 #include <cmath>
 #include <gtest/gtest.h>

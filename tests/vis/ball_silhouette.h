@@ -1,6 +1,6 @@
 #pragma once
 
-#include "vis/model/look.h"
+#include "vis/scene/look.h"
 
 #include <cmath>
 #include <glm/geometric.hpp>

@@ -1,5 +1,5 @@
 #include "tests/vis/raycast_compare.h"
-#include "volume/time_pair.h"
+#include "volume/field/time_pair.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "vis/gl/brick_levels.h"
+#include "vis/bricks/brick_levels.h"
 
 #include <glm/common.hpp>
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
 #include "tests/vis/function_source.h"
 #include "tests/vis/parts_scene.h"
-#include "vis/model/boundary_opacity.h"
-#include "volume/boundary_derivatives.h"
+#include "vis/transfer/boundary_opacity.h"
+#include "volume/analysis/boundary_derivatives.h"
 
 #include <algorithm>
 #include <cmath>

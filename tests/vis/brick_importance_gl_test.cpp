@@ -1,7 +1,7 @@
 #include "tests/vis/residency_fixture.h"
 
-#include "vis/technique/brick_demand.h"
-#include "vis/technique/ray_plan.h"
+#include "vis/demand/choose_bricks.h"
+#include "vis/raycast/ray_plan.h"
 
 #include <atomic>
 

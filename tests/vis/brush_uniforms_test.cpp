@@ -1,4 +1,4 @@
-#include "vis/technique/brush_uniforms.h"
+#include "vis/raycast/brush_uniforms.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "vis/model/camera.h"
+#include "vis/scene/camera.h"
 
 #include <glm/gtc/matrix_inverse.hpp>
 #include <gtest/gtest.h>

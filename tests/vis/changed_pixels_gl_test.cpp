@@ -1,5 +1,5 @@
 #include "tests/vis/lens_scene.h"
-#include "vis/technique/changed_pixels.h"
+#include "vis/demand/changed_pixels.h"
 
 #include <functional>
 #include <thread>

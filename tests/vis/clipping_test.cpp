@@ -1,4 +1,4 @@
-#include "vis/model/clipping.h"
+#include "vis/scene/clipping.h"
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
 #include "tests/vis/gl_fixture.h"
 #include "tests/vis/lens_scene.h"
 #include "tests/vis/parts_drawing.h"
-#include "vis/technique/ray_plan.h"
+#include "vis/raycast/ray_plan.h"
 
 #include <functional>
 

@@ -1,6 +1,6 @@
 #include "tests/vis/raycast_compare.h"
 #include "tests/vis/shader_probe.h"
-#include "vis/model/context_blur.h"
+#include "vis/optics/context_blur.h"
 
 #include <glm/geometric.hpp>
 

@@ -1,6 +1,6 @@
-#include "vis/technique/covered_pixels.h"
+#include "vis/demand/covered_pixels.h"
 
-#include "vis/model/ray_setup.h"
+#include "vis/scene/ray_setup.h"
 
 #include <gtest/gtest.h>
 #include <random>

@@ -1,4 +1,4 @@
-#include "vis/model/flow_geometry.h"
+#include "vis/shapes/flow_geometry.h"
 
 #include <cmath>
 #include <glm/geometric.hpp>

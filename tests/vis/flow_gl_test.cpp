@@ -1,7 +1,7 @@
 #include "tests/vis/gl_fixture.h"
-#include "vis/model/flow_geometry.h"
-#include "vis/model/ray_setup.h"
-#include "volume/memory_source.h"
+#include "vis/scene/ray_setup.h"
+#include "vis/shapes/flow_geometry.h"
+#include "volume/sources/memory_source.h"
 
 #include <cmath>
 

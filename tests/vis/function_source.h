@@ -1,6 +1,6 @@
 #pragma once
 
-#include "volume/brick_source.h"
+#include "volume/bricks/brick_source.h"
 
 #include <functional>
 #include <limits>

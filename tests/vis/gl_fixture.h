@@ -1,7 +1,7 @@
 #pragma once
 
 #include "vis/gl/headless.h"
-#include "vis/renderer.h"
+#include "vis/passes/renderer.h"
 
 #include <epoxy/gl.h>
 #include <gtest/gtest.h>

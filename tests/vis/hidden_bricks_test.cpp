@@ -1,4 +1,4 @@
-#include "vis/technique/hidden_bricks.h"
+#include "vis/demand/hidden_bricks.h"
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
-#include "vis/image_io.h"
-#include "volume/error.h"
+#include "vis/image/image_io.h"
+#include "volume/base/error.h"
 
 #include <filesystem>
 #include <fstream>

@@ -1,5 +1,5 @@
-#include "vis/image_metrics.h"
-#include "volume/error.h"
+#include "vis/image/image_metrics.h"
+#include "volume/base/error.h"
 
 #include <cmath>
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
 #include "tests/vis/raycast_compare.h"
 #include "tests/vis/shader_probe.h"
-#include "vis/technique/lens_uniforms.h"
-#include "volume/memory_source.h"
+#include "vis/raycast/lens_uniforms.h"
+#include "volume/sources/memory_source.h"
 
 #include <functional>
 #include <random>

@@ -1,5 +1,5 @@
 #include "tests/vis/lens_scene.h"
-#include "vis/technique/lens_pixels.h"
+#include "vis/demand/lens_pixels.h"
 
 #include <random>
 

@@ -1,7 +1,7 @@
-#include "vis/model/lens.h"
+#include "vis/scene/lens.h"
 
-#include "vis/model/selection.h"
-#include "vis/technique/ray_plan.h"
+#include "vis/raycast/ray_plan.h"
+#include "vis/scene/selection.h"
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>

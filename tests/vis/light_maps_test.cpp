@@ -1,5 +1,5 @@
-#include "vis/model/light_maps.h"
-#include "vis/model/shade.h"
+#include "vis/optics/light_maps.h"
+#include "vis/optics/shade.h"
 
 #include <cmath>
 #include <glm/geometric.hpp>

@@ -1,8 +1,8 @@
-#include "vis/light_picture.h"
+#include "vis/image/light_picture.h"
 
-#include "vis/image_io.h"
-#include "vis/model/ray_setup.h"
-#include "volume/error.h"
+#include "vis/image/image_io.h"
+#include "vis/scene/ray_setup.h"
+#include "volume/base/error.h"
 
 #include <cmath>
 #include <functional>

@@ -1,4 +1,4 @@
-#include "vis/model/light_volume.h"
+#include "vis/optics/light_volume.h"
 
 #include <cmath>
 #include <glm/geometric.hpp>

@@ -1,4 +1,4 @@
-#include "vis/model/shade.h"
+#include "vis/optics/shade.h"
 
 #include <cmath>
 #include <glm/gtc/constants.hpp>

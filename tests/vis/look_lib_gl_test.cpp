@@ -1,6 +1,6 @@
 #include "tests/vis/shader_probe.h"
-#include "vis/model/look_shading.h"
-#include "vis/technique/look_uniforms.h"
+#include "vis/optics/look_shading.h"
+#include "vis/raycast/look_uniforms.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 #include "tests/vis/ball_silhouette.h"
 #include "tests/vis/raycast_compare.h"
 
-#include "vis/model/look_shading.h"
+#include "vis/optics/look_shading.h"
 
 #include <functional>
 #include <glm/gtc/quaternion.hpp>

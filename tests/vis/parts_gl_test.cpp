@@ -1,6 +1,6 @@
 #include "tests/vis/parts_drawing.h"
 
-#include "vis/model/proxy.h"
+#include "vis/optics/proxy.h"
 
 #include <functional>
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "tests/vis/function_source.h"
-#include "vis/model/scene.h"
+#include "vis/scene/scene.h"
 
 #include <cmath>
 #include <memory>

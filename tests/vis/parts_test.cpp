@@ -1,7 +1,7 @@
 #include "tests/vis/parts_scene.h"
+#include "vis/raycast/ray_plan.h"
 #include "vis/reference/samples.h"
-#include "vis/technique/ray_plan.h"
-#include "volume/part_choice.h"
+#include "volume/reconstruct/part_choice.h"
 
 #include <gtest/gtest.h>
 #include <random>

@@ -1,8 +1,8 @@
 #include "tests/vis/ball_silhouette.h"
 #include "tests/vis/raycast_compare.h"
 
-#include "vis/model/look_shading.h"
-#include "vis/model/shade.h"
+#include "vis/optics/look_shading.h"
+#include "vis/optics/shade.h"
 
 #include <glm/trigonometric.hpp>
 #include <numbers>

@@ -3,7 +3,7 @@
 
 #include "vis/gl/program_cache.h"
 #include "vis/gl/warm_up.h"
-#include "vis/technique/ray_uniforms.h"
+#include "vis/raycast/ray_uniforms.h"
 
 #include <cstdlib>
 #include <filesystem>

@@ -2,7 +2,7 @@
 
 #include "vis/gl/program.h"
 #include "vis/gl/shader_files.h"
-#include "volume/error.h"
+#include "volume/base/error.h"
 
 #include <cstdlib>
 #include <filesystem>

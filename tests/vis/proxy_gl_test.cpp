@@ -1,6 +1,6 @@
 #include "tests/vis/function_source.h"
 #include "tests/vis/gl_fixture.h"
-#include "vis/model/proxy.h"
+#include "vis/optics/proxy.h"
 #include "vis/reference/raycast.h"
 
 #include <cmath>

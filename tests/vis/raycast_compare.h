@@ -2,11 +2,11 @@
 
 #include "tests/vis/function_source.h"
 #include "vis/gl/headless.h"
-#include "vis/image_io.h"
-#include "vis/light_picture.h"
-#include "vis/model/ray_setup.h"
+#include "vis/image/image_io.h"
+#include "vis/image/light_picture.h"
+#include "vis/passes/renderer.h"
 #include "vis/reference/raycast.h"
-#include "vis/renderer.h"
+#include "vis/scene/ray_setup.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 #include "tests/vis/raycast_compare.h"
-#include "volume/memory_source.h"
+#include "volume/sources/memory_source.h"
 
 #include <atomic>
 #include <chrono>

@@ -1,7 +1,7 @@
 #include "tests/vis/renderer_scenes.h"
 
-#include "vis/model/ray_setup.h"
-#include "volume/error.h"
+#include "vis/scene/ray_setup.h"
+#include "volume/base/error.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 #include "tests/vis/renderer_scenes.h"
 
-#include "volume/error.h"
+#include "volume/base/error.h"
 
 #include <algorithm>
 #include <atomic>

@@ -1,6 +1,6 @@
 #include "vis/gl/headless.h"
 #include "vis/gl/requirements.h"
-#include "volume/error.h"
+#include "volume/base/error.h"
 
 #include <cstdlib>
 #include <gtest/gtest.h>

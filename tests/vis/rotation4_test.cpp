@@ -1,7 +1,7 @@
-#include "vis/model/rotation4.h"
+#include "vis/shapes/rotation4.h"
 
-#include "vis/model/cloud4.h"
-#include "vis/model/ray_setup.h"
+#include "vis/scene/ray_setup.h"
+#include "vis/shapes/cloud4.h"
 
 #include <cmath>
 #include <glm/geometric.hpp>

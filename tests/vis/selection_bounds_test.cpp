@@ -1,4 +1,4 @@
-#include "vis/model/selection_bounds.h"
+#include "vis/scene/selection_bounds.h"
 
 #include <cmath>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "vis/model/selection.h"
+#include "vis/scene/selection.h"
 
 #include <cmath>
 #include <gtest/gtest.h>

@@ -1,10 +1,10 @@
 #include "tests/vis/shader_probe.h"
-#include "vis/model/clipping.h"
-#include "vis/model/jitter.h"
-#include "vis/model/lighting.h"
-#include "vis/model/ray_setup.h"
-#include "vis/model/tone.h"
-#include "vis/technique/ray_tables.h"
+#include "vis/optics/jitter.h"
+#include "vis/raycast/ray_tables.h"
+#include "vis/scene/clipping.h"
+#include "vis/scene/lighting.h"
+#include "vis/scene/ray_setup.h"
+#include "vis/scene/tone.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "vis/model/transfer_function.h"
+#include "vis/transfer/transfer_function.h"
 
 #include <cmath>
 #include <glm/geometric.hpp>

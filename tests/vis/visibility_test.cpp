@@ -1,7 +1,7 @@
-#include "vis/model/visibility.h"
+#include "vis/optics/visibility.h"
 
 #include "tests/volume/fields.h"
-#include "vis/model/ray_setup.h"
+#include "vis/scene/ray_setup.h"
 
 #include <cmath>
 #include <gtest/gtest.h>

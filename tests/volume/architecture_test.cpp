@@ -48,7 +48,7 @@ std::string after(const std::string& text, const std::string& word) {
     return rest == std::string::npos ? std::string() : text.substr(rest);
 }
 
-/// Included names, with the sign before them: "\"volume/field.h" or "<cmath".
+/// Included names, with the sign before them: "\"volume/field/field.h" or "<cmath".
 std::vector<std::string> includesOf(const std::string& text) {
     std::vector<std::string> includes;
     for (const std::string& line : linesOf(text)) {
@@ -182,8 +182,8 @@ TEST(Architecture, FindsIncludesAndGlslFunctions) {
                             "layout(std430) buffer Block { int x; };\nstruct S { int y; };\n"
                             "vec4 b(int i,\n       float f)\n{\n  for (;;) { }\n}\nfloat declared(float x);\n"),
               (std::set<std::string>{"a", "b"}));
-    EXPECT_EQ(includesOf("#include \"volume/field.h\"\n # include <cmath>\n// #include <x>\n"),
-              (std::vector<std::string>{"\"volume/field.h", "<cmath"}));
+    EXPECT_EQ(includesOf("#include \"volume/field/field.h\"\n # include <cmath>\n// #include <x>\n"),
+              (std::vector<std::string>{"\"volume/field/field.h", "<cmath"}));
 }
 
 } // namespace

@@ -1,4 +1,4 @@
-#include "volume/background.h"
+#include "volume/base/background.h"
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>

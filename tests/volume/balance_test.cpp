@@ -1,4 +1,4 @@
-#include "volume/analysis/balance.h"
+#include "volume/flow/balance.h"
 
 #include "tests/volume/cell_data.h"
 

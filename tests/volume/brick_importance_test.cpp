@@ -1,7 +1,7 @@
 #include "tests/volume/fields.h"
-#include "volume/alternating_source.h"
-#include "volume/brick_importance.h"
-#include "volume/memory_source.h"
+#include "volume/bricks/brick_importance.h"
+#include "volume/sources/alternating_source.h"
+#include "volume/sources/memory_source.h"
 
 #include <cmath>
 #include <glm/geometric.hpp>

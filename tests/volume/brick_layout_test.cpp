@@ -1,6 +1,6 @@
 #include "tests/volume/fields.h"
-#include "volume/brick_layout.h"
-#include "volume/memory_source.h"
+#include "volume/bricks/brick_layout.h"
+#include "volume/sources/memory_source.h"
 
 #include <gtest/gtest.h>
 #include <random>

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "tests/volume/fields.h"
-#include "volume/memory_source.h"
+#include "volume/sources/memory_source.h"
 
 #include <random>
 

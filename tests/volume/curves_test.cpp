@@ -1,12 +1,12 @@
 // Curves over time against sums over the samples and numbers read from the files here.
 #include "volume/analysis/curves.h"
 
-#include "volume/axis_source.h"
-#include "volume/error.h"
+#include "volume/base/error.h"
+#include "volume/field/quantities.h"
 #include "volume/import/foreign.h"
 #include "volume/import/import.h"
-#include "volume/memory_source.h"
-#include "volume/quantities.h"
+#include "volume/sources/axis_source.h"
+#include "volume/sources/memory_source.h"
 #include "volume/synthetic/models.h"
 
 #include <cmath>

@@ -1,10 +1,10 @@
 #include "volume/import/data_jumps.h"
 
 #include "tests/volume/regions.h"
-#include "volume/error.h"
+#include "volume/base/error.h"
+#include "volume/field/part_masks.h"
 #include "volume/import/import.h"
-#include "volume/part_masks.h"
-#include "volume/resample.h"
+#include "volume/resample/resample.h"
 
 #include <algorithm>
 #include <cmath>

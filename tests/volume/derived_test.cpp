@@ -1,9 +1,9 @@
-#include "volume/derived.h"
+#include "volume/derived/derived.h"
 
-#include "volume/derived_names.h"
-#include "volume/error.h"
-#include "volume/expression.h"
-#include "volume/sample_position.h"
+#include "volume/base/error.h"
+#include "volume/bricks/sample_position.h"
+#include "volume/derived/derived_names.h"
+#include "volume/derived/expression.h"
 
 #include <array>
 #include <cmath>

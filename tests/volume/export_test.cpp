@@ -1,6 +1,6 @@
-#include "volume/export.h"
+#include "volume/export/export.h"
 
-#include "volume/error.h"
+#include "volume/base/error.h"
 #include "volume/import/import.h"
 
 #include <array>

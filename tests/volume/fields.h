@@ -1,7 +1,7 @@
 #pragma once
 
-#include "volume/dataset.h"
-#include "volume/field.h"
+#include "volume/field/dataset.h"
+#include "volume/field/field.h"
 
 #include <memory>
 #include <vector>

@@ -1,7 +1,7 @@
 #include "volume/import/find_parts.h"
 
 #include "tests/volume/fields.h"
-#include "volume/error.h"
+#include "volume/base/error.h"
 #include "volume/import/import.h"
 #include "volume/synthetic/fuel_cell.h"
 

@@ -1,8 +1,8 @@
-#include "volume/flow.h"
+#include "volume/flow/flow.h"
 
 #include "tests/volume/fields.h"
-#include "volume/memory_source.h"
-#include "volume/seeds.h"
+#include "volume/flow/seeds.h"
+#include "volume/sources/memory_source.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 #include "volume/synthetic/fuel_cell.h"
 
-#include "volume/error.h"
+#include "volume/base/error.h"
 #include "volume/synthetic/fuel_cell_properties.h"
 #include "volume/synthetic/fuel_cell_solver.h"
 

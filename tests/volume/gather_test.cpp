@@ -1,8 +1,8 @@
-#include "volume/brick_source.h"
+#include "volume/bricks/brick_source.h"
 
 #include "tests/volume/fields.h"
-#include "volume/memory_source.h"
-#include "volume/reconstruct.h"
+#include "volume/reconstruct/reconstruct.h"
+#include "volume/sources/memory_source.h"
 
 #include <gtest/gtest.h>
 #include <map>

@@ -1,4 +1,4 @@
-#include "volume/error.h"
+#include "volume/base/error.h"
 #include "volume/import/absent.h"
 
 #include <cmath>

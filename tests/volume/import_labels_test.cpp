@@ -1,11 +1,11 @@
-#include "volume/import/labels.h"
+#include "volume/field/labels.h"
 
 #include "tests/volume/fields.h"
-#include "volume/error.h"
-#include "volume/export.h"
+#include "volume/base/error.h"
+#include "volume/export/export.h"
 #include "volume/import/import.h"
-#include "volume/labelled_source.h"
-#include "volume/memory_source.h"
+#include "volume/sources/labelled_source.h"
+#include "volume/sources/memory_source.h"
 
 #include <filesystem>
 #include <fstream>

@@ -1,9 +1,9 @@
 // Extent and ranges of meshes, which come through tessera-import. Skipped where it was not built.
+#include "volume/analysis/statistics.h"
+#include "volume/field/mesh_origin.h"
 #include "volume/import/foreign.h"
 #include "volume/import/import.h"
-#include "volume/memory_source.h"
-#include "volume/mesh_origin.h"
-#include "volume/statistics.h"
+#include "volume/sources/memory_source.h"
 
 #include <cmath>
 #include <filesystem>

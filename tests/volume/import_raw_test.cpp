@@ -1,6 +1,6 @@
-#include "volume/error.h"
+#include "volume/base/error.h"
+#include "volume/import/files/raw.h"
 #include "volume/import/import.h"
-#include "volume/import/raw.h"
 
 #include <algorithm>
 #include <bit>

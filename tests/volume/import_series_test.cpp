@@ -1,5 +1,5 @@
-#include "volume/error.h"
-#include "volume/import/series.h"
+#include "volume/base/error.h"
+#include "volume/import/files/series.h"
 
 #include <filesystem>
 #include <fstream>

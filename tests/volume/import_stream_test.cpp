@@ -1,7 +1,7 @@
-#include "volume/error.h"
+#include "volume/base/error.h"
+#include "volume/import/files/stream.h"
 #include "volume/import/import.h"
-#include "volume/import/process.h"
-#include "volume/import/stream.h"
+#include "volume/system/process.h"
 
 #include <cstdlib>
 #include <cstring>

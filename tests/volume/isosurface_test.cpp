@@ -1,8 +1,8 @@
 #include "volume/mesh/isosurface.h"
 
 #include "tests/volume/fields.h"
-#include "volume/memory_source.h"
 #include "volume/mesh/cube_cases.h"
+#include "volume/sources/memory_source.h"
 
 #include <cmath>
 #include <glm/geometric.hpp>

@@ -1,4 +1,4 @@
-#include "volume/lattice.h"
+#include "volume/field/lattice.h"
 
 #include "tests/volume/fields.h"
 

@@ -1,6 +1,6 @@
 #include "volume/synthetic/marschner_lobb.h"
 
-#include "volume/error.h"
+#include "volume/base/error.h"
 #include "volume/synthetic/models.h"
 
 #include <algorithm>

@@ -1,9 +1,9 @@
-#include "volume/memory_source.h"
+#include "volume/sources/memory_source.h"
 
 #include "tests/volume/fields.h"
-#include "volume/error.h"
-#include "volume/parallel.h"
-#include "volume/resample.h"
+#include "volume/base/error.h"
+#include "volume/base/parallel.h"
+#include "volume/resample/resample.h"
 
 #include <atomic>
 #include <cmath>

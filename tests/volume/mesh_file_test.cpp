@@ -1,6 +1,6 @@
 #include "volume/mesh/mesh_file.h"
 
-#include "volume/error.h"
+#include "volume/base/error.h"
 
 #include <cstring>
 #include <filesystem>

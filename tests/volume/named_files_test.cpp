@@ -1,4 +1,4 @@
-#include "volume/import/named_files.h"
+#include "volume/import/files/named_files.h"
 
 #include <filesystem>
 #include <fstream>

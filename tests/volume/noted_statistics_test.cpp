@@ -1,6 +1,6 @@
 #include "tests/volume/fields.h"
-#include "volume/memory_source.h"
-#include "volume/statistics.h"
+#include "volume/analysis/statistics.h"
+#include "volume/sources/memory_source.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
-#include "volume/originals.h"
+#include "volume/sources/originals.h"
 
-#include "volume/error.h"
-#include "volume/memory_source.h"
+#include "volume/base/error.h"
+#include "volume/sources/memory_source.h"
 
 #include <cmath>
 #include <gtest/gtest.h>

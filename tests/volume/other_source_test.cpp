@@ -1,9 +1,9 @@
-#include "volume/other_source.h"
+#include "volume/derived/other_source.h"
 
-#include "volume/derived.h"
-#include "volume/error.h"
-#include "volume/memory_source.h"
-#include "volume/sample_position.h"
+#include "volume/base/error.h"
+#include "volume/bricks/sample_position.h"
+#include "volume/derived/derived.h"
+#include "volume/sources/memory_source.h"
 
 #include <cmath>
 #include <functional>

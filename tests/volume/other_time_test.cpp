@@ -1,11 +1,11 @@
-#include "volume/other_time.h"
+#include "volume/derived/other_time.h"
 
-#include "volume/derived.h"
-#include "volume/error.h"
-#include "volume/expression.h"
+#include "volume/base/error.h"
+#include "volume/bricks/sample_position.h"
+#include "volume/derived/derived.h"
+#include "volume/derived/expression.h"
 #include "volume/import/import.h"
-#include "volume/memory_source.h"
-#include "volume/sample_position.h"
+#include "volume/sources/memory_source.h"
 
 #include <cmath>
 #include <cstdlib>

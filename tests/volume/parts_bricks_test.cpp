@@ -1,4 +1,4 @@
-#include "volume/parts_bricks.h"
+#include "volume/bricks/parts_bricks.h"
 
 #include <gtest/gtest.h>
 

@@ -1,10 +1,10 @@
-#include "volume/probe.h"
+#include "volume/reconstruct/probe.h"
 
 #include "tests/volume/fields.h"
-#include "volume/brick_cache.h"
-#include "volume/error.h"
-#include "volume/memory_source.h"
-#include "volume/parallel.h"
+#include "volume/base/error.h"
+#include "volume/base/parallel.h"
+#include "volume/bricks/brick_cache.h"
+#include "volume/sources/memory_source.h"
 
 #include <atomic>
 #include <cmath>

@@ -1,12 +1,12 @@
 // Quantities over time: what files, lists and tables say of each time, and the name and unit of the axis.
-#include "volume/quantities.h"
+#include "volume/field/quantities.h"
 
-#include "volume/error.h"
-#include "volume/export.h"
+#include "volume/base/error.h"
+#include "volume/export/export.h"
+#include "volume/import/files/series.h"
 #include "volume/import/foreign.h"
 #include "volume/import/import.h"
 #include "volume/import/over_time.h"
-#include "volume/import/series.h"
 
 #include <cmath>
 #include <cstdlib>

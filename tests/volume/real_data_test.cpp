@@ -1,8 +1,8 @@
 #include "tests/volume/fields.h"
+#include "volume/analysis/statistics.h"
 #include "volume/import/import.h"
-#include "volume/memory_source.h"
-#include "volume/resample.h"
-#include "volume/statistics.h"
+#include "volume/resample/resample.h"
+#include "volume/sources/memory_source.h"
 
 #include <cmath>
 #include <cstdlib>

@@ -1,9 +1,9 @@
-#include "volume/reconstruct.h"
+#include "volume/reconstruct/reconstruct.h"
 
 #include "tests/volume/fields.h"
-#include "volume/gradient.h"
-#include "volume/lattice_error.h"
-#include "volume/memory_source.h"
+#include "volume/analysis/lattice_error.h"
+#include "volume/reconstruct/gradient.h"
+#include "volume/sources/memory_source.h"
 #include "volume/synthetic/marschner_lobb.h"
 
 #include <cmath>

@@ -1,8 +1,8 @@
 #include "volume/analysis/region_statistics.h"
 
 #include "tests/volume/cell_data.h"
-#include "volume/analysis/flow_channels.h"
-#include "volume/analysis/sections.h"
+#include "volume/flow/flow_channels.h"
+#include "volume/flow/sections.h"
 
 #include <cmath>
 #include <gtest/gtest.h>

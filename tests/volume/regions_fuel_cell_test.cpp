@@ -1,7 +1,7 @@
 #include "tests/volume/fields.h"
+#include "volume/field/part_masks.h"
 #include "volume/import/import.h"
-#include "volume/part_masks.h"
-#include "volume/resample.h"
+#include "volume/resample/resample.h"
 
 #include <algorithm>
 #include <cstdio>

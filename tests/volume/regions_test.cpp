@@ -1,16 +1,16 @@
 #include "tests/volume/regions.h"
 
-#include "volume/alternating_source.h"
-#include "volume/derived.h"
-#include "volume/flow.h"
-#include "volume/memory_source.h"
+#include "volume/bricks/sample_position.h"
+#include "volume/bricks/source_at_time.h"
+#include "volume/derived/derived.h"
+#include "volume/field/part_masks.h"
+#include "volume/flow/flow.h"
 #include "volume/mesh/isosurface.h"
-#include "volume/part_masks.h"
-#include "volume/probe.h"
-#include "volume/resample.h"
-#include "volume/sample_position.h"
-#include "volume/series_dataset.h"
-#include "volume/source_at_time.h"
+#include "volume/reconstruct/probe.h"
+#include "volume/resample/resample.h"
+#include "volume/resample/series_dataset.h"
+#include "volume/sources/alternating_source.h"
+#include "volume/sources/memory_source.h"
 
 #include <algorithm>
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
-#include "volume/resample_taps.h"
-#include "volume/spline_prefilter.h"
+#include "volume/resample/resample_taps.h"
+#include "volume/resample/spline_prefilter.h"
 
 #include "tests/volume/fields.h"
 

@@ -1,4 +1,4 @@
-#include "volume/resample.h"
+#include "volume/resample/resample.h"
 
 #include "tests/volume/fields.h"
 

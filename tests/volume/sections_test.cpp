@@ -1,8 +1,8 @@
-#include "volume/analysis/sections.h"
+#include "volume/flow/sections.h"
 
 #include "tests/volume/cell_data.h"
-#include "volume/analysis/box_cut.h"
-#include "volume/analysis/flow_channels.h"
+#include "volume/flow/box_cut.h"
+#include "volume/flow/flow_channels.h"
 #include "volume/import/foreign.h"
 #include "volume/import/import.h"
 #include "volume/synthetic/models.h"

@@ -1,9 +1,9 @@
-#include "volume/series.h"
+#include "volume/resample/series.h"
 
 #include "tests/volume/fields.h"
-#include "volume/hyperplane.h"
-#include "volume/lattice_error.h"
-#include "volume/series_dataset.h"
+#include "volume/analysis/lattice_error.h"
+#include "volume/resample/hyperplane.h"
+#include "volume/resample/series_dataset.h"
 
 #include <cmath>
 #include <gtest/gtest.h>

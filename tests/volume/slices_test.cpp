@@ -1,8 +1,8 @@
 #include "tests/volume/fields.h"
-#include "volume/brick_importance.h"
-#include "volume/error.h"
-#include "volume/resample_slices.h"
-#include "volume/scratch_file.h"
+#include "volume/base/error.h"
+#include "volume/bricks/brick_importance.h"
+#include "volume/resample/resample_slices.h"
+#include "volume/system/scratch_file.h"
 
 #include <algorithm>
 #include <gtest/gtest.h>

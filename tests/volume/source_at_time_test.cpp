@@ -1,8 +1,8 @@
-#include "volume/source_at_time.h"
+#include "volume/bricks/source_at_time.h"
 
-#include "volume/memory_source.h"
-#include "volume/probe.h"
-#include "volume/statistics.h"
+#include "volume/analysis/statistics.h"
+#include "volume/reconstruct/probe.h"
+#include "volume/sources/memory_source.h"
 #include "volume/synthetic/models.h"
 
 #include <cmath>

@@ -1,7 +1,7 @@
-#include "volume/source_difference.h"
+#include "volume/sources/source_difference.h"
 
 #include "tests/volume/fields.h"
-#include "volume/memory_source.h"
+#include "volume/sources/memory_source.h"
 
 #include <gtest/gtest.h>
 

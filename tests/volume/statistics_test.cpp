@@ -1,7 +1,7 @@
-#include "volume/statistics.h"
+#include "volume/analysis/statistics.h"
 
 #include "tests/volume/fields.h"
-#include "volume/memory_source.h"
+#include "volume/sources/memory_source.h"
 
 #include <cmath>
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
-#include "volume/time_axis.h"
+#include "volume/sources/time_axis.h"
 
-#include "volume/error.h"
-#include "volume/memory_source.h"
+#include "volume/base/error.h"
+#include "volume/sources/memory_source.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
-#include "volume/analysis/unit_product.h"
+#include "volume/base/unit_product.h"
 
-#include "volume/analysis/unit_conversion.h"
+#include "volume/base/unit_conversion.h"
 
 #include <gtest/gtest.h>
 #include <vector>

@@ -1,6 +1,6 @@
 #include "vis/gl/handles.h"
 
-#include "volume/error.h"
+#include "volume/base/error.h"
 
 #include <algorithm>
 #include <vector>

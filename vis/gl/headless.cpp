@@ -1,7 +1,7 @@
 #include "vis/gl/headless.h"
 
 #include "vis/gl/requirements.h"
-#include "volume/error.h"
+#include "volume/base/error.h"
 
 #include <epoxy/egl.h>
 #include <epoxy/gl.h>

@@ -1,6 +1,6 @@
 #include "vis/gl/job_queue.h"
 
-#include "volume/background.h"
+#include "volume/base/background.h"
 
 #include <algorithm>
 

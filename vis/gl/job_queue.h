@@ -9,7 +9,7 @@
 
 namespace tessera::vis {
 
-/// Whether other threads go before those of a queue (volume/background.h).
+/// Whether other threads go before those of a queue (volume/base/background.h).
 enum class JobThreads { Equal, Background };
 
 /// Threads that run jobs, the most urgent first. Jobs must not throw; they should look at the token now and then.

@@ -1,6 +1,6 @@
 #include "vis/gl/program_cache.h"
 
-#include "volume/error.h"
+#include "volume/base/error.h"
 
 #include <chrono>
 #include <thread>

@@ -1,6 +1,6 @@
 #include "vis/reference/image.h"
 
-#include "vis/model/context_blur.h"
+#include "vis/optics/context_blur.h"
 
 #include <algorithm>
 #include <cassert>

@@ -24,7 +24,7 @@ struct Difference {
 };
 Difference compare(const Image& a, const Image& b, double threshold);
 
-/// The picture with what is not brushed out of focus (vis/model/context_blur.h); `radius` in pixels. It must have
+/// The picture with what is not brushed out of focus (vis/optics/context_blur.h); `radius` in pixels. It must have
 /// degrees of interest.
 Image outOfFocus(const Image& image, double radius);
 

@@ -1,7 +1,7 @@
 #include "vis/reference/prepared.h"
 
-#include "vis/model/mesh_matter.h"
-#include "volume/parallel.h"
+#include "vis/optics/mesh_matter.h"
+#include "volume/base/parallel.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,11 +1,11 @@
 #pragma once
 
-#include "vis/model/adaptive_step.h"
-#include "vis/model/look_shading.h"
-#include "vis/model/preintegration.h"
-#include "vis/model/ray_setup.h"
-#include "vis/model/shade.h"
+#include "vis/optics/adaptive_step.h"
+#include "vis/optics/look_shading.h"
+#include "vis/optics/preintegration.h"
+#include "vis/optics/shade.h"
 #include "vis/reference/raycast.h"
+#include "vis/scene/ray_setup.h"
 
 #include <map>
 #include <memory>
@@ -65,7 +65,7 @@ struct Prepared {
     /// By channel name, time, and 1 without prefilter, for pre-classification.
     std::map<std::tuple<std::string, double, bool>, std::unique_ptr<Samples>> samples;
     std::vector<DrawnLayer> layers;
-    /// Codes of the steps of blocks (vis/model/adaptive_step.h), x fastest; empty: there are no longer ones.
+    /// Codes of the steps of blocks (vis/optics/adaptive_step.h), x fastest; empty: there are no longer ones.
     std::vector<std::uint8_t> steps;
     glm::ivec3 blocks{0};
     DoiFunction interestOf;
@@ -80,7 +80,7 @@ struct Prepared {
     void findSteps();
     /// The longest step through the block that holds a place, in world units.
     double stepAt(glm::ivec3 block) const;
-    /// Matter of every cell of a light grid, as vis/model/light_volume.h says.
+    /// Matter of every cell of a light grid, as vis/optics/light_volume.h says.
     Matter<double> matter(const LightGrid& grid) const;
     /// Of a world point.
     Interest interest(glm::dvec3 world) const;

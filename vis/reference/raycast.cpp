@@ -1,9 +1,9 @@
 #include "vis/reference/raycast.h"
 
-#include "vis/model/jitter.h"
+#include "vis/optics/jitter.h"
 #include "vis/reference/prepared.h"
 #include "vis/reference/projection.h"
-#include "volume/parallel.h"
+#include "volume/base/parallel.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,13 +1,14 @@
 #pragma once
 
-#include "vis/model/light_maps.h"
-#include "vis/model/scene.h"
+#include "vis/optics/light_maps.h"
 #include "vis/reference/image.h"
 #include "vis/reference/samples.h"
-#include "volume/brick_source.h"
+#include "vis/scene/scene.h"
+#include "volume/bricks/brick_source.h"
 
-/// The judge of everything the ray caster's shader draws: the formulas of vis/model/ray_setup.h and
-/// volume/reconstruct.h, one sample at a time, on the CPU, without any shortcut (no skipping, no levels, no textures).
+/// The judge of everything the ray caster's shader draws: the formulas of vis/scene/ray_setup.h and
+/// volume/reconstruct/reconstruct.h, one sample at a time, on the CPU, without any shortcut (no skipping, no levels, no
+/// textures).
 namespace tessera::vis::reference {
 
 struct Options {

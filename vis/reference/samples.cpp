@@ -1,7 +1,7 @@
 #include "vis/reference/samples.h"
 
-#include "volume/parallel.h"
-#include "volume/parts_bricks.h"
+#include "volume/base/parallel.h"
+#include "volume/bricks/parts_bricks.h"
 
 #include <algorithm>
 #include <cassert>

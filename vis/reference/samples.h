@@ -1,10 +1,10 @@
 #pragma once
 
-#include "vis/model/scene.h"
-#include "volume/brick_source.h"
-#include "volume/part_choice.h"
-#include "volume/reconstruct.h"
-#include "volume/time_pair.h"
+#include "vis/scene/scene.h"
+#include "volume/bricks/brick_source.h"
+#include "volume/field/time_pair.h"
+#include "volume/reconstruct/part_choice.h"
+#include "volume/reconstruct/reconstruct.h"
 
 #include <functional>
 #include <glm/vec4.hpp>
@@ -33,7 +33,7 @@ struct Reading {
 /// All samples of one channel at one time, full resolution, ready for one filter, with a margin of samples beyond the
 /// lattice so that no reading needs a special case. Between two stored times both are held and mixed: of a place, what
 /// is present in either takes part by its weight (labels: the nearer time). Of a parameter of several parts each is
-/// held by itself, the samples of the others absent; a place shows the part that volume/part_choice.h says.
+/// held by itself, the samples of the others absent; a place shows the part that volume/reconstruct/part_choice.h says.
 class Samples {
 public:
     /// Throws Error when the source does.

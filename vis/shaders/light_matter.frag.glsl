@@ -1,5 +1,5 @@
 // Matter of the cells of the light grid: extinction per world unit (a), and times colour (rgb). The formula is written
-// down in vis/model/light_volume.h. Pixel (x, y + gridSize.y * z) is cell (x, y, z).
+// down in vis/optics/light_volume.h. Pixel (x, y + gridSize.y * z) is cell (x, y, z).
 #include "lib/bindings.glsl"
 #include "lib/tables.glsl"
 #include "lib/color.glsl"

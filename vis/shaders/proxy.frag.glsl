@@ -1,5 +1,5 @@
 // Proxy geometry: one surface of a stack of planes or spheres, textured with composite layers; the frame buffer blends
-// the surfaces front to back. What a surface stands for is written down in vis/model/proxy.h.
+// the surfaces front to back. What a surface stands for is written down in vis/optics/proxy.h.
 #include "lib/bindings.glsl"
 #include "lib/tables.glsl"
 #include "lib/color.glsl"

@@ -11,7 +11,7 @@ namespace tessera::volume {
 struct PlaneValues {
     glm::ivec2 size{0};
     std::vector<double> values; ///< NaN where absent
-    std::vector<int> parts;     ///< of each value (volume/parts.h); empty: all is one part
+    std::vector<int> parts;     ///< of each value (volume/field/parts.h); empty: all is one part
 };
 
 struct ContourLine {

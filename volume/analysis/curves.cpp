@@ -1,9 +1,9 @@
 #include "volume/analysis/curves.h"
 
-#include "volume/analysis/unit_product.h"
-#include "volume/error.h"
-#include "volume/expression.h"
-#include "volume/quantities.h"
+#include "volume/base/error.h"
+#include "volume/base/unit_product.h"
+#include "volume/derived/expression.h"
+#include "volume/field/quantities.h"
 
 #include <algorithm>
 #include <array>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "volume/statistics.h"
+#include "volume/analysis/statistics.h"
 
 #include <functional>
 #include <span>
@@ -10,7 +10,7 @@
 /// Curves over the times of a data set: quantities, statistics of parameters, and formulas of both, against each other.
 namespace tessera::volume {
 
-/// What is wanted. A formula (volume/expression.h) may name "time" or the axis by its own name, quantities, and
+/// What is wanted. A formula (volume/derived/expression.h) may name "time" or the axis by its own name, quantities, and
 /// statistics of a parameter: mean(T), min(T), max(T), deviation(T), share(T), volume(T), integral(T).
 struct CurvesQuery {
     std::string x = "time";

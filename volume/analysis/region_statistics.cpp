@@ -1,8 +1,8 @@
 #include "volume/analysis/region_statistics.h"
 
-#include "volume/analysis/brick_columns.h"
-#include "volume/analysis/sample_cells.h"
-#include "volume/statistics_sums.h"
+#include "volume/analysis/statistics_sums.h"
+#include "volume/bricks/brick_columns.h"
+#include "volume/bricks/sample_cells.h"
 
 namespace tessera::volume {
 

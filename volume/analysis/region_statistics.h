@@ -1,6 +1,6 @@
 #pragma once
 
-#include "volume/statistics.h"
+#include "volume/analysis/statistics.h"
 
 #include <vector>
 

@@ -1,6 +1,6 @@
 #include "volume/import/absent.h"
 
-#include "volume/error.h"
+#include "volume/base/error.h"
 
 #include <algorithm>
 #include <array>

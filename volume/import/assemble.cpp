@@ -1,9 +1,9 @@
 #include "volume/import/assemble.h"
 
-#include "volume/error.h"
+#include "volume/base/error.h"
+#include "volume/field/mesh_origin.h"
 #include "volume/import/common_grid.h"
-#include "volume/import/formats.h"
-#include "volume/mesh_origin.h"
+#include "volume/import/files/formats.h"
 
 #include <algorithm>
 #include <cmath>

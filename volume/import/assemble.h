@@ -1,8 +1,8 @@
 #pragma once
 
+#include "volume/import/files/piece.h"
+#include "volume/import/files/series.h"
 #include "volume/import/import.h"
-#include "volume/import/piece.h"
-#include "volume/import/series.h"
 
 #include <vector>
 

@@ -1,7 +1,7 @@
 #include "volume/import/data_jumps.h"
 
-#include "volume/error.h"
-#include "volume/part_masks.h"
+#include "volume/base/error.h"
+#include "volume/field/part_masks.h"
 
 #include <algorithm>
 #include <array>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "volume/field.h"
+#include "volume/field/field.h"
 #include "volume/import/find_parts.h"
 #include "volume/import/sliced.h"
 

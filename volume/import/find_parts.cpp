@@ -1,6 +1,6 @@
 #include "volume/import/find_parts.h"
 
-#include "volume/error.h"
+#include "volume/base/error.h"
 #include "volume/import/data_jumps.h"
 
 #include <algorithm>

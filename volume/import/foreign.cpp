@@ -1,9 +1,9 @@
 #include "volume/import/foreign.h"
 
-#include "volume/error.h"
-#include "volume/import/process.h"
-#include "volume/import/series.h"
-#include "volume/import/stream.h"
+#include "volume/base/error.h"
+#include "volume/import/files/series.h"
+#include "volume/import/files/stream.h"
+#include "volume/system/process.h"
 
 #include <algorithm>
 #include <cstdio>

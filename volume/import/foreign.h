@@ -1,8 +1,8 @@
 #pragma once
 
-#include "volume/import/piece.h"
-#include "volume/import/series.h"
-#include "volume/progress.h"
+#include "volume/base/progress.h"
+#include "volume/import/files/piece.h"
+#include "volume/import/files/series.h"
 
 #include <string>
 #include <vector>

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "volume/dataset.h"
-#include "volume/progress.h"
+#include "volume/base/progress.h"
+#include "volume/field/dataset.h"
 
 #include <map>
 #include <optional>
@@ -71,7 +71,7 @@ struct ImportPreview {
     std::vector<std::string> notes; ///< e.g. "unstructured mesh of 41 000 cells, resampled to 24 x 32 x 88"
 };
 
-/// Looks at files that belong together (several parameters, a series: see volume/import/series.h). Throws Error.
+/// Looks at files that belong together (several parameters, a series: see volume/import/files/series.h). Throws Error.
 ImportPreview previewFiles(const std::vector<std::string>& paths, const ImportOptions& options,
                            const Progress& progress = {});
 

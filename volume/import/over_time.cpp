@@ -1,8 +1,8 @@
 #include "volume/import/over_time.h"
 
-#include "volume/error.h"
-#include "volume/quantities.h"
-#include "volume/trimmed.h"
+#include "volume/base/error.h"
+#include "volume/base/trimmed.h"
+#include "volume/field/quantities.h"
 
 #include <algorithm>
 #include <cctype>

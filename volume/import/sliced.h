@@ -1,7 +1,7 @@
 #pragma once
 
+#include "volume/field/slices.h"
 #include "volume/import/import.h"
-#include "volume/slices.h"
 
 namespace tessera::volume {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "volume/dataset.h"
+#include "volume/field/dataset.h"
 
 #include <string>
 

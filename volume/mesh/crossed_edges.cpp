@@ -1,6 +1,6 @@
 #include "volume/mesh/crossed_edges.h"
 
-#include "volume/parallel.h"
+#include "volume/base/parallel.h"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "volume/mesh/sample_grid.h"
 #include "volume/mesh/surface_mesh.h"
+#include "volume/reconstruct/sample_grid.h"
 
 #include <bit>
 #include <cstdint>

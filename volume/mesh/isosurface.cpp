@@ -1,8 +1,8 @@
 #include "volume/mesh/isosurface.h"
 
-#include "volume/flow.h"
+#include "volume/base/parallel.h"
+#include "volume/flow/flow.h"
 #include "volume/mesh/cell_triangles.h"
-#include "volume/parallel.h"
 
 #include <algorithm>
 #include <glm/geometric.hpp>

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "volume/mesh/sample_grid.h"
 #include "volume/mesh/surface_mesh.h"
+#include "volume/reconstruct/sample_grid.h"
 
 #include <optional>
 
@@ -30,8 +30,8 @@ SurfaceMesh extractIsosurface(const SampleGrid& grid, double value, const std::o
 SurfaceMesh extractIsosurface(const BrickSource& source, int channel, int time, double value, int level,
                               const Progress& progress = {});
 
-/// Sets the mesh's scalars to what another channel is at its vertices (volume/probe.h: linear between the samples,
-/// labels of the nearest one); NaN where absent.
+/// Sets the mesh's scalars to what another channel is at its vertices (volume/reconstruct/probe.h: linear between the
+/// samples, labels of the nearest one); NaN where absent.
 void sampleAtVertices(SurfaceMesh& mesh, const BrickSource& source, int channel, int time, int level,
                       const Progress& progress = {});
 

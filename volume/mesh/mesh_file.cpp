@@ -1,6 +1,6 @@
 #include "volume/mesh/mesh_file.h"
 
-#include "volume/atomic_file.h"
+#include "volume/system/atomic_file.h"
 
 #include <bit>
 #include <charconv>

@@ -1,7 +1,7 @@
 #pragma once
 
+#include "volume/base/progress.h"
 #include "volume/mesh/surface_mesh.h"
-#include "volume/progress.h"
 
 #include <string>
 #include <string_view>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "volume/lattice.h"
+#include "volume/field/lattice.h"
 
 #include <cstdint>
 #include <glm/vec3.hpp>

@@ -1,6 +1,6 @@
 #include "volume/synthetic/casting.h"
 
-#include "volume/parallel.h"
+#include "volume/base/parallel.h"
 #include "volume/synthetic/noise.h"
 #include "volume/synthetic/settings.h"
 

@@ -1,6 +1,6 @@
 #include "volume/synthetic/fuel_cell.h"
 
-#include "volume/parallel.h"
+#include "volume/base/parallel.h"
 #include "volume/synthetic/fuel_cell_solver.h"
 #include "volume/synthetic/settings.h"
 

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "volume/dataset.h"
-#include "volume/describe.h"
-#include "volume/progress.h"
+#include "volume/base/describe.h"
+#include "volume/base/progress.h"
+#include "volume/field/dataset.h"
 
 #include <map>
 #include <string>
@@ -99,7 +99,7 @@ FuelCellSettings fuelCellSettings(const std::map<std::string, double>& settings)
 
 /// Computes the built-in fuel cell for all its times: O2, H2, H2O (mol/m3), p (Pa), T (K), U (m/s) and the label region
 /// on a CC grid in metres, samples at the centres of the finite volumes. Each gas is absent where it cannot be; H2O and
-/// p are of two parts, anode and cathode (volume/parts.h).
+/// p are of two parts, anode and cathode (volume/field/parts.h).
 ///
 /// The equations are solved on the grid asked for up to 44 x 65 x 256 cells; a larger axis is solved on at most that
 /// many and interpolated linearly within each gas space when a frame is loaded (the ranges are then those of the

@@ -1,6 +1,6 @@
 #include "volume/synthetic/fuel_cell_solver.h"
 
-#include "volume/parallel.h"
+#include "volume/base/parallel.h"
 #include "volume/synthetic/fuel_cell_properties.h"
 
 #include <algorithm>

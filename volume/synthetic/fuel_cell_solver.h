@@ -1,6 +1,6 @@
 #pragma once
 
-#include "volume/progress.h"
+#include "volume/base/progress.h"
 #include "volume/synthetic/fuel_cell.h"
 #include "volume/synthetic/plane_solver.h"
 

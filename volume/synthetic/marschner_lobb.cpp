@@ -1,7 +1,7 @@
 #include "volume/synthetic/marschner_lobb.h"
 
-#include "volume/error.h"
-#include "volume/parallel.h"
+#include "volume/base/error.h"
+#include "volume/base/parallel.h"
 #include "volume/synthetic/settings.h"
 
 #include <cmath>

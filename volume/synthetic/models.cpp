@@ -1,6 +1,6 @@
 #include "volume/synthetic/models.h"
 
-#include "volume/error.h"
+#include "volume/base/error.h"
 #include "volume/synthetic/casting.h"
 #include "volume/synthetic/fuel_cell.h"
 #include "volume/synthetic/marschner_lobb.h"

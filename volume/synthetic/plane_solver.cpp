@@ -1,6 +1,6 @@
 #include "volume/synthetic/plane_solver.h"
 
-#include "volume/parallel.h"
+#include "volume/base/parallel.h"
 
 #include <algorithm>
 #include <cmath>

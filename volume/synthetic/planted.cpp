@@ -1,6 +1,6 @@
 #include "volume/synthetic/planted.h"
 
-#include "volume/parallel.h"
+#include "volume/base/parallel.h"
 #include "volume/synthetic/fuel_cell.h"
 
 #include <algorithm>

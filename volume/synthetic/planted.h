@@ -1,7 +1,7 @@
 #pragma once
 
-#include "volume/dataset.h"
-#include "volume/progress.h"
+#include "volume/base/progress.h"
+#include "volume/field/dataset.h"
 
 #include <map>
 #include <string>

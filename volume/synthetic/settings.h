@@ -1,7 +1,7 @@
 #pragma once
 
-#include "volume/describe.h"
-#include "volume/error.h"
+#include "volume/base/describe.h"
+#include "volume/base/error.h"
 
 #include <cmath>
 #include <concepts>

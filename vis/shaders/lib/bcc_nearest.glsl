@@ -1,4 +1,4 @@
-// The nearest sample on BCC, of a tie the even one: (value, coverage). Twin: nearest() in volume/reconstruct.h.
+// The nearest sample on BCC, of a tie the even one: (value, coverage). Twin: nearest() in volume/reconstruct/reconstruct.h.
 vec2 bccNearest(int field, vec3 p) {
     vec3 even = sublatticeIndex(field, p, 0), odd = sublatticeIndex(field, p, 1);
     vec3 atEven = floor(even + 0.5), atOdd = floor(odd + 0.5);

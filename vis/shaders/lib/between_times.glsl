@@ -1,8 +1,8 @@
 // A channel at a place: mixed of two stored times where it lies between them, and of several parts the one that the
 // place belongs to. Included by the slots of reconstruction, which define reconstructFrame. Twins: Samples in
-// vis/reference/samples.h, volume/part_choice.h.
+// vis/reference/samples.h, volume/reconstruct/part_choice.h.
 //   LATER    fields i + LATER hold the later frames of fields i; 0: every field is on a stored time
-//   PARTS    1 where a channel has several parts (volume/parts.h), each in a field of its own: FIELD_PARTS(i) of them,
+//   PARTS    1 where a channel has several parts (volume/field/parts.h), each in a field of its own: FIELD_PARTS(i) of them,
 //            part j > 0 in field FIELD_MORE(i) + j - 1, all in the texel units of field i; PART_MARGIN: kPartMargin
 
 #if defined(LATER) && LATER > 0

@@ -10,14 +10,14 @@
 //   SLICES    slice planes; SLICE_FIELD(i)
 //   GEOMETRY  layers of rasterised surfaces
 //   LAYER_LENS(i), SLICE_LENS(i)  lens that it is drawn in, -1 everywhere
-//   LAYER_BRUSHED(i), SLICE_BRUSHED(i)  BrushEffect of vis/model/brush_effect.h
+//   LAYER_BRUSHED(i), SLICE_BRUSHED(i)  BrushEffect of vis/scene/brush_effect.h
 //   BRUSH_TESTS    room for tests of brushes, 0 = no brush is active; BRUSH_RANGES, BRUSH_ELLIPSES, BRUSH_LASSOS,
 //                  BRUSH_SPACE, BRUSH_LENSES: 0 or 1; BRUSH_COLORS: 1 where samples take theirs; BRUSH_FIELDS channels they look at, BRUSH_FIELD(i)
 // These are chains of ?: and not constant arrays, since Mesa turns such arrays into uniforms before it unrolls loops
 // and then runs every style for every layer.
 //   CONTEXT_BLUR  1 where the picture tells its degree of interest
 //   GRADIENT_DIAGONAL  1 where differences go along the diagonals
-//   BCC       1 on that lattice; PRESENT_COVERAGE   kPresentCoverage of volume/reconstruct.h
+//   BCC       1 on that lattice; PRESENT_COVERAGE   kPresentCoverage of volume/reconstruct/reconstruct.h
 // Positions `p` are cells of the even sublattice at level 0 (Lattice::toCells); values are texel units.
 
 #include "lib/light_bindings.glsl"
@@ -41,7 +41,7 @@ uniform float rayBegin;           // 0 in perspective, very negative in parallel
 uniform vec3 worldCell;           // world edges of the cell that steps are measured in
 uniform float stepVoxels;
 uniform vec3 cellsPerWorld, cellsOffset; // p = world * cellsPerWorld + cellsOffset
-uniform float gradientReach, gradientScale; // of volume/gradient.h; from sums of differences to change over a worldCell
+uniform float gradientReach, gradientScale; // of volume/reconstruct/gradient.h; from sums of differences to change over a worldCell
 // 3 or 4, kBisections and 8 or (BCC) 16: no constants, so that no compiler unrolls these loops (seconds of it on
 // software GL).
 uniform int gradientDirections, bisections, latticeCorners;
@@ -49,7 +49,7 @@ uniform int gradientDirections, bisections, latticeCorners;
 // JITTER: 1 if rays start at random; the number of the pass of a supersampled still.
 uniform int passNumber;
 
-// RayStyle of vis/technique/ray_plan.h
+// RayStyle of vis/raycast/ray_plan.h
 #define COMPOSITE 0
 #define MAXIMUM 1
 #define MINIMUM 2
@@ -57,7 +57,7 @@ uniform int passNumber;
 #define XRAY 4
 #define LOCAL_MAXIMUM 5
 #define ISO 6
-// RayLookup of vis/technique/ray_plan.h
+// RayLookup of vis/raycast/ray_plan.h
 #define LOOKUP_CURVE 0
 #define LOOKUP_PLANE 1
 #define LOOKUP_LATTICE 2
@@ -92,7 +92,7 @@ uniform sampler2DArray geometryDistance; // along the ray, 1e9: nothing; BrushEf
 
 #if BRUSH_TESTS > 0
 uniform int brushTestCount;
-uniform ivec4 brushMeaning[BRUSH_TESTS];   // kind, brush fields, flags: BrushTests in vis/technique/brush_uniforms.h
+uniform ivec4 brushMeaning[BRUSH_TESTS];   // kind, brush fields, flags: BrushTests in vis/raycast/brush_uniforms.h
 uniform vec4 brushShape[2 * BRUSH_TESTS];
 uniform float brushStart;
 uniform sampler2D lassoTables;

@@ -1,4 +1,4 @@
-// Convex bodies that cut rays; twin: vis/model/clipping.h. An interval is empty where x >= y.
+// Convex bodies that cut rays; twin: vis/scene/clipping.h. An interval is empty where x >= y.
 const float kFar = 1e6;
 
 vec2 clipSlab(float offset, float slope, float halfWidth) {

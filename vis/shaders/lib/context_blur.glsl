@@ -1,4 +1,4 @@
-// What is not brushed lies out of focus; twin: vis/model/context_blur.h.
+// What is not brushed lies out of focus; twin: vis/optics/context_blur.h.
 const float kBlurTaps = 32.0;
 
 // Place of a tap in the unit disc.

@@ -1,5 +1,5 @@
-// Degree of interest of a place; twin: DoiFunction in vis/model/selection.h. The brushes come as tests in a row (see
-// vis/technique/brush_uniforms.h); kinds that no brush has are left out at compile time.
+// Degree of interest of a place; twin: DoiFunction in vis/scene/selection.h. The brushes come as tests in a row (see
+// vis/raycast/brush_uniforms.h); kinds that no brush has are left out at compile time.
 
 #if BRUSH_COLORS
 vec4 brushHolder = vec4(0.0); // of the last degreeOfInterest(): colour of the brush that holds most, how much it does
@@ -98,7 +98,7 @@ float degreeOfInterest(vec3 p) {
 #endif
 }
 
-// Factor on opacity of a layer that brushes affect so (BrushEffect of vis/model/brush_effect.h).
+// Factor on opacity of a layer that brushes affect so (BrushEffect of vis/scene/brush_effect.h).
 float focusOpacity(float doi, int effect) {
     return effect == 0 ? mix(context.x, 1.0, doi) : effect == 1 ? 1.0 : effect == 2 ? 1.0 - doi : doi;
 }

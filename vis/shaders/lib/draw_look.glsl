@@ -1,5 +1,5 @@
 // Looks of layers: what the scene knows of them, put together. LAYER_LOOK(i): the parts of a layer's look, bits of
-// LookBits in vis/technique/look_uniforms.h; LOOKS: those of any layer.
+// LookBits in vis/raycast/look_uniforms.h; LOOKS: those of any layer.
 #include "lib/look.glsl"
 #include "lib/grain.glsl"
 

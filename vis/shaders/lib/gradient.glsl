@@ -23,7 +23,7 @@ float readEdge(int field, Reading like, vec3 p) {
     return edge;
 }
 
-// Change over one worldCell edge per axis, in texel units, by differences as volume/gradient.h has them, of the part
+// Change over one worldCell edge per axis, in texel units, by differences as volume/reconstruct/gradient.h has them, of the part
 // that `like` is of: one-sided where it is absent, 0 where the value `centre` at p is then kUnknown. Zero unless
 // `needed`: the loop then ends early, which is what software GL has in place of branches.
 vec3 partGradient(int field, Reading like, vec3 p, float centre, bool needed) {

@@ -1,4 +1,4 @@
-// Paper grain and strokes fixed to the object; twin with the formulas: vis/model/grain.h.
+// Paper grain and strokes fixed to the object; twin with the formulas: vis/optics/grain.h.
 
 // Tooth and strokes, 0..1, at a world place on a surface. `size`: wanted world edge of a texel; `turn` = cosine and sine
 // of the strokes' turn.

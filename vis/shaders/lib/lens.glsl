@@ -1,4 +1,4 @@
-// Shapes of lenses; twin: PlacedLens in vis/model/lens.h. `u`: place in the lens, 1 / radius from its middle.
+// Shapes of lenses; twin: PlacedLens in vis/scene/lens.h. `u`: place in the lens, 1 / radius from its middle.
 
 // 0 in the middle, 1 on the outline: kind 0 sphere, 1 box, 2 cylinder, 3 disc.
 float lensRadius(int kind, vec3 u) {

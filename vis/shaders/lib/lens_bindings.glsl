@@ -1,4 +1,4 @@
-// The scene's lenses in world space (vis/technique/lens_uniforms.h). Compiled-in: LENSES their number, LENS_KIND(i)
+// The scene's lenses in world space (vis/raycast/lens_uniforms.h). Compiled-in: LENSES their number, LENS_KIND(i)
 // (lib/lens.glsl), LENS_ACTS 1 if one changes opacity or saturation or has layers of its own, LENS_BENDS 1 if one
 // magnifies and LENS_BENDING(i) which, LENS_FOCUS 1 if one confines the brushes.
 #if LENSES > 0

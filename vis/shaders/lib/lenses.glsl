@@ -1,4 +1,4 @@
-// What the scene's lenses do at a world point; twins: lensAction, bend and confine in vis/model/lens.h.
+// What the scene's lenses do at a world point; twins: lensAction, bend and confine in vis/scene/lens.h.
 #include "lib/lens.glsl"
 #include "lib/lens_bindings.glsl"
 

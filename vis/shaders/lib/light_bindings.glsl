@@ -2,7 +2,7 @@
 
 uniform vec3 halfSize; // of the box, world
 
-// Light (vis/model/lighting.h): LIGHTS = 0, 1, 2 or the cap; POINT_LIGHTS = 0 where none of them is near.
+// Light (vis/scene/lighting.h): LIGHTS = 0, 1, 2 or the cap; POINT_LIGHTS = 0 where none of them is near.
 uniform int lightCount;
 #if LIGHTS > 0
 uniform vec4 lightPlace[LIGHTS]; // direction towards it, 0; or position, 1
@@ -20,7 +20,7 @@ uniform vec2 mapShare; // of Phong: diffuse, specular
 #if LIGHT_VOLUME
 uniform sampler3D lightVisible; // of lights 0 to 2, of light from everywhere
 uniform vec2 shadowStrength;    // of shadows, of occlusion
-uniform vec4 flatShares;        // FlatShares of vis/model/shade.h: lights, everywhere
+uniform vec4 flatShares;        // FlatShares of vis/optics/shade.h: lights, everywhere
 uniform float lightCell;        // longest edge of a cell, world
 #if LIGHT_VOLUME == 2
 uniform sampler3D lightScattered;
@@ -28,7 +28,7 @@ uniform sampler3D lightScattered;
 #endif
 uniform vec4 material; // ambient; then diffuse, specular, shininess, or roughness, metalness, reflectance
 
-// Clips (vis/model/clipping.h): CLIPS of them; CLIP_KIND(i), CLIP_HOLE(i); CLIP_HOLES: 1 if one of them is a hole.
+// Clips (vis/scene/clipping.h): CLIPS of them; CLIP_KIND(i), CLIP_HOLE(i); CLIP_HOLES: 1 if one of them is a hole.
 #if CLIPS > 0
 uniform vec3 clipCenter[CLIPS], clipAxis[CLIPS], clipHalf[CLIPS];
 #endif

@@ -1,4 +1,4 @@
-// Surfaces under light, in linear light. Twins with the formulas and papers: vis/model/lighting.h.
+// Surfaces under light, in linear light. Twins with the formulas and papers: vis/scene/lighting.h.
 
 const float kEdgeOn = 0.25;
 

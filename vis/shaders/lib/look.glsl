@@ -1,4 +1,4 @@
-// What looks compute; twins with the formulas and papers: vis/model/look_shading.h. A sample of no share or weight
+// What looks compute; twins with the formulas and papers: vis/optics/look_shading.h. A sample of no share or weight
 // comes through unchanged.
 
 // A place as looks see it: n.l of the side that is seen, |n.v|, the rest as in LookSample.

@@ -1,5 +1,5 @@
 // Paper under a picture: its tooth catches light from the upper left, its pulp is a little uneven. All of the picture
-// lies on it, so that bare paper on an object is the paper beside it. Twin: vis/model/grain.h.
+// lies on it, so that bare paper on an object is the paper beside it. Twin: vis/optics/grain.h.
 
 // Factor on linear light, 1 on average; `at` in texels of the tile, `tooth` 0..1.
 float paperShade(sampler2D tile, vec2 at, float tooth) {

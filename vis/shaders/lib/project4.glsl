@@ -1,4 +1,4 @@
-// Four dimensions to the picture. Twin of project() in vis/model/rotation4.h.
+// Four dimensions to the picture. Twin of project() in vis/shapes/rotation4.h.
 
 // xy: place in -1..1 of the smaller side; z: depth 0..1; w: what a length there is magnified by. `rotated` lies within
 // a ball of radius 1; `eyes`: distance of the eye along w and along z, zoom.

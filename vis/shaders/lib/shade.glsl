@@ -1,4 +1,4 @@
-// The lit colour of a sample, from what lib/bindings.glsl knows of light. Twin with the formulas: vis/model/shade.h.
+// The lit colour of a sample, from what lib/bindings.glsl knows of light. Twin with the formulas: vis/optics/shade.h.
 
 #if LIGHT_VOLUME
 // Shares of light that reach a world point, and light scattered there.

@@ -1,4 +1,4 @@
-// Bright light brought into the range of a screen; twin with formulas and papers: vis/model/tone.h.
+// Bright light brought into the range of a screen; twin with formulas and papers: vis/scene/tone.h.
 // `curve`: 0 none, 1 Reinhard, 2 filmic; `gain` = 2^exposure.
 vec3 toneMap(vec3 light, int curve, float gain, float white) {
     if (curve == 0) return light;

@@ -1,6 +1,6 @@
 // Slot fetch: each channel is one texture.
 
-// Filtered texel of the even (x) or moved sublattice at p. CC: value, coverage; BCC: see vis/gl/texels.h.
+// Filtered texel of the even (x) or moved sublattice at p. CC: value, coverage; BCC: see vis/bricks/texels.h.
 vec4 fetchEven(int field, vec3 p) {
     return textureLod(fieldTexture[field], p * fieldScale[field] + fieldOffset[field], 0.0);
 }

@@ -1,5 +1,5 @@
 // Slot reconstruct: the average of the trilinear interpolations of both sublattices (over prefiltered samples: quasi-
-// interpolation), or the nearest sample. Twin: linear() in volume/reconstruct.h.
+// interpolation), or the nearest sample. Twin: linear() in volume/reconstruct/reconstruct.h.
 #include "lib/bcc_nearest.glsl"
 
 // (value, coverage) at p; the sample is absent where coverage < PRESENT_COVERAGE.

@@ -1,5 +1,5 @@
 // Slot reconstruct: linear box spline on BCC, the four corners of the tetrahedron around p (Entezari, Dyer, Moeller:
-// Linear and cubic box splines for the BCC lattice, 2004). Twin: tetrahedral() in volume/reconstruct.h.
+// Linear and cubic box splines for the BCC lattice, 2004). Twin: tetrahedral() in volume/reconstruct/reconstruct.h.
 #include "lib/bcc_nearest.glsl"
 
 // Value and presence of a lattice point given in half cells: all coordinates even, or all odd.

@@ -1,4 +1,4 @@
-// Slot reconstruct: trilinear on the cubic Cartesian lattice, or the nearest sample. Twin: volume/reconstruct.h.
+// Slot reconstruct: trilinear on the cubic Cartesian lattice, or the nearest sample. Twin: volume/reconstruct/reconstruct.h.
 
 // (value, coverage) at p; the sample is absent where coverage < PRESENT_COVERAGE.
 vec2 reconstructFrame(int field, vec3 p) {

@@ -1,5 +1,5 @@
 // Slot skip: Chebyshev distance to the nearest block that can contribute, in blocks; with ADAPTIVE 128 and more: it can,
-// by longer steps (vis/model/adaptive_step.h).
+// by longer steps (vis/optics/adaptive_step.h).
 #define SKIPPING 1
 #include "lib/block_walls.glsl"
 uniform usampler3D blockDistance;

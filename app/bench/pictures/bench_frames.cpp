@@ -1,0 +1,81 @@
+#include "app/bench/pictures/bench_frames.h"
+
+#include <algorithm>
+#include <chrono>
+#include <ctime>
+#include <thread>
+
+namespace tessera::app {
+
+double cpuMilliseconds() {
+    return 1000 * double(std::clock()) / CLOCKS_PER_SEC;
+}
+
+vis::Scene benchScene(const vis::Technique& technique, const std::vector<glm::vec2>& opacity) {
+    vis::Scene scene;
+    scene.layers = {{.name = "v", .visible = true, .technique = technique}};
+    scene.transfer["v"].opacity = opacity;
+    scene.render.stepVoxels = 1;
+    scene.render.samples = 1;
+    scene.render.detail = 0; // all samples, as the peers and the reference have them
+    scene.camera.distance = 2.6f;
+    scene.showBox = false;
+    return scene;
+}
+
+namespace {
+
+/// Draws the scene whole and takes the pixels.
+void draw(vis::Renderer& renderer, vis::ViewTarget& target, const vis::Scene& scene) {
+    vis::FrameRequest request;
+    request.size = {kBenchPicture, kBenchPicture};
+    request.wait = true;
+    renderer.render(target, scene, request);
+    glm::ivec2 size;
+    renderer.readPixels(target, size);
+}
+
+} // namespace
+
+double timeFrames(vis::Renderer& renderer, vis::Scene scene) {
+    const vis::ViewTargetPtr target = renderer.makeTarget();
+    draw(renderer, *target, scene);
+    std::vector<double> times;
+    for (int frame = 0; frame < kBenchFrames; ++frame) {
+        vis::orbit(scene.camera, {0, 0}, {0.00175f, 0});
+        const double begin = cpuMilliseconds();
+        draw(renderer, *target, scene);
+        times.push_back(cpuMilliseconds() - begin);
+    }
+    std::ranges::sort(times);
+    return times[times.size() / 2];
+}
+
+double timeChanged(vis::Renderer& renderer, const vis::Scene& scene,
+                   std::shared_ptr<const volume::BrickSource> source) {
+    const vis::ViewTargetPtr target = renderer.makeTarget();
+    draw(renderer, *target, scene);
+    const double begin = cpuMilliseconds();
+    renderer.setSource(std::move(source));
+    for (vis::FrameStatus status; !status.current || status.samples == 0;) {
+        status = renderer.render(*target, scene, {.size = {kBenchPicture, kBenchPicture}});
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    glm::ivec2 size;
+    renderer.readPixels(*target, size);
+    return cpuMilliseconds() - begin;
+}
+
+vis::reference::Image benchPicture(vis::Renderer& renderer, const vis::Scene& scene) {
+    const vis::ViewTargetPtr target = renderer.makeTarget();
+    vis::FrameRequest request;
+    request.size = {kBenchCompared, kBenchCompared};
+    request.wait = true;
+    renderer.render(*target, scene, request);
+    vis::reference::Image image;
+    image.size = request.size;
+    for (const glm::vec4& pixel : renderer.readLinear(*target)) image.pixels.emplace_back(pixel);
+    return image;
+}
+
+} // namespace tessera::app

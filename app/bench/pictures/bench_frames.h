@@ -1,0 +1,31 @@
+#pragma once
+
+#include "vis/passes/renderer.h"
+#include "vis/reference/raycast.h"
+
+#include <memory>
+#include <vector>
+
+/// What the rendering benchmarks share: pictures of one layer, timed, compared and counted.
+namespace tessera::app {
+
+inline constexpr int kBenchPicture = 512; ///< pixels along an edge of the timed pictures
+inline constexpr int kBenchCompared = 48; ///< of the pictures compared with the reference
+inline constexpr int kBenchFrames = 3;    ///< timed pictures, of which the median counts
+
+/// Processor time of all threads so far: what else the machine does hardly counts.
+double cpuMilliseconds();
+
+/// One layer of parameter "v" (range 0..255) seen as a whole, a sample per voxel.
+vis::Scene benchScene(const vis::Technique& technique, const std::vector<glm::vec2>& opacity);
+
+/// Median cpuMilliseconds() of a picture while the camera turns, after one to warm up.
+double timeFrames(vis::Renderer& renderer, vis::Scene scene);
+
+/// cpuMilliseconds() until other samples are seen, however coarse, in a renderer that has drawn the scene before.
+double timeChanged(vis::Renderer& renderer, const vis::Scene& scene, std::shared_ptr<const volume::BrickSource> source);
+
+/// A picture of kBenchCompared pixels, linear.
+vis::reference::Image benchPicture(vis::Renderer& renderer, const vis::Scene& scene);
+
+} // namespace tessera::app

@@ -1,0 +1,173 @@
+#include "app/bench/pictures/bench_frames.h"
+#include "app/bench/pictures/bench_volumes.h"
+#include "app/bench/pictures/vtk_peer.h"
+#include "app/command/bench.h"
+#include "vis/gl/headless.h"
+#include "volume/sources/memory_source.h"
+
+#include <cmath>
+#include <cstdio>
+#include <map>
+#include <memory>
+#include <string_view>
+#include <unistd.h>
+
+namespace tessera::app {
+
+namespace {
+
+constexpr int kEdge = 256;                       // samples of the volumes made here
+constexpr glm::ivec3 kFullModel(250, 250, 1000); // of a full fuel-cell model
+
+struct Style {
+    const char* name;
+    vis::Technique technique;
+    std::vector<glm::vec2> opacity;
+    float step = 1; ///< voxels
+};
+
+/// What VTK's mappers draw too, which take a sample per voxel: ours with as many, and with half of them, whose error
+/// against the converged picture is that of VTK's or less. Pre-integration needs no more.
+std::vector<Style> styles() {
+    const vis::VolumeLayer unshaded{.channel = "v", .shaded = false}, shaded{.channel = "v"};
+    const vis::VolumeLayer slabs{.channel = "v", .classification = vis::Classification::PreIntegrated, .shaded = false};
+    const vis::VolumeLayer maximum{.channel = "v", .style = vis::VolumeStyle::Maximum};
+    const std::vector<glm::vec2> haze{{0, 0}, {0.15f, 0}, {1, 0.05f}};
+    const std::vector<glm::vec2> solid{{0, 0}, {0.55f, 0}, {0.7f, 0.8f}, {1, 0.8f}};
+    return {{"translucent", unshaded, haze},
+            {"translucent, every 2 voxels", unshaded, haze, 2},
+            {"translucent, preintegrated", slabs, haze, 2},
+            {"opaque shaded", shaded, solid},
+            {"opaque shaded, every 2 voxels", shaded, solid, 2},
+            {"iso", vis::IsoLayer{.channel = "v", .value = 150}, {{0, 1}, {1, 1}}},
+            {"mip", maximum, {{0, 1}, {1, 1}}}};
+}
+
+/// The picture that ever smaller steps lead to: what the errors of both programs are measured against.
+vis::reference::Image converged(vis::Scene scene, const volume::BrickSource& source) {
+    if (auto* layer = std::get_if<vis::VolumeLayer>(&scene.layers.front().technique))
+        layer->classification = vis::Classification::Post;
+    scene.render.stepVoxels = 0.125f;
+    return vis::reference::render(scene, source, {kBenchCompared, kBenchCompared});
+}
+
+/// The peer composites over black and has no opacity to compare.
+vis::reference::Image opaque(vis::reference::Image image) {
+    for (glm::dvec4& pixel : image.pixels) pixel.a = 1;
+    return image;
+}
+
+/// Of how many times longer than ours the peers took: logarithms, and how many.
+struct Mean {
+    double sum = 0;
+    int count = 0;
+};
+
+void add(Mean& mean, double theirs, double ours) {
+    mean.sum += std::log(theirs / ours);
+    ++mean.count;
+}
+
+/// Milliseconds, error, and how many times longer than ours it took.
+void addPeer(std::vector<std::string>& row, const std::optional<PeerResult>& peer, double ours,
+             const vis::reference::Image& truth, Mean& mean) {
+    if (!peer) {
+        row.insert(row.end(), {"", "", ""});
+        return;
+    }
+    add(mean, peer->milliseconds, ours);
+    row.push_back(decimals(peer->milliseconds, 1));
+    row.push_back(decimals(vis::reference::compare(opaque(peer->picture), opaque(truth), 1).psnr, 1));
+    row.push_back(decimals(peer->milliseconds / ours, 2));
+}
+
+struct Means {
+    Mean gpu, cpu, changed, lattice; ///< changed: of VTK's GPU mapper; lattice: BCC over CC
+};
+
+void measure(const BenchVolume& volume, bool peers, std::map<std::string, Means>& means, BenchTable& table) {
+    std::map<std::string, double> onCc;
+    for (const volume::LatticeKind kind : {volume::LatticeKind::CC, volume::LatticeKind::BCC}) {
+        const std::shared_ptr<const volume::BrickSource> source =
+            volume::makeMemorySource(benchDataset(volume), {.lattice = kind});
+        const bool cc = kind == volume::LatticeKind::CC;
+        vis::Renderer renderer;
+        renderer.setSource(source);
+        PeerResults peer;
+        const std::vector<Style> all = styles();
+        for (std::size_t i = 0; i < all.size(); ++i) {
+            const Style& style = all[i];
+            vis::Scene scene = benchScene(style.technique, style.opacity);
+            const vis::Scene theirs = scene;
+            scene.render.stepVoxels = style.step;
+            const double ours = timeFrames(renderer, scene);
+            Means& mean = means[style.name];
+            if (cc)
+                onCc[style.name] = ours;
+            else
+                add(mean.lattice, ours, onCc[style.name]);
+            const double changed =
+                timeChanged(renderer, scene, volume::makeMemorySource(benchDataset(volume), {.lattice = kind}));
+            const bool drawn = i > 0 && all[i - 1].technique == style.technique && all[i - 1].opacity == style.opacity;
+            if (peers && cc && !drawn)
+                peer = runVtkPeer(volume.bytes, volume.size, theirs, {kBenchPicture, kBenchCompared, kBenchFrames});
+            const vis::reference::Image picture = benchPicture(renderer, scene), limit = converged(scene, *source);
+            const vis::reference::Image same = vis::reference::render(scene, *source, {kBenchCompared, kBenchCompared});
+            std::vector<std::string> row{volume.name,
+                                         std::string(volume::kLatticeNames[std::size_t(kind)]),
+                                         style.name,
+                                         decimals(ours, 1),
+                                         decimals(changed, 0),
+                                         decimals(vis::reference::compare(picture, same, 1).psnr, 1),
+                                         decimals(vis::reference::compare(picture, limit, 1).psnr, 1)};
+            if (peers) {
+                addPeer(row, peer.gpu, ours, limit, mean.gpu);
+                addPeer(row, peer.cpu, ours, limit, mean.cpu);
+                row.push_back(peer.gpu ? decimals(peer.gpu->changed, 0) : "");
+                row.push_back(peer.gpu ? decimals(peer.gpu->changed / changed, 1) : "");
+                if (peer.gpu) add(mean.changed, peer.gpu->changed, changed);
+            }
+            table.rows.push_back(std::move(row));
+            if (isatty(STDERR_FILENO) != 0)
+                std::fprintf(stderr, "render: %s %s %s\n", volume.name.c_str(), table.rows.back()[1].c_str(),
+                             style.name);
+        }
+    }
+}
+
+std::string ratio(const Mean& mean) {
+    return mean.count == 0 ? "" : decimals(std::exp(mean.sum / mean.count), 2);
+}
+
+} // namespace
+
+BenchTable benchRender(const std::string& only) {
+    const bool peers = vtkPeerAtHand();
+    BenchTable table;
+    table.name = "render: beside VTK";
+    table.columns = {"volume", "lattice", "style", "CPU ms", "new data ms", "shader dB", "converged dB"};
+    if (peers)
+        for (const char* column : {"VTK GPU ms", "VTK GPU dB", "VTK GPU / ours", "VTK CPU ms", "VTK CPU dB",
+                                   "VTK CPU / ours", "VTK GPU new data ms", "VTK GPU / ours"})
+            table.columns.emplace_back(column);
+    else
+        std::fprintf(stderr, "VTK not at hand: its columns are left out\n");
+
+    const vis::HeadlessContext context;
+    std::map<std::string, Means> means;
+    const auto wanted = [&](std::string_view name) { return name.find(only) != name.npos; };
+    if (wanted("CT phantom")) measure(phantomVolume(kEdge), peers, means, table);
+    if (wanted("Marschner-Lobb")) measure(marschnerLobbVolume(kEdge), peers, means, table);
+    for (const BenchVolume& volume : realVolumes())
+        if (wanted(volume.name)) measure(volume, peers, means, table);
+    if (wanted("foam")) measure(foamVolume(kFullModel), peers, means, table);
+    for (const Style& style : styles()) {
+        const Means& mean = means[style.name];
+        std::vector<std::string> row{"geometric mean", "BCC / CC", style.name, ratio(mean.lattice), "", "", ""};
+        if (peers) row.insert(row.end(), {"", "", ratio(mean.gpu), "", "", ratio(mean.cpu), "", ratio(mean.changed)});
+        table.rows.push_back(std::move(row));
+    }
+    return table;
+}
+
+} // namespace tessera::app

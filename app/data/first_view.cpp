@@ -1,0 +1,144 @@
+#include "app/data/first_view.h"
+
+#include "volume/base/error.h"
+#include "volume/reconstruct/probe.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace tessera::app {
+
+namespace {
+
+/// Coarse enough to be read at once.
+int quickLevel(const volume::BrickGrid& grid) {
+    constexpr std::int64_t kSamples = 4'000'000;
+    int level = 0;
+    for (; level + 1 < grid.levels; ++level) {
+        const glm::i64vec3 size(grid.levelSamples(level));
+        if (size.x * size.y * size.z <= kSamples) break;
+    }
+    return level;
+}
+
+/// Calls use(level index, value) for the present samples of every brick that `wanted` accepts.
+template <class Wanted, class Use>
+void forSamples(const volume::BrickSource& source, int channel, int time, int level, Wanted wanted, Use use) {
+    const volume::BrickGrid& grid = source.grid();
+    const glm::ivec3 count = grid.count();
+    for (int z = 0; z < count.z; ++z)
+        for (int y = 0; y < count.y; ++y)
+            for (int x = 0; x < count.x; ++x) {
+                const glm::ivec3 index(x, y, z);
+                if (!wanted(index, count)) continue;
+                const glm::ivec3 begin = grid.levelBegin(index, level);
+                const volume::BrickSamples samples = source.read({channel, time, level, index});
+                std::size_t at = 0;
+                for (int k = 0; k < samples.size.z; ++k)
+                    for (int j = 0; j < samples.size.y; ++j)
+                        for (int i = 0; i < samples.size.x; ++i, ++at)
+                            if (samples.present.empty() || samples.present[at])
+                                use(begin + glm::ivec3(i, j, k), samples.values[at]);
+            }
+}
+
+/// The present sample nearest to the mean position of all present ones.
+std::optional<glm::dvec3> middleOfSamples(const volume::BrickSource& source, int channel, int time) {
+    const volume::BrickGrid& grid = source.grid();
+    const bool bcc = grid.lattice.kind == volume::LatticeKind::BCC;
+    const int level = quickLevel(grid);
+    const auto place = [&](glm::ivec3 at) {
+        const int z = bcc ? 2 * ((at.z / 2) << level) + at.z % 2 : at.z << level;
+        return grid.lattice.position({at.x << level, at.y << level, z});
+    };
+    const auto all = [](glm::ivec3, glm::ivec3) { return true; };
+    glm::dvec3 sum(0);
+    double number = 0;
+    forSamples(source, channel, time, level, all, [&](glm::ivec3 at, float) {
+        sum += place(at);
+        number += 1;
+    });
+    if (number == 0) return std::nullopt;
+    const glm::dvec3 size = glm::max(source.info().bounds.size(), glm::dvec3(1e-300));
+    glm::dvec3 best = sum / number;
+    double nearest = std::numeric_limits<double>::infinity();
+    forSamples(source, channel, time, level, all, [&](glm::ivec3 at, float) {
+        const glm::dvec3 away = (place(at) - sum / number) / size;
+        if (glm::dot(away, away) >= nearest) return;
+        nearest = glm::dot(away, away);
+        best = place(at);
+    });
+    return glm::clamp(best, source.info().bounds.lo, source.info().bounds.hi);
+}
+
+} // namespace
+
+std::optional<double> backgroundShare(const volume::BrickSource& source, int channel, int time) {
+    const volume::DatasetInfo& info = source.info();
+    const volume::Channel what = info.channels()[static_cast<std::size_t>(channel)];
+    const volume::Parameter& parameter = info.parameters[static_cast<std::size_t>(what.parameter)];
+    const Range range = info.channelRange(what);
+    const bool integer = parameter.type != volume::ScalarType::F32 && !parameter.categorical;
+    if (!integer || !(range.hi > range.lo)) return std::nullopt;
+    const volume::BrickGrid& grid = source.grid();
+    const int level = quickLevel(grid);
+    const glm::ivec3 last = grid.levelSamples(level) - 1;
+    std::vector<std::uint64_t> histogram(256, 0);
+    std::uint64_t total = 0;
+    forSamples(
+        source, channel, time, level,
+        [](glm::ivec3 index, glm::ivec3 count) {
+            return glm::any(glm::equal(index, glm::ivec3(0))) || glm::any(glm::equal(index, count - 1));
+        },
+        [&](glm::ivec3 at, float value) {
+            if (!glm::any(glm::equal(at, glm::ivec3(0))) && !glm::any(glm::equal(at, last))) return;
+            const double share = (value - range.lo) / (range.hi - range.lo);
+            ++histogram[static_cast<std::size_t>(std::clamp(share, 0.0, 1.0) * 255)];
+            ++total;
+        });
+    std::uint64_t below = 0;
+    for (std::size_t bin = 0; bin < histogram.size(); ++bin) {
+        below += histogram[bin];
+        if (static_cast<double>(below) < 0.99 * static_cast<double>(total)) continue;
+        // Noise is weaker at the coarse level looked at here than in the volume.
+        const double edge = static_cast<double>(bin + 1) / 255, share = edge < 0.01 ? edge : 1.3 * edge + 0.02;
+        return total > 0 && share < 0.5 ? std::optional(share) : std::nullopt;
+    }
+    return std::nullopt;
+}
+
+namespace {
+
+void aimAtSamples(Session& session, const volume::BrickSource& source, int channel, const std::string& name, int time) {
+    const volume::DatasetInfo& info = source.info();
+    const volume::ProbeValue here = volume::probeChannel(source, channel, session.cursor, time);
+    if (!here.interpolated || !here.nearest)
+        session.cursor = middleOfSamples(source, channel, time).value_or(session.cursor);
+    const auto transfer = session.transfer.find(name);
+    if (transfer == session.transfer.end() ||
+        transfer->second.opacity != defaultSession(info, {}).transfer[name].opacity)
+        return;
+    if (const auto share = backgroundShare(source, channel, time)) {
+        const float x = static_cast<float>(*share);
+        transfer->second.opacity = {{0.0f, 0.0f}, {x, 0.0f}, {1.0f, 0.8f}};
+    }
+}
+
+} // namespace
+
+void aimFirstView(Session& session, const volume::BrickSource& source, double aspect) {
+    const volume::DatasetInfo& info = source.info();
+    vis::fit(session.camera, vis::worldFrame(info.bounds, session.stretch), aspect);
+    if (session.layers.empty()) return;
+    const std::string name = std::visit([](const auto& own) { return own.channel; }, session.layers.front().technique);
+    const auto channel = info.findChannel(name);
+    if (!channel) return;
+    const int time = info.nearestTime(session.time);
+    try {
+        aimAtSamples(session, source, *channel, name, time);
+    } catch (const Error&) { // a damaged brick: what the rest says is shown all the same
+    }
+}
+
+} // namespace tessera::app

@@ -1,0 +1,49 @@
+#include "app/data/growth_watch.h"
+
+#include "volume/base/error.h"
+
+#include <array>
+#include <condition_variable>
+#include <filesystem>
+#include <fstream>
+#include <mutex>
+#include <span>
+#include <utility>
+
+namespace tessera::app {
+
+GrowthWatch::GrowthWatch(std::string path, std::function<void()> wake, std::chrono::milliseconds interval)
+    : path_(std::move(path)), wake_(std::move(wake)),
+      thread_([this, interval, seen = state()](const std::stop_token& stop) { watch(stop, interval, seen); }) {}
+
+/// The header that holds; none where the file is gone or no archive. A commit writes two copies one after the other:
+/// which of them a reader sees makes no difference, so it counts once.
+GrowthWatch::State GrowthWatch::state() const {
+    std::array<char, codec::firstChunk(codec::kFormatVersion)> bytes{};
+    std::ifstream file(path_, std::ios::binary);
+    file.read(bytes.data(), std::streamsize(bytes.size()));
+    std::error_code gone;
+    const std::uintmax_t size = std::filesystem::file_size(path_, gone); // after the header, as the file grows first
+    if (gone) return {};
+    try {
+        return codec::parseHeaders(std::as_bytes(std::span(bytes).first(std::size_t(file.gcount()))), size, path_)
+            .header;
+    } catch (const Error&) {
+        return {};
+    }
+}
+
+void GrowthWatch::watch(const std::stop_token& stop, std::chrono::milliseconds interval, State seen) {
+    std::mutex mutex;
+    std::condition_variable_any ended;
+    std::unique_lock lock(mutex);
+    while (!ended.wait_for(lock, stop, interval, [&] { return stop.stop_requested(); })) {
+        const State now = state();
+        if (!now || now == seen) continue; // nothing whole is new, or it is gone: what is open stays good
+        seen = now;
+        changed_ = true;
+        if (wake_) wake_();
+    }
+}
+
+} // namespace tessera::app

@@ -1,0 +1,38 @@
+#pragma once
+
+#include "codec/container/container.h"
+
+#include <atomic>
+#include <chrono>
+#include <functional>
+#include <optional>
+#include <string>
+#include <thread>
+
+namespace tessera::app {
+
+/// Notices that an archive has been appended to or replaced. A thread of its own reads its header, which says up to
+/// where it is whole, as every reader does: it is cheap, and an archive that is being written is not told of before its
+/// next whole state.
+class GrowthWatch {
+public:
+    /// `wake` is called from the thread after each change. What happened before counts as one.
+    GrowthWatch(std::string path, std::function<void()> wake,
+                std::chrono::milliseconds interval = std::chrono::seconds(1));
+
+    const std::string& path() const { return path_; }
+    /// True once after each change.
+    bool changed() { return changed_.exchange(false); }
+
+private:
+    using State = std::optional<codec::Header>;
+    State state() const;
+    void watch(const std::stop_token& stop, std::chrono::milliseconds interval, State seen);
+
+    std::string path_;
+    std::function<void()> wake_;
+    std::atomic<bool> changed_ = true;
+    std::jthread thread_; ///< last: it ends before what it refers to
+};
+
+} // namespace tessera::app

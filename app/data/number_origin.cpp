@@ -1,0 +1,138 @@
+#include "app/data/number_origin.h"
+
+#include "app/ui/ticks.h"
+#include "codec/container/metadata.h"
+#include "volume/derived/other_source.h"
+#include "volume/field/mesh_origin.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tessera::app {
+
+namespace {
+
+constexpr std::size_t kMostBounds = 3; ///< told one by one
+constexpr std::string_view kOriginal = " as computed";
+
+/// Rounded up to two digits: what is "at most" must not be more.
+double twoDigitsUp(double value) {
+    if (!(value > 0)) return 0;
+    const double unit = std::pow(10.0, std::floor(std::log10(value)) - 1);
+    return std::ceil(value / unit * (1 - 1e-12)) * unit;
+}
+
+std::string boundText(double bound, std::string_view unit) {
+    return formatQuantity(twoDigitsUp(bound), unit);
+}
+
+bool isOriginal(const NumberOrigin& origin, const volume::DatasetInfo& info, const volume::Channel& channel) {
+    return origin.originals && info.parameters[std::size_t(channel.parameter)].name.ends_with(kOriginal);
+}
+
+std::string errorText(const NumberOrigin& origin, const volume::DatasetInfo& info,
+                      const std::vector<volume::Channel>& channels) {
+    std::vector<volume::Channel> bounded;
+    for (const volume::Channel& channel : channels)
+        if (errorBound(origin, info, channel) > 0) bounded.push_back(channel);
+    if (bounded.empty()) return {};
+    if (channels.size() == 1)
+        return "error at most " + boundText(errorBound(origin, info, channels.front()), channels.front().unit);
+    if (bounded.size() > kMostBounds && origin.maxError > 0)
+        return "error at most " + formatNumber(100 * twoDigitsUp(origin.maxError)) + " % of each range";
+    std::string text;
+    for (const volume::Channel& channel : bounded)
+        text += (text.empty() ? "error at most " : ", ") + channel.name + " " +
+                boundText(errorBound(origin, info, channel), channel.unit);
+    return text;
+}
+
+std::string readText(const NumberOrigin& origin, const volume::DatasetInfo& info,
+                     const std::vector<volume::Channel>& channels) {
+    const std::string computed = origin.mesh ? "resampled" : "as computed";
+    if (!origin.stored) return computed;
+    const std::string error = origin.exact ? std::string() : errorText(origin, info, channels);
+    const bool onGrid = origin.lattice == "CC";
+    std::string text = onGrid && error.empty() ? computed
+                       : onGrid                ? "stored on CC, " + error
+                       : error.empty()         ? "resampled to " + origin.lattice + ", stored without loss"
+                                               : "resampled to " + origin.lattice + ", stored with an " + error;
+    if (origin.mesh && onGrid && text != computed) text = "resampled, " + text;
+    if (origin.discarded) text += ", bricks of little importance left out";
+    return text;
+}
+
+} // namespace
+
+NumberOrigin computedOrigin(const volume::DatasetInfo& info) {
+    NumberOrigin origin;
+    origin.mesh = volume::isResampled(info);
+    origin.parameters = int(info.parameters.size());
+    return origin;
+}
+
+NumberOrigin storedOrigin(const codec::Metadata& metadata) {
+    NumberOrigin origin = computedOrigin(metadata.info);
+    origin.stored = true;
+    origin.lattice = metadata.alternating                                     ? "D4*"
+                     : metadata.info.lattice.kind == volume::LatticeKind::BCC ? "BCC"
+                                                                              : "CC";
+    origin.exact = metadata.lossless;
+    origin.maxError = metadata.lossless ? 0 : metadata.maxError;
+    origin.absError = metadata.lossless ? 0 : metadata.options.absError;
+    origin.discarded = metadata.options.discard > 0;
+    return origin;
+}
+
+double errorBound(const NumberOrigin& origin, const volume::DatasetInfo& info, const volume::Channel& channel) {
+    const volume::Parameter& parameter = info.parameters[std::size_t(channel.parameter)];
+    const bool derived = origin.parameters >= 0 && channel.parameter >= origin.parameters;
+    if (origin.exact || parameter.categorical || derived || isOriginal(origin, info, channel)) return 0;
+    double extent = 0;
+    for (int c = 0; c < std::min(parameter.components, int(parameter.ranges.size())); ++c)
+        extent = std::max(extent, parameter.ranges[std::size_t(c)].hi - parameter.ranges[std::size_t(c)].lo);
+    double bound = origin.maxError * extent;
+    if (origin.absError > 0) bound = bound > 0 ? std::min(bound, origin.absError) : origin.absError;
+    return channel.magnitude ? bound * std::sqrt(double(channel.component)) : bound;
+}
+
+std::string originText(const NumberOrigin& origin, const volume::DatasetInfo& info, const std::vector<int>& channels) {
+    const std::vector<volume::Channel> all = info.channels();
+    std::vector<volume::Channel> read, original;
+    bool derived = false, other = false;
+    const auto isOther = [&](const volume::Channel& channel) {
+        return info.parameters[std::size_t(channel.parameter)].name.ends_with(volume::kOtherSuffix);
+    };
+    const auto add = [&](const volume::Channel& channel) {
+        if (!origin.other.empty() && isOther(channel))
+            other = true;
+        else if (origin.parameters >= 0 && channel.parameter >= origin.parameters)
+            derived = true;
+        else
+            (isOriginal(origin, info, channel) ? original : read).push_back(channel);
+    };
+    if (channels.empty()) std::for_each(all.begin(), all.end(), add);
+    for (const int channel : channels) add(all[std::size_t(channel)]);
+    std::string text;
+    if (other && read.empty() && original.empty() && !derived) return "other data: " + origin.other;
+    if (!read.empty() || original.empty()) {
+        const bool onlyDerived = read.empty() && derived;
+        if (onlyDerived)
+            for (const volume::Channel& channel : all)
+                if (channel.parameter < origin.parameters && !isOriginal(origin, info, channel))
+                    read.push_back(channel);
+        text = (onlyDerived ? "derived from samples " : "") + readText(origin, info, read);
+        if (derived && !onlyDerived) text += "; derived ones from these";
+        if (!original.empty()) text += "; the originals as computed";
+    } else {
+        text = "as computed";
+    }
+    if (other || (derived && !origin.other.empty())) text += "; other data: " + origin.other;
+    return text + (origin.alongTime ? ", interpolated along time" : "");
+}
+
+std::string originLine(const NumberOrigin& origin, const volume::DatasetInfo& info, const std::vector<int>& channels) {
+    return "# numbers: " + originText(origin, info, channels) + "\n";
+}
+
+} // namespace tessera::app

@@ -1,0 +1,55 @@
+#pragma once
+
+#include "volume/field/dataset.h"
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace tessera::volume {
+class BrickSource;
+}
+
+namespace tessera::codec {
+struct Metadata;
+}
+
+namespace tessera::app {
+
+/// Where the samples that numbers are read from come from.
+struct NumberOrigin {
+    bool mesh = false;      ///< resampled from cells that are no regular grid
+    bool stored = false;    ///< read from an archive, or from data packed as one
+    bool originals = false; ///< parameters called "... as computed" are what the others were before they were packed
+    std::string lattice;    ///< of the stored samples: "CC", "BCC" or "D4*"
+    bool exact = true;      ///< every stored sample is what was packed
+    double maxError = 0;    ///< else: bound on the error of a sample, relative to the largest range of its components
+    double absError = 0;    ///< in the unit of the parameter; 0 = no such bound
+    bool discarded = false; ///< bricks of little importance are left out
+    bool alongTime = false; ///< time takes the place of an axis: read between times
+    std::shared_ptr<const volume::BrickSource> cutFrom = {}; ///< then: the data in space that the plane is of
+    std::string other =
+        {}; ///< where those of the other data beside (volume/derived/other_source.h) come from, "" = none
+    /// Parameters that are read; those after them are derived from these. -1: all.
+    int parameters = -1;
+    bool operator==(const NumberOrigin&) const = default;
+};
+
+/// Of data that are no archive.
+NumberOrigin computedOrigin(const volume::DatasetInfo& info);
+/// Of an archive.
+NumberOrigin storedOrigin(const codec::Metadata& metadata);
+
+/// Bound on the error of a sample of a channel, in its unit; 0 where it is exact.
+double errorBound(const NumberOrigin& origin, const volume::DatasetInfo& info, const volume::Channel& channel);
+
+/// In words, for these channels (indices of info.channels(); none: all): "as computed", "resampled from a mesh",
+/// "stored on CC, error at most 0.4 K".
+std::string originText(const NumberOrigin& origin, const volume::DatasetInfo& info,
+                       const std::vector<int>& channels = {});
+
+/// The same as the first line of a table: "# numbers: as computed".
+std::string originLine(const NumberOrigin& origin, const volume::DatasetInfo& info,
+                       const std::vector<int>& channels = {});
+
+} // namespace tessera::app

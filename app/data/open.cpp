@@ -1,0 +1,363 @@
+#include "app/data/open.h"
+
+#include "app/data/first_view.h"
+#include "app/user_files/import_memory.h"
+
+#include "vis/image/image_io.h"
+#include "volume/base/error.h"
+#include "volume/field/quantities.h"
+#include "volume/import/import.h"
+#include "volume/synthetic/models.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <filesystem>
+#include <set>
+#include <utility>
+
+namespace tessera::app {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr const char* kFirstLayout = "overview";
+constexpr double kFirstAspect = 0.92; ///< of the volume pane in a new window, labels taken off
+
+bool endsWith(const std::string& path, std::string_view suffix) {
+    if (path.size() < suffix.size()) return false;
+    return std::equal(suffix.rbegin(), suffix.rend(), path.rbegin(),
+                      [](char a, char b) { return a == std::tolower(static_cast<unsigned char>(b)); });
+}
+
+enum class Kind { Session, Picture, Data };
+
+Kind kindOf(const std::string& path) {
+    if (endsWith(path, ".png")) return Kind::Picture;
+    if (!endsWith(path, ".json")) return Kind::Data;
+    if (endsWith(path, ".tessera.json")) return Kind::Session;
+    // Other JSON files are sessions (layouts) or the sidecars of raw files.
+    return looksLikeSession(readText(path)) ? Kind::Session : Kind::Data;
+}
+
+std::vector<fs::path> layoutFolders() {
+    std::vector<fs::path> folders;
+    std::error_code problem;
+    const fs::path program = fs::read_symlink("/proc/self/exe", problem);
+    if (!problem) {
+        folders.push_back(program.parent_path() / "../share/tessera/layouts");
+        folders.push_back(program.parent_path() / "layouts");
+    }
+    folders.emplace_back(TESSERA_LAYOUT_DIR);
+    return folders;
+}
+
+bool sameData(const DataRef& a, const DataRef& b) {
+    if (a.files.size() != b.files.size() || a.model != b.model) return false;
+    if (a.files.empty()) return true;
+    return std::equal(a.files.begin(), a.files.end(), b.files.begin(), [](const DataFile& x, const DataFile& y) {
+        return x.absolutePath == y.absolutePath || (!x.hash.empty() && x.hash == y.hash);
+    });
+}
+
+/// Takes over a document read from a file: finds its data and opens it.
+Opened openDocument(SessionDocument document, const std::string& folder, const OpenRequest& request,
+                    const Progress& progress) {
+    Opened opened;
+    opened.document = std::move(document);
+    opened.folder = folder;
+    opened.messages = opened.document.messages;
+    if (request.data) {
+        DataRef data = *request.data;
+        if (data.derived.empty()) data.derived = opened.document.session.data.derived;
+        return openWith(std::move(opened), data, progress);
+    }
+    ResolvedData found = resolveData(opened.document.session.data, folder);
+    opened.messages.insert(opened.messages.end(), found.warnings.begin(), found.warnings.end());
+    if (!found.missing.empty()) {
+        opened.missing = std::move(found.missing);
+        return opened;
+    }
+    DataRef data = found.data;
+    if (request.import) data.import = *request.import;
+    return openWith(std::move(opened), data, progress);
+}
+
+} // namespace
+
+std::string sessionTextOfPicture(const std::string& path) {
+    std::map<std::string, std::string> texts;
+    vis::readPng(path, &texts);
+    const auto found = texts.find(vis::kSessionTextKey);
+    if (found == texts.end()) throw Error("this picture carries no session", path);
+    return found->second;
+}
+
+std::vector<std::string> layoutNames() {
+    std::set<std::string> names;
+    for (const fs::path& folder : layoutFolders()) {
+        std::error_code problem;
+        for (const auto& entry : fs::directory_iterator(folder, problem))
+            if (entry.path().extension() == ".json") names.insert(entry.path().stem().string());
+    }
+    return {names.begin(), names.end()};
+}
+
+std::string findLayout(const std::string& nameOrPath) {
+    std::error_code problem;
+    if (endsWith(nameOrPath, ".json") && fs::is_regular_file(nameOrPath, problem)) return nameOrPath;
+    for (const fs::path& folder : layoutFolders()) {
+        const fs::path path = folder / (nameOrPath + ".json");
+        if (nameOrPath.find('/') == std::string::npos && fs::is_regular_file(path, problem)) return path.string();
+    }
+    std::string known;
+    for (const std::string& name : layoutNames()) known += (known.empty() ? "" : ", ") + name;
+    throw Error("no layout of that name; there are " + (known.empty() ? "none" : known), {}, nameOrPath);
+}
+
+DataRef dataOf(const std::vector<std::string>& paths, const volume::ImportOptions& options) {
+    DataRef data;
+    data.import = options;
+    for (const std::string& path : paths) {
+        std::error_code problem;
+        if (!fs::exists(path, problem)) throw Error("no such file", path);
+        data.files.push_back(describeFile(path));
+    }
+    return data;
+}
+
+DataRef dataNamed(const std::vector<std::string>& inputs, const volume::ImportOptions& stated,
+                  const Progress& progress) {
+    const std::vector<std::string> models = volume::modelNames();
+    std::error_code problem;
+    if (inputs.size() != 1 || std::ranges::find(models, inputs[0]) == models.end() || fs::exists(inputs[0], problem))
+        return dataOf(inputs, recallOptions(inputs, stated, progress));
+    DataRef data;
+    data.model = inputs[0];
+    data.import = stated;
+    return data;
+}
+
+namespace {
+
+/// Where time takes the place of an axis the cross-hair lies at the time that was shown, and the other way round; where
+/// it was along that axis is known from TimeAxis::place. `session` still refers to the data before, described by
+/// `from`.
+void carryTime(Session& session, const volume::DatasetInfo& from, const volume::DatasetInfo& to,
+               const std::optional<volume::TimeAxis>& wanted) {
+    const std::optional<volume::TimeAxis>& shown = session.data.timeAxis;
+    if (shown.has_value() == wanted.has_value()) return;
+    const int axis = int(wanted ? wanted->axis : shown->axis);
+    if (wanted) {
+        session.cursor[axis] = session.time / volume::timePerLength(to, *wanted);
+    } else {
+        session.time = session.cursor[axis] * volume::timePerLength(from, *shown);
+        for (const double stored : to.times)
+            if (std::abs(session.time - stored) < 1e-9 * (to.times.back() - to.times.front())) session.time = stored;
+        session.cursor[axis] = to.bounds.lo[axis] + shown->place * to.bounds.size()[axis];
+    }
+}
+
+} // namespace
+
+Opened openWith(Opened opened, const DataRef& data, const Progress& progress) {
+    opened.missing.clear();
+    Sources now = openSources(data, opened.messages, progress);
+    opened.numbers = std::move(now.numbers);
+    opened.origin = std::move(now.origin);
+    const auto before = std::exchange(opened.source, std::move(now.pictures));
+    moveTo(opened.document.session, opened.document.history, before ? &before->info() : nullptr, opened.source->info(),
+           data, opened.messages);
+    return opened;
+}
+
+void moveTo(Session& session, History& history, const volume::DatasetInfo* from, const volume::DatasetInfo& to,
+            const DataRef& data, std::vector<std::string>& messages) {
+    if (from) carryTime(session, *from, to, data.timeAxis);
+    if (from && from->timeName != to.timeName) // the same state, counted otherwise
+        if (const auto same = volume::findQuantity(*from, to.timeName)) {
+            const double time = volume::valueAt(from->times, from->quantities[std::size_t(*same)].values, session.time);
+            if (std::isfinite(time)) session.time = time;
+        }
+    session.data = data;
+    history.setData(data);
+    fitSession(session, to, messages);
+}
+
+namespace {
+
+/// Least and largest present sample of a channel at one time; nothing where there is none.
+std::optional<Range> rangeAt(const volume::BrickSource& source, int channel, int time) {
+    const glm::ivec3 count = source.grid().count();
+    std::optional<Range> range;
+    for (int z = 0; z < count.z; ++z)
+        for (int y = 0; y < count.y; ++y)
+            for (int x = 0; x < count.x; ++x) {
+                const volume::BrickStats stats = source.stats({channel, time, 0, {x, y, z}});
+                if (!(stats.presentFraction > 0) || !(stats.min <= stats.max)) continue;
+                const double lo = double(stats.min), hi = double(stats.max);
+                range = range ? Range{std::min(range->lo, lo), std::max(range->hi, hi)} : Range{lo, hi};
+            }
+    return range;
+}
+
+/// Sizes and settings of a model say nothing of other data, where they could only fail.
+void dropForeignVariants(Session& session, const DataRef& made, std::vector<std::string>& messages) {
+    if (made.model.empty() || (session.data.files.empty() && session.data.model == made.model)) return;
+    for (auto& [pane, view] : session.views) {
+        auto* compare = std::get_if<CompareView>(&view);
+        if (!compare) continue;
+        for (std::size_t i = compare->variants.size(); i-- > 0;) {
+            const auto changes = [&, &variant = compare->variants[i]](std::string_view place) {
+                return std::ranges::any_of(variant.changes,
+                                           [&](const auto& change) { return change.first.starts_with(place); });
+            };
+            if (!changes("/data/settings") || changes("/data/model")) continue;
+            messages.push_back("this comparison is of the model " + made.model + ": \"" + compare->variants[i].name +
+                               "\" is left out, which needs that model");
+            compare->variants.erase(compare->variants.begin() + static_cast<std::ptrdiff_t>(i));
+            const auto before = [&](int index) { return std::max(0, index - (index > static_cast<int>(i) ? 1 : 0)); };
+            compare->reference = before(compare->reference);
+            compare->other = before(compare->other);
+            if (compare->other == compare->reference) compare->other = compare->reference + 1;
+        }
+    }
+}
+
+} // namespace
+
+Session applyLayout(const SessionDocument& layout, const volume::DatasetInfo& info, const DataRef& data,
+                    std::vector<std::string>& messages) {
+    const bool own = sameData(layout.session.data, data);
+    Json result = toJson(defaultSession(info, data));
+    for (const auto& [key, value] : layout.raw.items()) {
+        if (key == "data" || key == "schema" || key == "app" || key == "history") continue;
+        // What only means something for the data the layout was made with.
+        if (!own && (key == "title" || key == "time" || key == "cursor" || key == "stretch")) continue;
+        if (key == "transfer") {
+            for (const auto& [channel, function] : value.items())
+                if (own || function.value("autoRange", true)) result[key][channel] = function;
+        } else {
+            result[key] = value;
+        }
+    }
+    if (!own && result["selection"].is_object()) result["selection"].erase("brushes");
+    Session session = sessionFromJson(result, {});
+    std::erase_if(session.transfer, [&](const auto& entry) { return !info.findChannel(entry.first); });
+    fitSession(session, info, messages);
+    if (!own) dropForeignVariants(session, layout.session.data, messages);
+    return session;
+}
+
+void fitSurfaces(Session& session, const volume::BrickSource& source, bool own, std::vector<std::string>& messages) {
+    const volume::DatasetInfo& info = source.info();
+    std::set<std::string> without;
+    for (vis::Layer& layer : session.layers) {
+        auto* iso = std::get_if<vis::IsoLayer>(&layer.technique);
+        const auto channel = iso ? info.findChannel(iso->channel) : std::nullopt;
+        if (!channel) continue;
+        std::optional<Range> range;
+        try {
+            range = rangeAt(source, *channel, info.nearestTime(session.time));
+        } catch (const Error&) { // a damaged brick: what the rest says is shown all the same
+            continue;
+        }
+        if (!range || !(range->hi > range->lo)) {
+            if (layer.visible && without.insert(iso->channel).second)
+                messages.push_back(iso->channel + (range ? " has one value everywhere" : " does not exist anywhere") +
+                                   " at this time, so its surface is empty: choose another time or parameter");
+            continue;
+        }
+        const double share = (double(iso->value) - range->lo) / (range->hi - range->lo);
+        const double margin = own ? 0 : 0.1;
+        if (!(share > margin && share < 1 - margin)) iso->value = 0.5 * (range->lo + range->hi);
+    }
+}
+
+Session changeLayout(const SessionDocument& layout, const volume::BrickSource& source, const Session& shown,
+                     std::vector<std::string>& messages) {
+    Session next = applyLayout(layout, source.info(), shown.data, messages);
+    next.appearance = shown.appearance;
+    next.time = shown.time;
+    next.cursor = shown.cursor;
+    const bool own = sameData(layout.session.data, shown.data);
+    if (!own) vis::fit(next.camera, vis::worldFrame(source.info().bounds, next.stretch), kFirstAspect);
+    fitSurfaces(next, source, own, messages);
+    return next;
+}
+
+Opened open(const OpenRequest& request, const Progress& progress) {
+    Opened opened;
+    std::vector<std::string> dataPaths;
+    if (request.paths.size() == 1) {
+        const std::string& path = request.paths[0];
+        std::error_code problem;
+        if (!fs::exists(path, problem)) throw Error("no such file", path);
+        const Kind kind = kindOf(path);
+        if (kind != Kind::Data) {
+            SessionDocument document =
+                kind == Kind::Session ? loadSession(path) : parseSession(sessionTextOfPicture(path), path);
+            const std::string folder = fs::absolute(path).parent_path().string();
+            // What the program saved says so; anything else is a layout, which may leave things out.
+            const bool complete = document.raw.contains("app") && (hasData(document.session.data) || request.data);
+            if (request.layout.empty() && complete) {
+                opened = openDocument(std::move(document), folder, request, progress);
+                if (kind == Kind::Session) opened.sessionPath = fs::absolute(path).lexically_normal().string();
+                return opened;
+            }
+            if (!request.layout.empty()) {
+                // A session's data shown in another layout.
+                const ResolvedData found = resolveData(document.session.data, folder);
+                if (!found.missing.empty()) throw Error("data file is missing", found.missing[0].wanted.path, path);
+                OpenRequest inner{{}, request.layout, found.data, request.import, {}};
+                return open(inner, progress);
+            }
+            OpenRequest inner{{}, path, request.data, request.import, request.lattice}; // a layout without data
+            return open(inner, progress);
+        }
+    }
+    std::optional<SessionDocument> layout;
+    std::string layoutFolder;
+    if (!request.layout.empty() || (request.paths.empty() && !request.data)) {
+        const std::string path = findLayout(request.layout.empty() ? kFirstLayout : request.layout);
+        layout = loadSession(path);
+        layoutFolder = fs::path(path).parent_path().string();
+    }
+    DataRef data;
+    if (request.data) {
+        data = *request.data;
+    } else if (!request.paths.empty()) {
+        const volume::ImportOptions stated = request.import.value_or(volume::ImportOptions{});
+        data = dataOf(request.paths, recallOptions(request.paths, stated, progress.part(0, 0.1)));
+        if (request.lattice) data.lattice = *request.lattice;
+    } else if (hasData(layout->session.data)) {
+        const ResolvedData found = resolveData(layout->session.data, layoutFolder);
+        if (!found.missing.empty()) throw Error("data file is missing", found.missing[0].wanted.path);
+        data = found.data;
+    } else {
+        data.model = "fuel-cell";
+        if (request.lattice) data.lattice = *request.lattice;
+    }
+    if (layout && data.derived.empty()) data.derived = layout->session.data.derived;
+    Sources sources = openSources(data, opened.messages, progress);
+    opened.source = std::move(sources.pictures);
+    opened.numbers = std::move(sources.numbers);
+    opened.origin = std::move(sources.origin);
+    const volume::DatasetInfo& info = opened.source->info();
+    if (layout) {
+        opened.messages.insert(opened.messages.end(), layout->messages.begin(), layout->messages.end());
+        opened.document.session = applyLayout(*layout, info, data, opened.messages);
+        const bool own = sameData(layout->session.data, data);
+        if (!own) aimFirstView(opened.document.session, *opened.source, kFirstAspect);
+        fitSurfaces(opened.document.session, *opened.source, own, opened.messages);
+    } else {
+        opened.document.session = defaultSession(info, data);
+        fitSession(opened.document.session, info, opened.messages);
+        aimFirstView(opened.document.session, *opened.source, kFirstAspect);
+    }
+    opened.document.history.reset(opened.document.session);
+    return opened;
+}
+
+} // namespace tessera::app

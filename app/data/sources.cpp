@@ -1,0 +1,251 @@
+#include "app/data/sources.h"
+
+#include "app/session/session_file.h"
+
+#include "codec/archive/archive.h"
+#include "codec/pack/unpack.h"
+#include "volume/base/error.h"
+#include "volume/derived/other_source.h"
+#include "volume/field/quantities.h"
+#include "volume/import/import.h"
+#include "volume/import/over_time.h"
+#include "volume/sources/axis_source.h"
+#include "volume/sources/labelled_source.h"
+#include "volume/sources/memory_source.h"
+#include "volume/sources/originals.h"
+#include "volume/synthetic/models.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cstdlib>
+#include <filesystem>
+#include <unistd.h>
+
+namespace tessera::app {
+
+namespace fs = std::filesystem;
+
+bool hasData(const DataRef& data) {
+    return !data.files.empty() || !data.model.empty();
+}
+
+bool isArchive(const DataRef& data) {
+    if (data.files.size() != 1) return false;
+    std::string suffix = fs::path(data.files[0].absolutePath).extension().string();
+    for (char& c : suffix) c = char(std::tolower(static_cast<unsigned char>(c)));
+    return suffix == ".tsr";
+}
+
+namespace {
+
+volume::LatticeKind latticeOf(PictureLattice lattice) {
+    return lattice == PictureLattice::Grid ? volume::LatticeKind::CC : volume::LatticeKind::BCC;
+}
+
+constexpr std::size_t kFramesLoaded = std::size_t(1) << 30, kFramesMade = std::size_t(1) << 29; // bytes kept
+
+volume::MemorySourceOptions onGrid(int brickSize = volume::MemorySourceOptions{}.brickSize) {
+    return {.lattice = volume::LatticeKind::CC, .brickSize = brickSize, .budget = kFramesLoaded};
+}
+
+/// Unpacked data as they are drawn.
+std::shared_ptr<const volume::BrickSource> drawnOn(const std::shared_ptr<const volume::BrickSource>& numbers,
+                                                   volume::LatticeKind lattice) {
+    return volume::onLattice(numbers,
+                             {.lattice = lattice, .brickSize = numbers->grid().brickSize, .budget = kFramesMade});
+}
+
+/// The same where it can be: an archive keeps the lattice it has.
+std::shared_ptr<const volume::BrickSource> drawnAlike(const std::shared_ptr<const volume::BrickSource>& numbers,
+                                                      volume::LatticeKind lattice) {
+    try {
+        return drawnOn(numbers, lattice);
+    } catch (const Error&) {
+        return numbers;
+    }
+}
+
+/// Shows a data set as an archive packed so would hold it, through a file that nobody else sees.
+Sources openPacked(volume::Dataset dataset, const DataRef& data, const Progress& progress) {
+    std::string name = (fs::temp_directory_path() / "tessera-packed-XXXXXX.tsr").string();
+    const int file = ::mkstemps(name.data(), 4);
+    if (file < 0) throw MachineError("cannot make a file to pack into", name);
+    ::close(file);
+    // Mapped files live on without a name.
+    struct Remove {
+        const std::string& path;
+        ~Remove() {
+            std::error_code problem;
+            fs::remove(path, problem);
+        }
+    } const remove{name};
+    codec::pack(dataset, *data.packed, name, progress);
+    const auto packed = codec::openArchive(name);
+    const NumberOrigin computed = computedOrigin(dataset.info);
+    if (!data.originals) return {packed, volume::makeMemorySource(std::move(dataset), onGrid()), computed};
+    const auto archive = std::make_shared<const codec::Archive>(name);
+    NumberOrigin origin = storedOrigin(archive->metadata());
+    origin.originals = true;
+    origin.parameters = 2 * int(dataset.info.parameters.size());
+    const auto original = volume::makeMemorySource(std::move(dataset), onGrid());
+    const auto beside = volume::onLattice(
+        original,
+        {.lattice = packed->info().lattice.kind, .brickSize = packed->grid().brickSize, .budget = kFramesMade});
+    // Numbers are compared point by point of the file's grid, as unpacking gives them.
+    auto unpacked = volume::makeMemorySource(codec::gridDataset(archive, 0), onGrid());
+    return {volume::withOriginals(packed, beside), volume::withOriginals(std::move(unpacked), original), origin};
+}
+
+/// What the user states of the times of an archive or a model; files were opened with it.
+void stateTimes(volume::DatasetInfo& info, const DataRef& data) {
+    if (data.files.empty() || isArchive(data)) volume::stateQuantities(info, data.import);
+}
+
+/// The times counted as the user wants them.
+volume::OtherAxis axisOf(const volume::DatasetInfo& given, const DataRef& data, std::vector<std::string>& messages) {
+    volume::OtherAxis axis{given, {}};
+    stateTimes(axis.info, data);
+    if (const auto by = data.axis.empty() ? std::nullopt : volume::axisBy(axis.info, data.axis)) return *by;
+    if (!data.axis.empty() && data.axis != axis.info.timeName)
+        messages.push_back(volume::findQuantity(axis.info, data.axis)
+                               ? data.axis + " does not rise or fall all the time: it is shown beside the times"
+                               : "there is no quantity over time named " + data.axis);
+    for (std::size_t t = 0; t < given.times.size(); ++t) axis.order.push_back(static_cast<int>(t));
+    return axis;
+}
+
+} // namespace
+
+Sources openArchived(const DataRef& data, std::vector<std::string>& messages) {
+    const std::string& path = data.files[0].absolutePath;
+    auto source = codec::openArchive(path);
+    const auto* archive = dynamic_cast<const codec::Archive*>(source.get());
+    // Frames of D4* are shown as others: the file itself says how it was packed.
+    NumberOrigin origin = storedOrigin(archive ? archive->metadata() : codec::Archive(path).metadata());
+    volume::OtherAxis axis = axisOf(source->info(), data, messages);
+    if (axis.info.times != source->info().times || axis.info.timeName != source->info().timeName ||
+        axis.info.timeUnit != source->info().timeUnit || !data.import.overTime.empty() || !data.import.units.empty())
+        source = volume::onAxis(source, std::move(axis));
+    return {source, source, std::move(origin)};
+}
+
+namespace {
+
+Sources openWhole(const DataRef& data, std::vector<std::string>& messages, const Progress& progress) {
+    if (!hasData(data)) throw Error("names no data: open data first, or give a data file", {}, "/data");
+    if (isArchive(data)) {
+        const Sources archive = openArchived(data, messages);
+        const auto named = volume::withLabelNames(archive.pictures, data.import.labels);
+        return {named, named, archive.origin};
+    }
+    volume::Dataset dataset;
+    if (data.files.empty()) {
+        dataset = volume::makeModel(data.model, data.settings, progress.part(0, 0.9));
+        std::vector<volume::LabelRule> rules;
+        for (const std::string& rule : data.import.labels) rules.push_back(volume::parseLabelRule(rule));
+        volume::applyLabels(dataset.info, rules);
+    } else {
+        std::vector<std::string> paths;
+        for (const DataFile& file : data.files) paths.push_back(file.absolutePath);
+        dataset = volume::openFiles(paths, data.import, progress.part(0, 0.3));
+        const bool known = std::all_of(dataset.info.parameters.begin(), dataset.info.parameters.end(),
+                                       [](const volume::Parameter& parameter) { return !parameter.ranges.empty(); });
+        if (!known) volume::scanRanges(dataset, progress.part(0.3, 0.95));
+    }
+    dataset = volume::onAxis(std::move(dataset), axisOf(dataset.info, data, messages));
+    for (const volume::Parameter& parameter : dataset.info.parameters)
+        for (const Range& range : parameter.ranges)
+            if (!(range.hi >= range.lo)) {
+                messages.push_back("parameter " + parameter.name + " has no present samples");
+                break;
+            }
+    if (data.packed) return openPacked(std::move(dataset), data, progress.part(0.95, 1));
+    NumberOrigin origin = computedOrigin(dataset.info);
+    const auto numbers = volume::makeMemorySource(std::move(dataset), onGrid());
+    return {drawnOn(numbers, latticeOf(data.lattice)), numbers, std::move(origin)};
+}
+
+/// With the parameters of other data beside them. Pictures show samples of both that were made alike, or those of the
+/// other data as computed.
+Sources withOther(const Sources& whole, const Sources& other) {
+    NumberOrigin origin = whole.origin;
+    origin.other =
+        originText(other.origin, other.numbers->info(), {}) + ", " + volume::otherText(*whole.numbers, *other.numbers);
+    const auto numbers = volume::withOther(whole.numbers, other.numbers);
+    if (whole.pictures == whole.numbers) return {numbers, numbers, std::move(origin)};
+    const std::string& unit = whole.pictures->info().lengthUnit;
+    const bool alike = volume::SampledOnto(other.pictures, whole.pictures->grid(), unit).sameGrid();
+    return {volume::withOther(whole.pictures, alike ? other.pictures : other.numbers), numbers, std::move(origin)};
+}
+
+/// What DataRef::other names, on the lattice that is drawn.
+Sources openOther(const DataRef& data, std::vector<std::string>& messages, const Progress& progress) {
+    DataRef wanted;
+    wanted.files = data.other->files;
+    wanted.model = data.other->model;
+    wanted.settings = data.other->settings;
+    wanted.import = data.other->import;
+    wanted.lattice = data.lattice;
+    for (DataFile& file : wanted.files)
+        if (file.absolutePath.empty()) file = describeFile(file.path);
+    return openWhole(wanted, messages, progress);
+}
+
+Sources openStored(const DataRef& data, std::vector<std::string>& messages, const Progress& progress) {
+    Sources whole = openWhole(data, messages, progress.part(0, data.other ? 0.5 : 1));
+    if (data.other) {
+        const Sources other = openOther(data, messages, progress.part(0.5, 1));
+        messages.push_back(other.numbers->info().name + " is shown beside, " +
+                           volume::otherText(*whole.numbers, *other.numbers));
+        whole = withOther(whole, other);
+    }
+    if (!data.timeAxis) return whole;
+    const auto along = [&](const std::shared_ptr<const volume::BrickSource>& source) {
+        return volume::makeMemorySource(volume::withTimeAlong(source, *data.timeAxis), onGrid());
+    };
+    const auto numbers = along(whole.numbers);
+    NumberOrigin origin = whole.origin;
+    origin.alongTime = true;
+    origin.cutFrom = whole.numbers;
+    origin.parameters = int(numbers->info().parameters.size());
+    return {drawnOn(data.packed ? along(whole.pictures) : numbers, whole.pictures->info().lattice.kind), numbers,
+            std::move(origin)};
+}
+
+} // namespace
+
+Sources deriveBoth(const Sources& sources, const std::vector<volume::DerivedParameter>& wanted,
+                   std::vector<std::string>& messages, const Progress& progress) {
+    const auto numbers = volume::deriveAll(sources.numbers, wanted, messages, progress);
+    if (sources.pictures == sources.numbers) return {numbers, numbers, sources.origin};
+    return {volume::deriveLike(*numbers, sources.pictures, wanted), numbers, sources.origin};
+}
+
+Sources drawnOn(PictureLattice lattice, const Sources& sources, const std::vector<volume::DerivedParameter>& derived) {
+    const auto below = volume::underived(sources.numbers);
+    if (const auto other = volume::otherOf(*below)) {
+        const auto own = volume::besideOther(*below);
+        const Sources both = withOther({drawnOn(own, latticeOf(lattice)), own, sources.origin},
+                                       {drawnAlike(other, latticeOf(lattice)), other, {}});
+        if (both.pictures == both.numbers) return {sources.numbers, sources.numbers, sources.origin};
+        return {volume::deriveLike(*sources.numbers, both.pictures, derived), sources.numbers, sources.origin};
+    }
+    const auto drawn = drawnOn(below, latticeOf(lattice));
+    if (drawn == volume::underived(sources.numbers)) return {sources.numbers, sources.numbers, sources.origin};
+    return {volume::deriveLike(*sources.numbers, drawn, derived), sources.numbers, sources.origin};
+}
+
+Sources openSources(const DataRef& data, std::vector<std::string>& messages, const Progress& progress) {
+    const double stored = data.derived.empty() ? 1 : 0.7;
+    Sources sources = openStored(data, messages, progress.part(0, stored));
+    sources = deriveBoth(sources, data.derived, messages, progress.part(stored, 1));
+    progress.advance(1);
+    return sources;
+}
+
+std::shared_ptr<const volume::BrickSource> openSource(const DataRef& data, std::vector<std::string>& messages,
+                                                      const Progress& progress) {
+    return openSources(data, messages, progress).pictures;
+}
+
+} // namespace tessera::app

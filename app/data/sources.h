@@ -1,0 +1,55 @@
+#pragma once
+
+#include "app/data/number_origin.h"
+#include "app/session/session.h"
+#include "volume/base/progress.h"
+#include "volume/bricks/brick_source.h"
+
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace tessera::app {
+
+/// What a document is shown from. Both have the same parameters (derived ones too) and times.
+struct Sources {
+    std::shared_ptr<const volume::BrickSource>
+        pictures; ///< on the lattice that pictures are drawn from, packed if asked
+    /// What statistics, plots, profiles, read-outs and exports read: the samples as computed where they are at hand
+    /// (data files on their own grid, built-in models), else those of the archive. May be `pictures`.
+    std::shared_ptr<const volume::BrickSource> numbers;
+    NumberOrigin origin = {}; ///< of the numbers
+
+    Sources() = default;
+    /// Numbers come from what is drawn.
+    template <class Source>
+    Sources(std::shared_ptr<Source> both) // NOLINT: as implicit as the pointers' own conversions
+        : pictures(std::move(both)), numbers(pictures) {}
+    Sources(std::shared_ptr<const volume::BrickSource> drawn, std::shared_ptr<const volume::BrickSource> read,
+            NumberOrigin readFrom = {})
+        : pictures(std::move(drawn)), numbers(read ? std::move(read) : pictures), origin(std::move(readFrom)) {}
+};
+
+/// What a session names, as it is drawn and as numbers are read from it; ranges known. Throws Error.
+Sources openSources(const DataRef& data, std::vector<std::string>& messages, const Progress& progress = {});
+
+/// An archive, without derived parameters. Throws Error.
+Sources openArchived(const DataRef& data, std::vector<std::string>& messages);
+
+/// The same data with other derived parameters: `sources` have none. Ranges of derived parameters are of the numbers.
+Sources deriveBoth(const Sources& sources, const std::vector<volume::DerivedParameter>& wanted,
+                   std::vector<std::string>& messages, const Progress& progress = {});
+
+/// The same unpacked data drawn on another lattice; nothing is read again. `derived`: the parameters they have.
+Sources drawnOn(PictureLattice lattice, const Sources& sources, const std::vector<volume::DerivedParameter>& derived);
+
+/// Data as they are drawn alone.
+std::shared_ptr<const volume::BrickSource> openSource(const DataRef& data, std::vector<std::string>& messages,
+                                                      const Progress& progress = {});
+
+/// True where files or a model are named; true for one file that is an archive.
+bool hasData(const DataRef& data);
+bool isArchive(const DataRef& data);
+
+} // namespace tessera::app

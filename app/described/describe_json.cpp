@@ -1,0 +1,175 @@
+#include "app/described/describe_json.h"
+
+#include "volume/base/error.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <limits>
+
+namespace tessera::app {
+
+namespace {
+
+constexpr int kMaximumDepth = 100;
+
+std::string brief(double value) {
+    char text[32];
+    const auto end = std::to_chars(text, text + sizeof text, value).ptr;
+    return {text, end};
+}
+
+bool flat(const Json& json) {
+    return std::all_of(json.begin(), json.end(), [](const Json& element) { return element.is_primitive(); });
+}
+
+void print(const Json& json, int indent, std::string& out) {
+    const std::string inner(static_cast<std::size_t>(indent) + 2, ' ');
+    if (json.is_object() && !json.empty()) {
+        out += "{\n";
+        bool first = true;
+        for (const auto& [key, element] : json.items()) {
+            if (!first) out += ",\n";
+            first = false;
+            out += inner + Json(key).dump(-1, ' ', false, Json::error_handler_t::replace) + ": ";
+            print(element, indent + 2, out);
+        }
+        out += "\n" + std::string(static_cast<std::size_t>(indent), ' ') + "}";
+    } else if (json.is_array() && !json.empty()) {
+        const bool line = flat(json) || std::all_of(json.begin(), json.end(), [](const Json& element) {
+                              return element.is_array() && element.size() <= 4 && flat(element);
+                          });
+        out += line ? "[" : "[\n";
+        bool first = true;
+        for (const Json& element : json) {
+            if (!first) out += line ? ", " : ",\n";
+            first = false;
+            if (!line) out += inner;
+            print(element, indent + 2, out);
+        }
+        out += line ? "]" : "\n" + std::string(static_cast<std::size_t>(indent), ' ') + "]";
+    } else {
+        out += json.dump(-1, ' ', false, Json::error_handler_t::replace);
+    }
+}
+
+} // namespace
+
+namespace detail {
+
+Json numberToJson(double value) {
+    if (std::isnan(value)) return "nan";
+    if (std::isinf(value)) return value > 0 ? "inf" : "-inf";
+    return value;
+}
+
+Json numberToJson(float value) {
+    if (!std::isfinite(value)) return numberToJson(static_cast<double>(value));
+    char text[32];
+    const auto end = std::to_chars(text, text + sizeof text, value).ptr;
+    double shortest = 0;
+    std::from_chars(text, end, shortest);
+    return shortest;
+}
+
+Json numberToJson(int value) {
+    return value;
+}
+
+std::optional<double> numberFromJson(const Json& json, const FieldInfo& info, bool integer,
+                                     std::vector<JsonIssue>& issues, const std::string& path) {
+    double value = 0;
+    if (json.is_number()) {
+        value = json.get<double>();
+    } else if (json == "nan" && !integer) {
+        value = std::numeric_limits<double>::quiet_NaN();
+    } else if (json == "inf" && !integer) {
+        value = std::numeric_limits<double>::infinity();
+    } else if (json == "-inf" && !integer) {
+        value = -std::numeric_limits<double>::infinity();
+    } else {
+        wrongType(json, "a number", issues, path);
+        return {};
+    }
+    if (integer && (value != std::floor(value) || std::abs(value) > 2147483647.0)) {
+        issues.push_back({path, brief(value) + " is not a whole number in the range of 32 bits", false, {}});
+        return {};
+    }
+    if (info.range && !(value >= info.range->lo && value <= info.range->hi)) {
+        issues.push_back(
+            {path, brief(value) + " is not in " + brief(info.range->lo) + " .. " + brief(info.range->hi), false, {}});
+        return {};
+    }
+    return value;
+}
+
+std::optional<std::size_t> nameFromJson(const Json& json, std::span<const std::string_view> names,
+                                        std::vector<JsonIssue>& issues, const std::string& path) {
+    if (!json.is_string()) {
+        wrongType(json, "a name", issues, path);
+        return {};
+    }
+    const auto& word = json.get_ref<const std::string&>();
+    const auto found = std::find(names.begin(), names.end(), word);
+    if (found != names.end()) return static_cast<std::size_t>(found - names.begin());
+    std::string all;
+    for (const std::string_view name : names) all += (all.empty() ? "" : ", ") + std::string(name);
+    issues.push_back({path, "unknown name \"" + word + "\"; known are " + all, false, {}});
+    return {};
+}
+
+void wrongType(const Json& json, std::string_view wanted, std::vector<JsonIssue>& issues, const std::string& path) {
+    issues.push_back({path, "needs " + std::string(wanted) + ", found " + json.type_name(), false, {}});
+}
+
+std::string joinPointer(const std::string& path, std::string_view key) {
+    std::string out = path + "/";
+    for (const char c : key) {
+        if (c == '~')
+            out += "~0";
+        else if (c == '/')
+            out += "~1";
+        else
+            out += c;
+    }
+    return out;
+}
+
+void reportUnknown(const Json& json, const std::vector<std::string_view>& known, std::vector<JsonIssue>& issues,
+                   const std::string& path) {
+    for (const auto& [key, value] : json.items())
+        if (std::find(known.begin(), known.end(), key) == known.end())
+            issues.push_back({joinPointer(path, key), "unknown key", true, value});
+}
+
+} // namespace detail
+
+Json parseJson(std::string_view text, const std::string& file) {
+    // Printing and comparing documents recurses, so a hostile depth is refused here once and for all.
+    const Json::parser_callback_t callback = [&](int depth, Json::parse_event_t, Json&) {
+        if (depth > kMaximumDepth) throw Error("nested more than 100 deep", file);
+        return true;
+    };
+    try {
+        return Json::parse(text, callback);
+    } catch (const Json::parse_error& error) {
+        const std::string_view before = text.substr(0, std::min(text.size(), error.byte > 0 ? error.byte - 1 : 0));
+        const auto line = std::count(before.begin(), before.end(), '\n') + 1;
+        const auto column = before.size() - (before.rfind('\n') == std::string_view::npos ? 0 : before.rfind('\n') + 1);
+        std::string reason = error.what();
+        // nlohmann: "[json.exception.parse_error.101] parse error at line 1, column 2: reason".
+        if (const auto colon = reason.find(": "); colon != std::string::npos) reason = reason.substr(colon + 2);
+        throw Error("broken JSON: " + reason, file,
+                    "line " + std::to_string(line) + ", column " + std::to_string(column + 1));
+    } catch (const Json::exception& error) {
+        throw Error(std::string("broken JSON: ") + error.what(), file);
+    }
+}
+
+std::string printJson(const Json& json) {
+    std::string out;
+    print(json, 0, out);
+    return out + "\n";
+}
+
+} // namespace tessera::app

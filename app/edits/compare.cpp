@@ -1,0 +1,133 @@
+#include "app/edits/compare.h"
+
+#include "app/session/parameter_path.h"
+#include "app/session/session_json.h"
+#include "volume/base/error.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tessera::app {
+
+Session variantSession(const Session& session, const CompareVariant& variant) {
+    if (variant.changes.empty()) return session;
+    Json document = toJson(session);
+    for (const auto& [path, value] : variant.changes) setInDocument(document, path, value);
+    std::vector<JsonIssue> unknown;
+    Session out = sessionFromJson(document, {}, &unknown);
+    if (!unknown.empty()) throw Error("unknown key", {}, unknown.front().path);
+    return out;
+}
+
+namespace {
+
+/// Of several values those that are other than before: "charcoal contrast 0.6, part context".
+std::string differingText(const Json& now, const Json& before) {
+    std::string text;
+    for (const auto& [key, value] : now.items()) {
+        const Json was = before.is_object() ? before.value(key, Json()) : Json();
+        if (was == value) continue;
+        std::string shown = value.is_string() ? value.get<std::string>() : value.dump();
+        if (value.is_object()) shown = differingText(value, was);
+        text += (text.empty() ? "" : ", ") + key + (shown.empty() ? "" : " " + shown);
+    }
+    return text;
+}
+
+} // namespace
+
+std::string changesText(const Session& session, const CompareVariant& variant) {
+    std::string text;
+    for (const auto& [path, value] : variant.changes) {
+        std::string title = pathTitle(session, path);
+        // The last word says enough, but for what belongs to a layer.
+        if (!path.starts_with("/layers/"))
+            if (const auto colon = title.rfind(": "); colon != std::string::npos) title = title.substr(colon + 2);
+        const Json parsed = Json::parse(value, nullptr, false);
+        std::string shown = parsed.is_string() ? parsed.get<std::string>() : value;
+        if (path == "/data/lattice") title = "lattice", shown = shown == "bodyCentred" ? "BCC" : "CC";
+        if (parsed.is_object() && !parsed.empty()) {
+            const Json base = toJson(session);
+            const Json::json_pointer at(path);
+            shown = differingText(parsed, base.contains(at) ? base[at] : Json());
+            text += (text.empty() ? "" : ", ") + (shown.empty() ? title : shown);
+            continue;
+        }
+        if (parsed.is_null()) shown = "none";
+        text += (text.empty() ? "" : ", ") + title + " " + shown;
+    }
+    return text.empty() ? "as it is" : text;
+}
+
+std::string variantName(const Session& session, const CompareVariant& variant) {
+    return variant.name.empty() ? changesText(session, variant) : variant.name;
+}
+
+std::vector<CompareVariant> shownVariants(const CompareView& view) {
+    if (!view.variants.empty()) return view.variants;
+    return {{}, {.name = {}, .changes = {{"/render/filter", "average"}}}};
+}
+
+void recordChange(CompareVariant& variant, const Session& session, const Session& changed, const std::string& path) {
+    const Json::json_pointer at(path);
+    const Json base = toJson(session), now = toJson(changed);
+    if (!now.contains(at)) return;
+    if (base.contains(at) && base[at] == now[at])
+        variant.changes.erase(path);
+    else
+        variant.changes[path] = now[at].is_string() ? now[at].get<std::string>() : now[at].dump();
+}
+
+GridShape gridFor(int count, double width, double height) {
+    GridShape best;
+    double largest = -1;
+    for (int columns = 1; columns <= std::max(count, 1); ++columns) {
+        const int rows = (count + columns - 1) / columns;
+        const double w = width / columns, h = height / rows, edge = std::min(w, h * 4 / 3);
+        if (edge <= largest) continue;
+        largest = edge;
+        best = {columns, rows};
+    }
+    return best;
+}
+
+namespace {
+
+/// Text as a field of a CSV file.
+std::string csvField(const std::string& text) {
+    if (text.find_first_of(",\"\n") == std::string::npos) return text;
+    std::string quoted = "\"";
+    for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+    return quoted + "\"";
+}
+
+} // namespace
+
+std::string questionsCsv(const std::vector<CompareQuestion>& questions) {
+    std::string csv = "question,answer,seconds\n";
+    for (const CompareQuestion& each : questions)
+        csv += csvField(each.text) + "," + csvField(each.answer) + "," +
+               (each.seconds > 0 ? toJson(each.seconds).dump() : std::string()) + "\n";
+    return csv;
+}
+
+std::string compareCsv(const std::vector<CompareRow>& rows) {
+    const auto number = [](double value) { return std::isfinite(value) ? toJson(value).dump() : std::string("inf"); };
+    std::string csv = "variant,differs,reference,ms per frame,samples,texture bytes,stored bytes,"
+                      "maximum (of 255),RMSE (of 255),PSNR (dB),SSIM,samples that differ,largest error of a sample,"
+                      "RMSE of samples,failure\n";
+    for (const CompareRow& row : rows) {
+        csv += csvField(row.name) + "," + csvField(row.changes) + "," + (row.reference ? "yes" : "no");
+        for (const double value : {row.milliseconds, row.samples, row.bytes, row.storedBytes})
+            csv += "," + number(value);
+        for (const double value : {row.maximum, row.rmse, row.psnr, row.ssim})
+            csv += "," + (row.measured ? number(value) : std::string());
+        for (const double value : {row.data ? double(row.data->differing) : 0, row.data ? row.data->largest : 0,
+                                   row.data ? row.data->rms : 0})
+            csv += "," + (row.data ? number(value) : std::string());
+        csv += "," + csvField(row.failure) + "\n";
+    }
+    return csv;
+}
+
+} // namespace tessera::app

@@ -1,0 +1,49 @@
+#pragma once
+
+#include "app/session/session.h"
+#include "volume/sources/source_difference.h"
+
+#include <string>
+#include <vector>
+
+/// Variants of a session side by side, apart from how they are drawn.
+namespace tessera::app {
+
+/// The session with a variant's changes. Throws Error naming the place where a change does not fit.
+Session variantSession(const Session& session, const CompareVariant& variant);
+
+/// "filter average, step 0.25": what a variant changes, for its caption; "as it is" where that is nothing.
+std::string changesText(const Session& session, const CompareVariant& variant);
+/// Its own name, else what it changes.
+std::string variantName(const Session& session, const CompareVariant& variant);
+
+/// The variants of a view: its own, or where it has none the session as it is twice over by the reconstruction filter,
+/// so that there is something to see.
+std::vector<CompareVariant> shownVariants(const CompareView& view);
+
+/// Changes of a variant that its parameter at `path` now has other numbers or texts than the session's: set, or taken
+/// out where both agree.
+void recordChange(CompareVariant& variant, const Session& session, const Session& changed, const std::string& path);
+
+/// Columns and rows for `count` pictures in an area so that each is as large as can be at about 4:3.
+struct GridShape {
+    int columns = 1, rows = 1;
+};
+GridShape gridFor(int count, double width, double height);
+
+/// One line of the table under the pictures.
+struct CompareRow {
+    std::string name, changes, failure;
+    bool reference = false, measured = false;
+    double milliseconds = 0; ///< of a full picture
+    double samples = 0;      ///< stored lattice samples of the parameters shown
+    double bytes = 0;        ///< of their textures
+    double storedBytes = 0;  ///< of the archive they come from; 0 = none
+    double maximum = 0, rmse = 0, psnr = 0, ssim = 0;
+    std::optional<volume::SourceDifference> data; ///< of the first layer's samples, where both have them
+};
+std::string compareCsv(const std::vector<CompareRow>& rows);
+/// Questions, answers and the seconds they took.
+std::string questionsCsv(const std::vector<CompareQuestion>& questions);
+
+} // namespace tessera::app

@@ -1,0 +1,125 @@
+#include "app/importer/formats.h"
+
+#include "app/importer/readers/foam_units.h"
+#include "app/importer/readers/read_files.h"
+#include "app/importer/readers/whole_file.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <stdexcept>
+#include <string>
+#include <vtkGenericDataObjectReader.h>
+#include <vtkGenericEnSightReader.h>
+#include <vtkMetaImageReader.h>
+#include <vtkNIFTIImageReader.h>
+#include <vtkNetCDFCFReader.h>
+#include <vtkNew.h>
+#include <vtkOpenFOAMReader.h>
+#include <vtkStringArray.h>
+#include <vtkXMLImageDataReader.h>
+#include <vtkXMLMultiBlockDataReader.h>
+#include <vtkXMLPImageDataReader.h>
+#include <vtkXMLPUnstructuredGridReader.h>
+#include <vtkXMLRectilinearGridReader.h>
+#include <vtkXMLStructuredGridReader.h>
+#include <vtkXMLUnstructuredGridReader.h>
+
+namespace tessera::importer {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+template <class XmlReader> void openXml(Source& source) {
+    checkXml(source.path);
+    vtkNew<XmlReader> reader;
+    reader->SetFileName(source.path.c_str());
+    source.reader = reader;
+}
+
+/// Image files are recognised by content, so that a wrong one is refused with a reason.
+template <class ImageReader, void (*check)(const std::string&)> void openImage(Source& source) {
+    vtkNew<ImageReader> reader;
+    if (reader->CanReadFile(source.path.c_str()) == 0) throw std::runtime_error("is damaged or not of this format");
+    check(source.path);
+    reader->SetFileName(source.path.c_str());
+    source.reader = reader;
+}
+
+void openFoam(Source& source) {
+    vtkNew<vtkOpenFOAMReader> reader;
+    const std::string& path = source.path;
+    const std::string file = fs::is_directory(path) ? (fs::path(path) / "case.foam").string() : path;
+    reader->SetFileName(file.c_str());
+    reader->UpdateInformation();
+    for (int i = 0; i < reader->GetNumberOfPatchArrays(); ++i) {
+        const std::string name = reader->GetPatchArrayName(i);
+        reader->SetPatchArrayStatus(name.c_str(), name.ends_with("internalMesh") ? 1 : 0);
+    }
+    reader->EnableAllCellArrays();
+    reader->DisableAllLagrangianArrays();
+    reader->CreateCellToPointOff(); // done here, for each block on its own
+    source.reader = reader;
+    source.units = foamUnits(path);
+    source.check = [](const Source& self, std::size_t time) {
+        checkFoam(self.path, time < self.readerTimes.size() ? self.readerTimes[time] : 0);
+    };
+}
+
+/// The dimensions that most variables share: others lie on other grids.
+void openNetCdf(Source& source) {
+    checkNetCdf(source.path);
+    vtkNew<vtkNetCDFCFReader> reader;
+    reader->SetFileName(source.path.c_str());
+    reader->SphericalCoordinatesOff();
+    reader->ReplaceFillValueWithNanOn();
+    reader->UpdateInformation();
+    vtkStringArray* dimensions = reader->GetAllDimensions();
+    std::string best;
+    vtkIdType most = 0;
+    for (vtkIdType d = 0; d < dimensions->GetNumberOfValues(); ++d) {
+        const std::string name = dimensions->GetValue(d);
+        const auto axes = std::count(name.begin(), name.end(), ',') + 1;
+        vtkIdType count = axes >= 2 ? axes * 1000 : 0; // three axes before two
+        for (vtkIdType v = 0; v < reader->GetVariableDimensions()->GetNumberOfValues(); ++v)
+            count += reader->GetVariableDimensions()->GetValue(v) == name ? 1 : 0;
+        if (count > most) {
+            most = count;
+            best = name;
+        }
+    }
+    if (!best.empty()) reader->SetDimensions(best.c_str());
+    source.reader = reader;
+}
+
+void openEnSight(Source& source) {
+    checkLastLine(readWhole(source.path));
+    vtkNew<vtkGenericEnSightReader> reader;
+    reader->SetCaseFileName(source.path.c_str());
+    reader->ReadAllVariablesOn();
+    source.reader = reader;
+    source.check = [](const Source& self, std::size_t time) { checkEnSight(self.path, time, self.readerTimes.size()); };
+}
+
+void openLegacy(Source& source) {
+    vtkNew<vtkGenericDataObjectReader> reader;
+    reader->SetFileName(source.path.c_str());
+    reader->ReadAllScalarsOn();
+    reader->ReadAllVectorsOn();
+    reader->ReadAllFieldsOn();
+    source.reader = reader;
+}
+
+constexpr Reader kReaders[] = {
+#define TESSERA_FORMAT(name, suffixes, lengthUnit, slices, ...) Reader{name, __VA_ARGS__},
+#define TESSERA_UNREAD(name, suffixes, advice)
+#include "volume/import/files/format_rows.inc"
+};
+
+} // namespace
+
+std::span<const Reader> readers() {
+    return kReaders;
+}
+
+} // namespace tessera::importer

@@ -1,0 +1,26 @@
+#pragma once
+
+#include "app/importer/readers/source.h"
+
+#include <cstddef>
+#include <functional>
+#include <string>
+#include <vector>
+#include <vtkDataArray.h>
+
+/// Files that hold named arrays without a geometry: NumPy, plain HDF5.
+namespace tessera::importer {
+
+struct StoredArray {
+    std::string name, unit;        ///< the name may be a path, "fields/T"
+    std::vector<std::size_t> dims; ///< slowest first
+    /// Numbers as they are stored: all, or those of one index of the first axis. One component.
+    std::function<vtkSmartPointer<vtkDataArray>(std::size_t first, std::size_t count)> read;
+};
+
+/// Makes a source of arrays: those of [z, y, x], [t, z, y, x] or with 3 components as a last axis share the commonest
+/// grid and become parameters; arrays of one axis named x, y, z are places, t, time or times are times. Throws where
+/// there is no grid.
+void openArrays(std::vector<StoredArray> arrays, Source& source);
+
+} // namespace tessera::importer

@@ -1,0 +1,292 @@
+#include "app/importer/readers/point_table.h"
+
+#include "volume/base/trimmed.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <stdexcept>
+#include <vtkDoubleArray.h>
+#include <vtkFloatArray.h>
+#include <vtkImageData.h>
+#include <vtkNew.h>
+#include <vtkPointData.h>
+#include <vtkRectilinearGrid.h>
+#include <vtkUnsignedCharArray.h>
+
+namespace tessera::importer {
+
+namespace {
+
+std::string lower(std::string_view text) {
+    std::string out(text);
+    std::transform(out.begin(), out.end(), out.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+    return out;
+}
+
+/// Base of the names of three components, "" where they are none.
+std::string vectorName(const std::string& x, const std::string& y, const std::string& z) {
+    if (x.empty() || x.size() != y.size() || x.size() != z.size()) return {};
+    if (const std::string all = lower(x + y + z); all == "uvw") return x;
+    for (const char* ends : {"xyz", "XYZ", "012"}) {
+        if (x.back() != ends[0] || y.back() != ends[1] || z.back() != ends[2]) continue;
+        std::string base = x.substr(0, x.size() - 1);
+        if (base.empty() || y.compare(0, base.size(), base) != 0 || z.compare(0, base.size(), base) != 0) continue;
+        const bool separated = std::string_view("_.:- ").find(base.back()) != std::string_view::npos;
+        if (ends[0] == '0' && !separated) continue;
+        if (separated) base.pop_back();
+        if (!base.empty()) return base;
+    }
+    for (const char* kind : {"-velocity", " velocity"}) { // "x-velocity" of Fluent
+        const std::string end = kind;
+        if (lower(x) == "x" + end && lower(y) == "y" + end && lower(z) == "z" + end) return "velocity";
+    }
+    return {};
+}
+
+/// Values along an axis, each once, in order.
+struct Axis {
+    std::vector<double> places;
+    double first = 0, step = 1;
+    bool even = true;
+
+    explicit Axis(const std::vector<double>& column) {
+        places = column;
+        std::sort(places.begin(), places.end());
+        const double slack = 1e-6 * (places.back() - places.front());
+        places.erase(std::unique(places.begin(), places.end(), [&](double a, double b) { return b - a <= slack; }),
+                     places.end());
+        first = places.front();
+        if (places.size() < 2) return;
+        step = (places.back() - first) / double(places.size() - 1);
+        for (std::size_t i = 0; i < places.size(); ++i)
+            even = even && std::abs(places[i] - (first + step * double(i))) <= 0.01 * step;
+    }
+    std::size_t index(double place) const {
+        const auto above = std::lower_bound(places.begin(), places.end(), place - 0.5e-6 * (places.back() - first));
+        auto at = above == places.end() ? places.end() - 1 : above;
+        if (at != places.begin() && std::abs(*(at - 1) - place) < std::abs(*at - place)) --at;
+        return static_cast<std::size_t>(at - places.begin());
+    }
+};
+
+/// The rows go through the grid in order of some axes and directions and stop before its end.
+bool stopsEarly(const std::vector<std::array<std::size_t, 3>>& nodes, const std::array<std::size_t, 3>& sizes) {
+    std::array<int, 3> order{0, 1, 2};
+    do {
+        for (int flips = 0; flips < 8; ++flips) {
+            bool inOrder = true;
+            for (std::size_t row = 0; inOrder && row < nodes.size(); ++row) {
+                std::size_t index = 0;
+                for (int k = 2; k >= 0; --k) {
+                    const auto axis = static_cast<std::size_t>(order[std::size_t(k)]);
+                    const std::size_t at = nodes[row][axis];
+                    index = index * sizes[axis] + ((flips >> axis & 1) != 0 ? sizes[axis] - 1 - at : at);
+                }
+                inOrder = index == row;
+            }
+            if (inOrder) return true;
+        }
+    } while (std::next_permutation(order.begin(), order.end()));
+    return false;
+}
+
+PointTable inOrder(const PointTable& table, const std::vector<std::ptrdiff_t>& rowOf) {
+    PointTable out{table.headings, {}};
+    for (const std::vector<double>& column : table.columns) {
+        std::vector<double> values(rowOf.size(), 0);
+        for (std::size_t i = 0; i < rowOf.size(); ++i)
+            if (rowOf[i] >= 0) values[i] = column[std::size_t(rowOf[i])];
+        out.columns.push_back(std::move(values));
+    }
+    return out;
+}
+
+vtkSmartPointer<vtkDataSet> image(const PointTable& table, const std::array<std::size_t, 3>& sizes,
+                                  const std::array<double, 3>& origin, const std::array<double, 3>& step,
+                                  const std::vector<std::ptrdiff_t>& rowOf, Source& source) {
+    vtkNew<vtkImageData> grid;
+    grid->SetDimensions(int(sizes[0]), int(sizes[1]), int(sizes[2]));
+    grid->SetOrigin(origin.data());
+    grid->SetSpacing(step.data());
+    addColumns(inOrder(table, rowOf), grid->GetPointData(), source);
+    if (std::find(rowOf.begin(), rowOf.end(), -1) != rowOf.end()) {
+        vtkNew<vtkUnsignedCharArray> valid;
+        valid->SetName("vtkValidPointMask");
+        for (const std::ptrdiff_t row : rowOf) valid->InsertNextValue(row >= 0 ? 1 : 0);
+        grid->GetPointData()->AddArray(valid);
+    }
+    return grid;
+}
+
+vtkSmartPointer<vtkDataSet> scattered(const PointTable& table, const std::array<std::vector<double>, 3>& places,
+                                      Source& source) {
+    std::array<double, 3> lo{}, step{1, 1, 1};
+    std::array<std::size_t, 3> sizes{1, 1, 1};
+    double volume = 1;
+    int axes = 0;
+    std::array<double, 3> extent{};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const auto [least, most] = std::minmax_element(places[axis].begin(), places[axis].end());
+        lo[axis] = *least;
+        extent[axis] = *most - *least;
+        if (extent[axis] <= 0) continue;
+        volume *= extent[axis];
+        ++axes;
+    }
+    if (axes == 0) throw std::runtime_error("holds a single point");
+    const double even = std::pow(volume / double(table.rows()), 1.0 / axes);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        if (extent[axis] <= 0) continue;
+        sizes[axis] = static_cast<std::size_t>(std::clamp(std::round(extent[axis] / even), 1.0, 1023.0)) + 1;
+        step[axis] = extent[axis] / double(sizes[axis] - 1);
+    }
+    const auto numberOf = [&](const std::array<std::ptrdiff_t, 3>& at) {
+        return (std::size_t(at[2]) * sizes[1] + std::size_t(at[1])) * sizes[0] + std::size_t(at[0]);
+    };
+    std::vector<std::vector<std::size_t>> near(sizes[0] * sizes[1] * sizes[2]); // rows by the sample nearest to them
+    for (std::size_t row = 0; row < table.rows(); ++row) {
+        std::array<std::ptrdiff_t, 3> at{};
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            at[axis] = std::clamp<std::ptrdiff_t>(std::lround((places[axis][row] - lo[axis]) / step[axis]), 0,
+                                                  std::ptrdiff_t(sizes[axis]) - 1);
+        near[numberOf(at)].push_back(row);
+    }
+    std::vector<std::ptrdiff_t> rowOf;
+    for (std::size_t k = 0; k < sizes[2]; ++k)
+        for (std::size_t j = 0; j < sizes[1]; ++j)
+            for (std::size_t i = 0; i < sizes[0]; ++i) {
+                const std::array<std::size_t, 3> at{i, j, k};
+                double closest = 1.5 * 1.5;
+                std::ptrdiff_t best = -1;
+                for (int n = 0; n < 125; ++n) {
+                    const std::array<std::ptrdiff_t, 3> cell{std::ptrdiff_t(i) + n % 5 - 2,
+                                                             std::ptrdiff_t(j) + n / 5 % 5 - 2,
+                                                             std::ptrdiff_t(k) + n / 25 - 2};
+                    bool inside = true;
+                    for (std::size_t axis = 0; axis < 3; ++axis)
+                        inside = inside && cell[axis] >= 0 && cell[axis] < std::ptrdiff_t(sizes[axis]);
+                    if (!inside) continue;
+                    for (const std::size_t row : near[numberOf(cell)]) {
+                        double distance = 0;
+                        for (std::size_t axis = 0; axis < 3; ++axis)
+                            distance += std::pow((places[axis][row] - lo[axis]) / step[axis] - double(at[axis]), 2);
+                        if (distance > closest || (distance == closest && best >= 0)) continue;
+                        closest = distance;
+                        best = static_cast<std::ptrdiff_t>(row);
+                    }
+                }
+                rowOf.push_back(best);
+            }
+    source.note = "scattered points: each sample has the values of the nearest of " + std::to_string(table.rows()) +
+                  " points, and is absent where none lies within 1.5 steps";
+    return image(table, sizes, lo, step, rowOf, source);
+}
+
+} // namespace
+
+Heading parseHeading(std::string_view text) {
+    const std::string all(volume::trimmed(text));
+    for (const char* pair : {"[]", "()"}) {
+        if (all.size() < 3 || all.back() != pair[1]) continue;
+        const std::size_t open = all.rfind(pair[0]);
+        if (open == std::string::npos || open == 0 || (pair[0] == '(' && all[open - 1] != ' ')) continue;
+        std::string unit(volume::trimmed(std::string_view(all).substr(open + 1, all.size() - open - 2)));
+        if (unit == "-" || unit == "1") unit.clear();
+        return {std::string(volume::trimmed(std::string_view(all).substr(0, open))), unit};
+    }
+    return {all, {}};
+}
+
+int axisOf(std::string_view name) {
+    const std::string word = lower(name);
+    for (int axis = 0; axis < 3; ++axis) {
+        const std::string letter(1, char('x' + axis)), digit(1, char('0' + axis));
+        for (const std::string& known :
+             {letter, letter + "-coordinate", letter + " coordinate", letter + "coordinate", "coordinate" + letter,
+              "points:" + digit, "points_" + digit, "coords:" + digit, "coord" + letter, letter + "coord"})
+            if (word == known) return axis;
+    }
+    return -1;
+}
+
+void addColumns(const PointTable& table, vtkDataSetAttributes* to, Source& source) {
+    for (std::size_t c = 0; c < table.columns.size(); ++c) {
+        const Heading& heading = table.headings[c];
+        if (axisOf(heading.name) >= 0) continue;
+        std::string vector;
+        if (c + 2 < table.columns.size() && table.headings[c + 1].unit == heading.unit &&
+            table.headings[c + 2].unit == heading.unit)
+            vector = vectorName(heading.name, table.headings[c + 1].name, table.headings[c + 2].name);
+        const int components = vector.empty() ? 1 : 3;
+        vtkNew<vtkFloatArray> array;
+        array->SetName((vector.empty() ? heading.name : vector).c_str());
+        array->SetNumberOfComponents(components);
+        array->SetNumberOfTuples(vtkIdType(table.rows()));
+        for (int k = 0; k < components; ++k)
+            for (std::size_t row = 0; row < table.rows(); ++row)
+                array->SetTypedComponent(vtkIdType(row), k, float(table.columns[c + std::size_t(k)][row]));
+        if (!heading.unit.empty()) source.units[array->GetName()] = heading.unit;
+        to->AddArray(array);
+        if (components == 3) c += 2;
+    }
+}
+
+vtkSmartPointer<vtkDataSet> gridOfPoints(const PointTable& table, Source& source) {
+    std::array<std::vector<double>, 3> places;
+    for (std::size_t c = 0; c < table.columns.size(); ++c)
+        if (const int axis = axisOf(table.headings[c].name); axis >= 0) {
+            places[std::size_t(axis)] = table.columns[c];
+            if (!table.headings[c].unit.empty()) source.lengthUnit = table.headings[c].unit;
+        }
+    if (places[0].empty() || places[1].empty()) throw std::runtime_error("has no columns x and y with places");
+    if (places[2].empty()) places[2].assign(table.rows(), 0);
+    for (const std::vector<double>& column : places)
+        for (const double value : column)
+            if (!std::isfinite(value)) throw std::runtime_error("has a place that is no number");
+    const std::array<Axis, 3> axes{Axis(places[0]), Axis(places[1]), Axis(places[2])};
+    std::array<std::size_t, 3> sizes{};
+    double product = 1;
+    bool even = true;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        sizes[axis] = axes[axis].places.size();
+        product *= double(sizes[axis]);
+        even = even && axes[axis].even;
+    }
+    const double rows = double(table.rows());
+    if (product > 5 * rows) return scattered(table, places, source);
+    std::vector<std::ptrdiff_t> rowOf(static_cast<std::size_t>(product), -1);
+    std::vector<std::array<std::size_t, 3>> nodes;
+    for (std::size_t row = 0; row < table.rows(); ++row) {
+        nodes.push_back({axes[0].index(places[0][row]), axes[1].index(places[1][row]), axes[2].index(places[2][row])});
+        const std::size_t at = (nodes[row][2] * sizes[1] + nodes[row][1]) * sizes[0] + nodes[row][0];
+        if (rowOf[at] >= 0)
+            throw std::runtime_error("has the same place in rows " + std::to_string(rowOf[at] + 1) + " and " +
+                                     std::to_string(row + 1));
+        rowOf[at] = static_cast<std::ptrdiff_t>(row);
+    }
+    if (product > rows && stopsEarly(nodes, sizes))
+        throw std::runtime_error("holds " + std::to_string(table.rows()) + " of the " + std::to_string(rowOf.size()) +
+                                 " points of its grid, in order: truncated");
+    if (even)
+        return image(table, sizes, {axes[0].first, axes[1].first, axes[2].first},
+                     {axes[0].step, axes[1].step, axes[2].step}, rowOf, source);
+    if (product > rows) return scattered(table, places, source);
+    vtkNew<vtkRectilinearGrid> grid;
+    grid->SetDimensions(int(sizes[0]), int(sizes[1]), int(sizes[2]));
+    const auto coordinates = [](const Axis& axis) {
+        auto array = vtkSmartPointer<vtkDoubleArray>::New();
+        for (const double place : axis.places) array->InsertNextValue(place);
+        return array;
+    };
+    grid->SetXCoordinates(coordinates(axes[0]));
+    grid->SetYCoordinates(coordinates(axes[1]));
+    grid->SetZCoordinates(coordinates(axes[2]));
+    addColumns(inOrder(table, rowOf), grid->GetPointData(), source);
+    return grid;
+}
+
+} // namespace tessera::importer

@@ -1,0 +1,20 @@
+#pragma once
+
+#include "app/importer/readers/source.h"
+
+/// Readers of the rows of volume/import/files/format_rows.inc that have a file of their own.
+namespace tessera::importer {
+
+void openCsv(Source& source);
+void openNrrd(Source& source);
+void openTecplot(Source& source);
+void openNumpy(Source& source);
+void openHdf(Source& source);
+void openTiff(Source& source);
+void openDicom(Source& source);
+void openCgns(Source& source);
+void openExodus(Source& source);
+void openFluent(Source& source);
+void openPlot3d(Source& source);
+
+} // namespace tessera::importer

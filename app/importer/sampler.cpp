@@ -1,0 +1,158 @@
+#include "app/importer/sampler.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <vtkCell.h>
+#include <vtkGenericCell.h>
+#include <vtkNew.h>
+#include <vtkPoints.h>
+
+namespace tessera::importer {
+
+namespace {
+
+// Directions that no mesh is aligned with.
+constexpr double kAside[3] = {0.31e-5, 0.47e-5, 0.59e-5};
+constexpr double kSlack = 3e-5; // cells, more than kAside
+
+} // namespace
+
+std::shared_ptr<const Sampling> makeSampling(vtkDataSet* mesh, const volume::Lattice& lattice) {
+    auto sampling = std::make_shared<Sampling>();
+    sampling->lattice = lattice;
+    sampling->cells.assign(lattice.count(), -1);
+    sampling->pcoords.assign(lattice.count() * 3, 0.0f);
+    if (mesh->GetNumberOfCells() > 0x7fffffff) throw std::runtime_error("has more than 2^31 cells");
+    vtkNew<vtkGenericCell> cell;
+    std::vector<double> weights(64);
+    const double* box = mesh->GetBounds();
+    double largest = 0;
+    for (int axis = 0; axis < 3; ++axis) largest = std::max(largest, box[2 * axis + 1] - box[2 * axis]);
+    for (vtkIdType c = 0; c < mesh->GetNumberOfCells(); ++c) {
+        double bounds[6];
+        mesh->GetCellBounds(c, bounds);
+        int begin[3], end[3];
+        bool any = true;
+        for (int axis = 0; axis < 3; ++axis) {
+            const bool flat = !(box[2 * axis + 1] - box[2 * axis] > 1e-9 * largest);
+            if (flat) {
+                begin[axis] = 0;
+                end[axis] = lattice.size[axis];
+                continue;
+            }
+            const double lo = (bounds[2 * axis] - lattice.origin[axis]) / lattice.spacing[axis];
+            const double hi = (bounds[2 * axis + 1] - lattice.origin[axis]) / lattice.spacing[axis];
+            const double size = lattice.size[axis];
+            begin[axis] = static_cast<int>(std::clamp(std::ceil(lo - kSlack), 0.0, size));
+            end[axis] = static_cast<int>(std::clamp(std::floor(hi + kSlack) + 1, 0.0, size));
+            any = any && begin[axis] < end[axis];
+        }
+        if (!any) continue;
+        mesh->GetCell(c, cell);
+        const auto points = static_cast<std::size_t>(cell->GetNumberOfPoints());
+        if (weights.size() < points) weights.resize(points);
+        for (int k = begin[2]; k < end[2]; ++k)
+            for (int j = begin[1]; j < end[1]; ++j)
+                for (int i = begin[0]; i < end[0]; ++i) {
+                    const std::size_t at = lattice.index({i, j, k});
+                    if (sampling->cells[at] >= 0) continue;
+                    const int index[3] = {i, j, k};
+                    double x[3], closest[3], pcoords[3], distance2 = 0;
+                    for (int axis = 0; axis < 3; ++axis) {
+                        const bool last = index[axis] == lattice.size[axis] - 1 && lattice.size[axis] > 1;
+                        const bool flat = !(box[2 * axis + 1] - box[2 * axis] > 1e-9 * largest);
+                        x[axis] = lattice.origin[axis] + lattice.spacing[axis] * (index[axis] + (flat   ? 0
+                                                                                                 : last ? -1
+                                                                                                        : 1) *
+                                                                                                    kAside[axis]);
+                    }
+                    int subId = 0;
+                    const int inside = cell->EvaluatePosition(x, closest, subId, pcoords, distance2, weights.data());
+                    if (inside != 1 || (cell->GetCellDimension() < 3 && !(distance2 <= 1e-18 * largest * largest)))
+                        continue;
+                    sampling->cells[at] = static_cast<std::int32_t>(c);
+                    for (std::size_t axis = 0; axis < 3; ++axis)
+                        sampling->pcoords[at * 3 + axis] = static_cast<float>(pcoords[axis]);
+                }
+    }
+    return sampling;
+}
+
+void sampleArray(vtkDataSet* mesh, const Sampling& sampling, vtkDataArray* array, bool ofCells, int component,
+                 volume::ScalarType type, void* out) {
+    vtkNew<vtkGenericCell> cell;
+    std::vector<double> weights(64);
+    std::int32_t loaded = -1;
+    volume::dispatch(type, [&]<class T>(T) {
+        T* values = static_cast<T*>(out);
+        for (std::size_t at = 0; at < sampling.cells.size(); ++at) {
+            const std::int32_t c = sampling.cells[at];
+            values[at] = T{};
+            if (c < 0) continue;
+            if (ofCells) {
+                values[at] = static_cast<T>(array->GetComponent(c, component));
+                continue;
+            }
+            if (c != loaded) mesh->GetCell(loaded = c, cell);
+            const auto points = static_cast<std::size_t>(cell->GetNumberOfPoints());
+            if (weights.size() < points) weights.resize(points);
+            const double pcoords[3] = {sampling.pcoords[at * 3], sampling.pcoords[at * 3 + 1],
+                                       sampling.pcoords[at * 3 + 2]};
+            cell->InterpolateFunctions(pcoords, weights.data());
+            if constexpr (std::is_floating_point_v<T>) {
+                double sum = 0;
+                for (std::size_t p = 0; p < points; ++p)
+                    sum += weights[p] * array->GetComponent(cell->GetPointId(int(p)), component);
+                values[at] = static_cast<T>(sum);
+            } else {
+                const auto nearest = std::max_element(weights.begin(), weights.begin() + std::ptrdiff_t(points));
+                values[at] =
+                    static_cast<T>(array->GetComponent(cell->GetPointId(int(nearest - weights.begin())), component));
+            }
+        }
+    });
+}
+
+void sampleCells(vtkDataSet* mesh, const Sampling& sampling, vtkDataArray* cells, vtkDataArray* smoothed, int component,
+                 float* out) {
+    vtkNew<vtkGenericCell> cell;
+    std::vector<double> weights(64);
+    std::int32_t loaded = -1;
+    double own = 0, atMiddle = 0, least = 0, most = 0, middle[3] = {};
+    std::size_t points = 0;
+    const auto interpolated = [&](const double pcoords[3]) {
+        cell->InterpolateFunctions(pcoords, weights.data());
+        double sum = 0;
+        for (std::size_t p = 0; p < points; ++p)
+            sum += weights[p] * smoothed->GetComponent(cell->GetPointId(int(p)), component);
+        return sum;
+    };
+    for (std::size_t at = 0; at < sampling.cells.size(); ++at) {
+        const std::int32_t c = sampling.cells[at];
+        out[at] = 0;
+        if (c < 0) continue;
+        if (c != loaded) {
+            mesh->GetCell(loaded = c, cell);
+            cell->GetParametricCenter(middle);
+            points = static_cast<std::size_t>(cell->GetNumberOfPoints());
+            if (weights.size() < points) weights.resize(points);
+            own = least = most = cells->GetComponent(c, component);
+            for (std::size_t p = 0; p < points; ++p) {
+                const double value = smoothed->GetComponent(cell->GetPointId(int(p)), component);
+                least = std::min(least, value);
+                most = std::max(most, value);
+            }
+            atMiddle = interpolated(middle);
+        }
+        const double pcoords[3] = {sampling.pcoords[at * 3], sampling.pcoords[at * 3 + 1],
+                                   sampling.pcoords[at * 3 + 2]};
+        // Looked for a hair beside the middle: there nonetheless.
+        bool inMiddle = true;
+        for (int axis = 0; axis < 3; ++axis) inMiddle = inMiddle && std::abs(pcoords[axis] - middle[axis]) < kSlack;
+        const double value = inMiddle ? own : own + interpolated(pcoords) - atMiddle;
+        out[at] = static_cast<float>(std::clamp(value, least, most));
+    }
+}
+
+} // namespace tessera::importer

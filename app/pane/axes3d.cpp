@@ -1,0 +1,264 @@
+#include "app/pane/axes3d.h"
+
+#include "app/ui/ticks.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tessera::app {
+
+namespace {
+
+float length(ImVec2 v) {
+    return std::hypot(v.x, v.y);
+}
+
+bool overlaps(const std::pair<ImVec2, ImVec2>& a, const std::pair<ImVec2, ImVec2>& b, float gap) {
+    return a.first.x < b.second.x + gap && b.first.x < a.second.x + gap && a.first.y < b.second.y + gap &&
+           b.first.y < a.second.y + gap;
+}
+
+/// Where a text of this size goes so that it just clears a point in a direction.
+std::pair<ImVec2, ImVec2> besides(ImVec2 at, ImVec2 direction, ImVec2 size) {
+    const ImVec2 center{at.x + direction.x * size.x / 2, at.y + direction.y * size.y / 2};
+    const ImVec2 min{std::round(center.x - size.x / 2), std::round(center.y - size.y / 2)};
+    return {min, {min.x + size.x, min.y + size.y}};
+}
+
+} // namespace
+
+std::optional<ImVec2> SpaceFrame::pixel(glm::dvec3 physical) const {
+    const glm::dvec4 clip = worldToClip * glm::dvec4(world.toWorld(physical), 1);
+    if (!(clip.w > 1e-9)) return std::nullopt;
+    const double x = clip.x / clip.w, y = clip.y / clip.w;
+    return ImVec2{static_cast<float>(min.x + (x * 0.5 + 0.5) * (max.x - min.x)),
+                  static_cast<float>(min.y + (0.5 - y * 0.5) * (max.y - min.y))};
+}
+
+SpaceFrame spaceFrame(ImVec2 min, ImVec2 max, const vis::Camera& camera, const volume::Box& bounds,
+                      glm::dvec3 stretch) {
+    const double aspect = std::max(1.0f, max.x - min.x) / std::max(1.0f, max.y - min.y);
+    return {min, max, vis::projectionMatrix(camera, aspect) * vis::viewMatrix(camera), vis::worldFrame(bounds, stretch),
+            bounds};
+}
+
+std::vector<LabelledEdge> labelledEdges(const SpaceFrame& frame, glm::dvec3 eye) {
+    // A face is seen if the eye lies beyond it; `eye` is a world position or, far away, a direction.
+    const auto seen = [&](int axis, bool high) {
+        const double half = frame.world.halfSize[axis];
+        return high ? eye[axis] > half + 1e-6 : eye[axis] < -half - 1e-6;
+    };
+    std::vector<LabelledEdge> edges;
+    const std::optional<ImVec2> middle = frame.pixel(frame.bounds.center());
+    if (!middle) return edges;
+    for (int axis = 0; axis < 3; ++axis) {
+        const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+        std::optional<LabelledEdge> best;
+        double bestScore = -1e30;
+        for (int corner = 0; corner < 4; ++corner) {
+            const bool highU = corner & 1, highV = corner & 2;
+            if (seen(u, highU) == seen(v, highV)) continue; // not on the outline
+            LabelledEdge edge;
+            edge.axis = axis;
+            edge.from = frame.bounds.lo;
+            edge.from[u] = highU ? frame.bounds.hi[u] : frame.bounds.lo[u];
+            edge.from[v] = highV ? frame.bounds.hi[v] : frame.bounds.lo[v];
+            edge.to = edge.from;
+            edge.to[axis] = frame.bounds.hi[axis];
+            const auto a = frame.pixel(edge.from), b = frame.pixel(edge.to);
+            if (!a || !b) continue;
+            edge.a = *a;
+            edge.b = *b;
+            const ImVec2 along{b->x - a->x, b->y - a->y};
+            const float size = length(along);
+            if (size < em() * 2.5f) continue;
+            const ImVec2 center{(a->x + b->x) / 2, (a->y + b->y) / 2};
+            ImVec2 normal{-along.y / size, along.x / size};
+            if (normal.x * (center.x - middle->x) + normal.y * (center.y - middle->y) < 0)
+                normal = {-normal.x, -normal.y};
+            edge.outward = normal;
+            // Texts belong below the box, or left of it for edges that stand upright.
+            double score = normal.y + (std::abs(along.y) > std::abs(along.x) ? -0.5 * normal.x : 0.0);
+            const bool inside =
+                center.x > frame.min.x && center.x < frame.max.x && center.y > frame.min.y && center.y < frame.max.y;
+            if (!inside) score -= 4;
+            if (score > bestScore) {
+                bestScore = score;
+                best = edge;
+            }
+        }
+        if (best) edges.push_back(*best);
+    }
+    return edges;
+}
+
+void drawAxes3d(ImDrawList& draw, const SpaceFrame& frame, const vis::Camera& camera, const AxisLabels& labels,
+                std::vector<std::pair<ImVec2, ImVec2>> avoid) {
+    const PlotColors colors = plotColors();
+    glm::dvec3 eye = vis::cameraRay(camera, 1, {0, 0}).origin;
+    if (camera.projection == vis::Projection::Orthographic) eye = -1e6 * vis::cameraRay(camera, 1, {0, 0}).direction;
+    // Directions along a face must count as "not seen" in spite of rounding.
+    for (int axis = 0; axis < 3; ++axis)
+        if (camera.projection == vis::Projection::Orthographic && std::abs(eye[axis]) < 1) eye[axis] = 0;
+    const auto place = [&](std::pair<ImVec2, ImVec2> box, ImU32 color, const std::string& text) {
+        const float margin = em() * 0.4f;
+        if (box.first.x < frame.min.x + margin || box.second.x > frame.max.x - margin ||
+            box.first.y < frame.min.y + margin || box.second.y > frame.max.y - margin)
+            return false;
+        for (const auto& taken : avoid)
+            if (overlaps(box, taken, em() * 0.25f)) return false;
+        draw.AddText(box.first, color, text.c_str());
+        avoid.push_back(box);
+        return true;
+    };
+    for (const LabelledEdge& edge : labelledEdges(frame, eye)) {
+        const float pixels = length({edge.b.x - edge.a.x, edge.b.y - edge.a.y});
+        const auto& [name, unit] = labels[static_cast<std::size_t>(edge.axis)];
+        const Range range{edge.from[edge.axis] * unit.perUnit, edge.to[edge.axis] * unit.perUnit};
+        TickLabels ticks;
+        // As many as stand clear of each other along this edge's direction on screen.
+        const float dx = std::abs(edge.b.x - edge.a.x) / pixels, dy = std::abs(edge.b.y - edge.a.y) / pixels;
+        for (int most : {8, 6, 5, 4, 3, 2, 1}) {
+            ticks = tickLabels(range, most);
+            float widest = 0;
+            for (const std::string& text : ticks.texts) widest = std::max(widest, ImGui::CalcTextSize(text.c_str()).x);
+            const double step = ticks.values.size() > 1 ? ticks.values[1] - ticks.values[0] : range.hi - range.lo;
+            const double between = step / std::max(1e-300, range.hi - range.lo) * pixels;
+            if (between * dx >= widest + em() || between * dy >= em() * 1.4f) break;
+        }
+        const ImU32 color = axisColor(edge.axis);
+        draw.AddLine(edge.a, edge.b, color, std::max(1.0f, em() * 0.09f));
+        float furthest = 0;
+        const float tick = em() * 0.35f;
+        for (std::size_t i = 0; i < ticks.values.size(); ++i) {
+            glm::dvec3 at = edge.from;
+            at[edge.axis] = ticks.values[i] / unit.perUnit;
+            const auto pixel = frame.pixel(at);
+            if (!pixel) continue;
+            const ImVec2 end{pixel->x + edge.outward.x * tick, pixel->y + edge.outward.y * tick};
+            draw.AddLine(*pixel, end, color);
+            const ImVec2 size = ImGui::CalcTextSize(ticks.texts[i].c_str());
+            const ImVec2 start{end.x + edge.outward.x * em() * 0.25f, end.y + edge.outward.y * em() * 0.25f};
+            if (place(besides(start, edge.outward, size), colors.text, ticks.texts[i]))
+                furthest = std::max(furthest, std::abs(edge.outward.x) * size.x + std::abs(edge.outward.y) * size.y);
+        }
+        std::string title = titleWithUnit(name, unit.name);
+        if (!ticks.note.empty()) title += "  " + ticks.note;
+        const ImVec2 size = ImGui::CalcTextSize(title.c_str());
+        bool placed = false;
+        for (float along : {0.5f, 0.35f, 0.65f, 0.2f, 0.8f, 0.05f, 0.95f}) {
+            const float out = tick + em() * 0.6f + furthest;
+            const ImVec2 at{edge.a.x + (edge.b.x - edge.a.x) * along + edge.outward.x * out,
+                            edge.a.y + (edge.b.y - edge.a.y) * along + edge.outward.y * out};
+            placed = place(besides(at, edge.outward, size), color, title);
+            if (placed) break;
+        }
+        // No room beside the edge: beyond one of its ends.
+        for (const float sign : {1.0f, -1.0f}) {
+            if (placed) break;
+            const ImVec2 end = sign > 0 ? edge.b : edge.a;
+            const ImVec2 on{sign * (edge.b.x - edge.a.x) / pixels, sign * (edge.b.y - edge.a.y) / pixels};
+            auto box = besides({end.x + on.x * em() * 0.6f, end.y + on.y * em() * 0.6f}, on, size);
+            const float shift = std::max(0.0f, frame.min.x + em() * 0.5f - box.first.x) +
+                                std::min(0.0f, frame.max.x - em() * 0.5f - box.second.x);
+            box.first.x += shift;
+            box.second.x += shift;
+            placed = place(box, color, title);
+        }
+    }
+}
+
+vis::StandardView viewAgainst(int axis, bool positive) {
+    vis::StandardView best = vis::StandardView::Front;
+    double bestDot = -2;
+    for (int i = 0; i < 6; ++i) {
+        const auto view = static_cast<vis::StandardView>(i);
+        const glm::vec3 toViewer = glm::inverse(vis::standardOrientation(view)) * glm::vec3(0, 0, 1);
+        const double dot = (positive ? 1 : -1) * static_cast<double>(toViewer[axis]);
+        if (dot > bestDot) {
+            bestDot = dot;
+            best = view;
+        }
+    }
+    return best;
+}
+
+std::optional<vis::StandardView> drawTriad(ImDrawList& draw, ImVec2 center, float radius, const vis::Camera& camera,
+                                           const AxisLabels& labels, const ImVec2* mouse, bool clicked) {
+    struct End {
+        int axis;
+        bool positive;
+        glm::vec3 eye;
+    };
+    std::vector<End> ends;
+    for (int axis = 0; axis < 3; ++axis)
+        for (bool positive : {true, false}) {
+            glm::vec3 direction(0);
+            direction[axis] = positive ? 1.0f : -1.0f;
+            ends.push_back({axis, positive, camera.orientation * direction});
+        }
+    // Far ends first, so that near ones cover them.
+    std::sort(ends.begin(), ends.end(), [](const End& a, const End& b) { return a.eye.z < b.eye.z; });
+    const float dot = em() * 0.52f;
+    const auto at = [&](const End& end) {
+        const float reach = radius - dot;
+        return ImVec2{center.x + end.eye.x * reach, center.y - end.eye.y * reach};
+    };
+    const End* under = nullptr;
+    if (mouse)
+        for (const End& end : ends) {
+            const ImVec2 p = at(end);
+            if (length({mouse->x - p.x, mouse->y - p.y}) <= dot * 1.2f) under = &end;
+        }
+    if (mouse && length({mouse->x - center.x, mouse->y - center.y}) <= radius + dot)
+        draw.AddCircleFilled(center, radius + dot * 0.4f, IM_COL32(128, 128, 128, 40), 32);
+    for (const End& end : ends) {
+        const ImVec2 p = at(end);
+        const ImU32 color = axisColor(end.axis);
+        const bool lit = under == &end;
+        if (end.positive) {
+            draw.AddLine(center, p, color, std::max(1.5f, em() * 0.13f));
+            draw.AddCircleFilled(p, dot, lit ? plotColors().text : color, 20);
+            const ImVec2 size = ImGui::CalcTextSize(labels[static_cast<std::size_t>(end.axis)].name.c_str());
+            draw.AddText({std::round(p.x - size.x / 2), std::round(p.y - size.y / 2)},
+                         darkTheme() ? IM_COL32(12, 14, 18, 255) : IM_COL32(255, 255, 255, 255),
+                         labels[static_cast<std::size_t>(end.axis)].name.c_str());
+        } else {
+            draw.AddCircleFilled(p, dot * 0.62f,
+                                 lit ? plotColors().text : ((color & ~IM_COL32_A_MASK) | IM_COL32(0, 0, 0, 120)), 16);
+        }
+    }
+    if (under && clicked) return viewAgainst(under->axis, under->positive);
+    return std::nullopt;
+}
+
+void drawCursor3d(ImDrawList& draw, const SpaceFrame& frame, glm::dvec3 cursor) {
+    const PlotColors colors = plotColors();
+    const auto middle = frame.pixel(cursor);
+    if (!middle) return;
+    for (int axis = 0; axis < 3; ++axis) {
+        glm::dvec3 a = cursor, b = cursor;
+        a[axis] = frame.bounds.lo[axis];
+        b[axis] = frame.bounds.hi[axis];
+        const auto from = frame.pixel(a), to = frame.pixel(b);
+        if (from && to) draw.AddLine(*from, *to, (colors.cursor & ~IM_COL32_A_MASK) | IM_COL32(0, 0, 0, 90));
+    }
+    draw.AddCircle(*middle, em() * 0.35f, colors.backdrop, 20, 3);
+    draw.AddCircle(*middle, em() * 0.35f, colors.cursor, 20, 1.5f);
+}
+
+std::string stretchText(glm::dvec3 stretch) {
+    if (stretch == glm::dvec3(1)) return "";
+    const auto digits = [](double v) { return formatNumber(v, v >= 10 ? 1 : 0); };
+    return "stretch " + digits(stretch.x) + " : " + digits(stretch.y) + " : " + digits(stretch.z);
+}
+
+ImU32 axisColor(int axis) {
+    static constexpr ImU32 kDark[] = {IM_COL32(240, 120, 110, 255), IM_COL32(128, 206, 110, 255),
+                                      IM_COL32(120, 170, 255, 255)};
+    static constexpr ImU32 kLight[] = {IM_COL32(190, 50, 40, 255), IM_COL32(40, 130, 40, 255),
+                                       IM_COL32(30, 90, 200, 255)};
+    return darkTheme() ? kDark[axis] : kLight[axis];
+}
+
+} // namespace tessera::app

@@ -1,0 +1,59 @@
+#pragma once
+
+#include "app/pane/axis_label.h"
+#include "app/pane/plot.h"
+#include "vis/scene/camera.h"
+#include "volume/field/dataset.h"
+
+#include <optional>
+#include <vector>
+
+/// Axes of a picture in space: which edges of the box carry ticks, and the triad that shows and sets the direction.
+namespace tessera::app {
+
+/// Where a picture of the data lies on screen and how it is seen.
+struct SpaceFrame {
+    ImVec2 min, max; ///< pixels of the picture
+    glm::dmat4 worldToClip{1};
+    vis::WorldFrame world;
+    volume::Box bounds; ///< physical
+
+    /// Pixel of a physical position; nothing behind the eye.
+    std::optional<ImVec2> pixel(glm::dvec3 physical) const;
+};
+SpaceFrame spaceFrame(ImVec2 min, ImVec2 max, const vis::Camera& camera, const volume::Box& bounds, glm::dvec3 stretch);
+
+/// An edge of the box to be labelled: both ends (physical), the axis it runs along, the direction away from the box on
+/// screen.
+struct LabelledEdge {
+    int axis = 0;
+    glm::dvec3 from{0}, to{0}; ///< rising coordinate
+    ImVec2 a, b;               ///< pixels of the ends
+    ImVec2 outward;            ///< unit vector on screen
+};
+/// For each axis that is long enough on screen the outline edge that lies furthest to the bottom (left for upright
+/// ones), so that texts stand beside the box and not over it.
+std::vector<LabelledEdge> labelledEdges(const SpaceFrame& frame, glm::dvec3 eyeDirection);
+
+/// Ticks, numbers and units on the labelled edges; texts that would overlap or leave the picture are left out.
+/// `avoid` are rectangles already taken.
+void drawAxes3d(ImDrawList& draw, const SpaceFrame& frame, const vis::Camera& camera, const AxisLabels& labels,
+                std::vector<std::pair<ImVec2, ImVec2>> avoid = {});
+
+/// The standard view that looks against an axis direction (0 = x, 1 = y, 2 = z).
+vis::StandardView viewAgainst(int axis, bool positive);
+
+/// Axis triad around a point; returns the view whose end was clicked. `mouse` is null where the mouse is elsewhere.
+std::optional<vis::StandardView> drawTriad(ImDrawList& draw, ImVec2 center, float radius, const vis::Camera& camera,
+                                           const AxisLabels& labels, const ImVec2* mouse, bool clicked);
+
+/// The linked cross-hair: lines through the box along the three axes, a ring where it stands.
+void drawCursor3d(ImDrawList& draw, const SpaceFrame& frame, glm::dvec3 cursor);
+
+/// "stretch 4 : 4 : 1", or "" when all are 1.
+std::string stretchText(glm::dvec3 stretch);
+
+/// Colour of an axis: x reddish, y greenish, z bluish, legible on the theme.
+ImU32 axisColor(int axis);
+
+} // namespace tessera::app

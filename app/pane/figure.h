@@ -1,0 +1,70 @@
+#pragma once
+
+#include "app/pane/view_context.h"
+#include "volume/base/describe.h"
+
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
+/// Plots as vector graphics and tables, for papers and other programs.
+namespace tessera::app {
+
+struct FigureAxis {
+    std::string title; ///< with its unit
+    Range range;
+};
+
+struct FigureSeries {
+    std::string name;
+    std::vector<glm::dvec2> points; ///< NaN breaks a line; bars: centre and height
+    glm::vec3 color{0};
+    bool bars = false;
+    bool dots = false; ///< a dot at every point, beside the line
+};
+
+/// A picture of cells between the ends of both axes: RGBA, row 0 at the top.
+struct FigureImage {
+    int width = 0, height = 0;
+    std::vector<std::uint8_t> rgba;
+};
+
+/// A text on a line, with a halo.
+struct FigureLabel {
+    std::string text;
+    glm::dvec2 at{0}; ///< of its middle, in the values of the axes
+    double angle = 0; ///< degrees, clockwise
+};
+
+struct FigurePanel {
+    std::string title;
+    FigureAxis x, y;
+    std::vector<FigureSeries> series;
+    FigureImage image;
+    std::vector<glm::dvec2> marks = {}; ///< points with a ring
+    std::string note = {};              ///< a second line below the title
+    std::vector<std::vector<glm::dvec2>> contours = {};
+    std::vector<FigureLabel> labels = {};
+};
+
+/// What is between the axes of a panel, and the height of texts, in points.
+inline constexpr glm::dvec2 kFigurePlot{226, 176};
+inline constexpr double kFigureText = 9;
+/// About the width of a number's text in points, in the letters of a figure.
+double figureTextWidth(const std::string& text);
+
+/// Panels in rows of `columns`, black on white.
+std::string figureSvg(const std::vector<FigurePanel>& panels, int columns);
+
+/// The same with a description of where its numbers come from.
+std::string withDescription(std::string svg, const std::string& numbers);
+
+/// A text as one field of a CSV line.
+std::string csvField(const std::string& text);
+/// A number for CSV, empty where it is not finite.
+std::string csvNumber(double value);
+
+/// A button whose menu exports what a view shows: its picture, vector graphics, a table.
+void exportMenu(ViewContext& context, const std::string& name, std::function<std::string(const Progress&)> svg,
+                std::function<std::string(const Progress&)> csv);
+
+} // namespace tessera::app

@@ -1,0 +1,184 @@
+#include "app/pane/legend.h"
+
+#include "app/ui/ticks.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace tessera::app {
+
+namespace {
+
+constexpr int kStripParts = 64;
+
+float barHeight() {
+    return std::round(em() * 0.65f);
+}
+
+/// An arrow head in the end colour: data goes on beyond the bar.
+void drawArrow(ImDrawList& draw, ImVec2 at, float size, float direction, ImU32 color) {
+    draw.AddTriangleFilled({at.x, at.y}, {at.x, at.y + size}, {at.x + direction * size * 0.6f, at.y + size / 2}, color);
+}
+
+float drawSwatch(ImDrawList& draw, ImVec2 min, const LegendEntry& entry) {
+    const PlotColors colors = plotColors();
+    const float size = barHeight();
+    draw.AddRectFilled({min.x, min.y + em() * 0.25f}, {min.x + size, min.y + em() * 0.25f + size},
+                       toColor(entry.color));
+    draw.AddRect({min.x, min.y + em() * 0.25f}, {min.x + size, min.y + em() * 0.25f + size}, colors.frame);
+    const double resolution = (entry.data.hi - entry.data.lo) / 1000;
+    const std::string text = entry.title + " = " + formatQuantity(entry.value, entry.unit, resolution);
+    draw.AddText({min.x + size + em() * 0.5f, min.y}, colors.text, text.c_str());
+    return em() * 1.25f;
+}
+
+} // namespace
+
+void drawColorStrip(ImDrawList& draw, ImVec2 min, ImVec2 max, const vis::TransferFunction& function, bool withOpacity) {
+    const PlotColors colors = plotColors();
+    if (withOpacity) {
+        const float cell = std::max(3.0f, (max.y - min.y) / 3);
+        for (float y = min.y; y < max.y; y += cell)
+            for (float x = min.x; x < max.x; x += cell) {
+                const bool odd = (static_cast<int>((x - min.x) / cell) + static_cast<int>((y - min.y) / cell)) & 1;
+                draw.AddRectFilled({x, y}, {std::min(x + cell, max.x), std::min(y + cell, max.y)},
+                                   odd ? IM_COL32(150, 150, 150, 255) : IM_COL32(200, 200, 200, 255));
+            }
+    }
+    const auto color = [&](int i) {
+        const glm::dvec4 c = vis::evaluate(function, {0, 1}, static_cast<double>(i) / kStripParts);
+        return toColor({c.r, c.g, c.b}, withOpacity ? c.a : 1);
+    };
+    for (int i = 0; i < kStripParts; ++i) {
+        const auto x = [&](int k) { return min.x + (max.x - min.x) * static_cast<float>(k) / kStripParts; };
+        draw.AddRectFilledMultiColor({x(i), min.y}, {x(i + 1), max.y}, color(i), color(i + 1), color(i + 1), color(i));
+    }
+    draw.AddRect(min, max, colors.frame);
+}
+
+void drawOpacityStrip(ImDrawList& draw, ImVec2 min, ImVec2 max, const vis::TransferFunction& function) {
+    constexpr int kGradients = 32;
+    const PlotColors colors = plotColors();
+    std::array<double, kStripParts + 1> opacity{};
+    double most = 0;
+    for (int i = 0; i <= kStripParts; ++i) {
+        double& own = opacity[static_cast<std::size_t>(i)];
+        for (int k = 0; k <= (function.kind == vis::TransferKind::Regions ? kGradients : 0); ++k)
+            own = std::max(own, vis::evaluate(function, {0, 1}, static_cast<double>(i) / kStripParts,
+                                              static_cast<double>(function.gradientTop) * k / kGradients)
+                                    .a);
+        most = std::max(most, own);
+    }
+    const ImVec4 ink = ImGui::ColorConvertU32ToFloat4(colors.text);
+    const auto color = [&](int i) {
+        const double share = most > 0 ? opacity[static_cast<std::size_t>(i)] / most : 0;
+        return toColor({ink.x, ink.y, ink.z}, share);
+    };
+    for (int i = 0; i < kStripParts; ++i) {
+        const auto x = [&](int k) { return min.x + (max.x - min.x) * static_cast<float>(k) / kStripParts; };
+        draw.AddRectFilledMultiColor({x(i), min.y}, {x(i + 1), max.y}, color(i), color(i + 1), color(i + 1), color(i));
+    }
+    draw.AddRect(min, max, colors.frame);
+}
+
+float legendBarHeight() {
+    return barHeight() + em() * 2.75f;
+}
+
+float drawLegendBar(ImDrawList& draw, ImVec2 min, float width, const LegendEntry& entry) {
+    const PlotColors colors = plotColors();
+    const float height = barHeight(), arrow = height * 0.6f;
+    const ImVec2 lo{min.x + arrow + 1, min.y + em() * 0.2f}, hi{min.x + width - arrow - 1, lo.y + height};
+    if (entry.opacity)
+        drawOpacityStrip(draw, lo, hi, entry.function);
+    else
+        drawColorStrip(draw, lo, hi, entry.function);
+    const auto end = [&](double x) {
+        const glm::dvec4 c = vis::evaluate(entry.function, {0, 1}, x);
+        return entry.opacity ? colors.frame : toColor({c.r, c.g, c.b});
+    };
+    const double slack = (entry.range.hi - entry.range.lo) * 1e-6;
+    if (entry.data.lo < entry.range.lo - slack) drawArrow(draw, {lo.x - 1, lo.y}, height, -1, end(0));
+    if (entry.data.hi > entry.range.hi + slack) drawArrow(draw, {hi.x + 1, lo.y}, height, 1, end(1));
+    const PlotFrame frame{lo, hi, paddedRange(entry.range), {0, 1}};
+    drawAxis(draw, frame, AxisSide::Bottom, entry.title, entry.unit, min.x, min.x + width);
+    if (entry.marker && *entry.marker >= frame.x.lo && *entry.marker <= frame.x.hi) {
+        const float x = std::round(frame.pixel(*entry.marker, 0).x) + 0.5f;
+        draw.AddLine({x, lo.y - em() * 0.15f}, {x, hi.y + em() * 0.15f}, colors.backdrop, 3);
+        draw.AddLine({x, lo.y - em() * 0.15f}, {x, hi.y + em() * 0.15f}, colors.cursor);
+    }
+    return legendBarHeight();
+}
+
+void drawLegendColumn(ImDrawList& draw, ImVec2 min, float height, const LegendEntry& entry) {
+    const float width = em() * 0.6f, line = ImGui::GetFontSize();
+    const int steps = std::max(1, static_cast<int>(height));
+    for (int i = 0; i < steps; ++i) {
+        const glm::dvec4 c = vis::evaluate(entry.function, {0, 1}, 1 - (i + 0.5) / steps);
+        const float y = min.y + height * static_cast<float>(i) / static_cast<float>(steps);
+        draw.AddRectFilled({min.x, y}, {min.x + width, y + height / static_cast<float>(steps)},
+                           toColor({c.r, c.g, c.b}));
+    }
+    if (height < 2 * line) return; // no room for both values
+    const PlotColors colors = plotColors();
+    const double digits = (entry.range.hi - entry.range.lo) / 100;
+    const float x = min.x + width + em() * 0.3f;
+    draw.AddText({x, min.y}, colors.text, formatNumber(entry.range.hi, digits).c_str());
+    draw.AddText({x, min.y + height - line}, colors.text, formatNumber(entry.range.lo, digits).c_str());
+}
+
+namespace {
+
+constexpr std::size_t kMostNames = 12;
+
+/// The title of a label, and under it its values with their colours.
+float drawNames(ImDrawList& draw, ImVec2 min, float width, const LegendEntry& entry) {
+    const PlotColors colors = plotColors();
+    const float line = em() * 1.2f;
+    draw.AddText(min, colors.text, fitText(entry.title, width).c_str());
+    float y = min.y + line;
+    for (std::size_t i = 0; i < entry.names.size() && i < kMostNames; ++i, y += line) {
+        const glm::vec3 color = entry.names[i].color;
+        draw.AddRectFilled({min.x, y + em() * 0.15f}, {min.x + em() * 0.8f, y + em() * 0.9f},
+                           toColor({color.r, color.g, color.b}));
+        const bool more = i + 1 == kMostNames && entry.names.size() > kMostNames;
+        draw.AddText({min.x + em() * 1.1f, y}, colors.text,
+                     fitText(more ? "..." : entry.names[i].name, width - em() * 1.1f).c_str());
+    }
+    return y - min.y;
+}
+
+float heightOf(const LegendEntry& entry) {
+    if (!entry.names.empty()) return em() * 1.2f * static_cast<float>(1 + std::min(entry.names.size(), kMostNames));
+    return entry.swatch ? em() * 1.25f : legendBarHeight();
+}
+
+} // namespace
+
+LegendArea drawLegends(ImDrawList& draw, const std::vector<LegendEntry>& entries, ImVec2 min, ImVec2 max,
+                       LegendCorner corner) {
+    const float pad = em() * 0.5f;
+    const float width = std::min(em() * 15, (max.x - min.x) * 0.45f);
+    if (width < em() * 7) return {max, max};
+    std::vector<const LegendEntry*> shown;
+    float height = 0;
+    for (const LegendEntry& entry : entries) {
+        const float own = heightOf(entry);
+        if (height + own > (max.y - min.y) * 0.6f) break;
+        height += own;
+        shown.push_back(&entry);
+    }
+    if (shown.empty()) return {max, max};
+    const float bottom = corner == LegendCorner::Bottom ? max.y : min.y + height + pad * 1.5f;
+    const ImVec2 from{max.x - width - pad, bottom - height - pad};
+    draw.AddRectFilled({from.x - pad, from.y - pad * 0.5f}, {max.x, bottom}, plotColors().backdrop, em() * 0.25f);
+    float y = from.y;
+    for (const LegendEntry* entry : shown)
+        y += !entry->names.empty() ? drawNames(draw, {from.x, y}, width, *entry)
+             : entry->swatch       ? drawSwatch(draw, {from.x, y}, *entry)
+                                   : drawLegendBar(draw, {from.x, y}, width, *entry);
+    return {{from.x - pad, from.y - pad * 0.5f}, {max.x, bottom}};
+}
+
+} // namespace tessera::app

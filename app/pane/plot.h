@@ -1,0 +1,93 @@
+#pragma once
+
+#include "volume/base/describe.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <glm/vec2.hpp>
+#include <imgui.h>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+/// 2D plots of our own on an ImDrawList: axes, density images, bars, cross-hairs. Sizes follow the font, colours the
+/// style, so that themes and dense displays need nothing here.
+namespace tessera::app {
+
+/// A plot's data area on screen and the values at its edges. Pixels run down, values up.
+struct PlotFrame {
+    ImVec2 min, max; ///< corners in pixels, top left and bottom right
+    Range x, y;
+
+    ImVec2 pixel(double px, double py) const;
+    glm::dvec2 data(ImVec2 at) const;
+    bool contains(ImVec2 at) const;
+    float width() const { return max.x - min.x; }
+    float height() const { return max.y - min.y; }
+    /// Values per pixel, for read-outs with as many digits as the mouse can tell apart.
+    double perPixelX() const { return (x.hi - x.lo) / std::max(1.0f, width()); }
+    double perPixelY() const { return (y.hi - y.lo) / std::max(1.0f, height()); }
+};
+
+/// A range with room on both sides, never empty: for axes. A single value gets a range around it.
+Range paddedRange(Range range, double share = 0);
+
+/// Colours of plots that the ImGui style does not name, taken from its brightness.
+struct PlotColors {
+    ImU32 frame, grid, text, faint, bars, focus, cursor, brush, brushFill, backdrop;
+};
+PlotColors plotColors();
+bool darkTheme();
+
+/// One em: the height of the font.
+inline float em() {
+    return ImGui::GetFontSize();
+}
+ImU32 toColor(std::array<double, 3> srgb, double alpha = 1);
+
+enum class AxisSide { Bottom, Left };
+
+struct AxisOptions {
+    bool grid = false;        ///< faint lines across the frame
+    bool inlineTitle = false; ///< the title in the row of the numbers (bottom) or above them (left): saves a line
+    /// Pixels outside of the frame for a left axis, so that several have their titles in one column; 0 = as needed.
+    float room = 0;
+};
+
+/// Pixels that drawAxis needs outside the frame for ticks, labels and title.
+float axisRoom(AxisSide side, Range range, bool title);
+
+/// Ticks, labels and a title with unit along one side of a frame. Labels never overlap and never leave
+/// [lo, hi] pixels along the axis: those at the ends are moved inwards.
+void drawAxis(ImDrawList& draw, const PlotFrame& frame, AxisSide side, std::string_view title, std::string_view unit,
+              float lo, float hi, const AxisOptions& options = {});
+
+/// Text turned clockwise by an angle in radians, centred at a point.
+void addTextTurned(ImDrawList& draw, ImVec2 center, float angle, ImU32 color, const char* text);
+
+/// Text turned by 90 degrees, reading upwards, centred at a point.
+void addTextUpwards(ImDrawList& draw, ImVec2 center, ImU32 color, const char* text);
+
+/// Text with a translucent box behind it so that it stays legible on pictures. `pivot` 0..1 is the point of the text
+/// that lies at `at`.
+void addTextWithBackdrop(ImDrawList& draw, ImVec2 at, ImVec2 pivot, ImU32 color, const char* text);
+
+/// A line of text cut off with "..." so that it is at most `width` pixels wide.
+std::string fitText(std::string_view text, float width);
+
+/// Bars from the bottom of the frame; heights 0..1 of the frame, equal widths over its x range.
+void drawBars(ImDrawList& draw, const PlotFrame& frame, std::span<const float> heights, ImU32 color);
+
+/// Lines through (x, y), NaN = outside of the plot; with a dot where they meet if both are inside.
+void drawCrosshair(ImDrawList& draw, const PlotFrame& frame, double x, double y);
+
+/// Colours of a density plot, row 0 at the top (the largest y): transparent where no sample is, else the density from
+/// faint to full, hue by the share of focus. `counts` and `focus` have size x size bins, x fastest, row 0 = lowest y;
+/// `focus` may be empty (nothing brushed). Every `merge` x `merge` bins become one pixel, so that a small plot shows
+/// every sample; returns the pixels a side. `focusColor` is the hue of the focus.
+int densityImage(std::span<const std::uint64_t> counts, std::span<const double> focus, int size, int merge,
+                 bool logDensity, bool dark, ImU32 focusColor, std::vector<std::uint8_t>& rgba);
+
+} // namespace tessera::app

@@ -1,0 +1,99 @@
+#pragma once
+
+#include "app/data/number_origin.h"
+#include "app/session/session.h"
+#include "app/ui/jobs.h"
+#include "vis/passes/renderer.h"
+#include "volume/bricks/brick_source.h"
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+struct ImFont;
+
+namespace tessera::app {
+
+/// What a view keeps between frames besides its saved state: render targets, plot textures, running jobs. Losing it
+/// never changes what is drawn, only how long it takes. Each view derives its own.
+struct ViewCache {
+    virtual ~ViewCache() = default;
+    /// Renderers of its own beside the window's.
+    virtual int renderers() const { return 0; }
+};
+
+/// What a view can be exported as beside its picture; either may be empty.
+struct ViewExport {
+    std::string name; ///< of a file, without ending
+    std::function<std::string(const Progress&)> svg, csv;
+};
+
+/// What one frame of the window gives to each view. Views read and edit `session`, nothing else; the workbench compares
+/// it with the former frame's and keeps the history.
+struct ViewContext {
+    Session& session;
+    std::shared_ptr<const volume::BrickSource> source; ///< what pictures are drawn from; null while nothing is loaded
+    vis::Renderer& renderer;
+    Jobs& jobs;                                                ///< background work
+    std::map<std::string, std::unique_ptr<ViewCache>>& caches; ///< by pane key; kept while data only grow
+    /// What numbers are read from: the samples as computed where they are at hand, whatever lattice pictures are on.
+    /// The channels and times of `source`; null when that is.
+    std::shared_ptr<const volume::BrickSource> numbers = source;
+    NumberOrigin origin = {};   ///< of `numbers`, for words beside them (originText)
+    ImFont* iconFont = nullptr; ///< Font Awesome glyphs; null where the package is missing
+    float scale = 1;            ///< pixels per design pixel
+    bool headless = false;      ///< finish everything before the frame ends: no budget, no progressive states
+    int renderers = 1;          ///< that share the session's limits of memory
+    bool figure = false;        ///< a picture of this view alone: without the controls, which nobody can press there
+    /// Asks the workbench to run a command of its table, by name, after this frame; null in tests.
+    std::function<void(const std::string& command)> runCommand = {};
+    /// Asks where to save, then writes what `make` returns, in the background; null in tests.
+    std::function<void(const std::string& fileName, std::function<std::string(const Progress&)> make)> exportText = {};
+    /// Takes what a view can be exported as, once its numbers are there; null where nobody asks.
+    std::function<void(ViewExport)> offerExport = {};
+    /// Asks for a file to open, then changes the session by it as an edit; an Error goes to the log. Null in tests.
+    std::function<void(const std::string& title, std::function<void(Session&, const std::string& path)> take)> askFile =
+        {};
+    /// The key of a camera command picked in a menu for this view, 0 = none: acts as if pressed over its picture.
+    int cameraKey = 0;
+    std::vector<std::string> messages = {}; ///< failures that a view adds, for the log
+    bool busy = false;        ///< set by a view that needs another frame soon (refining, animating, waiting for a job)
+    bool behind = false;      ///< set by a view that shows an older state of the session until an answer is there
+    bool compiling = false;   ///< set by a view whose picture waits for a program of the renderer
+    bool interacting = false; ///< some edit is in progress (mouse held on a control): draw at reduced size
+
+    /// Takes note of how far a view's picture is.
+    void follow(const vis::FrameStatus& status) {
+        busy = busy || !status.complete;
+        behind = behind || !status.current;
+        compiling = compiling || status.compiling;
+    }
+};
+
+/// The cache of a pane, made on first use.
+template <class Cache> Cache& cacheOf(ViewContext& context, const std::string& pane) {
+    std::unique_ptr<ViewCache>& slot = context.caches[pane];
+    if (!dynamic_cast<Cache*>(slot.get())) slot = std::make_unique<Cache>();
+    return static_cast<Cache&>(*slot);
+}
+
+// One function per kind of view, each in its own file; called inside the pane's ImGui window.
+void drawVolumeView(ViewContext& context, const std::string& pane, VolumeView& view);
+void drawSlicesView(ViewContext& context, const std::string& pane, SlicesView& view);
+void drawScatterMatrixView(ViewContext& context, const std::string& pane, ScatterMatrixView& view);
+void drawTransferView(ViewContext& context, const std::string& pane, TransferView& view);
+void drawLayersView(ViewContext& context, const std::string& pane, LayersView& view);
+void drawTimelineView(ViewContext& context, const std::string& pane, TimelineView& view);
+void drawDataView(ViewContext& context, const std::string& pane, DataView& view);
+void drawStatisticsView(ViewContext& context, const std::string& pane, StatisticsView& view);
+void drawHistogramView(ViewContext& context, const std::string& pane, HistogramView& view);
+void drawProfileView(ViewContext& context, const std::string& pane, ProfileView& view);
+void drawSliceMatrixView(ViewContext& context, const std::string& pane, SliceMatrixView& view);
+void drawShadowCubeView(ViewContext& context, const std::string& pane, ShadowCubeView& view);
+void drawTesseractView(ViewContext& context, const std::string& pane, TesseractView& view);
+void drawCurvesView(ViewContext& context, const std::string& pane, CurvesView& view);
+void drawCompareView(ViewContext& context, const std::string& pane, CompareView& view);
+
+} // namespace tessera::app

@@ -1,0 +1,255 @@
+#include "app/pane/view_parts.h"
+
+#include "app/pane/plot.h"
+#include "app/ui/ticks.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+namespace tessera::app {
+
+bool iconButton(const ViewContext& context, const char* id, Icon icon, const char* help, bool enabled, bool lit) {
+    const float height = ImGui::GetFrameHeight();
+    const ImVec2 glyph = iconSize(context, icon);
+    const ImVec2 size{std::max(height, glyph.x + em() * 0.5f), height};
+    ImGui::BeginDisabled(!enabled);
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    if (lit) ImGui::PushStyleColor(ImGuiCol_Button, ImGui::GetStyleColorVec4(ImGuiCol_ButtonActive));
+    const bool pressed = ImGui::Button((std::string("##") + id).c_str(), size);
+    if (lit) ImGui::PopStyleColor();
+    ImGui::EndDisabled();
+    if (help && *help && ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) tooltip(help);
+    const ImU32 color = ImGui::GetColorU32(enabled ? ImGuiCol_Text : ImGuiCol_TextDisabled);
+    ImFont* font = context.iconFont ? context.iconFont : ImGui::GetFont();
+    ImGui::GetWindowDrawList()->AddText(
+        font, context.iconFont ? em() * 0.95f : em(),
+        {std::round(at.x + (size.x - glyph.x) / 2), std::round(at.y + (size.y - glyph.y) / 2)}, color,
+        context.iconFont ? icon.glyph : icon.word);
+    return pressed;
+}
+
+ImVec2 iconSize(const ViewContext& context, Icon icon) {
+    if (!context.iconFont) return ImGui::CalcTextSize(icon.word);
+    return context.iconFont->CalcTextSizeA(em() * 0.95f, 1e6f, 0, icon.glyph);
+}
+
+void iconText(const ViewContext& context, Icon icon, ImU32 color) {
+    const ImVec2 at = ImGui::GetCursorScreenPos(), size = iconSize(context, icon);
+    const float width = std::max(em() * 1.4f, size.x);
+    ImFont* font = context.iconFont ? context.iconFont : ImGui::GetFont();
+    ImGui::GetWindowDrawList()->AddText(
+        font, context.iconFont ? em() * 0.95f : em(),
+        {std::round(at.x + (width - size.x) / 2), std::round(at.y + (ImGui::GetFrameHeight() - size.y) / 2)}, color,
+        context.iconFont ? icon.glyph : icon.word);
+    ImGui::Dummy({width, ImGui::GetFrameHeight()});
+}
+
+void drawHint(const char* title, const char* hint) {
+    const ImVec2 room = ImGui::GetContentRegionAvail();
+    const ImVec2 start = ImGui::GetCursorPos();
+    const float wrap = std::max(1.0f, std::min(room.x - em(), em() * 26));
+    const ImVec2 a = ImGui::CalcTextSize(title, nullptr, false, wrap),
+                 b = ImGui::CalcTextSize(hint, nullptr, false, wrap);
+    float y = start.y + std::max(0.0f, (room.y - a.y - b.y - em() * 0.5f) / 2);
+    const auto line = [&](const char* text, ImVec2 size, ImGuiCol color) {
+        ImGui::SetCursorPos({start.x + std::max(0.0f, (room.x - size.x) / 2), y});
+        ImGui::PushTextWrapPos(ImGui::GetCursorPosX() + size.x + 1);
+        ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetStyleColorVec4(color));
+        ImGui::TextUnformatted(text);
+        ImGui::PopStyleColor();
+        ImGui::PopTextWrapPos();
+        y += size.y + em() * 0.5f;
+    };
+    line(title, a, ImGuiCol_Text);
+    if (*hint) line(hint, b, ImGuiCol_TextDisabled);
+}
+
+void continueLine(float width) {
+    const float right = ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x;
+    if (ImGui::GetItemRectMax().x + ImGui::GetStyle().ItemSpacing.x + width <= right) ImGui::SameLine();
+}
+
+std::string originText(const ViewContext& context, const std::vector<int>& channels) {
+    return originText(context.origin, context.numbers->info(), channels);
+}
+
+void drawOrigin(const ViewContext& context, const std::vector<int>& channels) {
+    const std::string text = originText(context, channels);
+    continueLine(std::min(ImGui::CalcTextSize(text.c_str()).x, em() * 12));
+    const std::string shown = fitText(text, ImGui::GetContentRegionAvail().x);
+    ImGui::TextDisabled("%s", shown.c_str());
+    if (ImGui::IsItemHovered()) tooltip(("Numbers: " + text).c_str());
+}
+
+float buttonWidth(const char* text) {
+    return ImGui::CalcTextSize(text).x + 2 * ImGui::GetStyle().FramePadding.x;
+}
+
+void tooltip(const char* text) {
+    ImGui::BeginTooltip();
+    ImGui::PushTextWrapPos(em() * 28);
+    ImGui::TextUnformatted(text);
+    ImGui::PopTextWrapPos();
+    ImGui::EndTooltip();
+}
+
+void tableHeader(std::initializer_list<const char*> names, int right) {
+    ImGui::TableNextRow(ImGuiTableRowFlags_Headers);
+    int column = 0;
+    for (const char* name : names) {
+        ImGui::TableSetColumnIndex(column);
+        if (column >= right) {
+            const float room = ImGui::GetContentRegionAvail().x - ImGui::CalcTextSize(name).x;
+            if (room > 0) ImGui::SetCursorPosX(ImGui::GetCursorPosX() + room);
+        }
+        ImGui::PushID(column++);
+        ImGui::TableHeader(name);
+        ImGui::PopID();
+    }
+}
+
+void textRight(const std::string& text, bool faint) {
+    const float room = ImGui::GetContentRegionAvail().x - ImGui::CalcTextSize(text.c_str()).x;
+    if (room > 0) ImGui::SetCursorPosX(ImGui::GetCursorPosX() + room);
+    if (faint)
+        ImGui::TextDisabled("%s", text.c_str());
+    else
+        ImGui::TextUnformatted(text.c_str());
+}
+
+std::vector<int> comparedChannels(const volume::DatasetInfo& info) {
+    std::vector<int> out;
+    const std::vector<volume::Channel> channels = info.channels();
+    for (std::size_t i = 0; i < channels.size(); ++i) {
+        const volume::Parameter& parameter = info.parameters[static_cast<std::size_t>(channels[i].parameter)];
+        if (parameter.categorical) continue;
+        if (parameter.components == 1 || channels[i].magnitude) out.push_back(static_cast<int>(i));
+    }
+    return out;
+}
+
+std::vector<int> chosenChannels(const volume::DatasetInfo& info, const std::vector<std::string>& names,
+                                std::size_t most) {
+    std::vector<int> out;
+    for (const std::string& name : names)
+        if (const auto channel = info.findChannel(name))
+            if (std::find(out.begin(), out.end(), *channel) == out.end()) out.push_back(*channel);
+    if (!out.empty()) return out;
+    out = comparedChannels(info);
+    if (out.size() > most) out.resize(most);
+    return out;
+}
+
+void chooseChannels(const volume::DatasetInfo& info, std::vector<std::string>& names, const std::vector<int>& shown) {
+    const std::string label = std::to_string(shown.size()) + (shown.size() == 1 ? " parameter" : " parameters");
+    ImGui::SetNextItemWidth(em() * 7.8f);
+    if (ImGui::BeginCombo("##channels", label.c_str(), ImGuiComboFlags_HeightLarge)) {
+        const std::vector<volume::Channel> channels = info.channels();
+        for (std::size_t i = 0; i < channels.size(); ++i) {
+            if (info.parameters[static_cast<std::size_t>(channels[i].parameter)].categorical) continue;
+            bool on = std::find(shown.begin(), shown.end(), static_cast<int>(i)) != shown.end();
+            if (!ImGui::Checkbox(titleWithUnit(channels[i].name, channels[i].unit).c_str(), &on)) continue;
+            std::vector<std::string> chosen;
+            for (std::size_t k = 0; k < channels.size(); ++k) {
+                const bool was = std::find(shown.begin(), shown.end(), static_cast<int>(k)) != shown.end();
+                if (k == i ? on : was) chosen.push_back(channels[k].name);
+            }
+            if (!chosen.empty()) names = chosen;
+        }
+        ImGui::Separator();
+        if (ImGui::Selectable("All scalars and magnitudes")) names.clear();
+        ImGui::EndCombo();
+    }
+    if (ImGui::IsItemHovered()) tooltip("Parameters that are shown");
+}
+
+std::optional<int> resolveChannel(const volume::DatasetInfo& info, const Session& session, const std::string& wanted) {
+    if (const auto found = info.findChannel(wanted); found && !wanted.empty()) return found;
+    for (const vis::Layer& layer : session.layers) {
+        const std::string& name =
+            std::visit([](const auto& technique) -> const std::string& { return technique.channel; }, layer.technique);
+        if (const auto found = info.findChannel(name)) return found;
+    }
+    const std::vector<int> compared = comparedChannels(info);
+    if (!compared.empty()) return compared.front();
+    return info.channels().empty() ? std::nullopt : std::optional<int>(0);
+}
+
+const vis::TransferFunction& transferOf(const Session& session, const std::string& channel) {
+    static const vis::TransferFunction fallback;
+    const auto found = session.transfer.find(channel);
+    return found == session.transfer.end() ? fallback : found->second;
+}
+
+vis::TransferFunction& transferOf(Session& session, const std::string& channel) {
+    return session.transfer[channel];
+}
+
+LegendEntry legendOf(const Session& session, const volume::DatasetInfo& info, int channel,
+                     const std::string& function) {
+    const volume::Channel c = info.channels()[static_cast<std::size_t>(channel)];
+    LegendEntry entry;
+    entry.title = c.name;
+    entry.unit = c.unit;
+    entry.function = transferOf(session, function.empty() ? c.name : function);
+    entry.data = info.channelRange(c);
+    entry.range = vis::effectiveRange(entry.function, entry.data);
+    const volume::Parameter& parameter = info.parameters[static_cast<std::size_t>(c.parameter)];
+    if (parameter.categorical)
+        for (const volume::Label& label : parameter.labels)
+            entry.names.push_back({label.name, glm::vec3(vis::evaluate(entry.function, entry.range, label.value))});
+    return entry;
+}
+
+std::vector<LegendEntry> sceneLegends(const Session& session, const volume::DatasetInfo& info) {
+    std::vector<LegendEntry> entries;
+    std::set<std::string> seen;
+    for (const vis::Layer& layer : session.layers) {
+        if (!layer.visible) continue;
+        const std::string& name =
+            std::visit([](const auto& technique) -> const std::string& { return technique.channel; }, layer.technique);
+        const auto channel = info.findChannel(name);
+        if (!channel) continue;
+        LegendEntry entry = legendOf(session, info, *channel);
+        const std::string& colorBy = vis::colorByOf(layer.technique);
+        const auto color = colorBy.empty() ? std::nullopt : info.findChannel(colorBy);
+        const auto* iso = std::get_if<vis::IsoLayer>(&layer.technique);
+        if (iso) {
+            entry.swatch = true;
+            entry.color = {iso->color.r, iso->color.g, iso->color.b};
+            if (color) entry.color = {0.5, 0.5, 0.5};
+            entry.value = iso->value;
+            entries.push_back(entry);
+        } else if (color) {
+            entry = legendOf(session, info, *channel, layer.transfer);
+            entry.opacity = true;
+            entry.title = "opacity by " + entry.title;
+            entry.names.clear();
+            if (seen.insert(entry.title + " " + layer.transfer).second) entries.push_back(entry);
+        } else if (seen.insert(name).second) {
+            entries.push_back(entry);
+        }
+        // A surface's own function is that of its colours.
+        const std::string function = iso && !layer.transfer.empty() ? layer.transfer : colorBy;
+        if (color && seen.insert(function).second)
+            entries.push_back(legendOf(session, info, *color, iso ? layer.transfer : std::string()));
+    }
+    return entries;
+}
+
+vis::Scene themedScene(const ViewContext& context) {
+    vis::Scene scene = sceneOf(context.session);
+    for (int* limit : {&scene.render.limits.textureMemory, &scene.render.limits.brickMemory})
+        *limit = std::max(1, *limit / std::max(1, context.renderers));
+    const bool dark = context.session.appearance.theme == Theme::Dark;
+    scene.background = dark ? glm::vec3(0.085f, 0.092f, 0.107f) : glm::vec3(0.965f, 0.968f, 0.975f);
+    scene.boxColor = dark ? glm::vec3(0.42f) : glm::vec3(0.55f);
+    return scene;
+}
+
+void addPicture(ImDrawList& draw, std::uint32_t texture, ImVec2 min, ImVec2 max) {
+    draw.AddImage(reinterpret_cast<ImTextureID>(static_cast<std::intptr_t>(texture)), min, max, {0, 1}, {1, 0});
+}
+
+} // namespace tessera::app

@@ -1,0 +1,88 @@
+#pragma once
+
+#include "app/pane/legend.h"
+#include "app/pane/view_context.h"
+#include "app/ui/theme.h"
+
+#include <initializer_list>
+#include <optional>
+#include <string>
+#include <vector>
+
+/// Small pieces that several views use.
+namespace tessera::app {
+
+/// Glyphs of Font Awesome 4 and the words that stand for them where the font is missing.
+struct Icon {
+    const char* glyph;
+    const char* word;
+};
+namespace icons {
+inline constexpr Icon kEye{icon::kEye, "on"}, kEyeOff{icon::kEyeOff, "off"}, kPlus{icon::kPlus, "+"},
+    kTrash{icon::kTrash, "x"}, kCopy{icon::kCopy, "copy"}, kCube{icon::kCube, "vol"}, kIso{"\uf219", "iso"},
+    kSlice{"\uf24d", "slice"}, kFlow{"\uf178", "flow"}, kPlay{icon::kPlay, ">"}, kPause{icon::kPause, "||"},
+    kStepBack{icon::kStepBack, "<|"}, kStepForward{icon::kStepForward, "|>"}, kFirst{icon::kFirst, "|<"},
+    kLast{icon::kLast, ">|"}, kRepeat{icon::kRepeat, "loop"}, kPingPong{icon::kPingPong, "<>"},
+    kOnce{icon::kOnce, "once"}, kInvert{icon::kInvert, "inv"}, kReverse{"\uf0ec", "rev"}, kColors{"\uf1fb", "own"};
+} // namespace icons
+
+/// A square button with a glyph, its tooltip on hover; `enabled` false greys it out.
+bool iconButton(const ViewContext& context, const char* id, Icon icon, const char* tooltip, bool enabled = true,
+                bool lit = false);
+/// A glyph without a button.
+void iconText(const ViewContext& context, Icon icon, ImU32 color);
+ImVec2 iconSize(const ViewContext& context, Icon icon);
+
+/// Two or three lines in the middle of the pane where there is nothing to draw.
+void drawHint(const char* title, const char* hint = "");
+
+/// Goes on in the line where an item of this width fits, else in the next: tool bars of narrow panes stay whole.
+void continueLine(float width);
+float buttonWidth(const char* text);
+
+/// Wrapped help on hover of the last item.
+void tooltip(const char* text);
+
+/// Where the numbers of these channels (none: all) come from, in words: originText of the view's numbers.
+std::string originText(const ViewContext& context, const std::vector<int>& channels = {});
+/// The same as faint text: on in the line where it fits, cut where it does not; whole on hover.
+void drawOrigin(const ViewContext& context, const std::vector<int>& channels = {});
+
+/// The head row of a table whose columns are set up; names from column `right` on stand over right-aligned numbers.
+void tableHeader(std::initializer_list<const char*> names, int right = 1);
+/// Text at the right edge of a table cell.
+void textRight(const std::string& text, bool faint = false);
+
+/// Indices into info.channels() of what statistics compare: scalars and vector magnitudes, no labels.
+std::vector<int> comparedChannels(const volume::DatasetInfo& info);
+
+/// The channels a view shows: those of its names that the data have, each once; without any, the compared ones up to
+/// `most`.
+std::vector<int> chosenChannels(const volume::DatasetInfo& info, const std::vector<std::string>& names,
+                                std::size_t most);
+/// A list with a tick for each of them.
+void chooseChannels(const volume::DatasetInfo& info, std::vector<std::string>& names, const std::vector<int>& shown);
+
+/// The channel a view shows: the wanted one if the data has it, else that of the first layer, else the first. Nothing
+/// for data without parameters.
+std::optional<int> resolveChannel(const volume::DatasetInfo& info, const Session& session, const std::string& wanted);
+
+/// The transfer function that the channel is drawn with.
+const vis::TransferFunction& transferOf(const Session& session, const std::string& channel);
+/// The same to edit: made on first use.
+vis::TransferFunction& transferOf(Session& session, const std::string& channel);
+
+/// Legend of a channel as it is drawn now, by the function of that name; "": its own.
+LegendEntry legendOf(const Session& session, const volume::DatasetInfo& info, int channel,
+                     const std::string& function = {});
+
+/// Legends of the visible layers, each channel once; of a layer that is coloured by another parameter both.
+std::vector<LegendEntry> sceneLegends(const Session& session, const volume::DatasetInfo& info);
+
+/// The scene of the session with the theme's colours, and its share of the limits of memory.
+vis::Scene themedScene(const ViewContext& context);
+
+/// A picture of the renderer between two corners; its rows run upwards, as GL has them.
+void addPicture(ImDrawList& draw, std::uint32_t texture, ImVec2 min, ImVec2 max);
+
+} // namespace tessera::app

@@ -1,0 +1,244 @@
+#include "app/queries/readout.h"
+
+#include "app/pane/axis_label.h"
+#include "app/pane/figure.h"
+#include "app/pane/view_parts.h"
+#include "app/queries/pending_wish.h"
+#include "app/ui/ticks.h"
+#include "app/ui/time_text.h"
+#include "volume/base/background.h"
+#include "volume/base/error.h"
+#include "volume/field/quantities.h"
+#include "volume/flow/flow_channels.h"
+
+#include <algorithm>
+#include <cmath>
+#include <imgui.h>
+
+namespace tessera::app {
+
+namespace {
+
+constexpr std::size_t kCacheBytes = std::size_t(64) << 20;
+
+std::string labelName(const volume::Parameter& parameter, double value) {
+    for (const volume::Label& label : parameter.labels)
+        if (label.value == static_cast<int>(std::lround(value))) return label.name;
+    return formatNumber(value);
+}
+
+/// The region of the point as the label of a parameter's parts says it, else the first label; "" where none does.
+std::string regionText(const volume::DatasetInfo& info, const Readout& readout, int parameter) {
+    const volume::Parameter& own = info.parameters[static_cast<std::size_t>(parameter)];
+    if (own.categorical) return {};
+    std::optional<int> label;
+    if (own.parts.count() > 1) label = volume::labelChannel(info, own.parts.label);
+    if (!label) label = volume::labelChannel(info);
+    if (!label || static_cast<std::size_t>(*label) >= readout.state->values.size()) return {};
+    const auto& value = readout.state->values[static_cast<std::size_t>(*label)].nearest;
+    return value ? volume::labelName(volume::parameterOf(info, *label), static_cast<int>(std::lround(*value))) : "";
+}
+
+std::string valueText(const volume::DatasetInfo& info, const volume::Channel& channel,
+                      const std::optional<double>& value) {
+    if (!value) return "absent";
+    const volume::Parameter& parameter = info.parameters[static_cast<std::size_t>(channel.parameter)];
+    if (parameter.categorical) return labelName(parameter, *value);
+    const Range range = info.channelRange(channel);
+    return formatNumber(*value, (range.hi - range.lo) / 1000);
+}
+
+} // namespace
+
+std::optional<double> Readout::value(const std::string& channel) const {
+    for (std::size_t i = 0; i < channels.size() && i < state->values.size(); ++i)
+        if (channels[i].name == channel) return state->values[i].interpolated;
+    return std::nullopt;
+}
+
+void updateReadout(ViewContext& context, Readout& readout) {
+    Readout::State& state = *readout.state;
+    if (state.source != context.numbers) {
+        readout.state = std::make_shared<Readout::State>();
+        readout.state->source = context.numbers;
+        readout.state->cache = std::make_shared<volume::BrickCache>(context.numbers, kCacheBytes);
+        readout.channels = context.numbers->info().channels();
+        updateReadout(context, readout);
+        return;
+    }
+    const glm::dvec3 position = context.session.cursor;
+    const volume::TimePair time = volume::timesAround(context.numbers->info().times, context.session.time);
+    if (state.time == time && state.position == position) return;
+    if (context.headless) {
+        state.values = volume::probe(*state.cache, position, time);
+        state.position = position;
+        state.time = time;
+        return;
+    }
+    context.busy = true;
+    if (state.running) return;
+    state.running = true;
+    context.jobs.start(
+        "", "Values at the cursor",
+        [weak = std::weak_ptr(readout.state), cache = state.cache, position, time](const Progress&) -> Jobs::Finish {
+            workInBackground();
+            std::string failure;
+            auto values = attempt(failure, [&] { return volume::probe(*cache, position, time); });
+            return [weak, values = std::move(values), failure, position, time] {
+                const auto owner = weak.lock();
+                if (!owner) return;
+                owner->running = false;
+                owner->values = values;
+                owner->position = position;
+                owner->time = time;
+                if (!failure.empty()) throw Error(failure);
+            };
+        },
+        true);
+}
+
+namespace {
+
+/// Texts one after the other; lines break between them, never within a number.
+void drawFlowing(const std::vector<std::string>& texts) {
+    float room = 0;
+    for (const std::string& text : texts) {
+        const float width = ImGui::CalcTextSize(text.c_str()).x + em() * 0.8f;
+        if (room > width)
+            ImGui::SameLine(0, em() * 0.8f);
+        else
+            room = ImGui::GetContentRegionAvail().x + em() * 0.8f;
+        room -= width;
+        ImGui::TextUnformatted(text.c_str());
+    }
+}
+
+} // namespace
+
+float readoutHeight(const Readout& readout) {
+    const float row = ImGui::GetTextLineHeight() + 2 * ImGui::GetStyle().CellPadding.y;
+    return 2 * ImGui::GetTextLineHeightWithSpacing() + row * static_cast<float>(readout.channels.size() + 1) +
+           ImGui::GetFrameHeight();
+}
+
+void drawReadout(ViewContext& context, const Readout& readout, bool compact) {
+    const volume::DatasetInfo& info = context.numbers->info();
+    const glm::dvec3 cursor = context.session.cursor, size = info.bounds.size();
+    const AxisLabels labels = axisLabels(context.session, info);
+    const glm::ivec3 index = info.lattice.nearest(cursor);
+    // The unit once, where all three axes have the same.
+    std::vector<std::string> at;
+    std::string unitNow;
+    for (int axis = 2; axis >= 0; --axis) {
+        const auto& [name, unit] = labels[static_cast<std::size_t>(axis)];
+        std::string text =
+            std::string(name) + " " + formatNumber(cursor[axis] * unit.perUnit, size[axis] * unit.perUnit / 200);
+        if (unit.name != unitNow) text += " " + prettyUnit(unit.name);
+        unitNow = unit.name;
+        at.insert(at.begin(), text);
+    }
+    drawFlowing(at);
+    const auto copy = [&] { return originLine(context.origin, info) + readoutCsv(context.session, info, readout); };
+    if (compact) {
+        std::vector<std::string> values;
+        for (std::size_t i = 0; i < readout.channels.size() && i < readout.state->values.size(); ++i) {
+            const volume::Channel& channel = readout.channels[i];
+            const std::optional<double>& value = readout.state->values[i].interpolated;
+            // Components say little beside the magnitude.
+            const bool component = channel.name.find('.') != std::string::npos;
+            if (value && !component)
+                values.push_back(channel.name + " " + valueText(info, channel, value) + " " + prettyUnit(channel.unit));
+        }
+        drawFlowing(values);
+        if (ImGui::SmallButton("Copy as CSV")) ImGui::SetClipboardText(copy().c_str());
+        return;
+    }
+    ImGui::PushTextWrapPos(0);
+    const double time = std::clamp(context.session.time, info.times.front(), info.times.back());
+    const std::string origin = originText(context);
+    std::string sample =
+        "sample (" + std::to_string(index.x) + ", " + std::to_string(index.y) + ", " + std::to_string(index.z) + ")";
+    if (info.times.size() > 1) sample += "   " + stateText(info, time, context.session.data.axis);
+    ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetStyleColorVec4(ImGuiCol_TextDisabled));
+    ImGui::TextUnformatted((sample + "   " + origin).c_str());
+    ImGui::PopStyleColor();
+    ImGui::PopTextWrapPos();
+
+    const std::vector<std::string> heads = readoutHeads(info);
+    if (!ImGui::BeginTable("values", static_cast<int>(heads.size()),
+                           ImGuiTableFlags_SizingStretchProp | ImGuiTableFlags_RowBg | ImGuiTableFlags_PadOuterX))
+        return;
+    for (const std::string& head : heads)
+        ImGui::TableSetupColumn(head.c_str(), ImGuiTableColumnFlags_WidthStretch, &head == &heads[0] ? 1.4f : 1);
+    if (heads.size() > 3)
+        tableHeader({"Parameter", "Value", "Nearest", "Region"});
+    else
+        tableHeader({"Parameter", "Value", "Nearest"});
+    const std::vector<std::vector<std::string>> rows = readoutRows(info, readout);
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        const volume::ProbeValue& value = readout.state->values[i];
+        ImGui::TableNextRow();
+        ImGui::TableNextColumn();
+        ImGui::TextUnformatted(rows[i][0].c_str());
+        ImGui::TableNextColumn();
+        textRight(rows[i][1], !value.interpolated);
+        ImGui::TableNextColumn();
+        textRight(rows[i][2], !value.nearest);
+        if (heads.size() < 4) continue;
+        ImGui::TableNextColumn();
+        textRight(rows[i][3], true);
+    }
+    ImGui::EndTable();
+    if (ImGui::SmallButton("Copy as CSV")) ImGui::SetClipboardText(copy().c_str());
+}
+
+std::vector<std::string> readoutHeads(const volume::DatasetInfo& info) {
+    std::vector<std::string> heads{"Parameter", "Value", "Nearest"};
+    if (volume::labelChannel(info)) heads.emplace_back("Region");
+    return heads;
+}
+
+std::vector<std::vector<std::string>> readoutRows(const volume::DatasetInfo& info, const Readout& readout) {
+    const bool regions = volume::labelChannel(info).has_value();
+    std::vector<std::vector<std::string>> rows;
+    for (std::size_t i = 0; i < readout.channels.size() && i < readout.state->values.size(); ++i) {
+        const volume::Channel& channel = readout.channels[i];
+        const volume::ProbeValue& value = readout.state->values[i];
+        rows.push_back({titleWithUnit(channel.name, channel.unit), valueText(info, channel, value.interpolated),
+                        valueText(info, channel, value.nearest)});
+        if (regions) rows.back().push_back(regionText(info, readout, channel.parameter));
+    }
+    return rows;
+}
+
+std::string readoutCsv(const Session& session, const volume::DatasetInfo& info, const Readout& readout) {
+    const auto number = [](const std::optional<double>& value) {
+        char text[32] = "";
+        if (value) std::snprintf(text, sizeof text, "%.9g", *value);
+        return std::string(text);
+    };
+    const bool regions = volume::labelChannel(info).has_value();
+    std::string csv =
+        regions ? "parameter,unit,interpolated,nearest,region\n" : "parameter,unit,interpolated,nearest\n";
+    const std::string end = regions ? ",\n" : "\n";
+    const AxisLabels labels = axisLabels(session, info);
+    for (int axis = 0; axis < 3; ++axis) {
+        const bool time = session.data.timeAxis && static_cast<int>(session.data.timeAxis->axis) == axis;
+        const auto& [name, unit] = labels[static_cast<std::size_t>(axis)];
+        csv += std::string(name) + "," + (time ? unit.name : info.lengthUnit) + "," +
+               number(session.cursor[axis] * (time ? unit.perUnit : 1)) + "," + end;
+    }
+    csv += csvField(info.timeName) + "," + csvField(info.timeUnit) + "," + number(session.time) + "," + end;
+    for (const volume::Quantity& quantity : info.quantities)
+        csv += csvField(quantity.name) + "," + csvField(quantity.unit) + "," +
+               number(volume::valueAt(info.times, quantity.values, session.time)) + "," + end;
+    for (std::size_t i = 0; i < readout.channels.size() && i < readout.state->values.size(); ++i) {
+        const volume::ProbeValue& value = readout.state->values[i];
+        csv += readout.channels[i].name + "," + readout.channels[i].unit + "," + number(value.interpolated) + "," +
+               number(value.nearest) +
+               (regions ? "," + csvField(regionText(info, readout, readout.channels[i].parameter)) : "") + "\n";
+    }
+    return csv;
+}
+
+} // namespace tessera::app

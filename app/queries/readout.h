@@ -1,0 +1,51 @@
+#pragma once
+
+#include "app/pane/view_context.h"
+#include "volume/bricks/brick_cache.h"
+#include "volume/field/time_pair.h"
+#include "volume/reconstruct/probe.h"
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace tessera::app {
+
+/// Every parameter at the linked cursor, read in the background when the cursor or the time moves; the former values
+/// stay until then.
+struct Readout {
+    struct State {
+        std::vector<volume::ProbeValue> values; ///< by channel
+        glm::dvec3 position{0};                 ///< where and when they were read
+        std::optional<volume::TimePair> time;
+        bool running = false;
+        std::shared_ptr<const volume::BrickSource> source;
+        std::shared_ptr<volume::BrickCache> cache; ///< bricks around the cursor, so that dragging it decodes few
+    };
+    std::shared_ptr<State> state = std::make_shared<State>();
+    std::vector<volume::Channel> channels;
+
+    /// Interpolated value of a channel at the cursor; nothing where it is absent or not yet read.
+    std::optional<double> value(const std::string& channel) const;
+};
+
+/// Starts reading if the cursor or time is new. Headless, reads at once.
+void updateReadout(ViewContext& context, Readout& readout);
+
+/// Table of position, index and values, with a button that copies it; without room for a table (compact) the values in
+/// running lines.
+void drawReadout(ViewContext& context, const Readout& readout, bool compact = false);
+/// Pixels that the table needs.
+float readoutHeight(const Readout& readout);
+
+/// The table as texts: parameter with unit, value, nearest and, where a label says regions, the region that the point
+/// lies in (of a parameter whose regions are kept apart, by their label).
+std::vector<std::string> readoutHeads(const volume::DatasetInfo& info);
+std::vector<std::vector<std::string>> readoutRows(const volume::DatasetInfo& info, const Readout& readout);
+
+/// The same as comma-separated text: parameter, unit, interpolated, nearest and, where a label says it, region; absent
+/// values are empty.
+std::string readoutCsv(const Session& session, const volume::DatasetInfo& info, const Readout& readout);
+
+} // namespace tessera::app

@@ -1,0 +1,20 @@
+#pragma once
+
+#include "app/queries/flow_feed.h"
+#include "app/queries/surface_feed.h"
+
+/// What a 3D view draws of a session: its scene with everything that is made outside of the renderer.
+namespace tessera::app {
+
+class SceneFeed {
+public:
+    /// The session's scene with the theme's colours and the geometry of its layers, as far as it is made. Sets
+    /// context.busy while better shapes are on their way. `moving`: take what draws fast.
+    vis::Scene get(ViewContext& context, const std::string& pane, bool moving);
+
+private:
+    SurfaceFeed surfaces_;
+    FlowFeed flows_;
+};
+
+} // namespace tessera::app

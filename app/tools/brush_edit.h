@@ -1,0 +1,68 @@
+#pragma once
+
+#include "app/pane/plot.h"
+#include "app/session/session.h"
+#include "vis/scene/selection.h"
+
+#include <imgui.h>
+#include <string>
+
+/// Making and editing brushes with the mouse, the same in scatterplots (two channels) and histograms (one).
+namespace tessera::app {
+
+/// What a plot shows on its axes; `y` is empty for a histogram.
+struct PlotChannels {
+    std::string x, y;
+    bool operator==(const PlotChannels&) const = default;
+};
+
+/// What a drag on an empty place of a plot makes.
+struct BrushPen {
+    BrushTool tool = BrushTool::Rectangle;
+    float softness = 0; ///< soft edge of new brushes, as a share of their width
+};
+
+/// The drag in progress. One per view, since only one mouse drags.
+struct BrushDrag {
+    bool active = false;
+    bool made = false;       ///< the drag creates the brush, so releasing it too small takes it back
+    PlotChannels plot;       ///< where it began
+    int brush = -1;          ///< index in the selection, -1 until the mouse has moved far enough
+    int edges = 0;           ///< what is held: bits of BrushEdge, 0 = the whole brush
+    glm::dvec2 start{0};     ///< values where the button went down
+    vis::Selection original; ///< before the drag: Esc goes back to it
+};
+
+enum BrushEdge { kLeftEdge = 1, kRightEdge = 2, kBottomEdge = 4, kTopEdge = 8 };
+
+/// True if the brush looks at axes of the plot alone: then it is drawn and edited there.
+bool brushFits(const vis::Brush& brush, const PlotChannels& plot);
+
+/// The brush under a point and which of its edges, -1 if there is none; the last made lies on top.
+struct BrushHit {
+    int brush = -1, edges = 0;
+};
+BrushHit hitBrush(const vis::Selection& selection, const PlotFrame& frame, const PlotChannels& plot, ImVec2 at);
+
+/// Handles the mouse on a plot whose InvisibleButton (left and right) was the last ImGui item; returns true when the
+/// selection changed. Left drag on the plot makes a brush, replacing those of this very plot; Shift keeps them and adds
+/// ("or"), Ctrl keeps them and takes away ("minus"); dragging a brush moves it, its edges and corners resize it; Esc
+/// takes the drag back; right click removes the brush under the mouse, or all of them where there is none.
+bool editBrushes(BrushDrag& drag, vis::Selection& selection, const PlotFrame& frame, const PlotChannels& plot,
+                 const BrushPen& pen);
+
+/// Outlines of the brushes that fit the plot in their colours, soft edges as a fainter outer line, numbers as in the
+/// list of brushes.
+void drawBrushes(ImDrawList& draw, const vis::Selection& selection, const PlotFrame& frame, const PlotChannels& plot);
+
+/// `base`, numbered when the selection has a brush of that name.
+std::string newBrushName(const vis::Selection& selection, const std::string& base);
+/// A colour that no brush of the selection has yet, while there are some.
+glm::vec3 newBrushColor(const vis::Selection& selection);
+/// A brush's colour on the theme's background.
+ImU32 brushColor(const vis::Brush& brush, float alpha = 1);
+/// The colour that stands for what plots mark: that of the only brush that adds to the selection, of the only lens that
+/// marks where nothing is brushed, and a common one for several.
+ImU32 focusColor(const Session& session);
+
+} // namespace tessera::app

@@ -1,0 +1,289 @@
+#include "app/tools/brush_list.h"
+
+#include "app/pane/view_parts.h"
+#include "app/tools/brush_edit.h"
+#include "app/tools/lens_list.h"
+#include "app/tools/space_handles.h"
+#include "app/ui/ticks.h"
+#include "app/ui/widgets.h"
+
+#include <algorithm>
+#include <cmath>
+#include <imgui_stdlib.h>
+#include <utility>
+
+namespace tessera::app {
+
+namespace {
+
+constexpr int kParts = 48; ///< of a circle
+
+/// One line that says what a region holds.
+std::string regionText(const volume::DatasetInfo& info, const vis::Region& region) {
+    if (const auto* range = std::get_if<vis::RangeRegion>(&region)) {
+        std::string text;
+        for (const vis::BrushInterval& interval : range->intervals) {
+            const auto channel = info.findChannel(interval.channel);
+            if (!text.empty()) text += ", ";
+            if (!channel) {
+                text += interval.channel + " (missing)";
+                continue;
+            }
+            const volume::Channel own = info.channels()[static_cast<std::size_t>(*channel)];
+            const Range all = info.channelRange(own);
+            const double digits = (all.hi - all.lo) / 1000;
+            text += interval.channel + "  " + formatNumber(interval.lo, digits) + " .. " +
+                    formatQuantity(interval.hi, own.unit, digits);
+        }
+        return text.empty() ? "everything" : text;
+    }
+    if (const auto* ellipse = std::get_if<vis::EllipseRegion>(&region))
+        return "ellipse in " + ellipse->x + " \u00d7 " + ellipse->y;
+    if (const auto* lasso = std::get_if<vis::LassoRegion>(&region))
+        return "lasso in " + lasso->x + " \u00d7 " + lasso->y + ", " + std::to_string(lasso->points.size()) +
+               " corners";
+    if (const auto* lens = std::get_if<vis::LensRegion>(&region))
+        return lens->lens.empty() ? "all lenses that mark" : "inside the lens " + lens->lens;
+    const bool box = std::holds_alternative<vis::BoxRegion>(region);
+    const glm::dvec3 radius =
+        box ? std::get<vis::BoxRegion>(region).radius : std::get<vis::SphereRegion>(region).radius;
+    std::string text = box ? "box" : "sphere";
+    const LengthUnit unit = suitableLength(info.lengthUnit, 2 * std::max({radius.x, radius.y, radius.z}));
+    for (int axis = 0; axis < 3; ++axis) {
+        const double size = 2 * radius[axis] * unit.perUnit;
+        text += (axis ? " \u00d7 " : "  ") + formatNumber(size, size / 50); // two or three digits
+    }
+    return text + " " + prettyUnit(unit.name);
+}
+
+/// How a brush meets the ones before it, as a letter-wide choice.
+void chooseCombine(vis::Brush& brush) {
+    static constexpr const char* kWords[] = {"and", "or", "minus"};
+    ImGui::SetNextItemWidth(em() * 4.2f);
+    if (ImGui::BeginCombo("##combine", kWords[static_cast<std::size_t>(brush.combine)])) {
+        for (int i = 0; i < 3; ++i)
+            if (ImGui::Selectable(kWords[i], static_cast<int>(brush.combine) == i))
+                brush.combine = static_cast<vis::BrushCombine>(i);
+        ImGui::EndCombo();
+    }
+    if (ImGui::IsItemHovered())
+        tooltip("How it meets the brushes above: and = where both hold, or = where either holds, minus = without this");
+}
+
+/// Numbers that make no sense are turned into the nearest that do.
+void mend(vis::Region& region) {
+    if (auto* range = std::get_if<vis::RangeRegion>(&region))
+        for (vis::BrushInterval& interval : range->intervals) {
+            if (interval.hi < interval.lo) std::swap(interval.lo, interval.hi);
+            interval.soft = std::max(0.0, interval.soft);
+        }
+    const auto positive = [](auto& radius) {
+        for (int i = 0; i < radius.length(); ++i)
+            if (!(radius[i] > 0)) radius[i] = 1e-12;
+    };
+    if (auto* ellipse = std::get_if<vis::EllipseRegion>(&region)) positive(ellipse->radius);
+    if (auto* sphere = std::get_if<vis::SphereRegion>(&region)) positive(sphere->radius);
+    if (auto* box = std::get_if<vis::BoxRegion>(&region)) positive(box->radius);
+}
+
+/// One brush; true when it is to be removed.
+bool drawBrush(ViewContext& context, vis::Brush& brush, std::size_t index) {
+    const volume::DatasetInfo& info = context.source->info();
+    const WidgetContext widgets{.info = &info};
+    ImGui::Checkbox("##enabled", &brush.enabled);
+    if (ImGui::IsItemHovered()) tooltip("Takes part in the selection");
+    ImGui::SameLine(0, em() * 0.3f);
+    ImGui::ColorEdit3("##color", &brush.color.x,
+                      ImGuiColorEditFlags_NoInputs | ImGuiColorEditFlags_NoLabel | ImGuiColorEditFlags_NoTooltip);
+    if (ImGui::IsItemHovered()) tooltip(("Colour of brush " + std::to_string(index + 1) + " in the plots").c_str());
+    ImGui::SameLine(0, em() * 0.3f);
+    chooseCombine(brush);
+    ImGui::SameLine(0, em() * 0.3f);
+    const float buttons = ImGui::GetFrameHeight() * 2 + em() * 0.9f;
+    ImGui::SetNextItemWidth(std::max(em() * 3, ImGui::GetContentRegionAvail().x - buttons));
+    ImGui::InputText("##name", &brush.name);
+    ImGui::SameLine(0, em() * 0.3f);
+    if (iconButton(context, "invert", icons::kInvert, "Select what lies outside", true, brush.inverted))
+        brush.inverted = !brush.inverted;
+    ImGui::SameLine(0, em() * 0.2f);
+    const bool removed = iconButton(context, "delete", icons::kTrash, "Remove this brush");
+    ImGui::Indent(em() * 1.6f);
+    const std::string text = std::to_string(index + 1) + "  " + (brush.inverted ? "not " : "") +
+                             regionText(info, brush.region) + "###region";
+    if (ImGui::TreeNodeEx(text.c_str(), ImGuiTreeNodeFlags_SpanAvailWidth)) {
+        if (auto* range = std::get_if<vis::RangeRegion>(&brush.region)) {
+            for (std::size_t k = 0; k < range->intervals.size(); ++k) {
+                ImGui::PushID(static_cast<int>(k));
+                drawDescribed(range->intervals[k], widgets);
+                ImGui::PopID();
+            }
+        } else if (auto* lens = std::get_if<vis::LensRegion>(&brush.region)) {
+            drawLabel(widgets, "Lens", "Lens whose inside is brushed, wherever it is");
+            chooseLens("##lens", context.session, lens->lens, "all that mark");
+        } else {
+            std::visit([&](auto& region) { drawDescribed(region, widgets); }, brush.region);
+        }
+        mend(brush.region);
+        ImGui::TreePop();
+    }
+    ImGui::Unindent(em() * 1.6f);
+    return removed;
+}
+
+void addAtCursor(ViewContext& context, bool box) {
+    vis::Selection& selection = context.session.selection;
+    vis::Brush brush = spaceBrush(context.session, context.source->info(), box);
+    brush.name = newBrushName(selection, brush.name);
+    brush.color = newBrushColor(selection);
+    // Two places are seldom one within the other: together they are what either holds.
+    const bool beside = std::any_of(selection.brushes.begin(), selection.brushes.end(), [](const vis::Brush& other) {
+        return other.enabled && (std::holds_alternative<vis::SphereRegion>(other.region) ||
+                                 std::holds_alternative<vis::BoxRegion>(other.region));
+    });
+    if (beside) brush.combine = vis::BrushCombine::Or;
+    selection.brushes.push_back(std::move(brush));
+}
+
+/// Centre and radius of a brush in space.
+struct SpaceShape {
+    bool box = false;
+    glm::dvec3 center{0}, radius{1};
+};
+std::optional<SpaceShape> spaceShape(const vis::Brush& brush) {
+    if (const auto* sphere = std::get_if<vis::SphereRegion>(&brush.region))
+        return SpaceShape{false, sphere->center, sphere->radius};
+    if (const auto* box = std::get_if<vis::BoxRegion>(&brush.region)) return SpaceShape{true, box->center, box->radius};
+    return std::nullopt;
+}
+
+/// Gives each visible volume a function of its own that hides nothing.
+void makeOpaque(Session& session) {
+    for (vis::Layer& layer : session.layers) {
+        const auto* volume = std::get_if<vis::VolumeLayer>(&layer.technique);
+        if (!volume || !layer.visible || volume->style != vis::VolumeStyle::Composite) continue;
+        if (layer.transfer.empty()) {
+            std::string name = layer.name;
+            while (name.empty() || session.transfer.contains(name)) name += "'";
+            session.transfer[name] = transferOf(std::as_const(session), volume->channel);
+            layer.transfer = name;
+        }
+        session.transfer[layer.transfer].opacity = {{0, 0.6f}, {1, 0.6f}};
+    }
+}
+
+} // namespace
+
+void drawBrushList(ViewContext& context) {
+    vis::Selection& selection = context.session.selection;
+    int removed = -1;
+    for (std::size_t i = 0; i < selection.brushes.size(); ++i) {
+        ImGui::PushID(static_cast<int>(i));
+        if (drawBrush(context, selection.brushes[i], i)) removed = static_cast<int>(i);
+        ImGui::PopID();
+    }
+    if (removed >= 0) selection.brushes.erase(selection.brushes.begin() + removed);
+    if (selection.brushes.empty()) ImGui::TextDisabled("No brushes: drag in a plot to select.");
+    if (const std::string together = combinationText(selection); !together.empty()) {
+        ImGui::PushTextWrapPos();
+        ImGui::TextDisabled("Selected: %s", together.c_str());
+        ImGui::PopTextWrapPos();
+    }
+    const auto button = [](const char* text, bool first = false) { // beside the last one, or below where it is narrow
+        const float right = ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x;
+        const ImGuiStyle& style = ImGui::GetStyle();
+        const float width = ImGui::CalcTextSize(text).x + 2 * style.FramePadding.x;
+        if (!first && ImGui::GetItemRectMax().x + style.ItemSpacing.x + width <= right) ImGui::SameLine();
+        return ImGui::SmallButton(text);
+    };
+    if (button("Sphere at cursor", true)) addAtCursor(context, false);
+    if (button("Box at cursor")) addAtCursor(context, true);
+    if (!context.session.lenses.empty() && button("Inside the lens")) {
+        vis::Brush brush;
+        brush.name = newBrushName(selection, context.session.lenses.back().name);
+        brush.color = newBrushColor(selection);
+        brush.region = vis::LensRegion{context.session.lenses.back().name};
+        selection.brushes.push_back(std::move(brush));
+    }
+    if (!selection.brushes.empty() && button("Clear all")) selection.brushes.clear();
+    if (selection.active() && button("Make it opaque")) makeOpaque(context.session);
+    if (selection.active() && ImGui::IsItemHovered())
+        tooltip("The volumes become equally opaque everywhere: what is selected shows, whatever the transfer function "
+                "hides, and the rest fades");
+}
+
+std::string combinationText(const vis::Selection& selection) {
+    std::string text;
+    int count = 0;
+    bool either = false;
+    for (std::size_t i = 0; i < selection.brushes.size(); ++i) {
+        const vis::Brush& brush = selection.brushes[i];
+        if (!brush.enabled) continue;
+        either = either || brush.combine == vis::BrushCombine::Or;
+        static constexpr const char* kWords[] = {" and ", " or ", " without "};
+        if (count > 1 && text.find(' ') != std::string::npos) text = "(" + text + ")";
+        // The first one meets everything.
+        const bool taken = brush.inverted != (count == 0 && brush.combine == vis::BrushCombine::Minus);
+        const std::string own = (taken ? "not " : "") + std::to_string(i + 1);
+        text = count > 0 ? text + kWords[static_cast<std::size_t>(brush.combine)] + own : own;
+        ++count;
+    }
+    return count < 2 ? std::string() : either ? text : text + "; Shift in a plot adds (or), Ctrl takes away (minus)";
+}
+
+vis::Brush spaceBrush(const Session& session, const volume::DatasetInfo& info, bool box) {
+    const glm::dvec3 size = info.bounds.size() * session.stretch;
+    const double radius = std::max({size.x, size.y, size.z}) / 12;
+    const glm::dvec3 radii = radius / session.stretch;
+    vis::Brush brush;
+    brush.name = box ? "box" : "sphere";
+    if (box)
+        brush.region = vis::BoxRegion{.center = session.cursor, .radius = radii};
+    else
+        brush.region = vis::SphereRegion{.center = session.cursor, .radius = radii, .soft = 0.1};
+    return brush;
+}
+
+void drawBrushMenu(ViewContext& context) {
+    if (ImGui::MenuItem("Brush a sphere at the cursor")) addAtCursor(context, false);
+    if (ImGui::MenuItem("Brush a box at the cursor")) addAtCursor(context, true);
+    if (ImGui::MenuItem("Clear brushes", "Esc", false, !context.session.selection.brushes.empty()))
+        context.session.selection.brushes.clear();
+}
+
+void drawSpaceBrushes(ImDrawList& draw, const SpaceFrame& frame, const vis::Selection& selection) {
+    for (const vis::Brush& brush : selection.brushes) {
+        const auto shape = spaceShape(brush);
+        if (!shape) continue;
+        const ImU32 color = brushColor(brush, brush.enabled ? 0.8f : 0.3f);
+        for (const auto& [a, b] : shape->box ? boxWires(shape->center - shape->radius, shape->center + shape->radius)
+                                             : ballWires(shape->center, shape->radius)) {
+            const auto from = frame.pixel(a), to = frame.pixel(b);
+            if (from && to) draw.AddLine(*from, *to, color, std::max(1.0f, em() * 0.08f));
+        }
+    }
+}
+
+void drawBrushSections(ImDrawList& draw, const PlotFrame& frame, const vis::Selection& selection, int right, int up,
+                       int normal, double at, glm::dvec2 perUnit) {
+    for (const vis::Brush& brush : selection.brushes) {
+        const auto shape = spaceShape(brush);
+        if (!shape) continue;
+        const double away = std::abs(at - shape->center[normal]) / shape->radius[normal];
+        if (away > 1) continue;
+        const double share = shape->box ? 1 : std::sqrt(1 - away * away);
+        const ImU32 color = brushColor(brush, brush.enabled ? 0.9f : 0.35f);
+        std::vector<ImVec2> outline;
+        const int parts = shape->box ? 4 : kParts;
+        for (int i = 0; i < parts; ++i) {
+            const double angle = 2 * 3.14159265358979 * (i + 0.5) / parts;
+            const double reach = shape->box ? std::sqrt(2.0) : share;
+            outline.push_back(
+                frame.pixel((shape->center[right] + shape->radius[right] * reach * std::cos(angle)) * perUnit.x,
+                            (shape->center[up] + shape->radius[up] * reach * std::sin(angle)) * perUnit.y));
+        }
+        draw.AddPolyline(outline.data(), static_cast<int>(outline.size()), color, ImDrawFlags_Closed,
+                         std::max(1.0f, em() * 0.1f));
+    }
+}
+
+} // namespace tessera::app

@@ -1,0 +1,30 @@
+#pragma once
+
+#include "app/pane/axes3d.h"
+#include "app/pane/view_context.h"
+
+/// Brushes outside of the plots: their list, and those that lie in space.
+namespace tessera::app {
+
+/// Every brush with its colour, name, switches and numbers, and buttons that add brushes in space at the cursor.
+void drawBrushList(ViewContext& context);
+
+/// What the enabled brushes hold together, by their numbers: "(1 and 2) or 3", with a hint how to join them otherwise
+/// where they are only narrowed down; "" for fewer than two.
+std::string combinationText(const vis::Selection& selection);
+
+/// A ball or box around the cursor that looks a sixth of the shown box wide, whatever the stretch.
+vis::Brush spaceBrush(const Session& session, const volume::DatasetInfo& info, bool box);
+
+/// Items of a view's menu that place a brush at the cursor and clear all brushes.
+void drawBrushMenu(ViewContext& context);
+
+/// Wire outlines of the brushes in space.
+void drawSpaceBrushes(ImDrawList& draw, const SpaceFrame& frame, const vis::Selection& selection);
+
+/// Their sections with a plane perpendicular to an axis at `at`; the frame's values are positions along the axes
+/// `right` and `up` times the factors.
+void drawBrushSections(ImDrawList& draw, const PlotFrame& frame, const vis::Selection& selection, int right, int up,
+                       int normal, double at, glm::dvec2 perUnit);
+
+} // namespace tessera::app

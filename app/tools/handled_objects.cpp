@@ -1,0 +1,201 @@
+#include "app/tools/brush_edit.h"
+#include "app/tools/profile_line.h"
+#include "app/tools/space_handles.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/common.hpp>
+
+namespace tessera::app {
+
+namespace {
+
+constexpr double kLeastRadius = 1e-4; ///< share of the data's edge that no radius becomes smaller than
+
+/// The middle of something, and the ends of its three radii.
+std::vector<SpaceHandle> radialHandles(glm::dvec3 center, glm::dvec3 radius) {
+    std::vector<SpaceHandle> handles{{.at = center, .whole = true}};
+    for (int axis = 0; axis < 3; ++axis) {
+        glm::dvec3 end = center;
+        end[axis] += radius[axis];
+        handles.push_back({.at = end, .axis = axis});
+    }
+    return handles;
+}
+
+/// The axis across which seeds of a plane lie in the middle (volume/flow/seeds.cpp).
+int thinnest(glm::dvec3 edges) {
+    int axis = 0;
+    for (int i = 1; i < 3; ++i)
+        if (edges[i] < edges[axis]) axis = i;
+    return axis;
+}
+
+vis::FlowLayer& flowAt(Session& session, std::size_t layer) {
+    return std::get<vis::FlowLayer>(session.layers[layer].technique);
+}
+
+/// Moves a rake as it is; it stays in the box.
+void moveRake(vis::FlowLayer& flow, glm::vec3 middle) {
+    const glm::vec3 half = glm::abs(flow.to - flow.from) * 0.5f;
+    const glm::vec3 by = glm::clamp(middle, half, glm::max(half, 1.0f - half)) - (flow.from + flow.to) * 0.5f;
+    flow.from = glm::clamp(flow.from + by, glm::vec3(0), glm::vec3(1));
+    flow.to = glm::clamp(flow.to + by, glm::vec3(0), glm::vec3(1));
+}
+
+void addRake(std::vector<HandledObject>& objects, const Session& session, const volume::DatasetInfo& info,
+             std::size_t index) {
+    const vis::Layer& layer = session.layers[index];
+    const auto* flow = std::get_if<vis::FlowLayer>(&layer.technique);
+    const glm::dvec3 size = info.bounds.size();
+    if (!flow || !layer.visible || !(std::min({size.x, size.y, size.z}) > 0)) return;
+    const auto physical = [&](glm::dvec3 share) { return info.bounds.lo + share * size; };
+    const glm::dvec3 from = physical(flow->from), to = physical(flow->to), middle = 0.5 * (from + to);
+    HandledObject object;
+    object.key = "rake " + std::to_string(index);
+    object.name = layer.name;
+    object.color = plotColors().text;
+    object.outlined = true;
+    const auto share = [lo = info.bounds.lo, size](glm::dvec3 place) { return glm::vec3((place - lo) / size); };
+    const auto whole = [index, share](Session& edited, glm::dvec3 place) {
+        moveRake(flowAt(edited, index), share(place));
+    };
+    if (flow->seeds == volume::SeedShape::Sphere) {
+        object.handles = radialHandles(middle, glm::abs(to - from) * 0.5);
+        object.lines = ballWires(middle, glm::abs(to - from) * 0.5);
+        object.move = [index, share, whole](Session& edited, std::size_t handle, glm::dvec3 place) {
+            if (handle == 0) return whole(edited, place);
+            vis::FlowLayer& own = flowAt(edited, index);
+            const auto axis = static_cast<int>(handle) - 1;
+            const float center = 0.5f * (own.from[axis] + own.to[axis]),
+                        radius = std::max(std::abs(share(place)[axis] - center), float(kLeastRadius));
+            own.from[axis] = std::max(0.0f, center - radius);
+            own.to[axis] = std::min(1.0f, center + radius);
+        };
+    } else if (flow->seeds == volume::SeedShape::Plane) {
+        const int across = thinnest(glm::abs((to - from) * session.stretch)), u = (across + 1) % 3,
+                  v = (across + 2) % 3;
+        object.handles = {{.at = middle, .whole = true}};
+        std::vector<glm::dvec3> corners;
+        for (const int corner : {0, 1, 3, 2}) { // around
+            glm::dvec3 at = middle;
+            at[u] = corner & 1 ? to[u] : from[u];
+            at[v] = corner & 2 ? to[v] : from[v];
+            object.handles.push_back({.at = at});
+            corners.push_back(at);
+        }
+        for (std::size_t i = 0; i < 4; ++i) object.lines.emplace_back(corners[i], corners[(i + 1) % 4]);
+        object.move = [index, share, across, u, v](Session& edited, std::size_t handle, glm::dvec3 place) {
+            vis::FlowLayer& own = flowAt(edited, index);
+            const glm::vec3 at = share(place);
+            if (handle == 0) { // a plane has no thickness once it is moved
+                own.from[across] = own.to[across] = at[across];
+                return moveRake(own, at);
+            }
+            static constexpr int kCorner[] = {0, 1, 3, 2};
+            const int corner = kCorner[handle - 1];
+            (corner & 1 ? own.to : own.from)[u] = at[u];
+            (corner & 2 ? own.to : own.from)[v] = at[v];
+        };
+    } else {
+        const bool everything = flow->from == glm::vec3(0) && flow->to == glm::vec3(1);
+        object.handles = {{.at = from}, {.at = to}};
+        if (!everything) object.handles.push_back({.at = middle, .whole = true}); // else there is no room
+        if (flow->seeds == volume::SeedShape::Line)
+            object.lines = {{from, to}};
+        else
+            object.lines = boxWires(from, to);
+        object.move = [index, share, whole](Session& edited, std::size_t handle, glm::dvec3 place) {
+            if (handle == 2) return whole(edited, place);
+            vis::FlowLayer& own = flowAt(edited, index);
+            (handle == 0 ? own.from : own.to) = share(place);
+        };
+    }
+    objects.push_back(std::move(object));
+}
+
+void addBrush(std::vector<HandledObject>& objects, const Session& session, const volume::DatasetInfo& info,
+              std::size_t index) {
+    const vis::Brush& brush = session.selection.brushes[index];
+    const auto* sphere = std::get_if<vis::SphereRegion>(&brush.region);
+    const auto* box = std::get_if<vis::BoxRegion>(&brush.region);
+    if (!brush.enabled || (!sphere && !box)) return;
+    HandledObject object;
+    object.key = "brush " + std::to_string(index);
+    object.name = brush.name;
+    object.color = brushColor(brush);
+    object.handles = sphere ? radialHandles(sphere->center, sphere->radius) : radialHandles(box->center, box->radius);
+    object.move = [index, size = info.bounds.size()](Session& edited, std::size_t handle, glm::dvec3 place) {
+        const auto change = [&](auto& region) {
+            if (handle == 0) {
+                region.center = place;
+                return;
+            }
+            const auto axis = static_cast<int>(handle) - 1;
+            region.radius[axis] = std::max(std::abs(place[axis] - region.center[axis]), kLeastRadius * size[axis]);
+        };
+        vis::Region& region = edited.selection.brushes[index].region;
+        if (auto* ball = std::get_if<vis::SphereRegion>(&region)) change(*ball);
+        if (auto* cuboid = std::get_if<vis::BoxRegion>(&region)) change(*cuboid);
+    };
+    objects.push_back(std::move(object));
+}
+
+void addProfile(std::vector<HandledObject>& objects, const Session& session, const volume::DatasetInfo& info,
+                const std::string& pane) {
+    const auto* profile = std::get_if<ProfileView>(&session.views.at(pane));
+    if (!profile) return;
+    HandledObject object;
+    object.key = "profile " + pane;
+    object.name = "line profile";
+    object.color = plotColors().text;
+    const std::vector<glm::dvec3> corners = profileCorners(*profile, session, info.bounds);
+    for (const glm::dvec3& corner : corners) object.handles.push_back({.at = corner});
+    // A line along an axis becomes one of its own once an end is dragged.
+    object.move = [pane, corners](Session& edited, std::size_t handle, glm::dvec3 place) {
+        auto& own = std::get<ProfileView>(edited.views.at(pane));
+        if (own.points.size() < 2) own.points = corners;
+        if (handle < own.points.size()) own.points[handle] = place;
+    };
+    objects.push_back(std::move(object));
+}
+
+/// The plane that is shown at all times, in the data that it is cut from.
+void addCut(std::vector<HandledObject>& objects, const Session& session, const volume::DatasetInfo& info) {
+    const auto& cut = session.data.timeAxis;
+    if (!cut || timeAxisOf(session, info)) return;
+    const int axis = static_cast<int>(cut->axis), right = (axis + 1) % 3, up = (axis + 2) % 3;
+    const glm::dvec3 lo = info.bounds.lo, size = info.bounds.size();
+    HandledObject object;
+    object.key = "cut";
+    object.name = "shown at all times";
+    object.color = axisColor(axis);
+    object.outlined = true;
+    glm::dvec3 middle = info.bounds.center();
+    middle[axis] = lo[axis] + cut->place * size[axis];
+    object.handles = {{.at = middle, .axis = axis}};
+    const auto corner = [&](int n) { // around the plane
+        glm::dvec3 at = middle;
+        at[right] = n % 4 == 1 || n % 4 == 2 ? info.bounds.hi[right] : lo[right];
+        at[up] = n % 4 >= 2 ? info.bounds.hi[up] : lo[up];
+        return at;
+    };
+    for (int n = 0; n < 4; ++n) object.lines.emplace_back(corner(n), corner(n + 1));
+    object.move = [axis, lo, size](Session& edited, std::size_t, glm::dvec3 to) {
+        if (size[axis] > 0) edited.data.timeAxis->place = std::clamp((to[axis] - lo[axis]) / size[axis], 0.0, 1.0);
+    };
+    objects.push_back(std::move(object));
+}
+
+} // namespace
+
+std::vector<HandledObject> handledObjects(const Session& session, const volume::DatasetInfo& info) {
+    std::vector<HandledObject> objects;
+    for (std::size_t i = 0; i < session.layers.size(); ++i) addRake(objects, session, info, i);
+    for (std::size_t i = 0; i < session.selection.brushes.size(); ++i) addBrush(objects, session, info, i);
+    for (const auto& [pane, view] : session.views) addProfile(objects, session, info, pane);
+    addCut(objects, session, info);
+    return objects;
+}
+
+} // namespace tessera::app

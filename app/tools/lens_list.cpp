@@ -1,0 +1,313 @@
+#include "app/tools/lens_list.h"
+
+#include "app/pane/view_parts.h"
+#include "app/ui/ticks.h"
+#include "app/ui/widgets.h"
+
+#include <algorithm>
+#include <imgui_stdlib.h>
+
+namespace tessera::app {
+
+namespace {
+
+/// How effects are called in menus, and what they do.
+struct EffectWords {
+    const char* name;
+    const char* help;
+};
+constexpr EffectWords kEffects[] = {
+    {"replace", "Inside, its own layers stand in for those below; without any, these are cut away"},
+    {"only this", "Only what lies inside stays"},
+    {"enhance", "What lies inside becomes denser"},
+    {"suppress", "What lies inside becomes faint and grey"},
+    {"magnify", "What lies in the middle becomes larger, as through a fisheye"},
+    {"brushes", "Brushes act inside alone; outside everything is in focus"},
+};
+static_assert(std::size(kEffects) == std::size(vis::kLensEffectNames));
+
+constexpr glm::vec3 kColors[] = {
+    {0.55f, 0.85f, 1.0f}, {1.0f, 0.76f, 0.42f}, {0.98f, 0.6f, 0.78f}, {0.66f, 0.92f, 0.58f}};
+
+std::string freeName(const Session& session, std::string wanted, std::size_t except) {
+    const std::string base = wanted;
+    const auto taken = [&] {
+        for (std::size_t i = 0; i < session.lenses.size(); ++i)
+            if (i != except && session.lenses[i].name == wanted) return true;
+        return false;
+    };
+    for (int number = 2; wanted.empty() || taken(); ++number)
+        wanted = (base.empty() ? "lens" : base) + " " + std::to_string(number);
+    return wanted;
+}
+
+std::string layersOf(const Session& session, const std::string& lens) {
+    std::string names;
+    for (const vis::Layer& layer : session.layers)
+        if (layer.lens == lens) names += (names.empty() ? "" : ", ") + layer.name;
+    return names;
+}
+
+/// Mean and range of every parameter inside of a lens.
+void drawStatistics(ViewContext& context, const std::string& pane, LensStatistics& statistics, const vis::Lens& lens) {
+    const volume::DatasetInfo& info = context.numbers->info();
+    const std::vector<int> shown = chosenChannels(info, {}, 12);
+    if (shown.empty() || !lens.enabled) return;
+    StatisticsWish wish;
+    wish.channels = shown;
+    const std::vector<volume::Channel> channels = info.channels();
+    for (const int channel : shown)
+        wish.ranges.push_back(paddedRange(info.channelRange(channels[static_cast<std::size_t>(channel)])));
+    wish.time = volume::timesAround(info.times, context.session.time);
+    wish.bins = 1;
+    wish.selection.brushes = {{.name = "", .color = {}, .region = vis::LensRegion{lens.name}}};
+    wish.lenses = lensSpace(context.session, info);
+    std::erase_if(wish.lenses.lenses, [&](const vis::PlacedLens& other) { return other.name != lens.name; });
+    const auto result = statistics.feeds[lens.name].get(context, pane + " lens " + lens.name, wish);
+    if (!result) {
+        ImGui::TextDisabled("Counting...");
+        return;
+    }
+    ImGui::TextDisabled("%s", originText(context, shown).c_str());
+    if (!ImGui::BeginTable("inside", 3, ImGuiTableFlags_RowBg | ImGuiTableFlags_SizingStretchProp)) return;
+    for (const char* name : {"Inside", "Mean", "Range"}) ImGui::TableSetupColumn(name);
+    tableHeader({"Inside", "Mean", "Range"}, 1);
+    for (std::size_t i = 0; i < shown.size() && i < result->statistics.channels.size(); ++i) {
+        const volume::Channel& channel = channels[static_cast<std::size_t>(shown[i])];
+        const volume::Summary& inside = result->statistics.channels[i].inside;
+        const Range range = info.channelRange(channel);
+        const double digits = (range.hi - range.lo) / 1000;
+        ImGui::TableNextRow();
+        ImGui::TableNextColumn();
+        ImGui::TextUnformatted(titleWithUnit(channel.name, channel.unit).c_str());
+        ImGui::TableNextColumn();
+        textRight(inside.samples > 0 ? formatNumber(inside.mean, digits) : "-");
+        ImGui::TableNextColumn();
+        textRight(inside.samples > 0 ? formatNumber(inside.min, digits) + " .. " + formatNumber(inside.max, digits)
+                                     : "-",
+                  true);
+    }
+    ImGui::EndTable();
+}
+
+void chooseEffect(vis::Lens& lens) {
+    const auto now = static_cast<std::size_t>(lens.effect);
+    ImGui::SetNextItemWidth(em() * 5.6f);
+    if (ImGui::BeginCombo("##effect", kEffects[now].name)) {
+        for (std::size_t i = 0; i < std::size(kEffects); ++i) {
+            if (ImGui::Selectable(kEffects[i].name, i == now)) lens.effect = static_cast<vis::LensEffect>(i);
+            if (ImGui::IsItemHovered()) tooltip(kEffects[i].help);
+        }
+        ImGui::EndCombo();
+    }
+    if (ImGui::IsItemHovered()) tooltip(kEffects[now].help);
+}
+
+constexpr const char* kLensPayload = "tessera-lens";
+
+enum class RowAction { None, Remove, Up };
+
+/// A grip in front of a lens: dragged onto another one it takes that one's place in the order. Returns the place of the
+/// lens that was dropped here, -1 for none.
+int drawGrip(const ViewContext& context, const vis::Lens& lens, std::size_t index) {
+    iconButton(context, "grip", {"\uf142", "::"}, "Drag to another lens: later ones lie over those before them");
+    if (ImGui::BeginDragDropSource()) {
+        const int from = static_cast<int>(index);
+        ImGui::SetDragDropPayload(kLensPayload, &from, sizeof from);
+        ImGui::TextUnformatted(lens.name.c_str());
+        ImGui::EndDragDropSource();
+    }
+    int dropped = -1;
+    if (ImGui::BeginDragDropTarget()) {
+        if (const ImGuiPayload* payload = ImGui::AcceptDragDropPayload(kLensPayload))
+            dropped = *static_cast<const int*>(payload->Data);
+        ImGui::EndDragDropTarget();
+    }
+    ImGui::SameLine(0, em() * 0.3f);
+    return dropped;
+}
+
+RowAction drawLens(ViewContext& context, const std::string& pane, LensStatistics& statistics, std::size_t index) {
+    Session& session = context.session;
+    vis::Lens& lens = session.lenses[index];
+    RowAction action = RowAction::None;
+    ImGui::Checkbox("##enabled", &lens.enabled);
+    if (ImGui::IsItemHovered()) tooltip("Acts and is seen");
+    ImGui::SameLine(0, em() * 0.3f);
+    ImGui::ColorEdit3("##color", &lens.color.x,
+                      ImGuiColorEditFlags_NoInputs | ImGuiColorEditFlags_NoLabel | ImGuiColorEditFlags_NoTooltip);
+    if (ImGui::IsItemHovered()) tooltip("Colour of its outline");
+    ImGui::SameLine(0, em() * 0.3f);
+    chooseEffect(lens);
+    ImGui::SameLine(0, em() * 0.3f);
+    const float buttons = ImGui::GetFrameHeight() * 3 + em() * 1.1f;
+    ImGui::SetNextItemWidth(std::max(em() * 3, ImGui::GetContentRegionAvail().x - buttons));
+    std::string name = lens.name;
+    if (ImGui::InputText("##name", &name) && !name.empty()) renameLens(session, index, name);
+    ImGui::SameLine(0, em() * 0.3f);
+    if (iconButton(context, "up", {"\uf062", "up"}, "Lay it under the one above", index > 0)) action = RowAction::Up;
+    ImGui::SameLine(0, em() * 0.2f);
+    if (iconButton(context, "invert", icons::kInvert, "Act outside instead of inside", true, lens.inverted))
+        lens.inverted = !lens.inverted;
+    ImGui::SameLine(0, em() * 0.2f);
+    if (iconButton(context, "delete", icons::kTrash, "Remove this lens; its layers are hidden"))
+        action = RowAction::Remove;
+    ImGui::Indent(em() * 1.6f);
+    const std::string inside = layersOf(session, lens.name);
+    const std::string text = std::string(vis::kLensShapeNames[static_cast<std::size_t>(lens.shape)]) +
+                             (inside.empty() ? "" : "  with " + inside) + "###lens";
+    if (ImGui::TreeNodeEx(text.c_str(), ImGuiTreeNodeFlags_SpanAvailWidth)) {
+        const WidgetContext widgets{.info = &context.source->info()};
+        vis::Lens edited = lens;
+        drawDescribed(edited, widgets);
+        if (edited.name != lens.name) {
+            renameLens(session, index, edited.name);
+            edited.name = lens.name;
+        }
+        lens = edited;
+        if (ImGui::SmallButton("To the cursor")) lens.center = session.cursor;
+        drawStatistics(context, pane, statistics, lens);
+        ImGui::TreePop();
+    }
+    ImGui::Unindent(em() * 1.6f);
+    return action;
+}
+
+} // namespace
+
+vis::Lens newLens(const Session& session, const volume::DatasetInfo& info, vis::LensEffect effect) {
+    const glm::dvec3 half = vis::worldFrame(info.bounds, session.stretch).halfSize;
+    const double middle = half.x + half.y + half.z - std::max({half.x, half.y, half.z}) -
+                          std::min({half.x, half.y, half.z}); // the second largest
+    vis::Lens lens;
+    lens.name = freeName(session, "lens", session.lenses.size());
+    lens.effect = effect;
+    lens.center = session.cursor;
+    lens.size = glm::vec3(static_cast<float>(std::clamp(0.8 * middle, 0.05, 0.3)));
+    lens.color = kColors[session.lenses.size() % std::size(kColors)];
+    return lens;
+}
+
+void addLensWith(Session& session, const volume::DatasetInfo& info, vis::Technique technique) {
+    const vis::Lens lens = newLens(session, info, vis::LensEffect::Replace);
+    vis::Layer layer;
+    layer.name = std::visit([](const auto& own) { return own.channel; }, technique) + " in " + lens.name;
+    layer.technique = std::move(technique);
+    layer.lens = lens.name;
+    session.lenses.push_back(lens);
+    session.layers.push_back(std::move(layer));
+}
+
+void renameLens(Session& session, std::size_t index, const std::string& name) {
+    const std::string before = session.lenses[index].name, now = freeName(session, name, index);
+    session.lenses[index].name = now;
+    for (vis::Layer& layer : session.layers)
+        if (!before.empty() && layer.lens == before) layer.lens = now;
+    for (vis::Brush& brush : session.selection.brushes)
+        if (auto* region = std::get_if<vis::LensRegion>(&brush.region);
+            region && region->lens == before && !before.empty())
+            region->lens = now;
+}
+
+void moveLens(Session& session, std::size_t from, std::size_t to) {
+    if (from >= session.lenses.size() || to >= session.lenses.size()) return;
+    const vis::Lens moved = session.lenses[from];
+    session.lenses.erase(session.lenses.begin() + static_cast<std::ptrdiff_t>(from));
+    session.lenses.insert(session.lenses.begin() + static_cast<std::ptrdiff_t>(to), moved);
+}
+
+void removeLens(Session& session, std::size_t index) {
+    const std::string name = session.lenses[index].name;
+    session.lenses.erase(session.lenses.begin() + static_cast<std::ptrdiff_t>(index));
+    for (vis::Layer& layer : session.layers)
+        if (layer.lens == name) {
+            layer.lens.clear();
+            layer.visible = false;
+        }
+    std::erase_if(session.selection.brushes, [&](const vis::Brush& brush) {
+        const auto* region = std::get_if<vis::LensRegion>(&brush.region);
+        return region && region->lens == name && !name.empty();
+    });
+}
+
+void drawLensMenu(ViewContext& context) {
+    Session& session = context.session;
+    const volume::DatasetInfo& info = context.source->info();
+    const auto channels = info.channels();
+    const auto each = [&](const auto& add) {
+        for (const int channel : comparedChannels(info)) {
+            const volume::Channel& own = channels[static_cast<std::size_t>(channel)];
+            if (ImGui::MenuItem(own.name.c_str())) add(own);
+        }
+    };
+    if (ImGui::BeginMenu("Lens: another parameter")) {
+        each([&](const volume::Channel& channel) {
+            addLensWith(session, info, vis::VolumeLayer{.channel = channel.name});
+        });
+        ImGui::EndMenu();
+    }
+    if (ImGui::BeginMenu("Lens: an iso-surface")) {
+        each([&](const volume::Channel& channel) {
+            const Range range = info.channelRange(channel);
+            addLensWith(session, info, vis::IsoLayer{.channel = channel.name, .value = 0.5 * (range.lo + range.hi)});
+        });
+        ImGui::EndMenu();
+    }
+    static constexpr const char* kItems[] = {"Lens: cut away", "Lens: only this", "Lens: enhance",
+                                             "Lens: suppress", "Lens: magnify",   "Lens: brushes inside"};
+    for (std::size_t i = 0; i < std::size(kItems); ++i)
+        if (ImGui::MenuItem(kItems[i])) {
+            session.lenses.push_back(newLens(session, info, static_cast<vis::LensEffect>(i)));
+            if (static_cast<vis::LensEffect>(i) == vis::LensEffect::Magnify)
+                session.lenses.back().shape = vis::LensShape::Disc;
+        }
+}
+
+bool chooseLens(const char* id, const Session& session, std::string& value, const char* none) {
+    bool changed = false;
+    if (!ImGui::BeginCombo(id, value.empty() ? none : ("inside " + value).c_str())) return false;
+    const auto offer = [&](const char* text, const std::string& name) {
+        if (!ImGui::Selectable(text, value == name)) return;
+        changed = value != name;
+        value = name;
+    };
+    offer(none, "");
+    for (const vis::Lens& lens : session.lenses) offer(("inside " + lens.name).c_str(), lens.name);
+    ImGui::EndCombo();
+    return changed;
+}
+
+void drawLensList(ViewContext& context, const std::string& pane, LensStatistics& statistics) {
+    Session& session = context.session;
+    RowAction action = RowAction::None;
+    std::size_t which = 0, from = 0, to = 0;
+    for (std::size_t i = 0; i < session.lenses.size(); ++i) {
+        ImGui::PushID(static_cast<int>(i));
+        if (const int dropped = drawGrip(context, session.lenses[i], i); dropped >= 0) {
+            from = static_cast<std::size_t>(dropped);
+            to = i;
+        }
+        if (const RowAction own = drawLens(context, pane, statistics, i); own != RowAction::None) {
+            action = own;
+            which = i;
+        }
+        ImGui::PopID();
+    }
+    if (action == RowAction::Remove) removeLens(session, which);
+    if (action == RowAction::Up) std::swap(session.lenses[which], session.lenses[which - 1]);
+    if (action == RowAction::None && from != to) moveLens(session, from, to);
+    if (session.lenses.empty()) ImGui::TextDisabled("No lenses: add one at the linked cursor.");
+    if (iconButton(context, "add lens", icons::kPlus, "Add a lens at the cursor")) ImGui::OpenPopup("add lens");
+    if (ImGui::BeginPopup("add lens")) {
+        drawLensMenu(context);
+        ImGui::EndPopup();
+    }
+    if (!session.lenses.empty()) {
+        ImGui::SameLine(0, em() * 0.8f);
+        ImGui::PushTextWrapPos(0);
+        ImGui::TextDisabled("Alt+drag moves, Alt+wheel resizes, F follows the mouse");
+        ImGui::PopTextWrapPos();
+    }
+}
+
+} // namespace tessera::app

@@ -1,0 +1,40 @@
+#pragma once
+
+#include "app/pane/view_context.h"
+#include "app/queries/statistics_feed.h"
+
+#include <map>
+
+/// The lenses outside of the pictures: their list with all their settings, and what they hold.
+namespace tessera::app {
+
+/// Statistics of the lenses that are unfolded.
+struct LensStatistics {
+    std::map<std::string, StatisticsFeed> feeds; ///< by lens
+};
+
+/// Every lens with its switches, settings, layers and numbers, and a button that adds one at the cursor.
+void drawLensList(ViewContext& context, const std::string& pane, LensStatistics& statistics);
+
+/// A lens of an effect around the cursor, with a name and colour of its own, that fits the shown box.
+vis::Lens newLens(const Session& session, const volume::DatasetInfo& info, vis::LensEffect effect);
+
+/// Adds a lens at the cursor in which a technique stands in for the other layers.
+void addLensWith(Session& session, const volume::DatasetInfo& info, vis::Technique technique);
+
+/// Gives a lens another name; what belongs to it follows.
+void renameLens(Session& session, std::size_t index, const std::string& name);
+
+/// Gives a lens another place in the order in which they lie over each other.
+void moveLens(Session& session, std::size_t from, std::size_t to);
+
+/// Takes a lens away; its layers are hidden.
+void removeLens(Session& session, std::size_t index);
+
+/// Items of a menu that add a lens.
+void drawLensMenu(ViewContext& context);
+
+/// A choice of lens; "" reads as `none`.
+bool chooseLens(const char* id, const Session& session, std::string& value, const char* none);
+
+} // namespace tessera::app

@@ -1,0 +1,48 @@
+#include "app/tools/profile_line.h"
+
+#include <algorithm>
+
+namespace tessera::app {
+
+namespace {
+
+/// Lines of all profiles through `pixel(position)`.
+template <class Pixel> void drawLines(ImDrawList& draw, const Session& session, const Pixel& pixel) {
+    const PlotColors colors = plotColors();
+    for (const auto& [pane, view] : session.views) {
+        const auto* profile = std::get_if<ProfileView>(&view);
+        if (!profile || profile->points.size() < 2) continue;
+        std::optional<ImVec2> last;
+        for (std::size_t i = 0; i < profile->points.size(); ++i) {
+            const std::optional<ImVec2> at = pixel(profile->points[i]);
+            if (last && at) draw.AddLine(*last, *at, colors.text, std::max(1.0f, em() * 0.12f));
+            if (at) draw.AddCircleFilled(*at, em() * (i == 0 ? 0.3f : 0.2f), colors.text);
+            last = at;
+        }
+    }
+}
+
+} // namespace
+
+std::vector<glm::dvec3> profileCorners(const ProfileView& view, const Session& session, const volume::Box& bounds) {
+    if (view.points.size() >= 2) return view.points;
+    const glm::dvec3 size = bounds.size();
+    const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+    glm::dvec3 from = glm::clamp(session.cursor, bounds.lo, bounds.hi), to = from;
+    from[axis] = bounds.lo[axis];
+    to[axis] = bounds.hi[axis];
+    return {from, to};
+}
+
+void drawProfileLines(ImDrawList& draw, const SpaceFrame& frame, const Session& session) {
+    drawLines(draw, session, [&](glm::dvec3 at) { return frame.pixel(at); });
+}
+
+void drawProfileLines(ImDrawList& draw, const PlotFrame& frame, const Session& session, int right, int up,
+                      glm::dvec2 perUnit) {
+    drawLines(draw, session, [&](glm::dvec3 at) {
+        return std::optional<ImVec2>(frame.pixel(at[right] * perUnit.x, at[up] * perUnit.y));
+    });
+}
+
+} // namespace tessera::app

@@ -1,0 +1,18 @@
+#pragma once
+
+#include "app/pane/axes3d.h"
+#include "app/pane/view_context.h"
+
+/// The lines of line-profile views as the views in space show them.
+namespace tessera::app {
+
+/// Corners of a profile's line: its own, or the longest axis through the cursor.
+std::vector<glm::dvec3> profileCorners(const ProfileView& view, const Session& session, const volume::Box& bounds);
+
+/// Every profile's line that has corners of its own, with a dot at each.
+void drawProfileLines(ImDrawList& draw, const SpaceFrame& frame, const Session& session);
+/// The same seen along an axis: the frame's values are positions along `right` and `up` times the factors.
+void drawProfileLines(ImDrawList& draw, const PlotFrame& frame, const Session& session, int right, int up,
+                      glm::dvec2 perUnit);
+
+} // namespace tessera::app

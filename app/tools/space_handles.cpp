@@ -1,0 +1,213 @@
+#include "app/tools/space_handles.h"
+
+#include "app/ui/keys.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/gtc/quaternion.hpp>
+#include <numbers>
+
+namespace tessera::app {
+
+namespace {
+
+constexpr int kCircleParts = 48; ///< of a circle
+
+using PixelOf = std::function<std::optional<ImVec2>(const SpaceHandle& handle)>;
+
+float pixelsApart(ImVec2 a, ImVec2 b) {
+    return std::hypot(a.x - b.x, a.y - b.y);
+}
+
+const HandledObject* findObject(const std::vector<HandledObject>& objects, const std::string& key) {
+    const auto found = std::find_if(objects.begin(), objects.end(), [&](const auto& o) { return o.key == key; });
+    return found == objects.end() ? nullptr : &*found;
+}
+
+/// The dot nearest to a pixel, later ones first; an end rather than the middle where both are as near, but for the end
+/// of a radius that points at the viewer: it lies on the middle and cannot be dragged along itself.
+void findHandle(HandleDrag& drag, const std::vector<HandledObject>& objects, const PixelOf& pixel, ImVec2 mouse) {
+    drag.object.clear();
+    float nearest = em() * 0.6f;
+    for (auto object = objects.rbegin(); object != objects.rend(); ++object)
+        for (std::size_t i = object->handles.size(); i-- > 0;) {
+            const auto at = pixel(object->handles[i]);
+            if (!at || pixelsApart(*at, mouse) >= nearest) continue;
+            const auto& first = object->handles.front();
+            const auto middle = first.whole && object->handles[i].axis >= 0 ? pixel(first) : std::nullopt;
+            if (middle && pixelsApart(*at, *middle) < 1) continue;
+            nearest = pixelsApart(*at, mouse);
+            drag.object = object->key;
+            drag.handle = i;
+        }
+}
+
+/// What both kinds of pictures share; `dragged` says where the held dot goes.
+bool editWith(HandleDrag& drag, Session& session, const volume::DatasetInfo& info, bool hovered, const PixelOf& pixel,
+              const std::function<glm::dvec3(glm::dvec3 from, ImVec2 mouse)>& dragged) {
+    const ImVec2 mouse = ImGui::GetIO().MousePos;
+    const std::vector<HandledObject> objects = handledObjects(session, info);
+    if (drag.active) {
+        const HandledObject* object = findObject(objects, drag.object);
+        if (!object || drag.handle >= object->handles.size()) {
+            drag = {};
+            return false;
+        }
+        if (pressed({.key = key::kEscape})) {
+            object->move(session, drag.handle, drag.before);
+            drag.active = false;
+            return true;
+        }
+        object->move(session, drag.handle, glm::clamp(dragged(drag.before, mouse), info.bounds.lo, info.bounds.hi));
+        if (!ImGui::IsMouseDown(ImGuiMouseButton_Left)) drag.active = false;
+        return true;
+    }
+    drag.object.clear();
+    if (!hovered) return false;
+    findHandle(drag, objects, pixel, mouse);
+    if (drag.object.empty()) return false;
+    ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeAll);
+    if (ImGui::IsMouseClicked(ImGuiMouseButton_Left)) {
+        drag.active = true;
+        drag.start = mouse;
+        drag.before = findObject(objects, drag.object)->handles[drag.handle].at;
+    }
+    return drag.active;
+}
+
+/// True where the object is the whole box of the data: its lines would only double those of the box.
+bool covers(const HandledObject& object, const volume::Box& bounds) {
+    return std::all_of(object.lines.begin(), object.lines.end(), [&](const auto& line) {
+        const glm::dvec3 size = bounds.size() * 1e-3;
+        const auto outer = [&](glm::dvec3 p) {
+            return glm::all(glm::lessThan(glm::min(glm::abs(p - bounds.lo), glm::abs(p - bounds.hi)), size));
+        };
+        return outer(line.first) && outer(line.second);
+    });
+}
+
+void drawObject(ImDrawList& draw, const HandleDrag& drag, const HandledObject& object, bool faint, const PixelOf& pixel,
+                const std::function<std::optional<ImVec2>(glm::dvec3)>& place) {
+    const bool lit = object.key == drag.object;
+    const auto alpha = [&](float share) {
+        return (object.color & ~IM_COL32_A_MASK) | (static_cast<ImU32>(share * 255) << IM_COL32_A_SHIFT);
+    };
+    if (object.outlined && (lit || !faint))
+        for (const auto& [a, b] : object.lines) {
+            const auto from = place(a), to = place(b);
+            if (from && to) draw.AddLine(*from, *to, alpha(lit ? 0.8f : 0.35f), std::max(1.0f, em() * 0.08f));
+        }
+    if (faint && !lit) return;
+    const PlotColors colors = plotColors();
+    for (std::size_t i = 0; i < object.handles.size(); ++i) {
+        const auto at = pixel(object.handles[i]);
+        if (!at) continue;
+        const bool held = lit && drag.handle == i;
+        const float radius = em() * (held ? 0.32f : object.handles[i].whole ? 0.24f : 0.2f);
+        draw.AddCircleFilled(*at, radius + 1.5f, colors.backdrop, 16);
+        draw.AddCircleFilled(*at, radius, held ? colors.text : alpha(lit ? 1.0f : 0.75f), 16);
+        if (held)
+            addTextWithBackdrop(draw, {at->x + em() * 0.6f, at->y - em() * 0.5f}, {0, 1}, colors.text,
+                                object.name.c_str());
+    }
+}
+
+PixelOf inSpace(const SpaceFrame& frame) {
+    return [&frame](const SpaceHandle& handle) { return frame.pixel(handle.at); };
+}
+
+PixelOf inSlice(const PlotFrame& frame, int right, int up, glm::dvec2 perUnit) {
+    return [&frame, right, up, perUnit](const SpaceHandle& handle) -> std::optional<ImVec2> {
+        if (handle.axis >= 0 && handle.axis != right && handle.axis != up) return std::nullopt;
+        return frame.pixel(handle.at[right] * perUnit.x, handle.at[up] * perUnit.y);
+    };
+}
+
+} // namespace
+
+std::vector<SpaceLine> boxWires(glm::dvec3 lo, glm::dvec3 hi) {
+    std::vector<SpaceLine> lines;
+    for (int axis = 0; axis < 3; ++axis)
+        for (int corner = 0; corner < 4; ++corner) {
+            glm::dvec3 a(lo);
+            a[(axis + 1) % 3] = corner & 1 ? hi[(axis + 1) % 3] : lo[(axis + 1) % 3];
+            a[(axis + 2) % 3] = corner & 2 ? hi[(axis + 2) % 3] : lo[(axis + 2) % 3];
+            glm::dvec3 b = a;
+            b[axis] = hi[axis];
+            lines.emplace_back(a, b);
+        }
+    return lines;
+}
+
+std::vector<SpaceLine> ballWires(glm::dvec3 center, glm::dvec3 radius) {
+    std::vector<SpaceLine> lines;
+    for (int axis = 0; axis < 3; ++axis)
+        for (int i = 0; i < kCircleParts; ++i) {
+            const auto at = [&](int k) {
+                const double angle = 2 * std::numbers::pi * k / kCircleParts;
+                glm::dvec3 p(0);
+                p[(axis + 1) % 3] = std::cos(angle);
+                p[(axis + 2) % 3] = std::sin(angle);
+                return center + p * radius;
+            };
+            lines.emplace_back(at(i), at(i + 1));
+        }
+    return lines;
+}
+
+vis::Ray rayThrough(const SpaceFrame& frame, const vis::Camera& camera, ImVec2 at) {
+    const double width = std::max(1.0f, frame.max.x - frame.min.x), height = std::max(1.0f, frame.max.y - frame.min.y);
+    return vis::cameraRay(camera, width / height,
+                          {(at.x - frame.min.x) / width * 2 - 1, 1 - (at.y - frame.min.y) / height * 2});
+}
+
+glm::dvec3 draggedPlace(const SpaceFrame& frame, const vis::Camera& camera, glm::dvec3 from, ImVec2 start, ImVec2 mouse,
+                        bool depth) {
+    const glm::dvec3 forward = -glm::transpose(glm::mat3_cast(glm::normalize(glm::dquat(camera.orientation))))[2];
+    // Where a pixel's ray meets the plane through the place that faces the viewer.
+    const auto met = [&](ImVec2 at) {
+        const vis::Ray ray = rayThrough(frame, camera, at);
+        return ray.origin + ray.direction * (glm::dot(from - ray.origin, forward) / glm::dot(ray.direction, forward));
+    };
+    if (!depth) return from + met(mouse) - met(start);
+    const glm::dvec3 up = met({start.x, start.y - 1}) - met(start);
+    return from + forward * glm::length(up) * double(start.y - mouse.y);
+}
+
+bool editHandles(HandleDrag& drag, Session& session, const volume::DatasetInfo& info, const SpaceFrame& frame,
+                 bool hovered) {
+    return editWith(drag, session, info, hovered, inSpace(frame), [&](glm::dvec3 from, ImVec2 mouse) {
+        return frame.world.toPhysical(
+            draggedPlace(frame, session.camera, frame.world.toWorld(from), drag.start, mouse, ImGui::GetIO().KeyShift));
+    });
+}
+
+bool editHandles(HandleDrag& drag, Session& session, const volume::DatasetInfo& info, const PlotFrame& frame, int right,
+                 int up, glm::dvec2 perUnit, bool hovered) {
+    return editWith(drag, session, info, hovered, inSlice(frame, right, up, perUnit),
+                    [&](glm::dvec3 from, ImVec2 mouse) {
+                        const glm::dvec2 now = frame.data(mouse), then = frame.data(drag.start);
+                        from[right] += (now.x - then.x) / perUnit.x;
+                        from[up] += (now.y - then.y) / perUnit.y;
+                        return from;
+                    });
+}
+
+void drawHandles(ImDrawList& draw, const HandleDrag& drag, const SpaceFrame& frame, const Session& session,
+                 const volume::DatasetInfo& info) {
+    for (const HandledObject& object : handledObjects(session, info))
+        drawObject(draw, drag, object, !object.outlined || covers(object, info.bounds), inSpace(frame),
+                   [&](glm::dvec3 at) { return frame.pixel(at); });
+}
+
+void drawHandles(ImDrawList& draw, const HandleDrag& drag, const PlotFrame& frame, const Session& session,
+                 const volume::DatasetInfo& info, int right, int up, glm::dvec2 perUnit) {
+    for (const HandledObject& object : handledObjects(session, info))
+        drawObject(draw, drag, object, true, inSlice(frame, right, up, perUnit), [&](glm::dvec3 at) {
+            return std::optional(frame.pixel(at[right] * perUnit.x, at[up] * perUnit.y));
+        });
+}
+
+} // namespace tessera::app

@@ -1,0 +1,72 @@
+#pragma once
+
+#include "app/pane/axes3d.h"
+#include "app/pane/view_context.h"
+
+#include <functional>
+#include <string>
+#include <vector>
+
+/// What lies in space and is worked by dots: where flow begins (its line, plane, ball or box), brushes in space, the
+/// corners of profile lines. A dot moves in the plane that faces the viewer, with Shift nearer or farther; Escape takes
+/// a drag back. In slices the same dots move along the slice. Lenses have more to them (lens_edit.h).
+namespace tessera::app {
+
+/// What a pixel of the picture looks at.
+vis::Ray rayThrough(const SpaceFrame& frame, const vis::Camera& camera, ImVec2 at);
+
+/// A world place `from` moved as the mouse moved from `start`: in the plane through it that faces the viewer, or with
+/// `depth` along the view, upwards is farther.
+glm::dvec3 draggedPlace(const SpaceFrame& frame, const vis::Camera& camera, glm::dvec3 from, ImVec2 start, ImVec2 mouse,
+                        bool depth);
+
+/// Both ends, physical.
+using SpaceLine = std::pair<glm::dvec3, glm::dvec3>;
+/// The edges of a box; circles around a ball of three radii.
+std::vector<SpaceLine> boxWires(glm::dvec3 lo, glm::dvec3 hi);
+std::vector<SpaceLine> ballWires(glm::dvec3 center, glm::dvec3 radius);
+
+/// A dot. `axis`: along which it alone moves something, -1: any; slices across that axis leave it out.
+struct SpaceHandle {
+    glm::dvec3 at{0}; ///< physical
+    int axis = -1;
+    bool whole = false; ///< moves the object as it is
+};
+
+/// Something with dots and the lines that show it.
+struct HandledObject {
+    std::string key; ///< the same from frame to frame
+    std::string name;
+    ImU32 color = 0;
+    bool outlined = false; ///< `lines` are to be drawn here, not elsewhere
+    std::vector<SpaceHandle> handles;
+    std::vector<SpaceLine> lines;
+    /// Puts a dot at a place (physical, in the box of the data) of a session that has the object.
+    std::function<void(Session& session, std::size_t handle, glm::dvec3 to)> move;
+};
+std::vector<HandledObject> handledObjects(const Session& session, const volume::DatasetInfo& info);
+
+struct HandleDrag {
+    std::string object; ///< under the mouse or held
+    std::size_t handle = 0;
+    bool active = false;
+    ImVec2 start{0, 0};
+    glm::dvec3 before{0}; ///< the dot's place, physical
+};
+
+/// Turns the mouse over a picture in space (its InvisibleButton is the last item) into edits; true while it has the
+/// mouse for itself.
+bool editHandles(HandleDrag& drag, Session& session, const volume::DatasetInfo& info, const SpaceFrame& frame,
+                 bool hovered);
+
+/// The same in a slice: values of the frame are positions along the axes `right` and `up` times the factors.
+bool editHandles(HandleDrag& drag, Session& session, const volume::DatasetInfo& info, const PlotFrame& frame, int right,
+                 int up, glm::dvec2 perUnit, bool hovered);
+
+/// Dots, lines of what is not drawn elsewhere, and the name of what is under the mouse.
+void drawHandles(ImDrawList& draw, const HandleDrag& drag, const SpaceFrame& frame, const Session& session,
+                 const volume::DatasetInfo& info);
+void drawHandles(ImDrawList& draw, const HandleDrag& drag, const PlotFrame& frame, const Session& session,
+                 const volume::DatasetInfo& info, int right, int up, glm::dvec2 perUnit);
+
+} // namespace tessera::app

@@ -1,0 +1,359 @@
+#include "app/views/compare/compare_feed.h"
+
+#include "app/data/open.h"
+#include "app/queries/pending_wish.h"
+#include "codec/archive/archive.h"
+#include "vis/transfer/transfer_function.h"
+#include "volume/base/error.h"
+#include "volume/bricks/source_at_time.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <utility>
+
+namespace tessera::app {
+
+namespace {
+
+/// Files named without their place lie beside those of the session.
+DataRef located(DataRef data, const DataRef& session) {
+    std::string folder;
+    if (!session.files.empty()) folder = std::filesystem::path(session.files[0].absolutePath).parent_path().string();
+    if (!data.files.empty()) {
+        ResolvedData found = resolveData(data, folder);
+        if (!found.missing.empty()) throw Error("data file not found", found.missing.front().wanted.path);
+        data = found.data;
+    }
+    return data;
+}
+
+/// Why the data of a variant cannot be had, "" if they can: files have the samples they have, an archive has them as
+/// they were packed.
+std::string whyNot(const DataRef& wanted, const DataRef& session) {
+    if (wanted.files.empty() || wanted.files != session.files) return {};
+    if (wanted.settings != session.settings) return "only built-in models come in other sizes";
+    if (wanted.files.size() != 1 || !wanted.files[0].absolutePath.ends_with(".tsr")) return {};
+    if (wanted.lattice != session.lattice) return "an archive keeps its lattice; compare with what it was packed from";
+    if (wanted.packed != session.packed) return "an archive stays as packed; compare with what it was packed from";
+    return {};
+}
+
+/// Equal sessions but for the panes, which no variant shows.
+bool sameScene(const Session& a, const Session& b) {
+    return a.camera == b.camera && a.time == b.time && a.cursor == b.cursor && a.layers == b.layers &&
+           a.transfer == b.transfer && a.selection == b.selection && a.render == b.render && a.lighting == b.lighting &&
+           a.clips == b.clips && a.tone == b.tone && a.lenses == b.lenses && a.paper == b.paper &&
+           a.stretch == b.stretch && a.data == b.data && a.appearance == b.appearance;
+}
+
+} // namespace
+
+std::shared_ptr<CompareData> CompareFeed::dataFor(ViewContext& context, const std::string& pane, const DataRef& data) {
+    const auto key = [&] { return pane + ":data" + toJson(data).dump(); };
+    for (const auto& known : data_)
+        if (known->data == data) {
+            known->used = true;
+            if (!known->source && known->failure.empty() && !context.jobs.running(key())) known->failure = "cancelled";
+            return known;
+        }
+    auto made = data_.emplace_back(std::make_shared<CompareData>());
+    made->data = data;
+    made->used = true;
+    const auto open = [data, session = context.session.data](CompareData& into, const Progress& progress) {
+        into.source =
+            attempt(into.failure, [&] { return openSource(located(data, session), into.messages, progress); });
+    };
+    if (context.headless) {
+        open(*made, {});
+        return made;
+    }
+    context.jobs.start(key(), "Data to compare",
+                       [weak = std::weak_ptr(made), open](const Progress& progress) -> Jobs::Finish {
+                           const auto opened = std::make_shared<CompareData>();
+                           open(*opened, progress);
+                           return [weak, opened] {
+                               const auto to = weak.lock();
+                               if (!to) return;
+                               to->source = opened->source;
+                               to->failure = opened->failure;
+                               to->messages = opened->messages;
+                           };
+                       });
+    return made;
+}
+
+void CompareFeed::drawCell(ViewContext& context, const std::string& pane, std::size_t index, glm::ivec2 size,
+                           bool moving) {
+    CompareCell& cell = *cells_[index];
+    cell.drawn = false;
+    if (!cell.failure.empty()) return;
+    if (!(cell.session.data == context.session.data)) {
+        cell.failure = whyNot(cell.session.data, context.session.data);
+        if (!cell.failure.empty()) return;
+        const auto data = dataFor(context, pane, cell.session.data);
+        if (data != cell.data) cell.target.reset();
+        cell.data = data;
+        if (!data->failure.empty()) {
+            cell.failure = data->failure;
+            return;
+        }
+        if (!data->source) {
+            context.busy = true;
+            return;
+        }
+        if (!data->renderer) {
+            data->renderer = std::make_unique<vis::Renderer>();
+            data->renderer->setSource(data->source);
+        }
+    } else if (cell.data) {
+        cell.data.reset();
+        cell.target.reset();
+    }
+    ViewContext own{.session = cell.session,
+                    .source = cell.data ? cell.data->source : context.source,
+                    .renderer = cell.data ? *cell.data->renderer : context.renderer,
+                    .jobs = context.jobs,
+                    .caches = context.caches,
+                    .iconFont = context.iconFont,
+                    .scale = context.scale,
+                    .headless = context.headless,
+                    .renderers = std::max(context.renderers, 1 + renderers()),
+                    .figure = context.figure,
+                    .interacting = context.interacting};
+    if (!cell.target) cell.target = own.renderer.makeTarget();
+    vis::FrameRequest request;
+    request.size = size;
+    request.moving = moving && !context.headless;
+    request.wait = context.headless;
+    const vis::Scene scene = cell.feed.get(own, pane + "/" + std::to_string(index), request.moving);
+    const bool first = !cell.shows || request.moving || !(scene == cell.sceneShown);
+    const double share = double(scene.render.limits.frameTime) / double(std::max<std::size_t>(cells_.size(), 1));
+    request.budgetMs = first ? share : double(scene.render.limits.frameTime);
+    if (!first && !request.wait && cell.sizeShown == size && refined_ != index && !cell.status.complete) {
+        cell.drawn = context.busy = true; // as it is until its turn comes
+        return;
+    }
+    cell.sceneShown = scene;
+    cell.sizeShown = size;
+    cell.status = own.renderer.render(*cell.target, scene, request);
+    if (cell.data) {
+        std::vector<std::string>& said = cell.data->messages;
+        for (std::string& text : own.renderer.takeMessages()) said.push_back(std::move(text));
+        const std::string name = variantName(context.session, cell.variant);
+        for (const std::string& text : std::exchange(said, {})) context.messages.push_back(name + ": " + text);
+    }
+    cell.shows = cell.status.complete || cell.status.milliseconds > 0;
+    cell.drawn = true;
+    own.follow(cell.status);
+    context.busy = context.busy || own.busy;
+    context.behind = context.behind || own.behind;
+    context.compiling = context.compiling || own.compiling;
+    if (own.busy || request.moving) return;
+    if (cell.image && cell.image->size == size && cell.imageSource == own.source && cell.imageOf == scene) return;
+    auto image = std::make_shared<vis::Image>();
+    image->rgba = own.renderer.readPixels(*cell.target, image->size);
+    cell.image = image;
+    cell.imageOf = scene;
+    cell.imageSource = own.source;
+}
+
+void CompareFeed::measure(ViewContext& context, const std::string& pane, std::size_t index, std::size_t reference) {
+    CompareCell& cell = *cells_[index];
+    const CompareCell& against = *cells_[reference];
+    if (index == reference || !cell.finished() || !against.finished()) return;
+    if (cell.measuredImage == cell.image && cell.measuredAgainst == against.image) return;
+    if (cell.image->size != against.image->size) return;
+    struct Result {
+        vis::ImageDifference of;
+        std::vector<std::uint8_t> map;
+    };
+    const auto compute = [image = cell.image, wanted = against.image] {
+        return Result{vis::difference(*image, *wanted), vis::differenceMap(*image, *wanted)};
+    };
+    const auto take = [image = cell.image, wanted = against.image](CompareCell& to, Result result) {
+        to.measured = result.of;
+        to.differences = std::move(result.map);
+        to.measuredImage = image;
+        to.measuredAgainst = wanted;
+    };
+    if (context.headless) {
+        take(cell, compute());
+        return;
+    }
+    context.busy = true;
+    const std::string key = pane + ":measure" + std::to_string(index);
+    if (context.jobs.running(key)) return;
+    context.jobs.start(
+        key, "Error of a variant",
+        [compute, take, weak = std::weak_ptr(cells_[index])](const Progress&) -> Jobs::Finish {
+            return [take, weak, result = compute()] {
+                if (const auto to = weak.lock()) take(*to, result);
+            };
+        },
+        true);
+}
+
+void CompareFeed::measureSamples(ViewContext& context, const std::string& pane, std::size_t index,
+                                 std::size_t reference) {
+    CompareCell& cell = *cells_[index];
+    const CompareCell& against = *cells_[reference];
+    const auto source = cell.source(context), wanted = against.source(context);
+    if (index == reference || !cell.failure.empty() || !source || !wanted) return;
+    const auto first = [](const Session& session) {
+        if (session.layers.empty()) return std::string();
+        return std::visit([](const auto& own) { return own.channel; }, session.layers.front().technique);
+    };
+    const CompareCell::Samples of{
+        source, wanted, first(cell.session), first(against.session), cell.session.time, against.session.time};
+    if (cell.samplesOf == of) return;
+    if (source == wanted && of.channel == of.referenceChannel && of.time == of.referenceTime) {
+        cell.samplesOf = of;
+        cell.samples.reset();
+        return;
+    }
+    const auto compute = [source, wanted, of](const Progress& progress) -> std::optional<volume::SourceDifference> {
+        const auto a = source->info().findChannel(of.channel), b = wanted->info().findChannel(of.referenceChannel);
+        if (!a || !b) return std::nullopt;
+        const auto unit = [](const volume::BrickSource& data, int channel) {
+            return data.info().channels()[std::size_t(channel)].unit;
+        };
+        if (unit(*source, *a) != unit(*wanted, *b)) return std::nullopt;
+        try {
+            const auto one = volume::sourceAt(source, volume::timesAround(source->info().times, of.time)),
+                       other = volume::sourceAt(wanted, volume::timesAround(wanted->info().times, of.referenceTime));
+            return volume::sourceDifference({*one.source, *a, one.time}, {*other.source, *b, other.time}, progress);
+        } catch (const Error&) {
+            return std::nullopt; // damaged data: the picture says so
+        }
+    };
+    if (context.headless) {
+        cell.samplesOf = of;
+        cell.samples = compute({});
+        return;
+    }
+    const std::string key = pane + ":samples" + std::to_string(index);
+    context.busy = true;
+    if (context.jobs.running(key)) return;
+    context.jobs.start(
+        key, "Samples of a variant",
+        [compute, of, weak = std::weak_ptr(cells_[index])](const Progress& progress) -> Jobs::Finish {
+            return [of, weak, result = compute(progress)] {
+                const auto to = weak.lock();
+                if (!to) return;
+                to->samplesOf = of;
+                to->samples = result;
+            };
+        },
+        true);
+}
+
+void CompareFeed::draw(ViewContext& context, const std::string& pane, const std::vector<CompareVariant>& variants,
+                       std::size_t reference, glm::ivec2 size, bool moving) {
+    for (const auto& data : data_) data->used = false;
+    cells_.resize(variants.size());
+    refined_ %= std::max<std::size_t>(cells_.size(), 1);
+    for (std::size_t i = 0; i < variants.size(); ++i) {
+        if (!cells_[i]) cells_[i] = std::make_shared<CompareCell>();
+        CompareCell& cell = *cells_[i];
+        if (!(cell.variant == variants[i]) || !sameScene(cell.of, context.session)) {
+            cell.variant = variants[i];
+            cell.of = context.session;
+            cell.failure.clear();
+            try {
+                Session bare = context.session;
+                bare.views.clear();
+                bare.dock = {};
+                cell.session = variantSession(bare, cell.variant);
+            } catch (const Error& error) {
+                cell.failure = error.what();
+            }
+        }
+        drawCell(context, pane, i, size, moving);
+        // What could not be opened is not tried again while the variant asks for it.
+        if (cell.data && cell.data->data == cell.session.data) cell.data->used = true;
+    }
+    std::erase_if(data_, [](const auto& data) { return !data->used; });
+    // One picture after the other is refined with the frame's whole time: sharing it would cost each its beginning anew
+    // in every frame.
+    for (std::size_t i = 0; i < cells_.size() && cells_[refined_ % cells_.size()]->final(); ++i)
+        refined_ = (refined_ + 1) % cells_.size();
+    for (std::size_t i = 0; i < cells_.size(); ++i) {
+        measure(context, pane, i, reference);
+        measureSamples(context, pane, i, reference);
+    }
+}
+
+int CompareFeed::renderers() const {
+    return int(std::count_if(data_.begin(), data_.end(), [](const auto& data) { return data->renderer != nullptr; }) +
+               std::count_if(cells_.begin(), cells_.end(),
+                             [](const auto& cell) { return cell && cell->values.hasRenderer(); }));
+}
+
+double CompareFeed::showDifferences(double top, std::size_t reference) {
+    if (top <= 0)
+        for (const auto& cell : cells_)
+            if (cell->measuredImage && cell->measuredImage == cell->image) top = std::max(top, cell->measured.maximum);
+    if (top <= 0) top = 1;
+    static const vis::TransferFunction scale = [] {
+        vis::TransferFunction made;
+        made.colormap = "inferno";
+        return made;
+    }();
+    for (std::size_t i = 0; i < cells_.size(); ++i) {
+        CompareCell& cell = *cells_[i];
+        if (i == reference || !cell.measuredImage || cell.measuredImage != cell.image) continue;
+        if (cell.shownImage == cell.measuredImage && cell.shownAgainst == cell.measuredAgainst && cell.shownTop == top)
+            continue;
+        std::vector<std::uint8_t> rgba;
+        rgba.reserve(cell.differences.size() * 4);
+        std::array<std::array<std::uint8_t, 3>, 256> colors;
+        for (std::size_t value = 0; value < 256; ++value) {
+            const glm::dvec4 color = vis::evaluate(scale, {0, 1}, std::min(1.0, double(value) / top));
+            for (int c = 0; c < 3; ++c) colors[value][std::size_t(c)] = std::uint8_t(color[c] * 255 + 0.5);
+        }
+        for (const std::uint8_t value : cell.differences) {
+            rgba.insert(rgba.end(), colors[value].begin(), colors[value].end());
+            rgba.push_back(255);
+        }
+        cell.differencePicture.upload(cell.measuredImage->size, rgba);
+        cell.shownImage = cell.measuredImage;
+        cell.shownAgainst = cell.measuredAgainst;
+        cell.shownTop = top;
+    }
+    return top;
+}
+
+std::vector<CompareRow> CompareFeed::rows(const ViewContext& context, std::size_t reference) const {
+    std::vector<CompareRow> out;
+    for (std::size_t i = 0; i < cells_.size(); ++i) {
+        const CompareCell& cell = *cells_[i];
+        CompareRow row;
+        row.name = variantName(context.session, cell.variant);
+        row.changes = changesText(context.session, cell.variant);
+        row.failure = cell.failure;
+        row.reference = i == reference;
+        row.milliseconds = cell.status.milliseconds;
+        row.samples = double(cell.status.samples);
+        row.bytes = double(cell.status.bytes);
+        if (const auto* archive = dynamic_cast<const codec::Archive*>(cell.source(context).get()))
+            row.storedBytes = double(archive->fileBytes());
+        const bool known = cell.measuredImage && cell.measuredImage == cell.image && reference < cells_.size() &&
+                           cell.measuredAgainst == cells_[reference]->image;
+        row.measured = known && i != reference && cell.failure.empty();
+        if (row.measured) {
+            row.maximum = cell.measured.maximum;
+            row.rmse = cell.measured.rmse;
+            row.psnr = cell.measured.psnr;
+            row.ssim = cell.measured.ssim;
+        }
+        if (i != reference && reference < cells_.size()) {
+            const auto& wanted = cells_[reference]->source(context);
+            if (cell.samplesOf.own == cell.source(context) && cell.samplesOf.reference == wanted && wanted)
+                row.data = cell.samples;
+        }
+        out.push_back(row);
+    }
+    return out;
+}
+
+} // namespace tessera::app

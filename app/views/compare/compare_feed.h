@@ -1,0 +1,97 @@
+#pragma once
+
+#include "app/edits/compare.h"
+#include "app/queries/scene_feed.h"
+#include "app/views/compare/compare_values.h"
+#include "vis/gl/plot_texture.h"
+#include "vis/image/image_metrics.h"
+
+#include <list>
+#include <memory>
+#include <optional>
+
+/// Pictures of the variants of a comparison and how far each is from the reference. Variants of the same data are
+/// drawn by the window's renderer; other data, opened in the background, get one of their own.
+namespace tessera::app {
+
+/// Data of variants that are not those of the session.
+struct CompareData {
+    DataRef data;
+    std::shared_ptr<const volume::BrickSource> source; ///< null while it opens
+    std::unique_ptr<vis::Renderer> renderer;
+    std::string failure;
+    std::vector<std::string> messages; ///< of opening it, not yet passed on
+    bool used = false;
+};
+
+struct CompareCell {
+    CompareVariant variant;
+    Session of, session;               ///< the session it was made from, and with the changes
+    std::string failure;               ///< why there is no picture
+    std::shared_ptr<CompareData> data; ///< null: the session's
+    SceneFeed feed;
+    vis::ViewTargetPtr target;
+    vis::FrameStatus status;
+    bool drawn = false;
+    // The scene and size of the picture that is there.
+    bool shows = false;
+    vis::Scene sceneShown;
+    glm::ivec2 sizeShown{0};
+
+    // What was read back of a finished picture, and what came of it.
+    vis::Scene imageOf;
+    std::shared_ptr<const volume::BrickSource> imageSource;
+    std::shared_ptr<const vis::Image> image;
+    std::shared_ptr<const vis::Image> measuredImage, measuredAgainst;
+    vis::ImageDifference measured;
+    /// Samples of the first layer beside those of the reference: of what, and what came of it.
+    struct Samples {
+        std::shared_ptr<const volume::BrickSource> own, reference;
+        std::string channel, referenceChannel;
+        double time = 0, referenceTime = 0;
+        bool operator==(const Samples&) const = default;
+    } samplesOf;
+    std::optional<volume::SourceDifference> samples;
+    std::vector<std::uint8_t> differences; ///< differenceMap
+    vis::PlotTexture differencePicture;
+    std::shared_ptr<const vis::Image> shownImage, shownAgainst; ///< of differencePicture
+    double shownTop = -1;
+    CompareValues values; ///< how far the first layer's values are from the reference's
+
+    const std::shared_ptr<const volume::BrickSource>& source(const ViewContext& context) const {
+        return data ? data->source : context.source;
+    }
+    /// Nothing is left to draw.
+    bool final() const { return !failure.empty() || (drawn && status.complete); }
+    bool finished() const { return drawn && status.complete && image; }
+};
+
+class CompareFeed {
+public:
+    /// Draws every variant at one size; index 0 is the first. Sets context.busy while something is not final.
+    void draw(ViewContext& context, const std::string& pane, const std::vector<CompareVariant>& variants,
+              std::size_t reference, glm::ivec2 size, bool moving);
+    std::vector<std::shared_ptr<CompareCell>>& cells() { return cells_; }
+    const std::vector<std::shared_ptr<CompareCell>>& cells() const { return cells_; }
+    /// How many there are besides the window's.
+    int renderers() const;
+    /// Fills the pictures of the differences, brightest at `top` of 255, or at the largest where `top` is 0; returns
+    /// the one used.
+    double showDifferences(double top, std::size_t reference);
+    /// Finds how the values of the first layers differ from the reference's; returns the largest difference of all.
+    double findValues(ViewContext& context, const std::string& pane, std::size_t reference);
+    /// The table, as far as it is known.
+    std::vector<CompareRow> rows(const ViewContext& context, std::size_t reference) const;
+
+private:
+    std::shared_ptr<CompareData> dataFor(ViewContext& context, const std::string& pane, const DataRef& data);
+    void drawCell(ViewContext& context, const std::string& pane, std::size_t index, glm::ivec2 size, bool moving);
+    void measure(ViewContext& context, const std::string& pane, std::size_t index, std::size_t reference);
+    void measureSamples(ViewContext& context, const std::string& pane, std::size_t index, std::size_t reference);
+
+    std::size_t refined_ = 0;                      ///< the cell that has the frame's time
+    std::list<std::shared_ptr<CompareData>> data_; ///< before the cells: their targets go first
+    std::vector<std::shared_ptr<CompareCell>> cells_;
+};
+
+} // namespace tessera::app

@@ -1,0 +1,25 @@
+#pragma once
+
+#include "app/views/compare/compare_feed.h"
+
+/// Editing of a comparison: which variants there are and what each changes.
+namespace tessera::app {
+
+/// What the menus keep while they are open.
+struct CompareMenuState {
+    std::string search, path;
+};
+
+/// Mode, variants to add, the table's switch.
+void drawCompareToolbar(ViewContext& context, CompareView& view);
+
+/// The popup `id` of one variant: its name, what it changes, its role.
+void drawVariantMenu(ViewContext& context, const char* id, CompareView& view, std::size_t index,
+                     const CompareCell* cell, CompareMenuState& state);
+
+/// The table under the pictures; a click on a row makes it the one swiped or, with Ctrl, the reference.
+void drawCompareTable(CompareView& view, const std::vector<CompareRow>& rows);
+/// Its height in pixels.
+float compareTableHeight(std::size_t rows);
+
+} // namespace tessera::app

@@ -1,0 +1,60 @@
+#include "app/views/compare/compare_questions.h"
+
+#include "app/edits/compare.h"
+#include "app/pane/plot.h"
+#include "app/ui/ticks.h"
+
+#include <algorithm>
+#include <imgui.h>
+#include <imgui_stdlib.h>
+
+namespace tessera::app {
+
+float questionsHeight(const CompareView& view) {
+    if (view.questions.empty()) return 0;
+    return ImGui::GetFrameHeightWithSpacing() * static_cast<float>(view.questions.size() + 1) + em() * 0.4f;
+}
+
+void drawQuestions(CompareView& view, QuestionClock& clock, const std::vector<std::string>& variants) {
+    if (view.questions.empty()) {
+        clock = {};
+        return;
+    }
+    if (clock.shown < 0) clock.shown = ImGui::GetTime();
+    const float width = ImGui::GetContentRegionAvail().x, answer = std::min(em() * 14, width * 0.35f);
+    const auto answered = [&](CompareQuestion& question) { question.seconds = ImGui::GetTime() - clock.shown; };
+    std::size_t removed = view.questions.size();
+    for (std::size_t i = 0; i < view.questions.size(); ++i) {
+        CompareQuestion& question = view.questions[i];
+        ImGui::PushID(static_cast<int>(i));
+        ImGui::SetNextItemWidth(std::max(em() * 4, width - answer - em() * 9));
+        ImGui::InputTextWithHint("##question", "A question, such as: which spot is hotter?", &question.text);
+        ImGui::SameLine(0, em() * 0.4f);
+        ImGui::SetNextItemWidth(answer);
+        if (ImGui::InputTextWithHint("##answer", "answer", &question.answer)) answered(question);
+        ImGui::SameLine(0, 0);
+        if (ImGui::BeginCombo("##variants", "", ImGuiComboFlags_NoPreview | ImGuiComboFlags_PopupAlignLeft)) {
+            for (const std::string& name : variants)
+                if (ImGui::Selectable(name.c_str(), name == question.answer)) {
+                    question.answer = name;
+                    answered(question);
+                }
+            ImGui::EndCombo();
+        }
+        ImGui::SameLine(0, em() * 0.4f);
+        ImGui::TextDisabled("%s", question.seconds > 0 ? formatQuantity(question.seconds, "s", 0.1).c_str() : "-");
+        ImGui::SameLine(width - em() * 1.4f);
+        if (ImGui::SmallButton("x")) removed = i;
+        ImGui::PopID();
+    }
+    if (removed < view.questions.size())
+        view.questions.erase(view.questions.begin() + static_cast<std::ptrdiff_t>(removed));
+    if (ImGui::SmallButton("Copy answers as CSV")) ImGui::SetClipboardText(questionsCsv(view.questions).c_str());
+    ImGui::SameLine(0, em() * 0.5f);
+    if (ImGui::SmallButton("Ask anew")) {
+        for (CompareQuestion& question : view.questions) question.answer.clear(), question.seconds = 0;
+        clock = {};
+    }
+}
+
+} // namespace tessera::app

@@ -1,0 +1,301 @@
+#include "app/views/compare/compare_view.h"
+
+#include "app/pane/axes3d.h"
+#include "app/pane/figure.h"
+#include "app/pane/view_parts.h"
+#include "app/tools/brush_list.h"
+#include "app/tools/camera_hand.h"
+#include "app/ui/keys.h"
+#include "app/ui/ticks.h"
+#include "app/views/compare/compare_menu.h"
+#include "app/views/compare/compare_questions.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tessera::app {
+
+namespace {
+
+struct CompareCache : ViewCache {
+    int renderers() const override { return feed.renderers(); }
+    CompareFeed feed;
+    std::vector<CameraHand> hands;
+    CompareMenuState menu;
+    std::vector<CompareRow> rows;
+    QuestionClock questions;
+    bool swiping = false;
+    double blinkStart = 0;
+    std::size_t blinkShown = 0;
+};
+
+struct Frame {
+    ViewContext& context;
+    CompareView& view;
+    CompareCache& cache;
+    std::vector<CompareVariant> variants;
+    std::size_t reference = 0, other = 0;
+};
+
+/// What is drawn over a picture: cursor, brushes, caption.
+void drawOver(const Frame& frame, const PictureBox& box, const Session& session, const std::string& caption,
+              bool marked, bool left = true) {
+    ImDrawList& draw = *ImGui::GetWindowDrawList();
+    const volume::DatasetInfo& info = frame.context.source->info();
+    const SpaceFrame space = spaceFrame(box.min, box.max(), session.camera, info.bounds, session.stretch);
+    drawCursor3d(draw, space, session.cursor);
+    drawSpaceBrushes(draw, space, session.selection);
+    const PlotColors colors = plotColors();
+    const float pad = em() * 0.5f;
+    const std::string text = fitText(caption, box.size.x * (left ? 1.0f : 0.5f) - 2 * pad);
+    addTextWithBackdrop(draw, {left ? box.min.x + pad : box.max().x - pad, box.min.y + em() * 0.4f},
+                        {left ? 0.0f : 1.0f, 0}, colors.text, text.c_str());
+    if (marked)
+        addTextWithBackdrop(draw, {box.min.x + pad, box.min.y + em() * 1.7f}, {0, 0}, colors.faint, "reference");
+}
+
+/// The button under a picture, with the camera's mouse and the variant's menu; true while something moves.
+bool picture(const Frame& frame, std::size_t index, const PictureBox& box, bool blocked) {
+    CompareCache& cache = frame.cache;
+    ImGui::SetCursorScreenPos(box.min);
+    ImGui::PushID(static_cast<int>(index));
+    ImGui::InvisibleButton("picture", box.size,
+                           ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonMiddle |
+                               ImGuiButtonFlags_MouseButtonRight);
+    const vis::WorldFrame world = vis::worldFrame(frame.context.source->info().bounds, frame.context.session.stretch);
+    CameraHand& hand = cache.hands[index];
+    hand.blocked = blocked;
+    vis::ViewTarget* target = nullptr;
+    const auto& cells = cache.feed.cells();
+    // Only the window's own renderer can be asked what lies there.
+    if (index < cells.size() && cells[index] && !cells[index]->data) target = cells[index]->target.get();
+    const bool moving = handleMouse(frame.context, hand, target, box, world, "variant");
+    if (hand.dragging()) frame.context.interacting = true;
+    drawVariantMenu(frame.context, "variant", frame.view, index, index < cells.size() ? cells[index].get() : nullptr,
+                    cache.menu);
+    ImGui::PopID();
+    return moving;
+}
+
+/// A cell's picture, or why there is none.
+void drawCell(const Frame& frame, std::size_t index, const PictureBox& box) {
+    const CompareCell& cell = *frame.cache.feed.cells()[index];
+    ImDrawList& draw = *ImGui::GetWindowDrawList();
+    if (cell.drawn) return addPicture(draw, cell.status.texture, box.min, box.max());
+    const std::string text = cell.failure.empty() ? "The data are being opened" : cell.failure;
+    addTextWithBackdrop(draw, {box.min.x + box.size.x / 2, box.min.y + box.size.y / 2}, {0.5f, 0.5f},
+                        plotColors().faint, fitText(text, box.size.x - em()).c_str());
+}
+
+std::string nameOf(const Frame& frame, std::size_t index) {
+    return variantName(frame.context.session, frame.variants[index]);
+}
+
+void drawGrid(const Frame& frame, const std::vector<PictureBox>& boxes, bool differences) {
+    ImDrawList& draw = *ImGui::GetWindowDrawList();
+    const double top =
+        differences ? frame.cache.feed.showDifferences(double(frame.view.differenceTop), frame.reference) : 0;
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
+        const PictureBox& box = boxes[i];
+        const CompareCell& cell = *frame.cache.feed.cells()[i];
+        draw.PushClipRect(box.min, box.max(), true);
+        const bool shown = differences && i != frame.reference && cell.finished() && cell.shownImage == cell.image;
+        if (shown)
+            draw.AddImage(reinterpret_cast<ImTextureID>(static_cast<std::intptr_t>(cell.differencePicture.name())),
+                          box.min, box.max());
+        else
+            drawCell(frame, i, box);
+        drawOver(frame, box, frame.context.session, nameOf(frame, i), i == frame.reference);
+        if (shown && i == (frame.reference == 0 ? 1u : 0u)) {
+            LegendEntry legend;
+            legend.title = "difference (of 255)";
+            legend.function.colormap = "inferno";
+            legend.range = legend.data = {0, top};
+            drawLegends(draw, {legend}, box.min, box.max());
+        } else if (!differences && i == frame.reference) {
+            drawLegends(draw, sceneLegends(frame.context.session, frame.context.source->info()), box.min, box.max());
+        }
+        draw.PopClipRect();
+    }
+}
+
+/// What is shown, then RMS and largest difference of the samples as far as they are known.
+std::vector<std::string> valuesText(const CompareCell& cell) {
+    std::vector<std::string> lines{"minus reference, on the planes through the cross-hair"};
+    if (cell.samples && cell.samples->samples > 0)
+        lines.push_back("all samples drawn: RMS " + formatQuantity(cell.samples->rms, cell.values.unit()) +
+                        ", at most " + formatQuantity(cell.samples->largest, cell.values.unit()));
+    return lines;
+}
+
+/// The reference as it is, the others as the differences of their values.
+void drawValues(const Frame& frame, const std::string& pane, const std::vector<PictureBox>& boxes, bool moving) {
+    ImDrawList& draw = *ImGui::GetWindowDrawList();
+    CompareFeed& feed = frame.cache.feed;
+    const double top = feed.findValues(frame.context, pane, frame.reference);
+    bool legend = false;
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
+        const PictureBox& box = boxes[i];
+        CompareCell& cell = *feed.cells()[i];
+        draw.PushClipRect(box.min, box.max(), true);
+        const auto note = [&](const std::string& text, int line) {
+            const float y = box.min.y + em() * (1.7f + 1.3f * static_cast<float>(line));
+            addTextWithBackdrop(draw, {box.min.x + em() * 0.5f, y}, {0, 0}, plotColors().faint,
+                                fitText(text, box.size.x - em()).c_str());
+        };
+        const glm::ivec2 size(static_cast<int>(box.size.x), static_cast<int>(box.size.y));
+        const bool shown = i != frame.reference && cell.failure.empty() &&
+                           cell.values.draw(frame.context, cell.session, top, size, moving);
+        if (shown)
+            addPicture(draw, cell.values.texture(), box.min, box.max());
+        else
+            drawCell(frame, i, box);
+        drawOver(frame, box, frame.context.session, nameOf(frame, i), i == frame.reference);
+        if (shown)
+            for (int line = 0; const std::string& text : valuesText(cell)) note(text, line++);
+        else if (i != frame.reference && cell.failure.empty())
+            note(cell.values.failure().empty() ? "The difference is being computed" : cell.values.failure(), 0);
+        if (shown && !legend) {
+            legend = true;
+            LegendEntry entry;
+            entry.title = cell.values.name() + " minus reference";
+            entry.unit = cell.values.unit();
+            entry.function = vis::divergingFunction();
+            entry.range = entry.data = {-top, top};
+            drawLegends(draw, {entry}, box.min, box.max());
+        }
+        draw.PopClipRect();
+    }
+}
+
+/// Drags the line; true while the mouse is at it.
+bool swipeLine(const Frame& frame, const PictureBox& box) {
+    const ImGuiIO& io = ImGui::GetIO();
+    const float x = box.min.x + box.size.x * frame.view.swipe;
+    const bool near = box.contains(io.MousePos) && std::abs(io.MousePos.x - x) < em() * 0.6f;
+    CompareCache& cache = frame.cache;
+    if (near && ImGui::IsMouseClicked(ImGuiMouseButton_Left) && ImGui::IsWindowHovered()) cache.swiping = true;
+    if (!ImGui::IsMouseDown(ImGuiMouseButton_Left)) cache.swiping = false;
+    if (cache.swiping) {
+        frame.view.swipe = std::clamp((io.MousePos.x - box.min.x) / box.size.x, 0.0f, 1.0f);
+        frame.context.interacting = true;
+    }
+    if (near || cache.swiping) ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
+    return near || cache.swiping;
+}
+
+void drawSwipe(const Frame& frame, const PictureBox& box) {
+    ImDrawList& draw = *ImGui::GetWindowDrawList();
+    const float x = std::round(box.min.x + box.size.x * frame.view.swipe);
+    draw.PushClipRect(box.min, {x, box.max().y}, true);
+    drawCell(frame, frame.reference, box);
+    drawOver(frame, box, frame.context.session, nameOf(frame, frame.reference), true);
+    draw.PopClipRect();
+    draw.PushClipRect({x, box.min.y}, box.max(), true);
+    drawCell(frame, frame.other, box);
+    drawOver(frame, box, frame.context.session, nameOf(frame, frame.other), false, false);
+    drawLegends(draw, sceneLegends(frame.context.session, frame.context.source->info()), box.min, box.max());
+    draw.PopClipRect();
+    const PlotColors colors = plotColors();
+    draw.AddLine({x, box.min.y}, {x, box.max().y}, colors.backdrop, 4);
+    draw.AddLine({x, box.min.y}, {x, box.max().y}, colors.cursor, 2);
+    const ImVec2 middle{x, box.min.y + box.size.y / 2};
+    draw.AddCircleFilled(middle, em() * 0.55f, colors.cursor, 24);
+    for (const float side : {-1.0f, 1.0f})
+        draw.AddTriangleFilled({middle.x + side * em() * 0.38f, middle.y},
+                               {middle.x + side * em() * 0.12f, middle.y - side * em() * 0.22f},
+                               {middle.x + side * em() * 0.12f, middle.y + side * em() * 0.22f}, colors.backdrop);
+}
+
+void drawBlink(const Frame& frame, const PictureBox& box) {
+    CompareCache& cache = frame.cache;
+    const std::size_t count = frame.variants.size();
+    if (frame.context.headless) {
+        cache.blinkShown = frame.reference;
+    } else {
+        const double now = ImGui::GetTime();
+        const bool next = now - cache.blinkStart >= double(frame.view.blinkSeconds) ||
+                          (ImGui::IsWindowFocused(ImGuiFocusedFlags_ChildWindows) && pressed({.key = 'B'}));
+        if (next) {
+            cache.blinkStart = now;
+            ++cache.blinkShown;
+        }
+        frame.context.busy = true;
+    }
+    cache.blinkShown %= count;
+    drawCell(frame, cache.blinkShown, box);
+    drawOver(frame, box, frame.context.session, nameOf(frame, cache.blinkShown), cache.blinkShown == frame.reference);
+}
+
+} // namespace
+
+std::vector<CompareRow> drawnComparison(const ViewCache* cache) {
+    const auto* compare = dynamic_cast<const CompareCache*>(cache);
+    return compare ? compare->rows : std::vector<CompareRow>{};
+}
+
+void drawCompareView(ViewContext& context, const std::string& pane, CompareView& view) {
+    if (!context.source) {
+        drawHint("No data", "The 3D scene with other settings is put beside itself here.");
+        return;
+    }
+    CompareCache& cache = cacheOf<CompareCache>(context, pane);
+    if (!context.figure) {
+        drawCompareToolbar(context, view);
+        exportMenu(context, "comparison", {}, [rows = cache.rows](const Progress&) { return compareCsv(rows); });
+    }
+    Frame frame{context, view, cache, shownVariants(view)};
+    const std::size_t count = frame.variants.size();
+    frame.reference = std::min(static_cast<std::size_t>(std::max(view.reference, 0)), count - 1);
+    frame.other = std::min(static_cast<std::size_t>(std::max(view.other, 0)), count - 1);
+    cache.hands.resize(count);
+
+    const ImVec2 room = ImGui::GetContentRegionAvail(), at = ImGui::GetCursorScreenPos();
+    const float table = view.showTable ? std::min(compareTableHeight(count), room.y * 0.5f) : 0;
+    const float asked = context.figure ? 0 : std::min(questionsHeight(view), room.y * 0.3f);
+    const ImVec2 area{std::floor(room.x), std::floor(room.y - table - asked)};
+    if (area.x < 24 || area.y < 24) return;
+    const bool grid = view.mode == CompareMode::Grid || view.mode == CompareMode::Difference;
+    const GridShape shape = grid ? gridFor(static_cast<int>(count), double(area.x), double(area.y)) : GridShape{};
+    const float gap = grid ? std::round(em() * 0.2f) : 0;
+    const ImVec2 size{
+        std::floor((area.x - gap * static_cast<float>(shape.columns - 1)) / static_cast<float>(shape.columns)),
+        std::floor((area.y - gap * static_cast<float>(shape.rows)) / static_cast<float>(shape.rows))};
+    if (size.x < 8 || size.y < 8) return;
+    std::vector<PictureBox> boxes;
+    for (std::size_t i = 0; i < (grid ? count : 1); ++i) {
+        const auto column = static_cast<float>(static_cast<int>(i) % shape.columns),
+                   row = static_cast<float>(static_cast<int>(i) / shape.columns);
+        boxes.push_back({{at.x + column * (size.x + gap), at.y + row * (size.y + gap)}, size});
+    }
+    bool moving = false;
+    if (grid) {
+        for (std::size_t i = 0; i < count; ++i) moving = picture(frame, i, boxes[i], false) || moving;
+    } else {
+        const bool blocked = view.mode == CompareMode::Swipe && swipeLine(frame, boxes[0]);
+        const std::size_t which = view.mode == CompareMode::Swipe ? frame.other : cache.blinkShown % count;
+        moving = picture(frame, which, boxes[0], blocked);
+    }
+    cache.feed.draw(context, pane, frame.variants, frame.reference, {size.x, size.y},
+                    moving || context.interacting || context.session.animation.playing);
+    if (view.mode == CompareMode::Difference && view.differenceOf == DifferenceOf::Values)
+        drawValues(frame, pane, boxes, moving || context.interacting || context.session.animation.playing);
+    else if (grid)
+        drawGrid(frame, boxes, view.mode == CompareMode::Difference);
+    else if (view.mode == CompareMode::Swipe)
+        drawSwipe(frame, boxes[0]);
+    else
+        drawBlink(frame, boxes[0]);
+    cache.rows = cache.feed.rows(context, frame.reference);
+    if (table > 0) {
+        ImGui::SetCursorScreenPos({at.x, at.y + area.y});
+        drawCompareTable(view, cache.rows);
+    }
+    if (context.figure) return;
+    ImGui::SetCursorScreenPos({at.x, at.y + area.y + table});
+    std::vector<std::string> names;
+    for (std::size_t i = 0; i < count; ++i) names.push_back(nameOf(frame, i));
+    drawQuestions(view, cache.questions, names);
+}
+
+} // namespace tessera::app

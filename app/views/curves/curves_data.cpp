@@ -1,0 +1,192 @@
+#include "app/views/curves/curves_data.h"
+
+#include "app/pane/view_parts.h"
+#include "app/ui/ticks.h"
+#include "app/ui/time_text.h"
+#include "volume/base/error.h"
+#include "volume/field/time_pair.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace tessera::app {
+
+namespace {
+
+constexpr std::size_t kMostQuantities = 8; ///< where the user has not chosen
+constexpr std::array<glm::vec3, 6> kInks{{{0.1f, 0.36f, 0.62f},
+                                          {0.8f, 0.33f, 0.1f},
+                                          {0.15f, 0.5f, 0.25f},
+                                          {0.5f, 0.25f, 0.6f},
+                                          {0.5f, 0.4f, 0.1f},
+                                          {0, 0, 0}}};
+
+volume::CurvesQuery queryOf(const CurvesWish& wish, const volume::DatasetInfo& info) {
+    volume::CurvesQuery query;
+    query.x = wish.x;
+    query.y = wish.y;
+    query.label = wish.label;
+    query.regions = wish.regions;
+    if (wish.brushes.selection.active()) {
+        query.doi = brushQuery(wish.brushes, info, 0).doi;
+        query.doiChannels = wish.brushes.channels;
+    }
+    return query;
+}
+
+bool sameAxis(const volume::Curves& curves) {
+    return curves.x.values == curves.times;
+}
+
+} // namespace
+
+Range rangeOf(const std::vector<double>& values, Range range) {
+    for (const double value : values)
+        if (std::isfinite(value)) range = {std::min(range.lo, value), std::max(range.hi, value)};
+    return range;
+}
+
+std::vector<LabelRegion> labelRegions(const volume::DatasetInfo& info) {
+    std::vector<LabelRegion> out;
+    const std::vector<volume::Channel> channels = info.channels();
+    for (std::size_t c = 0; c < channels.size(); ++c) {
+        const volume::Parameter& parameter = info.parameters[std::size_t(channels[c].parameter)];
+        if (!parameter.categorical) continue;
+        for (const volume::Label& label : parameter.labels)
+            out.push_back({static_cast<int>(c), label.value,
+                           parameter.name + " " + std::to_string(label.value) +
+                               (label.name.empty() ? "" : " (" + label.name + ")")});
+    }
+    return out;
+}
+
+LabelRegion findRegion(const volume::DatasetInfo& info, const std::string& text) {
+    const std::vector<volume::Channel> channels = info.channels();
+    std::string known;
+    std::vector<LabelRegion> byValue;
+    for (const LabelRegion& region : labelRegions(info)) {
+        const volume::Parameter& parameter =
+            info.parameters[std::size_t(channels[std::size_t(region.label)].parameter)];
+        const auto label = std::ranges::find(parameter.labels, region.value, &volume::Label::value);
+        const std::string value = std::to_string(region.value);
+        if (text == parameter.name + "=" + value || (!label->name.empty() && text == label->name) ||
+            text == parameter.name + "=" + label->name)
+            return region;
+        if (text == value) byValue.push_back(region);
+        known += (known.empty() ? "" : ", ") + region.name;
+    }
+    if (byValue.size() == 1) return byValue.front();
+    throw Error(known.empty() ? "the data have no label that names regions"
+                              : "no region of this name; there are " + known,
+                {}, text);
+}
+
+CurvesView resolvedCurves(const CurvesView& view, const volume::DatasetInfo& info) {
+    CurvesView out = view;
+    if (out.y.empty()) {
+        const volume::CellQuantities cell = volume::cellQuantities(info);
+        if (out.x.empty() && !cell.voltage.empty() && !cell.current.empty()) {
+            out.x = cell.current;
+            out.y = {cell.voltage};
+        }
+        for (const volume::Quantity& quantity : info.quantities)
+            if (out.x != cell.current && quantity.name != out.x && out.y.size() < kMostQuantities)
+                out.y.push_back(quantity.name);
+        if (out.y.empty())
+            for (const int channel : comparedChannels(info)) {
+                out.y = {"mean(" + info.channels()[std::size_t(channel)].name + ")"};
+                break;
+            }
+    }
+    if (out.x.empty()) out.x = info.timeName;
+    return out;
+}
+
+CurvesWish curvesWish(const CurvesView& view, const Session& session, const volume::DatasetInfo& info) {
+    const CurvesView resolved = resolvedCurves(view, info);
+    CurvesWish wish{resolved.x, resolved.y, -1, {}, {}};
+    if (!view.region.empty()) {
+        const LabelRegion region = findRegion(info, view.region);
+        wish.label = region.label;
+        wish.regions = {region.value};
+    }
+    if (view.brushed) {
+        wish.brushes = makeWish(session, info, {}, {}, 1, false);
+        wish.brushes.time = {};
+    }
+    return wish;
+}
+
+volume::Curves readCurves(const volume::BrickSource& source, const CurvesWish& wish, const Progress& progress) {
+    return volume::computeCurves(source, queryOf(wish, source.info()), progress);
+}
+
+std::vector<std::vector<std::size_t>> curveGroups(const volume::Curves& curves) {
+    std::vector<std::vector<std::size_t>> groups;
+    for (std::size_t i = 0; i < curves.y.size(); ++i) {
+        const auto same = std::ranges::find_if(groups, [&](const std::vector<std::size_t>& group) {
+            return !curves.y[i].unit.empty() && curves.y[group.front()].unit == curves.y[i].unit;
+        });
+        if (same == groups.end())
+            groups.push_back({i});
+        else
+            same->push_back(i);
+    }
+    return groups;
+}
+
+glm::dvec2 curvePoint(const volume::Curves& curves, std::size_t y, double time) {
+    const volume::TimePair at = volume::timesAround(curves.times, time);
+    const auto value = [&at](const std::vector<double>& values) {
+        const double earlier = values[std::size_t(at.earlier)];
+        return at.between() ? (1 - at.weight) * earlier + at.weight * values[std::size_t(at.later)] : earlier;
+    };
+    return {value(curves.x.values), value(curves.y[y].values)};
+}
+
+std::string curveTitle(const volume::Curve& curve) {
+    return titleWithUnit(curve.name == "time" ? "t" : curve.name, curve.unit);
+}
+
+std::string curvesCsv(const volume::Curves& curves) {
+    const auto heading = [](const std::string& name, const std::string& unit) {
+        return csvField(unit.empty() ? name : name + " [" + unit + "]");
+    };
+    std::string csv = heading(curves.timeName, curves.timeUnit);
+    if (!sameAxis(curves)) csv += "," + heading(curves.x.name, curves.x.unit);
+    for (const volume::Curve& curve : curves.y) csv += "," + heading(curve.name, curve.unit);
+    csv += "\n";
+    for (const std::vector<double>& row : volume::curveRows(curves)) {
+        for (std::size_t i = 0; i < row.size(); ++i) csv += (i > 0 ? "," : "") + csvNumber(row[i]);
+        csv += "\n";
+    }
+    return csv;
+}
+
+std::string curvesSvg(const volume::Curves& curves, std::optional<double> time) {
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    std::vector<FigurePanel> panels;
+    for (const std::vector<std::size_t>& group : curveGroups(curves)) {
+        FigurePanel panel;
+        const volume::Curve& front = curves.y[group.front()];
+        panel.x = {curveTitle(curves.x), paddedRange(rangeOf(curves.x.values, {kInfinity, -kInfinity}), 0.04)};
+        Range range{kInfinity, -kInfinity};
+        for (std::size_t n = 0; n < group.size(); ++n) {
+            const volume::Curve& curve = curves.y[group[n]];
+            range = rangeOf(curve.values, range);
+            FigureSeries line{curve.name, {}, kInks[n % kInks.size()]};
+            for (std::size_t t = 0; t < curves.times.size(); ++t)
+                line.points.push_back({curves.x.values[t], curve.values[t]});
+            line.dots = true;
+            panel.series.push_back(std::move(line));
+            if (time) panel.marks.push_back(curvePoint(curves, group[n], *time));
+        }
+        panel.y = {group.size() > 1 ? titleWithUnit("", front.unit) : curveTitle(front), paddedRange(range, 0.06)};
+        panels.push_back(std::move(panel));
+    }
+    return figureSvg(panels, 2);
+}
+
+} // namespace tessera::app

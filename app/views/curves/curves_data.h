@@ -1,0 +1,57 @@
+#pragma once
+
+#include "app/pane/figure.h"
+#include "app/queries/statistics_feed.h"
+#include "volume/analysis/curves.h"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+/// What the curves over time show, as numbers, tables and vector graphics.
+namespace tessera::app {
+
+/// What is asked for; equal wishes have equal answers.
+struct CurvesWish {
+    std::string x;
+    std::vector<std::string> y;
+    int label = -1; ///< channel
+    std::vector<int> regions;
+    StatisticsWish brushes; ///< its channels and selection
+    bool operator==(const CurvesWish&) const = default;
+};
+
+/// A value of a label: its channel and the value.
+struct LabelRegion {
+    int label = -1, value = 0;
+    std::string name; ///< "region 1 (cathode)"
+};
+/// Every value that labels of the data name.
+std::vector<LabelRegion> labelRegions(const volume::DatasetInfo& info);
+/// A region by the name of a label's value, by "LABEL=VALUE" or, where there is one label, by "VALUE". Throws Error
+/// that names those there are.
+LabelRegion findRegion(const volume::DatasetInfo& info, const std::string& text);
+
+/// The view with what it leaves open chosen for the data.
+CurvesView resolvedCurves(const CurvesView& view, const volume::DatasetInfo& info);
+/// What a view wants. Throws Error for a region that is not there.
+CurvesWish curvesWish(const CurvesView& view, const Session& session, const volume::DatasetInfo& info);
+/// Reads the values. Throws Error, Cancelled.
+volume::Curves readCurves(const volume::BrickSource& source, const CurvesWish& wish, const Progress& progress = {});
+
+/// A range with the finite values of a curve in it.
+Range rangeOf(const std::vector<double>& values, Range range);
+
+/// Curves that share a unit, and so a plot: indices into Curves::y.
+std::vector<std::vector<std::size_t>> curveGroups(const volume::Curves& curves);
+/// Where a time lies on a curve: between stored times in between. NaN where not known.
+glm::dvec2 curvePoint(const volume::Curves& curves, std::size_t y, double time);
+/// Title of a curve with its unit.
+std::string curveTitle(const volume::Curve& curve);
+
+/// One line per time.
+std::string curvesCsv(const volume::Curves& curves);
+/// A panel per unit, the state at `time` marked.
+std::string curvesSvg(const volume::Curves& curves, std::optional<double> time);
+
+} // namespace tessera::app

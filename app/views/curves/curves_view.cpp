@@ -1,0 +1,302 @@
+#include "app/pane/view_parts.h"
+#include "app/queries/latest_feed.h"
+#include "app/ui/ticks.h"
+#include "app/ui/time_text.h"
+#include "app/views/curves/curves_data.h"
+#include "volume/base/error.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace tessera::app {
+
+namespace {
+
+struct CurvesCache : ViewCache {
+    LatestFeed<CurvesWish, volume::Curves> feed;
+    std::string draft; ///< formula being typed
+};
+
+/// Colour of the nth curve of a plot.
+ImU32 inkOf(std::size_t n) {
+    const PlotColors colors = plotColors();
+    const std::array<ImU32, 5> inks{colors.focus, toColor({0.93, 0.5, 0.2}), toColor({0.35, 0.7, 0.4}),
+                                    toColor({0.65, 0.45, 0.8}), toColor({0.75, 0.65, 0.3})};
+    return inks[n % inks.size()];
+}
+
+void toggle(std::vector<std::string>& names, const std::string& name) {
+    if (std::erase(names, name) == 0) names.push_back(name);
+}
+
+/// A menu of statistics of every parameter.
+void chooseStatistic(const volume::DatasetInfo& info, std::vector<std::string>& y) {
+    static constexpr std::array<std::array<const char*, 2>, 6> kKinds{{{"mean", "Mean"},
+                                                                       {"min", "Least"},
+                                                                       {"max", "Most"},
+                                                                       {"deviation", "Standard deviation"},
+                                                                       {"share", "Share of samples"},
+                                                                       {"volume", "Volume"}}};
+    for (const auto& [word, title] : kKinds) {
+        if (!ImGui::BeginMenu(title)) continue;
+        for (const int channel : comparedChannels(info)) {
+            const std::string& name = info.channels()[std::size_t(channel)].name;
+            const std::string term = std::string(word) + "(" + name + ")";
+            if (ImGui::MenuItem(name.c_str(), nullptr, std::ranges::find(y, term) != y.end())) toggle(y, term);
+        }
+        ImGui::EndMenu();
+    }
+}
+
+/// What runs to the right.
+void chooseAcross(const volume::DatasetInfo& info, const CurvesView& resolved, CurvesView& view) {
+    ImGui::SetNextItemWidth(em() * 9);
+    if (ImGui::BeginCombo("##x", ("over " + resolved.x).c_str())) {
+        const auto item = [&](const std::string& name) {
+            if (!ImGui::Selectable(name.c_str(), name == resolved.x)) return;
+            view.y = resolved.y; // what is shown stays
+            view.x = name;
+        };
+        item(info.timeName);
+        for (const volume::Quantity& quantity : info.quantities) item(quantity.name);
+        if (ImGui::BeginMenu("Statistic")) {
+            std::vector<std::string> one;
+            chooseStatistic(info, one);
+            if (!one.empty()) {
+                view.y = resolved.y;
+                view.x = one.front();
+            }
+            ImGui::EndMenu();
+        }
+        ImGui::EndCombo();
+    } else if (ImGui::IsItemHovered()) {
+        tooltip("What runs to the right: time, a quantity over time or a statistic");
+    }
+}
+
+/// Which curves are shown, and a formula more.
+void chooseCurves(const volume::DatasetInfo& info, const CurvesView& resolved, CurvesView& view, std::string& draft) {
+    const std::size_t count = resolved.y.size();
+    ImGui::SetNextItemWidth(em() * 6.5f);
+    if (!ImGui::BeginCombo("##y", (std::to_string(count) + (count == 1 ? " curve" : " curves")).c_str(),
+                           ImGuiComboFlags_HeightLarge)) {
+        if (ImGui::IsItemHovered()) tooltip("Curves: quantities over time, statistics of parameters, formulas");
+        return;
+    }
+    std::vector<std::string> y = resolved.y;
+    for (const volume::Quantity& quantity : info.quantities)
+        if (ImGui::MenuItem(titleWithUnit(quantity.name, quantity.unit).c_str(), nullptr,
+                            std::ranges::find(y, quantity.name) != y.end()))
+            toggle(y, quantity.name);
+    if (!info.quantities.empty()) ImGui::Separator();
+    chooseStatistic(info, y);
+    ImGui::Separator();
+    for (const std::string& formula : resolved.y) {
+        const bool listed =
+            std::ranges::find(info.quantities, formula, &volume::Quantity::name) != info.quantities.end();
+        if (!listed && ImGui::MenuItem(formula.c_str(), nullptr, true)) toggle(y, formula);
+    }
+    char text[256];
+    std::snprintf(text, sizeof text, "%s", draft.c_str());
+    ImGui::SetNextItemWidth(em() * 14);
+    const bool entered = ImGui::InputTextWithHint("##formula", "formula: voltage * current_density", text, sizeof text,
+                                                  ImGuiInputTextFlags_EnterReturnsTrue);
+    draft = text;
+    if (entered && !draft.empty()) {
+        toggle(y, draft);
+        draft.clear();
+    }
+    if (y != resolved.y && !y.empty()) {
+        view.x = resolved.x;
+        view.y = y;
+    }
+    ImGui::EndCombo();
+}
+
+void chooseRegion(const volume::DatasetInfo& info, CurvesView& view) {
+    const std::vector<LabelRegion> regions = labelRegions(info);
+    if (regions.empty()) return;
+    continueLine(em() * 8);
+    ImGui::SetNextItemWidth(em() * 8);
+    if (ImGui::BeginCombo("##region", view.region.empty() ? "everywhere" : view.region.c_str())) {
+        if (ImGui::Selectable("everywhere", view.region.empty())) view.region.clear();
+        for (const LabelRegion& region : regions) {
+            const volume::Channel channel = info.channels()[std::size_t(region.label)];
+            if (ImGui::Selectable(region.name.c_str())) view.region = channel.name + "=" + std::to_string(region.value);
+        }
+        ImGui::EndCombo();
+    } else if (ImGui::IsItemHovered()) {
+        tooltip("Region that statistics are of");
+    }
+}
+
+void drawToolbar(ViewContext& context, CurvesCache& cache, const std::shared_ptr<const volume::Curves>& curves,
+                 CurvesView& view) {
+    const volume::DatasetInfo& info = context.numbers->info();
+    const CurvesView resolved = resolvedCurves(view, info);
+    chooseCurves(info, resolved, view, cache.draft);
+    continueLine(em() * 9);
+    chooseAcross(info, resolved, view);
+    chooseRegion(info, view);
+    if (context.session.selection.active()) {
+        continueLine(em() * 6);
+        ImGui::Checkbox("selected", &view.brushed);
+        if (ImGui::IsItemHovered()) tooltip("Statistics are of what the brushes select");
+    }
+    const volume::CellQuantities cell = volume::cellQuantities(info);
+    if (!cell.voltage.empty() && !cell.current.empty()) {
+        continueLine(buttonWidth("Polarisation curve"));
+        if (ImGui::Button("Polarisation curve")) {
+            view.x = cell.current;
+            view.y = {cell.voltage};
+        }
+        if (ImGui::IsItemHovered()) tooltip("Voltage over current density");
+        continueLine(buttonWidth("Power"));
+        if (ImGui::Button("Power")) {
+            view.x = cell.current;
+            view.y = {cell.voltage, "`" + cell.voltage + "` * `" + cell.current + "`"};
+        }
+        if (ImGui::IsItemHovered()) tooltip("Voltage and power density over current density");
+    }
+    if (curves) {
+        continueLine(buttonWidth("Export"));
+        exportMenu(
+            context, "curves",
+            [curves, time = context.session.time](const Progress&) { return curvesSvg(*curves, time); },
+            [curves](const Progress&) { return curvesCsv(*curves); });
+    }
+}
+
+/// A stored time on a curve, and how far the mouse is from it.
+struct Near {
+    std::size_t time = 0;
+    float distance = std::numeric_limits<float>::infinity();
+};
+
+/// One curve of a plot: a line from time to time with a dot at each.
+void drawCurve(const volume::Curves& curves, const std::vector<double>& values, const PlotFrame& frame, ImU32 ink,
+               ImVec2 mouse, Near& near) {
+    ImDrawList& draw = *ImGui::GetWindowDrawList();
+    std::optional<ImVec2> last;
+    for (std::size_t t = 0; t < values.size(); ++t) {
+        const double x = curves.x.values[t];
+        if (!std::isfinite(x) || !std::isfinite(values[t])) {
+            last.reset();
+            continue;
+        }
+        const ImVec2 at = frame.pixel(x, values[t]);
+        if (last) draw.AddLine(*last, at, ink, std::max(1.0f, em() * 0.09f));
+        draw.AddCircleFilled(at, em() * 0.18f, ink);
+        const float away = std::hypot(at.x - mouse.x, at.y - mouse.y);
+        if (away < near.distance) near = {t, away};
+        last = at;
+    }
+}
+
+/// Curves of one unit.
+void drawPlot(ViewContext& context, const volume::Curves& curves, const std::vector<std::size_t>& group,
+              const PlotFrame& frame, Near& near) {
+    Session& session = context.session;
+    ImDrawList& draw = *ImGui::GetWindowDrawList();
+    const PlotColors colors = plotColors();
+    const ImVec2 mouse = ImGui::GetIO().MousePos;
+    draw.PushClipRect({frame.min.x - em(), frame.min.y}, {frame.max.x + em(), frame.max.y}, true);
+    for (std::size_t n = 0; n < group.size(); ++n)
+        drawCurve(curves, curves.y[group[n]].values, frame, inkOf(n), mouse, near);
+    for (const std::size_t y : group) { // the state shown now
+        const glm::dvec2 now = curvePoint(curves, y, session.time);
+        if (!std::isfinite(now.x) || !std::isfinite(now.y)) continue;
+        const ImVec2 at = frame.pixel(now.x, now.y);
+        draw.AddCircle(at, em() * 0.42f, colors.backdrop, 24, em() * 0.25f);
+        draw.AddCircle(at, em() * 0.42f, colors.cursor, 24, em() * 0.13f);
+    }
+    draw.PopClipRect();
+    draw.AddRect(frame.min, frame.max, colors.frame);
+    drawAxis(draw, frame, AxisSide::Left, "", "", frame.min.y - em() * 0.3f, frame.max.y + em() * 0.3f);
+    float top = frame.min.y + em() * 0.2f;
+    for (std::size_t n = 0; n < group.size(); ++n, top += em() * 1.15f) {
+        const volume::Curve& curve = curves.y[group[n]];
+        std::string text = curveTitle(curve);
+        const double value = curvePoint(curves, group[n], session.time).y;
+        if (std::isfinite(value)) text += "  " + groupedNumber(value);
+        addTextWithBackdrop(draw, {frame.max.x - em() * 0.4f, top}, {1, 0}, group.size() > 1 ? inkOf(n) : colors.text,
+                            fitText(text, frame.width() - em()).c_str());
+    }
+}
+
+/// The plots below each other over one axis; a click on a point goes to its time.
+void drawPlots(ViewContext& context, const volume::Curves& curves) {
+    const volume::DatasetInfo& info = context.numbers->info();
+    Session& session = context.session;
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    const std::vector<std::vector<std::size_t>> groups = curveGroups(curves);
+    const Range across = paddedRange(rangeOf(curves.x.values, {kInfinity, -kInfinity}), 0.04);
+    std::vector<Range> up;
+    float left = 0;
+    for (const std::vector<std::size_t>& group : groups) {
+        Range range{kInfinity, -kInfinity};
+        for (const std::size_t y : group) range = rangeOf(curves.y[y].values, range);
+        up.push_back(paddedRange(range, 0.08));
+        left = std::max(left, axisRoom(AxisSide::Left, up.back(), false));
+    }
+    const ImVec2 origin = ImGui::GetCursorScreenPos(), room = ImGui::GetContentRegionAvail();
+    const float bottom = axisRoom(AxisSide::Bottom, across, true);
+    const float height = (room.y - bottom - em() * 0.4f) / std::max<float>(1, static_cast<float>(groups.size()));
+    if (height < em() * 1.6f || room.x - left < em() * 4)
+        return drawHint("Not enough room", "Enlarge the pane or choose fewer curves.");
+    const float x0 = origin.x + left, x1 = origin.x + room.x - em() * 0.6f;
+    ImGui::SetCursorScreenPos({x0, origin.y});
+    ImGui::InvisibleButton("plots", {x1 - x0, room.y - bottom});
+    const bool hovered = ImGui::IsItemHovered(), held = ImGui::IsItemActive();
+    Near near;
+    PlotFrame frame;
+    for (std::size_t g = 0; g < groups.size(); ++g) {
+        const float top = origin.y + em() * 0.2f + height * static_cast<float>(g);
+        frame = {{x0, std::round(top)}, {x1, std::round(top + height - em() * 0.4f)}, across, up[g]};
+        drawPlot(context, curves, groups[g], frame, near);
+    }
+    drawAxis(*ImGui::GetWindowDrawList(), frame, AxisSide::Bottom, curves.x.name == "time" ? "t" : curves.x.name,
+             curves.x.unit, origin.x, origin.x + room.x);
+    if ((!hovered && !held) || near.distance > em()) return;
+    ImGui::SetTooltip("%s", stateText(info, curves.times[near.time], session.data.axis).c_str());
+    if (!held) return;
+    session.time = curves.times[near.time];
+    session.animation.playing = false;
+    context.interacting = true;
+}
+
+} // namespace
+
+void drawCurvesView(ViewContext& context, const std::string& pane, CurvesView& view) {
+    if (!context.numbers) {
+        drawHint("No data", "Quantities and statistics over time appear here.");
+        return;
+    }
+    const volume::DatasetInfo& info = context.numbers->info();
+    CurvesCache& cache = cacheOf<CurvesCache>(context, pane);
+    CurvesWish wish;
+    std::string failure;
+    try {
+        wish = curvesWish(view, context.session, info);
+    } catch (const Error& error) {
+        failure = error.what();
+    }
+    std::shared_ptr<const volume::Curves> curves;
+    if (failure.empty() && info.times.size() > 1 && !wish.y.empty())
+        curves = cache.feed.get(
+            context, "curves " + pane, "Curves", wish,
+            [](const auto& source, const CurvesWish& asked, const Progress& progress) {
+                return readCurves(*source, asked, progress);
+            },
+            [&](const CurvesWish& answered) { return answered.x == wish.x && answered.y == wish.y; }, true);
+    if (!context.figure && info.times.size() > 1) drawToolbar(context, cache, curves, view);
+    if (info.times.size() < 2) return drawHint("One time", "Curves run over several times: open a series.");
+    if (failure.empty()) failure = cache.feed.failure();
+    if (!curves && !failure.empty()) return drawHint("No values", failure.c_str());
+    if (!curves) return ImGui::TextDisabled("Reading...");
+    drawPlots(context, *curves);
+}
+
+} // namespace tessera::app

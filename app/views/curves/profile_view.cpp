@@ -1,0 +1,268 @@
+#include "app/pane/figure.h"
+#include "app/pane/view_parts.h"
+#include "app/queries/latest_feed.h"
+#include "app/tools/brush_edit.h"
+#include "app/tools/profile_line.h"
+#include "app/ui/ticks.h"
+#include "app/ui/time_text.h"
+#include "app/views/curves/profile_data.h"
+#include "app/views/curves/section_view.h"
+#include "vis/gl/plot_texture.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+
+namespace tessera::app {
+
+namespace {
+
+constexpr std::size_t kMostProfiles = 8; ///< where the user has not chosen
+
+struct ProfileCache : ViewCache {
+    LatestFeed<ProfileWish, Profile> feed;
+    std::shared_ptr<const Profile> pictured; ///< what the pictures show
+    std::map<std::string, vis::TransferFunction> picturedWith;
+    std::vector<vis::PlotTexture> pictures; ///< by channel
+};
+
+void drawToolbar(ViewContext& context, const std::shared_ptr<const Profile>& profile, ProfileView& view,
+                 const std::vector<int>& shown) {
+    Session& session = context.session;
+    const volume::DatasetInfo& info = context.numbers->info();
+    chooseChannels(info, view.channels, shown);
+    chooseOver(view.over, info.times.size() > 1);
+    if (view.over != ProfileOver::Time) {
+        continueLine(buttonWidth("Corner at cursor"));
+        if (ImGui::Button("Corner at cursor")) view.points.push_back(session.cursor);
+        if (ImGui::IsItemHovered())
+            tooltip("Adds a corner of the line at the linked cursor; double-click in the volume or drag in a slice "
+                    "moves it");
+        continueLine(buttonWidth("Axis"));
+        if (ImGui::Button("Axis")) ImGui::OpenPopup("axis");
+        if (ImGui::IsItemHovered()) tooltip("A straight line along an axis through the cursor");
+        if (ImGui::BeginPopup("axis")) {
+            for (int axis = 0; axis < 3; ++axis) {
+                const char name[] = {"xyz"[axis], 0};
+                if (!ImGui::MenuItem(name)) continue;
+                view.points = {session.cursor, session.cursor};
+                view.points[0][axis] = info.bounds.lo[axis];
+                view.points[1][axis] = info.bounds.hi[axis];
+            }
+            ImGui::EndPopup();
+        }
+        continueLine(ImGui::GetFrameHeight());
+        if (iconButton(context, "clear", icons::kTrash, "Follow the cursor along the longest axis again",
+                       !view.points.empty()))
+            view.points.clear();
+    }
+    if (profile) {
+        continueLine(buttonWidth("Export"));
+        exportMenu(
+            context, "profile",
+            [info, profile, session](const Progress&) { return profileSvg(info, session, *profile); },
+            [info, profile, session](const Progress&) { return profileCsv(info, session, *profile); });
+    }
+    drawOrigin(context, shown);
+    if (view.points.size() == 1 && view.over != ProfileOver::Time) {
+        continueLine(ImGui::CalcTextSize("one corner more").x);
+        ImGui::TextDisabled("one corner more");
+    }
+}
+
+/// What the plots share: the axis to the right and what is marked on it.
+struct Across {
+    std::string title, unit;
+    std::vector<double> values; ///< of the places or times, as shown
+    Range range;
+    std::optional<std::size_t> marked; ///< element of Profile::across()
+};
+
+/// One parameter as a curve.
+void drawCurve(const std::string& title, Range range, const Profile& profile, std::size_t c, const PlotFrame& frame,
+               const Across& across) {
+    ImDrawList& draw = *ImGui::GetWindowDrawList();
+    const PlotColors colors = plotColors();
+    const std::vector<double>& values = profile.values[c];
+    draw.PushClipRect(frame.min, frame.max, true);
+    std::vector<ImVec2> run;
+    const auto flush = [&] {
+        if (run.size() > 1)
+            draw.AddPolyline(run.data(), static_cast<int>(run.size()), colors.focus, 0, std::max(1.2f, em() * 0.11f));
+        else if (run.size() == 1)
+            draw.AddCircleFilled(run.front(), em() * 0.12f, colors.focus);
+        run.clear();
+    };
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        if (std::isnan(values[i]))
+            flush();
+        else
+            run.push_back(frame.pixel(across.values[i], values[i]));
+    }
+    flush();
+    const std::optional<std::size_t> marked = across.marked;
+    if (marked) drawCrosshair(draw, frame, across.values[*marked], values[*marked]);
+    draw.PopClipRect();
+    draw.AddRect(frame.min, frame.max, colors.frame);
+    drawAxis(draw, frame, AxisSide::Left, "", "", frame.min.y - em() * 0.3f, frame.max.y + em() * 0.3f);
+    std::string text = title;
+    if (marked) text += "  " + formatNumber(values[*marked], (range.hi - range.lo) / 1000);
+    addTextWithBackdrop(draw, {frame.min.x + em() * 0.4f, frame.min.y + em() * 0.2f}, {0, 0}, colors.text,
+                        fitText(text, frame.width() - em()).c_str());
+}
+
+void updatePictures(ProfileCache& cache, const Session& session, const volume::DatasetInfo& info,
+                    const std::shared_ptr<const Profile>& profile) {
+    if (cache.pictured == profile && cache.picturedWith == session.transfer) return;
+    cache.pictured = profile;
+    cache.picturedWith = session.transfer;
+    cache.pictures.resize(profile->values.size());
+    for (std::size_t c = 0; c < profile->values.size(); ++c)
+        cache.pictures[c].upload({static_cast<int>(profile->positions.size()), static_cast<int>(profile->times.size())},
+                                 profileImage(info, session, *profile, c));
+}
+
+/// One parameter over distance and time.
+void drawPicture(const Session& session, const std::string& title, const vis::PlotTexture& picture,
+                 const Profile& profile, const PlotFrame& frame, const Across& across) {
+    ImDrawList& draw = *ImGui::GetWindowDrawList();
+    const PlotColors colors = plotColors();
+    // A row of the picture reaches half way to the times before and after it, its first and last place to the edge.
+    const std::vector<double>& times = profile.times;
+    const auto rows = static_cast<float>(times.size());
+    draw.PushClipRect(frame.min, frame.max, true);
+    for (std::size_t t = 0; t < times.size(); ++t) {
+        const double from = t > 0 ? (times[t - 1] + times[t]) / 2 : times.front();
+        const double to = t + 1 < times.size() ? (times[t] + times[t + 1]) / 2 : times.back();
+        const float v = 1 - (static_cast<float>(t) + 0.5f) / rows;
+        draw.AddImage(reinterpret_cast<ImTextureID>(static_cast<std::intptr_t>(picture.name())),
+                      {frame.min.x, frame.pixel(0, to).y}, {frame.max.x, frame.pixel(0, from).y}, {0, v}, {1, v});
+    }
+    draw.PopClipRect();
+    draw.PushClipRect(frame.min, frame.max, true);
+    drawCrosshair(draw, frame, across.marked ? across.values[*across.marked] : std::nan(""), session.time);
+    draw.PopClipRect();
+    draw.AddRect(frame.min, frame.max, colors.frame);
+    drawAxis(draw, frame, AxisSide::Left, "", "", frame.min.y - em() * 0.3f, frame.max.y + em() * 0.3f);
+    addTextWithBackdrop(draw, {frame.min.x + em() * 0.4f, frame.min.y + em() * 0.2f}, {0, 0}, colors.text,
+                        fitText(title, frame.width() - em()).c_str());
+}
+
+/// The place nearest to the linked cursor, where that lies near the line.
+std::optional<std::size_t> placeAtCursor(const Profile& profile, glm::dvec3 cursor) {
+    std::optional<std::size_t> place;
+    double nearest = profile.distance.back() / static_cast<double>(profile.distance.size());
+    for (std::size_t i = 0; i < profile.positions.size(); ++i)
+        if (const double away = glm::distance(profile.positions[i], cursor); away <= nearest) {
+            nearest = away;
+            place = i;
+        }
+    return place;
+}
+
+} // namespace
+
+void drawProfileView(ViewContext& context, const std::string& pane, ProfileView& view) {
+    if (!context.source) {
+        drawHint("No data", "Parameters along a line in space appear here.");
+        return;
+    }
+    if (view.over == ProfileOver::Sections) return drawSections(context, pane, view);
+    Session& session = context.session;
+    const volume::DatasetInfo& info = context.numbers->info();
+    ProfileCache& cache = cacheOf<ProfileCache>(context, pane);
+    const std::vector<int> shown = chosenChannels(info, view.channels, kMostProfiles);
+    if (shown.empty()) return drawHint("No parameters", "This data set holds only labels.");
+    ProfileWish wish{.over = info.times.size() > 1 ? view.over : ProfileOver::Line,
+                     .channels = shown,
+                     .corners = profileCorners(view, session, info.bounds),
+                     .samples = std::clamp(view.samples, 2, 4096),
+                     .time = {}};
+    const bool overTime = wish.over == ProfileOver::Time, pictures = wish.over == ProfileOver::LineAndTime;
+    if (wish.over == ProfileOver::Line) wish.time = volume::timesAround(info.times, session.time);
+    if (overTime) wish.corners = {session.cursor}, wish.samples = 1;
+    const auto profile = cache.feed.get(
+        context, "profile " + pane, "Line profile", wish,
+        [](const auto& source, const ProfileWish& asked, const Progress& progress) {
+            return readProfile(*source, asked, progress);
+        },
+        [&](const ProfileWish& answered) { return answered.over == wish.over && answered.channels == wish.channels; },
+        true);
+    const bool usable = profile && (overTime || (profile->distance.size() > 1 && profile->distance.back() > 0));
+    if (!context.figure) drawToolbar(context, usable ? profile : nullptr, view, shown);
+    if (!usable) {
+        if (const std::string failure = cache.feed.failure(); !failure.empty())
+            return drawHint("No values", failure.c_str());
+        if (!profile) return ImGui::TextDisabled("Reading...");
+        return drawHint("The line has no length", "Place a corner, move the cursor, and place another.");
+    }
+    const LineAxis along = lineAxis(session, info, *profile);
+    const auto [least, most] = std::ranges::minmax(along.values);
+    const Range times{info.times.front(), info.times.back()};
+    Across across{
+        .title = along.title, .unit = along.unit, .values = along.values, .range = {least, most}, .marked = {}};
+    if (overTime)
+        across = {.title = timeWord(info), .unit = info.timeUnit, .values = info.times, .range = times, .marked = {}};
+    const ImVec2 origin = ImGui::GetCursorScreenPos(), room = ImGui::GetContentRegionAvail();
+    const std::vector<volume::Channel> channels = info.channels();
+    const auto rangeOf = [&](std::size_t c) {
+        return info.channelRange(channels[static_cast<std::size_t>(profile->wish.channels[c])]);
+    };
+    float left = pictures ? axisRoom(AxisSide::Left, times, false) : 0;
+    for (std::size_t c = 0; c < profile->values.size() && !pictures; ++c)
+        left = std::max(left, axisRoom(AxisSide::Left, paddedRange(rangeOf(c), 0.06), false));
+    const float bottom = axisRoom(AxisSide::Bottom, across.range, true);
+    const auto plots = static_cast<float>(profile->values.size());
+    const float height = (room.y - bottom - em() * 0.4f) / std::max(1.0f, plots);
+    if (height < em() * 1.6f || room.x - left < em() * 4)
+        return drawHint("Not enough room", "Enlarge the pane or choose fewer parameters.");
+
+    // What is under the mouse is read; a click or drag takes the cursor or the time there.
+    const ImVec2 mouse = ImGui::GetIO().MousePos;
+    const float x0 = origin.x + left, x1 = origin.x + room.x - em() * 0.6f;
+    ImGui::SetCursorScreenPos({x0, origin.y});
+    ImGui::InvisibleButton("plots", {x1 - x0, room.y - bottom});
+    const bool taken = ImGui::IsItemActive(), over = ImGui::IsItemHovered() || taken;
+    const double share = std::clamp(double((mouse.x - x0) / (x1 - x0)), 0.0, 1.0);
+    const auto last = static_cast<double>(profile->across().size() - 1);
+    const bool backwards = across.values.front() > across.values.back(); // from a later time to an earlier one
+    if (over && overTime) {
+        const double at = times.lo + (times.hi - times.lo) * share;
+        across.marked = static_cast<std::size_t>(info.nearestTime(at));
+    } else if (over) {
+        across.marked = static_cast<std::size_t>(std::lround((backwards ? 1 - share : share) * last));
+    } else if (overTime) {
+        across.marked = static_cast<std::size_t>(info.nearestTime(session.time));
+    } else {
+        across.marked = placeAtCursor(*profile, session.cursor);
+    }
+    if (taken && across.marked) {
+        if (wish.over != ProfileOver::Line) session.animation.playing = false;
+        if (overTime)
+            session.time = profile->times[*across.marked];
+        else
+            session.cursor = profile->positions[*across.marked];
+        context.interacting = true;
+    }
+    if (pictures) updatePictures(cache, session, info, profile);
+    for (std::size_t c = 0; c < profile->values.size(); ++c) {
+        const volume::Channel& channel = channels[static_cast<std::size_t>(profile->wish.channels[c])];
+        const float top = origin.y + em() * 0.2f + height * static_cast<float>(c);
+        const PlotFrame frame{{x0, std::round(top)},
+                              {x1, std::round(top + height - em() * 0.4f)},
+                              across.range,
+                              pictures ? times : paddedRange(rangeOf(c), 0.06)};
+        const std::string title = titleWithUnit(channel.name, channel.unit);
+        if (pictures && taken && frame.contains(mouse))
+            session.time = info.times[static_cast<std::size_t>(info.nearestTime(frame.data(mouse).y))];
+        if (pictures)
+            drawPicture(session, title + ", up: " + timeTitle(info), cache.pictures[c], *profile, frame, across);
+        else
+            drawCurve(title, rangeOf(c), *profile, c, frame, across);
+        if (c + 1 == profile->values.size())
+            drawAxis(*ImGui::GetWindowDrawList(), frame, AxisSide::Bottom, across.title, across.unit, origin.x,
+                     origin.x + room.x);
+    }
+}
+
+} // namespace tessera::app

@@ -1,0 +1,254 @@
+#include "app/views/curves/section_data.h"
+
+#include "app/pane/plot.h"
+#include "app/session/label_colors.h"
+#include "app/ui/ticks.h"
+#include "volume/base/error.h"
+#include "volume/bricks/source_at_time.h"
+#include "volume/flow/flow_channels.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tessera::app {
+
+namespace {
+
+constexpr SectionMeasure kMeasures[] = {SectionMeasure::Mean,     SectionMeasure::Least, SectionMeasure::Most,
+                                        SectionMeasure::Integral, SectionMeasure::Flux,  SectionMeasure::Flow,
+                                        SectionMeasure::Area};
+
+/// The degree of interest of a selection as a function of the channels it names.
+void setInterest(volume::SectionQuery& query, const SectionWish& wish, const volume::DatasetInfo& info) {
+    if (!wish.selection.active()) return;
+    const vis::DoiFunction doi(wish.selection, wish.lenses);
+    std::vector<int> places; // in the values, -1: not there, absent everywhere
+    for (const std::string& name : doi.channels()) {
+        const auto channel = info.findChannel(name);
+        places.push_back(channel ? static_cast<int>(query.doiChannels.size()) : -1);
+        if (channel) query.doiChannels.push_back(*channel);
+    }
+    query.doi = [doi, places](std::span<const float> values, glm::dvec3 position) {
+        std::vector<double> given;
+        given.reserve(places.size());
+        for (const int place : places)
+            given.push_back(place < 0 ? std::nan("") : static_cast<double>(values[static_cast<std::size_t>(place)]));
+        return doi(given, position);
+    };
+}
+
+volume::Channel channelOf(const volume::DatasetInfo& info, int channel) {
+    return info.channels().at(static_cast<std::size_t>(channel));
+}
+
+std::string velocityUnit(const volume::DatasetInfo& info, const std::string& velocity) {
+    for (const volume::Parameter& parameter : info.parameters)
+        if (parameter.name == velocity && !parameter.unit.empty()) return parameter.unit;
+    return info.lengthUnit.empty() || info.timeUnit.empty() ? "" : info.lengthUnit + "/" + info.timeUnit;
+}
+
+} // namespace
+
+SectionCurves readSections(const std::shared_ptr<const volume::BrickSource>& source, const SectionWish& wish,
+                           const Progress& progress) {
+    const volume::DatasetInfo& info = source->info();
+    volume::SectionQuery query;
+    query.channels = wish.channels;
+    query.axis = wish.axis;
+    query.weight = wish.weight;
+    if (wish.line.size() == 2) query.line = {wish.line[0], wish.line[1]};
+    query.planes = wish.planes;
+    SectionCurves out{wish, {}, {}};
+    const volume::SourceAtTime shown = volume::sourceAt(source, wish.time);
+    if (wish.label >= 0 && wish.regions.empty())
+        out.wish.regions = volume::labelValues(*shown.source, wish.label, shown.time, progress.part(0, 0.2));
+    query.label = wish.label;
+    query.regions = out.wish.regions;
+    if (const auto velocity = volume::velocityChannels(info, wish.velocity)) {
+        query.velocity = *velocity;
+        out.velocity = volume::parameterOf(info, (*velocity)[0]).name;
+    } else if (!wish.velocity.empty()) {
+        throw Error("there is no vector \"" + wish.velocity + "\"");
+    } else if (wish.weight == volume::SectionWeight::MassFlow) {
+        throw Error("a mean by mass flow wants a velocity, and no vector is named or measured as one");
+    }
+    if (wish.weight == volume::SectionWeight::MassFlow) query.density = volume::densityChannel(info).value_or(-1);
+    setInterest(query, wish, info);
+    query.time = shown.time;
+    out.sections = volume::computeSections(*shown.source, query, progress.part(0.2, 1));
+    return out;
+}
+
+volume::ComposedUnit measureUnit(const volume::DatasetInfo& info, int channel, const std::string& velocity,
+                                 SectionMeasure measure) {
+    const std::string own = channelOf(info, channel).unit, speed = velocityUnit(info, velocity);
+    const volume::UnitPower area{info.lengthUnit, 2};
+    std::vector<volume::UnitPower> factors;
+    switch (measure) {
+    case SectionMeasure::Mean:
+    case SectionMeasure::Least:
+    case SectionMeasure::Most:
+        return {1, own};
+    case SectionMeasure::Integral:
+        factors = {{own, 1}, area};
+        break;
+    case SectionMeasure::Flux:
+        factors = {{own, 1}, {speed, 1}, area};
+        break;
+    case SectionMeasure::Flow:
+        factors = {{speed, 1}, area};
+        break;
+    case SectionMeasure::Area:
+        factors = {area};
+        break;
+    }
+    return volume::composedUnit(factors);
+}
+
+double measured(const volume::SectionValues& values, SectionMeasure measure, double factor) {
+    switch (measure) {
+    case SectionMeasure::Mean:
+        return values.mean;
+    case SectionMeasure::Least:
+        return values.least;
+    case SectionMeasure::Most:
+        return values.most;
+    case SectionMeasure::Integral:
+        return values.integral * factor;
+    case SectionMeasure::Flux:
+        return values.flux * factor;
+    case SectionMeasure::Flow:
+        return values.flow * factor;
+    case SectionMeasure::Area:
+        return values.area * factor;
+    }
+    return std::nan("");
+}
+
+std::vector<CurveLook> curveLooks(const volume::DatasetInfo& info, const SectionWish& wish) {
+    const bool selected = wish.selection.active();
+    if (wish.regions.empty() || wish.label < 0)
+        return {{selected ? "selection" : "all",
+                 selected ? glm::vec3(0.90f, 0.45f, 0.05f) : glm::vec3(0.1f, 0.36f, 0.62f)}};
+    std::vector<CurveLook> out;
+    const volume::Parameter& label = volume::parameterOf(info, wish.label);
+    for (const int value : wish.regions)
+        out.push_back({volume::labelName(label, value) + (selected ? ", selection" : ""), labelColor(label, value)});
+    return out;
+}
+
+std::string placeTitle(const SectionWish& wish) {
+    return wish.line.size() == 2 ? "distance"
+                                 : std::string(volume::kSpaceAxisNames[static_cast<std::size_t>(wish.axis)]);
+}
+
+std::string sectionCsv(const volume::DatasetInfo& info, const SectionCurves& curves, bool head) {
+    const auto& [wish, sections, velocity] = curves;
+    const bool several = info.times.size() > 1;
+    std::string csv;
+    if (head) {
+        if (several)
+            csv +=
+                csvField(titleWithUnit(info.timeName, "") + (info.timeUnit.empty() ? "" : " [" + info.timeUnit + "]")) +
+                ",";
+        csv += csvField(placeTitle(wish) + (info.lengthUnit.empty() ? "" : " [" + info.lengthUnit + "]"));
+        csv += ",region,parameter,unit,weight,samples,mean,least,most,integral,integral unit,flux,flux unit,flow,flow "
+               "unit,area,area unit\n";
+    }
+    const double weight = wish.time.weight;
+    const double time = info.times[static_cast<std::size_t>(wish.time.earlier)] * (1 - weight) +
+                        info.times[static_cast<std::size_t>(wish.time.later)] * weight;
+    const std::vector<CurveLook> looks = curveLooks(info, wish);
+    for (std::size_t r = 0; r < looks.size(); ++r)
+        for (std::size_t c = 0; c < wish.channels.size(); ++c) {
+            const volume::Channel channel = channelOf(info, wish.channels[c]);
+            if (std::ranges::none_of(sections.values[r][c], [](const auto& plane) { return plane.area > 0; })) continue;
+            const std::string before =
+                "," + csvField(looks[r].name) + "," + csvField(channel.name) + "," + csvField(channel.unit) + "," +
+                std::string(volume::kSectionWeightNames[static_cast<std::size_t>(wish.weight)]) + ",";
+            std::vector<volume::ComposedUnit> units;
+            for (const SectionMeasure measure : kMeasures)
+                units.push_back(measureUnit(info, wish.channels[c], velocity, measure));
+            for (std::size_t p = 0; p < sections.place.size(); ++p) {
+                const volume::SectionValues& values = sections.values[r][c][p];
+                if (several) csv += csvNumber(time) + ",";
+                csv += csvNumber(sections.place[p]) + before + csvNumber(values.samples);
+                for (std::size_t m = 0; m < std::size(kMeasures); ++m) {
+                    const bool carried = kMeasures[m] == SectionMeasure::Flux || kMeasures[m] == SectionMeasure::Flow;
+                    csv += ",";
+                    if (!carried || !velocity.empty())
+                        csv += csvNumber(measured(values, kMeasures[m], units[m].factor));
+                    if (kMeasures[m] > SectionMeasure::Most) csv += "," + csvField(units[m].unit);
+                }
+                csv += "\n";
+            }
+        }
+    return csv;
+}
+
+std::vector<FigurePanel> sectionPanels(const volume::DatasetInfo& info, const SectionCurves& curves,
+                                       SectionMeasure measure) {
+    const auto& [wish, sections, velocity] = curves;
+    if (velocity.empty() && (measure == SectionMeasure::Flux || measure == SectionMeasure::Flow))
+        throw Error("a flux wants a velocity, and no vector is named or measured as one");
+    const LengthUnit length = suitableLength(
+        info.lengthUnit, sections.place.empty() ? 0 : std::abs(sections.place.back() - sections.place.front()));
+    const std::vector<CurveLook> looks = curveLooks(info, wish);
+    std::vector<FigurePanel> panels;
+    for (std::size_t c = 0; c < wish.channels.size(); ++c) {
+        const volume::Channel channel = channelOf(info, wish.channels[c]);
+        const volume::ComposedUnit unit = measureUnit(info, wish.channels[c], velocity, measure);
+        FigurePanel panel;
+        Range range{HUGE_VAL, -HUGE_VAL};
+        for (std::size_t r = 0; r < looks.size(); ++r) {
+            FigureSeries series{looks[r].name, {}, looks[r].color};
+            bool any = false;
+            for (std::size_t p = 0; p < sections.place.size(); ++p) {
+                const volume::SectionValues& values = sections.values[r][c][p];
+                const double value = values.area > 0 ? measured(values, measure, unit.factor) : std::nan("");
+                series.points.push_back({sections.place[p] * length.perUnit, value});
+                if (!std::isfinite(value)) continue;
+                range = {std::min(range.lo, value), std::max(range.hi, value)};
+                any = true;
+            }
+            if (any) panel.series.push_back(std::move(series));
+        }
+        const std::string what = std::string(kSectionMeasureNames[static_cast<std::size_t>(measure)]);
+        panel.x = {titleWithUnit(placeTitle(wish), length.name),
+                   sections.place.empty()
+                       ? Range{}
+                       : Range{sections.place.front() * length.perUnit, sections.place.back() * length.perUnit}};
+        panel.y = {titleWithUnit(measure == SectionMeasure::Flow || measure == SectionMeasure::Area
+                                     ? what + " where " + channel.name + " exists"
+                                     : what + " of " + channel.name,
+                                 unit.unit),
+                   range.lo <= range.hi ? paddedRange(range, 0.05) : Range{0, 1}};
+        if (panel.series.size() == 1 && panel.series[0].name != "all") panel.title = panel.series[0].name;
+        panels.push_back(std::move(panel));
+    }
+    return panels;
+}
+
+std::vector<std::string> sectionNotes(const volume::DatasetInfo& info, const SectionCurves& curves) {
+    const SectionWish& wish = curves.wish;
+    std::vector<std::string> notes;
+    notes.push_back(wish.line.size() == 2
+                        ? "planes across the line: every sample stands for its own cell, which the planes cut exactly"
+                        : "planes are those that samples lie in; every sample counts with the area of its cell there");
+    if (wish.weight == volume::SectionWeight::MassFlow) {
+        const auto density = volume::densityChannel(info);
+        notes.push_back("mean by mass flow: weighted by |" +
+                        (density ? channelOf(info, *density).name + " " : std::string()) + curves.velocity +
+                        "| through the plane" + (density ? "" : " (there is no density: by volume flow)"));
+    }
+    if (!curves.velocity.empty()) {
+        notes.push_back("flux and flow: carried by " + curves.velocity +
+                        " (convection alone), counted along the direction of the axis or line");
+        for (const volume::Parameter& parameter : info.parameters)
+            if (parameter.name == curves.velocity && parameter.unit.empty())
+                notes.push_back(curves.velocity + " has no unit: taken as " + velocityUnit(info, curves.velocity));
+    }
+    return notes;
+}
+
+} // namespace tessera::app

@@ -1,0 +1,79 @@
+#pragma once
+
+#include "app/pane/figure.h"
+#include "app/session/section_settings.h"
+#include "vis/scene/selection.h"
+#include "volume/base/progress.h"
+#include "volume/base/unit_product.h"
+#include "volume/field/time_pair.h"
+#include "volume/flow/sections.h"
+
+#include <memory>
+#include <string>
+#include <vector>
+
+/// Curves of averages over planes, as numbers, tables and figures.
+namespace tessera::app {
+
+/// What is asked for; equal wishes have equal answers.
+struct SectionWish {
+    std::vector<int> channels; ///< indices of DatasetInfo::channels()
+    volume::SpaceAxis axis = volume::SpaceAxis::Z;
+    std::vector<glm::dvec3> line; ///< start and end of a line instead of the axis
+    int planes = 100;             ///< across a line
+    volume::SectionWeight weight = volume::SectionWeight::Area;
+    std::string velocity;     ///< "" = found by name and unit
+    int label = -1;           ///< channel of the label that says the region
+    std::vector<int> regions; ///< its values, one curve each; empty: every one that occurs
+    volume::TimePair time;
+    vis::Selection selection; ///< samples count by their degree of interest where a brush is enabled
+    vis::LensSpace lenses;
+    bool operator==(const SectionWish&) const = default;
+};
+
+struct SectionCurves {
+    SectionWish wish; ///< with the regions that have a curve
+    volume::Sections sections;
+    std::string velocity; ///< the parameter that carries, "" where there is none
+};
+
+inline constexpr const char* kSectionMeasureDocs[] = {
+    "Mean over the plane, weighted by area, volume or mass flow",
+    "Least value in the plane",
+    "Largest value in the plane",
+    "Integral over the plane: sum of value x area",
+    "What is carried through the plane: sum of value x velocity x area",
+    "Volume flow through the plane: sum of velocity x area",
+    "Area of the plane where the parameter exists"};
+
+/// Computes the curves. Throws Error (no velocity for mass flow or a flux), Cancelled.
+SectionCurves readSections(const std::shared_ptr<const volume::BrickSource>& source, const SectionWish& wish,
+                           const Progress& progress = {});
+
+/// Unit of a measure of a channel; values are multiplied by `factor` to be in it.
+volume::ComposedUnit measureUnit(const volume::DatasetInfo& info, int channel, const std::string& velocity,
+                                 SectionMeasure measure);
+/// One measure of a plane in that unit.
+double measured(const volume::SectionValues& values, SectionMeasure measure, double factor);
+
+/// Names and colours of the curves, by SectionWish::regions: "all", "selection" or the regions'.
+struct CurveLook {
+    std::string name;
+    glm::vec3 color{0};
+};
+std::vector<CurveLook> curveLooks(const volume::DatasetInfo& info, const SectionWish& wish);
+
+/// The title of the places along the axis or line, without unit.
+std::string placeTitle(const SectionWish& wish);
+
+/// One line per region, parameter (where the region has it) and plane, with every measure; `head` false leaves the
+/// first line out, as of further times.
+std::string sectionCsv(const volume::DatasetInfo& info, const SectionCurves& curves, bool head = true);
+/// A panel for each parameter, a line for each region.
+std::vector<FigurePanel> sectionPanels(const volume::DatasetInfo& info, const SectionCurves& curves,
+                                       SectionMeasure measure);
+
+/// What a reader has to know about the numbers, a sentence each.
+std::vector<std::string> sectionNotes(const volume::DatasetInfo& info, const SectionCurves& curves);
+
+} // namespace tessera::app

@@ -1,0 +1,273 @@
+#include "app/views/curves/section_view.h"
+
+#include "app/pane/figure.h"
+#include "app/pane/plot.h"
+#include "app/pane/view_parts.h"
+#include "app/queries/latest_feed.h"
+#include "app/queries/statistics_feed.h"
+#include "app/tools/profile_line.h"
+#include "app/ui/ticks.h"
+#include "app/views/curves/section_data.h"
+#include "volume/flow/flow_channels.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tessera::app {
+
+namespace {
+
+constexpr std::size_t kMostSections = 6; ///< where the user has not chosen
+constexpr int kLinePlanes = 200;         ///< across a line
+
+struct SectionCache : ViewCache {
+    LatestFeed<SectionWish, SectionCurves> feed;
+};
+
+/// A list of names for an enumeration; true where another one was chosen.
+template <class Enum, std::size_t N>
+void choose(const char* id, Enum& value, const char* const (&names)[N], const char* const (&help)[N], float width) {
+    continueLine(em() * width);
+    ImGui::SetNextItemWidth(em() * width);
+    const auto now = static_cast<std::size_t>(value);
+    if (ImGui::BeginCombo(id, names[now])) {
+        for (std::size_t i = 0; i < N; ++i) {
+            if (ImGui::Selectable(names[i], i == now)) value = static_cast<Enum>(i);
+            if (ImGui::IsItemHovered()) tooltip(help[i]);
+        }
+        ImGui::EndCombo();
+    } else if (ImGui::IsItemHovered()) {
+        tooltip(help[now]);
+    }
+}
+
+void chooseRegions(const volume::DatasetInfo& info, int label, SectionSettings& settings) {
+    const volume::Parameter& parameter = volume::parameterOf(info, label);
+    const std::string shown = !settings.byRegion             ? "all as one"
+                              : settings.regions.empty()     ? "every " + parameter.name
+                              : settings.regions.size() == 1 ? volume::labelName(parameter, settings.regions[0])
+                                                             : std::to_string(settings.regions.size()) + " regions";
+    continueLine(em() * 8);
+    ImGui::SetNextItemWidth(em() * 8);
+    if (ImGui::BeginCombo("##regions", shown.c_str(), ImGuiComboFlags_HeightLarge)) {
+        if (ImGui::Selectable("All as one", !settings.byRegion)) settings.byRegion = false;
+        if (ImGui::Selectable(("Every " + parameter.name).c_str(), settings.byRegion && settings.regions.empty())) {
+            settings.byRegion = true;
+            settings.regions.clear();
+        }
+        ImGui::Separator();
+        for (const volume::Label& one : parameter.labels) {
+            bool on = settings.byRegion && std::ranges::find(settings.regions, one.value) != settings.regions.end();
+            if (!ImGui::Checkbox((one.name + "##" + std::to_string(one.value)).c_str(), &on)) continue;
+            settings.byRegion = true;
+            if (on)
+                settings.regions.push_back(one.value);
+            else
+                std::erase(settings.regions, one.value);
+            std::ranges::sort(settings.regions);
+        }
+        ImGui::EndCombo();
+    }
+    if (ImGui::IsItemHovered()) tooltip("Regions that have a curve");
+}
+
+SectionWish wishOf(const ViewContext& context, const ProfileView& view, const std::vector<int>& channels) {
+    const volume::DatasetInfo& info = context.numbers->info();
+    const SectionSettings& settings = view.sections;
+    SectionWish wish;
+    wish.channels = channels;
+    wish.weight = settings.weight;
+    if (settings.across == SectionAcross::Line) {
+        const std::vector<glm::dvec3> corners = profileCorners(view, context.session, info.bounds);
+        wish.line = {corners.front(), corners.back()};
+        wish.planes = kLinePlanes;
+    } else {
+        wish.axis = volume::SpaceAxis(settings.across);
+    }
+    if (settings.byRegion) {
+        wish.label = volume::labelChannel(info).value_or(-1);
+        if (wish.label >= 0) wish.regions = settings.regions;
+    }
+    const StatisticsWish brushed = makeWish(context.session, info, {}, {}, 1, false);
+    wish.time = brushed.time;
+    wish.selection = brushed.selection;
+    wish.lenses = brushed.lenses;
+    return wish;
+}
+
+void drawToolbar(ViewContext& context, ProfileView& view, const std::vector<int>& shown,
+                 const std::shared_ptr<const SectionCurves>& curves) {
+    static constexpr const char* kAcross[] = {"across x", "across y", "across z", "across the line"};
+    static constexpr const char* kAcrossHelp[] = {
+        "Planes that stand on the x axis, those that samples lie in", "Planes that stand on the y axis",
+        "Planes that stand on the z axis",
+        "Planes across the straight line from the first to the last corner of the line"};
+    static constexpr const char* kWeights[] = {"by area", "by volume", "by mass flow"};
+    static constexpr const char* kWeightHelp[] = {
+        "The mean over a plane weighs samples by the area of their cells in it",
+        "The mean weighs samples by the volume of their cells around the plane",
+        "The mean weighs samples by the flow through the plane, in either direction: density x velocity where the data "
+        "have a density, else velocity"};
+    static constexpr const char* kMeasureNames[] = {"mean", "least", "most", "integral", "flux", "volume flow", "area"};
+    const volume::DatasetInfo& info = context.numbers->info();
+    chooseChannels(info, view.channels, shown);
+    chooseOver(view.over, info.times.size() > 1);
+    choose("##across", view.sections.across, kAcross, kAcrossHelp, 7);
+    choose("##measure", view.sections.measure, kMeasureNames, kSectionMeasureDocs, 6.5f);
+    if (view.sections.measure == SectionMeasure::Mean)
+        choose("##weight", view.sections.weight, kWeights, kWeightHelp, 7);
+    if (const auto label = volume::labelChannel(info)) chooseRegions(info, *label, view.sections);
+    if (!curves) return;
+    continueLine(buttonWidth("Export"));
+    exportMenu(
+        context, "sections",
+        [info, curves, measure = view.sections.measure](const Progress&) {
+            return figureSvg(sectionPanels(info, *curves, measure), 2);
+        },
+        [info, curves](const Progress&) { return sectionCsv(info, *curves); });
+    drawOrigin(context, shown);
+}
+
+/// The point of a series nearest to a place; nothing where it is not finite.
+std::optional<std::size_t> nearestPoint(const FigureSeries& series, double place) {
+    std::optional<std::size_t> best;
+    for (std::size_t i = 0; i < series.points.size(); ++i)
+        if (!best || std::abs(series.points[i].x - place) < std::abs(series.points[*best].x - place)) best = i;
+    return best;
+}
+
+void drawPanel(const FigurePanel& panel, const PlotFrame& frame, std::optional<double> marked) {
+    ImDrawList& draw = *ImGui::GetWindowDrawList();
+    const PlotColors colors = plotColors();
+    draw.PushClipRect(frame.min, frame.max, true);
+    std::vector<ImVec2> run;
+    for (const FigureSeries& series : panel.series) {
+        const ImU32 color = toColor({series.color.r, series.color.g, series.color.b});
+        const auto flush = [&] {
+            if (run.size() > 1)
+                draw.AddPolyline(run.data(), static_cast<int>(run.size()), color, 0, std::max(1.2f, em() * 0.12f));
+            else if (run.size() == 1)
+                draw.AddCircleFilled(run.front(), em() * 0.14f, color);
+            run.clear();
+        };
+        for (const glm::dvec2& point : series.points) {
+            if (std::isfinite(point.y))
+                run.push_back(frame.pixel(point.x, point.y));
+            else
+                flush();
+        }
+        flush();
+    }
+    if (marked) drawCrosshair(draw, frame, *marked, std::nan(""));
+    draw.PopClipRect();
+    draw.AddRect(frame.min, frame.max, colors.frame);
+    drawAxis(draw, frame, AxisSide::Left, "", "", frame.min.y - em() * 0.3f, frame.max.y + em() * 0.3f);
+    ImVec2 at{frame.min.x + em() * 0.4f, frame.min.y + em() * 0.2f};
+    const auto write = [&](const std::string& text, ImU32 color) {
+        const float width = ImGui::CalcTextSize(text.c_str()).x;
+        if (at.x + width > frame.max.x && at.x > frame.min.x + em())
+            at = {frame.min.x + em() * 0.4f, at.y + em() * 1.1f};
+        if (at.y + em() > frame.max.y) return;
+        addTextWithBackdrop(draw, at, {0, 0}, color, text.c_str());
+        at.x += width + em() * 0.8f;
+    };
+    write(panel.y.title, colors.text);
+    for (const FigureSeries& series : panel.series) {
+        std::string text = series.name;
+        if (marked)
+            if (const auto point = nearestPoint(series, *marked))
+                text += "  " + formatNumber(series.points[*point].y, (panel.y.range.hi - panel.y.range.lo) / 1000);
+        write(text, toColor({series.color.r, series.color.g, series.color.b}));
+    }
+}
+
+} // namespace
+
+void chooseOver(ProfileOver& over, bool severalTimes) {
+    static constexpr const char* kNames[] = {"along the line", "over time", "line and time", "over planes"};
+    static constexpr const char* kHelp[] = {"Values along the line at the time shown",
+                                            "Values at the linked cursor at every stored time",
+                                            "Values along the line at every stored time, as colours",
+                                            "Averages over planes across an axis or the line, of every region"};
+    const auto now = static_cast<std::size_t>(over);
+    continueLine(em() * 8);
+    ImGui::SetNextItemWidth(em() * 8);
+    if (ImGui::BeginCombo("##over", kNames[now])) {
+        for (std::size_t i = 0; i < std::size(kNames); ++i) {
+            const auto each = static_cast<ProfileOver>(i);
+            if (!severalTimes && (each == ProfileOver::Time || each == ProfileOver::LineAndTime)) continue;
+            if (ImGui::Selectable(kNames[i], i == now)) over = each;
+            if (ImGui::IsItemHovered()) tooltip(kHelp[i]);
+        }
+        ImGui::EndCombo();
+    } else if (ImGui::IsItemHovered()) {
+        tooltip(kHelp[now]);
+    }
+}
+
+void drawSections(ViewContext& context, const std::string& pane, ProfileView& view) {
+    Session& session = context.session;
+    const volume::DatasetInfo& info = context.numbers->info();
+    const std::vector<int> shown = chosenChannels(info, view.channels, kMostSections);
+    if (shown.empty()) return drawHint("No parameters", "This data set holds only labels.");
+    SectionCache& cache = cacheOf<SectionCache>(context, pane);
+    const SectionWish wish = wishOf(context, view, shown);
+    const auto curves = cache.feed.get(
+        context, "sections " + pane, "Averages over planes", wish,
+        [](const auto& source, const SectionWish& asked, const Progress& progress) {
+            return readSections(source, asked, progress);
+        },
+        [&](const SectionWish& answered) {
+            return answered.channels == wish.channels && answered.axis == wish.axis && answered.line == wish.line;
+        },
+        true);
+    if (!context.figure) drawToolbar(context, view, shown, curves);
+    if (!curves) {
+        if (const std::string failure = cache.feed.failure(); !failure.empty())
+            return drawHint("No averages", failure.c_str());
+        return ImGui::TextDisabled("Averaging...");
+    }
+    const SectionMeasure measure = view.sections.measure;
+    if (curves->velocity.empty() && (measure == SectionMeasure::Flux || measure == SectionMeasure::Flow))
+        return drawHint("No flux", "The data have no vector that is named or measured as a velocity.");
+    const std::vector<FigurePanel> panels = sectionPanels(info, *curves, measure);
+    const ImVec2 origin = ImGui::GetCursorScreenPos(), room = ImGui::GetContentRegionAvail();
+    float left = 0;
+    for (const FigurePanel& panel : panels) left = std::max(left, axisRoom(AxisSide::Left, panel.y.range, false));
+    const float bottom = axisRoom(AxisSide::Bottom, panels.front().x.range, true);
+    const float height = (room.y - bottom - em() * 0.4f) / static_cast<float>(panels.size());
+    if (height < em() * 1.6f || room.x - left < em() * 4)
+        return drawHint("Not enough room", "Enlarge the pane or choose fewer parameters.");
+    const float x0 = origin.x + left, x1 = origin.x + room.x - em() * 0.6f;
+    const Range across = panels.front().x.range;
+    ImGui::SetCursorScreenPos({x0, origin.y});
+    ImGui::InvisibleButton("plots", {x1 - x0, room.y - bottom});
+    const bool taken = ImGui::IsItemActive();
+    const double share = std::clamp(double((ImGui::GetIO().MousePos.x - x0) / (x1 - x0)), 0.0, 1.0);
+    // What is under the mouse is read; a click or drag takes the cursor to that plane.
+    const bool line = !curves->wish.line.empty();
+    const int axis = static_cast<int>(curves->wish.axis);
+    const auto& places = curves->sections.place;
+    const double perUnit =
+        places.back() != places.front() ? (across.hi - across.lo) / (places.back() - places.front()) : 1;
+    std::optional<double> marked;
+    if (ImGui::IsItemHovered() || taken)
+        marked = across.lo + (across.hi - across.lo) * share;
+    else if (!line)
+        marked = session.cursor[axis] * perUnit;
+    if (taken && marked && !line) {
+        session.cursor[axis] = std::clamp(*marked / perUnit, info.bounds.lo[axis], info.bounds.hi[axis]);
+        context.interacting = true;
+    }
+    for (std::size_t i = 0; i < panels.size(); ++i) {
+        const float top = origin.y + em() * 0.2f + height * static_cast<float>(i);
+        const PlotFrame frame{
+            {x0, std::round(top)}, {x1, std::round(top + height - em() * 0.4f)}, across, panels[i].y.range};
+        drawPanel(panels[i], frame, marked);
+        if (i + 1 == panels.size())
+            drawAxis(*ImGui::GetWindowDrawList(), frame, AxisSide::Bottom, panels[i].x.title, "", origin.x,
+                     origin.x + room.x);
+    }
+}
+
+} // namespace tessera::app

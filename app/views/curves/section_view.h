@@ -1,0 +1,13 @@
+#pragma once
+
+#include "app/pane/view_context.h"
+
+namespace tessera::app {
+
+/// A list of what a profile runs over, on in the line where it fits; without several times the line and the planes.
+void chooseOver(ProfileOver& over, bool severalTimes);
+
+/// A profile view over planes: controls, and a plot for each parameter with a line for each region.
+void drawSections(ViewContext& context, const std::string& pane, ProfileView& view);
+
+} // namespace tessera::app

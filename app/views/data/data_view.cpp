@@ -1,0 +1,278 @@
+#include "app/data/sources.h"
+#include "app/edits/label_names.h"
+#include "app/pane/view_parts.h"
+#include "app/queries/focus_share.h"
+#include "app/queries/statistics_feed.h"
+#include "app/session/label_colors.h"
+#include "app/ui/ticks.h"
+#include "app/ui/time_text.h"
+#include "app/views/data/derived_list.h"
+#include "app/views/data/selection_rows.h"
+#include "codec/archive/archive.h"
+#include "volume/derived/derived.h"
+
+#include <algorithm>
+#include <cmath>
+#include <imgui.h>
+#include <imgui_stdlib.h>
+
+namespace tessera::app {
+
+namespace {
+
+struct DataCache : ViewCache {
+    StatisticsFeed feed;
+    DerivedDraft derived;
+};
+
+void row(const char* label, const std::string& text) {
+    ImGui::TableNextRow();
+    ImGui::TableNextColumn();
+    ImGui::TextDisabled("%s", label);
+    ImGui::TableNextColumn();
+    ImGui::PushTextWrapPos(0);
+    ImGui::TextUnformatted(text.c_str());
+    ImGui::PopTextWrapPos();
+}
+
+std::string latticeText(const volume::DatasetInfo& info) {
+    const volume::Lattice& lattice = info.lattice;
+    const std::string samples = std::to_string(lattice.size.x) + " \u00d7 " + std::to_string(lattice.size.y) +
+                                " \u00d7 " + std::to_string(lattice.size.z) + " = " +
+                                formatCount(static_cast<double>(lattice.count())) + " samples";
+    if (lattice.kind == volume::LatticeKind::CC) return "Cartesian (CC), " + samples;
+    // The grid it came from has sqrt 2 finer cells over the same box.
+    double cc = 1;
+    for (int axis = 0; axis < 3; ++axis)
+        cc *= std::round(info.bounds.size()[axis] / lattice.spacing[axis] * volume::kBccSpacing) + 1;
+    return "body-centred (BCC), " + samples + ", " + formatShare(static_cast<double>(lattice.count()) / cc) +
+           " of a Cartesian grid's";
+}
+
+std::string sizeText(const volume::DatasetInfo& info) {
+    std::string text;
+    for (int axis = 0; axis < 3; ++axis) {
+        const double size = info.bounds.size()[axis];
+        const LengthUnit unit = suitableLength(info.lengthUnit, size);
+        text += (axis ? " \u00d7 " : "") + formatQuantity(size * unit.perUnit, unit.name, size * unit.perUnit / 1000);
+    }
+    return text;
+}
+
+/// What pictures are drawn from, where that is a choice.
+void chooseLattice(DataRef& data) {
+    static constexpr const char* kShown[] = {"the grid of the file", "body-centred, 70.7 % of the samples"};
+    ImGui::TableNextRow();
+    ImGui::TableNextColumn();
+    ImGui::TextDisabled("Drawn from");
+    ImGui::TableNextColumn();
+    const auto now = static_cast<std::size_t>(data.lattice);
+    ImGui::SetNextItemWidth(-1);
+    if (ImGui::BeginCombo("##lattice", kShown[now])) {
+        for (std::size_t i = 0; i < std::size(kShown); ++i)
+            if (ImGui::Selectable(kShown[i], i == now)) data.lattice = static_cast<PictureLattice>(i);
+        ImGui::EndCombo();
+    } else if (ImGui::IsItemHovered()) {
+        tooltip("Lattice that pictures are drawn from; numbers come from the samples of the file on either");
+    }
+}
+
+void drawSummary(const ViewContext& context) {
+    const volume::DatasetInfo& info = context.numbers->info();
+    if (!ImGui::BeginTable("summary", 2)) return;
+    ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthFixed, em() * 5.5f);
+    ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthStretch);
+    row("Name", info.name.empty() ? "unnamed" : info.name);
+    row("Samples", latticeText(info));
+    row("Numbers", originText(context));
+    if (const auto* archive = dynamic_cast<const codec::Archive*>(volume::underived(context.numbers).get()))
+        row("Archive", codec::exactnessText(archive->metadata()));
+    if (!isArchive(context.session.data) && !context.session.data.packed)
+        chooseLattice(context.session.data);
+    else if (context.source != context.numbers)
+        row("Drawn from", latticeText(context.source->info()));
+    row("Size", sizeText(info));
+    std::string times = formatCount(static_cast<double>(info.times.size()));
+    if (info.times.size() > 1)
+        times += ", " + (timeWord(info) == "t" ? "" : timeWord(info) + " ") + formatNumber(info.times.front()) +
+                 " to " + formatQuantity(info.times.back(), info.timeUnit);
+    row("Times", times);
+    std::string quantities;
+    for (const volume::Quantity& quantity : info.quantities)
+        quantities += (quantities.empty() ? "" : ", ") + titleWithUnit(quantity.name, quantity.unit);
+    if (!quantities.empty()) row("Over time", quantities);
+    if (!info.provenance.empty()) row("Origin", info.provenance);
+    ImGui::EndTable();
+}
+
+/// Names and colours of a label's values, to be typed and chosen.
+void editLabels(Session& session, const volume::Parameter& parameter) {
+    constexpr int kColors = 8;
+    if (!ImGui::BeginPopup("labels")) return;
+    ImGui::TextDisabled("Names of %s; remembered for these data", parameter.name.c_str());
+    volume::Parameter named = parameter;
+    named.labels = statedLabels(session, parameter);
+    for (const volume::Label& label : named.labels) {
+        ImGui::PushID(label.value);
+        const glm::vec3 color = labelColor(named, label.value);
+        if (ImGui::ColorButton("##color", {color.r, color.g, color.b, 1}, ImGuiColorEditFlags_NoTooltip))
+            ImGui::OpenPopup("colors");
+        if (ImGui::IsItemHovered()) tooltip("Click: another colour");
+        if (ImGui::BeginPopup("colors")) {
+            for (int i = 0; i < kColors; ++i) {
+                const glm::vec3 other(vis::colormapColor("labels", (i + 0.5) / kColors));
+                if (i > 0) ImGui::SameLine();
+                if (!ImGui::ColorButton(("##" + std::to_string(i)).c_str(), {other.r, other.g, other.b, 1},
+                                        ImGuiColorEditFlags_NoTooltip))
+                    continue;
+                stateLabel(session, parameter, {label.value, "", colorText(other)});
+                ImGui::CloseCurrentPopup();
+            }
+            ImGui::EndPopup();
+        }
+        ImGui::SameLine();
+        ImGui::AlignTextToFramePadding();
+        ImGui::Text("%d", label.value);
+        ImGui::SameLine(em() * 4);
+        std::string text = label.name;
+        ImGui::SetNextItemWidth(em() * 12);
+        if (ImGui::InputText("##name", &text)) {
+            if (text.empty())
+                unstateLabelName(session, parameter, label.value);
+            else
+                stateLabel(session, parameter, {label.value, text, ""});
+        }
+        if (ImGui::IsItemHovered()) tooltip("An empty field: the name that the data themselves have");
+        ImGui::PopID();
+    }
+    ImGui::EndPopup();
+}
+
+void drawParameters(Session& session, const volume::DatasetInfo& info) {
+    constexpr ImGuiTableFlags kFlags =
+        ImGuiTableFlags_RowBg | ImGuiTableFlags_SizingStretchProp | ImGuiTableFlags_PadOuterX;
+    if (!ImGui::BeginTable("parameters", 4, kFlags)) return;
+    ImGui::TableSetupColumn("Parameter", 0, 1.6f);
+    ImGui::TableSetupColumn("Least", 0, 1);
+    ImGui::TableSetupColumn("Most", 0, 1);
+    ImGui::TableSetupColumn("Stored as", 0, 1.1f);
+    tableHeader({"Parameter", "Least", "Most", "Stored as"});
+    for (const volume::Channel& channel : info.channels()) {
+        const volume::Parameter& parameter = info.parameters[static_cast<std::size_t>(channel.parameter)];
+        const Range range = info.channelRange(channel);
+        const double digits = parameter.categorical ? 1 : (range.hi - range.lo) / 1000;
+        ImGui::TableNextRow();
+        ImGui::TableNextColumn();
+        ImGui::PushID(channel.name.c_str());
+        bool over = false;
+        if (parameter.categorical && !parameter.labels.empty()) {
+            if (ImGui::Selectable(channel.name.c_str())) ImGui::OpenPopup("labels");
+            over = ImGui::IsItemHovered();
+            editLabels(session, parameter);
+        } else {
+            ImGui::TextUnformatted(
+                titleWithUnit(channel.name, channel.unit + (parameter.unitGuessed ? " (guessed)" : "")).c_str());
+            if (parameter.unitGuessed && ImGui::IsItemHovered())
+                tooltip("No file states this unit: it is the usual one of the name. --unit states another.");
+        }
+        ImGui::PopID();
+        if (over) {
+            std::string labels = "Click: name its values";
+            for (const volume::Label& label : parameter.labels)
+                labels += "\n" + std::to_string(label.value) + "  " + label.name;
+            tooltip(labels.c_str());
+        }
+        ImGui::TableNextColumn();
+        textRight(parameter.ranges.empty() ? "-" : formatNumber(range.lo, digits));
+        ImGui::TableNextColumn();
+        textRight(parameter.ranges.empty() ? "-" : formatNumber(range.hi, digits));
+        ImGui::TableNextColumn();
+        textRight(channel.magnitude       ? "computed"
+                  : parameter.categorical ? "label"
+                                          : std::string(volume::name(parameter.type)),
+                  true);
+    }
+    ImGui::EndTable();
+}
+
+void drawSelection(ViewContext& context, const StatisticsResult* result) {
+    const volume::DatasetInfo& info = context.numbers->info();
+    if (!context.session.selection.active()) {
+        ImGui::PushTextWrapPos(0);
+        ImGui::TextDisabled("Nothing is brushed: drag in a plot of the scatterplot matrix.");
+        ImGui::PopTextWrapPos();
+        if (!result) return;
+    } else if (!result) {
+        ImGui::TextDisabled("Counting...");
+        return;
+    }
+    const volume::Statistics& statistics = result->statistics;
+    ImGui::PushTextWrapPos(0);
+    if (result->brushed) {
+        const FocusShare share = focusShare(*result, info, context.numbers->grid());
+        ImGui::Text("%s samples in focus, %s%s", formatCount(std::round(share.focus)).c_str(), shareText(share).c_str(),
+                    statistics.level > 0 ? " (first estimate)" : "");
+        double volume = 0;
+        for (const volume::ChannelStatistics& channel : statistics.channels)
+            volume = std::max(volume, channel.inside.volume);
+        const glm::dvec3 size = info.bounds.size();
+        const double whole = size.x * size.y * size.z;
+        ImGui::TextDisabled("%s%s", formatVolume(volume, info.lengthUnit).c_str(),
+                            whole > 0 ? (", " + formatShare(volume / whole) + " of the whole box").c_str() : "");
+    }
+    ImGui::TextDisabled("%s", originText(context, result->wish.channels).c_str());
+    ImGui::PopTextWrapPos();
+    constexpr ImGuiTableFlags kFlags =
+        ImGuiTableFlags_RowBg | ImGuiTableFlags_SizingStretchProp | ImGuiTableFlags_PadOuterX;
+    const bool brushed = result->brushed;
+    if (!ImGui::BeginTable("selection", brushed ? 3 : 2, kFlags)) return;
+    ImGui::TableSetupColumn("Parameter", 0, 1);
+    ImGui::TableSetupColumn(brushed ? "In focus" : "Mean and range", 0, 1.2f);
+    if (brushed) ImGui::TableSetupColumn("Outside", 0, 1.2f);
+    if (brushed)
+        tableHeader({"Parameter", "In focus", "Outside"});
+    else
+        tableHeader({"Parameter", "Mean and range now"});
+    // Mean above, range below: side by side they do not fit a narrow pane.
+    const auto cell = [](const SelectionCell& texts) {
+        ImGui::TableNextColumn();
+        textRight(texts[0]);
+        textRight(texts[1], true);
+    };
+    for (const SelectionRow& row : selectionRows(info, *result)) {
+        ImGui::TableNextRow();
+        ImGui::TableNextColumn();
+        ImGui::TextUnformatted(row.what.c_str());
+        if (row.region) ImGui::TextDisabled("share, samples");
+        cell(brushed ? row.inside : row.all);
+        if (brushed) cell(row.outside);
+    }
+    ImGui::EndTable();
+    if (context.runCommand && ImGui::SmallButton("Open the full table")) context.runCommand("New: Statistics");
+}
+
+} // namespace
+
+void drawDataView(ViewContext& context, const std::string& pane, DataView&) {
+    if (!context.source) {
+        drawHint("No data", "What is in the data, and what is selected, is listed here.");
+        return;
+    }
+    DataCache& cache = cacheOf<DataCache>(context, pane);
+    const volume::DatasetInfo& info = context.numbers->info();
+    const StatisticsWish wish = selectionWish(context.session, info);
+    std::shared_ptr<const StatisticsResult> result;
+    if (!wish.channels.empty()) result = cache.feed.get(context, "summary " + pane, wish);
+    ImGui::BeginChild("data");
+    if (ImGui::CollapsingHeader("Data set", ImGuiTreeNodeFlags_DefaultOpen)) drawSummary(context);
+    // Above what is computed from them, which comes and goes while a formula is edited.
+    if (ImGui::CollapsingHeader("Derived parameters", ImGuiTreeNodeFlags_DefaultOpen))
+        drawDerivedList(context, cache.derived);
+    if (ImGui::CollapsingHeader("Selection", ImGuiTreeNodeFlags_DefaultOpen)) drawSelection(context, result.get());
+    if (ImGui::CollapsingHeader("Parameters over all times", ImGuiTreeNodeFlags_DefaultOpen))
+        drawParameters(context.session, info);
+    if (!cache.feed.failure().empty()) ImGui::TextWrapped("%s", cache.feed.failure().c_str());
+    ImGui::EndChild();
+}
+
+} // namespace tessera::app

@@ -1,0 +1,221 @@
+#include "app/views/data/derived_list.h"
+
+#include "app/pane/view_parts.h"
+#include "app/ui/widgets.h"
+#include "volume/derived/other_source.h"
+
+#include <algorithm>
+#include <imgui_stdlib.h>
+
+namespace tessera::app {
+
+namespace {
+
+volume::DerivedRecipe recipeOf(const volume::DatasetInfo& info, std::size_t kind, const std::string& channel) {
+    const std::string vector = firstVector(info);
+    switch (kind) {
+    case 1:
+        return volume::MagnitudeRecipe{channel, channel, channel};
+    case 2:
+        return volume::GradientRecipe{channel};
+    case 3:
+        return volume::DivergenceRecipe{vector};
+    case 4:
+        return volume::VorticityRecipe{vector};
+    case 5:
+        return volume::DeviationRecipe{channel};
+    case 6:
+        return volume::SmoothRecipe{channel};
+    case 7:
+        return volume::PositionRecipe{};
+    case 8:
+        return volume::TimeRecipe{};
+    case 9:
+        return volume::DifferenceRecipe{channel};
+    default:
+        return volume::ExpressionRecipe{channel};
+    }
+}
+
+/// Whether a formula can name a channel without back quotes.
+bool plainName(const std::string& name) {
+    return std::all_of(name.begin(), name.end(),
+                       [](unsigned char c) { return std::isalnum(c) != 0 || c == '_' || c == '.' || c == '|'; });
+}
+
+std::string unitOf(const volume::DatasetInfo& info, const std::string& channel) {
+    const auto found = info.findChannel(channel);
+    return found ? info.channels()[static_cast<std::size_t>(*found)].unit : "";
+}
+
+std::string differenceName(const volume::DatasetInfo& info, const volume::DifferenceRecipe& recipe) {
+    return recipe.channel + " minus " + volume::timeText(recipe.reference(), info);
+}
+
+/// A difference that has the name and the unit it was given keeps to what is chosen: a name must be true.
+void followRecipe(volume::DerivedParameter& own, const volume::DerivedParameter& before,
+                  const volume::DatasetInfo& info) {
+    const auto *is = std::get_if<volume::DifferenceRecipe>(&own.recipe),
+               *was = std::get_if<volume::DifferenceRecipe>(&before.recipe);
+    if (!is || !was || *is == *was) return;
+    if (before.name == differenceName(info, *was)) own.name = differenceName(info, *is);
+    if (before.unit == unitOf(info, was->channel)) own.unit = unitOf(info, is->channel);
+}
+
+void drawOne(ViewContext& context, DerivedDraft& draft, std::size_t index, int& removed) {
+    volume::DerivedParameter& own = draft.parameters[index];
+    const volume::DatasetInfo& info = context.source->info();
+    const WidgetContext widgets{.info = &info};
+    const std::string title = (own.name.empty() ? "unnamed" : own.name) + "   " +
+                              (own.unit.empty() ? "" : own.unit + "   ") + kDerivedKinds[own.recipe.index()] + "###one";
+    const bool wrong = index < draft.problems.size() && !draft.problems[index].empty();
+    if (wrong) ImGui::PushStyleColor(ImGuiCol_Text, palette().failure);
+    const bool open =
+        ImGui::TreeNodeEx(title.c_str(), ImGuiTreeNodeFlags_SpanAvailWidth | ImGuiTreeNodeFlags_DefaultOpen);
+    if (wrong) ImGui::PopStyleColor();
+    if (!open) return;
+    drawLabel(widgets, "Name", "Name of the derived parameter");
+    draft.edited |= ImGui::InputText("##name", &own.name);
+    drawLabel(widgets, "Unit", "Unit of its values");
+    draft.edited |= ImGui::InputText("##unit", &own.unit);
+    const volume::DerivedParameter before = own;
+    draft.edited |= std::visit([&](auto& recipe) { return drawDescribed(recipe, widgets); }, own.recipe);
+    followRecipe(own, before, info);
+    // Not while typing: it would lie over what is wrong with the formula.
+    if (std::holds_alternative<volume::ExpressionRecipe>(own.recipe) && ImGui::IsItemHovered() &&
+        !ImGui::IsItemActive())
+        tooltip(
+            "Parameters by name (others in `back quotes`), x y z t, + - * / ^, comparisons, a ? b : c, abs sqrt exp "
+            "ln log10 sin cos min max; at another time: at(T, first), last, previous, next, at(T, 0.3)");
+    if (wrong) {
+        ImGui::PushStyleColor(ImGuiCol_Text, palette().failure);
+        ImGui::TextWrapped("%s", draft.problems[index].c_str());
+        ImGui::PopStyleColor();
+    }
+    if (ImGui::SmallButton("Remove")) removed = static_cast<int>(index);
+    ImGui::TreePop();
+}
+
+} // namespace
+
+volume::DerivedParameter newDerived(const volume::DatasetInfo& info, std::size_t kind, const std::string& channel) {
+    static constexpr const char* kPrefixes[] = {"new ",       "magnitude", "grad ",    "div ", "curl ",
+                                                "deviation ", "smooth ",   "position", "time", ""};
+    volume::DerivedParameter made;
+    made.recipe = recipeOf(info, kind, kind == 0 && !plainName(channel) ? "`" + channel + "`" : channel);
+    const std::string unit = unitOf(info, channel);
+    std::string of = kind == 1 || kind >= 7 ? "" : channel;
+    if (const auto* difference = std::get_if<volume::DifferenceRecipe>(&made.recipe))
+        of = differenceName(info, *difference);
+    for (const auto* vector : {std::get_if<volume::DivergenceRecipe>(&made.recipe)})
+        if (vector) of = vector->vector;
+    if (const auto* vorticity = std::get_if<volume::VorticityRecipe>(&made.recipe)) of = vorticity->vector;
+    const std::string base = kPrefixes[kind] + of;
+    made.name = base;
+    const auto taken = [&](const std::string& name) {
+        return info.findChannel(name).has_value() ||
+               std::any_of(info.parameters.begin(), info.parameters.end(),
+                           [&](const volume::Parameter& own) { return own.name == name; });
+    };
+    for (int i = 2; taken(made.name); ++i) made.name = base + " " + std::to_string(i);
+    made.unit = kind == 2                ? (unit.empty() ? "1" : unit) + "/" + info.lengthUnit
+                : kind == 3 || kind == 4 ? (info.timeUnit.empty() ? std::string() : "1/" + info.timeUnit)
+                : kind == 7              ? info.lengthUnit
+                : kind == 8              ? info.timeUnit
+                                         : unit;
+    return made;
+}
+
+volume::DerivedParameter newDifference(const volume::DatasetInfo& info, const std::string& channel,
+                                       const volume::TimeReference& from) {
+    const volume::DifferenceRecipe recipe{channel, from.which, from.time};
+    return {differenceName(info, recipe), unitOf(info, channel), recipe};
+}
+
+std::string addDerived(Session& session, const volume::DerivedParameter& wanted) {
+    std::vector<volume::DerivedParameter>& derived = session.data.derived;
+    for (const volume::DerivedParameter& own : derived)
+        if (own.recipe == wanted.recipe) return own.name;
+    derived.push_back(wanted);
+    colorDifferences(session);
+    return wanted.name;
+}
+
+namespace {
+
+bool hasOther(const volume::DatasetInfo& info, const std::string& channel) {
+    const auto found = info.findChannel(channel);
+    return found && volume::otherChannel(info, *found).has_value();
+}
+
+/// Times that a parameter can be compared with, one click each.
+void drawDifferences(ViewContext& context, DerivedDraft& draft, const std::string& channel) {
+    if (ImGui::SmallButton("Minus another time...")) ImGui::OpenPopup("minus another time");
+    if (ImGui::IsItemHovered())
+        tooltip("How a parameter differs from what it is at another time, as a parameter of its own");
+    if (!ImGui::BeginPopup("minus another time")) return;
+    const volume::DatasetInfo& info = context.source->info();
+    const auto item = [&](const char* label, const volume::TimeReference& from) {
+        if (!ImGui::MenuItem((channel + " minus " + label).c_str())) return;
+        draft.parameters.push_back(newDifference(info, channel, from));
+        draft.edited = true;
+    };
+    if (info.times.size() > 1) {
+        item("first", {volume::OtherTime::First});
+        item("previous", {volume::OtherTime::Previous});
+        item("last", {volume::OtherTime::Last});
+        item("next", {volume::OtherTime::Next});
+        const volume::TimeReference now{volume::OtherTime::Time, context.session.time};
+        item((volume::timeText(now, info) + ", shown now").c_str(), now);
+    }
+    if (hasOther(info, channel)) item("other data", {volume::OtherTime::Other});
+    ImGui::EndPopup();
+}
+
+} // namespace
+
+void drawDerivedList(ViewContext& context, DerivedDraft& draft) {
+    std::vector<volume::DerivedParameter>& saved = context.session.data.derived;
+    if (!ImGui::IsAnyItemActive()) {
+        if (draft.edited) {
+            saved = draft.parameters;
+            colorDifferences(context.session);
+        } else {
+            draft.parameters = saved;
+        }
+        draft.edited = false;
+    }
+    if (draft.checked != draft.parameters || draft.problems.size() != draft.parameters.size()) {
+        draft.problems = volume::derivedProblems(draft.parameters, volume::underived(context.source)->info());
+        draft.checked = draft.parameters;
+    }
+    int removed = -1;
+    for (std::size_t i = 0; i < draft.parameters.size(); ++i) {
+        ImGui::PushID(static_cast<int>(i));
+        drawOne(context, draft, i, removed);
+        ImGui::PopID();
+    }
+    if (removed >= 0) {
+        draft.parameters.erase(draft.parameters.begin() + removed);
+        draft.edited = true;
+    }
+    if (ImGui::SmallButton("Add...")) ImGui::OpenPopup("add derived");
+    if (ImGui::IsItemHovered()) tooltip("A parameter computed from the others; it is used like any other");
+    const volume::DatasetInfo& info = context.source->info();
+    const auto channel = resolveChannel(info, context.session, "");
+    const std::string name = channel ? info.channels()[static_cast<std::size_t>(*channel)].name : "";
+    if (channel && (info.times.size() > 1 || hasOther(info, name))) {
+        ImGui::SameLine();
+        drawDifferences(context, draft, name);
+    }
+    if (ImGui::BeginPopup("add derived")) {
+        for (std::size_t kind = 0; kind < std::size(kDerivedKinds); ++kind)
+            if (ImGui::MenuItem(kDerivedKinds[kind])) {
+                draft.parameters.push_back(newDerived(info, kind, name));
+                draft.edited = true;
+            }
+        ImGui::EndPopup();
+    }
+}
+
+} // namespace tessera::app

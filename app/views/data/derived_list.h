@@ -1,0 +1,39 @@
+#pragma once
+
+#include "app/pane/view_context.h"
+#include "volume/derived/derived.h"
+
+/// The panel of parameters computed from others.
+namespace tessera::app {
+
+/// What the panel edits; taken over into the session when no field is held any more, so that half a formula is never
+/// computed.
+struct DerivedDraft {
+    std::vector<volume::DerivedParameter> parameters;
+    std::vector<std::string> problems; ///< of each, for `checked`
+    std::vector<volume::DerivedParameter> checked;
+    bool edited = false;
+};
+
+void drawDerivedList(ViewContext& context, DerivedDraft& draft);
+
+/// A derived parameter of this kind that can be computed at once where the data allow it, with a name that is free.
+volume::DerivedParameter newDerived(const volume::DatasetInfo& info, std::size_t kind, const std::string& channel);
+
+/// "T minus first": a channel minus itself at another time.
+volume::DerivedParameter newDifference(const volume::DatasetInfo& info, const std::string& channel,
+                                       const volume::TimeReference& from);
+
+/// Adds a parameter to the session's derived ones and gives it colours; one computed alike is not added again. Returns
+/// its name.
+std::string addDerived(Session& session, const volume::DerivedParameter& wanted);
+
+/// Names of the kinds, in the order of volume::DerivedRecipe.
+inline constexpr const char* kDerivedKinds[] = {"Formula",   "Magnitude",
+                                                "Gradient",  "Divergence",
+                                                "Vorticity", "Deviation over time",
+                                                "Smoothed",  "Position",
+                                                "Time",      "Difference from another time"};
+static_assert(std::size(kDerivedKinds) == std::variant_size_v<volume::DerivedRecipe>);
+
+} // namespace tessera::app

@@ -1,0 +1,285 @@
+#include "app/views/data/layers_view.h"
+#include "app/edits/context_style.h"
+#include "app/pane/view_parts.h"
+#include "app/tools/brush_list.h"
+#include "app/tools/lens_list.h"
+#include "app/ui/ticks.h"
+#include "app/ui/widgets.h"
+#include "app/views/timeline/keyframes.h"
+
+#include <algorithm>
+#include <imgui.h>
+#include <imgui_stdlib.h>
+
+namespace tessera::app {
+
+namespace {
+
+constexpr const char* kLayerPayload = "tessera-layer";
+
+struct LayersCache : ViewCache {
+    LensStatistics lenses;
+};
+
+Icon iconOf(const vis::Technique& technique) {
+    static constexpr Icon kIcons[] = {icons::kCube, icons::kIso, icons::kSlice, icons::kFlow};
+    return kIcons[technique.index()];
+}
+
+const char* kindName(const vis::Technique& technique) {
+    static constexpr const char* kNames[] = {"Volume", "Iso-surface", "Slice", "Flow"};
+    return kNames[technique.index()];
+}
+
+std::string channelOf(const vis::Technique& technique) {
+    return std::visit([](const auto& own) { return own.channel; }, technique);
+}
+
+/// A layer of a kind that shows something at once: an iso-surface lies in the middle of its parameter's range.
+vis::Layer newLayer(const Session& session, const volume::DatasetInfo& info, std::size_t kind) {
+    vis::Layer layer;
+    const auto channel = resolveChannel(info, session, "");
+    const std::string name = channel ? info.channels()[static_cast<std::size_t>(*channel)].name : "";
+    if (kind == 0) layer.technique = vis::VolumeLayer{.channel = name};
+    if (kind == 1) {
+        vis::IsoLayer iso{.channel = name};
+        if (channel) {
+            const Range range = info.channelRange(info.channels()[static_cast<std::size_t>(*channel)]);
+            iso.value = (range.lo + range.hi) / 2;
+        }
+        layer.technique = iso;
+    }
+    if (kind == 2) layer.technique = vis::SliceLayer{.channel = name};
+    if (kind == 3) {
+        const std::string vector = firstVector(info);
+        layer.technique = vis::FlowLayer{.vector = vector, .channel = vector.empty() ? name : "|" + vector + "|"};
+    }
+    layer.name = std::string(kindName(layer.technique)) + " of " + name;
+    return layer;
+}
+
+void drawList(ViewContext& context, int& selected) {
+    std::vector<vis::Layer>& layers = context.session.layers;
+    int moveFrom = -1, moveTo = -1;
+    for (std::size_t i = 0; i < layers.size(); ++i) {
+        vis::Layer& layer = layers[i];
+        ImGui::PushID(static_cast<int>(i));
+        if (iconButton(context, "eye", layer.visible ? icons::kEye : icons::kEyeOff,
+                       layer.visible ? "Hide this layer" : "Show this layer"))
+            layer.visible = !layer.visible;
+        ImGui::SameLine(0, em() * 0.3f);
+        const bool chosen = selected == static_cast<int>(i);
+        const float height = ImGui::GetFrameHeight();
+        const ImVec2 at = ImGui::GetCursorPos();
+        if (ImGui::Selectable("##row", chosen, ImGuiSelectableFlags_AllowItemOverlap, {0, height}))
+            selected = static_cast<int>(i);
+        if (ImGui::BeginDragDropSource()) {
+            const int index = static_cast<int>(i);
+            ImGui::SetDragDropPayload(kLayerPayload, &index, sizeof index);
+            ImGui::TextUnformatted(layer.name.c_str());
+            ImGui::EndDragDropSource();
+        }
+        if (ImGui::BeginDragDropTarget()) {
+            if (const ImGuiPayload* payload = ImGui::AcceptDragDropPayload(kLayerPayload)) {
+                moveFrom = *static_cast<const int*>(payload->Data);
+                moveTo = static_cast<int>(i);
+            }
+            ImGui::EndDragDropTarget();
+        }
+        if (ImGui::IsItemHovered()) tooltip(kindName(layer.technique));
+        ImGui::SetCursorPos(at);
+        iconText(context, iconOf(layer.technique),
+                 ImGui::GetColorU32(layer.visible ? ImGuiCol_Text : ImGuiCol_TextDisabled));
+        ImGui::SameLine(0, em() * 0.3f);
+        ImGui::AlignTextToFramePadding();
+        // A layer named after its parameter need not say it twice.
+        std::string channel = channelOf(layer.technique);
+        if (layer.name == channel || layer.name.starts_with(channel + " ")) channel.clear();
+        const float room = ImGui::GetContentRegionAvail().x - ImGui::CalcTextSize(channel.c_str()).x - em() * 1.5f;
+        const std::string name = fitText(layer.name.empty() ? kindName(layer.technique) : layer.name, room);
+        if (layer.visible)
+            ImGui::TextUnformatted(name.c_str());
+        else
+            ImGui::TextDisabled("%s", name.c_str());
+        ImGui::SameLine(ImGui::GetContentRegionMax().x - ImGui::CalcTextSize(channel.c_str()).x - em() * 0.4f);
+        ImGui::TextDisabled("%s", channel.c_str());
+        ImGui::PopID();
+    }
+    if (moveFrom >= 0 && moveTo >= 0 && moveFrom != moveTo) {
+        const vis::Layer moved = layers[static_cast<std::size_t>(moveFrom)];
+        layers.erase(layers.begin() + moveFrom);
+        layers.insert(layers.begin() + moveTo, moved);
+        selected = moveTo;
+    }
+    if (layers.empty()) ImGui::TextDisabled("No layers: the volume view is empty.");
+}
+
+/// The lens, transfer function and time that a layer has of its own.
+void drawPlace(const WidgetContext& widgets, Session& session, vis::Layer& layer) {
+    if (!session.lenses.empty()) {
+        drawLabel(widgets, "Drawn", "Everywhere, or inside a lens alone");
+        chooseLens("##lens", session, layer.lens, "everywhere");
+    }
+    const auto* surface = std::get_if<vis::IsoLayer>(&layer.technique);
+    if (!surface || !surface->colorBy.empty()) {
+        bool own = !layer.transfer.empty();
+        const FieldInfo field{
+            .key = "ownTransfer", .unit = "", .doc = "Colours and opacity of its own, beside those of its parameter"};
+        if (drawBool(widgets, field, own)) {
+            const std::string channel = surface ? surface->colorBy : channelOf(layer.technique);
+            const vis::TransferFunction now = transferOf(session, layer.transfer.empty() ? channel : layer.transfer);
+            std::string name = channel + " in " + layer.name;
+            while (own && session.transfer.contains(name)) name += "'";
+            if (own) session.transfer[name] = now;
+            if (!own) session.transfer.erase(layer.transfer);
+            layer.transfer = own ? name : "";
+        }
+    }
+    bool changed = false;
+    std::optional<Range> scale;
+    std::string unit;
+    const detail::MemberToWidget draw{widgets, changed, scale, unit};
+    vis::Layer::describe(layer, [&](auto& value, const FieldInfo& field) {
+        if (field.key == "timeShift" || field.key == "brushes") draw(value, field);
+    });
+}
+
+/// One click for each way of drawing what is not brushed, and the weights of its hull.
+void drawContextStyles(ViewContext& context, const WidgetContext& widgets) {
+    Session& session = context.session;
+    ImGui::TextDisabled("What is not brushed");
+    const float right = ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x;
+    for (std::size_t i = 0; i < std::size(kContextStyleNames); ++i) {
+        const std::string name(kContextStyleNames[i]);
+        const float width = ImGui::CalcTextSize(name.c_str()).x + 2 * ImGui::GetStyle().FramePadding.x;
+        if (i > 0 && ImGui::GetItemRectMax().x + ImGui::GetStyle().ItemSpacing.x + width <= right) ImGui::SameLine();
+        const auto style = static_cast<ContextStyle>(i);
+        if (ImGui::SmallButton(name.c_str())) setContextStyle(session, context.source->info(), style);
+        if (ImGui::IsItemHovered()) tooltip(std::string(contextStyleHelp(style)).c_str());
+    }
+    drawDescribed(session.selection, widgets.at("/selection"));
+    const std::optional<std::size_t> hull = hullLayer(session);
+    if (!hull) return;
+    auto& surface = std::get<vis::IsoLayer>(session.layers[*hull].technique);
+    const std::string path = "/layers/" + std::to_string(*hull) + "/technique";
+    ImGui::PushID("hull");
+    if (ImGui::TreeNodeEx("Hull", ImGuiTreeNodeFlags_DefaultOpen | ImGuiTreeNodeFlags_SpanAvailWidth)) {
+        drawDescribed(surface, widgets.at(path));
+        ImGui::TreePop();
+    }
+    ImGui::PopID();
+}
+
+void drawListButtons(ViewContext& context, const volume::DatasetInfo& info, int& selected) {
+    std::vector<vis::Layer>& layers = context.session.layers;
+    const bool any = selected >= 0 && selected < static_cast<int>(layers.size());
+    if (iconButton(context, "add", icons::kPlus, "Add a layer")) ImGui::OpenPopup("add layer");
+    if (ImGui::BeginPopup("add layer")) {
+        static constexpr const char* kNames[] = {"Volume", "Iso-surface", "Slice", "Flow"};
+        for (std::size_t kind = 0; kind < std::size(kNames); ++kind)
+            if (ImGui::MenuItem(kNames[kind], nullptr, false, kind != 3 || !firstVector(info).empty())) {
+                layers.push_back(newLayer(context.session, info, kind));
+                selected = static_cast<int>(layers.size()) - 1;
+            }
+        ImGui::EndPopup();
+    }
+    ImGui::SameLine(0, em() * 0.2f);
+    if (iconButton(context, "copy", icons::kCopy, "Duplicate the layer", any)) {
+        vis::Layer copy = layers[static_cast<std::size_t>(selected)];
+        copy.name += " copy";
+        layers.insert(layers.begin() + selected + 1, copy);
+        ++selected;
+    }
+    ImGui::SameLine(0, em() * 0.2f);
+    if (iconButton(context, "remove", icons::kTrash, "Remove the layer", any)) {
+        layers.erase(layers.begin() + selected);
+        selected = std::min(selected, static_cast<int>(layers.size()) - 1);
+    }
+    ImGui::SameLine(0, em() * 0.8f);
+    ImGui::TextDisabled("drag to reorder");
+}
+
+} // namespace
+
+void followChannel(std::string& name, const std::string& before, const std::string& now) {
+    if (before.empty() || before == now) return;
+    if (name == before || name.starts_with(before + " "))
+        name = now + name.substr(before.size());
+    else if (name.ends_with(" of " + before))
+        name = name.substr(0, name.size() - before.size()) + now;
+}
+
+void drawLayersView(ViewContext& context, const std::string& pane, LayersView& view) {
+    if (!context.source) {
+        drawHint("No data", "What the 3D views draw is put together here.");
+        return;
+    }
+    const volume::DatasetInfo& info = context.source->info();
+    Session& session = context.session;
+    const auto menu = parameterMenu(context);
+    const WidgetContext widgets{.info = &info, .menu = &menu};
+    ImGui::BeginChild("layers");
+    if (ImGui::CollapsingHeader("Layers", ImGuiTreeNodeFlags_DefaultOpen)) {
+        drawList(context, view.selected);
+        drawListButtons(context, info, view.selected);
+    }
+    view.selected = std::clamp(view.selected, 0, std::max(0, static_cast<int>(session.layers.size()) - 1));
+    if (!session.layers.empty()) {
+        vis::Layer& layer = session.layers[static_cast<std::size_t>(view.selected)];
+        const std::string title = std::string(kindName(layer.technique)) + "###technique";
+        if (ImGui::CollapsingHeader(title.c_str(), ImGuiTreeNodeFlags_DefaultOpen)) {
+            ImGui::PushID(view.selected);
+            drawLabel(widgets, "Name", "Name of the layer");
+            ImGui::InputText("##name", &layer.name);
+            const std::string before = channelOf(layer.technique);
+            const WidgetContext own = widgets.at("/layers/" + std::to_string(view.selected) + "/technique");
+            std::visit([&](auto& technique) { drawDescribed(technique, own); }, layer.technique);
+            followChannel(layer.name, before, channelOf(layer.technique));
+            drawPlace(widgets, session, layer);
+            ImGui::PopID();
+        }
+    }
+    if (ImGui::CollapsingHeader("Lenses", ImGuiTreeNodeFlags_DefaultOpen))
+        drawLensList(context, pane, cacheOf<LayersCache>(context, pane).lenses);
+    if (ImGui::CollapsingHeader("Focus and context", ImGuiTreeNodeFlags_DefaultOpen)) {
+        drawBrushList(context);
+        drawContextStyles(context, widgets);
+    }
+    if (ImGui::CollapsingHeader("Light")) {
+        const std::function<void()> browse = [&] {
+            context.askFile("Picture of the surroundings", [](Session& now, const std::string& file) {
+                now.lighting.environment.kind = vis::Environment::Picture;
+                now.lighting.environment.picture = file;
+            });
+        };
+        WidgetContext light = widgets.at("/lighting");
+        light.browse = &browse;
+        drawDescribed(session.lighting, light);
+    }
+    if (ImGui::CollapsingHeader("Paper")) {
+        bool paper = session.paper.has_value();
+        if (drawBool(widgets, {.key = "paper", .unit = "", .doc = "Draw on paper of your own choice"}, paper)) {
+            const std::optional<vis::Paper> shown = vis::paperOf(sceneOf(session));
+            session.paper = paper ? std::optional(shown.value_or(vis::Paper{})) : std::nullopt;
+        }
+        if (session.paper) drawDescribed(*session.paper, widgets.at("/paper"));
+    }
+    if (ImGui::CollapsingHeader("Clipping"))
+        drawDescribedList(widgets.at("/clips"),
+                          {.key = "clips", .unit = "", .doc = "Planes and bodies that cut the picture"}, session.clips);
+    if (ImGui::CollapsingHeader("Tone curve")) drawDescribed(session.tone, widgets.at("/tone"));
+    if (ImGui::CollapsingHeader("Quality")) drawDescribed(session.render, widgets.at("/render"));
+    if (ImGui::CollapsingHeader("Proportions")) {
+        double stretch[] = {session.stretch.x, session.stretch.y, session.stretch.z};
+        const FieldInfo field{.key = "stretch",
+                              .unit = "",
+                              .doc = "Factor on each axis; 1 = true proportions",
+                              .range = Range{0.01, 1000},
+                              .logScale = true};
+        if (drawNumber(widgets, field, {}, stretch, 3, false)) session.stretch = {stretch[0], stretch[1], stretch[2]};
+        if (ImGui::SmallButton("True proportions")) session.stretch = glm::dvec3(1);
+    }
+    ImGui::EndChild();
+}
+
+} // namespace tessera::app

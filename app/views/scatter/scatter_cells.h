@@ -1,0 +1,49 @@
+#pragma once
+
+#include "app/queries/statistics_feed.h"
+#include "app/views/scatter/scatter_layout.h"
+
+#include <functional>
+
+/// What stands in the cells of a scatterplot matrix, besides the density pictures.
+namespace tessera::app {
+
+/// Position of a pair among the joint histograms, -1 for a histogram.
+int jointIndex(const volume::Statistics& statistics, std::size_t column, std::size_t row);
+
+void drawHistogram(ImDrawList& draw, const PlotFrame& frame, const volume::Histogram& histogram, bool brushed,
+                   bool logCounts, ImU32 focusShade);
+
+/// Correlation as a number on a tint: orange for rising together, blue for against each other.
+void drawCorrelation(ImDrawList& draw, const PlotFrame& frame, const volume::JointHistogram& joint, bool brushed,
+                     ImU32 focusShade);
+
+/// Parameters that never exist at the same point, like oxygen and hydrogen: said, so that the plot does not look
+/// broken.
+void drawNothingCommon(ImDrawList& draw, const PlotFrame& frame);
+
+/// A dot on every bin that holds few samples and has empty ones around it: one pixel there would not be seen.
+void drawOutliers(ImDrawList& draw, const PlotFrame& frame, const volume::JointHistogram& joint,
+                  const std::function<ImU32(std::size_t bin)>& colorOf);
+
+/// A mean's colour in a plot: opaque; of labels grey where samples of several meet.
+ImU32 meanColor(const vis::TransferFunction& function, Range range, double mean);
+
+/// What is under the mouse in a cell.
+void hoverText(const ScatterLayout& matrix, std::size_t column, std::size_t row, const PlotFrame& frame,
+               const StatisticsResult& result, const volume::DatasetInfo& info, const std::string& colorBy);
+
+/// Colours of the mean of a third parameter, row 0 at the top; transparent where no sample has it. Merged like
+/// densityImage.
+int meanImage(const volume::JointHistogram& joint, int merge, const vis::TransferFunction& function, Range range,
+              std::vector<std::uint8_t>& rgba);
+
+/// A titled axis along every column and row; where a title does not fit beside its cell it is written across.
+struct MatrixTitles {
+    bool upright = false, level = false; ///< below the columns, beside the rows
+    float left = 0, bottom = 0;          ///< pixels they need with the numbers
+};
+MatrixTitles matrixTitles(const ScatterLayout& matrix, float cellX, float cellY);
+void drawMatrixAxes(ImDrawList& draw, const ScatterLayout& matrix, const MatrixTitles& titles);
+
+} // namespace tessera::app

@@ -1,0 +1,200 @@
+#include "app/views/scatter/scatter_toolbar.h"
+
+#include "app/pane/figure.h"
+#include "app/pane/view_parts.h"
+#include "app/queries/focus_share.h"
+#include "app/tools/brush_edit.h"
+#include "app/ui/ticks.h"
+#include "app/ui/widgets.h"
+#include "app/views/data/derived_list.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tessera::app {
+
+namespace {
+
+constexpr float kSoftWidth = 4.4f; ///< of the slider, em
+
+void chooseTool(BrushTool& tool) {
+    static constexpr const char* kTools[] = {"rectangle", "ellipse", "lasso"};
+    ImGui::SetNextItemWidth(em() * 6.6f);
+    if (ImGui::BeginCombo("##tool", kTools[static_cast<std::size_t>(tool)])) {
+        for (int i = 0; i < 3; ++i)
+            if (ImGui::Selectable(kTools[i], static_cast<int>(tool) == i)) tool = static_cast<BrushTool>(i);
+        ImGui::EndCombo();
+    }
+    if (ImGui::IsItemHovered())
+        tooltip("What a drag in a plot draws; Shift adds to the selection, Ctrl takes away from it");
+}
+
+/// Adds a derived parameter to the session, if it has none like it, and to the plots.
+void addAxis(ViewContext& context, ScatterMatrixView& view, const std::vector<int>& shown, std::size_t kind,
+             const std::string& channel) {
+    const volume::DatasetInfo& info = context.numbers->info();
+    volume::DerivedParameter wanted = newDerived(info, kind, channel);
+    std::vector<volume::DerivedParameter>& derived = context.session.data.derived;
+    const auto same = std::find_if(derived.begin(), derived.end(),
+                                   [&](const volume::DerivedParameter& own) { return own.recipe == wanted.recipe; });
+    if (same == derived.end())
+        derived.push_back(wanted);
+    else
+        wanted = *same;
+    if (view.channels.empty())
+        for (const int each : shown) view.channels.push_back(info.channels()[static_cast<std::size_t>(each)].name);
+    const auto show = [&](const std::string& name) {
+        if (std::find(view.channels.begin(), view.channels.end(), name) == view.channels.end())
+            view.channels.push_back(name);
+    };
+    if (std::holds_alternative<volume::GradientRecipe>(wanted.recipe))
+        show("|" + wanted.name + "|");
+    else if (std::holds_alternative<volume::PositionRecipe>(wanted.recipe))
+        for (const char* axis : {".x", ".y", ".z"}) show(wanted.name + axis);
+    else
+        show(wanted.name);
+}
+
+std::string matrixCsv(const volume::DatasetInfo& info, const StatisticsResult& result) {
+    const std::vector<volume::Channel> channels = info.channels();
+    const auto nameOf = [&](int position) {
+        const volume::Channel& own =
+            channels[static_cast<std::size_t>(result.wish.channels[static_cast<std::size_t>(position)])];
+        return csvField(titleWithUnit(own.name, own.unit));
+    };
+    std::string csv = "x parameter,y parameter,x,y,samples,in focus\n";
+    for (const volume::JointHistogram& joint : result.statistics.joint)
+        for (int y = 0; y < joint.bins; ++y)
+            for (int x = 0; x < joint.bins; ++x) {
+                const auto i = static_cast<std::size_t>(y * joint.bins + x);
+                if (joint.count[i] == 0) continue;
+                const auto middle = [&](Range range, int bin) {
+                    return range.lo + (range.hi - range.lo) * (bin + 0.5) / joint.bins;
+                };
+                csv += nameOf(joint.x) + "," + nameOf(joint.y) + "," + csvNumber(middle(joint.xRange, x)) + "," +
+                       csvNumber(middle(joint.yRange, y)) + "," + csvNumber(static_cast<double>(joint.count[i])) + "," +
+                       csvNumber(joint.focus[i]) + "\n";
+            }
+    return csv;
+}
+
+std::string matrixSvg(const volume::DatasetInfo& info, const StatisticsResult& result, bool logDensity, ImU32 focus) {
+    const std::vector<volume::Channel> channels = info.channels();
+    std::vector<FigurePanel> panels;
+    for (const volume::JointHistogram& joint : result.statistics.joint) {
+        const auto titleOf = [&](int position) {
+            const volume::Channel& own =
+                channels[static_cast<std::size_t>(result.wish.channels[static_cast<std::size_t>(position)])];
+            return titleWithUnit(own.name, own.unit);
+        };
+        FigurePanel panel;
+        panel.x = {titleOf(joint.x), joint.xRange};
+        panel.y = {titleOf(joint.y), joint.yRange};
+        if (!std::isnan(joint.correlation)) panel.title = "r = " + formatNumber(joint.correlation, 0.001);
+        const int size =
+            densityImage(joint.count, result.brushed ? std::span<const double>(joint.focus) : std::span<const double>(),
+                         joint.bins, 1, logDensity, false, focus, panel.image.rgba);
+        panel.image.width = panel.image.height = size;
+        panels.push_back(std::move(panel));
+    }
+    return figureSvg(panels, 3);
+}
+
+/// What is seldom changed: the colours, the axes that are derived, exports.
+void drawMore(ViewContext& context, ScatterMatrixView& view, const std::vector<int>& shown,
+              const std::shared_ptr<const StatisticsResult>& result) {
+    const volume::DatasetInfo& info = context.numbers->info();
+    if (ImGui::Button("More")) ImGui::OpenPopup("more");
+    if (ImGui::IsItemHovered()) tooltip("Colours, further axes, zoom");
+    if (ImGui::BeginPopup("more")) {
+        ImGui::SetNextItemWidth(em() * 10);
+        chooseChannel("colour by mean of##colorBy", &info, view.colorBy, "density");
+        ImGui::Checkbox("Mark outliers", &view.outliers);
+        if (ImGui::MenuItem("Show all values", nullptr, false, !view.zoom.empty())) view.zoom.clear();
+        ImGui::Separator();
+        if (ImGui::BeginMenu("Add gradient magnitude of")) {
+            for (const int channel : comparedChannels(info)) {
+                const std::string name = info.channels()[static_cast<std::size_t>(channel)].name;
+                if (ImGui::MenuItem(name.c_str())) addAxis(context, view, shown, 2, name);
+            }
+            ImGui::EndMenu();
+        }
+        if (ImGui::MenuItem("Add position")) addAxis(context, view, shown, 7, {});
+        if (ImGui::MenuItem("Add time")) addAxis(context, view, shown, 8, {});
+        ImGui::EndPopup();
+    }
+    if (!result) return;
+    ImGui::SameLine(0, em() * 0.3f);
+    exportMenu(
+        context, "scatterplots",
+        [info, result, logDensity = view.logDensity, focus = focusColor(context.session)](const Progress&) {
+            return matrixSvg(info, *result, logDensity, focus);
+        },
+        [info, result](const Progress&) { return matrixCsv(info, *result); });
+}
+
+/// The end of the line: what is in focus, and the button that clears the brushes. Without brushes its place stays, or
+/// the plots would move under the mouse while the first one is drawn.
+void drawShare(Session& session, const ViewContext& context, const StatisticsResult* result) {
+    const bool brushes = !session.selection.brushes.empty();
+    const float button = ImGui::GetFrameHeight(), gap = em() * 0.3f;
+    const float least = button + gap + ImGui::CalcTextSize("99.9 %").x;
+    continueLine(least);
+    const ImVec2 place = ImGui::GetCursorPos();
+    const float room = ImGui::GetContentRegionAvail().x;
+    std::vector<std::string> texts; // the longest first
+    if (session.selection.active() && result && result->brushed) {
+        texts = shareTexts(focusShare(*result, context.numbers->info(), context.numbers->grid()));
+    } else if (!brushes) {
+        texts = {"drag in a plot to brush, click to enlarge", "drag to brush"};
+    }
+    if (brushes) {
+        if (iconButton(context, "clear", icons::kTrash, "Remove all brushes (Esc)")) session.selection.brushes.clear();
+        ImGui::SameLine(0, gap);
+    }
+    const float textRoom = room - (brushes ? button + gap : 0);
+    while (!texts.empty() && ImGui::CalcTextSize(texts.front().c_str()).x > textRoom &&
+           (texts.size() > 1 || !brushes)) // the share itself is never left out
+        texts.erase(texts.begin());
+    if (!texts.empty()) {
+        ImGui::SetCursorPosX(place.x + room - std::min(textRoom, ImGui::CalcTextSize(texts.front().c_str()).x));
+        ImGui::AlignTextToFramePadding();
+        ImGui::PushStyleColor(ImGuiCol_Text, brushes ? plotColors().text : ImGui::GetColorU32(ImGuiCol_TextDisabled));
+        ImGui::TextUnformatted(texts.front().c_str());
+        ImGui::PopStyleColor();
+        if (brushes && ImGui::IsItemHovered()) {
+            const bool counted = result && result->brushed;
+            const std::string share =
+                counted ? shareText(focusShare(*result, context.numbers->info(), context.numbers->grid())) : "";
+            tooltip(("Samples that the brushes have in focus: " + share).c_str());
+        }
+    }
+    ImGui::SetCursorPos(place);
+    ImGui::Dummy({least, ImGui::GetFrameHeight()});
+}
+
+} // namespace
+
+void drawScatterToolbar(ViewContext& context, ScatterMatrixView& view, const std::vector<int>& shown,
+                        const std::shared_ptr<const StatisticsResult>& shared) {
+    Session& session = context.session;
+    const volume::DatasetInfo& info = context.numbers->info();
+    const float gap = em() * 0.3f;
+    chooseChannels(info, view.channels, shown);
+    ImGui::SameLine(0, gap);
+    ImGui::Checkbox("log", &view.logDensity);
+    if (ImGui::IsItemHovered()) tooltip("Show the logarithm of the number of samples");
+    ImGui::SameLine(0, gap);
+    drawMore(context, view, shown, shared);
+    continueLine(em() * 6.6f);
+    chooseTool(view.tool);
+    continueLine(em() * kSoftWidth);
+    ImGui::SetNextItemWidth(em() * kSoftWidth);
+    float percent = view.softness * 100;
+    if (ImGui::SliderFloat("##soft", &percent, 0, 50, "soft %.0f %%")) view.softness = percent / 100;
+    if (ImGui::IsItemHovered()) tooltip("Soft edge of new brushes, as a share of their width");
+    drawOrigin(context, shown);
+    drawShare(session, context, shared.get());
+}
+
+} // namespace tessera::app

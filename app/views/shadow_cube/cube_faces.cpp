@@ -1,0 +1,93 @@
+#include "app/views/shadow_cube/cube_faces.h"
+
+#include "app/tools/brush_edit.h"
+#include "app/tools/brush_list.h"
+
+namespace tessera::app {
+
+namespace {
+
+constexpr int kPatches = 8; ///< along either edge of a face
+
+/// A rectangle of a face between two physical positions.
+void outlineOnFace(ImDrawList& draw, const CubeFrame& frame, const CubeFace& face, glm::dvec3 lo, glm::dvec3 hi,
+                   ImU32 line, ImU32 fill) {
+    const glm::dvec3 a = frame.world.toWorld(lo), b = frame.world.toWorld(hi);
+    ImVec2 corners[4];
+    for (int i = 0; i < 4; ++i) {
+        const bool right = i == 1 || i == 2, up = i >= 2;
+        const auto at = frame.pixel(face.at((right ? b : a)[face.right()], (up ? b : a)[face.up()], frame.half));
+        if (!at) return;
+        corners[i] = *at;
+    }
+    draw.AddConvexPolyFilled(corners, 4, fill);
+    draw.AddPolyline(corners, 4, line, ImDrawFlags_Closed, 1.5f);
+}
+
+} // namespace
+
+void drawFace(ImDrawList& draw, const CubeFrame& frame, const CubeFace& face, std::uint32_t texture) {
+    const auto corner = [&](double s, double t) { return frame.pixel(face.at(s, t, frame.half)); };
+    const double right = frame.half[face.right()], up = frame.half[face.up()];
+    const auto a = corner(-right, -up), b = corner(right, -up), c = corner(right, up), d = corner(-right, up);
+    if (!a || !b || !c || !d) return;
+    const bool dark = darkTheme();
+    draw.AddQuadFilled(*a, *b, *c, *d, dark ? IM_COL32(36, 39, 45, 255) : IM_COL32(236, 237, 240, 255));
+    const double s = frame.world.halfSize[face.right()], t = frame.world.halfSize[face.up()];
+    const auto id = reinterpret_cast<ImTextureID>(static_cast<std::intptr_t>(texture));
+    for (int j = 0; j < kPatches; ++j)
+        for (int i = 0; i < kPatches; ++i) {
+            const auto at = [](int k) { return float(k) / kPatches; };
+            const auto place = [&](int x, int y) {
+                return corner((2 * double(at(x)) - 1) * s, (2 * double(at(y)) - 1) * t);
+            };
+            const auto p = place(i, j), q = place(i + 1, j), r = place(i + 1, j + 1), u = place(i, j + 1);
+            if (!p || !q || !r || !u) continue;
+            draw.AddImageQuad(id, *p, *q, *r, *u, {at(i), at(j)}, {at(i + 1), at(j)}, {at(i + 1), at(j + 1)},
+                              {at(i), at(j + 1)});
+        }
+    draw.AddQuad(*a, *b, *c, *d, plotColors().frame);
+}
+
+void drawMarks(ImDrawList& draw, const CubeFrame& frame, const Session& session, std::size_t index,
+               const std::string& title) {
+    const CubeFace& face = kCubeFaces[index];
+    const PlotColors colors = plotColors();
+    for (const vis::Brush& brush : session.selection.brushes) {
+        const auto* box = std::get_if<vis::BoxRegion>(&brush.region);
+        if (!brush.enabled || !box) continue;
+        const glm::dvec3 lo = glm::max(box->center - box->radius, frame.info.bounds.lo),
+                         hi = glm::min(box->center + box->radius, frame.info.bounds.hi);
+        outlineOnFace(draw, frame, face, lo, hi, brushColor(brush), brushColor(brush, 0.12f));
+    }
+    const glm::dvec3 cursor = frame.world.toWorld(session.cursor);
+    const double s = cursor[face.right()], t = cursor[face.up()];
+    const glm::dvec3 box = frame.world.halfSize;
+    const auto line = [&](glm::dvec3 from, glm::dvec3 to, ImU32 color) {
+        const auto a = frame.pixel(from), b = frame.pixel(to);
+        if (a && b) draw.AddLine(*a, *b, color, 1.2f);
+    };
+    line(face.at(-box[face.right()], t, frame.half), face.at(box[face.right()], t, frame.half), colors.cursor);
+    line(face.at(s, -box[face.up()], frame.half), face.at(s, box[face.up()], frame.half), colors.cursor);
+    line(cursor, face.at(s, t, frame.half), (colors.cursor & ~IM_COL32_A_MASK) | IM_COL32(0, 0, 0, 110));
+    // The title stands in the margin at the outer edge that is furthest from the middle of the picture.
+    const ImVec2 middle{frame.min.x + frame.size.x / 2, frame.min.y + frame.size.y / 2};
+    float furthest = -1;
+    ImVec2 at = middle;
+    for (const int end : {-1, 1})
+        for (const bool along : {false, true}) {
+            const int axis = along ? face.right() : face.up();
+            const double place = end * (0.5 * frame.half[axis] + 0.5 * box[axis]);
+            const auto p = frame.pixel(along ? face.at(place, 0, frame.half) : face.at(0, place, frame.half));
+            if (!p) continue;
+            const float away = std::hypot(p->x - middle.x, p->y - middle.y);
+            if (away > furthest) furthest = away, at = *p;
+        }
+    const ImVec2 size = ImGui::CalcTextSize(title.c_str());
+    at.x = std::clamp(at.x, frame.min.x + size.x / 2 + em(),
+                      std::max(frame.min.x + size.x / 2 + em(), frame.max().x - size.x / 2 - em()));
+    at.y = std::clamp(at.y, frame.min.y + em(), std::max(frame.min.y + em(), frame.max().y - em()));
+    addTextWithBackdrop(draw, at, {0.5f, 0.5f}, colors.text, title.c_str());
+}
+
+} // namespace tessera::app

@@ -1,0 +1,318 @@
+#include "app/pane/axes3d.h"
+#include "app/pane/view_parts.h"
+#include "app/queries/flow_feed.h"
+#include "app/queries/surface_feed.h"
+#include "app/tools/brush_edit.h"
+#include "app/tools/brush_list.h"
+#include "app/ui/keys.h"
+#include "app/ui/ticks.h"
+#include "app/ui/widgets.h"
+#include "app/views/shadow_cube/cube_faces.h"
+#include "app/views/shadow_cube/wall_projection.h"
+#include "volume/base/error.h"
+#include "volume/bricks/brick_cache.h"
+#include "volume/bricks/source_at_time.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <set>
+
+namespace tessera::app {
+
+namespace {
+
+constexpr int kWallPixels = 384; ///< of the longer edge of a projection
+constexpr std::size_t kHoverBudget = std::size_t(32) << 20;
+
+enum class CubeDrag { None, Object, Cube, Both, Pan, Zoom, Brush };
+
+struct ShadowCubeCache : ViewCache {
+    vis::ViewTargetPtr target;
+    std::array<vis::ViewTargetPtr, 6> walls;
+    SurfaceFeed surfaces;
+    FlowFeed flows;
+    CubeDrag drag = CubeDrag::None;
+    ImVec2 last{0, 0}, pressed{0, 0};
+    std::size_t face = 0;    ///< where a brush began
+    glm::dvec3 start{0};     ///< physical
+    int brush = -1;          ///< being dragged
+    vis::Selection original; ///< before the drag: Esc goes back to it
+    std::shared_ptr<volume::BrickCache> bricks;
+    std::shared_ptr<const volume::BrickSource> bricksOf;
+};
+
+std::string kindName(WallKind kind) {
+    static constexpr const char* kNames[] = {"slice", "mean", "maximum", "absorption", "shadow"};
+    return kNames[static_cast<std::size_t>(kind)];
+}
+
+/// What the face under the mouse reads, with its unit, beside the mouse.
+void drawReading(ViewContext& context, const CubeFrame& frame, ShadowCubeCache& cache, const ShadowCubeView& view,
+                 const FaceHit& hit, ImVec2 mouse) {
+    const Wall& wall = wallOf(view, hit.face);
+    const auto channel = resolveChannel(frame.info, context.session, wall.channel);
+    if (!channel) return;
+    if (cache.bricksOf != context.numbers) {
+        cache.bricks = std::make_shared<volume::BrickCache>(context.numbers, kHoverBudget);
+        cache.bricksOf = context.numbers;
+    }
+    std::string text;
+    try {
+        const volume::SourceAtTime shown =
+            volume::sourceAt(cache.bricks, volume::timesAround(frame.info.times, context.session.time));
+        const auto value = readWall(*shown.source, context.session, *channel, wall.kind, kCubeFaces[hit.face],
+                                    frame.physical(hit), shown.time);
+        const volume::Channel known = frame.info.channels()[static_cast<std::size_t>(*channel)];
+        const bool share = wall.kind == WallKind::XRay || wall.kind == WallKind::Shadow;
+        const Range range = frame.info.channelRange(known);
+        text = (wall.kind == WallKind::Shadow ? "selected" : kindName(wall.kind) + " " + known.name) + ": " +
+               (!value  ? "absent"
+                : share ? formatShare(*value)
+                        : formatQuantity(*value, known.unit, (range.hi - range.lo) / 2000));
+    } catch (const Error& error) {
+        text = error.what();
+    }
+    const ImVec2 at{mouse.x + em(), mouse.y + em()}, size = ImGui::CalcTextSize(text.c_str());
+    addTextWithBackdrop(
+        *ImGui::GetWindowDrawList(),
+        {std::min(at.x, frame.max().x - size.x - em() * 0.5f), std::min(at.y, frame.max().y - size.y - em() * 0.5f)},
+        {0, 0}, plotColors().text, text.c_str());
+}
+
+/// The brush that is dragged on a face, from its start to the mouse.
+void dragBrush(ViewContext& context, const CubeFrame& frame, ShadowCubeCache& cache, ImVec2 mouse) {
+    vis::Selection& selection = context.session.selection;
+    const ImGuiIO& io = ImGui::GetIO();
+    if (pressed({.key = key::kEscape})) {
+        selection = cache.original;
+        cache.drag = CubeDrag::None;
+        return;
+    }
+    if (std::hypot(mouse.x - cache.pressed.x, mouse.y - cache.pressed.y) < io.MouseDragThreshold && cache.brush < 0)
+        return;
+    // Where the ray meets the plane of the face, also beside it.
+    const CubeFace& face = kCubeFaces[cache.face];
+    const vis::Ray ray = vis::cameraRay(frame.camera, frame.aspect(), glm::dvec2(frame.ndc(mouse)));
+    const double slope = ray.direction[face.axis];
+    if (std::abs(slope) < 1e-6) return;
+    const double along = ((face.upper ? 1 : -1) * frame.half[face.axis] - ray.origin[face.axis]) / slope;
+    const glm::dvec3 end = frame.world.toPhysical(ray.origin + along * ray.direction);
+    if (cache.brush < 0) {
+        if (!io.KeyShift && !io.KeyCtrl)
+            std::erase_if(selection.brushes, [](const vis::Brush& brush) { return brush.name.starts_with("prism"); });
+        vis::Brush brush;
+        brush.name = newBrushName(selection, "prism");
+        brush.color = newBrushColor(selection);
+        brush.combine = io.KeyCtrl    ? vis::BrushCombine::Minus
+                        : io.KeyShift ? vis::BrushCombine::Or
+                                      : vis::BrushCombine::And;
+        selection.brushes.push_back(brush);
+        cache.brush = static_cast<int>(selection.brushes.size()) - 1;
+    }
+    if (cache.brush < static_cast<int>(selection.brushes.size()))
+        selection.brushes[static_cast<std::size_t>(cache.brush)].region =
+            prism(face, cache.start, end, frame.info.bounds);
+}
+
+/// What a button that goes down begins.
+CubeDrag beginDrag(ViewContext& context, const CubeFrame& frame, ShadowCubeCache& cache, const ShadowCubeView& view) {
+    const ImGuiIO& io = ImGui::GetIO();
+    if (ImGui::IsMouseClicked(ImGuiMouseButton_Right)) return CubeDrag::Zoom;
+    if (ImGui::IsMouseClicked(ImGuiMouseButton_Middle)) return CubeDrag::Pan;
+    if (!ImGui::IsMouseClicked(ImGuiMouseButton_Left)) return CubeDrag::None;
+    cache.pressed = io.MousePos;
+    const auto hit = frame.hit(io.MousePos);
+    if (view.brushing && hit && frame.onData(*hit)) {
+        cache.face = hit->face;
+        cache.start = frame.physical(*hit);
+        cache.brush = -1;
+        cache.original = context.session.selection;
+        return CubeDrag::Brush;
+    }
+    if (io.KeyShift) return CubeDrag::Pan;
+    if (view.together) return CubeDrag::Both;
+    const glm::ivec2 pixel(io.MousePos.x - frame.min.x, io.MousePos.y - frame.min.y);
+    return cache.target && context.renderer.pick(*cache.target, pixel) ? CubeDrag::Object : CubeDrag::Cube;
+}
+
+/// A click without a drag: the cursor goes to the place of the face, or to what was clicked.
+void click(ViewContext& context, const CubeFrame& frame, ShadowCubeCache& cache) {
+    const ImVec2 mouse = ImGui::GetIO().MousePos;
+    const glm::ivec2 pixel(mouse.x - frame.min.x, mouse.y - frame.min.y);
+    glm::dvec3& cursor = context.session.cursor;
+    if (const auto pick = cache.target ? context.renderer.pick(*cache.target, pixel) : std::nullopt) {
+        cursor = pick->position;
+    } else if (const auto hit = frame.hit(mouse); hit && frame.onData(*hit)) {
+        const CubeFace& face = kCubeFaces[hit->face];
+        const glm::dvec3 place = frame.physical(*hit);
+        cursor[face.right()] = place[face.right()];
+        cursor[face.up()] = place[face.up()];
+    }
+}
+
+/// Turns the mouse over the picture into camera, cube, cursor and brushes; true while something moves.
+bool handleMouse(ViewContext& context, const CubeFrame& frame, ShadowCubeCache& cache, ShadowCubeView& view) {
+    const ImGuiIO& io = ImGui::GetIO();
+    vis::Camera& camera = context.session.camera;
+    const bool hovered = ImGui::IsItemHovered();
+    bool moving = false;
+    if (hovered && io.MouseWheel != 0) {
+        vis::zoom(camera, std::pow(1.15f, io.MouseWheel));
+        moving = true;
+    }
+    if (hovered && ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left)) click(context, frame, cache);
+    if (hovered && cache.drag == CubeDrag::None) {
+        cache.drag = beginDrag(context, frame, cache, view);
+        cache.last = io.MousePos;
+    }
+    if (cache.drag == CubeDrag::None) return moving;
+    const glm::vec2 from = frame.ndc(cache.last), to = frame.ndc(io.MousePos);
+    if (cache.drag == CubeDrag::Brush) {
+        dragBrush(context, frame, cache, io.MousePos);
+        moving = from != to;
+    } else if (from != to) {
+        if (cache.drag == CubeDrag::Both || cache.drag == CubeDrag::Object) vis::orbit(camera, from, to);
+        if (cache.drag == CubeDrag::Cube) {
+            vis::Camera cube = frame.camera;
+            vis::orbit(cube, from, to);
+            view.orientation = cube.orientation;
+        }
+        if (cache.drag == CubeDrag::Pan) vis::pan(camera, to - from, static_cast<float>(frame.aspect()));
+        if (cache.drag == CubeDrag::Zoom) vis::zoom(camera, std::exp((to.y - from.y) * 1.5f));
+        moving = true;
+    }
+    cache.last = io.MousePos;
+    if (!ImGui::IsMouseDown(ImGuiMouseButton_Left) && !ImGui::IsMouseDown(ImGuiMouseButton_Middle) &&
+        !ImGui::IsMouseDown(ImGuiMouseButton_Right))
+        cache.drag = CubeDrag::None;
+    return moving;
+}
+
+void drawToolbar(ViewContext& context, const volume::DatasetInfo& info, ShadowCubeView& view) {
+    static constexpr Icon kBrushIcon{icon::kBrush, "brush"}, kLockIcon{icon::kLock, "lock"},
+        kGearIcon{icon::kGear, "set"};
+    if (iconButton(context, "brushing", kBrushIcon,
+                   "Drag on a face to select the prism behind it (Shift adds, Ctrl takes away)", true, view.brushing))
+        view.brushing = !view.brushing;
+    ImGui::SameLine(0, em() * 0.2f);
+    if (iconButton(context, "together", kLockIcon, "Turn cube and object together", true, view.together)) {
+        view.together = !view.together;
+        view.orientation = context.session.camera.orientation;
+    }
+    ImGui::SameLine(0, em() * 0.2f);
+    if (iconButton(context, "settings", kGearIcon, "What the faces show")) ImGui::OpenPopup("faces");
+    if (ImGui::BeginPopup("faces")) {
+        ImGui::PushItemWidth(em() * 12);
+        ImGui::Dummy({em() * 22, 0});
+        drawDescribed(view, {.info = &info});
+        ImGui::PopItemWidth();
+        ImGui::EndPopup();
+    }
+}
+
+/// Draws the faces that are seen; returns the channels with a legend.
+std::set<int> drawWalls(ViewContext& context, const CubeFrame& frame, ShadowCubeCache& cache,
+                        const ShadowCubeView& view, bool moving) {
+    ImDrawList& draw = *ImGui::GetWindowDrawList();
+    const vis::Scene scene = themedScene(context);
+    std::set<int> legends;
+    for (std::size_t i = 0; i < kCubeFaces.size(); ++i) {
+        const CubeFace& face = kCubeFaces[i];
+        const Wall& wall = wallOf(view, i);
+        const auto channel = resolveChannel(frame.info, context.session, wall.channel);
+        if (!channel || !facesViewer(face, frame.half, frame.camera)) continue;
+        const std::string name = frame.info.channels()[static_cast<std::size_t>(*channel)].name;
+        const double width = std::max(frame.world.halfSize[face.right()], 1e-3),
+                     height = std::max(frame.world.halfSize[face.up()], 1e-3), longer = std::max(width, height);
+        vis::FrameRequest request;
+        request.size = glm::max(glm::ivec2(glm::round(glm::dvec2(width, height) / longer * double(kWallPixels))), 8);
+        request.moving = moving;
+        request.budgetMs = double(scene.render.limits.frameTime) / 4; // three faces and the scene share a frame
+        request.wait = context.headless;
+        if (!cache.walls[i]) cache.walls[i] = context.renderer.makeTarget();
+        const glm::vec3 shadow = darkTheme() ? glm::vec3(1, 0.69f, 0.25f) : glm::vec3(0.25f, 0.2f, 0.15f);
+        const vis::FrameStatus status = context.renderer.render(
+            *cache.walls[i], wallScene(scene, name, wall.kind, face, frame.world, shadow), request);
+        context.follow(status);
+        drawFace(draw, frame, face, status.texture);
+        drawMarks(draw, frame, context.session, i,
+                  wall.kind == WallKind::Shadow && context.session.selection.active()
+                      ? "shadow of the selection"
+                      : kindName(wall.kind) + " " + name);
+        if (wall.kind != WallKind::Shadow) legends.insert(*channel);
+    }
+    return legends;
+}
+
+} // namespace
+
+void drawShadowCubeView(ViewContext& context, const std::string& pane, ShadowCubeView& view) {
+    if (!context.source) {
+        drawHint("No data", "The scene in a cube, with parameters projected on its faces.");
+        return;
+    }
+    ShadowCubeCache& cache = cacheOf<ShadowCubeCache>(context, pane);
+    const volume::DatasetInfo& info = context.source->info();
+    Session& session = context.session;
+    if (!context.figure) drawToolbar(context, info, view);
+    const ImVec2 room = ImGui::GetContentRegionAvail();
+    CubeFrame frame{.info = info,
+                    .min = ImGui::GetCursorScreenPos(),
+                    .size = {std::floor(room.x), std::floor(room.y)},
+                    .world = vis::worldFrame(info.bounds, session.stretch),
+                    .half = {},
+                    .camera = {},
+                    .space = {}};
+    if (frame.size.x < 8 || frame.size.y < 8) return;
+    frame.half = frame.world.halfSize + double(view.gap);
+    const auto look = [&] {
+        frame.camera = session.camera;
+        if (!view.together) frame.camera.orientation = view.orientation;
+        frame.space = spaceFrame(frame.min, frame.max(), frame.camera, info.bounds, session.stretch);
+    };
+    look();
+    ImGui::InvisibleButton("picture", frame.size,
+                           ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonMiddle |
+                               ImGuiButtonFlags_MouseButtonRight);
+    const bool hovered = ImGui::IsItemHovered();
+    const bool moved = handleMouse(context, frame, cache, view);
+    if (cache.drag != CubeDrag::None) context.interacting = true;
+    look();
+
+    ImDrawList& draw = *ImGui::GetWindowDrawList();
+    draw.PushClipRect(frame.min, frame.max(), true);
+    const bool moving = (moved || context.interacting || session.animation.playing) && !context.headless;
+    const std::set<int> walls = drawWalls(context, frame, cache, view, moving);
+
+    vis::Scene scene = themedScene(context);
+    scene.showGround = false;
+    scene.paper.reset();
+    if (!cache.target) cache.target = context.renderer.makeTarget();
+    vis::FrameRequest request;
+    request.size = {frame.size.x, frame.size.y};
+    request.moving = moving;
+    request.wait = context.headless;
+    scene.geometry = cache.surfaces.get(context, pane, moving);
+    for (vis::GeometryLayer& flow : cache.flows.get(context, pane)) scene.geometry.push_back(std::move(flow));
+    const vis::FrameStatus status = context.renderer.render(*cache.target, scene, request);
+    context.follow(status);
+    addPicture(draw, status.texture, frame.min, frame.max());
+    const SpaceFrame object = spaceFrame(frame.min, frame.max(), session.camera, info.bounds, session.stretch);
+    drawSpaceBrushes(draw, object, session.selection);
+    const PlotColors colors = plotColors();
+    if (const auto at = object.pixel(session.cursor)) {
+        draw.AddCircle(*at, em() * 0.35f, colors.backdrop, 20, 3);
+        draw.AddCircle(*at, em() * 0.35f, colors.cursor, 20, 1.5f);
+    }
+    std::vector<LegendEntry> legends;
+    for (const int channel : walls) legends.push_back(legendOf(session, info, channel));
+    // At the top, where no face has its title.
+    drawLegends(draw, legends, frame.min, frame.max(), LegendCorner::Top);
+    const ImVec2 mouse = ImGui::GetIO().MousePos;
+    if (const auto hit = hovered ? frame.hit(mouse) : std::nullopt; hit && frame.onData(*hit))
+        drawReading(context, frame, cache, view, *hit, mouse);
+    draw.PopClipRect();
+}
+
+} // namespace tessera::app

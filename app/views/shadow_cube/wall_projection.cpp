@@ -1,0 +1,172 @@
+#include "app/views/shadow_cube/wall_projection.h"
+
+#include "vis/scene/ray_setup.h"
+#include "volume/reconstruct/probe.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace tessera::app {
+
+namespace {
+
+constexpr int kMostPlaces = 4096;
+constexpr double kThinnest = 1e-3; ///< half edge of data without extent, for a camera
+
+/// Middles of even parts of the line through the data behind a place, two to a cell of the lattice.
+std::vector<glm::dvec3> placesBehind(const volume::DatasetInfo& info, const CubeFace& face, glm::dvec3 position) {
+    const double length = info.bounds.size()[face.axis];
+    const double spacing = std::abs(info.lattice.spacing[face.axis]);
+    const double cells = spacing > 0 ? length / spacing : 0;
+    const int count = std::clamp(2 * int(std::lround(cells)), 1, kMostPlaces);
+    std::vector<glm::dvec3> places;
+    for (int i = 0; i < count; ++i) {
+        places.push_back(position);
+        places.back()[face.axis] = info.bounds.lo[face.axis] + length * (i + 0.5) / count;
+    }
+    return places;
+}
+
+double greatestInterest(const volume::BrickSource& source, const Session& session,
+                        const std::vector<glm::dvec3>& places, int time) {
+    const vis::DoiFunction interest(session.selection);
+    std::vector<std::vector<volume::ProbeValue>> columns;
+    for (const std::string& name : interest.channels()) {
+        const auto channel = source.info().findChannel(name);
+        columns.push_back(channel ? volume::probeAlong(source, *channel, places, time)
+                                  : std::vector<volume::ProbeValue>(places.size()));
+    }
+    double most = 0;
+    std::vector<double> values(columns.size());
+    for (std::size_t i = 0; i < places.size(); ++i) {
+        for (std::size_t c = 0; c < columns.size(); ++c)
+            values[c] = columns[c][i].interpolated.value_or(std::numeric_limits<double>::quiet_NaN());
+        most = std::max(most, interest(values, places[i]));
+    }
+    return most;
+}
+
+} // namespace
+
+glm::dvec3 CubeFace::at(double s, double t, glm::dvec3 half) const {
+    glm::dvec3 place(0);
+    place[axis] = upper ? half[axis] : -half[axis];
+    place[right()] = s;
+    place[up()] = t;
+    return place;
+}
+
+const Wall& wallOf(const ShadowCubeView& view, std::size_t face) {
+    const Wall* const walls[] = {&view.left, &view.right, &view.bottom, &view.top, &view.back, &view.front};
+    return *walls[face];
+}
+
+bool facesViewer(const CubeFace& face, glm::dvec3 half, const vis::Camera& camera) {
+    const vis::Ray middle = vis::cameraRay(camera, 1, {0, 0});
+    const double outward = face.upper ? 1 : -1;
+    // Seen from within: the way from the eye to the face runs outwards.
+    if (camera.projection == vis::Projection::Orthographic) return middle.direction[face.axis] * outward > 0;
+    return (outward * half[face.axis] - middle.origin[face.axis]) * outward > 0;
+}
+
+std::optional<FaceHit> hitFace(const vis::Ray& ray, glm::dvec3 half, const vis::Camera& camera) {
+    for (std::size_t i = 0; i < kCubeFaces.size(); ++i) {
+        const CubeFace& face = kCubeFaces[i];
+        const double slope = ray.direction[face.axis];
+        if (!facesViewer(face, half, camera) || std::abs(slope) < 1e-9) continue;
+        const double along = ((face.upper ? 1 : -1) * half[face.axis] - ray.origin[face.axis]) / slope;
+        const glm::dvec3 place = ray.origin + along * ray.direction;
+        const FaceHit hit{i, place[face.right()], place[face.up()]};
+        if (along > 0 && std::abs(hit.s) <= half[face.right()] && std::abs(hit.t) <= half[face.up()]) return hit;
+    }
+    return std::nullopt;
+}
+
+vis::Scene wallScene(const vis::Scene& scene, const std::string& channel, WallKind kind, const CubeFace& face,
+                     const vis::WorldFrame& world, glm::vec3 shadow) {
+    vis::Scene out = scene;
+    out.geometry.clear();
+    out.clips.clear();
+    out.lenses.clear();
+    out.tone = {};
+    out.lighting.shadows = {};
+    out.paper.reset();
+    out.showBox = out.showGround = false;
+    out.render.samples = 1;
+    out.render.proxy = vis::Proxy::Rays;
+    const bool selected = scene.selection.active();
+    out.selection = {};
+    vis::TransferFunction& function = out.transfer[channel];
+    vis::VolumeLayer layer{.channel = channel};
+    if (kind == WallKind::Mean || kind == WallKind::Maximum) {
+        layer.style = kind == WallKind::Mean ? vis::VolumeStyle::Average : vis::VolumeStyle::Maximum;
+        function.opacity = {{0, 1}, {1, 1}};
+    } else {
+        layer.style = vis::VolumeStyle::XRay;
+    }
+    if (kind == WallKind::Shadow) {
+        out.selection = scene.selection;
+        out.selection.contextOpacity = 0;
+        function.colors = {{0, shadow}, {1, shadow}};
+        if (selected) function.opacity = {{0, 0.6f}, {1, 0.6f}};
+        layer.density = 4;
+    }
+    out.layers = {{"wall", true, layer}};
+    if (kind == WallKind::Slice)
+        out.layers[0].technique =
+            vis::SliceLayer{.channel = channel, .orientation = static_cast<vis::SliceOrientation>(face.axis)};
+    out.camera = {};
+    out.camera.projection = vis::Projection::Orthographic;
+    glm::vec3 right(0), up(0);
+    right[face.right()] = 1;
+    up[face.up()] = 1;
+    out.camera.orientation =
+        glm::normalize(glm::quat_cast(glm::transpose(glm::mat3(right, up, glm::cross(right, up)))));
+    const double height = std::max(world.halfSize[face.up()], kThinnest);
+    out.camera.distance = float(height / std::tan(glm::radians(double(out.camera.fieldOfView)) / 2));
+    return out;
+}
+
+std::optional<double> readWall(const volume::BrickSource& source, const Session& session, int channel, WallKind kind,
+                               const CubeFace& face, glm::dvec3 position, int time) {
+    const volume::DatasetInfo& info = source.info();
+    if (kind == WallKind::Slice) {
+        position[face.axis] = session.cursor[face.axis];
+        return volume::probeChannel(source, channel, position, time).interpolated;
+    }
+    const std::vector<glm::dvec3> places = placesBehind(info, face, position);
+    if (kind == WallKind::Shadow) return greatestInterest(source, session, places, time);
+    const volume::Channel known = info.channels()[std::size_t(channel)];
+    const vis::Scene scene = sceneOf(session);
+    const vis::TransferFunction& function = vis::transferFor(scene, known.name);
+    const Range range = vis::effectiveRange(function, info.channelRange(known));
+    const vis::WorldFrame world = vis::worldFrame(info.bounds, session.stretch);
+    const double step = 2 * world.halfSize[face.axis] / double(places.size());
+    double sum = 0, most = -std::numeric_limits<double>::infinity(), through = 1;
+    int count = 0;
+    for (const volume::ProbeValue& each : volume::probeAlong(source, channel, places, time)) {
+        if (!each.interpolated) continue;
+        ++count;
+        sum += *each.interpolated;
+        most = std::max(most, *each.interpolated);
+        if (kind == WallKind::XRay)
+            through *= 1 - vis::correctedOpacity(vis::evaluate(function, range, *each.interpolated).a, step, 1);
+    }
+    if (count == 0) return std::nullopt;
+    return kind == WallKind::Mean ? sum / count : kind == WallKind::Maximum ? most : 1 - through;
+}
+
+vis::BoxRegion prism(const CubeFace& face, glm::dvec3 from, glm::dvec3 to, const volume::Box& bounds) {
+    from[face.axis] = bounds.lo[face.axis];
+    to[face.axis] = bounds.hi[face.axis];
+    const glm::dvec3 a = glm::clamp(from, bounds.lo, bounds.hi), b = glm::clamp(to, bounds.lo, bounds.hi);
+    vis::BoxRegion region;
+    region.center = (a + b) / 2.0;
+    region.radius = glm::max(glm::abs(b - a) / 2.0, 1e-9 * bounds.size());
+    // Through and through: samples on the box's own faces belong to it.
+    region.radius[face.axis] *= 1.001;
+    return region;
+}
+
+} // namespace tessera::app

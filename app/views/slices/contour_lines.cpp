@@ -1,0 +1,71 @@
+#include "app/views/slices/contour_lines.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace tessera::app {
+
+namespace {
+
+constexpr ImU32 kInk = IM_COL32(12, 12, 12, 245), kHalo = IM_COL32(255, 255, 255, 110),
+                kTextHalo = IM_COL32(255, 255, 255, 150); // laid over itself from all sides
+
+void layOut(ContourCache& cache, const Contours& contours, double step, const PlotFrame& frame, glm::dvec2 perUnit) {
+    std::vector<PageLine> lines;
+    for (const volume::ContourLine& line : contours.lines) {
+        PageLine& own = lines.emplace_back(PageLine{contourText(line.level, step), {}});
+        for (const glm::dvec2& point : line.points) {
+            const ImVec2 at = frame.pixel(point.x * perUnit.x, point.y * perUnit.y);
+            own.points.emplace_back(at.x, at.y);
+        }
+    }
+    cache.labels.clear();
+    if (cache.values)
+        cache.labels = placeLabels(
+            lines, {{frame.min.x, frame.min.y},
+                    {frame.max.x, frame.max.y},
+                    static_cast<double>(em()),
+                    [](const std::string& text) { return static_cast<double>(ImGui::CalcTextSize(text.c_str()).x); }});
+    cache.pieces.clear();
+    for (const std::vector<glm::dvec2>& piece : linesAround(lines, cache.labels)) {
+        std::vector<ImVec2>& own = cache.pieces.emplace_back();
+        for (const glm::dvec2& point : piece)
+            own.emplace_back(static_cast<float>(point.x), static_cast<float>(point.y));
+    }
+}
+
+} // namespace
+
+void drawContours(ViewContext& context, ContourCache& cache, const std::string& jobKey, const ContourWish& wish,
+                  double step, bool values, const PlotFrame& frame, glm::dvec2 perUnit) {
+    const auto contours = cache.feed.get(
+        context, jobKey, "Contour lines", wish,
+        [](const auto& source, const ContourWish& asked, const Progress& progress) {
+            return readContours(*source, asked, progress);
+        },
+        [&](const ContourWish& answered) { return answered == wish; }, true);
+    if (!contours) return;
+    const std::array<double, 5> page{frame.min.x, frame.min.y, frame.max.x, frame.max.y, em()};
+    if (cache.drawn != contours || cache.page != page || cache.values != values) {
+        cache.drawn = contours;
+        cache.page = page;
+        cache.values = values;
+        layOut(cache, *contours, step, frame, perUnit);
+    }
+    ImDrawList& draw = *ImGui::GetWindowDrawList();
+    const float width = std::max(1.2f, em() * 0.09f);
+    for (const auto& [color, thick] : {std::pair{kHalo, width * 2.6f}, std::pair{kInk, width}})
+        for (const std::vector<ImVec2>& piece : cache.pieces)
+            draw.AddPolyline(piece.data(), static_cast<int>(piece.size()), color, 0, thick);
+    for (const LineLabel& label : cache.labels) {
+        const ImVec2 at{static_cast<float>(label.at.x), static_cast<float>(label.at.y)};
+        for (const float x : {-1.0f, 0.0f, 1.0f})
+            for (const float y : {-1.0f, 0.0f, 1.0f})
+                if (x != 0 || y != 0)
+                    addTextTurned(draw, {at.x + x, at.y + y}, static_cast<float>(label.angle), kTextHalo,
+                                  label.text.c_str());
+        addTextTurned(draw, at, static_cast<float>(label.angle), kInk, label.text.c_str());
+    }
+}
+
+} // namespace tessera::app

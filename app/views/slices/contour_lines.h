@@ -1,0 +1,30 @@
+#pragma once
+
+#include "app/pane/plot.h"
+#include "app/queries/latest_feed.h"
+#include "app/views/slices/contour_data.h"
+#include "app/views/slices/contour_labels.h"
+
+#include <array>
+#include <memory>
+#include <vector>
+
+/// Contour lines over the picture of a slice.
+namespace tessera::app {
+
+/// What a slice keeps of its lines between frames: one per slice, in the cache of its view.
+struct ContourCache {
+    LatestFeed<ContourWish, Contours> feed;
+    std::shared_ptr<const Contours> drawn; ///< that `pieces` and `labels` are of, on this page
+    std::array<double, 5> page{};
+    bool values = false;
+    std::vector<std::vector<ImVec2>> pieces; ///< beside the labels, in pixels
+    std::vector<LineLabel> labels;
+};
+
+/// Lines as wished with, if wanted, their values on them. While other lines are being read there are none: those of
+/// another place or time would lie where the value is another. `perUnit`: of the frame's axes, by length of the data.
+void drawContours(ViewContext& context, ContourCache& cache, const std::string& jobKey, const ContourWish& wish,
+                  double step, bool values, const PlotFrame& frame, glm::dvec2 perUnit);
+
+} // namespace tessera::app

@@ -1,0 +1,237 @@
+#include "app/views/statistics/region_data.h"
+
+#include "app/pane/figure.h"
+#include "app/session/label_colors.h"
+#include "app/ui/ticks.h"
+#include "volume/base/error.h"
+#include "volume/base/unit_product.h"
+#include "volume/bricks/source_at_time.h"
+#include "volume/flow/flow_channels.h"
+#include "volume/flow/sections.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tessera::app {
+
+namespace {
+
+std::size_t columnsOf(const std::string& text) { // of UTF-8
+    return static_cast<std::size_t>(
+        std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xc0) != 0x80; }));
+}
+
+std::string scientific(double value) {
+    if (!std::isfinite(value)) return "-";
+    char text[32];
+    std::snprintf(text, sizeof text, "%.6g", value);
+    return text;
+}
+
+} // namespace
+
+volume::RegionStatistics readRegions(const std::shared_ptr<const volume::BrickSource>& source, const RegionWish& wish,
+                                     const Progress& progress) {
+    const volume::SourceAtTime shown = volume::sourceAt(source, wish.time);
+    volume::RegionStatisticsQuery query;
+    query.channels = wish.channels;
+    query.label = wish.label;
+    query.time = shown.time;
+    if (wish.label >= 0)
+        query.regions = volume::labelValues(*shown.source, wish.label, shown.time, progress.part(0, 0.2));
+    return volume::computeRegionStatistics(*shown.source, query, progress.part(0.2, 1));
+}
+
+std::vector<RegionRow> regionRows(const volume::DatasetInfo& info, const RegionWish& wish,
+                                  const volume::RegionStatistics& statistics) {
+    std::vector<RegionRow> rows;
+    const std::vector<volume::Channel> channels = info.channels();
+    for (std::size_t c = 0; c < wish.channels.size(); ++c) {
+        const volume::Channel& channel = channels.at(static_cast<std::size_t>(wish.channels[c]));
+        const double existing = statistics.all[c].samples;
+        const auto add = [&](const std::string& region, int value, glm::vec3 color, bool all,
+                             const volume::Summary& summary) {
+            rows.push_back({channel.name, channel.unit, region, value, color, all,
+                            summary.samples / statistics.allSamples, existing > 0 ? summary.samples / existing : 0,
+                            summary, info.channelRange(channel)});
+        };
+        for (std::size_t r = 0; r < statistics.regions.size(); ++r) {
+            const volume::Parameter& label = volume::parameterOf(info, wish.label);
+            const int value = statistics.regions[r];
+            if (statistics.summary[r][c].samples > 0)
+                add(volume::labelName(label, value), value, labelColor(label, value), false, statistics.summary[r][c]);
+        }
+        add("all", 0, glm::vec3(0.5f), true, statistics.all[c]);
+    }
+    return rows;
+}
+
+std::vector<std::string> regionHeads() {
+    return {"Parameter", "Region", "Samples", "Of all", "Of its own", "Volume", "Mean", "Spread", "Least", "Most"};
+}
+
+std::vector<std::string> regionCells(const RegionRow& row, const std::string& lengthUnit) {
+    const double digits = (row.range.hi - row.range.lo) / 10000;
+    const volume::Summary& of = row.summary;
+    const auto number = [&](double value) { return std::isfinite(value) ? formatNumber(value, digits) : "-"; };
+    return {titleWithUnit(row.parameter, row.unit),
+            row.region,
+            formatCount(of.samples),
+            formatShare(row.ofAll),
+            formatShare(row.ofExisting),
+            formatVolume(of.volume, lengthUnit),
+            number(of.mean),
+            number(of.deviation),
+            number(of.min),
+            number(of.max)};
+}
+
+std::string regionCsv(const std::vector<RegionRow>& rows, const std::string& lengthUnit, const std::string& timeTitle,
+                      const std::string& time, bool head) {
+    std::string csv;
+    if (head)
+        csv += (time.empty() ? "" : csvField(timeTitle) + ",") +
+               "parameter,unit,region,samples,share of all samples,share of the samples where it exists,volume [" +
+               lengthUnit + "3],mean,deviation,least,most\n";
+    for (const RegionRow& row : rows) {
+        if (!time.empty()) csv += time + ",";
+        csv += csvField(row.parameter) + "," + csvField(row.unit) + "," + csvField(row.region);
+        const volume::Summary& of = row.summary;
+        for (const double value :
+             {of.samples, row.ofAll, row.ofExisting, of.volume, of.mean, of.deviation, of.min, of.max})
+            csv += "," + csvNumber(value);
+        csv += "\n";
+    }
+    return csv;
+}
+
+Balance readBalance(const std::shared_ptr<const volume::BrickSource>& source, const BalanceWish& wish,
+                    const Progress& progress) {
+    const auto velocity = volume::velocityChannels(source->info(), wish.velocity);
+    if (!velocity && !wish.velocity.empty()) throw Error("there is no vector \"" + wish.velocity + "\"");
+    if (!velocity) throw Error("a balance wants a velocity, and no vector is named or measured as one");
+    const volume::SourceAtTime shown = volume::sourceAt(source, wish.time);
+    volume::BalanceQuery query;
+    query.channel = wish.channel;
+    query.velocity = *velocity;
+    query.label = wish.label;
+    query.time = shown.time;
+    if (wish.label >= 0)
+        query.regions = volume::labelValues(*shown.source, wish.label, shown.time, progress.part(0, 0.1));
+    return {wish, volume::parameterOf(source->info(), (*velocity)[0]).name,
+            volume::computeBalance(*shown.source, query, progress.part(0.1, 1))};
+}
+
+BalanceTable balanceTable(const volume::DatasetInfo& info, const Balance& balance) {
+    static constexpr const char* kFaces[] = {"x from below", "x from above", "y from below",
+                                             "y from above", "z from below", "z from above"};
+    const volume::Channel channel = info.channels().at(static_cast<std::size_t>(balance.wish.channel));
+    std::string speed;
+    for (const volume::Parameter& parameter : info.parameters)
+        if (parameter.name == balance.velocity) speed = parameter.unit;
+    BalanceTable table;
+    table.notes = {
+        "carried by " + balance.velocity + " (convection alone): what diffuses is not in it",
+        "midpoint rule at the samples: through a face of the box the first or last samples, through a border "
+        "between regions the mean of both sides where the parameter and " +
+            balance.velocity + " exist on both",
+        "what reacts is out - in, in the row of totals: it holds reactions, diffusion through the surfaces, and what "
+        "is stored from "
+        "time to time"};
+    if (speed.empty() && !info.lengthUnit.empty() && !info.timeUnit.empty()) {
+        speed = info.lengthUnit + "/" + info.timeUnit;
+        table.notes.push_back(balance.velocity + " has no unit: taken as " + speed);
+    }
+    const auto composed = [](std::vector<volume::UnitPower> factors) { return volume::composedUnit(factors); };
+    const volume::ComposedUnit unit = composed({{channel.unit, 1}, {speed, 1}, {info.lengthUnit, 2}}),
+                               flow = composed({{speed, 1}, {info.lengthUnit, 2}}),
+                               area = composed({{info.lengthUnit, 2}}),
+                               inside = composed({{channel.unit, 1}, {info.lengthUnit, 3}});
+    table.parameter = channel.name;
+    table.unit = unit.unit;
+    table.flowUnit = flow.unit;
+    table.areaUnit = area.unit;
+    table.insideUnit = inside.unit;
+    const double none = std::nan("");
+    for (const volume::RegionBalance& region : balance.regions) {
+        if (!(region.volume > 0)) continue;
+        const volume::Parameter* label =
+            balance.wish.label >= 0 ? &volume::parameterOf(info, balance.wish.label) : nullptr;
+        const std::string name = label ? volume::labelName(*label, region.region) : "all";
+        const auto add = [&](const std::string& surface, const volume::Crossing& crossing, bool total) {
+            if (!(crossing.area > 0) && !total) return;
+            table.rows.push_back({name, surface, crossing.in * unit.factor, crossing.out * unit.factor,
+                                  crossing.net() * unit.factor, crossing.flow * flow.factor,
+                                  crossing.area * area.factor, total,
+                                  total && crossing.in > 0 ? crossing.net() / crossing.in : none,
+                                  total ? region.amount * inside.factor : none});
+        };
+        for (std::size_t face = 0; face < 6; ++face) add(kFaces[face], region.faces[face], false);
+        for (const volume::BorderCrossing& border : region.borders)
+            add("border to " + volume::labelName(*label, border.region), border.crossing, false);
+        add("total: reacts", region.total(), true);
+    }
+    return table;
+}
+
+std::vector<std::string> balanceHeads(const BalanceTable& table) {
+    return {"Region",
+            "Surface",
+            titleWithUnit("In", table.unit),
+            titleWithUnit("Out", table.unit),
+            titleWithUnit("Out - in", table.unit),
+            "Of in",
+            titleWithUnit("Volume flow", table.flowUnit),
+            titleWithUnit("Area", table.areaUnit),
+            titleWithUnit("Inside", table.insideUnit)};
+}
+
+std::vector<std::string> balanceCells(const BalanceRow& row) {
+    char share[32] = "-";
+    if (std::isfinite(row.relative)) std::snprintf(share, sizeof share, "%+.4f %%", 100 * row.relative);
+    return {row.region, row.surface,          scientific(row.in),   scientific(row.out),   scientific(row.net),
+            share,      scientific(row.flow), scientific(row.area), scientific(row.inside)};
+}
+
+std::string balanceCsv(const BalanceTable& table, const std::string& timeTitle, const std::string& time, bool head) {
+    const auto title = [](const char* name, const std::string& unit) {
+        return csvField(std::string(name) + (unit.empty() ? "" : " [" + unit + "]"));
+    };
+    std::string csv;
+    if (head)
+        csv += (time.empty() ? "" : csvField(timeTitle) + ",") + "parameter,region,surface," + title("in", table.unit) +
+               "," + title("out", table.unit) + "," + title("out - in", table.unit) + ",share of in," +
+               title("volume flow", table.flowUnit) + "," + title("area", table.areaUnit) + "," +
+               title("inside", table.insideUnit) + "\n";
+    for (const BalanceRow& row : table.rows) {
+        if (!time.empty()) csv += time + ",";
+        csv += csvField(table.parameter) + "," + csvField(row.region) + "," + csvField(row.surface);
+        for (const double value : {row.in, row.out, row.net, row.relative, row.flow, row.area, row.inside})
+            csv += "," + csvNumber(value);
+        csv += "\n";
+    }
+    return csv;
+}
+
+std::string alignedTable(const std::vector<std::string>& heads, const std::vector<std::vector<std::string>>& rows,
+                         std::size_t texts) {
+    std::vector<std::size_t> widths;
+    for (const std::string& head : heads) widths.push_back(columnsOf(head));
+    for (const auto& row : rows)
+        for (std::size_t c = 0; c < row.size(); ++c) widths[c] = std::max(widths[c], columnsOf(row[c]));
+    std::string out;
+    const auto line = [&](const std::vector<std::string>& cells) {
+        std::string text;
+        for (std::size_t c = 0; c < cells.size(); ++c) {
+            const std::string pad(widths[c] - columnsOf(cells[c]), ' ');
+            text += (c > 0 ? "  " : "") + (c < texts ? cells[c] + pad : pad + cells[c]);
+        }
+        while (!text.empty() && text.back() == ' ') text.pop_back();
+        out += text + "\n";
+    };
+    line(heads);
+    for (const auto& row : rows) line(row);
+    return out;
+}
+
+} // namespace tessera::app

@@ -1,0 +1,94 @@
+#pragma once
+
+#include "volume/analysis/region_statistics.h"
+#include "volume/field/time_pair.h"
+#include "volume/flow/balance.h"
+
+#include <glm/vec3.hpp>
+#include <memory>
+#include <string>
+#include <vector>
+
+/// Statistics and balances of regions as rows that tables, CSV files and the command line show.
+namespace tessera::app {
+
+/// A wish for the numbers of every region; equal wishes have equal answers.
+struct RegionWish {
+    std::vector<int> channels;
+    int label = -1;
+    volume::TimePair time;
+    bool operator==(const RegionWish&) const = default;
+};
+
+/// Counts; the regions are the values that the label has at that time. Throws Error, Cancelled.
+volume::RegionStatistics readRegions(const std::shared_ptr<const volume::BrickSource>& source, const RegionWish& wish,
+                                     const Progress& progress = {});
+
+/// One row of the table: a parameter in a region.
+struct RegionRow {
+    std::string parameter, unit, region;
+    int value = 0; ///< of the label
+    glm::vec3 color{0};
+    bool all = false;        ///< the whole grid, not a region
+    double ofAll = 0;        ///< share of all samples of the grid, 0..1
+    double ofExisting = 0;   ///< share of the samples where the parameter exists
+    volume::Summary summary; ///< of the samples where the parameter exists
+    Range range;             ///< of the parameter, for the digits of texts
+};
+
+/// By parameter, then regions in their order, then the whole. Regions where a parameter has no sample are left out.
+std::vector<RegionRow> regionRows(const volume::DatasetInfo& info, const RegionWish& wish,
+                                  const volume::RegionStatistics& statistics);
+
+/// Heads of the columns of regionCells(): parameter, region, samples, share, volume, mean, spread, least, most.
+std::vector<std::string> regionHeads();
+std::vector<std::string> regionCells(const RegionRow& row, const std::string& lengthUnit);
+
+/// One line per row; `time` as text stands first where it is not empty, with the head `timeTitle`.
+std::string regionCsv(const std::vector<RegionRow>& rows, const std::string& lengthUnit, const std::string& timeTitle,
+                      const std::string& time, bool head = true);
+
+struct BalanceWish {
+    int channel = 0;
+    std::string velocity; ///< "" = found by name and unit
+    int label = -1;
+    volume::TimePair time;
+    bool operator==(const BalanceWish&) const = default;
+};
+
+struct Balance {
+    BalanceWish wish;
+    std::string velocity; ///< the parameter that carries
+    std::vector<volume::RegionBalance> regions;
+};
+
+/// Computes the balance of every region. Throws Error where there is no velocity, Cancelled.
+Balance readBalance(const std::shared_ptr<const volume::BrickSource>& source, const BalanceWish& wish,
+                    const Progress& progress = {});
+
+/// A surface of a region, or a sum over all of its surfaces.
+struct BalanceRow {
+    std::string region, surface;                         ///< "x from below", "border to anode", or "total: reacts"
+    double in = 0, out = 0, net = 0, flow = 0, area = 0; ///< in the units of the table
+    bool total = false;                                  ///< over the surfaces above; its `net` is what reacts
+    double relative = 0;                                 ///< of a total: net by what flows in; NaN elsewhere
+    double inside = 0;                                   ///< of a total: the amount in the region; NaN elsewhere
+};
+struct BalanceTable {
+    std::string parameter, unit, flowUnit, areaUnit, insideUnit;
+    std::vector<BalanceRow> rows;
+    std::vector<std::string> notes; ///< what is approximate
+};
+/// Surfaces that nothing touches are left out.
+BalanceTable balanceTable(const volume::DatasetInfo& info, const Balance& balance);
+
+std::vector<std::string> balanceHeads(const BalanceTable& table);
+std::vector<std::string> balanceCells(const BalanceRow& row);
+std::string balanceCsv(const BalanceTable& table, const std::string& timeTitle, const std::string& time,
+                       bool head = true);
+
+/// Rows under heads, columns aligned: the first `texts` columns to the left, numbers to the right.
+std::string alignedTable(const std::vector<std::string>& heads, const std::vector<std::vector<std::string>>& rows,
+                         std::size_t texts);
+
+} // namespace tessera::app

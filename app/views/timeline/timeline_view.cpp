@@ -1,0 +1,201 @@
+#include "app/pane/plot.h"
+#include "app/pane/view_parts.h"
+#include "app/ui/ticks.h"
+#include "app/ui/time_text.h"
+#include "app/views/timeline/keyframes.h"
+#include "app/views/timeline/playback.h"
+#include "volume/field/time_pair.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tessera::app {
+
+namespace {
+
+struct TimelineCache : ViewCache {
+    Playback playback;
+    bool dragging = false;
+};
+
+void drawButtons(ViewContext& context, const std::vector<double>& times, int index) {
+    Session& session = context.session;
+    const int last = static_cast<int>(times.size()) - 1;
+    const bool many = last > 0;
+    const auto go = [&](int to) { session.time = times[static_cast<std::size_t>(std::clamp(to, 0, last))]; };
+    const auto next = [] { ImGui::SameLine(0, em() * 0.15f); };
+    if (iconButton(context, "first", icons::kFirst, "First time (Home)", many)) go(0);
+    next();
+    if (iconButton(context, "back", icons::kStepBack, "One step back (Left)", many)) go(index - 1);
+    next();
+    const bool playable = many || !session.animation.tracks.empty();
+    const bool playing = session.animation.playing && playable;
+    if (iconButton(context, "play", playing ? icons::kPause : icons::kPlay, playing ? "Pause (Space)" : "Play (Space)",
+                   playable, playing)) {
+        session.animation.playing = !playing;
+        // Play at the end of a single run starts it again.
+        if (!playing && session.animation.loop == Loop::Once && index == last) go(0);
+    }
+    next();
+    if (iconButton(context, "forward", icons::kStepForward, "One step forward (Right)", many)) go(index + 1);
+    next();
+    if (iconButton(context, "last", icons::kLast, "Last time (End)", many)) go(last);
+    ImGui::SameLine(0, em() * 0.8f);
+
+    static constexpr Icon kLoopIcons[] = {icons::kOnce, icons::kRepeat, icons::kPingPong};
+    static constexpr const char* kLoopHelp[] = {"Stops at the last time. Click: repeat.",
+                                                "Repeats from the first time. Click: back and forth.",
+                                                "Runs back and forth. Click: stop at the end."};
+    const auto loop = static_cast<std::size_t>(session.animation.loop);
+    if (iconButton(context, "loop", kLoopIcons[loop], kLoopHelp[loop], many))
+        session.animation.loop = static_cast<Loop>((loop + 1) % 3);
+    next();
+    ImGui::BeginDisabled(!many);
+    ImGui::SetNextItemWidth(em() * 7);
+    ImGui::SliderFloat("##speed", &session.animation.speed, 0.1f, 60, "%.3g steps/s", ImGuiSliderFlags_Logarithmic);
+    ImGui::EndDisabled();
+    if (ImGui::IsItemHovered()) tooltip("Time steps shown per second while playing");
+}
+
+/// The time under the mouse: any between the first and the last, but near a mark that stored time.
+double timeUnder(const PlotFrame& frame, const std::vector<double>& times, ImVec2 mouse) {
+    const double at = std::clamp(frame.data(mouse).x, times.front(), times.back());
+    const volume::TimePair pair = volume::timesAround(times, at);
+    const double nearest = times[static_cast<std::size_t>(pair.nearest())];
+    return std::abs(frame.pixel(nearest, 0).x - mouse.x) < em() * 0.35f ? nearest : at;
+}
+
+/// "3 of 24", or "between 3 and 4 of 24".
+std::string placeText(const std::vector<double>& times, double time) {
+    const volume::TimePair pair = volume::timesAround(times, time);
+    const std::string count = " of " + std::to_string(times.size());
+    if (!pair.between()) return std::to_string(pair.earlier + 1) + count;
+    return "between " + std::to_string(pair.earlier + 1) + " and " + std::to_string(pair.later + 1) + count;
+}
+
+/// The axis that times are counted by: what the data state, or a quantity over time.
+void chooseAxis(ViewContext& context, const volume::DatasetInfo& info) {
+    std::string& axis = context.session.data.axis;
+    if (info.quantities.empty() && axis.empty()) return;
+    ImGui::SameLine(0, em());
+    ImGui::SetNextItemWidth(em() * 7);
+    if (ImGui::BeginCombo("##axis", axis.empty() ? "by time" : ("by " + axis).c_str())) {
+        if (ImGui::Selectable(axis.empty() ? ("by " + info.timeName).c_str() : "as stored", axis.empty())) axis.clear();
+        for (const volume::Quantity& quantity : info.quantities)
+            if (ImGui::Selectable(("by " + quantity.name).c_str(), quantity.name == axis)) axis = quantity.name;
+        ImGui::EndCombo();
+    } else if (ImGui::IsItemHovered()) {
+        tooltip(
+            "What the times are counted by: a quantity that rises or falls all the time takes their place, any other "
+            "is shown first");
+    }
+}
+
+/// Where the plane lies whose times run along an axis.
+void drawPlace(Session& session) {
+    volume::TimeAxis& along = *session.data.timeAxis;
+    const char* const axis = volume::kSpaceAxisNames[std::size_t(along.axis)].data();
+    auto place = static_cast<float>(along.place * 100);
+    char format[48];
+    std::snprintf(format, sizeof format, "cut at %%.1f %%%% of %s", axis);
+    ImGui::SetNextItemWidth(em() * 11);
+    if (ImGui::SliderFloat("##place", &place, 0, 100, format)) along.place = static_cast<double>(place) / 100;
+    if (ImGui::IsItemHovered()) tooltip("Where along the axis the data are cut; read again when the mouse is let go");
+}
+
+/// The track: one mark per stored time, the knob at the time shown, physical time below.
+void drawTrack(ViewContext& context, TimelineCache& cache, const volume::DatasetInfo& info, float height) {
+    Session& session = context.session;
+    const std::vector<double>& times = info.times;
+    const ImVec2 origin = ImGui::GetCursorScreenPos();
+    const float width = ImGui::GetContentRegionAvail().x;
+    if (width < em() * 4) return;
+    ImGui::InvisibleButton("track", {width, height});
+    const bool hovered = ImGui::IsItemHovered(), held = ImGui::IsItemActive();
+    const float pad = em() * 0.8f, y = std::round(origin.y + em() * 0.8f);
+    const PlotFrame frame{{origin.x + pad, y - em() * 0.5f},
+                          {origin.x + width - pad, y + em() * 0.45f},
+                          paddedRange({times.front(), times.back()}),
+                          {0, 1}};
+    if (held && times.size() > 1) {
+        session.time = timeUnder(frame, times, ImGui::GetIO().MousePos);
+        session.animation.playing = false;
+        context.interacting = true;
+    }
+    if (hovered && ImGui::GetIO().MouseWheel != 0) {
+        const int to = info.nearestTime(session.time) + (ImGui::GetIO().MouseWheel < 0 ? 1 : -1);
+        session.time = times[static_cast<std::size_t>(std::clamp(to, 0, static_cast<int>(times.size()) - 1))];
+    }
+    cache.dragging = held;
+
+    ImDrawList& draw = *ImGui::GetWindowDrawList();
+    const PlotColors colors = plotColors();
+    const float knob = frame.pixel(std::clamp(session.time, times.front(), times.back()), 0).x;
+    const float thick = em() * 0.2f;
+    draw.AddRectFilled({frame.min.x, y - thick / 2}, {frame.max.x, y + thick / 2}, colors.grid, thick / 2);
+    draw.AddRectFilled({frame.min.x, y - thick / 2}, {frame.max.x, y + thick / 2}, colors.frame, thick / 2);
+    draw.AddRectFilled({frame.min.x, y - thick / 2}, {knob, y + thick / 2}, colors.cursor, thick / 2);
+    // Marks closer than three pixels would be a grey bar.
+    float previous = -1e9f;
+    for (double time : times) {
+        const float x = std::round(frame.pixel(time, 0).x) + 0.5f;
+        if (x < previous + 3) continue;
+        draw.AddLine({x, y - em() * 0.28f}, {x, y + em() * 0.28f}, colors.faint);
+        previous = x;
+    }
+    draw.AddCircleFilled({knob, y}, em() * (hovered || held ? 0.48f : 0.4f), colors.cursor, 24);
+    drawAxis(draw, frame, AxisSide::Bottom, "", "", origin.x, origin.x + width);
+    if (hovered && !held) {
+        const double under = timeUnder(frame, times, ImGui::GetIO().MousePos);
+        ImGui::SetTooltip("%s  (%s)", stateText(info, under, session.data.axis).c_str(),
+                          placeText(times, under).c_str());
+    }
+}
+
+} // namespace
+
+void drawTimelineView(ViewContext& context, const std::string& pane, TimelineView&) {
+    if (!context.source) {
+        drawHint("No data", "Data with several times can be played here.");
+        return;
+    }
+    TimelineCache& cache = cacheOf<TimelineCache>(context, pane);
+    const volume::DatasetInfo& info = context.source->info();
+    Session& session = context.session;
+    const bool many = info.times.size() > 1;
+    const bool keyed = !session.animation.tracks.empty();
+    if ((many || keyed) && session.animation.playing && !context.headless) {
+        playOn(cache.playback, session, info.times, double(ImGui::GetIO().DeltaTime));
+        context.busy = true;
+    }
+    const int index = info.nearestTime(session.time);
+    drawButtons(context, info.times, index);
+    ImGui::SameLine(0, em());
+    ImGui::AlignTextToFramePadding();
+    if (many) {
+        const double now = std::clamp(session.time, info.times.front(), info.times.back());
+        ImGui::TextUnformatted(timeText(info, now).c_str());
+        if (const std::string quantities = quantitiesText(info, now, session.data.axis); !quantities.empty()) {
+            ImGui::SameLine(0, em());
+            ImGui::TextUnformatted(quantities.c_str());
+        }
+        ImGui::SameLine(0, em());
+        ImGui::TextDisabled("%s", placeText(info.times, now).c_str());
+        chooseAxis(context, info);
+    } else if (const auto& along = session.data.timeAxis) {
+        ImGui::TextDisabled("Time runs along %s.", volume::kSpaceAxisNames[std::size_t(along->axis)].data());
+        ImGui::SameLine(0, em());
+        drawPlace(session);
+    } else {
+        ImGui::TextDisabled("This data has one time.");
+    }
+    ImGui::SameLine(0, em() * 1.5f);
+    drawKeyframeButtons(context);
+    // Rows of keys come before the numbers below the track; what has no room scrolls.
+    const float rows = keyed ? keyframesHeight(session) : 0;
+    if (many)
+        drawTrack(context, cache, info, std::clamp(ImGui::GetContentRegionAvail().y - rows, em() * 1.4f, em() * 2.9f));
+    if (keyed) drawKeyframes(context, std::clamp(ImGui::GetContentRegionAvail().y, std::min(rows, em() * 2.4f), rows));
+}
+
+} // namespace tessera::app

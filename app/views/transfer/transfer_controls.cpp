@@ -1,0 +1,203 @@
+#include "app/views/transfer/transfer_controls.h"
+
+#include "app/described/describe_json.h"
+#include "app/pane/view_parts.h"
+#include "app/ui/ticks.h"
+#include "app/ui/widgets.h"
+#include "app/user_files/colormap_file.h"
+#include "app/views/transfer/color_edit.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tessera::app {
+
+namespace {
+
+/// A button with a small picture of the curve it sets.
+bool presetButton(OpacityPreset preset) {
+    const float size = ImGui::GetFrameHeight();
+    const std::string name(kOpacityPresetNames[static_cast<std::size_t>(preset)]);
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    const bool pressed = ImGui::Button(("##" + name).c_str(), {size * 1.25f, size});
+    const float pad = size * 0.24f;
+    std::vector<ImVec2> line;
+    for (glm::vec2 point : opacityPreset(preset))
+        line.push_back(
+            {at.x + pad + point.x * (size * 1.25f - 2 * pad), at.y + size - pad - point.y * (size - 2 * pad)});
+    ImGui::GetWindowDrawList()->AddPolyline(line.data(), static_cast<int>(line.size()),
+                                            ImGui::GetColorU32(ImGuiCol_Text), 0, std::max(1.2f, em() * 0.1f));
+    if (ImGui::IsItemHovered()) tooltip(("Opacity curve: " + name).c_str());
+    return pressed;
+}
+
+/// The typed ends of the range; greyed while the range follows the data.
+void drawRange(vis::TransferFunction& function, Range data, float width) {
+    const Range range = vis::effectiveRange(function, data);
+    bool fixed = !function.autoRange;
+    if (ImGui::Checkbox("range", &fixed)) {
+        function.autoRange = !fixed;
+        function.range = range;
+    }
+    if (ImGui::IsItemHovered()) tooltip("Set the values at the ends of the colour map; off: the data's own range");
+    ImGui::SameLine();
+    ImGui::BeginDisabled(function.autoRange);
+    double ends[2] = {range.lo, range.hi};
+    ImGui::SetNextItemWidth(std::max(em() * 6, width - ImGui::GetFrameHeight() - em() * 4));
+    const double step = (data.hi - data.lo) / 1000;
+    const int decimals = step > 0 ? std::clamp(static_cast<int>(std::ceil(-std::log10(step))), 0, 9) : 3;
+    const std::string format = std::abs(data.hi) < 1e7 && decimals < 9 ? "%." + std::to_string(decimals) + "f" : "%.5g";
+    if (ImGui::DragScalarN("##ends", ImGuiDataType_Double, ends, 2, static_cast<float>(step), nullptr, nullptr,
+                           format.c_str()) &&
+        ends[0] < ends[1])
+        function.range = {ends[0], ends[1]};
+    ImGui::EndDisabled();
+}
+
+/// What is edited: the curve over values, regions, or the emphasis of boundaries that makes the curve.
+void drawPages(BoundaryPage& boundaries, TransferView& view, vis::TransferFunction& function) {
+    const auto page = [&](const char* name, bool chosen, const char* help) {
+        if (chosen) ImGui::PushStyleColor(ImGuiCol_Button, ImGui::GetStyleColorVec4(ImGuiCol_ButtonActive));
+        const bool pressed = ImGui::Button(name);
+        if (chosen) ImGui::PopStyleColor();
+        if (ImGui::IsItemHovered()) tooltip(help);
+        return pressed && !chosen;
+    };
+    const bool curve = function.kind == vis::TransferKind::Curve;
+    if (page("curve", curve && !view.boundaries, "Opacity from the value, by a curve drawn by hand")) {
+        function.kind = vis::TransferKind::Curve;
+        view.boundaries = false;
+    }
+    ImGui::SameLine(0, em() * 0.2f);
+    if (page("regions", !curve, "Opacity from value and gradient magnitude, by regions of their plane")) {
+        function.kind = vis::TransferKind::Regions;
+        view.boundaries = false;
+    }
+    ImGui::SameLine(0, em() * 0.2f);
+    if (page("boundary", curve && view.boundaries,
+             "Opacity from the distance to a boundary between materials; makes a new curve")) {
+        function.kind = vis::TransferKind::Curve;
+        view.boundaries = boundaries.apply = true;
+        boundaries.from.reset();
+    }
+}
+
+/// Gradient magnitude at the top of the plane.
+void drawGradientTop(vis::TransferFunction& function) {
+    ImGui::SetNextItemWidth(em() * 9);
+    ImGui::SliderFloat("top", &function.gradientTop, 1e-3f, 2, "%.3g ranges/cell",
+                       ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp);
+    if (ImGui::IsItemHovered()) tooltip("Gradient magnitude at the top of the plane, in ranges of the values per cell");
+}
+
+/// A choice among a parameter's own function and those of layers.
+void chooseFunction(const Session& session, TransferView& view, const std::string& channel) {
+    const std::string shown = layerOfFunction(session, view.channel) ? view.channel : "all layers";
+    if (!ImGui::BeginCombo("##function", shown.c_str())) return;
+    if (ImGui::Selectable("all layers", shown == "all layers")) view.channel = channel;
+    for (const vis::Layer& layer : session.layers)
+        if (!layer.transfer.empty() && ImGui::Selectable(layer.transfer.c_str(), layer.transfer == view.channel))
+            view.channel = layer.transfer;
+    ImGui::EndCombo();
+}
+
+/// Colours of one's own: from the map in use, from a file, into one.
+void drawOwnColors(ViewContext& context, vis::TransferFunction& function, const std::string& channel) {
+    const bool own = !function.colors.empty();
+    if (iconButton(context, "own colours", icons::kColors, "Colours of one's own", true, own))
+        ImGui::OpenPopup("own colours");
+    if (!ImGui::BeginPopup("own colours")) return;
+    if (ImGui::MenuItem("0 in the middle", nullptr, function.autoRange && function.aboutZero, function.autoRange))
+        function.aboutZero = !function.aboutZero;
+    if (ImGui::MenuItem("Edit", nullptr, own)) {
+        std::vector<vis::ColorStop> colors;
+        if (!own) {
+            colors = ownColors(function);
+            function.reversed = false; // they run as the map did
+        }
+        function.colors = std::move(colors);
+    }
+    if (ImGui::MenuItem("Import...", nullptr, false, bool(context.askFile)))
+        context.askFile("Import colours", [channel](Session& session, const std::string& path) {
+            vis::TransferFunction& changed = transferOf(session, channel);
+            changed.colors = readColormap(path);
+            changed.reversed = false;
+        });
+    if (ImGui::MenuItem("Export...", nullptr, false, own && context.exportText))
+        context.exportText(channel + "-colors.json", [colors = function.colors](const Progress&) {
+            return Json{{"colors", toJson(colors)}}.dump(2) + "\n";
+        });
+    ImGui::EndPopup();
+}
+
+} // namespace
+
+const vis::Layer* layerOfFunction(const Session& session, const std::string& name) {
+    for (const vis::Layer& layer : session.layers)
+        if (!name.empty() && layer.transfer == name) return &layer;
+    return nullptr;
+}
+
+std::string functionName(const Session& session, const TransferView& view, const std::string& channel) {
+    return layerOfFunction(session, view.channel) ? view.channel : channel;
+}
+
+void drawTransferControls(ViewContext& context, TransferView& view, BoundaryPage& boundaries,
+                          const volume::DatasetInfo& info, std::string channel) {
+    const float room = ImGui::GetContentRegionAvail().x, gap = ImGui::GetStyle().ItemSpacing.x;
+    const float reverse = ImGui::GetFrameHeight() + em() * 0.4f;
+    const float combo = std::min(em() * 11, (room - 2 * reverse - 3 * gap) / 2);
+    ImGui::SetNextItemWidth(combo);
+    if (chooseChannel("##channel", &info, channel)) view.channel = channel;
+    if (ImGui::IsItemHovered()) tooltip("Parameter whose colours and opacity are edited");
+    const bool choice = std::any_of(context.session.layers.begin(), context.session.layers.end(),
+                                    [](const vis::Layer& layer) { return !layer.transfer.empty(); });
+    if (choice) {
+        ImGui::SameLine();
+        ImGui::SetNextItemWidth(combo);
+        chooseFunction(context.session, view, channel);
+        if (ImGui::IsItemHovered()) tooltip("Whose: all layers', or that of a layer with one of its own");
+    }
+    vis::TransferFunction& function = transferOf(context.session, functionName(context.session, view, channel));
+    if (choice && room < em() * 34) ImGui::NewLine();
+    ImGui::SameLine();
+    ImGui::SetNextItemWidth(combo);
+    if (chooseColormap("##colormap", function.colormap, function.reversed)) function.colors.clear();
+    if (ImGui::IsItemHovered()) tooltip("Colour map; perceptually uniform ones come first");
+    ImGui::SameLine();
+    if (iconButton(context, "reverse", icons::kReverse, "Run the colour map backwards", true, function.reversed)) {
+        if (function.colors.empty())
+            function.reversed = !function.reversed;
+        else
+            reverseColors(function.colors);
+    }
+    ImGui::SameLine(0, em() * 0.2f);
+    drawOwnColors(context, function, functionName(context.session, view, channel));
+
+    const Range data = info.channelRange(info.channels()[static_cast<std::size_t>(*info.findChannel(channel))]);
+    const bool wide = room > em() * 48;
+    if (wide) ImGui::SameLine(0, em());
+    drawRange(function, data, std::min(em() * 16, room));
+    if (room > em() * 30) ImGui::SameLine(0, em());
+    drawPages(boundaries, view, function);
+    if (function.kind == vis::TransferKind::Regions) {
+        if (room > em() * 30) ImGui::SameLine(0, em());
+        drawGradientTop(function);
+        return;
+    }
+    if (view.boundaries) return;
+    if (room > em() * 70) ImGui::SameLine(0, em());
+    for (std::size_t i = 0; i < std::size(kOpacityPresetNames); ++i) {
+        if (i > 0) ImGui::SameLine(0, em() * 0.2f);
+        const auto preset = static_cast<OpacityPreset>(i);
+        if (presetButton(preset)) function.opacity = opacityPreset(preset);
+    }
+    ImGui::SameLine(0, em() * 0.8f);
+    ImGui::Checkbox("log", &view.logHistogram);
+    if (ImGui::IsItemHovered()) tooltip("Show the logarithm of the number of samples");
+    ImGui::SameLine();
+    ImGui::Checkbox("visible", &view.visibility);
+    if (ImGui::IsItemHovered()) tooltip("Show how much of what one sees in 3D comes from which values");
+}
+
+} // namespace tessera::app

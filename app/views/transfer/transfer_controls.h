@@ -1,0 +1,18 @@
+#pragma once
+
+#include "app/views/transfer/transfer_pages.h"
+
+/// The rows of controls above the transfer function view: what is edited, its colours, its range, by which page.
+namespace tessera::app {
+
+/// The layer whose own function a name is, null if none.
+const vis::Layer* layerOfFunction(const Session& session, const std::string& name);
+
+/// The name of the function that is edited: a layer's own, or the channel's.
+std::string functionName(const Session& session, const TransferView& view, const std::string& channel);
+
+/// `channel`: whose function is shown; another is chosen into the view.
+void drawTransferControls(ViewContext& context, TransferView& view, BoundaryPage& boundaries,
+                          const volume::DatasetInfo& info, std::string channel);
+
+} // namespace tessera::app

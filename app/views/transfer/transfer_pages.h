@@ -1,0 +1,37 @@
+#pragma once
+
+#include "app/queries/derivative_feed.h"
+#include "app/views/transfer/opacity_edit.h"
+#include "app/views/transfer/region_edit.h"
+
+#include <memory>
+#include <vector>
+
+/// The pages of the transfer function view that look at gradients. They edit a function of a channel's values.
+namespace tessera::app {
+
+/// Regions over the joint histogram of value and gradient magnitude.
+struct RegionPage {
+    RegionDrag drag;
+    vis::PlotTexture picture;
+    std::shared_ptr<const DerivativeResult> shown; ///< what the picture shows
+    bool dark = true;                              ///< and for which theme
+};
+void drawRegionPage(ViewContext& context, RegionPage& page, vis::TransferFunction& function,
+                    const volume::DatasetInfo& info, int channel,
+                    const std::shared_ptr<const DerivativeResult>& result);
+
+/// The curves that find boundaries, and the emphasis b(x) that makes the opacity curve from them.
+struct BoundaryPage {
+    OpacityDrag drag;
+    /// What the opacity curve was last made from: it is made again when one of these changes.
+    std::vector<glm::vec2> emphasis;
+    Range range;
+    std::shared_ptr<const DerivativeResult> from;
+    bool apply = false; ///< make it now, without a change: the page was just chosen
+};
+void drawBoundaryPage(ViewContext& context, BoundaryPage& page, vis::TransferFunction& function,
+                      const volume::DatasetInfo& info, int channel,
+                      const std::shared_ptr<const DerivativeResult>& result);
+
+} // namespace tessera::app

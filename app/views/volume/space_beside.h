@@ -1,0 +1,22 @@
+#pragma once
+
+#include "app/pane/view_context.h"
+
+#include <memory>
+
+/// The data in space beside a plane of theirs whose times run along an axis.
+namespace tessera::app {
+
+/// The data in space that the plane is cut from; null where no time runs along an axis.
+std::shared_ptr<const volume::BrickSource> cutFrom(const ViewContext& context);
+
+/// The session as the data in space are shown: at the time at which the cross-hair lies, the cross-hair in the plane.
+/// Without what the data in space do not have: layers of other parameters, and flow, brushes, lenses and lines whose
+/// places are times. `along` describes the plane at all times, `space` the data it is cut from.
+Session sessionInSpace(const Session& session, const volume::DatasetInfo& along, const volume::DatasetInfo& space);
+
+/// Takes over what was edited in space: the camera, the cross-hair, and where the plane lies, which goes with the
+/// cross-hair. `before` is what sessionInSpace() gave.
+void takeFromSpace(Session& session, const Session& before, const Session& edited, const volume::DatasetInfo& space);
+
+} // namespace tessera::app

@@ -1,0 +1,240 @@
+#include "codec/archive/archive.h"
+
+#include "codec/archive/archive_impl.h"
+#include "volume/field/quantities.h"
+#include "volume/sources/alternating_source.h"
+#include "volume/sources/memory_source.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+
+namespace tessera::codec {
+
+void damaged(const std::string& path, std::uint64_t offset, const std::string& what) {
+    throw Error(what, path, "byte " + std::to_string(offset));
+}
+
+std::span<const std::byte> checkedPart(std::span<const std::byte> bytes, std::uint64_t offset, std::uint64_t length,
+                                       std::uint64_t sum, const std::string& path, const char* what) {
+    const auto part = bytes.subspan(offset, length);
+    if (checksum(part) != sum) damaged(path, offset, std::string(what) + " is damaged (checksum)");
+    return part;
+}
+
+namespace {
+
+/// Bricks of a grid whose sizes come from a file.
+std::uint64_t checkedBrickCount(const volume::BrickGrid& grid, const std::string& path) {
+    const glm::ivec3 count = grid.count();
+    std::uint64_t bricks = 1;
+    for (int axis = 0; axis < 3; ++axis) {
+        bricks *= static_cast<std::uint64_t>(count[axis]);
+        if (bricks > std::uint64_t(1) << 40) throw Error("impossibly many bricks", path, "metadata /data/lattice/size");
+    }
+    return bricks;
+}
+
+} // namespace
+
+volume::BrickStats Archive::Impl::statsOf(int number, int component, const volume::BrickKey& key) const {
+    const FrameRecord& record = frame(number, component, key.time);
+    const std::size_t brick = brickNumber(metadata.grid, key.index);
+    volume::BrickStats stats{record.bricks[brick].min, record.bricks[brick].max, 1};
+    if (record.mask >= 0) {
+        const glm::vec3 size(metadata.grid.brickSamples(key.index, 0));
+        stats.presentFraction = static_cast<float>(index.masks[std::size_t(record.mask)].bricks[brick].present) /
+                                (size.x * size.y * size.z);
+    }
+    return stats;
+}
+
+/// The steps between two times, of D4* from one frame of a parity to the next.
+std::optional<volume::BrickChange> Archive::Impl::changeOf(int number, int component, const volume::BrickKey& key,
+                                                           int toTime) const {
+    const int step = metadata.alternating ? 2 : 1;
+    const int first = std::min(key.time, toTime), last = std::max(key.time, toTime);
+    if (first == last) return volume::BrickChange{};
+    if (!hasNotes() || (last - first) % step != 0) return std::nullopt;
+    const std::size_t brick = brickNumber(metadata.grid, key.index);
+    volume::BrickChange sum;
+    for (int time = first + step; time <= last; time += step) {
+        const volume::BrickChange& change = frame(number, component, time).bricks[brick].notes.change;
+        if (change.max == FrameBrick::kUnknown) return std::nullopt;
+        sum = accumulated(sum, change);
+    }
+    return sum;
+}
+
+Archive::Archive(const std::string& path) {
+    // A file that grows may name an end behind what was mapped a moment before.
+    for (int attempt = 0; !impl_; ++attempt) {
+        std::error_code failed;
+        const std::uint64_t before = std::filesystem::file_size(path, failed);
+        try {
+            impl_ = std::make_unique<Impl>(path);
+        } catch (const Error&) {
+            constexpr int kAttempts = 8;
+            if (failed || attempt == kAttempts || std::filesystem::file_size(path, failed) == before) throw;
+        }
+    }
+    Impl& impl = *impl_;
+    const auto bytes = impl.file.bytes();
+    const Header& header = impl.header.header;
+    const auto block = checkedPart(bytes, header.metadata.offset, header.metadata.length, header.metadata.checksum,
+                                   path, "the metadata");
+    impl.metadata = parseMetadata(block, header.version, header.features, path);
+    impl.channels = impl.metadata.info.channels();
+    impl.components = componentCount(impl.metadata.info);
+    const std::uint64_t bricks = checkedBrickCount(impl.metadata.grid, path);
+    impl.index =
+        readIndex(bytes, header, {impl.components, bricks, impl.metadata.grid, impl.metadata.info.times.size()}, path);
+    if (header.version >= kGrowingVersion) impl.metadata.info.times = impl.index.times;
+    // While an archive is written, and once it has grown, the metadata may tell of more or fewer times.
+    const auto fit = [](std::vector<volume::Quantity>& quantities, std::size_t times) {
+        for (volume::Quantity& quantity : quantities)
+            quantity.values.resize(times, std::numeric_limits<double>::quiet_NaN());
+    };
+    Metadata& metadata = impl.metadata;
+    fit(metadata.info.quantities, metadata.info.times.size());
+    fit(metadata.sourceQuantities, metadata.sourceTimes.size());
+    if (metadata.alternating)
+        metadata.info.quantities =
+            volume::atTimes(metadata.sourceQuantities, metadata.sourceTimes, metadata.info.times);
+    if (impl.metadata.alternating && impl.metadata.info.times.size() < 2)
+        throw Error("d4 needs two times", path, "index");
+    impl.bricks = bricks;
+    for (std::size_t f = 0; f < impl.index.frames.size(); ++f) {
+        const FrameRecord& frame = impl.index.frames[f];
+        std::size_t component = f % impl.components, number = 0;
+        while (component >= std::size_t(impl.metadata.info.parameters[number].components))
+            component -= std::size_t(impl.metadata.info.parameters[number++].components);
+        const bool isFloat = impl.metadata.info.parameters[number].type == volume::ScalarType::F32;
+        if (isFloat == (frame.numbers.kind == NumberKind::Integer) || (frame.mask < 0 && frame.keepsAbsent))
+            throw Error("a frame is coded in a way its type does not allow", path, "index");
+        if (!isFloat && frame.model >= 0 && frame.codeBits != codeBitsOf(impl.metadata.info.parameters[number].type))
+            throw Error("a frame states another width than its type has", path, "index");
+    }
+}
+
+Archive::~Archive() = default;
+
+const volume::DatasetInfo& Archive::info() const {
+    return impl_->metadata.info;
+}
+const volume::BrickGrid& Archive::grid() const {
+    return impl_->metadata.grid;
+}
+const Metadata& Archive::metadata() const {
+    return impl_->metadata;
+}
+const std::string& Archive::path() const {
+    return impl_->path;
+}
+std::uint32_t Archive::version() const {
+    return impl_->header.header.version;
+}
+std::uint64_t Archive::fileBytes() const {
+    return impl_->header.header.fileSize;
+}
+int Archive::commits() const {
+    return static_cast<int>(impl_->index.pages.size());
+}
+bool Archive::outdated() const {
+    try {
+        const MappedFile now(impl_->path);
+        return parseHeaders(now.bytes(), now.bytes().size(), impl_->path).header != impl_->header.header;
+    } catch (const Error&) {
+        return false; // gone or in the middle of a change: what is open stays good
+    }
+}
+int Archive::maskCount() const {
+    return static_cast<int>(impl_->index.masks.size());
+}
+std::uint64_t Archive::maskBytes() const {
+    std::uint64_t sum = 0;
+    for (const MaskRecord& mask : impl_->index.masks) sum += mask.length;
+    return sum;
+}
+std::uint64_t Archive::levelBytes(int level) const {
+    std::uint64_t sum = 0;
+    const std::size_t first = std::size_t(impl_->metadata.grid.levels - 1 - level) * impl_->bricks;
+    for (const FrameRecord& frame : impl_->index.frames)
+        for (std::size_t b = 0; b < impl_->bricks; ++b) sum += frame.segments[first + b].length;
+    return sum;
+}
+
+volume::BrickStats Archive::stats(const volume::BrickKey& key) const {
+    const volume::Channel& channel = impl_->channelOf(key);
+    if (!channel.magnitude) return impl_->statsOf(channel.parameter, channel.component, key);
+    // Two at a time: |(|(x, y)|, z)| = |(x, y, z)| for any number of components.
+    volume::BrickStats sum = impl_->statsOf(channel.parameter, 0, key);
+    const volume::BrickStats nothing{0, 0, 1};
+    for (int c = 1; c < channel.component; ++c)
+        sum = volume::magnitudeStats(sum, impl_->statsOf(channel.parameter, c, key), nothing);
+    return sum;
+}
+
+std::optional<volume::BrickDistribution> Archive::distribution(const volume::BrickKey& key) const {
+    const volume::Channel& channel = impl_->channelOf(key);
+    if (!impl_->hasTallies() || channel.magnitude) return std::nullopt;
+    const std::size_t brick = brickNumber(impl_->metadata.grid, key.index);
+    const FrameRecord& frame = impl_->holding(impl_->frame(channel.parameter, channel.component, key.time), brick);
+    const bool isFloat = frame.numbers.kind != NumberKind::Integer;
+    const FrameBrick& about = frame.bricks[brick];
+    return distributionOf(about.min, about.max, isFloat ? 0 : std::abs(frame.valueScale), about.tally);
+}
+
+std::optional<volume::BrickImportance> Archive::importance(const volume::BrickKey& key) const {
+    const volume::Channel& channel = impl_->channelOf(key);
+    if (!impl_->hasNotes()) return std::nullopt;
+    const std::size_t brick = brickNumber(impl_->metadata.grid, key.index);
+    const auto of = [&](int component) {
+        return impl_->frame(channel.parameter, component, key.time).bricks[brick].notes.importance;
+    };
+    if (!channel.magnitude) return of(channel.component);
+    std::vector<volume::BrickImportance> components;
+    for (int c = 0; c < channel.component; ++c) components.push_back(of(c));
+    return volume::magnitudeImportance(components);
+}
+
+std::optional<volume::BrickChange> Archive::change(const volume::BrickKey& key, int toTime) const {
+    const volume::Channel& channel = impl_->channelOf(key);
+    if (toTime < 0 || std::size_t(toTime) >= impl_->metadata.info.times.size()) throw Error("no such time", path());
+    if (!channel.magnitude) return impl_->changeOf(channel.parameter, channel.component, key, toTime);
+    std::vector<volume::BrickChange> components;
+    for (int c = 0; c < channel.component; ++c) {
+        const auto change = impl_->changeOf(channel.parameter, c, key, toTime);
+        if (!change) return std::nullopt;
+        components.push_back(*change);
+    }
+    return volume::magnitudeChange(components);
+}
+
+Archive::Repeats Archive::repeats() const {
+    Repeats sum;
+    for (const FrameRecord& frame : impl_->index.frames)
+        for (std::size_t b = 0; b < impl_->bricks; ++b) {
+            if (frame.bricks[b].notes.repeats == 0) continue;
+            ++sum.bricks;
+            sum.bytes += impl_->bytesOf(frame, b);
+        }
+    return sum;
+}
+
+int Archive::repeats(const volume::BrickKey& key) const {
+    return impl_->storedFrame(key).bricks[brickNumber(impl_->metadata.grid, key.index)].notes.repeats;
+}
+
+std::uint64_t Archive::brickBytes(const volume::BrickKey& key) const {
+    return impl_->bytesOf(impl_->storedFrame(key), brickNumber(impl_->metadata.grid, key.index));
+}
+
+std::shared_ptr<const volume::BrickSource> openArchive(const std::string& path) {
+    auto archive = std::make_shared<const Archive>(path);
+    if (archive->metadata().alternating) return volume::makeAlternatingSource(std::move(archive));
+    return archive;
+}
+
+} // namespace tessera::codec

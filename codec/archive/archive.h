@@ -1,0 +1,103 @@
+#pragma once
+
+#include "codec/container/metadata.h"
+#include "volume/base/error.h"
+#include "volume/base/progress.h"
+#include "volume/bricks/brick_source.h"
+
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace tessera::volume {
+struct MergedBrick;
+}
+
+namespace tessera::codec {
+
+/// What verify found.
+struct VerifyReport {
+    std::uint64_t bricks = 0;        ///< decoded, every level of each counted once
+    std::uint64_t samples = 0;       ///< at full resolution
+    std::uint64_t bytes = 0;         ///< whose checksum was computed
+    std::vector<std::string> damage; ///< one line each, the first hundred
+    std::uint64_t damaged = 0;       ///< places, each once: copies of the header, former metadata, models, masks of
+                                     ///< bricks, bricks with bytes of their own
+    std::uint64_t damagedBricks = 0; ///< that cannot be read: damaged themselves, in their mask, their model, or the
+                                     ///< brick that they repeat
+    bool damagedHeader = false; ///< one of its two copies, as a crash during a commit may leave it; part of `damaged`
+};
+
+/// An open .tsr archive: a source of bricks that reads a memory map, from any thread. Nothing in the file is trusted:
+/// header, metadata and index are checked when it is opened, each piece of a brick before it is decoded.
+///
+/// It shows what was in the file when it was opened, even while the file grows; to see more, open it again.
+class Archive final : public volume::BrickSource {
+public:
+    /// Throws Error with file, place and reason when it is not an archive, of a newer version, truncated or damaged.
+    explicit Archive(const std::string& path);
+    ~Archive() override;
+
+    const volume::DatasetInfo& info() const override;
+    const volume::BrickGrid& grid() const override;
+    volume::BrickStats stats(const volume::BrickKey& key) const override;
+    /// Nothing of archives from before there were such statistics, and of magnitudes.
+    std::optional<volume::BrickDistribution> distribution(const volume::BrickKey& key) const override;
+    std::optional<volume::BrickImportance> importance(const volume::BrickKey& key) const override;
+    /// Of D4* frames: between frames of the same parity.
+    std::optional<volume::BrickChange> change(const volume::BrickKey& key, int toTime) const override;
+    /// Coarse levels are held within the brick's range; floats that are not finite count as absent. Where several parts
+    /// of a parameter (volume/field/parts.h) meet in a brick its coarse samples are made of one each.
+    volume::BrickSamples read(const volume::BrickKey& key) const override;
+
+    const Metadata& metadata() const;
+    const std::string& path() const;
+    /// Of the format.
+    std::uint32_t version() const;
+    /// Of the archive; the file may be longer, by an append that is under way or was not finished.
+    std::uint64_t fileBytes() const;
+    /// Times it was brought to a whole state; of versions 1 and 2 always 1.
+    int commits() const;
+    /// True when the file has been appended to, or replaced, since it was opened.
+    bool outdated() const;
+    /// Bytes a level adds, of all bricks, parameters and times.
+    std::uint64_t levelBytes(int level) const;
+    std::uint64_t maskBytes() const;
+    int maskCount() const;
+    /// Bricks that are those of an earlier time, and the bytes they would have taken.
+    struct Repeats {
+        std::uint64_t bricks = 0, bytes = 0;
+    };
+    Repeats repeats() const;
+    /// Times before that of a key at which the stored brick lies: 0 where it has bytes of its own. Of stored
+    /// components.
+    int repeats(const volume::BrickKey& key) const;
+    /// Bytes that the levels of a brick take, whether they are its own or those it repeats. Of stored components.
+    std::uint64_t brickBytes(const volume::BrickKey& key) const;
+
+private:
+    friend volume::Field readLayers(const Archive&, int, int, int, int, int);
+    friend VerifyReport verifyArchive(const Archive&, const Progress&);
+    friend struct Verifier;
+    friend std::vector<struct MergedBytes> bytesOfMerged(const Archive&, std::span<const volume::MergedBrick>,
+                                                         const Progress&);
+    friend struct ArchiveState stateOf(const Archive&, bool);
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+/// Opens an archive as a source of bricks; one of D4* frames shows BCC fields (volume/sources/alternating_source.h).
+/// Throws Error.
+std::shared_ptr<const volume::BrickSource> openArchive(const std::string& path);
+
+/// The stored samples of one component of a parameter at a time index, in their type: bit for bit what was packed when
+/// the archive is lossless. An odd frame of D4* lies on its moved grid. Throws Error when the data is damaged.
+volume::Field readField(const Archive& archive, int parameter, int component, int time);
+/// The same of the slices that the layers [layer, end) of bricks hold.
+volume::Field readLayers(const Archive& archive, int parameter, int component, int time, int layer, int end);
+
+/// Computes every checksum and decodes every brick at every level, on all cores. Throws Cancelled.
+VerifyReport verifyArchive(const Archive& archive, const Progress& progress = {});
+
+} // namespace tessera::codec

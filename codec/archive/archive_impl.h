@@ -1,0 +1,124 @@
+#pragma once
+
+#include "codec/archive/archive.h"
+#include "codec/archive/brick_access.h"
+#include "codec/container/index.h"
+#include "volume/system/mapped_file.h"
+
+#include <list>
+#include <memory>
+#include <mutex>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+/// An open archive as the files that read it see it: archive.cpp what it says of itself, archive_read.cpp its samples,
+/// archive_state.cpp what a writer goes on from, archive_verify.cpp all its bytes.
+namespace tessera::codec {
+
+struct Archive::Impl {
+    std::string path;
+    MappedFile file;
+    HeaderState header;
+    Metadata metadata;
+    Index index;
+    std::vector<volume::Channel> channels;
+    std::size_t components = 0, bricks = 0;
+    /// The models used last, the latest first; their tables take about 200 KiB each.
+    mutable std::list<std::pair<std::int32_t, std::shared_ptr<const BandDecoder>>> decoders;
+    mutable std::mutex decodersMutex;
+    /// Bricks whose memory waits to be used again.
+    mutable std::vector<std::unique_ptr<DecodedBrick>> idle;
+    mutable std::mutex idleMutex;
+
+    explicit Impl(const std::string& name) : path(name), file(name) {
+        header = parseHeaders(file.bytes(), file.bytes().size(), path);
+    }
+
+    const FrameRecord& frame(int parameter, int component, int time) const {
+        return index
+            .frames[std::size_t(time) * components + firstComponent(metadata.info, parameter) + std::size_t(component)];
+    }
+    /// The frame that holds the bytes of a brick: itself, or the one it repeats.
+    const FrameRecord& holding(const FrameRecord& frame, std::size_t brick) const {
+        const int repeats = frame.bricks[brick].notes.repeats;
+        if (repeats == 0) return frame;
+        return index.frames[(std::size_t(frame.time) - std::size_t(repeats)) * components + frame.component];
+    }
+    /// Bytes that decoding all of a brick takes.
+    std::uint64_t bytesOf(const FrameRecord& frame, std::size_t brick) const {
+        const FrameRecord& held = holding(frame, brick);
+        std::uint64_t sum = 0;
+        for (std::size_t s = brick; s < held.segments.size(); s += bricks) sum += held.segments[s].length;
+        return sum;
+    }
+    /// The channel of a key; throws Error for a key outside the archive.
+    const volume::Channel& channelOf(const volume::BrickKey& key) const {
+        const glm::ivec3 count = metadata.grid.count();
+        bool inside = key.channel >= 0 && std::size_t(key.channel) < channels.size() && key.time >= 0 &&
+                      std::size_t(key.time) < metadata.info.times.size() && key.level >= 0 &&
+                      key.level < metadata.grid.levels;
+        for (int axis = 0; axis < 3; ++axis) inside = inside && key.index[axis] >= 0 && key.index[axis] < count[axis];
+        if (!inside) throw Error("no such brick", path);
+        return channels[std::size_t(key.channel)];
+    }
+    /// The frame of a key that names a stored component; throws Error for others.
+    const FrameRecord& storedFrame(const volume::BrickKey& key) const {
+        const volume::Channel& channel = channelOf(key);
+        if (channel.magnitude) throw Error("a magnitude is not stored", path);
+        return frame(channel.parameter, channel.component, key.time);
+    }
+    const volume::Parameter& parameter(int number) const { return metadata.info.parameters[std::size_t(number)]; }
+    std::span<const std::byte> segment(const Segment& segment) const;
+    std::vector<std::uint8_t> flags(const FrameRecord& frame, std::size_t brick) const;
+    Model model(std::int32_t number) const;
+    std::shared_ptr<const BandDecoder> decoder(std::int32_t model) const;
+    void decode(const FrameRecord& frame, const BrickFormat& format, std::size_t brick, int level,
+                std::span<const std::uint8_t> present, DecodedBrick& out) const;
+    /// The stored numbers of a brick decoded at full resolution; those of absent samples mean nothing.
+    Bytes numbersOf(const FrameRecord& frame, volume::ScalarType type, const DecodedBrick& decoded) const;
+    volume::BrickSamples readComponent(int parameter, int component, const volume::BrickKey& key) const;
+    /// The same; where several parts of the parameter (volume/field/parts.h) meet in the brick, coarser levels are made
+    /// of level 0, part by part: those stored mix them. So are those of labels, which a prediction between the grids of
+    /// BCC mixes too.
+    volume::BrickSamples readOfParts(int parameter, int component, const volume::BrickKey& key) const;
+    volume::BrickStats statsOf(int parameter, int component, const volume::BrickKey& key) const;
+    std::optional<volume::BrickChange> changeOf(int parameter, int component, const volume::BrickKey& key,
+                                                int toTime) const;
+    bool hasTallies() const { return (header.header.features & kBrickTallies) != 0; }
+    bool hasNotes() const { return (header.header.features & kBrickNotes) != 0; }
+};
+
+/// A brick to decode into, given back at the end.
+class Lent {
+public:
+    explicit Lent(const auto& archive) : idle_(archive.idle), mutex_(archive.idleMutex) {
+        const std::lock_guard lock(mutex_);
+        if (idle_.empty()) idle_.push_back(std::make_unique<DecodedBrick>());
+        brick_ = std::move(idle_.back());
+        idle_.pop_back();
+    }
+    ~Lent() {
+        const std::lock_guard lock(mutex_);
+        idle_.push_back(std::move(brick_));
+    }
+    Lent(const Lent&) = delete;
+    Lent& operator=(const Lent&) = delete;
+    DecodedBrick& operator*() const { return *brick_; }
+    DecodedBrick* operator->() const { return brick_.get(); }
+
+private:
+    std::vector<std::unique_ptr<DecodedBrick>>& idle_;
+    std::mutex& mutex_;
+    std::unique_ptr<DecodedBrick> brick_;
+};
+
+/// Throws Error for what lies at a byte of an archive.
+[[noreturn]] void damaged(const std::string& path, std::uint64_t offset, const std::string& what);
+
+/// A part of the bytes; throws Error when its checksum is not `sum`.
+std::span<const std::byte> checkedPart(std::span<const std::byte> bytes, std::uint64_t offset, std::uint64_t length,
+                                       std::uint64_t sum, const std::string& path, const char* what);
+
+} // namespace tessera::codec

@@ -1,0 +1,249 @@
+#include "codec/archive/archive_impl.h"
+#include "codec/brick/brick_codec_v1.h"
+#include "volume/base/parallel.h"
+#include "volume/bricks/parts_bricks.h"
+#include "volume/field/part_masks.h"
+#include "volume/field/slices.h"
+#include "volume/sources/memory_source.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <concepts>
+#include <functional>
+
+namespace tessera::codec {
+
+namespace {
+
+/// Whether no code of a frame stands for a value that is not finite.
+bool isAlwaysFinite(const FrameRecord& frame) {
+    constexpr double kLargestCode = 4294967296.0, kLargest = 3e38;
+    if (frame.numbers.kind == NumberKind::Float) return false;
+    const double unit = frame.numbers.kind == NumberKind::Scaled      ? 1 / std::abs(frame.numbers.step)
+                        : frame.numbers.kind == NumberKind::Quantised ? std::abs(frame.numbers.step)
+                                                                      : 1;
+    const double number = std::abs(frame.numbers.origin) + unit * kLargestCode;
+    return number < kLargest && std::abs(frame.valueOffset) + std::abs(frame.valueScale) * number < kLargest;
+}
+
+/// Makes values that are not finite absent.
+void leaveOutInfinite(volume::BrickSamples& brick) {
+    std::int32_t infinite = 0;
+    for (const float value : brick.values)
+        infinite |= (std::bit_cast<std::int32_t>(value) & 0x7fffffff) > 0x7f7fffff ? 1 : 0;
+    if (infinite == 0) return;
+    if (brick.present.empty()) brick.present.assign(brick.values.size(), 1);
+    for (std::size_t i = 0; i < brick.values.size(); ++i)
+        if (!std::isfinite(brick.values[i])) brick.present[i] = 0, brick.values[i] = 0;
+}
+
+} // namespace
+
+/// Bytes of a segment, once their checksum is found right.
+std::span<const std::byte> Archive::Impl::segment(const Segment& segment) const {
+    return checkedPart(file.bytes(), segment.offset, segment.length, segment.checksum, path, "a brick");
+}
+
+/// Flags of a brick at full resolution; empty where all samples are present.
+std::vector<std::uint8_t> Archive::Impl::flags(const FrameRecord& frame, std::size_t brick) const {
+    if (frame.mask < 0) return {};
+    const MaskBrick& record = index.masks[std::size_t(frame.mask)].bricks[brick];
+    const glm::ivec3 size = metadata.grid.brickSamples(brickIndex(metadata.grid, brick), 0);
+    const std::size_t count = std::size_t(size.x) * std::size_t(size.y) * std::size_t(size.z);
+    const std::uint64_t offset = record.segment.offset;
+    if (record.present > count) damaged(path, offset, "a mask counts more samples than its brick has");
+    const auto bytes = segment(record.segment);
+    if (record.present == 0 || record.present == count) {
+        if (!bytes.empty()) damaged(path, offset, "a uniform mask has bytes");
+        return record.present == 0 ? std::vector<std::uint8_t>(count, 0) : std::vector<std::uint8_t>();
+    }
+    if (bytes.empty()) damaged(path, offset, "a mask is missing");
+    const auto mode = static_cast<std::uint8_t>(bytes[0]);
+    const auto body = bytes.subspan(1);
+    Bytes bits((count + 7) / 8);
+    if (mode == 0 && body.size() == bits.size())
+        std::copy(body.begin(), body.end(), bits.begin());
+    else if (mode != 1 || decompress(body, bits) != DecodeStatus::Ok)
+        damaged(path, offset, "a mask cannot be decoded");
+    std::vector<std::uint8_t> flags(count);
+    std::size_t present = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+        flags[i] = static_cast<std::uint8_t>(static_cast<unsigned>(bits[i / 8]) >> (i % 8) & 1u);
+        present += flags[i];
+    }
+    if (present != record.present) damaged(path, offset, "a mask does not have the samples it counts");
+    return flags;
+}
+
+Model Archive::Impl::model(std::int32_t number) const {
+    const Block& record = index.models[std::size_t(number)];
+    const auto bytes = checkedPart(file.bytes(), record.offset, record.length, record.checksum, path, "a model");
+    Model parsed;
+    if (const DecodeStatus status = parseModel(bytes, metadata.grid.levels, parsed); status != DecodeStatus::Ok)
+        damaged(path, record.offset, std::string("a model cannot be read: ") + reason(status));
+    if (parsed.contexts.byBand && (header.header.features & kBandContexts) == 0)
+        damaged(path, record.offset, "a model has contexts that the archive does not know");
+    return parsed;
+}
+
+/// The decoder of a model, kept for the next brick.
+std::shared_ptr<const BandDecoder> Archive::Impl::decoder(std::int32_t model) const {
+    const std::lock_guard lock(decodersMutex);
+    for (auto at = decoders.begin(); at != decoders.end(); ++at)
+        if (at->first == model) {
+            decoders.splice(decoders.begin(), decoders, at);
+            return at->second;
+        }
+    constexpr std::size_t kKept = 16;
+    decoders.emplace_front(model, std::make_shared<const BandDecoder>(this->model(model)));
+    if (decoders.size() > kKept) decoders.pop_back();
+    return decoders.front().second;
+}
+
+void Archive::Impl::decode(const FrameRecord& frame, const BrickFormat& format, std::size_t brick, int level,
+                           std::span<const std::uint8_t> present, DecodedBrick& out) const {
+    std::vector<std::span<const std::byte>> segments;
+    for (int s = 0; s < format.levels - level; ++s)
+        segments.push_back(segment(frame.segments[std::size_t(s) * bricks + brick]));
+    const DecodeStatus status = frame.model < 0
+                                    ? decodeBrickV1(format, segments, level, present, out)
+                                    : decodeBrick(format, segments, level, present, *decoder(frame.model), out);
+    if (status != DecodeStatus::Ok)
+        damaged(path, frame.segments[(segments.size() - 1) * bricks + brick].offset, reason(status));
+}
+
+Bytes Archive::Impl::numbersOf(const FrameRecord& frame, volume::ScalarType type, const DecodedBrick& decoded) const {
+    Bytes numbers(countOf(decoded.size) * volume::byteSize(type));
+    volume::dispatch(type, [&]<class T>(T) {
+        T* const out = reinterpret_cast<T*>(numbers.data());
+        decoded.forRows([&](std::size_t first, auto row) { toSamples(frame.numbers, row, out + first); });
+        if constexpr (std::same_as<T, float>)
+            for (const ExactSample& exact : decoded.exact) out[exact.index] = std::bit_cast<float>(exact.bits);
+    });
+    return numbers;
+}
+
+volume::BrickSamples Archive::Impl::readComponent(int number, int component, const volume::BrickKey& key) const {
+    const std::size_t brick = brickNumber(metadata.grid, key.index);
+    const FrameRecord& record = holding(frame(number, component, key.time), brick);
+    const BrickFormat format = brickFormat(metadata.grid, key.index, parameter(number).type, record);
+    const std::vector<std::uint8_t> fine = flags(record, brick);
+    const Lent decoded(*this);
+    decode(record, format, brick, key.level, fine, *decoded);
+
+    volume::BrickSamples out;
+    out.size = decoded->size;
+    out.values.resize(countOf(out.size));
+    out.present = decoded->present;
+    // Coarse levels stay within the range of the samples: row by row, while those are at hand.
+    const FrameBrick& range = record.bricks[brick];
+    const bool isHeld = key.level > 0 && range.min <= range.max, isFinite = isAlwaysFinite(record);
+    const auto hold = [&](std::span<float> values) {
+        for (float& value : values) value = std::min(std::max(value, range.min), range.max);
+    };
+    decoded->forRows([&](std::size_t first, auto row) {
+        float* const values = out.values.data() + first;
+        toValues(record.numbers, record.valueOffset, record.valueScale, row, values);
+        if (isHeld && isFinite) hold({values, row.size()});
+    });
+    for (const ExactSample& exact : decoded->exact) // of full resolution
+        out.values[exact.index] =
+            static_cast<float>(record.valueOffset + record.valueScale * double(std::bit_cast<float>(exact.bits)));
+    if (isFinite && decoded->exact.empty()) return out;
+    leaveOutInfinite(out);
+    if (isHeld) hold(out.values);
+    return out;
+}
+
+volume::BrickSamples Archive::Impl::readOfParts(int number, int component, const volume::BrickKey& key) const {
+    const bool isLabel = parameter(number).categorical && parameter(number).components == 1;
+    const int label = isLabel ? number : volume::labelOf(metadata.info, parameter(number));
+    if (key.level == 0 || label < 0) return readComponent(number, component, key);
+    if (const volume::BrickStats stats = statsOf(label, 0, key); stats.min == stats.max && stats.presentFraction == 1)
+        return readComponent(number, component, key);
+    volume::BrickKey fine = key;
+    fine.level = 0;
+    const volume::BrickSamples labels = readComponent(label, 0, fine);
+    if (isLabel) return volume::coarserLabels(metadata.grid, key, labels);
+    const volume::Parts& parts = parameter(number).parts;
+    const std::vector<std::uint8_t> own = volume::partsOfSamples(labels, parts);
+    if (std::adjacent_find(own.begin(), own.end(), std::not_equal_to<>()) == own.end())
+        return readComponent(number, component, key);
+    return volume::coarserOfParts(metadata.grid, key.level, readComponent(number, component, fine), labels,
+                                  volume::coarserLabels(metadata.grid, key, labels), parts);
+}
+
+volume::BrickSamples Archive::read(const volume::BrickKey& key) const {
+    const volume::Channel& channel = impl_->channelOf(key);
+    if (!channel.magnitude) return impl_->readOfParts(channel.parameter, channel.component, key);
+    const auto part = [&](int c) { return impl_->readOfParts(channel.parameter, c, key); };
+    if (channel.component == 3) return volume::magnitude(part(0), part(1), part(2));
+    volume::BrickSamples sum = part(0), nothing;
+    nothing.size = sum.size;
+    nothing.values.resize(sum.values.size());
+    for (int c = 1; c < channel.component; ++c) sum = volume::magnitude(sum, part(c), nothing);
+    return sum;
+}
+
+volume::Field readField(const Archive& archive, int parameter, int component, int time) {
+    return readLayers(archive, parameter, component, time, 0, archive.grid().count().z);
+}
+
+volume::Field readLayers(const Archive& archive, int parameter, int component, int time, int layer, int end) {
+    const Archive::Impl& impl = *archive.impl_;
+    const volume::BrickGrid& grid = impl.metadata.grid;
+    const FrameRecord& shown = impl.frame(parameter, component, time);
+    const int first = grid.begin({0, 0, layer}).z, last = grid.end({0, 0, end - 1}).z;
+    const std::size_t firstBrick = brickNumber(grid, {0, 0, layer}),
+                      bricks = brickNumber(grid, {0, 0, end}) - firstBrick;
+    volume::Field field =
+        volume::makeField(volume::slicesOf(grid.lattice, first, last - first), impl.parameter(parameter).type);
+    const volume::BrickGrid own{field.lattice, grid.brickSize, grid.levels, grid.phase}; // of those layers
+    if (impl.metadata.alternating && time % 2 != 0) field.lattice.origin += 0.5 * field.lattice.spacing;
+    field.offset = shown.valueOffset;
+    field.scale = shown.valueScale;
+    volume::Mask mask(shown.mask < 0 ? 0 : field.count(), 1);
+    parallelFor(bricks, [&](std::size_t number) {
+        const std::size_t brick = firstBrick + number;
+        const FrameRecord& frame = impl.holding(shown, brick);
+        const glm::ivec3 index = brickIndex(own, number);
+        const BrickFormat format = brickFormat(own, index, field.type, frame);
+        const std::vector<std::uint8_t> fine = impl.flags(frame, brick);
+        const Lent decoded(impl);
+        impl.decode(frame, format, brick, 0, fine, *decoded);
+        const glm::ivec3 begin = own.begin(index), size = decoded->size;
+        const auto placeOf = [&](std::size_t i) { // of a sample of the brick in the lattice
+            const std::size_t nx = std::size_t(size.x), ny = std::size_t(size.y);
+            return field.lattice.index(begin + glm::ivec3(int(i % nx), int(i / nx % ny), int(i / (nx * ny))));
+        };
+        volume::dispatch(field.type, [&]<class T>(T) {
+            const auto out = field.as<T>();
+            glm::ivec3 place = begin; // of the row
+            decoded->forRows([&](std::size_t, auto row) {
+                toSamples(frame.numbers, row, out.data() + field.lattice.index(place));
+                if (++place.y == begin.y + size.y) ++place.z, place.y = begin.y;
+            });
+            const auto put = [&](std::size_t i, std::uint32_t bits) {
+                if constexpr (std::same_as<T, float>)
+                    out[placeOf(i)] = std::bit_cast<float>(bits);
+                else
+                    out[placeOf(i)] = static_cast<T>(bits);
+            };
+            for (const ExactSample& exact : decoded->exact) put(exact.index, exact.bits);
+            // Absent samples: as stored, else a value that cannot be mistaken for data.
+            std::size_t next = 0;
+            for (std::size_t i = 0; i < fine.size(); ++i)
+                if (fine[i] == 0)
+                    put(i, frame.keepsAbsent ? decoded->absent[next++] : sizeof(T) == 4 ? 0x7fc00000u : 0u);
+        });
+        if (!fine.empty() && !mask.empty())
+            forBrickRows(own, index, [&](std::size_t to, std::size_t from, std::size_t count) {
+                std::copy_n(fine.begin() + std::ptrdiff_t(from), count, mask.begin() + std::ptrdiff_t(to));
+            });
+    });
+    if (!mask.empty()) field.mask = std::make_shared<const volume::Mask>(std::move(mask));
+    return field;
+}
+
+} // namespace tessera::codec

@@ -1,0 +1,41 @@
+#pragma once
+
+#include "codec/archive/archive.h"
+#include "codec/archive/brick_input.h"
+#include "codec/bands/rans_model.h"
+#include "codec/container/index.h"
+#include "codec/container/mask_hash.h"
+
+#include <utility>
+#include <vector>
+
+/// What a writer has to know of an archive to go on with it as if it had never stopped.
+namespace tessera::codec {
+
+/// The frame a model was made for: frames to come whose codes are as wide are like it.
+struct KnownModel {
+    std::int32_t number = -1;
+    Model model;
+    Wavelet wavelet{};
+    NumberKind kind{};
+    int codeBits = 0;
+    bool bodyCentred = false;
+
+    bool resembles(const FrameRecord& frame) const {
+        return kind == frame.numbers.kind && codeBits - frame.codeBits <= 1 && frame.codeBits - codeBits <= 1;
+    }
+};
+
+struct ArchiveState {
+    Header header;
+    std::uint64_t pageBytes = 0; ///< of the index, decoded
+    std::size_t times = 0, components = 0, models = 0, masks = 0;
+    std::vector<KnownModel> lastModels;                        ///< by component
+    std::vector<std::pair<int, MaskHash::Value>> lastMasks;    ///< those of the last time
+    std::vector<std::pair<std::size_t, SeenFrame>> lastFrames; ///< by component, of D4* two of each
+};
+
+/// `withFrames`: the last frames too. Throws Error when a model, a mask or a brick of a last frame is damaged.
+ArchiveState stateOf(const Archive& archive, bool withFrames);
+
+} // namespace tessera::codec

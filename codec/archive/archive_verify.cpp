@@ -1,0 +1,149 @@
+#include "codec/archive/archive_impl.h"
+#include "volume/base/parallel.h"
+
+#include <atomic>
+#include <mutex>
+
+namespace tessera::codec {
+
+/// The work of verifyArchive, with access to the parts of an archive.
+struct Verifier {
+    const Archive::Impl& impl;
+    VerifyReport report;
+    std::mutex mutex;
+    std::vector<std::uint8_t> badModels, badMasks, badBricks; ///< by model; by mask and brick; by frame and brick
+
+    void note(const std::string& what) {
+        const std::lock_guard lock(mutex);
+        ++report.damaged;
+        if (report.damage.size() < 100) report.damage.push_back(what);
+    }
+
+    /// True if it is whole.
+    template <class Body> bool guarded(const std::string& what, Body&& body) {
+        try {
+            body();
+            return true;
+        } catch (const Error& error) {
+            note(what + ": " + error.place() + ": " + error.reason());
+            return false;
+        }
+    }
+
+    /// Whether what a brick needs beside its own bytes, and was looked at before, is damaged.
+    bool lacks(std::size_t number, std::size_t brick) const {
+        const FrameRecord& record = impl.index.frames[number];
+        const std::size_t repeats = std::size_t(record.bricks[brick].notes.repeats);
+        if (repeats > 0) return badBricks[(number - repeats * impl.components) * impl.bricks + brick] != 0;
+        if (record.mask >= 0 && badMasks[std::size_t(record.mask) * impl.bricks + brick] != 0) return true;
+        return record.model >= 0 && badModels[std::size_t(record.model)] != 0;
+    }
+
+    /// Decodes a brick at every level. Returns the bytes of its segments; throws Error.
+    std::uint64_t brick(const FrameRecord& record, const volume::Parameter& parameter, std::size_t brick) {
+        const glm::ivec3 at = brickIndex(impl.metadata.grid, brick);
+        const BrickFormat format = brickFormat(impl.metadata.grid, at, parameter.type, record);
+        const std::vector<std::uint8_t> fine = impl.flags(record, brick);
+        const Lent decoded(impl);
+        std::uint64_t bytes = 0;
+        for (int level = impl.metadata.grid.levels - 1; level >= 0; --level) {
+            impl.decode(record, format, brick, level, fine, *decoded);
+            const std::size_t s = std::size_t(format.levels - 1 - level);
+            bytes += record.segments[s * impl.bricks + brick].length;
+        }
+        if (!impl.hasTallies()) return bytes;
+        const FrameBrick& noted = record.bricks[brick];
+        const TalliedBrick found = tallied(parameter.type, record.valueOffset, record.valueScale,
+                                           impl.numbersOf(record, parameter.type, *decoded), fine, true);
+        if (!agree(found, noted.min, noted.max, noted.tally))
+            throw Error("its statistics are not those of its samples", impl.path, "index");
+        return bytes;
+    }
+
+    void frame(std::size_t number) {
+        const FrameRecord& record = impl.index.frames[number];
+        const std::size_t time = number / impl.components;
+        std::size_t component = number % impl.components, parameter = 0;
+        const auto& parameters = impl.metadata.info.parameters;
+        while (component >= std::size_t(parameters[parameter].components))
+            component -= std::size_t(parameters[parameter++].components);
+        std::atomic<std::uint64_t> bytes = 0, samples = 0, bad = 0;
+        parallelFor(impl.bricks, [&](std::size_t brick) {
+            const glm::ivec3 at = brickIndex(impl.metadata.grid, brick);
+            const std::string where = parameters[parameter].name + " component " + std::to_string(component) +
+                                      " time " + std::to_string(time) + " brick " + std::to_string(at.x) + "," +
+                                      std::to_string(at.y) + "," + std::to_string(at.z);
+            const bool lacking = lacks(number, brick), repeats = record.bricks[brick].notes.repeats > 0;
+            bool whole = true;
+            if (lacking && !repeats) // its own bytes may be damaged as well
+                whole = guarded(where, [&] {
+                    for (std::size_t s = brick; s < record.segments.size(); s += impl.bricks)
+                        (void)impl.segment(record.segments[s]);
+                });
+            else if (!repeats) // one that does was decoded with the one it repeats
+                whole = guarded(where, [&] { bytes += this->brick(record, parameters[parameter], brick); });
+            if (whole && !lacking)
+                samples += countOf(impl.metadata.grid.brickSamples(at, 0));
+            else
+                badBricks[number * impl.bricks + brick] = 1, ++bad;
+        });
+        report.bricks += impl.bricks;
+        report.samples += samples;
+        report.bytes += bytes;
+        report.damagedBricks += bad;
+    }
+
+    void headers() {
+        report.damagedHeader = impl.header.damaged;
+        if (impl.header.damaged) note("header: byte 0: one of its two copies is damaged");
+    }
+
+    void formerMetadata() {
+        for (const Block& block : impl.index.retired) {
+            guarded("former metadata", [&] {
+                (void)checkedPart(impl.file.bytes(), block.offset, block.length, block.checksum, impl.path, "it");
+            });
+            report.bytes += block.length;
+        }
+    }
+
+    void models() {
+        for (std::size_t m = 0; m < impl.index.models.size(); ++m) {
+            const auto load = [&] { (void)impl.decoder(static_cast<std::int32_t>(m)); };
+            badModels.push_back(guarded("model " + std::to_string(m), load) ? 0 : 1);
+            report.bytes += impl.index.models[m].length;
+        }
+    }
+
+    /// Before the bricks, so that each is noted once.
+    void masks() {
+        for (std::size_t m = 0; m < impl.index.masks.size(); ++m) {
+            FrameRecord user;
+            user.mask = static_cast<std::int32_t>(m);
+            for (std::size_t brick = 0; brick < impl.bricks; ++brick)
+                badMasks.push_back(guarded("mask " + std::to_string(m), [&] { (void)impl.flags(user, brick); }) ? 0
+                                                                                                                : 1);
+            report.bytes += impl.index.masks[m].length;
+        }
+    }
+};
+
+VerifyReport verifyArchive(const Archive& archive, const Progress& progress) {
+    // One header, metadata and index were checked when the archive was opened.
+    const Archive::Impl& impl = *archive.impl_;
+    Verifier verifier{impl, {}, {}, {}, {}, {}};
+    verifier.headers();
+    verifier.formerMetadata();
+    verifier.models();
+    verifier.masks();
+    const std::size_t frames = impl.index.frames.size();
+    verifier.badBricks.resize(frames * impl.bricks);
+    for (std::size_t f = 0; f < frames; ++f) {
+        progress.advance(double(f) / double(frames));
+        verifier.frame(f);
+    }
+    progress.advance(1);
+    return std::move(verifier.report);
+}
+
+} // namespace tessera::codec

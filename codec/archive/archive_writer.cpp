@@ -1,0 +1,351 @@
+#include "codec/archive/archive_writer.h"
+
+#include "codec/archive/archive_state.h"
+#include "codec/archive/brick_access.h"
+#include "codec/archive/brick_input.h"
+#include "codec/archive/coded_bricks.h"
+#include "codec/archive/frame_model.h"
+#include "codec/brick/whole_brick.h"
+#include "codec/bytes/lzma.h"
+#include "codec/container/growing_file.h"
+#include "codec/container/mask_hash.h"
+#include "volume/base/parallel.h"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <map>
+
+namespace tessera::codec {
+
+namespace {
+
+struct CodedMaskBrick {
+    Bytes bytes;
+    std::uint32_t present = 0;
+};
+
+/// Flags of a brick as bits, lowest first, raw or through zstd; nothing when they are all equal.
+CodedMaskBrick encodeMask(std::span<const std::uint8_t> flags, Compressor& compressor) {
+    CodedMaskBrick coded;
+    Bytes bits((flags.size() + 7) / 8);
+    for (std::size_t i = 0; i < flags.size(); ++i)
+        if (flags[i] != 0) {
+            bits[i / 8] |= static_cast<std::byte>(1u << (i % 8));
+            ++coded.present;
+        }
+    if (coded.present == 0 || coded.present == flags.size()) return coded;
+    const Bytes packed = compressor.compress(bits);
+    coded.bytes.push_back(packed.empty() ? std::byte{0} : std::byte{1});
+    const Bytes& body = packed.empty() ? bits : packed;
+    coded.bytes.insert(coded.bytes.end(), body.begin(), body.end());
+    return coded;
+}
+
+} // namespace
+
+struct ArchiveWriter::Impl {
+    GrowingFile file;
+    Metadata metadata;
+    Header header;                                ///< of the last commit
+    Bytes block;                                  ///< the metadata of the last commit
+    std::size_t times = 0, models = 0, masks = 0; ///< written so far; times: committed
+    std::uint64_t pageBytes = 0;                  ///< of all pages so far, decoded
+    IndexPage page;                               ///< what the next commit adds
+    std::map<MaskHash::Value, int> maskByHash;
+    std::map<std::size_t, KnownModel> lastModel; ///< by component
+    bool keepsFrames = true;
+    Archive::Repeats repeats;
+    /// By component, of D4* by parity too. One that is not there: nothing is known of what changes.
+    std::map<std::pair<std::size_t, int>, SeenFrame> lastFrames;
+
+    int step() const { return metadata.alternating ? 2 : 1; } ///< times from a frame to the next of its grid
+
+    explicit Impl(const std::string& path) : file(path) {}
+    Impl(const std::string& path, const Header& last) : file(path, last), header(last) {}
+
+    int maskFor(const FrameSamples& samples, int zstdLevel);
+    /// `idle`: no token of the frame is coded with it.
+    void writeModel(const Model& model, bool idle, std::size_t component, FrameRecord& frame);
+    const SeenFrame* frameBefore(const FrameRecord& frame, const FrameSamples& samples) const;
+    std::vector<std::uint8_t> repeated(const SeenFrame* before, const FrameSamples& samples, const FrameRecord& frame,
+                                       const FrameOptions& options) const;
+    void commit(const Metadata& now, std::size_t wholeTimes, bool always);
+};
+
+/// Index of the record of a frame's mask, written when it is new; -1 where everything is present.
+int ArchiveWriter::Impl::maskFor(const FrameSamples& samples, int zstdLevel) {
+    if (!samples.masked()) return -1;
+    MaskHash hash;
+    samples.forSlabs([&](const volume::Field& part, Slab) {
+        hash.add(part);
+        return true;
+    });
+    if (!hash.gaps()) return -1;
+    const auto [found, isNew] = maskByHash.try_emplace(hash.value(), int(masks));
+    if (!isNew) return found->second;
+
+    ++masks;
+    MaskRecord& record = page.masks.emplace_back();
+    record.offset = file.position();
+    samples.forSlabs([&](const volume::Field& part, Slab slab) {
+        const volume::BrickGrid own = slab.grid(metadata.grid);
+        std::vector<CodedMaskBrick> coded(brickCount(own));
+        parallelRanges(coded.size(), [&](std::size_t begin, std::size_t end) {
+            Compressor compressor(zstdLevel);
+            std::vector<std::uint8_t> flags;
+            for (std::size_t b = begin; b < end; ++b) {
+                flags.clear();
+                forBrickRows(own, brickIndex(own, b), [&](std::size_t from, std::size_t, std::size_t n) {
+                    for (std::size_t i = from; i < from + n; ++i) flags.push_back(part.present(i) ? 1 : 0);
+                });
+                coded[b] = encodeMask(flags, compressor);
+            }
+        });
+        for (const CodedMaskBrick& brick : coded) {
+            record.bricks.push_back(
+                {{file.position(), static_cast<std::uint32_t>(brick.bytes.size()), checksum(brick.bytes)},
+                 brick.present});
+            file.append(brick.bytes);
+        }
+        return true;
+    });
+    record.length = file.position() - record.offset;
+    return found->second;
+}
+
+void ArchiveWriter::Impl::writeModel(const Model& chosen, bool idle, std::size_t component, FrameRecord& frame) {
+    const Model model = idle ? makeModel(Histogram(metadata.grid.levels, {}), 1) : chosen;
+    const Bytes bytes = idle && (header.features & kCompact) != 0 ? Bytes() : serialise(model);
+    frame.model = static_cast<std::int32_t>(models++);
+    page.models.push_back({file.position(), bytes.size(), checksum(bytes)});
+    file.append(bytes);
+    lastModel[component] = {frame.model, model, frame.wavelet, frame.numbers.kind, frame.codeBits, frame.bodyCentred};
+}
+
+/// The last frame of the component on the same grid, if it is here and its numbers mean the same.
+const SeenFrame* ArchiveWriter::Impl::frameBefore(const FrameRecord& frame, const FrameSamples& samples) const {
+    const int time = int(frame.time);
+    const auto found = lastFrames.find({frame.component, time % step()});
+    if (found == lastFrames.end() || found->second.time != time - step()) return nullptr;
+    const volume::Field& before = found->second.field;
+    return before.offset == samples.offset() && before.scale == samples.scale() ? &found->second : nullptr;
+}
+
+/// Flags of the bricks that need not be stored again.
+std::vector<std::uint8_t> ArchiveWriter::Impl::repeated(const SeenFrame* before, const FrameSamples& samples,
+                                                        const FrameRecord& frame, const FrameOptions& options) const {
+    constexpr int kFurthest = 65535;
+    const double maxError = boundOf(frame, options);
+    std::vector<std::uint8_t> flags(brickCount(metadata.grid), 0);
+    if (!before || (header.features & kBrickNotes) == 0) return flags;
+    parallelRanges(flags.size(), [&](std::size_t begin, std::size_t end) {
+        BrickInput was, is, coded;
+        for (std::size_t b = begin; b < end; ++b) {
+            if (before->bricks[b].notes.repeats + step() > kFurthest) continue;
+            const glm::ivec3 brick = brickIndex(metadata.grid, b);
+            was.take(metadata.grid, brick, before->field, before->field.mask != nullptr);
+            is.take(metadata.grid, brick, samples, frame.mask >= 0);
+            const bool absentToo = frame.keepsAbsent && !is.present.empty();
+            if (absentToo && !before->keepsAbsent) continue;
+            flags[b] = mayStandFor(samples.type(), was, is, maxError, absentToo) ? 1 : 0;
+            if (flags[b] == 0 || !options.keepsSquares) continue;
+            coded = is;
+            roundAsDecoded(brickFormat(metadata.grid, brick, samples.type(), frame), maxError, coded);
+            flags[b] = squaredError(samples.type(), was, is) <= squaredError(samples.type(), coded, is) ? 1 : 0;
+        }
+    });
+    return flags;
+}
+
+ArchiveWriter::ArchiveWriter(const std::string& path, const Metadata& metadata, bool keepsFrames)
+    : impl_(std::make_unique<Impl>(path)) {
+    impl_->metadata = metadata;
+    impl_->keepsFrames = keepsFrames;
+    // A volume of one brick is read as quickly as what is noted of it, and small enough for that to count.
+    if (metadata.grid.count() == glm::ivec3(1)) impl_->header.features &= ~kBrickTallies;
+}
+
+ArchiveWriter::ArchiveWriter(const Archive& archive, const Metadata& metadata, bool keepsFrames) {
+    if (archive.version() < kGrowingVersion)
+        throw Error("an archive of version " + std::to_string(archive.version()) + " does not grow; pack it again",
+                    archive.path());
+    const bool laterTimes = metadata.info.times.size() > archive.info().times.size();
+    ArchiveState state = stateOf(archive, keepsFrames && laterTimes);
+    impl_ = std::make_unique<Impl>(archive.path(), state.header);
+    impl_->metadata = metadata;
+    impl_->keepsFrames = keepsFrames;
+    impl_->block = serialise(archive.metadata(), state.header.features);
+    impl_->times = state.times;
+    impl_->models = state.models;
+    impl_->masks = state.masks;
+    impl_->pageBytes = state.pageBytes;
+    for (const auto& [number, hash] : state.lastMasks) impl_->maskByHash.emplace(hash, number);
+    for (std::size_t c = 0; c < state.lastModels.size(); ++c)
+        impl_->lastModel.emplace(c, std::move(state.lastModels[c]));
+    for (auto& [component, frame] : state.lastFrames)
+        impl_->lastFrames.emplace(std::pair(component, frame.time % impl_->step()), std::move(frame));
+}
+
+ArchiveWriter::~ArchiveWriter() = default;
+
+void ArchiveWriter::addFrame(int parameter, int component, int time, const FrameSamples& samples,
+                             const FrameOptions& options, const Progress& progress) {
+    const volume::BrickGrid& grid = impl_->metadata.grid;
+    const volume::DatasetInfo& info = impl_->metadata.info;
+    const std::size_t ofTime = firstComponent(info, parameter) + std::size_t(component);
+    assert(samples.lattice().size == grid.lattice.size && samples.lattice().kind == grid.lattice.kind);
+    assert(samples.type() == info.parameters[std::size_t(parameter)].type);
+    assert(samples.whole() || !impl_->keepsFrames);
+    progress.advance(0);
+
+    FrameRecord frame;
+    frame.time = static_cast<std::uint32_t>(time);
+    frame.component = static_cast<std::uint32_t>(ofTime);
+    frame.mask = impl_->maskFor(samples, options.zstdLevel);
+    const auto found = impl_->lastModel.find(ofTime);
+    const KnownModel* const lastModel = found == impl_->lastModel.end() ? nullptr : &found->second;
+    frame.numbers = options.numbers ? *options.numbers : chooseNumbers(grid, samples, lastModel, options);
+    frame.wavelet = options.wavelet.value_or(Wavelet::W22);
+    frame.keepsAbsent = options.keepsAbsent && frame.mask >= 0;
+    frame.valueOffset = samples.offset();
+    frame.valueScale = samples.scale();
+    frame.codeBits = codeBitsOf(samples, frame.numbers);
+    const double maxError = boundOf(frame, options);
+    const SeenFrame* const before = impl_->frameBefore(frame, samples);
+    const std::vector<std::uint8_t> repeated = impl_->repeated(before, samples, frame, options);
+    const std::vector<volume::BrickImportance> importance =
+        importanceOfBricks(grid, samples, options.range, options.categorical, options.importance);
+    Taken taken;
+    const bool byBand = (impl_->header.features & kBandContexts) != 0;
+    const Model model = chooseModel(grid, samples, lastModel, byBand, frame, options, taken);
+    const BandEncoder encoder(model);
+    if (!taken.serves(frame, model)) taken.bricks.clear();
+    taken.bricks.resize(brickCount(grid));
+
+    const std::size_t bricks = brickCount(grid), levels = std::size_t(grid.levels);
+    // Of the last time nothing is wanted but how far it moved.
+    const bool isLast = std::size_t(time + impl_->step()) >= info.times.size();
+    const bool keeps = impl_->keepsFrames && (before || !isLast);
+    SeenFrame seen{time, frame.keepsAbsent, keeps ? *samples.whole() : volume::Field(), {}, {}};
+    seen.bytes.resize(bricks);
+    frame.bricks.resize(bricks);
+    frame.segments.resize(bricks * levels);
+    CodedBricks coded(bricks, levels, samples.store() ? &samples.store()->folder : nullptr);
+    bool allWhole = levels > 1;
+    const bool tallies = (impl_->header.features & kBrickTallies) != 0;
+    const int effort = effortFor(samples, options.zstdLevel);
+    const std::size_t perBatch = batchOf(brickBytes(grid, samples.type()));
+    samples.forSlabs([&](const volume::Field& part, Slab slab) {
+        const volume::BrickGrid own = slab.grid(grid);
+        const std::size_t firstBrick = slab.bricks(grid).first, endBrick = slab.bricks(grid).second;
+        // In batches, so that a cancel is noticed and the output does not depend on the number of cores.
+        for (std::size_t first = firstBrick; first < endBrick; first += perBatch) {
+            const std::size_t count = std::min(perBatch, endBrick - first);
+            std::vector<std::vector<Bytes>> batch(count);
+            parallelRanges(count, [&](std::size_t begin, std::size_t end) {
+                Compressor compressor(effort, (impl_->header.features & kCompact) != 0);
+                BrickInput input;
+                SplitMemory memory;
+                for (std::size_t b = first + begin; b < first + end; ++b) {
+                    const glm::ivec3 brick = brickIndex(grid, b);
+                    std::vector<Bytes>& segments = batch[b - first];
+                    FrameBrick& about = frame.bricks[b];
+                    if (repeated[b] != 0) {
+                        about = before->bricks[b];
+                        about.notes.repeats += impl_->step();
+                        about.tally = {};
+                        segments.resize(levels);
+                        seen.bytes[b] = before->bytes[b];
+                        input.take(grid, brick, before->field, false);
+                    } else {
+                        const BrickFormat format = brickFormat(grid, brick, part.type, frame);
+                        input.take(own, brickIndex(own, b - firstBrick), part, frame.mask >= 0);
+                        if (!taken.bricks[b])
+                            taken.bricks[b] =
+                                prepareBrick(format, input.samples, input.present, maxError, model.contexts, memory);
+                        segments =
+                            encodeBrick(format, *taken.bricks[b], input.samples, input.present, compressor, encoder);
+                        for (const Bytes& segment : segments) seen.bytes[b] += segment.size();
+                        roundAsDecoded(format, maxError, input);
+                        about = tallyOf(part, input, tallies);
+                    }
+                    taken.bricks[b].reset();
+                    about.notes.importance = importance[b];
+                    if (!keeps) continue;
+                    putSamples(grid, brick, input.samples, seen.field);
+                    if (before) about.notes.change = volume::changeOfBrick(grid, brick, before->field, seen.field);
+                }
+            });
+            for (std::size_t b = first; b < first + count; ++b) {
+                std::vector<Bytes>& segments = batch[b - first];
+                allWhole = allWhole && (repeated[b] != 0 || (!segments[0].empty() && isWhole(segments[0][0])));
+                coded.put(b, std::move(segments));
+            }
+            progress.advance(double(first + count) / double(bricks));
+        }
+        return true;
+    });
+    // Nobody will look into the tables where there are no bands.
+    if (frame.model < 0) impl_->writeModel(model, allWhole, ofTime, frame);
+    GrowingFile& file = impl_->file;
+    frame.offset = file.position();
+    for (std::size_t s = 0; s < levels; ++s)
+        for (std::size_t b = 0; b < bricks; ++b) {
+            const Bytes bytes = coded.take(b, s);
+            frame.segments[s * bricks + b] = {file.position(), static_cast<std::uint32_t>(bytes.size()),
+                                              checksum(bytes)};
+            file.append(bytes);
+        }
+    frame.length = file.position() - frame.offset;
+    for (std::size_t b = 0; b < bricks; ++b)
+        if (repeated[b] != 0) impl_->repeats.bricks += 1, impl_->repeats.bytes += seen.bytes[b];
+    if (keeps && !isLast) {
+        seen.bricks = frame.bricks;
+        impl_->lastFrames[{ofTime, time % impl_->step()}] = std::move(seen);
+    }
+    impl_->page.frames.push_back(std::move(frame));
+}
+
+void ArchiveWriter::Impl::commit(const Metadata& now, std::size_t wholeTimes, bool always) {
+    constexpr std::size_t kWorthwhile = 64, kPage = 256; // times the bytes a commit costs, those of a page included
+    Bytes text = serialise(now, header.features);
+    const std::uint64_t last = std::max(header.fileSize, firstChunk(kFormatVersion));
+    if (!always && file.position() - last < kWorthwhile * (text.size() + kPage)) return;
+    if (page.frames.empty() && text == block) return;
+    const std::vector<double>& all = now.info.times;
+    page.times.assign(all.begin() + std::ptrdiff_t(times), all.begin() + std::ptrdiff_t(wholeTimes));
+    page.previousPage = header.index;
+    page.previousMetadata = {};
+    if (text != block) {
+        page.previousMetadata = header.metadata;
+        header.metadata = {file.position(), text.size(), checksum(text)};
+        file.append(text);
+        block = std::move(text);
+    }
+    Bytes index = serialise(page, header.features);
+    pageBytes += index.size();
+    if ((header.features & kCompact) != 0) index = encodePiece(index, pageBytes > mostPageBytes(file.position()));
+    header.index = {file.position(), index.size(), checksum(index)};
+    file.append(index);
+    header.fileSize = file.position();
+    file.commit(header);
+    times = wholeTimes;
+    page = {};
+}
+
+Archive::Repeats ArchiveWriter::repeats() const {
+    return impl_->repeats;
+}
+
+void ArchiveWriter::commit(const Metadata& metadata, std::size_t times) {
+    impl_->commit(metadata, times, false);
+}
+
+std::uint64_t ArchiveWriter::finish(const Metadata& metadata) {
+    impl_->commit(metadata, metadata.info.times.size(), true);
+    impl_->file.finish();
+    return impl_->header.fileSize;
+}
+
+} // namespace tessera::codec

@@ -1,0 +1,61 @@
+#pragma once
+
+#include "codec/brick/brick_codec.h"
+#include "codec/container/index.h"
+#include "volume/bricks/brick_source.h"
+
+#include <algorithm>
+#include <cstring>
+
+/// Small pieces shared by the writer and the reader of an archive.
+namespace tessera::codec {
+
+/// Bricks in the order of the file, x fastest.
+inline std::size_t brickCount(const volume::BrickGrid& grid) {
+    const glm::ivec3 count = grid.count();
+    return std::size_t(count.x) * std::size_t(count.y) * std::size_t(count.z);
+}
+inline std::size_t brickNumber(const volume::BrickGrid& grid, glm::ivec3 brick) {
+    const glm::ivec3 count = grid.count();
+    return (std::size_t(brick.z) * std::size_t(count.y) + std::size_t(brick.y)) * std::size_t(count.x) +
+           std::size_t(brick.x);
+}
+inline glm::ivec3 brickIndex(const volume::BrickGrid& grid, std::size_t number) {
+    const glm::ivec3 count = grid.count();
+    const std::size_t nx = std::size_t(count.x), ny = std::size_t(count.y);
+    return {int(number % nx), int(number / nx % ny), int(number / (nx * ny))};
+}
+
+/// Bytes of the samples of a whole brick.
+inline std::size_t brickBytes(const volume::BrickGrid& grid, volume::ScalarType type) {
+    const std::size_t edge = std::size_t(grid.brickSize),
+                      sublattices = grid.lattice.kind == volume::LatticeKind::BCC ? 2 : 1;
+    return std::min(edge * edge * edge * sublattices, grid.lattice.count()) * volume::byteSize(type);
+}
+
+inline BrickFormat brickFormat(const volume::BrickGrid& grid, glm::ivec3 brick, volume::ScalarType type,
+                               const FrameRecord& frame) {
+    return {grid.lattice.kind, grid.brickSamples(brick, 0), grid.levels,    frame.wavelet,    type,
+            frame.numbers,     frame.keepsAbsent,           frame.codeBits, frame.bodyCentred};
+}
+
+/// Components of the parameters before one: where its frames start within a time.
+inline std::size_t firstComponent(const volume::DatasetInfo& info, int parameter) {
+    std::size_t first = 0;
+    for (int p = 0; p < parameter; ++p) first += std::size_t(info.parameters[std::size_t(p)].components);
+    return first;
+}
+inline std::size_t componentCount(const volume::DatasetInfo& info) {
+    return firstComponent(info, int(info.parameters.size()));
+}
+
+/// Calls `visit(offset in the lattice, offset in the brick, length)` for each row of a brick.
+template <class Visit> void forBrickRows(const volume::BrickGrid& grid, glm::ivec3 brick, Visit&& visit) {
+    const glm::ivec3 begin = grid.begin(brick), size = grid.end(brick) - begin;
+    std::size_t inBrick = 0;
+    for (int z = 0; z < size.z; ++z)
+        for (int y = 0; y < size.y; ++y, inBrick += std::size_t(size.x))
+            visit(grid.lattice.index(begin + glm::ivec3(0, y, z)), inBrick, std::size_t(size.x));
+}
+
+} // namespace tessera::codec

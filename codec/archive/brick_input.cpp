@@ -1,0 +1,111 @@
+#include "codec/archive/brick_input.h"
+
+#include "codec/archive/brick_access.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+
+namespace tessera::codec {
+
+namespace {
+
+template <class T> T sampleAt(const Bytes& samples, std::size_t i) {
+    T sample;
+    std::memcpy(&sample, samples.data() + i * sizeof(T), sizeof(T));
+    return sample;
+}
+
+} // namespace
+
+void BrickInput::take(const volume::BrickGrid& grid, glm::ivec3 brick, const FrameSamples& frame, bool masked) {
+    const glm::ivec3 begin = grid.begin(brick);
+    take(grid, begin, grid.end(brick) - begin, frame, masked);
+}
+
+void BrickInput::take(const volume::BrickGrid& grid, glm::ivec3 begin, glm::ivec3 size, const FrameSamples& frame,
+                      bool masked) {
+    const std::size_t sampleBytes = volume::byteSize(frame.type()), n = std::size_t(size.x);
+    const std::size_t count = n * std::size_t(size.y) * std::size_t(size.z);
+    samples.resize(count * sampleBytes);
+    present.resize(masked ? count : 0);
+    const volume::Field* const field = frame.whole();
+    std::byte* to = samples.data();
+    std::uint8_t* flags = masked ? present.data() : nullptr;
+    for (int z = 0; z < size.z; ++z)
+        for (int y = 0; y < size.y; ++y) {
+            const std::size_t from = grid.lattice.index(begin + glm::ivec3(0, y, z));
+            if (!field) {
+                frame.read(from, n, to, flags);
+            } else {
+                std::memcpy(to, field->samples.data() + from * sampleBytes, n * sampleBytes);
+                for (std::size_t i = 0; masked && i < n; ++i) flags[i] = field->present(from + i) ? 1 : 0;
+            }
+            to += n * sampleBytes;
+            if (flags) flags += n;
+        }
+    if (std::find(present.begin(), present.end(), std::uint8_t(0)) == present.end()) present.clear();
+}
+
+void putSamples(const volume::BrickGrid& grid, glm::ivec3 brick, std::span<const std::byte> samples,
+                volume::Field& field) {
+    const std::size_t sampleBytes = volume::byteSize(field.type);
+    forBrickRows(grid, brick, [&](std::size_t to, std::size_t from, std::size_t n) {
+        std::memcpy(field.samples.data() + to * sampleBytes, samples.data() + from * sampleBytes, n * sampleBytes);
+    });
+}
+
+void roundAsDecoded(const BrickFormat& format, double maxError, BrickInput& input) {
+    if (format.numbers.kind != NumberKind::Quantised) return;
+    for (std::size_t i = 0; i < input.samples.size() / sizeof(float); ++i) {
+        if (!input.present.empty() && input.present[i] == 0) continue;
+        const auto sample = sampleAt<float>(input.samples, i);
+        const float decoded = sampleOf<float>(format.numbers, codeOf(format.numbers, sample));
+        if (close(format.numbers, maxError, sample, decoded))
+            std::memcpy(input.samples.data() + i * sizeof(float), &decoded, sizeof(float));
+    }
+}
+
+FrameBrick tallyOf(const volume::Field& field, const BrickInput& decoded, bool withTally) {
+    const TalliedBrick brick =
+        tallied(field.type, field.offset, field.scale, decoded.samples, decoded.present, withTally);
+    return {brick.min, brick.max, brick.tally, {}};
+}
+
+bool mayStandFor(volume::ScalarType type, const BrickInput& decoded, const BrickInput& input, double maxError,
+                 bool absentToo) {
+    if (decoded.present != input.present) return false;
+    if (decoded.samples == input.samples) return true;
+    if (input.present.empty() && maxError == 0) return false;
+    return volume::dispatch(type, [&]<class T>(T) {
+        const std::size_t count = input.samples.size() / sizeof(T);
+        for (std::size_t i = 0; i < count; ++i) {
+            const bool there = input.present.empty() || input.present[i] != 0;
+            if (!there && !absentToo) continue;
+            const T was = sampleAt<T>(decoded.samples, i), is = sampleAt<T>(input.samples, i);
+            if constexpr (std::same_as<T, float>) {
+                if (std::bit_cast<std::uint32_t>(was) == std::bit_cast<std::uint32_t>(is)) continue;
+                if (there && std::abs(double(was) - double(is)) <= maxError) continue;
+                return false;
+            } else if (was != is) {
+                return false;
+            }
+        }
+        return true;
+    });
+}
+
+double squaredError(volume::ScalarType type, const BrickInput& decoded, const BrickInput& input) {
+    double sum = 0;
+    volume::dispatch(type, [&]<class T>(T) {
+        for (std::size_t i = 0; i < input.samples.size() / sizeof(T); ++i) {
+            if (!input.present.empty() && input.present[i] == 0) continue;
+            const double apart = double(sampleAt<T>(decoded.samples, i)) - double(sampleAt<T>(input.samples, i));
+            if (std::isfinite(apart)) sum += apart * apart;
+        }
+    });
+    return sum;
+}
+
+} // namespace tessera::codec

@@ -1,0 +1,225 @@
+#include "codec/archive/frame_model.h"
+
+#include "codec/archive/brick_access.h"
+#include "codec/wavelet/filter.h"
+#include "volume/base/parallel.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <glm/common.hpp>
+#include <limits>
+#include <mutex>
+
+namespace tessera::codec {
+
+namespace {
+
+constexpr std::size_t kTrialBricks = 6, kModelBricks = 32;
+constexpr int kMostTables = 24;
+
+/// Tokens of some bricks of a frame, spread over it; kept in `taken`, if there is one.
+Histogram sampleTokens(const volume::BrickGrid& grid, const FrameSamples& samples, const FrameRecord& frame,
+                       std::size_t most, Contexts contexts, double maxError = 0, Taken* taken = nullptr) {
+    const std::size_t bricks = brickCount(grid), count = std::min(bricks, most);
+    // Of many samples a part is enough; a step that goes through every place of a row in turn.
+    constexpr std::size_t kMany = 2 << 20;
+    const int every = samples.count() / bricks * count < kMany ? 1 : 5;
+    Histogram sum(grid.levels, contexts);
+    std::mutex mutex;
+    if (taken) {
+        *taken = {frame.wavelet, frame.bodyCentred, contexts, maxError, {}};
+        taken->bricks.resize(bricks);
+    }
+    parallelRanges(count, [&](std::size_t begin, std::size_t end) {
+        BrickInput input;
+        SplitMemory memory;
+        Histogram part(grid.levels, contexts);
+        for (std::size_t i = begin; i < end; ++i) {
+            const std::size_t number = i * bricks / count;
+            const glm::ivec3 brick = brickIndex(grid, number);
+            input.take(grid, brick, samples, frame.mask >= 0);
+            PreparedBrick prepared = prepareBrick(brickFormat(grid, brick, samples.type(), frame), input.samples,
+                                                  input.present, maxError, contexts, memory);
+            countBrick(prepared, part, every);
+            if (taken) taken->bricks[number] = std::move(prepared);
+        }
+        const std::lock_guard lock(mutex); // in any order: counts are whole numbers
+        sum.add(part);
+    });
+    return sum;
+}
+
+/// The same of the middles of some bricks, which is enough to compare filters.
+Histogram sampleMiddles(const volume::BrickGrid& grid, const FrameSamples& samples, const FrameRecord& frame,
+                        std::size_t most) {
+    constexpr int kMiddle = 32, kMiddleLevels = 3, kEvery = 3;
+    const std::size_t bricks = brickCount(grid), count = std::min(bricks, most);
+    const int levels = std::min(grid.levels, kMiddleLevels);
+    Histogram sum(levels, {});
+    std::mutex mutex;
+    parallelRanges(count, [&](std::size_t begin, std::size_t end) {
+        BrickInput input;
+        SplitMemory memory;
+        Histogram part(levels, {});
+        for (std::size_t i = begin; i < end; ++i) {
+            const glm::ivec3 brick = brickIndex(grid, i * bricks / count);
+            BrickFormat format = brickFormat(grid, brick, samples.type(), frame);
+            const int depth = kMiddle * format.sublattices();
+            const glm::ivec3 whole = format.size, size = glm::min(whole, glm::ivec3(kMiddle, kMiddle, depth));
+            glm::ivec3 first = (whole - size) / 2;
+            first.z -= first.z % format.sublattices(); // an even slice first
+            format.size = size;
+            format.levels = levels;
+            input.take(grid, grid.begin(brick) + first, size, samples, frame.mask >= 0);
+            countBrick(prepareBrick(format, input.samples, input.present, 0, {}, memory), part, kEvery);
+        }
+        const std::lock_guard lock(mutex);
+        sum.add(part);
+    });
+    return sum;
+}
+
+/// A shift that brings the typical detail of full resolution to some tens, where the contexts tell sizes apart.
+int shiftFor(const Histogram& histogram) {
+    double count = 0, octaves = 0;
+    for (std::size_t c = 0; c < std::size_t(kClasses) && c < histogram.counts.size(); ++c)
+        for (std::uint32_t t = 0; t < kTokens; ++t) {
+            count += histogram.counts[c][t];
+            octaves += histogram.counts[c][t] * double(std::bit_width(symbolBase(t) / 2));
+        }
+    constexpr double kWanted = 6;
+    return count == 0 ? 0 : std::max(0, int(std::lround(octaves / count - kWanted)));
+}
+
+/// Bits of floats have no bands that are unlike: the low ones are noise in all of them.
+bool prefersByBand(const FrameRecord& frame) {
+    return frame.numbers.kind != NumberKind::Float;
+}
+
+/// The filter by trial on some bricks: first how far it predicts, then how it updates. Predictions alone alias in
+/// coarse levels: they have to be clearly better.
+Wavelet waveletFor(const volume::BrickGrid& grid, const FrameSamples& samples, FrameRecord frame) {
+    constexpr double kPredictionHandicap = 1.015;
+    if (frame.numbers.kind == NumberKind::Float) return Wavelet::W22; // only predicted anyway
+    double best = std::numeric_limits<double>::infinity();
+    Wavelet chosen = Wavelet::W22;
+    const auto tryOne = [&](Wavelet wavelet) {
+        frame.wavelet = wavelet;
+        double bits = sampleMiddles(grid, samples, frame, kTrialBricks).bits();
+        if (!filterOf(wavelet).updates) bits *= kPredictionHandicap;
+        if (bits < best) best = bits, chosen = wavelet;
+    };
+    tryOne(Wavelet::W22);
+    tryOne(Wavelet::W42);
+    if (chosen == Wavelet::W22) {
+        tryOne(Wavelet::N2);
+    } else {
+        tryOne(Wavelet::W44);
+        tryOne(Wavelet::N4);
+    }
+    return chosen;
+}
+
+/// Whether one grid of BCC predicted from the other comes out shorter, by trial on some bricks.
+bool prefersBodyCentred(const volume::BrickGrid& grid, const FrameSamples& samples, FrameRecord frame) {
+    if (grid.lattice.kind != volume::LatticeKind::BCC || frame.numbers.kind == NumberKind::Float) return false;
+    const auto bits = [&](bool bodyCentred) {
+        frame.bodyCentred = bodyCentred;
+        double least = std::numeric_limits<double>::infinity();
+        for (const Wavelet wavelet : {Wavelet::W22, Wavelet::W44}) {
+            frame.wavelet = wavelet;
+            least = std::min(least, sampleMiddles(grid, samples, frame, kTrialBricks).bits());
+        }
+        return least;
+    };
+    return bits(true) < bits(false);
+}
+
+} // namespace
+
+int codeBitsOf(const FrameSamples& samples, const NumberCoding& numbers) {
+    if (samples.type() != volume::ScalarType::F32) return codec::codeBitsOf(samples.type());
+    if (numbers.kind == NumberKind::Float) return 32;
+    std::uint32_t all = 0;
+    samples.forSlabs([&](const volume::Field& part, Slab) {
+        const auto values = part.as<float>();
+        for (std::size_t i = 0; i < values.size(); ++i)
+            if (part.present(i)) {
+                const auto code = static_cast<std::int32_t>(codeOf(numbers, values[i]));
+                all |= static_cast<std::uint32_t>(code < 0 ? ~code : code);
+            }
+        return true;
+    });
+    return std::max(1, int(std::bit_width(all)) + 1);
+}
+
+NumberCoding chooseNumbers(const volume::BrickGrid& grid, const FrameSamples& samples, const KnownModel* last,
+                           const FrameOptions& options) {
+    constexpr int kBitsOfFloat = 25; // sign and 24 digits
+    FrameRecord frame;
+    frame.mask = samples.masked() ? 0 : -1;
+    frame.numbers = chooseCoding(samples, options.maxError);
+    frame.codeBits = codeBitsOf(samples, frame.numbers);
+    if (frame.numbers.kind != NumberKind::Scaled || frame.codeBits <= kBitsOfFloat) return frame.numbers;
+    const NumberCoding scaled = frame.numbers, bits{NumberKind::Float, 0, 1};
+    if (last && last->kind == NumberKind::Float) return bits;
+    const double asScaled = sampleMiddles(grid, samples, frame, kTrialBricks).bits();
+    frame.numbers = bits;
+    frame.codeBits = codeBitsOf(samples, bits);
+    return sampleMiddles(grid, samples, frame, kTrialBricks).bits() < asScaled ? bits : scaled;
+}
+
+int effortFor(const FrameSamples& samples, int zstdLevel) {
+    constexpr std::size_t kSmallFrame = 1 << 19; // samples
+    return samples.count() <= kSmallFrame ? kMostEffort : zstdLevel;
+}
+
+double boundOf(const FrameRecord& frame, const FrameOptions& options) {
+    return frame.numbers.kind == NumberKind::Quantised ? std::max(options.maxError - options.spent, 0.0) : 0;
+}
+
+double estimateFrameBytes(const volume::BrickGrid& grid, const FrameSamples& samples, const FrameOptions& options,
+                          std::size_t bricks) {
+    FrameRecord frame;
+    frame.mask = samples.masked() ? 0 : -1;
+    frame.numbers = chooseNumbers(grid, samples, nullptr, options);
+    frame.wavelet = options.wavelet.value_or(Wavelet::W22);
+    frame.codeBits = codeBitsOf(samples, frame.numbers);
+    const int shift = frame.codeBits > 16 ? shiftFor(sampleTokens(grid, samples, frame, bricks, {})) : 0;
+    const double all = double(brickCount(grid));
+    return sampleTokens(grid, samples, frame, bricks, {shift, prefersByBand(frame)}).bits() / 8 * all /
+           std::min(all, double(bricks));
+}
+
+Model chooseModel(const volume::BrickGrid& grid, const FrameSamples& samples, const KnownModel* last, bool byBand,
+                  FrameRecord& frame, const FrameOptions& options, Taken& taken) {
+    constexpr double kStillAlike = 1.05;
+    const double maxError = boundOf(frame, options);
+    byBand = byBand && prefersByBand(frame);
+    Taken* const kept = samples.whole() ? &taken : nullptr;
+    std::optional<Model> fresh;
+    if (last && last->resembles(frame) && last->model.contexts.byBand == byBand) {
+        const Model& model = last->model;
+        frame.wavelet = options.wavelet.value_or(last->wavelet);
+        frame.bodyCentred = options.bodyCentred.value_or(last->bodyCentred);
+        const Histogram histogram = sampleTokens(grid, samples, frame, kModelBricks, model.contexts, maxError, kept);
+        fresh = makeModel(histogram, kMostTables);
+        const double before = bitsWith(model, histogram), now = bitsWith(*fresh, histogram);
+        if (before <= now + 8.0 * double(serialise(*fresh).size())) {
+            frame.model = last->number;
+            return model;
+        }
+        if (before > kStillAlike * now) fresh.reset();
+    }
+    if (!fresh) {
+        frame.bodyCentred = options.bodyCentred ? *options.bodyCentred : prefersBodyCentred(grid, samples, frame);
+        if (!options.wavelet) frame.wavelet = waveletFor(grid, samples, frame);
+        const int shift = frame.codeBits > 16 ? shiftFor(sampleMiddles(grid, samples, frame, kTrialBricks)) : 0;
+        const Contexts contexts{shift, byBand};
+        fresh = makeModel(sampleTokens(grid, samples, frame, kModelBricks, contexts, maxError, kept), kMostTables);
+    }
+    return *fresh;
+}
+
+} // namespace tessera::codec

@@ -1,0 +1,49 @@
+#pragma once
+
+#include "codec/bands/band_tokens.h"
+#include "codec/bytes/decode_status.h"
+#include "codec/bytes/entropy.h"
+
+/// Bands of integer coefficients to bytes: interleaved rANS whose contexts are the magnitudes of the row and the slice
+/// before, never the left neighbour, so that sixteen lanes along x decode side by side.
+///
+/// Duda: Asymmetric numeral systems (2013); Giesen: Interleaved entropy coders (2014). A half octave of the neighbours'
+/// magnitude as the context is from Wu and Memon: CALIC (1997). (FORMAT.md "Bands".)
+namespace tessera::codec {
+
+/// The model laid out for encoding; one for all bricks of a frame.
+class BandEncoder {
+public:
+    explicit BandEncoder(Model model);
+    const Model& model() const { return model_; }
+    /// Appends the coefficients of bands; nothing when all of them are 0. Any value can be coded. Every choice of `cpu`
+    /// gives the same bytes.
+    void encode(const TokenRun& run, int level, Bytes& out, Cpu cpu = bestCpu()) const;
+
+    struct Entry {
+        std::uint64_t reciprocal = 0;
+        std::uint32_t frequency = 0, start = 0;
+    };
+
+private:
+    Model model_;
+    std::vector<Entry> entries_;        ///< [table << 8 | token]
+    std::vector<std::uint32_t> packed_; ///< the same: frequency | start << 16
+};
+
+/// The model laid out for decoding; one for all bricks of a frame, used from any thread.
+class BandDecoder {
+public:
+    explicit BandDecoder(Model model);
+    const Model& model() const { return model_; }
+    /// Fills the bands from exactly these bytes. Values beyond a Word are cut to it.
+    template <class Word>
+    DecodeStatus decode(std::span<const std::byte> in, std::span<const Band<Word>> bands, int level,
+                        Cpu cpu = bestCpu()) const;
+
+private:
+    Model model_;
+    std::vector<std::uint32_t> table_;
+};
+
+} // namespace tessera::codec

@@ -1,0 +1,381 @@
+#include "codec/bands/band_coder.h"
+#include "codec/bands/band_rows512.h"
+
+namespace tessera::codec {
+
+namespace {
+
+constexpr std::uint32_t kSlotMask = kProbabilityOne - 1;
+
+/// The compressed bytes of a run of bands and how far they are read.
+struct Stream {
+    alignas(64) std::uint32_t states[kMostGroups][kLanes]{};
+    const std::byte *next = nullptr, *end = nullptr; ///< words
+    const std::byte* raw = nullptr;                  ///< raw bits; words follow them
+    std::uint64_t rawAt = 0, rawEnd = 0;             ///< in bits
+    const std::uint32_t* table = nullptr;
+    alignas(64) std::uint32_t tableOf[kBandKinds][kClasses]{}; ///< table number << kProbabilityBits
+    unsigned group = 0, groupMask = 0;
+    Contexts contexts;
+};
+
+/// `bits` raw bits; the caller has checked that they are there. Words follow the raw bits, so that bytes beyond them
+/// may be loaded, as long as they are of the stream.
+std::uint32_t takeRaw(Stream& in, int bits) {
+    std::uint64_t word = 0;
+    const std::byte* at = in.raw + (in.rawAt >> 3);
+    const std::ptrdiff_t left = in.end - at;
+    if (left >= 8)
+        std::memcpy(&word, at, 8);
+    else
+        std::memcpy(&word, at, static_cast<std::size_t>(left));
+    if constexpr (std::endian::native == std::endian::big) word = __builtin_bswap64(word);
+    word >>= in.rawAt & 7;
+    in.rawAt += static_cast<std::uint64_t>(bits);
+    return static_cast<std::uint32_t>(word & ((std::uint64_t(1) << bits) - 1));
+}
+
+/// Sixteen symbols, one in each lane of `active`. False: the stream ends too early.
+template <class Word>
+bool decodeChunk(Stream& in, const Neighbours& near, int kind, int x0, std::uint32_t active, Word* values,
+                 std::uint16_t* sizes) {
+    std::uint32_t* states = in.states[in.group];
+    in.group = (in.group + 1) & in.groupMask;
+    for (int lane = 0; lane < kLanes; ++lane) {
+        const int x = x0 + lane;
+        if ((active >> lane & 1u) == 0) continue;
+        const std::uint32_t state = states[lane];
+        const std::uint32_t entry =
+            in.table[in.tableOf[kind][classOf(near.sum(x, in.contexts.byBand))] | (state & kSlotMask)];
+        std::uint32_t token = entry & 255u;
+        std::uint32_t after = (entry >> 8 & 4095u) * (state >> kProbabilityBits) + (entry >> 20);
+        if (after < kLowestState) {
+            if (in.end - in.next < 2) return false;
+            after = after << 16 | static_cast<std::uint32_t>(in.next[0]) | static_cast<std::uint32_t>(in.next[1]) << 8;
+            in.next += 2;
+        }
+        states[lane] = after;
+        if (token >= kDirect) {
+            const int bits = rawBitsOf(token);
+            if (in.rawEnd - in.rawAt < static_cast<std::uint64_t>(bits)) return false;
+            token = symbolBase(token) | takeRaw(in, bits);
+        }
+        const auto value = static_cast<std::int32_t>(unzigzag(token));
+        values[x] = static_cast<Word>(value);
+        sizes[x] = magnitudeOf(value, in.contexts.shift);
+    }
+    return true;
+}
+
+/// Lanes of a chunk that hold a coefficient.
+TESSERA_INLINE std::uint32_t activeLanes(const std::uint8_t* present, int x0, int width) {
+    const int count = std::min(kLanes, width - x0);
+    const std::uint32_t inside = (1u << count) - 1;
+    if (!present) return inside;
+    std::uint32_t active = 0;
+    for (int lane = 0; lane < count; ++lane) active |= (present[x0 + lane] != 0 ? 1u : 0u) << lane;
+    return active;
+}
+
+template <class Word> bool decodeRows(Stream& in, std::span<const Band<Word>> bands) {
+    std::vector<Magnitudes> magnitudes = magnitudesFor(bands);
+    return forBandRows(bands, [&](std::size_t b, int z, int y) {
+        const Band<Word>& band = bands[b];
+        const Neighbours near(magnitudes[b], z, y);
+        const std::ptrdiff_t at = z * band.slicePitch + y * band.rowPitch;
+        std::uint16_t* sizes = magnitudes[b].row(z, y);
+        if (band.present) {
+            std::fill_n(band.values + at, band.size.x, Word(0));
+            std::fill_n(sizes, band.size.x, std::uint16_t(0));
+        }
+        for (int x0 = 0; x0 < band.size.x; x0 += kLanes) {
+            const std::uint32_t active = activeLanes(band.present ? band.present + at : nullptr, x0, band.size.x);
+            if (!decodeChunk(in, near, band.kind, x0, active, band.values + at, sizes)) return false;
+        }
+        return true;
+    });
+}
+
+#if TESSERA_X86
+
+/// Raw bits of the lanes whose token is not direct, in lanes; false when the stream ends. Octaves up to 25 raw bits.
+TESSERA_AVX512 inline bool rawSymbols512(Stream& in, __mmask16 some, __m512i token, __m512i& symbol) {
+    const __m512i code = _mm512_sub_epi32(token, _mm512_set1_epi32(kDirect));
+    const __m512i bits =
+        _mm512_maskz_add_epi32(some, _mm512_srli_epi32(code, 2), _mm512_set1_epi32(3)); // 0 in other lanes
+    // Sums of the bits of all lanes before.
+    __m512i sum = bits;
+    const __m512i zero = _mm512_setzero_si512();
+    sum = _mm512_add_epi32(sum, _mm512_alignr_epi32(sum, zero, 15));
+    sum = _mm512_add_epi32(sum, _mm512_alignr_epi32(sum, zero, 14));
+    sum = _mm512_add_epi32(sum, _mm512_alignr_epi32(sum, zero, 12));
+    sum = _mm512_add_epi32(sum, _mm512_alignr_epi32(sum, zero, 8));
+    const auto total =
+        static_cast<std::uint32_t>(_mm_extract_epi32(_mm512_extracti32x4_epi32(sum, 3), 3)); // at most 16 * 25
+    if (in.rawEnd - in.rawAt < total) return false;
+    const __m512i at = _mm512_add_epi32(_mm512_sub_epi32(sum, bits), _mm512_set1_epi32(static_cast<int>(in.rawAt & 7)));
+    const __m512i words =
+        _mm512_mask_i32gather_epi32(zero, some, _mm512_srli_epi32(at, 3), in.raw + (in.rawAt >> 3), 1);
+    const __m512i shifted = _mm512_srlv_epi32(words, _mm512_and_si512(at, _mm512_set1_epi32(7)));
+    const __m512i base = _mm512_or_si512(_mm512_and_si512(code, _mm512_set1_epi32(3)), _mm512_set1_epi32(4));
+    const __m512i low = _mm512_sub_epi32(_mm512_sllv_epi32(_mm512_set1_epi32(1), bits), _mm512_set1_epi32(1));
+    const __m512i raw = _mm512_or_si512(_mm512_sllv_epi32(base, bits), _mm512_and_si512(shifted, low));
+    symbol = _mm512_mask_mov_epi32(symbol, some, raw);
+    in.rawAt += total;
+    return true;
+}
+
+/// A constant that stays in its register: compilers make those they know anew each time.
+TESSERA_AVX512 TESSERA_INLINE __m512i kept512(int value) {
+    __m512i vector = _mm512_set1_epi32(value);
+    asm("" : "+v"(vector));
+    return vector;
+}
+
+/// The chunks of the rows of all bands at one place, in the order of coding.
+struct Chunks512 {
+    struct alignas(64) Sixteen {
+        std::uint32_t lanes[kLanes];
+    };
+    std::vector<Sixteen> tables;      ///< of the context of each place: number << kProbabilityBits
+    std::vector<__mmask16> active;    ///< lanes that hold a coefficient
+    std::vector<std::uint8_t> tokens; ///< sixteen a chunk, 0 where there is no coefficient
+    std::vector<std::uint32_t> raw;   ///< chunks that raw bits belong to
+    std::size_t count = 0, rawCount = 0;
+
+    explicit Chunks512(std::size_t most) : tables(most), active(most), tokens(most * kLanes), raw(most + 1) {}
+};
+
+/// What the loop over chunks changes, in registers.
+struct Cursor512 {
+    const std::byte* next;
+    unsigned group;
+};
+
+/// The tokens of all chunks. False: the stream ends too early.
+TESSERA_AVX512 bool decodeTokens512(Stream& in, Cursor512& cursor, Chunks512& chunks) {
+    const std::uint32_t* const table = in.table;
+    const std::byte *next = cursor.next, *const end = in.end;
+    const __m512i slotMask = kept512(static_cast<int>(kSlotMask)), lowest = kept512(static_cast<int>(kLowestState));
+    unsigned group = cursor.group;
+    std::uint32_t* raw = chunks.raw.data();
+    for (std::size_t chunk = 0; chunk < chunks.count; ++chunk) {
+        std::uint32_t* own = in.states[group];
+        group = (group + 1) & in.groupMask;
+        const __mmask16 active = chunks.active[chunk];
+        const __m512i state = _mm512_load_si512(own), tables = _mm512_load_si512(chunks.tables[chunk].lanes);
+        const __m512i entry = entries512(table, _mm512_or_si512(tables, _mm512_and_si512(state, slotMask)));
+        const __m512i frequency = _mm512_and_si512(_mm512_srli_epi32(entry, 8), slotMask); // as many bits
+        __m512i after = _mm512_add_epi32(_mm512_mullo_epi32(frequency, _mm512_srli_epi32(state, kProbabilityBits)),
+                                         _mm512_srli_epi32(entry, 20));
+        const __mmask16 low = _mm512_mask_cmplt_epu32_mask(active, after, lowest);
+        const int count = __builtin_popcount(low);
+        const std::ptrdiff_t left = end - next;
+        __m256i words;
+        if (left >= 32) [[likely]] {
+            words = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(next));
+        } else {
+            if (left < 2 * count) return false;
+            words = _mm256_maskz_loadu_epi16(static_cast<__mmask16>((1u << (left / 2)) - 1u), next);
+        }
+        next += 2 * count;
+        const __m512i refill = _mm512_maskz_expand_epi32(low, _mm512_cvtepu16_epi32(words));
+        after = _mm512_mask_or_epi32(after, low, _mm512_slli_epi32(after, 16), refill);
+        _mm512_store_si512(own, _mm512_mask_mov_epi32(state, active, after));
+        const __m128i tokens = _mm512_maskz_cvtepi32_epi8(active, entry);
+        _mm_storeu_si128(reinterpret_cast<__m128i*>(chunks.tokens.data() + chunk * kLanes), tokens);
+        *raw = static_cast<std::uint32_t>(chunk);
+        raw += _mm_cmpge_epu8_mask(tokens, _mm_set1_epi8(kDirect)) != 0 ? 1 : 0;
+    }
+    chunks.rawCount = std::size_t(raw - chunks.raw.data());
+    cursor = {next, group};
+    return true;
+}
+
+/// Sixteen tokens to coefficients, with the raw bits that follow; false when those end.
+template <class Word>
+TESSERA_AVX512 bool rawChunk512(Stream& in, const std::uint8_t* tokens, __mmask16 inside, Word* values,
+                                std::uint16_t* sizes) {
+    const __m512i token = _mm512_cvtepu8_epi32(_mm_loadu_si128(reinterpret_cast<const __m128i*>(tokens)));
+    __m512i symbol = token;
+    const __mmask16 some = _mm512_cmpge_epu32_mask(token, _mm512_set1_epi32(kDirect));
+    // 22 octaves of up to 25 bits behind the direct tokens.
+    if (_mm512_cmpge_epu32_mask(token, _mm512_set1_epi32(kDirect + 23 * 4)) == 0) {
+        if (!rawSymbols512(in, some, token, symbol)) return false;
+    } else {
+        alignas(64) std::uint32_t all[kLanes];
+        _mm512_store_si512(all, symbol);
+        for (std::uint32_t rest = some; rest != 0; rest &= rest - 1) {
+            std::uint32_t& one = all[__builtin_ctz(rest)];
+            const int bits = rawBitsOf(one);
+            if (in.rawEnd - in.rawAt < static_cast<std::uint64_t>(bits)) return false;
+            one = symbolBase(one) | takeRaw(in, bits);
+        }
+        symbol = _mm512_load_si512(all);
+    }
+    const __m512i sign = _mm512_sub_epi32(_mm512_setzero_si512(), _mm512_and_si512(symbol, _mm512_set1_epi32(1)));
+    const __m512i value = _mm512_xor_si512(_mm512_srli_epi32(symbol, 1), sign);
+    const __m512i size =
+        _mm512_min_epu32(_mm512_srl_epi32(_mm512_abs_epi32(value), _mm_cvtsi32_si128(in.contexts.shift)),
+                         _mm512_set1_epi32(static_cast<int>(kLargestMagnitude)));
+    _mm256_storeu_si256(reinterpret_cast<__m256i*>(sizes), _mm512_cvtepi32_epi16(size));
+    if constexpr (sizeof(Word) == 2)
+        _mm512_mask_cvtepi32_storeu_epi16(values, inside, value);
+    else
+        _mm512_mask_storeu_epi32(values, inside, value);
+    return true;
+}
+
+/// A row of direct tokens to coefficients. 32 lanes at a time: magnitudes of those behind the row, which are 0, fall on
+/// the zeros before the next row.
+template <class Word>
+TESSERA_AVX512 inline void directRow512(const std::uint8_t* tokens, int width, int shift, Word* values,
+                                        std::uint16_t* sizes) {
+    for (int x = 0; x < width; x += 32) {
+        const __mmask32 inside = width - x >= 32 ? ~__mmask32(0) : (__mmask32(1) << (width - x)) - 1;
+        const __m512i symbol = _mm512_cvtepu8_epi16(_mm256_maskz_loadu_epi8(inside, tokens + x));
+        const __m512i sign = _mm512_sub_epi16(_mm512_setzero_si512(), _mm512_and_si512(symbol, _mm512_set1_epi16(1)));
+        const __m512i value = _mm512_xor_si512(_mm512_srli_epi16(symbol, 1), sign);
+        _mm512_storeu_si512(sizes + x, _mm512_srl_epi16(_mm512_abs_epi16(value), _mm_cvtsi32_si128(shift)));
+        if constexpr (sizeof(Word) == 2) {
+            _mm512_mask_storeu_epi16(values + x, inside, value);
+        } else {
+            _mm512_mask_storeu_epi32(values + x, static_cast<__mmask16>(inside),
+                                     _mm512_cvtepi16_epi32(_mm512_castsi512_si256(value)));
+            _mm512_mask_storeu_epi32(values + x + 16, static_cast<__mmask16>(inside >> 16),
+                                     _mm512_cvtepi16_epi32(_mm512_extracti64x4_epi64(value, 1)));
+        }
+    }
+}
+
+/// Appends the chunks of a row: where their contexts look, and which lanes they have.
+template <bool kByBand>
+TESSERA_AVX512 TESSERA_INLINE void appendRow512(const Stream& in, const Neighbours& near, int kind,
+                                                const std::uint8_t* present, int width, Chunks512& chunks) {
+    const __m512i low = _mm512_load_si512(in.tableOf[kind]), high = _mm512_load_si512(in.tableOf[kind] + 16);
+    std::size_t count = chunks.count;
+    for (int x = 0; x < width; x += 2 * kLanes) {
+        const __m512i sums = sums512<kByBand>(near, x, width);
+        const __m512i first = classes512(_mm512_castsi512_si256(sums));
+        _mm512_store_si512(chunks.tables[count].lanes, _mm512_permutex2var_epi32(low, first, high));
+        chunks.active[count++] = static_cast<__mmask16>(activeLanes(present, x, width));
+        if (width - x <= kLanes) break;
+        const __m512i second = classes512(_mm512_extracti64x4_epi64(sums, 1));
+        _mm512_store_si512(chunks.tables[count].lanes, _mm512_permutex2var_epi32(low, second, high));
+        chunks.active[count++] = static_cast<__mmask16>(activeLanes(present, x + kLanes, width));
+    }
+    chunks.count = count;
+}
+
+/// First the contexts of all bands' rows at one place, then their tokens, then coefficients, those with raw bits last:
+/// the loop over tokens waits for nothing else.
+template <class Word, bool kByBand> TESSERA_AVX512 bool decodeRows512(Stream& in, std::span<const Band<Word>> bands) {
+    std::vector<Magnitudes> magnitudes = magnitudesFor(bands);
+    std::size_t most = 0;
+    glm::ivec3 largest(0);
+    for (const Band<Word>& band : bands) {
+        most += std::size_t((std::max(band.size.x, 0) + kLanes - 1) / kLanes);
+        if (band.size.x > 0) largest = glm::max(largest, band.size);
+    }
+    Chunks512 chunks(most);
+    Cursor512 cursor{in.next, 0};
+    for (int z = 0; z < largest.z; ++z)
+        for (int y = 0; y < largest.y; ++y) {
+            const auto isHere = [&](const Band<Word>& band) {
+                return band.size.x > 0 && y < band.size.y && z < band.size.z;
+            };
+            chunks.count = 0;
+            for (std::size_t b = 0; b < bands.size(); ++b) {
+                const Band<Word>& band = bands[b];
+                if (!isHere(band)) continue;
+                const std::uint8_t* present =
+                    band.present ? band.present + z * band.slicePitch + y * band.rowPitch : nullptr;
+                appendRow512<kByBand>(in, Neighbours(magnitudes[b], z, y), kByBand ? band.kind : 0, present,
+                                      band.size.x, chunks);
+            }
+            if (!decodeTokens512(in, cursor, chunks)) return false;
+            std::size_t first = 0, raw = 0;
+            for (std::size_t b = 0; b < bands.size(); ++b) {
+                const Band<Word>& band = bands[b];
+                if (!isHere(band)) continue;
+                Word* values = band.values + z * band.slicePitch + y * band.rowPitch;
+                const std::uint8_t* tokens = chunks.tokens.data() + first * kLanes;
+                std::uint16_t* sizes = magnitudes[b].row(z, y);
+                directRow512<Word>(tokens, band.size.x, in.contexts.shift, values, sizes);
+                const std::size_t own = std::size_t((band.size.x + kLanes - 1) / kLanes);
+                for (; raw < chunks.rawCount && chunks.raw[raw] < first + own; ++raw) {
+                    const std::size_t at = chunks.raw[raw] - first;
+                    const auto x = static_cast<std::ptrdiff_t>(at * kLanes);
+                    const auto inside =
+                        static_cast<__mmask16>((1u << std::min(kLanes, band.size.x - static_cast<int>(x))) - 1u);
+                    if (!rawChunk512<Word>(in, tokens + x, inside, values + x, sizes + x)) return false;
+                }
+                first += own;
+            }
+        }
+    in.next = cursor.next;
+    return true;
+}
+
+#endif
+
+} // namespace
+
+BandDecoder::BandDecoder(Model model) : model_(std::move(model)), table_(decodeTable(model_)) {}
+
+template <class Word>
+DecodeStatus BandDecoder::decode(std::span<const std::byte> in, std::span<const Band<Word>> bands, int level,
+                                 Cpu cpu) const {
+    if (in.empty()) {
+        for (const Band<Word>& band : bands)
+            for (int z = 0; z < band.size.z; ++z)
+                for (int y = 0; y < band.size.y; ++y)
+                    std::fill_n(band.values + z * band.slicePitch + y * band.rowPitch, std::max(0, band.size.x),
+                                Word(0));
+        return DecodeStatus::Ok;
+    }
+    std::uint64_t rawBytes = 0;
+    if (const DecodeStatus status = takeLength(in, rawBytes); status != DecodeStatus::Ok) return status;
+    const Lanes lanes(bands);
+    const std::size_t statesBytes = 4 * static_cast<std::size_t>(lanes.used);
+    if (in.size() < rawBytes || in.size() - rawBytes < statesBytes) return DecodeStatus::Truncated;
+    if ((in.size() - rawBytes) % 2 != 0) return DecodeStatus::Trailing;
+
+    Stream stream;
+    stream.raw = in.data();
+    stream.rawEnd = 8 * rawBytes;
+    in = in.subspan(rawBytes);
+    for (int lane = 0; lane < kMostGroups * kLanes; ++lane)
+        stream.states[lane / kLanes][lane % kLanes] = lane < lanes.used ? readU32(in.data() + 4 * lane) : kLowestState;
+    stream.next = in.data() + statesBytes;
+    stream.end = in.data() + in.size();
+    stream.table = table_.data();
+    for (int kind = 0; kind < kBandKinds; ++kind)
+        for (std::size_t c = 0; c < kClasses; ++c)
+            stream.tableOf[kind][c] = std::uint32_t(model_.tableOf[model_.contexts.first(level, kind) + c])
+                                      << kProbabilityBits;
+    stream.groupMask = static_cast<unsigned>(lanes.groups - 1);
+    stream.contexts = model_.contexts;
+#if TESSERA_X86
+    const bool whole = cpu != Cpu::Avx512       ? decodeRows(stream, bands)
+                       : stream.contexts.byBand ? decodeRows512<Word, true>(stream, bands)
+                                                : decodeRows512<Word, false>(stream, bands);
+#else
+    const bool whole = decodeRows(stream, bands);
+    (void)cpu;
+#endif
+    if (!whole) return DecodeStatus::Truncated;
+    if (stream.next != stream.end || (stream.rawAt + 7) / 8 != rawBytes) return DecodeStatus::Trailing;
+    // An encoder begins with the lowest state, so a decoder ends with it.
+    for (const auto& group : stream.states)
+        for (const std::uint32_t state : group)
+            if (state != kLowestState) return DecodeStatus::BadData;
+    return DecodeStatus::Ok;
+}
+
+template DecodeStatus BandDecoder::decode(std::span<const std::byte>, std::span<const Band<std::int16_t>>, int,
+                                          Cpu) const;
+template DecodeStatus BandDecoder::decode(std::span<const std::byte>, std::span<const Band<std::int32_t>>, int,
+                                          Cpu) const;
+
+} // namespace tessera::codec

@@ -1,0 +1,200 @@
+#include "codec/bands/band_coder.h"
+#include "codec/bands/band_rows512.h"
+
+#include <memory>
+
+namespace tessera::codec {
+
+namespace {
+
+/// Raw bits, lowest first.
+class RawBits {
+public:
+    /// Bits are put at most `count` times.
+    explicit RawBits(std::size_t count) : bytes_(4 * count + 8) {}
+
+    void put(std::uint32_t value, int bits) {
+        pending_ |= static_cast<std::uint64_t>(value) << count_;
+        count_ += bits;
+        if (count_ < 32) return;
+        for (std::size_t i = 0; i < 4; ++i) bytes_[at_ + i] = static_cast<std::byte>(pending_ >> (8 * i));
+        at_ += 4, count_ -= 32, pending_ >>= 32;
+    }
+    Bytes taken() {
+        for (; count_ > 0; count_ -= 8, pending_ >>= 8) bytes_[at_++] = static_cast<std::byte>(pending_);
+        bytes_.resize(at_);
+        return std::move(bytes_);
+    }
+
+private:
+    Bytes bytes_;
+    std::size_t at_ = 0;
+    std::uint64_t pending_ = 0;
+    int count_ = 0;
+};
+
+/// What the backward pass makes: states, words from the end of their buffer on, and where it had to escape.
+struct Coded {
+    alignas(64) std::uint32_t states[kMostGroups * kLanes];
+    std::size_t size = 0, at = 0;
+    std::unique_ptr<std::uint16_t[]> words; ///< `size` of them
+    std::vector<std::uint32_t> escaped;     ///< numbers of tokens, descending
+
+    explicit Coded(std::size_t tokens)
+        : size(tokens + kLanes), at(size), words(std::make_unique_for_overwrite<std::uint16_t[]>(size)) {
+        std::fill(std::begin(states), std::end(states), kLowestState);
+    }
+};
+
+/// Tokens to states and words, the last one first: a decoder undoes it. `tables`: number of the table << 8 of each
+/// class of each kind of bands.
+void codeTokens(const TokenRun& run, const std::uint32_t* tables, std::span<const BandEncoder::Entry> entries,
+                Coded& out) {
+    const std::size_t groups = std::size_t(run.groups);
+    for (std::size_t i = run.tokens.size(); i-- > 0;) {
+        const std::uint32_t token = run.tokens[i];
+        if (token == TokenRun::kNone) continue;
+        const std::uint32_t table = tables[token >> 8];
+        const BandEncoder::Entry* entry = &entries[table | (token & 255u)];
+        if (entry->frequency == 0) {
+            entry = &entries[table | kEscape];
+            out.escaped.push_back(static_cast<std::uint32_t>(i));
+        }
+        std::uint32_t& state = out.states[i / kLanes % groups * kLanes + i % kLanes];
+        std::uint32_t x = state;
+        // Written always, kept when the state is too large: half of the time is no branch to predict.
+        out.words[out.at - 1] = static_cast<std::uint16_t>(x);
+        const bool full = x >> 20 >= entry->frequency;
+        out.at -= full ? 1 : 0;
+        x = full ? x >> 16 : x;
+        const auto quotient = static_cast<std::uint32_t>((x * entry->reciprocal) >> 44);
+        state = (quotient << kProbabilityBits) + (x - quotient * entry->frequency) + entry->start;
+    }
+}
+
+#if TESSERA_X86
+
+/// As codeTokens, a chunk at a time.
+TESSERA_AVX512 void codeTokens512(const TokenRun& run, const std::uint32_t* tables, const std::uint32_t* packed,
+                                  Coded& out) {
+    const std::size_t mask = std::size_t(run.groups) - 1;
+    std::uint16_t* words = out.words.get() + out.at;
+    for (std::size_t chunk = run.tokens.size() / kLanes; chunk-- > 0;) {
+        const __m512i both = _mm512_cvtepu16_epi32(
+            _mm256_loadu_si256(reinterpret_cast<const __m256i*>(run.tokens.data() + chunk * kLanes)));
+        const __mmask16 active = _mm512_cmpneq_epu32_mask(both, _mm512_set1_epi32(TokenRun::kNone));
+        if (active == 0) continue;
+        // A chunk is of one band.
+        const std::uint32_t* own =
+            tables + (run.tokens[chunk * kLanes + std::size_t(__builtin_ctz(active))] >> 13) * kClasses;
+        const __m512i table =
+            _mm512_permutex2var_epi32(_mm512_load_si512(own), _mm512_srli_epi32(both, 8), _mm512_load_si512(own + 16));
+        const __m512i index = _mm512_or_si512(table, _mm512_and_si512(both, _mm512_set1_epi32(255)));
+        __m512i entry = _mm512_mask_mov_epi32(_mm512_set1_epi32(1), active, entries512(packed, index));
+        __m512i frequency = _mm512_and_si512(entry, _mm512_set1_epi32(0xffff));
+        const __mmask16 none = _mm512_mask_testn_epi32_mask(active, frequency, frequency);
+        if (none != 0) [[unlikely]] {
+            const __m512i escape = _mm512_or_si512(table, _mm512_set1_epi32(kEscape));
+            entry = _mm512_mask_mov_epi32(entry, none, entries512(packed, escape));
+            frequency = _mm512_and_si512(entry, _mm512_set1_epi32(0xffff));
+            for (std::uint32_t lane = kLanes; lane-- > 0;)
+                if ((none >> lane & 1) != 0) out.escaped.push_back(static_cast<std::uint32_t>(chunk * kLanes + lane));
+        }
+        std::uint32_t* states = out.states + (chunk & mask) * kLanes;
+        const __m512i state = _mm512_load_si512(states);
+        const __mmask16 full = _mm512_mask_cmpge_epu32_mask(active, _mm512_srli_epi32(state, 20), frequency);
+        const int count = __builtin_popcount(full);
+        words -= count;
+        _mm256_mask_storeu_epi16(words, static_cast<__mmask16>((1u << count) - 1u),
+                                 _mm512_cvtepi32_epi16(_mm512_maskz_compress_epi32(full, state)));
+        const __m512i x = _mm512_mask_srli_epi32(state, full, state, 16);
+        // The quotient in float, at most one off, then put right.
+        const __m512 divisor = _mm512_cvtepu32_ps(frequency);
+        const __m512 guess = _mm512_rcp14_ps(divisor);
+        const __m512 reciprocal = _mm512_mul_ps(guess, _mm512_sub_ps(_mm512_set1_ps(2), _mm512_mul_ps(divisor, guess)));
+        __m512i quotient = _mm512_cvttps_epu32(_mm512_mul_ps(_mm512_cvtepu32_ps(x), reciprocal));
+        __m512i rest = _mm512_sub_epi32(x, _mm512_mullo_epi32(quotient, frequency));
+        const __mmask16 over = _mm512_movepi32_mask(rest);
+        quotient = _mm512_mask_sub_epi32(quotient, over, quotient, _mm512_set1_epi32(1));
+        rest = _mm512_mask_add_epi32(rest, over, rest, frequency);
+        const __mmask16 under = _mm512_cmpge_epu32_mask(rest, frequency);
+        quotient = _mm512_mask_add_epi32(quotient, under, quotient, _mm512_set1_epi32(1));
+        rest = _mm512_mask_sub_epi32(rest, under, rest, frequency);
+        const __m512i after = _mm512_add_epi32(_mm512_slli_epi32(quotient, kProbabilityBits),
+                                               _mm512_add_epi32(rest, _mm512_srli_epi32(entry, 16)));
+        _mm512_store_si512(states, _mm512_mask_mov_epi32(state, active, after));
+    }
+    out.at = static_cast<std::size_t>(words - out.words.get());
+}
+
+#endif
+
+/// The raw bits of symbols that need them, in order.
+Bytes rawBits(const TokenRun& run, std::span<const std::uint32_t> escaped) {
+    RawBits raw(run.large.size() + escaped.size());
+    std::size_t left = escaped.size();
+    const auto escapeUpTo = [&](std::uint32_t at) { // of direct tokens, which are their symbols
+        for (; left > 0 && escaped[left - 1] < at; --left) raw.put(run.tokens[escaped[left - 1]] & 255u, 32);
+    };
+    for (std::size_t i = 0; i < run.large.size(); ++i) {
+        const std::uint32_t symbol = run.large[i], at = run.largeAt[i];
+        escapeUpTo(at);
+        if (left > 0 && escaped[left - 1] == at) {
+            raw.put(symbol, 32);
+            --left;
+            continue;
+        }
+        const int bits = rawBitsOf(run.tokens[at] & 255u);
+        raw.put(symbol & ((1u << bits) - 1), bits);
+    }
+    escapeUpTo(~0u);
+    return raw.taken();
+}
+
+} // namespace
+
+BandEncoder::BandEncoder(Model model)
+    : model_(std::move(model)), entries_(model_.tables.size() << 8), packed_(entries_.size()) {
+    for (std::size_t i = 0; i < model_.tables.size(); ++i) {
+        std::uint32_t start = 0;
+        for (std::size_t t = 0; t < kTokens; ++t) {
+            const std::uint32_t frequency = model_.tables[i][t];
+            if (frequency == 0) continue;
+            // Rounded up: exact for the states below frequency * 2^20 that are divided by it.
+            entries_[i << 8 | t] = {((std::uint64_t(1) << 44) + frequency - 1) / frequency, frequency, start};
+            packed_[i << 8 | t] = frequency | start << 16;
+            start += frequency;
+        }
+    }
+}
+
+void BandEncoder::encode(const TokenRun& run, int level, Bytes& out, Cpu cpu) const {
+    if (run.zero) return;
+    alignas(64) std::uint32_t tables[kBandKinds * kClasses];
+    for (int kind = 0; kind < kBandKinds; ++kind)
+        for (std::size_t c = 0; c < kClasses; ++c)
+            tables[std::size_t(kind) * kClasses + c] =
+                std::uint32_t(model_.tableOf[model_.contexts.first(level, kind) + c]) << 8;
+    Coded coded(run.tokens.size());
+#if TESSERA_X86
+    if (cpu == Cpu::Avx512)
+        codeTokens512(run, tables, packed_.data(), coded);
+    else
+#endif
+        codeTokens(run, tables, entries_, coded);
+    (void)cpu;
+    const Bytes raw = rawBits(run, coded.escaped);
+    appendLength(out, static_cast<std::uint32_t>(raw.size()));
+    out.insert(out.end(), raw.begin(), raw.end());
+    for (int lane = 0; lane < run.used; ++lane) appendU32(out, coded.states[lane]);
+    const std::size_t begin = out.size(), count = coded.size - coded.at;
+    out.resize(begin + 2 * count);
+    const std::uint16_t* words = coded.words.get() + coded.at;
+    std::byte* to = out.data() + begin;
+    for (std::size_t i = 0; i < count; ++i, to += 2) {
+        to[0] = static_cast<std::byte>(words[i]);
+        to[1] = static_cast<std::byte>(words[i] >> 8);
+    }
+}
+
+} // namespace tessera::codec

@@ -1,0 +1,303 @@
+#include "codec/bands/rans_model.h"
+
+#include "codec/bytes/bits.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <numeric>
+
+namespace tessera::codec {
+
+namespace {
+
+using Counts = std::array<std::uint32_t, kTokens>;
+using KindTables = std::array<std::uint8_t, kClasses>;
+
+constexpr std::uint32_t kByBand = 128; // beside the shift
+
+// Bits a table costs in the file: its place in the map and about this much for each token in use.
+constexpr double kTableBits = 24, kTokenBits = 8;
+
+/// n log2 n, at hand for small n.
+double nLogN(std::uint32_t n) {
+    static const std::array<double, 2048> kSmall = [] {
+        std::array<double, 2048> all{};
+        for (std::size_t i = 1; i < all.size(); ++i) all[i] = double(i) * std::log2(double(i));
+        return all;
+    }();
+    return n < kSmall.size() ? kSmall[n] : double(n) * std::log2(double(n));
+}
+
+/// Bits of the tokens of one context with their own ideal table, and of that table.
+double costOf(const Counts& counts) {
+    double total = 0, own = 0, used = 0;
+    for (const std::uint32_t count : counts) {
+        if (count == 0) continue;
+        total += count, own += nLogN(count), used += 1;
+    }
+    return total == 0 ? 0 : total * std::log2(total) - own + kTableBits + used * kTokenBits;
+}
+
+/// Counts scaled to a sum of kProbabilityOne, nothing that occurs at 0, the escape always possible.
+Frequencies normalised(const Counts& counts) {
+    Frequencies out{};
+    Counts wanted = counts;
+    wanted[kEscape] = std::max<std::uint32_t>(wanted[kEscape], 1);
+    if (std::accumulate(wanted.begin(), wanted.end() - 1, 0u) == 0) wanted[0] = 1;
+    const double total = std::accumulate(wanted.begin(), wanted.end(), 0.0);
+    int sum = 0;
+    for (int t = 0; t < kTokens; ++t) {
+        const auto at = static_cast<std::size_t>(t);
+        if (wanted[at] == 0) continue;
+        const double share = wanted[at] / total * kProbabilityOne;
+        out[at] = static_cast<std::uint16_t>(std::max(1.0, std::floor(share + 0.5)));
+        sum += out[at];
+    }
+    // Settle the rest where it costs or gains most per step.
+    const int step = sum < int(kProbabilityOne) ? 1 : -1;
+    const auto gainOf = [&](std::size_t t) {
+        if (out[t] == 0 || (step < 0 && out[t] == 1)) return -1e300;
+        return wanted[t] * (std::log2(double(out[t] + step)) - std::log2(double(out[t])));
+    };
+    std::array<double, kTokens> gains;
+    for (std::size_t t = 0; t < kTokens && sum != int(kProbabilityOne); ++t) gains[t] = gainOf(t);
+    for (; sum != int(kProbabilityOne); sum += step) {
+        const auto t = static_cast<std::size_t>(std::max_element(gains.begin(), gains.end()) - gains.begin());
+        out[t] = static_cast<std::uint16_t>(out[t] + step);
+        gains[t] = gainOf(t);
+    }
+    return out;
+}
+
+Model clustered(const Histogram& histogram, int mostTables) {
+    struct Group {
+        Counts counts{};
+        std::vector<std::size_t> contexts;
+        double mean = 0, cost = 0;
+    };
+    std::vector<Group> all;
+    for (std::size_t c = 0; c < histogram.counts.size(); ++c) {
+        double total = 0, sum = 0;
+        for (std::size_t t = 0; t < kTokens; ++t) {
+            total += histogram.counts[c][t];
+            sum += double(histogram.counts[c][t]) * double(t);
+        }
+        if (total > 0) all.push_back({histogram.counts[c], {c}, sum / total, costOf(histogram.counts[c])});
+    }
+    // Similar contexts have similar means: only neighbours in that order are ever joined.
+    std::vector<Group*> groups;
+    for (Group& group : all) groups.push_back(&group);
+    std::sort(groups.begin(), groups.end(), [](const Group* a, const Group* b) { return a->mean < b->mean; });
+    const auto joined = [](const Group& a, const Group& b) {
+        Counts counts = a.counts;
+        for (std::size_t t = 0; t < kTokens; ++t) counts[t] += b.counts[t];
+        return counts;
+    };
+    std::vector<double> loss(groups.empty() ? 0 : groups.size() - 1);
+    const auto weigh = [&](std::size_t i) {
+        loss[i] = costOf(joined(*groups[i], *groups[i + 1])) - groups[i]->cost - groups[i + 1]->cost;
+    };
+    for (std::size_t i = 0; i + 1 < groups.size(); ++i) weigh(i);
+    while (groups.size() > 1) {
+        const auto best = std::min_element(loss.begin(), loss.end());
+        if (*best >= 0 && int(groups.size()) <= mostTables) break;
+        const auto i = static_cast<std::size_t>(best - loss.begin());
+        Group &one = *groups[i], &other = *groups[i + 1];
+        one.counts = joined(one, other);
+        one.cost = costOf(one.counts);
+        one.contexts.insert(one.contexts.end(), other.contexts.begin(), other.contexts.end());
+        groups.erase(groups.begin() + std::ptrdiff_t(i) + 1);
+        loss.erase(best);
+        if (i > 0) weigh(i - 1);
+        if (i + 1 < groups.size()) weigh(i);
+    }
+
+    Model model;
+    model.levels = histogram.levels;
+    model.contexts = histogram.contexts;
+    constexpr std::uint8_t kNone = 255;
+    model.tableOf.assign(histogram.counts.size(), kNone);
+    for (std::size_t g = 0; g < groups.size(); ++g) {
+        model.tables.push_back(normalised(groups[g]->counts));
+        for (const std::size_t c : groups[g]->contexts) model.tableOf[c] = static_cast<std::uint8_t>(g);
+    }
+    if (model.tables.empty()) model.tables.push_back(normalised(Counts{}));
+    // Contexts that were not seen take the table of the class below, which costs no bits in the map.
+    std::uint8_t last = 0;
+    for (std::size_t c = 0; c < model.tableOf.size(); ++c) {
+        std::uint8_t& table = model.tableOf[c];
+        const auto kind = model.tableOf.begin() + std::ptrdiff_t(c);
+        if (model.contexts.byBand && c % kClasses == 0 && std::count(kind, kind + kClasses, kNone) == kClasses) {
+            // A kind of bands that was not seen takes those of the kind before.
+            if (c == 0)
+                std::fill_n(kind, kClasses, std::uint8_t(0));
+            else
+                std::copy_n(kind - kClasses, kClasses, kind);
+            c += kClasses - 1;
+            continue;
+        }
+        if (table == kNone) table = last;
+        last = table;
+    }
+    return model;
+}
+
+/// The histogram in which all kinds of bands of a level are one.
+Histogram pooled(const Histogram& histogram) {
+    Histogram pool(histogram.levels, {histogram.contexts.shift, false});
+    for (int level = 0; level < histogram.levels; ++level)
+        for (int kind = 0; kind < histogram.contexts.kindsOf(level); ++kind)
+            for (std::size_t c = 0; c < kClasses; ++c)
+                for (std::size_t t = 0; t < kTokens; ++t)
+                    pool.counts[pool.contexts.first(level) + c][t] +=
+                        histogram.counts[histogram.contexts.first(level, kind) + c][t];
+    return pool;
+}
+
+/// The model of a pool, for contexts of which all kinds of bands of a level take the same tables.
+Model spread(const Model& pool, Contexts contexts) {
+    Model model{pool.levels, contexts, {}, pool.tables};
+    for (int level = 0; level < pool.levels; ++level)
+        for (int kind = 0; kind < contexts.kindsOf(level); ++kind) {
+            const auto from = pool.tableOf.begin() + std::ptrdiff_t(pool.contexts.first(level));
+            model.tableOf.insert(model.tableOf.end(), from, from + kClasses);
+        }
+    return model;
+}
+
+} // namespace
+
+double Histogram::bits() const {
+    double sum = 0;
+    for (const Counts& context : counts) {
+        double total = 0;
+        for (const std::uint32_t count : context) total += count;
+        for (std::size_t t = 0; t < kTokens; ++t)
+            if (context[t] > 0)
+                sum += context[t] * (std::log2(total / context[t]) + rawBitsOf(static_cast<std::uint32_t>(t)));
+    }
+    return sum;
+}
+
+void Histogram::add(const Histogram& other) {
+    for (std::size_t c = 0; c < counts.size(); ++c)
+        for (std::size_t t = 0; t < kTokens; ++t) counts[c][t] += other.counts[c][t];
+}
+
+Model makeModel(const Histogram& histogram, int mostTables) {
+    Model model = clustered(histogram, mostTables);
+    if (!histogram.contexts.byBand) return model;
+    // Of few samples the tables that bands of their own need are not worth their bytes.
+    constexpr double kFew = 1 << 20;
+    double count = 0;
+    for (const Counts& context : histogram.counts) count += std::accumulate(context.begin(), context.end(), 0.0);
+    if (count > kFew) return model;
+    Model shared = spread(clustered(pooled(histogram), mostTables), histogram.contexts);
+    const auto cost = [&](const Model& of) { return bitsWith(of, histogram) + 8.0 * double(serialise(of).size()); };
+    return cost(shared) < cost(model) ? shared : model;
+}
+
+double bitsWith(const Model& model, const Histogram& histogram) {
+    double sum = 0;
+    for (std::size_t c = 0; c < histogram.counts.size(); ++c) {
+        const Frequencies& table = model.tables[model.tableOf[c]];
+        for (std::size_t t = 0; t < kTokens; ++t) {
+            const std::uint32_t count = histogram.counts[c][t];
+            if (count == 0) continue;
+            const auto raw = static_cast<double>(rawBitsOf(static_cast<std::uint32_t>(t)));
+            sum += table[t] > 0 ? count * (kProbabilityBits - std::log2(double(table[t])) + raw)
+                                : count * (kProbabilityBits - std::log2(double(table[kEscape])) + 32);
+        }
+    }
+    return sum;
+}
+
+Bytes serialise(const Model& model) {
+    BitWriter out;
+    out.put(static_cast<std::uint32_t>(model.contexts.shift) | (model.contexts.byBand ? kByBand : 0), 8);
+    out.put(static_cast<std::uint32_t>(model.tables.size()), 8);
+    std::uint32_t last = 0;
+    KindTables before{};
+    for (auto at = model.tableOf.begin(); at != model.tableOf.end(); at += kClasses) {
+        if (model.contexts.byBand) { // 0: as the kind before
+            const bool other = !std::equal(before.begin(), before.end(), at);
+            out.put(other ? 1 : 0, 1);
+            if (!other) continue;
+            std::copy_n(at, kClasses, before.begin());
+        }
+        for (auto table = at; table != at + kClasses; last = *table++) { // 0: as the class below
+            out.put(*table == last ? 0 : 1, 1);
+            if (*table != last) out.put(*table, 8);
+        }
+    }
+    for (const Frequencies& table : model.tables) {
+        int used = kTokens - 1; // the escape is what the others leave
+        while (used > 0 && table[std::size_t(used - 1)] == 0) --used;
+        out.put(static_cast<std::uint32_t>(used), 8);
+        for (int t = 0; t < used; ++t) {
+            const std::uint32_t frequency = table[std::size_t(t)];
+            const int width = std::bit_width(frequency);
+            out.put(static_cast<std::uint32_t>(width), 4);
+            if (width > 1) out.put(frequency & ((1u << (width - 1)) - 1), width - 1);
+        }
+    }
+    return out.bytes;
+}
+
+DecodeStatus parseModel(std::span<const std::byte> bytes, int levels, Model& model) {
+    if (bytes.empty()) {
+        model = makeModel(Histogram(levels, {}), 1);
+        return DecodeStatus::Ok;
+    }
+    BitReader in(bytes);
+    model = {};
+    model.levels = levels;
+    const std::uint32_t how = in.get(8), tables = in.get(8);
+    if (in.failed) return DecodeStatus::Truncated;
+    model.contexts = {static_cast<int>(how & ~kByBand), (how & kByBand) != 0};
+    if (tables == 0 || model.contexts.shift > 31) return DecodeStatus::BadLength;
+    std::uint32_t last = 0;
+    KindTables before{};
+    for (std::size_t first = 0; first < model.contexts.first(levels); first += kClasses) {
+        const bool other = !model.contexts.byBand || in.get(1) != 0;
+        for (std::size_t c = 0; other && c < kClasses; ++c) {
+            if (in.get(1) != 0) last = in.get(8);
+            if (in.failed) return DecodeStatus::Truncated;
+            if (last >= tables) return DecodeStatus::BadLength;
+            before[c] = static_cast<std::uint8_t>(last);
+        }
+        model.tableOf.insert(model.tableOf.end(), before.begin(), before.end());
+    }
+    if (in.failed) return DecodeStatus::Truncated;
+    for (std::uint32_t i = 0; i < tables; ++i) {
+        const std::uint32_t used = in.get(8);
+        if (used >= kTokens) return DecodeStatus::BadLength;
+        Frequencies& table = model.tables.emplace_back();
+        std::uint32_t sum = 0;
+        for (std::uint32_t t = 0; t < used; ++t) {
+            const auto width = static_cast<int>(in.get(4));
+            const std::uint32_t frequency = width == 0 ? 0 : (1u << (width - 1)) | in.get(width - 1);
+            if (in.failed) return DecodeStatus::Truncated;
+            sum += frequency;
+            if (sum >= kProbabilityOne) return DecodeStatus::BadData;
+            table[t] = static_cast<std::uint16_t>(frequency);
+        }
+        if (in.failed) return DecodeStatus::Truncated;
+        if (sum == 0) return DecodeStatus::BadData; // two tokens at least: a frequency has twelve bits
+        table[kEscape] = static_cast<std::uint16_t>(kProbabilityOne - sum);
+    }
+    return in.bytesRead() == bytes.size() ? DecodeStatus::Ok : DecodeStatus::Trailing;
+}
+
+std::vector<std::uint32_t> decodeTable(const Model& model) {
+    std::vector<std::uint32_t> out(model.tables.size() * kProbabilityOne);
+    auto to = out.begin();
+    for (const Frequencies& table : model.tables)
+        for (std::uint32_t t = 0; t < kTokens; ++t)
+            for (std::uint32_t slot = 0; slot < table[t]; ++slot)
+                *to++ = t | static_cast<std::uint32_t>(table[t]) << 8 | slot << 20;
+    return out;
+}
+
+} // namespace tessera::codec

@@ -1,0 +1,95 @@
+#pragma once
+
+#include "codec/bytes/decode_status.h"
+#include "codec/bytes/entropy.h"
+
+#include <array>
+#include <bit>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+/// The probabilities the coefficient coder uses: a few tables, shared by all bricks of a frame, and which of them each
+/// context takes. (FORMAT.md "Models".)
+namespace tessera::codec {
+
+inline constexpr int kProbabilityBits = 12;
+inline constexpr std::uint32_t kProbabilityOne = 1u << kProbabilityBits;
+/// Classes of a place: half octaves of its neighbours' magnitude.
+inline constexpr int kClasses = 32;
+/// Kinds of bands: 0 an undivided box, else the bits of the axes along which it holds the high half.
+inline constexpr int kBandKinds = 8;
+/// A token is a symbol below 32, or an octave of four parts and so many raw bits, or the escape: all 32 bits raw.
+inline constexpr int kDirect = 32, kTokens = 141, kEscape = 140;
+
+struct Token {
+    std::uint32_t token = 0;
+    int rawBits = 0; ///< low bits of the symbol that follow raw
+};
+
+constexpr Token tokenOf(std::uint32_t symbol) {
+    if (symbol < kDirect) return {symbol, 0};
+    const int octave = static_cast<int>(std::bit_width(symbol)) - 1;
+    return {kDirect + 4u * static_cast<std::uint32_t>(octave - 5) + ((symbol >> (octave - 2)) & 3u), octave - 2};
+}
+constexpr int rawBitsOf(std::uint32_t token) {
+    if (token < kDirect) return 0;
+    return token == kEscape ? 32 : static_cast<int>((token - kDirect) / 4) + 3;
+}
+/// The symbol of a token without its raw bits.
+constexpr std::uint32_t symbolBase(std::uint32_t token) {
+    if (token < kDirect) return token;
+    return token == kEscape ? 0 : (4u + (token - kDirect) % 4u) << rawBitsOf(token);
+}
+
+/// What the coder tells places apart by before it codes them.
+struct Contexts {
+    int shift = 0;       ///< magnitudes are divided by 2^shift
+    bool byBand = false; ///< one more neighbour to each side, and the two finest levels tell kinds of bands apart
+    bool operator==(const Contexts&) const = default;
+
+    static constexpr int kLevelsByBand = 2;
+    int kindsOf(int level) const { return byBand && level < kLevelsByBand ? kBandKinds : 1; }
+    /// The first of the contexts of the classes of a kind at a level; of all levels: the number of contexts.
+    std::size_t first(int level, int kind = 0) const {
+        const int kinds = byBand ? level + (kBandKinds - 1) * (level < kLevelsByBand ? level : kLevelsByBand) : level;
+        return static_cast<std::size_t>((kinds + (kindsOf(level) > 1 ? kind : 0)) * kClasses);
+    }
+};
+
+/// How often each token came in each context, about: what a model is made of.
+struct Histogram {
+    Histogram(int levelCount, Contexts of) : levels(levelCount), contexts(of), counts(of.first(levelCount)) {}
+    int levels = 0;
+    Contexts contexts;
+    std::vector<std::array<std::uint32_t, kTokens>> counts; ///< [contexts.first(level, kind) + class]
+    /// Bits the tokens and their raw bits take with ideal tables of this histogram, without the model itself.
+    double bits() const;
+    /// Adds those of the same levels and contexts.
+    void add(const Histogram& other);
+};
+
+using Frequencies = std::array<std::uint16_t, kTokens>; ///< sum is kProbabilityOne; the escape's is above 0
+
+struct Model {
+    int levels = 0;
+    Contexts contexts;
+    std::vector<std::uint8_t> tableOf; ///< [contexts.first(level, kind) + class]
+    std::vector<Frequencies> tables;
+    bool operator==(const Model&) const = default;
+};
+
+/// A model of few tables: contexts of similar statistics share one, as long as that saves more than a table costs.
+Model makeModel(const Histogram& histogram, int mostTables);
+/// Bits the histogram's tokens take with a model, raw bits included.
+double bitsWith(const Model& model, const Histogram& histogram);
+
+Bytes serialise(const Model& model);
+/// Reads a model for `levels` levels; the bytes must end with it. No bytes at all are the model of no tokens.
+DecodeStatus parseModel(std::span<const std::byte> bytes, int levels, Model& model);
+
+/// The model laid out for decoding: entry [table << kProbabilityBits | slot] holds the token in bits 0..7, its
+/// frequency in 8..19 and the slot's place within it in 20..31.
+std::vector<std::uint32_t> decodeTable(const Model& model);
+
+} // namespace tessera::codec

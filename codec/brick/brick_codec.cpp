@@ -1,0 +1,249 @@
+#include "codec/brick/brick_codec.h"
+
+#include "codec/brick/brick_levels.h"
+#include "codec/brick/whole_brick.h"
+#include "codec/wavelet/body_centred.h"
+
+#include <algorithm>
+#include <bit>
+#include <cassert>
+#include <cstring>
+#include <utility>
+
+namespace tessera::codec {
+
+namespace {
+
+using volume::LatticeKind;
+using volume::ScalarType;
+
+/// Codes from the difference of each coarse sample from the one before.
+template <class Word> void fromDifferences(std::span<const Band<Word>> bands) {
+    std::uint32_t code = 0;
+    forCoefficients(bands, [&](Word& word) {
+        code += static_cast<std::uint32_t>(static_cast<std::int32_t>(word));
+        word = static_cast<Word>(static_cast<std::int32_t>(code));
+    });
+}
+
+/// Coefficients of one level from all of `in`.
+template <class Word>
+DecodeStatus decodeLevel(std::span<const std::byte> in, std::span<const Band<Word>> bands, int level,
+                         const BandDecoder& decoder) {
+    if (bands.empty()) return in.empty() ? DecodeStatus::Ok : DecodeStatus::Trailing;
+    if (in.empty()) return DecodeStatus::Truncated;
+    if (in[0] == kBands) {
+        if (in.size() == 1) return DecodeStatus::Truncated;
+        return decoder.decode<Word>(in.subspan(1), bands, level);
+    }
+    std::size_t count = 0;
+    forCoefficients(bands, [&](Word) { ++count; });
+    if (count == 0 && in.size() == 1 && in[0] == kNothing) return DecodeStatus::Ok;
+    std::vector<std::uint32_t> symbols(count);
+    if (const DecodeStatus status = decodeStream(in, symbols); status != DecodeStatus::Ok) return status;
+    const std::uint32_t* next = symbols.data();
+    forCoefficients(bands, [&](Word& word) { word = static_cast<Word>(static_cast<std::int32_t>(unzigzag(*next++))); });
+    return in.empty() ? DecodeStatus::Ok : DecodeStatus::Trailing;
+}
+
+template <class Word>
+void interpolateOddLevel(const BrickFormat& format, int level, std::array<LevelBox<Word>, 2>& samples) {
+    samples[1].reset(levelSize(format.sublatticeSize(1), level), false);
+    interpolateOdd<Word>(std::as_const(samples[0]).box(), samples[1].box(), level);
+}
+
+template <class Word>
+DecodeStatus decodeLevels(const BrickFormat& format, std::span<const std::span<const std::byte>> segments, int level,
+                          std::span<const std::uint8_t> present, const BandDecoder& decoder, DecodedBrick& out) {
+    const auto step = static_cast<std::size_t>(format.sublattices());
+    const bool masked = !present.empty(), predicted = format.predictsOdd(masked);
+    auto& [samples, details, spare] = out.boxes<Word>();
+    for (int l = format.levels - 1; l >= level; --l) {
+        const bool coarsest = l == format.levels - 1;
+        auto& coded = coarsest ? samples : details;
+        for (std::size_t s = 0; s < step; ++s) {
+            if (s == 1 && predicted) {
+                coded[s].reset(l == 0 ? format.sublatticeSize(1) : glm::ivec3(0), false);
+                coded[s].setUndivided();
+                continue;
+            }
+            coded[s].reset(levelSize(format.sublatticeSize(int(s)), l), masked);
+            if (coded[s].masked()) placeFlags<Word>(format, present, l, int(s), !coarsest, coded[s]);
+        }
+        std::span<const std::byte> in = segments[std::size_t(format.levels - 1 - l)];
+        if (l == 0)
+            if (const DecodeStatus status = decodeExtras(format, present, in, out); status != DecodeStatus::Ok)
+                return status;
+        const auto bands = bandsOf<Word>(std::span(coded).first(step), coarsest);
+        if (const DecodeStatus status = decodeLevel<Word>(in, bands, l, decoder); status != DecodeStatus::Ok)
+            return status;
+        if (coarsest) {
+            fromDifferences<Word>(bands);
+            continue;
+        }
+        for (std::size_t s = 0; s < (predicted ? 1 : step); ++s)
+            joinLevel<Word>(format, samples[s], details[s], spare[s]);
+        if (predicted) std::swap(spare[1], details[1]);
+        std::swap(samples, spare);
+    }
+    if (predicted && level == 0)
+        addPrediction<Word>(std::as_const(samples[0]).box(), samples[1].box(), format.codeBits > kBitsOfPrediction);
+    else if (predicted)
+        interpolateOddLevel<Word>(format, level, samples);
+    return DecodeStatus::Ok;
+}
+
+/// A brick whose samples are one stream: coarse levels are made from all of them.
+template <class Word>
+DecodeStatus decodeWhole(const BrickFormat& format, std::span<const std::byte> in, int level,
+                         std::span<const std::uint8_t> present, DecodedBrick& out) {
+    // Every wavelet leaves a constant as it is.
+    if (const auto only = onlyCode(in); only && present.empty()) {
+        const auto code = static_cast<Word>(static_cast<std::int32_t>(*only));
+        for (int s = 0; s < format.sublattices(); ++s)
+            out.boxes<Word>().samples[std::size_t(s)].fill(levelSize(format.sublatticeSize(s), level), code);
+        return DecodeStatus::Ok;
+    }
+    const std::size_t total = countOf(format.size);
+    const auto absent = std::size_t(std::count(present.begin(), present.end(), std::uint8_t(0)));
+    std::vector<std::uint32_t> codes(total - absent);
+    if (const DecodeStatus status = codec::decodeWhole(in, codes); status != DecodeStatus::Ok) return status;
+    if (absent > 0) {
+        std::vector<std::uint32_t> spread(total);
+        const std::uint32_t* next = codes.data();
+        for (std::size_t i = 0; i < total; ++i)
+            if (present[i] != 0) spread[i] = *next++;
+        codes = std::move(spread);
+    }
+    auto& samples = out.boxes<Word>().samples;
+    BrickLevels<Word> levels;
+    splitBrick<Word>(format, codes, present, level + 1, levels);
+    const auto boxes = boxesAt(levels, format, level);
+    std::move(boxes.begin(), boxes.end(), samples.begin());
+    if (level > 0 && format.predictsOdd(!present.empty())) interpolateOddLevel<Word>(format, level, samples);
+    return DecodeStatus::Ok;
+}
+
+} // namespace
+
+glm::ivec3 BrickFormat::sublatticeSize(int sublattice) const {
+    if (kind == LatticeKind::CC) return size;
+    return {size.x, size.y, (size.z + 1 - sublattice) / 2};
+}
+
+bool BrickFormat::predictsOdd(bool masked) const {
+    return bodyCentred && kind == LatticeKind::BCC && !masked && levels > 1 && size.z > 1 &&
+           numbers.kind != NumberKind::Float;
+}
+
+bool BrickFormat::canHaveExact() const {
+    return numbers.kind == NumberKind::Scaled || numbers.kind == NumberKind::Quantised;
+}
+
+int codeBitsOf(ScalarType type) {
+    return type == ScalarType::U8 ? 8 : type == ScalarType::I16 || type == ScalarType::U16 ? 16 : 32;
+}
+
+Arithmetic arithmeticOf(const BrickFormat& format) {
+    if (format.numbers.kind == NumberKind::Float) return Arithmetic::Float;
+    return format.codeBits > kBitsOfInt32 ? Arithmetic::Wide : Arithmetic::Narrow;
+}
+
+Wavelet effectiveWavelet(const BrickFormat& format) {
+    if (format.numbers.kind != NumberKind::Float) return format.wavelet;
+    return levelPhase(format.wavelet) == 0 && format.wavelet != Wavelet::N1 ? Wavelet::N2 : Wavelet::N1;
+}
+
+glm::ivec3 samplesAt(const BrickFormat& format, int level) {
+    glm::ivec3 size = levelSize(format.size, level);
+    if (format.kind == LatticeKind::BCC)
+        size.z = levelSize(format.sublatticeSize(0), level).z + levelSize(format.sublatticeSize(1), level).z;
+    return size;
+}
+
+std::vector<std::uint8_t> maskAt(const BrickFormat& format, std::span<const std::uint8_t> present, int level) {
+    if (present.empty()) return {};
+    const glm::ivec3 size = samplesAt(format, level);
+    const int perTexel = format.sublattices(), stride = 1 << level;
+    std::vector<std::uint8_t> out;
+    out.reserve(countOf(size));
+    for (int z = 0; z < size.z; ++z)
+        for (int y = 0; y < size.y; ++y) {
+            const int fineZ = (z / perTexel) * stride * perTexel + z % perTexel;
+            const std::size_t row = (std::size_t(fineZ) * std::size_t(format.size.y) + std::size_t(y * stride)) *
+                                    std::size_t(format.size.x);
+            for (int x = 0; x < size.x; ++x) out.push_back(present[row + std::size_t(x * stride)]);
+        }
+    return out;
+}
+
+void DecodedBrick::begin(const BrickFormat& format, int level) {
+    size = samplesAt(format, level);
+    sublattices = format.sublattices();
+    narrow = false;
+    present.clear();
+    exact.clear();
+    absent.clear();
+}
+
+std::vector<std::uint32_t> DecodedBrick::codes() const {
+    std::vector<std::uint32_t> all(countOf(size));
+    forRows([&](std::size_t first, auto row) {
+        for (std::size_t i = 0; i < row.size(); ++i)
+            all[first + i] = static_cast<std::uint32_t>(static_cast<std::int32_t>(row[i]));
+    });
+    return all;
+}
+
+DecodeStatus decodeExtras(const BrickFormat& format, std::span<const std::uint8_t> present,
+                          std::span<const std::byte>& in, DecodedBrick& out) {
+    if (format.keepsAbsent) {
+        out.absent.resize(std::size_t(std::count(present.begin(), present.end(), std::uint8_t(0))));
+        if (const DecodeStatus status = decodeStream(in, out.absent); status != DecodeStatus::Ok) return status;
+    }
+    if (!format.canHaveExact()) return DecodeStatus::Ok;
+    if (in.size() < 4) return DecodeStatus::Truncated;
+    const std::size_t exact = readU32(in.data());
+    in = in.subspan(4);
+    if (exact > countOf(format.size)) return DecodeStatus::BadLength;
+    std::vector<std::uint32_t> index(exact), bits(exact);
+    if (const DecodeStatus status = decodeStream(in, index); status != DecodeStatus::Ok) return status;
+    if (const DecodeStatus status = decodeStream(in, bits); status != DecodeStatus::Ok) return status;
+    for (std::size_t k = 0; k < exact; ++k) {
+        if (index[k] >= countOf(format.size)) return DecodeStatus::BadLength;
+        out.exact.push_back({index[k], bits[k]});
+    }
+    return DecodeStatus::Ok;
+}
+
+DecodeStatus decodeBrick(const BrickFormat& format, std::span<const std::span<const std::byte>> segments, int level,
+                         std::span<const std::uint8_t> present, const BandDecoder& bands, DecodedBrick& out) {
+    assert(level >= 0 && level < format.levels && int(segments.size()) == format.levels - level);
+    assert(present.empty() || present.size() == countOf(format.size));
+    out.begin(format, level);
+    out.present = maskAt(format, present, level);
+    const bool narrow = out.narrow = fitsInt16(format, !present.empty());
+    // Where the extras come first, the mode of a brick of one level stands behind them.
+    std::span<const std::byte> first = segments[0];
+    if (format.levels == 1) {
+        if (const DecodeStatus status = decodeExtras(format, present, first, out); status != DecodeStatus::Ok)
+            return status;
+        out.exact.clear();
+    }
+    if (first.empty() || !isWhole(first[0]))
+        return narrow ? decodeLevels<std::int16_t>(format, segments, level, present, bands, out)
+                      : decodeLevels<std::int32_t>(format, segments, level, present, bands, out);
+    if (level == 0) {
+        std::span<const std::byte> last = segments.back();
+        if (const DecodeStatus status = decodeExtras(format, present, last, out); status != DecodeStatus::Ok)
+            return status;
+        if (format.levels > 1 && !last.empty()) return DecodeStatus::Trailing;
+    }
+    for (std::size_t s = 1; s + 1 < segments.size(); ++s)
+        if (!segments[s].empty()) return DecodeStatus::Trailing;
+    if (level > 0 && segments.size() > 1 && !segments.back().empty()) return DecodeStatus::Trailing;
+    return narrow ? decodeWhole<std::int16_t>(format, first, level, present, out)
+                  : decodeWhole<std::int32_t>(format, first, level, present, out);
+}
+
+} // namespace tessera::codec

@@ -1,0 +1,140 @@
+#pragma once
+
+#include "codec/bands/band_coder.h"
+#include "codec/brick/numbers.h"
+#include "codec/bytes/decode_status.h"
+#include "codec/bytes/entropy.h"
+#include "codec/wavelet/level_box.h"
+#include "volume/field/lattice.h"
+
+#include <array>
+#include <span>
+#include <vector>
+
+/// One brick of one component: samples to bytes, level by level, and back. (FORMAT.md "Bricks".)
+namespace tessera::codec {
+
+/// All that a decoder must know before it reads the bytes of a brick.
+struct BrickFormat {
+    volume::LatticeKind kind = volume::LatticeKind::CC;
+    glm::ivec3 size{1}; ///< storage samples of the brick at full resolution; a BCC brick starts on an even slice
+    int levels = 1;
+    Wavelet wavelet = Wavelet::W22;
+    volume::ScalarType type = volume::ScalarType::F32;
+    NumberCoding numbers;
+    bool keepsAbsent = false; ///< the stored numbers of absent samples are coded as well
+    int codeBits = 32;        ///< every |code| is below 2^codeBits; narrow ones are faster
+    bool bodyCentred = false; ///< of BCC: the odd grid is predicted from the even one (codec/wavelet/body_centred.h)
+
+    bool operator==(const BrickFormat&) const = default;
+
+    int sublattices() const { return kind == volume::LatticeKind::BCC ? 2 : 1; }
+    /// Full-resolution samples of one sublattice of the brick.
+    glm::ivec3 sublatticeSize(int sublattice) const;
+    /// Whether a brick, `masked` if samples of it are absent, predicts its odd grid.
+    bool predictsOdd(bool masked) const;
+    /// True when samples may be stored beside the codes.
+    bool canHaveExact() const;
+};
+
+/// Bits of the codes of a type whose numbers are the codes.
+int codeBitsOf(volume::ScalarType type);
+
+inline std::size_t countOf(glm::ivec3 size) {
+    return std::size_t(size.x) * std::size_t(size.y) * std::size_t(size.z);
+}
+
+/// Storage samples of the brick at a level.
+glm::ivec3 samplesAt(const BrickFormat& format, int level);
+/// Every 2^level-th flag of each sublattice: what is present at a level. Empty in, empty out.
+std::vector<std::uint8_t> maskAt(const BrickFormat& format, std::span<const std::uint8_t> present, int level);
+
+/// Arithmetic of the lifting, and its wavelet: floats are only predicted, as an update would mix exponents and
+/// overshoot by powers of two.
+Arithmetic arithmeticOf(const BrickFormat& format);
+Wavelet effectiveWavelet(const BrickFormat& format);
+
+/// A brick as tokens: all that does not depend on a model.
+struct PreparedBrick {
+    std::vector<TokenRun> levels;                                 ///< the last is the coarsest
+    std::vector<std::uint32_t> exactIndex, exactBits, absentBits; ///< what is stored beside them
+};
+
+/// What taking a brick apart leaves for the next one: its memory.
+struct SplitMemory {
+    std::vector<LevelBox<std::int16_t>> boxes16;
+    std::vector<LevelBox<std::int32_t>> boxes32;
+};
+
+/// Takes a brick apart. `samples` are numbers of format.type, x fastest; `present` one flag each, or empty: all.
+/// Quantised numbers off by more than `maxError` are stored exactly.
+PreparedBrick prepareBrick(const BrickFormat& format, std::span<const std::byte> samples,
+                           std::span<const std::uint8_t> present, double maxError, Contexts contexts,
+                           SplitMemory& memory);
+/// Adds its tokens to the statistics a model is made of, or of long runs a part of them (countTokens).
+void countBrick(const PreparedBrick& brick, Histogram& histogram, int every = 1);
+
+/// The coded brick: segment 0 holds the coarsest level, segment i what level `levels - 1 - i` adds. `brick` must be
+/// prepared from the same samples, with the contexts of the model. Same input, same bytes.
+std::vector<Bytes> encodeBrick(const BrickFormat& format, const PreparedBrick& brick,
+                               std::span<const std::byte> samples, std::span<const std::uint8_t> present,
+                               Compressor& compressor, const BandEncoder& bands);
+
+/// Both in one.
+std::vector<Bytes> encodeBrick(const BrickFormat& format, std::span<const std::byte> samples,
+                               std::span<const std::uint8_t> present, double maxError, Compressor& compressor,
+                               const BandEncoder& bands);
+
+/// A sample stored as its bits beside the codes.
+struct ExactSample {
+    std::uint32_t index = 0, bits = 0;
+};
+
+/// One level of a brick. Decoding into the same object again reuses its memory.
+struct DecodedBrick {
+    /// Boxes of the sublattices; all but `samples` is working memory.
+    template <class Word> struct Boxes { std::array<LevelBox<Word>, 2> samples, details, spare; };
+
+    glm::ivec3 size{0}; ///< storage samples of the level
+    int sublattices = 1;
+    bool narrow = false; ///< the codes are in `boxes16`, else in `boxes32`
+    Boxes<std::int16_t> boxes16;
+    Boxes<std::int32_t> boxes32;
+    std::vector<std::uint8_t> present; ///< flags at the level; empty: all present
+    std::vector<ExactSample> exact;    ///< full resolution only: samples that replace their codes
+    std::vector<std::uint32_t> absent; ///< full resolution only: bits of absent samples in order, if kept
+
+    /// Empty, with the shape of a level.
+    void begin(const BrickFormat& format, int level);
+    template <class Word> Boxes<Word>& boxes() {
+        if constexpr (sizeof(Word) == 2)
+            return boxes16;
+        else
+            return boxes32;
+    }
+    /// Calls `visit(number of the first sample, codes)` for each row in storage order, with a span of 16- or 32-bit
+    /// codes; undefined where absent.
+    template <class Visit> void forRows(Visit&& visit) const {
+        const auto rows = [&](const auto& samples) {
+            std::size_t first = 0;
+            for (int z = 0; z < size.z; ++z)
+                for (int y = 0; y < size.y; ++y, first += std::size_t(size.x))
+                    visit(first, std::span(samples[std::size_t(z % sublattices)].box().row(y, z / sublattices),
+                                           std::size_t(size.x)));
+        };
+        narrow ? rows(boxes16.samples) : rows(boxes32.samples);
+    }
+    /// All codes in storage order.
+    std::vector<std::uint32_t> codes() const;
+};
+
+/// Decodes `level` from the segments up to it (levels - level of them, coarsest first). Never throws for what the bytes
+/// say, never reads beyond them.
+DecodeStatus decodeBrick(const BrickFormat& format, std::span<const std::span<const std::byte>> segments, int level,
+                         std::span<const std::uint8_t> present, const BandDecoder& bands, DecodedBrick& out);
+
+/// The streams of absent and exact samples of full resolution, from the front of `in`.
+DecodeStatus decodeExtras(const BrickFormat& format, std::span<const std::uint8_t> present,
+                          std::span<const std::byte>& in, DecodedBrick& out);
+
+} // namespace tessera::codec

@@ -1,0 +1,219 @@
+// The encoding half of brick_codec.h.
+#include "codec/brick/brick_codec.h"
+#include "codec/brick/brick_levels.h"
+#include "codec/brick/whole_brick.h"
+
+#include <bit>
+#include <cassert>
+#include <cstring>
+#include <utility>
+
+namespace tessera::codec {
+
+namespace {
+
+// Below these bits a sample the matches that zstd finds are worth a glance at so many samples.
+constexpr double kTryWhole = 3.0;
+constexpr std::size_t kGlance = 1 << 14;
+constexpr double kGlanceAsShort = 1.5, kNearlyAsShort = 1.15, kPerhapsAsShort = 1.3; // the last before LZMA
+constexpr double kWorthLevels = 0.9;
+constexpr double kSparse = 0.75; // bits a sample
+constexpr int kLeastEffort = -4, kSomeEffort = 3;
+
+/// Codes of the samples, and what is stored beside them.
+struct Numbers {
+    std::vector<std::uint32_t> codes, exactIndex, exactBits, absentBits;
+};
+
+Numbers numbersOf(const BrickFormat& format, std::span<const std::byte> samples, std::span<const std::uint8_t> present,
+                  double maxError) {
+    Numbers numbers;
+    numbers.codes.resize(countOf(format.size));
+    volume::dispatch(format.type, [&]<class T>(T) {
+        if constexpr (!std::same_as<T, float>)
+            if (present.empty()) {
+                const auto* from = reinterpret_cast<const T*>(samples.data());
+                for (std::size_t i = 0; i < numbers.codes.size(); ++i)
+                    numbers.codes[i] = static_cast<std::uint32_t>(static_cast<std::int32_t>(from[i]));
+                return;
+            }
+        for (std::size_t i = 0; i < numbers.codes.size(); ++i) {
+            T sample;
+            std::memcpy(&sample, samples.data() + i * sizeof(T), sizeof(T));
+            const bool absent = !present.empty() && present[i] == 0;
+            if constexpr (std::same_as<T, float>) {
+                if (absent) {
+                    numbers.absentBits.push_back(std::bit_cast<std::uint32_t>(sample));
+                    continue;
+                }
+                numbers.codes[i] = codeOf(format.numbers, sample);
+                if (!format.canHaveExact()) continue;
+                if (close(format.numbers, maxError, sample, sampleOf<float>(format.numbers, numbers.codes[i])))
+                    continue;
+                numbers.exactIndex.push_back(static_cast<std::uint32_t>(i));
+                numbers.exactBits.push_back(std::bit_cast<std::uint32_t>(sample));
+            } else {
+                numbers.codes[i] = codeOf(format.numbers, sample);
+                if (absent) numbers.absentBits.push_back(numbers.codes[i]);
+            }
+        }
+    });
+    return numbers;
+}
+
+/// Each coarse sample as the difference from the one before.
+template <class Word> void toDifferences(std::span<const Band<Word>> bands) {
+    std::uint32_t before = 0;
+    forCoefficients(bands, [&](Word& word) {
+        const std::uint32_t code = static_cast<std::uint32_t>(static_cast<std::int32_t>(word));
+        word = static_cast<Word>(static_cast<std::int32_t>(code - before));
+        before = code;
+    });
+}
+template <class Word> std::vector<Band<const Word>> constBands(std::span<const Band<Word>> bands) {
+    std::vector<Band<const Word>> out;
+    for (const Band<Word>& band : bands)
+        out.push_back({band.values, band.present, band.size, band.rowPitch, band.slicePitch, band.kind});
+    return out;
+}
+
+/// The tokens of a brick that has been taken apart.
+template <class Word>
+std::vector<TokenRun> levelTokens(const BrickFormat& format, Contexts contexts, BrickLevels<Word>& levels) {
+    std::vector<TokenRun> runs;
+    for (int level = 0; level < format.levels; ++level) {
+        const bool coarsest = level == format.levels - 1;
+        const auto bands = bandsOf<Word>(boxesAt(levels, format, level), coarsest);
+        if (coarsest) toDifferences<Word>(bands);
+        runs.push_back(tokensOf<Word>(constBands<Word>(bands), contexts));
+    }
+    return runs;
+}
+
+/// Whether most floats of a brick occur more than once, as in fields that mirror or repeat themselves. Looks at the
+/// values in one of sixteen classes of hashes, where it finds all that are equal.
+bool valuesRecur(std::span<const std::byte> samples, std::span<const std::uint8_t> present) {
+    constexpr std::uint32_t kHash = 0x9E3779B1;
+    constexpr std::size_t kFew = 256;
+    std::vector<std::uint32_t> seen;
+    for (std::size_t i = 0; i + sizeof(std::uint32_t) <= samples.size(); i += sizeof(std::uint32_t)) {
+        std::uint32_t bits = 0;
+        std::memcpy(&bits, &samples[i], sizeof bits);
+        if ((bits * kHash) >> 28 == 0 && (present.empty() || present[i / sizeof bits] != 0)) seen.push_back(bits);
+    }
+    const std::size_t count = seen.size();
+    std::ranges::sort(seen);
+    const auto repeated = std::ranges::unique(seen);
+    return count >= kFew && 2 * repeated.size() >= count;
+}
+
+/// All samples as one stream in segment 0, if that is shorter than the levels: constants, labels, repeated slices.
+void tryWhole(const BrickFormat& format, std::span<const std::byte> samples, std::span<const std::uint8_t> present,
+              Compressor& compressor, std::vector<Bytes>& segments) {
+    std::size_t bytes = 0;
+    for (const Bytes& segment : segments) bytes += segment.size();
+    const std::size_t count = countOf(format.size);
+    if (bytes <= segments.size()) return;
+    // Levels of many bits are worth more than a few bytes.
+    const bool dense = 8.0 * double(bytes) > kTryWhole * double(count);
+    if (dense && (format.type != volume::ScalarType::F32 || !valuesRecur(samples, present))) return;
+    const int effort = compressor.level();
+    Bytes whole;
+    const auto tryEffort = [&](std::span<const std::uint32_t> codes, int level, double nearly) {
+        compressor.setLevel(level);
+        whole = encodeWhole(codes, compressor);
+        compressor.setLevel(effort);
+        return double(whole.size()) <= nearly * double(bytes) * double(codes.size()) / double(count);
+    };
+    const bool sparse = 8.0 * double(bytes) < kSparse * double(count);
+    if (!sparse && !compressor.triesLzma() && present.empty() && volume::byteSize(format.type) == 1 &&
+        count > kGlance) {
+        Bytes glance;
+        constexpr std::size_t kPieces = 2, kPiece = kGlance / kPieces;
+        for (std::size_t i = 0; i < kPieces; ++i) {
+            const auto piece = samples.subspan((2 * i + 1) * (count - kPiece) / (2 * kPieces), kPiece);
+            glance.insert(glance.end(), piece.begin(), piece.end());
+        }
+        compressor.setLevel(kLeastEffort);
+        const Bytes seen = compressor.compress(glance);
+        compressor.setLevel(effort);
+        const double share = double(kGlance) / double(count);
+        if (seen.empty() || double(seen.size()) > kGlanceAsShort * double(bytes) * share) return;
+    }
+    const std::vector<std::uint32_t> all = numbersOf(format, samples, present, 0).codes;
+    std::vector<std::uint32_t> codes;
+    codes.reserve(all.size());
+    for (std::size_t i = 0; i < all.size(); ++i)
+        if (present.empty() || present[i] != 0) codes.push_back(all[i]);
+    // Where a quick search for matches does about as well as bands, a longer one is worth its time.
+    if (!tryEffort(codes, kSomeEffort, compressor.triesLzma() ? kPerhapsAsShort : kNearlyAsShort)) return;
+    (void)tryEffort(codes, effort, 1);
+    if (double(whole.size()) >= (dense ? kWorthLevels : 1.0) * double(bytes)) return;
+    for (Bytes& segment : segments) segment.clear();
+    segments[0] = std::move(whole);
+}
+
+} // namespace
+
+PreparedBrick prepareBrick(const BrickFormat& format, std::span<const std::byte> samples,
+                           std::span<const std::uint8_t> present, double maxError, Contexts contexts,
+                           SplitMemory& memory) {
+    assert(samples.size() == countOf(format.size) * volume::byteSize(format.type));
+    assert(present.empty() || present.size() == countOf(format.size));
+    PreparedBrick brick;
+    Numbers numbers;
+    const bool plain = format.type != volume::ScalarType::F32 && present.empty();
+    if (!plain) numbers = numbersOf(format, samples, present, maxError);
+    const auto tokens = [&](auto& levels) {
+        using Word = std::remove_pointer_t<decltype(levels[0].box().values)>;
+        if (plain)
+            splitIntegers<Word>(format, samples, format.levels, levels);
+        else
+            splitBrick<Word>(format, numbers.codes, present, format.levels, levels);
+        brick.levels = levelTokens<Word>(format, contexts, levels);
+    };
+    fitsInt16(format, !present.empty()) ? tokens(memory.boxes16) : tokens(memory.boxes32);
+    brick.exactIndex = std::move(numbers.exactIndex);
+    brick.exactBits = std::move(numbers.exactBits);
+    brick.absentBits = std::move(numbers.absentBits);
+    return brick;
+}
+
+void countBrick(const PreparedBrick& brick, Histogram& histogram, int every) {
+    for (std::size_t level = 0; level < brick.levels.size(); ++level)
+        countTokens(brick.levels[level], int(level), histogram, every);
+}
+
+std::vector<Bytes> encodeBrick(const BrickFormat& format, const PreparedBrick& brick,
+                               std::span<const std::byte> samples, std::span<const std::uint8_t> present,
+                               Compressor& compressor, const BandEncoder& bands) {
+    std::vector<Bytes> segments(brick.levels.size());
+    for (std::size_t level = 0; level < brick.levels.size(); ++level) {
+        if (brick.levels[level].tokens.empty()) continue; // no bands
+        Bytes& out = segments[brick.levels.size() - 1 - level];
+        out.push_back(brick.levels[level].zero ? kNothing : kBands);
+        bands.encode(brick.levels[level], int(level), out);
+    }
+    tryWhole(format, samples, present, compressor, segments);
+
+    Bytes extras;
+    if (format.keepsAbsent) encodeStream(brick.absentBits, compressor, extras);
+    if (format.canHaveExact()) {
+        appendU32(extras, static_cast<std::uint32_t>(brick.exactIndex.size()));
+        encodeStream(brick.exactIndex, compressor, extras);
+        encodeStream(brick.exactBits, compressor, extras);
+    }
+    Bytes& fine = segments.back();
+    fine.insert(fine.begin(), extras.begin(), extras.end());
+    return segments;
+}
+
+std::vector<Bytes> encodeBrick(const BrickFormat& format, std::span<const std::byte> samples,
+                               std::span<const std::uint8_t> present, double maxError, Compressor& compressor,
+                               const BandEncoder& bands) {
+    SplitMemory memory;
+    const PreparedBrick brick = prepareBrick(format, samples, present, maxError, bands.model().contexts, memory);
+    return encodeBrick(format, brick, samples, present, compressor, bands);
+}
+
+} // namespace tessera::codec

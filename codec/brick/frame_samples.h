@@ -1,0 +1,91 @@
+#pragma once
+
+#include "volume/base/progress.h"
+#include "volume/bricks/brick_importance.h"
+#include "volume/resample/resample_slices.h"
+#include "volume/system/scratch_file.h"
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+
+namespace tessera::codec {
+
+/// Consecutive slices of a frame that are whole layers of bricks.
+struct Slab {
+    int first = 0, count = 0; ///< slices
+
+    /// Numbers [begin, end) of its bricks.
+    std::pair<std::size_t, std::size_t> bricks(const volume::BrickGrid& grid) const;
+    /// The grid that its bricks make by themselves.
+    volume::BrickGrid grid(volume::BrickGrid whole) const;
+};
+
+/// The slices of one layer of bricks.
+Slab layerOf(const volume::BrickGrid& grid, int layer);
+
+/// Where the samples of frames go that are larger than memory.
+struct SlabStore {
+    int layers = 1;     ///< of bricks in memory at a time
+    std::string folder; ///< for scratch files
+};
+
+/// One component at one time on its way into an archive: a field, or where that is larger than memory its samples and
+/// flags in a scratch file, looked at slab by slab. A field is one slab.
+class FrameSamples {
+public:
+    /// The field is referred to, not copied: it must outlive this.
+    FrameSamples(const volume::Field& field) : lent_(&field) {}
+    FrameSamples(volume::Field&& field) : own_(std::move(field)) {}
+    /// Puts a frame into a scratch file, slab by slab. Throws MachineError, Cancelled and what reading throws.
+    FrameSamples(const volume::SlicedFrame& frame, const volume::BrickGrid& grid, const SlabStore& store,
+                 const Progress& progress);
+
+    /// Null for one in a scratch file.
+    const volume::Field* whole() const { return lent_ ? lent_ : own_ ? &*own_ : nullptr; }
+    /// Null for one in memory.
+    const SlabStore* store() const { return stored_ ? &stored_->store : nullptr; }
+
+    volume::ScalarType type() const { return whole() ? whole()->type : stored_->type; }
+    const volume::Lattice& lattice() const { return whole() ? whole()->lattice : stored_->lattice; }
+    double offset() const { return whole() ? whole()->offset : stored_->offset; }
+    double scale() const { return whole() ? whole()->scale : stored_->scale; }
+    std::size_t count() const { return lattice().count(); }
+    /// False: every sample is present.
+    bool masked() const { return whole() ? whole()->mask != nullptr : stored_->masked; }
+
+    /// Visits every slab in order until `visit` returns false; true if none did.
+    bool forSlabs(const std::function<bool(const volume::Field& part, Slab slab)>& visit) const;
+    /// Changes samples, flags, offset and scale slab by slab, the latter two alike in all.
+    void change(const std::function<void(volume::Field& part, Slab slab)>& visit);
+    /// Any slices, as a field of their own.
+    volume::Field slices(int first, int count) const;
+    /// Reads samples `at` .. `at` + `n` of one in a scratch file, and their flags where those are wanted.
+    void read(std::size_t at, std::size_t n, std::byte* samples, std::uint8_t* present) const;
+
+private:
+    struct Stored {
+        volume::Lattice lattice;
+        volume::ScalarType type{};
+        double offset = 0, scale = 1;
+        bool masked = false;
+        SlabStore store;
+        int slices = 0;           ///< of a slab
+        volume::ScratchFile file; ///< the samples, then a flag each
+
+        explicit Stored(const SlabStore& to) : store(to), file(to.folder) {}
+        void put(const volume::Field& part, int first);
+    };
+    const volume::Field* lent_ = nullptr;
+    std::optional<volume::Field> own_;
+    std::unique_ptr<Stored> stored_;
+};
+
+/// volume::importanceOfBricks of a frame.
+std::vector<volume::BrickImportance> importanceOfBricks(const volume::BrickGrid& grid, const FrameSamples& samples,
+                                                        Range range, bool categorical,
+                                                        const volume::ImportanceOptions& options);
+
+} // namespace tessera::codec

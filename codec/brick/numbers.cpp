@@ -1,0 +1,201 @@
+#include "codec/brick/numbers.h"
+
+#include "codec/wavelet/lifting.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+namespace tessera::codec {
+
+namespace {
+
+constexpr double kLargestCode = 1 << 29; // leaves two bits for the growth of sums in the wavelets
+
+std::uint32_t clampedCode(double k) {
+    if (!(std::abs(k) <= kLargestCode)) return 0; // also NaN: stored exactly beside the codes
+    return static_cast<std::uint32_t>(static_cast<std::int32_t>(std::rint(k)));
+}
+
+/// Calls `visit` for every present sample, or every n-th of them, until it returns false.
+template <class Visit> bool all(const FrameSamples& frame, std::size_t stride, Visit&& visit) {
+    std::size_t begin = 0, next = 0; // of the slab, of the samples to visit
+    return frame.forSlabs([&](const volume::Field& part, Slab) {
+        const auto samples = part.as<float>();
+        for (; next < begin + samples.size(); next += stride)
+            if (part.present(next - begin) && !visit(samples[next - begin])) return false;
+        begin += samples.size();
+        return true;
+    });
+}
+
+bool reproduces(const FrameSamples& samples, const NumberCoding& coding, std::size_t stride) {
+    std::size_t seen = 0, failed = 0;
+    const bool within = all(samples, stride, [&](float sample) {
+        ++seen;
+        if (!close(coding, 0, sample, sampleOf<float>(coding, codeOf(coding, sample)))) ++failed;
+        return failed * 64 <= seen + 4096;
+    });
+    return within && seen > 0 && failed * 256 <= seen;
+}
+
+/// k / 2^m: m from the lowest bit set in any finite sample, if the largest then stays below 2^29.
+std::optional<NumberCoding> binaryFractions(const FrameSamples& samples) {
+    int lowest = std::numeric_limits<int>::max(), highest = std::numeric_limits<int>::min();
+    const bool fits = all(samples, 1, [&](float sample) {
+        if (sample == 0 || !std::isfinite(sample)) return true;
+        int exponent = 0;
+        const auto mantissa = static_cast<std::uint32_t>(std::ldexp(std::frexp(std::abs(sample), &exponent), 24));
+        highest = std::max(highest, exponent);
+        lowest = std::min(lowest, exponent - 24 + std::countr_zero(mantissa));
+        return highest - lowest <= 29;
+    });
+    if (!fits || highest < lowest) return std::nullopt;
+    return NumberCoding{NumberKind::Scaled, 0, std::ldexp(1.0, -lowest)};
+}
+
+/// Of k / 10^d and k / 2^m the one with the smaller numbers k: any float has its decimals, if enough of them.
+NumberCoding chooseLossless(const FrameSamples& samples) {
+    const std::size_t stride = std::max<std::size_t>(1, samples.count() / 4096);
+    std::optional<NumberCoding> best = binaryFractions(samples);
+    if (best && !reproduces(samples, *best, 1)) best.reset();
+    double power = 1;
+    for (int digits = 0; digits <= 7 && (!best || power < best->step); ++digits, power *= 10) {
+        const NumberCoding decimal{NumberKind::Scaled, 0, power};
+        if (reproduces(samples, decimal, stride) && reproduces(samples, decimal, 1)) return decimal;
+    }
+    return best.value_or(NumberCoding{NumberKind::Float, 0, 1});
+}
+
+std::optional<NumberCoding> chooseQuantised(const FrameSamples& samples, double maxError) {
+    double lo = std::numeric_limits<double>::infinity(), hi = -lo;
+    all(samples, 1, [&](float sample) {
+        if (std::isfinite(sample)) lo = std::min(lo, double(sample)), hi = std::max(hi, double(sample));
+        return true;
+    });
+    if (!(lo <= hi)) return std::nullopt;
+    const double largest = std::max(std::abs(lo), std::abs(hi));
+    const auto rounded = static_cast<float>(largest);
+    const double ulp = double(std::nextafter(rounded, std::numeric_limits<float>::infinity())) - double(rounded);
+    NumberCoding coding{NumberKind::Quantised, lo <= 0 && hi >= 0 ? 0.0 : (lo + hi) / 2, 2 * (maxError - ulp)};
+    if (!(coding.step > 0) || !std::isfinite(coding.step)) return std::nullopt;
+    if (std::max(hi - coding.origin, coding.origin - lo) / coding.step > kLargestCode) return std::nullopt;
+    return coding;
+}
+
+} // namespace
+
+NumberCoding chooseCoding(const FrameSamples& samples, double maxError) {
+    if (samples.type() != volume::ScalarType::F32) return {};
+    if (maxError > 0)
+        if (const auto quantised = chooseQuantised(samples, maxError)) return *quantised;
+    return chooseLossless(samples);
+}
+
+std::uint32_t codeOf(const NumberCoding&, std::uint8_t sample) {
+    return sample;
+}
+std::uint32_t codeOf(const NumberCoding&, std::int16_t sample) {
+    return static_cast<std::uint32_t>(static_cast<std::int32_t>(sample));
+}
+std::uint32_t codeOf(const NumberCoding&, std::uint16_t sample) {
+    return sample;
+}
+std::uint32_t codeOf(const NumberCoding&, std::int32_t sample) {
+    return static_cast<std::uint32_t>(sample);
+}
+std::uint32_t codeOf(const NumberCoding& coding, float sample) {
+    switch (coding.kind) {
+    case NumberKind::Integer:
+    case NumberKind::Float:
+        break;
+    case NumberKind::Scaled:
+        return clampedCode(double(sample) * coding.step);
+    case NumberKind::Quantised:
+        return clampedCode((double(sample) - coding.origin) / coding.step);
+    }
+    return codeOfFloat(sample);
+}
+
+double valueOf(const NumberCoding& coding, std::uint32_t code) {
+    const double k = static_cast<std::int32_t>(code);
+    switch (coding.kind) {
+    case NumberKind::Integer:
+        break;
+    case NumberKind::Scaled:
+        return k / coding.step;
+    case NumberKind::Float:
+        return double(floatOfCode(code));
+    case NumberKind::Quantised:
+        return coding.origin + coding.step * k;
+    }
+    return k;
+}
+
+template <> float sampleOf<float>(const NumberCoding& coding, std::uint32_t code) {
+    if (coding.kind == NumberKind::Float) return floatOfCode(code); // bit for bit, NaN payloads too
+    return static_cast<float>(valueOf(coding, code));
+}
+
+namespace {
+
+/// Calls `visit` with the function that makes a real number of a code.
+template <class Visit> void withValues(const NumberCoding& coding, Visit&& visit) {
+    const double origin = coding.origin, step = coding.step;
+    switch (coding.kind) {
+    case NumberKind::Integer:
+        return visit([](std::int32_t k) { return double(k); });
+    case NumberKind::Scaled:
+        return visit([step](std::int32_t k) { return double(k) / step; });
+    case NumberKind::Quantised:
+        return visit([origin, step](std::int32_t k) { return origin + step * double(k); });
+    case NumberKind::Float:
+        return visit([](std::int32_t k) { return double(floatOfCode(static_cast<std::uint32_t>(k))); });
+    }
+}
+
+} // namespace
+
+template <class T, class Word> void toSamples(const NumberCoding& coding, std::span<const Word> codes, T* samples) {
+    if constexpr (!std::same_as<T, float>) {
+        for (std::size_t i = 0; i < codes.size(); ++i) samples[i] = static_cast<T>(codes[i]);
+    } else if (coding.kind == NumberKind::Float) { // bit for bit, NaNs too
+        for (std::size_t i = 0; i < codes.size(); ++i) samples[i] = floatOfCode(static_cast<std::uint32_t>(codes[i]));
+    } else {
+        withValues(coding, [&](auto&& value) {
+            for (std::size_t i = 0; i < codes.size(); ++i) samples[i] = static_cast<float>(value(codes[i]));
+        });
+    }
+}
+
+template <class Word>
+void toValues(const NumberCoding& coding, double offset, double scale, std::span<const Word> codes, float* values) {
+    if (coding.kind == NumberKind::Integer && offset == 0 && scale == 1) {
+        for (std::size_t i = 0; i < codes.size(); ++i) values[i] = static_cast<float>(codes[i]);
+        return;
+    }
+    withValues(coding, [&](auto&& value) {
+        for (std::size_t i = 0; i < codes.size(); ++i) values[i] = static_cast<float>(offset + scale * value(codes[i]));
+    });
+}
+
+#define TESSERA_SAMPLES(T)                                                                                             \
+    template void toSamples(const NumberCoding&, std::span<const std::int16_t>, T*);                                   \
+    template void toSamples(const NumberCoding&, std::span<const std::int32_t>, T*);
+TESSERA_SAMPLES(std::uint8_t)
+TESSERA_SAMPLES(std::int16_t)
+TESSERA_SAMPLES(std::uint16_t)
+TESSERA_SAMPLES(std::int32_t)
+TESSERA_SAMPLES(float)
+#undef TESSERA_SAMPLES
+template void toValues(const NumberCoding&, double, double, std::span<const std::int16_t>, float*);
+template void toValues(const NumberCoding&, double, double, std::span<const std::int32_t>, float*);
+
+bool close(const NumberCoding& coding, double maxError, float sample, float decoded) {
+    if (std::bit_cast<std::uint32_t>(sample) == std::bit_cast<std::uint32_t>(decoded)) return true;
+    return coding.kind == NumberKind::Quantised && std::abs(double(sample) - double(decoded)) <= maxError;
+}
+
+} // namespace tessera::codec

@@ -1,0 +1,66 @@
+#pragma once
+
+#include "codec/bytes/decode_status.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+/// Numbers to bytes: zstd or LZMA over byte planes.
+namespace tessera::codec {
+
+using Bytes = std::vector<std::byte>;
+
+/// The most effort of zstd that is of use.
+inline constexpr int kMostEffort = 19;
+
+/// Working memory of the encoder; one per thread. Holds no state that changes the output.
+class Compressor {
+public:
+    /// `thorough`: streams try LZMA as well, where zstd is at its most effort.
+    explicit Compressor(int zstdLevel, bool thorough = false);
+    ~Compressor();
+    Compressor(Compressor&&) noexcept;
+    Compressor& operator=(Compressor&&) noexcept;
+
+    /// zstd frame of `in`; empty when it would not be smaller than `in`.
+    Bytes compress(std::span<const std::byte> in);
+    /// The effort of the next frames.
+    void setLevel(int zstdLevel);
+    int level() const;
+    bool triesLzma() const;
+
+private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+/// Decompresses a zstd frame that must give exactly out.size() bytes.
+DecodeStatus decompress(std::span<const std::byte> in, std::span<std::byte> out) noexcept;
+
+/// Small for numbers near zero of either sign, as signed 32-bit: 0, -1, 1, -2, ... become 0, 1, 2, 3, ...
+constexpr std::uint32_t zigzag(std::uint32_t value) {
+    return (value << 1) ^ (0u - (value >> 31));
+}
+constexpr std::uint32_t unzigzag(std::uint32_t symbol) {
+    return (symbol >> 1) ^ (0u - (symbol & 1u));
+}
+
+/// Appends a stream of symbols to `out` by the smallest of: all zero, constant, byte planes, byte planes through zstd
+/// or LZMA. No symbols: no bytes. (FORMAT.md "Streams".)
+void encodeStream(std::span<const std::uint32_t> symbols, Compressor& compressor, Bytes& out);
+
+/// Reads a stream of symbols.size() symbols from the front of `in`, which then starts behind it.
+DecodeStatus decodeStream(std::span<const std::byte>& in, std::span<std::uint32_t> symbols) noexcept;
+
+/// Little-endian numbers.
+void appendU32(Bytes& out, std::uint32_t value);
+std::uint32_t readU32(const std::byte* at);
+/// Lengths: 7 bits a byte, lowest first, bit 7 set on all but the last; at most 5 bytes.
+void appendLength(Bytes& out, std::uint32_t length);
+/// Reads one from the front of `in`, which then starts behind it.
+DecodeStatus takeLength(std::span<const std::byte>& in, std::uint64_t& length) noexcept;
+
+} // namespace tessera::codec

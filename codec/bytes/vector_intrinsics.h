@@ -1,0 +1,13 @@
+#pragma once
+
+#include "codec/bytes/cpu.h"
+
+/// The processor's vector instructions where it is an x86.
+#if TESSERA_X86
+#if defined(__GNUC__) && !defined(__clang__)
+// gcc 12 takes its own undefined vectors for a mistake.
+#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
+#pragma GCC diagnostic ignored "-Wuninitialized"
+#endif
+#include <immintrin.h>
+#endif

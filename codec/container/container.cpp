@@ -1,0 +1,93 @@
+#include "codec/container/container.h"
+
+#include "volume/base/error.h"
+
+#include <array>
+#include <cstring>
+#include <optional>
+#include <xxhash.h>
+
+namespace tessera::codec {
+
+namespace {
+
+// Not text, and damaged by every well-meant conversion of line ends.
+constexpr std::array<std::uint8_t, 8> kMagic{0x89, 'T', 'S', 'R', 0x0d, 0x0a, 0x1a, 0x0a};
+
+/// One copy of the header at the front of `bytes`; `at` is where it lies.
+Header parseHeader(std::span<const std::byte> bytes, std::size_t at, std::uint64_t fileBytes, const std::string& file) {
+    const auto place = [at](std::size_t offset) { return "byte " + std::to_string(at + offset); };
+    if (bytes.size() < kMagic.size() || std::memcmp(bytes.data(), kMagic.data(), kMagic.size()) != 0)
+        throw Error("not a Tessera archive", file, place(0));
+    if (bytes.size() < kHeaderBytes) throw Error("the header is truncated", file, place(0));
+    ByteReader in(bytes.subspan(kMagic.size(), kHeaderBytes - kMagic.size()));
+    Header header;
+    header.version = in.get<std::uint32_t>();
+    header.features = in.get<std::uint32_t>();
+    header.fileSize = in.get<std::uint64_t>();
+    header.metadata = in.get<Block>();
+    header.index = in.get<Block>();
+    if (in.get<std::uint64_t>() != checksum(bytes.first(kHeaderBytes - 8)))
+        throw Error("the header is damaged (checksum)", file, place(0));
+    if (header.version < kOldestVersion || header.version > kFormatVersion)
+        throw Error("archive version " + std::to_string(header.version) + ", this program reads versions up to " +
+                        std::to_string(kFormatVersion),
+                    file, place(8));
+    if ((header.features & ~kKnownFeatures) != 0 || (header.features != 0 && header.version < kGrowingVersion))
+        throw Error("the archive needs features this program does not know", file, place(12));
+    const bool grows = header.version >= kGrowingVersion;
+    if (grows ? header.fileSize > fileBytes : header.fileSize != fileBytes)
+        throw Error("the file has " + std::to_string(fileBytes) + " bytes, its header says " +
+                        std::to_string(header.fileSize),
+                    file, place(16));
+    const std::uint64_t end = header.fileSize, first = firstChunk(header.version);
+    const auto inside = [&](const Block& block) {
+        return block.offset >= first && block.offset <= end && block.length <= end - block.offset;
+    };
+    const bool whole = inside(header.metadata) && inside(header.index) &&
+                       header.index.offset + header.index.length == end &&
+                       (grows ? header.metadata.offset + header.metadata.length <= header.index.offset
+                              : header.metadata.offset + header.metadata.length == header.index.offset);
+    if (!whole) throw Error("the parts of the archive do not fill the file", file, place(24));
+    return header;
+}
+
+} // namespace
+
+std::uint64_t checksum(std::span<const std::byte> bytes) {
+    return XXH3_64bits(bytes.data(), bytes.size());
+}
+
+Bytes serialise(const Header& header) {
+    ByteWriter out;
+    for (const std::uint8_t byte : kMagic) out.put(byte);
+    out.put(header.version);
+    out.put(header.features);
+    out.put(header.fileSize);
+    out.put(header.metadata);
+    out.put(header.index);
+    out.put(checksum(out.bytes));
+    return out.bytes;
+}
+
+HeaderState parseHeaders(std::span<const std::byte> bytes, std::uint64_t fileBytes, const std::string& file) {
+    std::optional<Header> first, second;
+    std::optional<Error> problem;
+    try {
+        first = parseHeader(bytes, 0, fileBytes, file);
+    } catch (const Error& error) {
+        problem = error;
+    }
+    if (first && first->version < kGrowingVersion) return {*first, false};
+    if (bytes.size() >= 2 * kHeaderBytes) try {
+            second = parseHeader(bytes.subspan(kHeaderBytes), kHeaderBytes, fileBytes, file);
+            if (second->version < kGrowingVersion) second.reset();
+        } catch (const Error&) { // the first has to do
+        }
+    if (!first && !second) throw *problem;
+    const bool damaged = !first || !second;
+    if (!first || (second && second->fileSize > first->fileSize)) first = second;
+    return {*first, damaged};
+}
+
+} // namespace tessera::codec

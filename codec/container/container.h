@@ -1,0 +1,112 @@
+#pragma once
+
+#include "codec/bytes/entropy.h"
+
+#include <bit>
+#include <concepts>
+#include <cstdint>
+#include <span>
+#include <string>
+
+/// The outermost bytes of a .tsr file. (FORMAT.md "File".)
+///
+///     0        80             160                                                              fileSize
+///     | header | header again | chunks, metadata, page | chunks, metadata, page | ... | last page | unfinished ...
+///
+/// A file only ever grows behind fileSize; then both headers, one after the other, name the new end. So at every
+/// moment one of them describes a whole archive.
+namespace tessera::codec {
+
+/// Version 1 knew neither models nor bands, version 2 did not grow; both are read, never written.
+inline constexpr std::uint32_t kFormatVersion = 3, kOldestVersion = 1, kGrowingVersion = 3;
+inline constexpr std::size_t kHeaderBytes = 80;
+/// Feature: the index says how important each brick is, how it changes, and which repeat an earlier one; frames may be
+/// coded body-centred, and integers in steps.
+inline constexpr std::uint32_t kBrickNotes = 1;
+/// Feature: metadata and pages of the index are pieces (codec/bytes/lzma.h), streams may be LZMA, models may be empty.
+inline constexpr std::uint32_t kCompact = 2;
+/// Feature: models may have contexts that tell bands apart.
+inline constexpr std::uint32_t kBandContexts = 4;
+/// Feature: the index has mean and histogram of each brick.
+inline constexpr std::uint32_t kBrickTallies = 8,
+                               kKnownFeatures = kBrickNotes | kCompact | kBandContexts | kBrickTallies;
+
+/// Where the chunks of a version begin.
+constexpr std::uint64_t firstChunk(std::uint32_t version) {
+    return version >= kGrowingVersion ? 2 * kHeaderBytes : kHeaderBytes;
+}
+
+/// xxh3, 64 bits, seed 0.
+std::uint64_t checksum(std::span<const std::byte> bytes);
+
+/// Bytes of the file under one checksum.
+struct Block {
+    std::uint64_t offset = 0, length = 0, checksum = 0;
+    bool operator==(const Block&) const = default;
+};
+
+struct Header {
+    std::uint32_t version = kFormatVersion;
+    std::uint32_t features = kKnownFeatures; ///< bits a reader must know
+    std::uint64_t fileSize = 0;              ///< bytes behind belong to an append that was not finished
+    Block metadata, index;                   ///< index: the last page of it (versions 1, 2: all of it)
+    bool operator==(const Header&) const = default;
+};
+
+struct HeaderState {
+    Header header;
+    bool damaged = false; ///< one of the two copies cannot be read
+};
+
+Bytes serialise(const Header& header);
+/// The header that holds of the first bytes of a file that has `fileBytes`: of two, the one whose archive is larger and
+/// whole. Checks magic, version, features, checksum and where the parts lie; throws Error naming `file`.
+HeaderState parseHeaders(std::span<const std::byte> bytes, std::uint64_t fileBytes, const std::string& file);
+
+/// Little-endian numbers, appended.
+class ByteWriter {
+public:
+    template <class T> void put(T value) {
+        if constexpr (std::same_as<T, double>)
+            put(std::bit_cast<std::uint64_t>(value));
+        else if constexpr (std::same_as<T, float>)
+            put(std::bit_cast<std::uint32_t>(value));
+        else
+            for (std::size_t i = 0; i < sizeof(T); ++i)
+                bytes.push_back(static_cast<std::byte>(static_cast<std::uint64_t>(value) >> (8 * i)));
+    }
+    void put(const Block& block) {
+        put(block.offset);
+        put(block.length);
+        put(block.checksum);
+    }
+    Bytes bytes;
+};
+
+/// The same, read from the front; the caller has checked that there are enough bytes.
+class ByteReader {
+public:
+    explicit ByteReader(std::span<const std::byte> bytes) : bytes_(bytes) {}
+    std::size_t left() const { return bytes_.size(); }
+    std::span<const std::byte> rest() const { return bytes_; }
+    template <class T> T get() {
+        if constexpr (std::same_as<T, double>)
+            return std::bit_cast<double>(get<std::uint64_t>());
+        else if constexpr (std::same_as<T, float>)
+            return std::bit_cast<float>(get<std::uint32_t>());
+        else if constexpr (std::same_as<T, Block>) {
+            const auto offset = get<std::uint64_t>(), length = get<std::uint64_t>();
+            return {offset, length, get<std::uint64_t>()};
+        } else {
+            std::uint64_t value = 0;
+            for (std::size_t i = 0; i < sizeof(T); ++i) value |= static_cast<std::uint64_t>(bytes_[i]) << (8 * i);
+            bytes_ = bytes_.subspan(sizeof(T));
+            return static_cast<T>(value);
+        }
+    }
+
+private:
+    std::span<const std::byte> bytes_;
+};
+
+} // namespace tessera::codec

@@ -1,0 +1,131 @@
+#include "codec/container/growing_file.h"
+
+#include "volume/base/error.h"
+
+#include <cerrno>
+#include <cstring>
+#include <fcntl.h>
+#include <filesystem>
+#include <sys/file.h>
+#include <unistd.h>
+#include <utility>
+
+namespace tessera::codec {
+
+namespace {
+
+/// Makes the names in the folder of a file last. Best effort: not every file system can.
+void syncFolderOf(const std::string& path) {
+    const std::filesystem::path folder = std::filesystem::path(path).parent_path();
+    const int file = ::open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (file < 0) return;
+    (void)::fsync(file);
+    ::close(file);
+}
+
+} // namespace
+
+GrowingFile::GrowingFile(const std::string& path)
+    : path_(path), kind_(std::filesystem::exists(path) ? Kind::Replacing : Kind::Fresh) {
+    const std::string temporary = path + ".part-" + std::to_string(::getpid());
+    file_ = std::fopen(temporary.c_str(), "wbe");
+    if (!file_) fail();
+    temporary_ = temporary;
+    lock();
+    append(Bytes(firstChunk(kFormatVersion)));
+}
+
+GrowingFile::GrowingFile(const std::string& path, const Header& header)
+    : path_(path), kind_(Kind::Appending), position_(header.fileSize), committed_(header.fileSize), header_(header) {
+    file_ = std::fopen(path.c_str(), "r+be");
+    if (!file_) fail();
+    try {
+        lock();
+        Bytes head(firstChunk(kFormatVersion));
+        const bool read = std::fread(head.data(), 1, head.size(), file_) == head.size();
+        const std::uint64_t size = std::filesystem::file_size(path);
+        if (!read || parseHeaders(head, size, path).header != header)
+            throw Error("the archive has changed since it was opened", path);
+        if (::ftruncate(::fileno(file_), static_cast<off_t>(header.fileSize)) != 0 ||
+            std::fseek(file_, 0, SEEK_END) != 0)
+            fail();
+        // A crash may have left one copy damaged. Writing bytes over the same bytes does no harm to the other.
+        const Bytes bytes = serialise(header);
+        for (int copy = 0; copy < 2; ++copy) {
+            if (::pwrite(::fileno(file_), bytes.data(), bytes.size(), copy * off_t(kHeaderBytes)) !=
+                static_cast<ssize_t>(bytes.size()))
+                fail();
+            sync();
+        }
+    } catch (...) {
+        std::fclose(file_);
+        throw;
+    }
+}
+
+GrowingFile::~GrowingFile() {
+    if (!file_) return;
+    if (kind_ == Kind::Appending && std::fflush(file_) == 0)
+        (void)!::ftruncate(::fileno(file_), static_cast<off_t>(committed_));
+    std::fclose(file_);
+    if (!temporary_.empty())
+        std::remove(temporary_.c_str());
+    else if (kind_ == Kind::Fresh)
+        std::remove(path_.c_str());
+}
+
+void GrowingFile::fail() const {
+    throw MachineError(std::string("cannot write: ") + std::strerror(errno), path_);
+}
+
+void GrowingFile::lock() {
+    if (::flock(::fileno(file_), LOCK_EX | LOCK_NB) == 0) return;
+    if (errno == EWOULDBLOCK) throw Error("another program is writing this archive", path_);
+    // A file system without locks: go on without.
+}
+
+void GrowingFile::sync() {
+    if (std::fflush(file_) != 0 || ::fsync(::fileno(file_)) != 0) fail();
+}
+
+void GrowingFile::append(std::span<const std::byte> bytes) {
+    if (!bytes.empty() && std::fwrite(bytes.data(), 1, bytes.size(), file_) != bytes.size()) fail();
+    position_ += bytes.size();
+}
+
+/// The second copy first, as readers read the first one first: whenever they look, one of the two they see is whole.
+void GrowingFile::writeHeaders(const Header& header) {
+    sync();
+    const Bytes bytes = serialise(header);
+    for (const int copy : {1, 0}) {
+        if (::pwrite(::fileno(file_), bytes.data(), bytes.size(), copy * off_t(kHeaderBytes)) !=
+            static_cast<ssize_t>(bytes.size()))
+            fail();
+        sync();
+    }
+    committed_ = header.fileSize;
+}
+
+void GrowingFile::commit(const Header& header) {
+    header_ = header;
+    if (kind_ == Kind::Replacing) return; // nobody reads it under its temporary name
+    writeHeaders(header);
+    if (temporary_.empty()) return;
+    if (std::rename(temporary_.c_str(), path_.c_str()) != 0) fail();
+    temporary_.clear();
+    syncFolderOf(path_);
+}
+
+void GrowingFile::finish() {
+    if (kind_ == Kind::Replacing) {
+        writeHeaders(header_);
+        if (std::rename(temporary_.c_str(), path_.c_str()) != 0) fail();
+        temporary_.clear();
+        kind_ = Kind::Appending; // it has its name: it stays
+        syncFolderOf(path_);
+    }
+    std::FILE* const file = std::exchange(file_, nullptr);
+    if (std::fclose(file) != 0) fail();
+}
+
+} // namespace tessera::codec

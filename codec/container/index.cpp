@@ -1,0 +1,377 @@
+#include "codec/container/index.h"
+
+#include "codec/bytes/lzma.h"
+#include "volume/base/error.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+namespace tessera::codec {
+
+namespace {
+
+constexpr std::uint64_t kMaskRecordBytes = 16, kMaskBrickBytes = 16, kModelBytes = 24, kFrameRecordBytes = 56,
+                        kFrameModelBytes = 4, kFrameKeyBytes = 8, kFrameBrickBytes = 8, kNotesBytes = 12,
+                        kSegmentBytes = 12;
+constexpr double kMost16 = 65535;
+
+std::uint16_t to16(double part) {
+    return static_cast<std::uint16_t>(std::lround(std::clamp(part, 0.0, 1.0) * kMost16));
+}
+
+/// The share of an RMS in a maximum, rounded up.
+std::uint16_t shareOf(const volume::BrickChange& change) {
+    if (!(change.max > 0)) return 0;
+    if (!std::isfinite(change.max)) return std::uint16_t(kMost16);
+    return static_cast<std::uint16_t>(std::min(std::ceil(double(change.rms) / double(change.max) * kMost16), kMost16));
+}
+
+volume::BrickChange changeOf(float max, std::uint16_t share) {
+    if (!(max > 0) || !std::isfinite(max)) return {max, max};
+    return {max, volume::roundedUp(double(max) * share / kMost16)};
+}
+
+void require(bool condition, const char* what, const std::string& file) {
+    if (!condition) throw Error(what, file, "index");
+}
+
+/// Reads the records of a page, or of the index of an older version.
+class RecordReader {
+public:
+    RecordReader(std::span<const std::byte> bytes, const Header& header, const IndexShape& shape,
+                 const std::string& file)
+        : in_(bytes), version_(header.version), notes_((header.features & kBrickNotes) != 0),
+          tallies_((header.features & kBrickTallies) != 0), begin_(firstChunk(header.version)),
+          end_(header.index.offset), shape_(shape), file_(file) {}
+
+    IndexPage page() {
+        IndexPage page;
+        const bool grows = version_ >= kGrowingVersion, hasModels = version_ > 1;
+        const std::uint64_t room = in_.left(), headBytes = grows ? 64 : hasModels ? 12 : 8;
+        require(room >= headBytes, "the index is truncated", file_);
+        if (grows) page.previousPage = in_.get<Block>(), page.previousMetadata = in_.get<Block>();
+        const std::uint64_t times = grows ? in_.get<std::uint32_t>() : 0;
+        const std::uint64_t masks = in_.get<std::uint32_t>(), frames = in_.get<std::uint32_t>();
+        const std::uint64_t models = hasModels ? in_.get<std::uint32_t>() : 0, bricks = shape_.bricks;
+        // No number here exceeds what the bytes of the page can hold, so nothing below overflows, and what is allocated
+        // is some times those bytes. Decoded ones are more than the file has; mostPageBytes limits them.
+        require(bricks <= room, "the index is too short", file_);
+        const std::uint64_t maskBytes = kMaskRecordBytes + bricks * kMaskBrickBytes;
+        const std::uint64_t frameBytes = kFrameRecordBytes + (hasModels ? kFrameModelBytes : 0) +
+                                         (grows ? kFrameKeyBytes : 0) +
+                                         bricks * (kFrameBrickBytes + (notes_ ? kNotesBytes : 0) +
+                                                   static_cast<std::uint64_t>(shape_.grid.levels) * kSegmentBytes);
+        require(times <= room / 8 && masks <= room / maskBytes && frames <= room / frameBytes &&
+                    models <= room / kModelBytes,
+                "the index has the wrong length", file_);
+        const std::uint64_t records =
+            headBytes + 8 * times + models * kModelBytes + masks * maskBytes + frames * frameBytes;
+        require(tallies_ ? records <= room : records == room, "the index has the wrong length", file_);
+        for (std::uint64_t t = 0; t < times; ++t) page.times.push_back(in_.get<double>());
+        for (std::uint64_t m = 0; m < models; ++m) {
+            page.models.push_back(in_.get<Block>());
+            requireInside(page.models.back().offset, page.models.back().length);
+        }
+        for (std::uint64_t m = 0; m < masks; ++m) page.masks.push_back(mask());
+        for (std::uint64_t f = 0; f < frames; ++f) page.frames.push_back(frame());
+        page.tallies.assign(in_.rest().begin(), in_.rest().end());
+        return page;
+    }
+
+private:
+    void requireInside(std::uint64_t offset, std::uint64_t length) const {
+        require(offset >= begin_ && offset <= end_ && length <= end_ - offset, "a chunk lies outside the file", file_);
+    }
+    void place(Segment& segment, std::uint64_t& at, std::uint64_t end) const {
+        require(segment.length <= end - at, "a brick does not fit its chunk", file_);
+        segment.offset = at;
+        at += segment.length;
+    }
+
+    MaskRecord mask() {
+        MaskRecord mask;
+        mask.offset = in_.get<std::uint64_t>();
+        mask.length = in_.get<std::uint64_t>();
+        requireInside(mask.offset, mask.length);
+        std::uint64_t at = mask.offset;
+        mask.bricks.resize(shape_.bricks);
+        for (MaskBrick& brick : mask.bricks) {
+            brick.segment.length = in_.get<std::uint32_t>();
+            brick.present = in_.get<std::uint32_t>();
+            brick.segment.checksum = in_.get<std::uint64_t>();
+            place(brick.segment, at, mask.offset + mask.length);
+        }
+        require(at == mask.offset + mask.length, "the bricks of a mask do not fill its chunk", file_);
+        return mask;
+    }
+
+    FrameBrick::Notes notes() {
+        FrameBrick::Notes notes;
+        notes.importance.importance = static_cast<float>(in_.get<std::uint16_t>() / kMost16);
+        notes.importance.detail = static_cast<float>(in_.get<std::uint16_t>() / kMost16);
+        const auto max = in_.get<float>();
+        const auto share = in_.get<std::uint16_t>();
+        notes.repeats = in_.get<std::uint16_t>();
+        require(max >= 0 || (max == FrameBrick::kUnknown && notes.repeats == 0), "an impossible change of a brick",
+                file_);
+        notes.change = changeOf(max, share);
+        return notes;
+    }
+
+    FrameRecord frame() {
+        const bool grows = version_ >= kGrowingVersion, hasModels = version_ > 1;
+        FrameRecord frame;
+        if (grows) frame.time = in_.get<std::uint32_t>(), frame.component = in_.get<std::uint32_t>();
+        frame.offset = in_.get<std::uint64_t>();
+        frame.length = in_.get<std::uint64_t>();
+        requireInside(frame.offset, frame.length);
+        const auto kind = in_.get<std::uint8_t>(), wavelet = in_.get<std::uint8_t>(), keeps = in_.get<std::uint8_t>();
+        const auto codeBits = in_.get<std::uint8_t>();
+        constexpr std::size_t kWaveletsOfVersion1 = 8;
+        require(kind <= static_cast<std::uint8_t>(NumberKind::Quantised), "an unknown coding of numbers", file_);
+        require(wavelet < (hasModels ? std::size(kWaveletNames) : kWaveletsOfVersion1), "an unknown wavelet", file_);
+        require(keeps <= (notes_ ? 3 : 1), "an unknown flag of a frame", file_);
+        require(hasModels ? codeBits >= 1 && codeBits <= 32 : codeBits == 0, "an impossible width of codes", file_);
+        frame.numbers.kind = static_cast<NumberKind>(kind);
+        frame.wavelet = static_cast<Wavelet>(wavelet);
+        frame.keepsAbsent = (keeps & 1) != 0;
+        frame.bodyCentred = (keeps & 2) != 0;
+        frame.codeBits = hasModels ? codeBits : 32;
+        frame.mask = in_.get<std::int32_t>();
+        if (hasModels) frame.model = in_.get<std::int32_t>();
+        frame.numbers.origin = in_.get<double>();
+        frame.numbers.step = in_.get<double>();
+        frame.valueOffset = in_.get<double>();
+        frame.valueScale = in_.get<double>();
+        frame.bricks.resize(shape_.bricks);
+        for (FrameBrick& brick : frame.bricks) {
+            brick.min = in_.get<float>();
+            brick.max = in_.get<float>();
+            if (notes_) brick.notes = notes();
+        }
+        std::uint64_t at = frame.offset;
+        frame.segments.resize(shape_.bricks * static_cast<std::uint64_t>(shape_.grid.levels));
+        for (Segment& segment : frame.segments) {
+            segment.length = in_.get<std::uint32_t>();
+            segment.checksum = in_.get<std::uint64_t>();
+            place(segment, at, frame.offset + frame.length);
+        }
+        require(at == frame.offset + frame.length, "the bricks of a frame do not fill its chunk", file_);
+        return frame;
+    }
+
+    ByteReader in_;
+    std::uint32_t version_;
+    bool notes_, tallies_;
+    std::uint64_t begin_, end_; ///< where chunks may lie
+    const IndexShape& shape_;
+    const std::string& file_;
+};
+
+/// The pages from the last, which the header names, to the first; here the first comes first.
+std::vector<IndexPage> readPages(std::span<const std::byte> bytes, const Header& header, const IndexShape& shape,
+                                 const std::string& file, std::vector<Block>& places, std::uint64_t& pageBytes) {
+    std::vector<IndexPage> pages;
+    Header upTo = header;
+    pageBytes = 0;
+    for (Block at = header.index;;) {
+        const auto part = bytes.subspan(at.offset, at.length);
+        require(checksum(part) == at.checksum, "the index is damaged (checksum)", file);
+        upTo.index = at; // what a page names lies before it
+        Bytes records;
+        const bool compact = (header.features & kCompact) != 0;
+        require(!compact || decodePiece(part, records) == DecodeStatus::Ok, "a page of the index cannot be decoded",
+                file);
+        pageBytes += compact ? records.size() : part.size();
+        require(!compact || pageBytes <= mostPageBytes(header.fileSize), "the index is far too long for the file",
+                file);
+        pages.push_back(RecordReader(compact ? records : part, upTo, shape, file).page());
+        places.push_back(at);
+        const Block before = pages.back().previousPage;
+        if (before == Block{}) break;
+        require(header.version >= kGrowingVersion && before.offset >= firstChunk(header.version) &&
+                    before.offset < at.offset && before.length <= at.offset - before.offset,
+                "a page of the index lies outside the file", file);
+        at = before;
+    }
+    std::reverse(pages.begin(), pages.end());
+    std::reverse(places.begin(), places.end());
+    return pages;
+}
+
+/// Reads the tallies of a page, whose masks and those of older pages are in the index.
+void takeTallies(const Index& index, const IndexShape& shape, IndexPage& page, const std::string& file) {
+    BitReader in(page.tallies);
+    const glm::ivec3 count = shape.grid.count();
+    for (FrameRecord& frame : page.frames)
+        for (std::size_t b = 0; b < frame.bricks.size(); ++b) {
+            FrameBrick& brick = frame.bricks[b];
+            if (brick.notes.repeats > 0) continue;
+            const std::size_t nx = std::size_t(count.x), ny = std::size_t(count.y);
+            const glm::ivec3 at(int(b % nx), int(b / nx % ny), int(b / (nx * ny)));
+            const glm::u64vec3 size(shape.grid.brickSamples(at, 0));
+            const std::uint64_t samples = size.x * size.y * size.z,
+                                present =
+                                    frame.mask < 0 ? samples : index.masks[std::size_t(frame.mask)].bricks[b].present;
+            const bool isFloat = frame.numbers.kind != NumberKind::Integer;
+            require(present <= samples &&
+                        take(in, brick.min, brick.max, isFloat, static_cast<std::uint32_t>(present), brick.tally),
+                    "statistics of a brick cannot be read", file);
+        }
+    require(in.atEnd(), "statistics of bricks do not fill the index", file);
+}
+
+/// A brick that repeats another has no bytes of its own, the other one has.
+void requireRepeats(const Index& index, const IndexShape& shape, const std::string& file) {
+    for (std::size_t f = 0; f < index.frames.size(); ++f) {
+        const FrameRecord& frame = index.frames[f];
+        for (std::size_t b = 0; b < shape.bricks; ++b) {
+            const auto repeats = static_cast<std::uint32_t>(frame.bricks[b].notes.repeats);
+            if (repeats == 0) continue;
+            require(repeats <= frame.time, "a brick repeats one before the first time", file);
+            const FrameRecord& other = index.frames[f - repeats * shape.components];
+            require(other.bricks[b].notes.repeats == 0, "a brick repeats one that repeats another", file);
+            for (std::size_t s = b; s < frame.segments.size(); s += shape.bricks)
+                require(frame.segments[s].length == 0, "a brick that repeats another has bytes of its own", file);
+        }
+    }
+}
+
+/// Chunks, pages and metadata, former ones too, touch each other from the first chunk to the end of the file.
+void requireFilled(const Index& index, const Header& header, const std::string& file) {
+    std::vector<std::pair<std::uint64_t, std::uint64_t>> parts;
+    const auto add = [&](const auto& part) {
+        const std::uint64_t end = header.fileSize;
+        require(part.offset <= end && part.length <= end - part.offset, "a part lies outside the file", file);
+        parts.emplace_back(part.offset, part.offset + part.length);
+    };
+    for (const auto* blocks : {&index.models, &index.pages, &index.retired})
+        for (const Block& block : *blocks) add(block);
+    for (const MaskRecord& mask : index.masks) add(mask);
+    for (const FrameRecord& frame : index.frames) add(frame);
+    add(header.metadata);
+    std::sort(parts.begin(), parts.end());
+    std::uint64_t at = firstChunk(header.version);
+    for (const auto& [begin, end] : parts) {
+        require(begin == at, "the chunks do not fill the file", file);
+        at = end;
+    }
+    require(at == header.fileSize, "the chunks do not fill the file", file);
+}
+
+} // namespace
+
+FrameBrick::Notes rounded(const FrameBrick::Notes& notes) {
+    FrameBrick::Notes out = notes;
+    out.importance.importance = static_cast<float>(to16(double(notes.importance.importance)) / kMost16);
+    out.importance.detail = static_cast<float>(to16(double(notes.importance.detail)) / kMost16);
+    out.change = changeOf(notes.change.max, shareOf(notes.change));
+    return out;
+}
+
+Bytes serialise(const IndexPage& page, std::uint32_t features) {
+    const bool hasNotes = (features & kBrickNotes) != 0;
+    ByteWriter out;
+    out.put(page.previousPage);
+    out.put(page.previousMetadata);
+    out.put(static_cast<std::uint32_t>(page.times.size()));
+    out.put(static_cast<std::uint32_t>(page.masks.size()));
+    out.put(static_cast<std::uint32_t>(page.frames.size()));
+    out.put(static_cast<std::uint32_t>(page.models.size()));
+    for (const double time : page.times) out.put(time);
+    for (const Block& model : page.models) out.put(model);
+    for (const MaskRecord& mask : page.masks) {
+        out.put(mask.offset);
+        out.put(mask.length);
+        for (const MaskBrick& brick : mask.bricks) {
+            out.put(brick.segment.length);
+            out.put(brick.present);
+            out.put(brick.segment.checksum);
+        }
+    }
+    for (const FrameRecord& frame : page.frames) {
+        out.put(frame.time);
+        out.put(frame.component);
+        out.put(frame.offset);
+        out.put(frame.length);
+        out.put(static_cast<std::uint8_t>(frame.numbers.kind));
+        out.put(static_cast<std::uint8_t>(frame.wavelet));
+        out.put(static_cast<std::uint8_t>((frame.keepsAbsent ? 1 : 0) | (frame.bodyCentred ? 2 : 0)));
+        out.put(static_cast<std::uint8_t>(frame.codeBits));
+        out.put(frame.mask);
+        out.put(frame.model);
+        out.put(frame.numbers.origin);
+        out.put(frame.numbers.step);
+        out.put(frame.valueOffset);
+        out.put(frame.valueScale);
+        for (const FrameBrick& brick : frame.bricks) {
+            out.put(brick.min);
+            out.put(brick.max);
+            if (!hasNotes) continue;
+            out.put(to16(double(brick.notes.importance.importance)));
+            out.put(to16(double(brick.notes.importance.detail)));
+            out.put(brick.notes.change.max);
+            out.put(shareOf(brick.notes.change));
+            out.put(static_cast<std::uint16_t>(brick.notes.repeats));
+        }
+        for (const Segment& segment : frame.segments) {
+            out.put(segment.length);
+            out.put(segment.checksum);
+        }
+    }
+    BitWriter tallies;
+    for (const FrameRecord& frame : page.frames)
+        for (const FrameBrick& brick : frame.bricks)
+            if (brick.notes.repeats == 0)
+                put(tallies, brick.min, brick.max, frame.numbers.kind != NumberKind::Integer, brick.tally);
+    if ((features & kBrickTallies) != 0) out.bytes.insert(out.bytes.end(), tallies.bytes.begin(), tallies.bytes.end());
+    return out.bytes;
+}
+
+Index readIndex(std::span<const std::byte> bytes, const Header& header, const IndexShape& shape,
+                const std::string& file) {
+    Index index;
+    const bool grows = header.version >= kGrowingVersion;
+    std::vector<FrameRecord> frames;
+    for (IndexPage& page : readPages(bytes, header, shape, file, index.pages, index.pageBytes)) {
+        index.times.insert(index.times.end(), page.times.begin(), page.times.end());
+        index.models.insert(index.models.end(), page.models.begin(), page.models.end());
+        std::move(page.masks.begin(), page.masks.end(), std::back_inserter(index.masks));
+        if (page.previousMetadata != Block{}) index.retired.push_back(page.previousMetadata);
+        for (FrameRecord& frame : page.frames) {
+            require(frame.mask >= -1 && frame.mask < std::ssize(index.masks), "a mask is missing", file);
+            require(header.version == 1 || (frame.model >= 0 && frame.model < std::ssize(index.models)),
+                    "a model is missing", file);
+        }
+        if ((header.features & kBrickTallies) != 0) takeTallies(index, shape, page, file);
+        for (FrameRecord& frame : page.frames) {
+            if (!grows) {
+                frame.time = static_cast<std::uint32_t>(frames.size() / shape.components);
+                frame.component = static_cast<std::uint32_t>(frames.size() % shape.components);
+            }
+            frames.push_back(std::move(frame));
+        }
+    }
+    for (std::size_t t = 0; t < index.times.size(); ++t)
+        require(std::isfinite(index.times[t]) && (t == 0 || index.times[t] > index.times[t - 1]),
+                "times do not increase", file);
+    const std::uint64_t times = grows ? index.times.size() : shape.times;
+    require(times > 0, "no times", file);
+    require(frames.size() / shape.components == times && frames.size() % shape.components == 0,
+            "the index and the metadata disagree on the number of frames", file);
+    index.frames.resize(frames.size());
+    std::vector<bool> known(frames.size());
+    for (FrameRecord& frame : frames) {
+        require(frame.time < times && frame.component < shape.components, "a frame of no time or parameter", file);
+        const std::size_t number = std::size_t(frame.time) * shape.components + frame.component;
+        require(!known[number], "a frame is there twice", file);
+        known[number] = true;
+        index.frames[number] = std::move(frame);
+    }
+    if ((header.features & kBrickNotes) != 0) requireRepeats(index, shape, file);
+    requireFilled(index, header, file);
+    return index;
+}
+
+} // namespace tessera::codec

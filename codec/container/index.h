@@ -1,0 +1,104 @@
+#pragma once
+
+#include "codec/brick/brick_tally.h"
+#include "codec/brick/numbers.h"
+#include "codec/container/container.h"
+#include "codec/wavelet/lifting.h"
+#include "volume/bricks/brick_source.h"
+
+#include <vector>
+
+/// Where the bricks of an archive lie and how they are coded. (FORMAT.md "Index".)
+namespace tessera::codec {
+
+/// A coded piece of a brick; where it lies follows from the lengths before it.
+struct Segment {
+    std::uint64_t offset = 0; ///< in the file; not stored
+    std::uint32_t length = 0;
+    std::uint64_t checksum = 0;
+};
+
+/// The flags of one brick; no bytes when all or none are present.
+struct MaskBrick {
+    Segment segment;
+    std::uint32_t present = 0; ///< how many samples are
+};
+
+struct MaskRecord {
+    std::uint64_t offset = 0, length = 0;
+    std::vector<MaskBrick> bricks;
+};
+
+struct FrameBrick {
+    float min = 0, max = -1; ///< physical values of present samples; min > max: none
+    BrickTally tally;        ///< only with kBrickTallies, and not of repeats
+    /// What archives without kBrickNotes do not say of their bricks.
+    struct Notes {
+        volume::BrickImportance importance;             ///< stored with 16 bits each
+        volume::BrickChange change{kUnknown, kUnknown}; ///< from the frame before; rms is stored as a share of max
+        int repeats = 0; ///< above 0: the samples, and the bytes, are those of the frame so many times before
+    } notes;
+
+    static constexpr float kUnknown = -1;
+};
+
+/// As the archive will give them back, the change rounded up.
+FrameBrick::Notes rounded(const FrameBrick::Notes& notes);
+
+/// One component of one parameter at one time.
+struct FrameRecord {
+    std::uint32_t time = 0, component = 0; ///< component: counted through all parameters
+    std::uint64_t offset = 0, length = 0;
+    NumberCoding numbers;
+    Wavelet wavelet = Wavelet::W22;
+    bool keepsAbsent = false;
+    bool bodyCentred = false; ///< only with kBrickNotes
+    std::int32_t mask = -1;   ///< index of a MaskRecord, -1: all present
+    std::int32_t model = -1;  ///< index of a model, the tables of the coefficient coder; -1 in version 1
+    int codeBits = 32;        ///< every |code| is below 2^codeBits
+    double valueOffset = 0, valueScale = 1;
+    std::vector<FrameBrick> bricks;
+    std::vector<Segment> segments; ///< [segment * bricks + brick], coarsest level first, as they lie in the file
+};
+
+/// What one commit adds to the index.
+struct IndexPage {
+    Block previousPage, previousMetadata; ///< empty on the first page; previousMetadata also where it still holds
+    std::vector<double> times;
+    std::vector<Block> models;
+    std::vector<MaskRecord> masks;
+    std::vector<FrameRecord> frames;
+    Bytes tallies; ///< as read: of all frames, in bits
+};
+
+struct Index {
+    std::vector<double> times; ///< not in versions 1 and 2, whose metadata has them
+    std::vector<Block> models;
+    std::vector<MaskRecord> masks;
+    std::vector<FrameRecord> frames; ///< [time * components + component]
+    std::vector<Block> pages;        ///< the first first
+    std::vector<Block> retired;      ///< metadata of former commits
+    std::uint64_t pageBytes = 0;     ///< of all pages, decoded
+};
+
+/// What the metadata says of the shape of an index.
+struct IndexShape {
+    std::uint64_t components = 0, bricks = 0;
+    volume::BrickGrid grid;
+    std::uint64_t times = 0; ///< versions 1 and 2 only
+};
+
+/// What all pages of a compact archive may decode to: no small file asks for much memory.
+constexpr std::uint64_t mostPageBytes(std::uint64_t fileSize) {
+    return (std::uint64_t(1) << 22) + 16 * fileSize;
+}
+
+/// The bytes of a page, which compact archives hold as a piece (codec/bytes/lzma.h). `features`: of the header.
+Bytes serialise(const IndexPage& page, std::uint32_t features);
+
+/// Reads and checks the index a header names. Throws Error naming `file` when a checksum or a length is wrong, frames
+/// are missing, or chunks, pages and metadata do not fill the file up to header.fileSize exactly, in any order.
+Index readIndex(std::span<const std::byte> bytes, const Header& header, const IndexShape& shape,
+                const std::string& file);
+
+} // namespace tessera::codec

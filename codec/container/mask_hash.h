@@ -1,0 +1,34 @@
+#pragma once
+
+#include "volume/field/field.h"
+
+#include <array>
+#include <cstdint>
+
+struct XXH3_state_s;
+
+namespace tessera::codec {
+
+/// Tells masks apart by their flags, which may come part by part.
+class MaskHash {
+public:
+    using Value = std::array<std::uint64_t, 2>;
+
+    MaskHash();
+    ~MaskHash();
+    MaskHash(const MaskHash&) = delete;
+    MaskHash& operator=(const MaskHash&) = delete;
+
+    void add(const volume::Mask& part);
+    /// Of a field without a mask: everything is present.
+    void add(const volume::Field& part);
+    Value value() const;
+    /// Whether anything is absent.
+    bool gaps() const { return gaps_; }
+
+private:
+    XXH3_state_s* state_;
+    bool gaps_ = false;
+};
+
+} // namespace tessera::codec

@@ -1,0 +1,310 @@
+#include "codec/container/metadata.h"
+
+#include "codec/bytes/lzma.h"
+#include "codec/container/container.h"
+#include "codec/container/options_json.h"
+#include "volume/base/error.h"
+
+#include <bit>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+namespace tessera::codec {
+
+namespace {
+
+using nlohmann::json;
+using volume::LatticeKind;
+
+template <class Vector> json vectorJson(const Vector& v) {
+    return {v.x, v.y, v.z};
+}
+
+constexpr const char* kD4Name = "d4";
+
+json latticeJson(const volume::Lattice& lattice, bool alternating = false) {
+    return {{"kind", alternating ? kD4Name : volume::kLatticeNames[std::size_t(lattice.kind)]},
+            {"size", vectorJson(lattice.size)},
+            {"spacing", vectorJson(lattice.spacing)},
+            {"origin", vectorJson(lattice.origin)}};
+}
+
+json parameterJson(const volume::Parameter& parameter) {
+    json labels = json::array(), ranges = json::array();
+    for (const volume::Label& label : parameter.labels) {
+        labels.push_back({{"value", label.value}, {"name", label.name}});
+        if (!label.color.empty()) labels.back()["color"] = label.color;
+    }
+    for (const Range& range : parameter.ranges) ranges.push_back({range.lo, range.hi});
+    json out = {{"name", parameter.name},
+                {"unit", parameter.unit},
+                {"components", parameter.components},
+                {"type", volume::name(parameter.type)},
+                {"categorical", parameter.categorical},
+                {"labels", std::move(labels)},
+                {"ranges", std::move(ranges)}};
+    if (!parameter.parts.label.empty())
+        out["parts"] = {{"label", parameter.parts.label}, {"regions", parameter.parts.regions}};
+    if (parameter.unitGuessed) out["unitGuessed"] = true;
+    return out;
+}
+
+/// Numbers, null where one is not known.
+json quantityJson(const volume::Quantity& quantity) {
+    json values = json::array();
+    for (const double value : quantity.values) values.push_back(std::isfinite(value) ? json(value) : json());
+    return {{"name", quantity.name}, {"unit", quantity.unit}, {"values", std::move(values)}};
+}
+
+/// A place in the document, for messages, and typed access below it.
+class Node {
+public:
+    Node(const json& value, std::string path, const std::string& file)
+        : value_(value), path_(std::move(path)), file_(file) {}
+
+    [[noreturn]] void fail(const std::string& reason) const { throw Error(reason, file_, "metadata " + path_); }
+    Node operator[](const char* key) const {
+        if (!value_.is_object() || !value_.contains(key)) fail(std::string("the key '") + key + "' is missing");
+        return {value_.at(key), path_ + "/" + key, file_};
+    }
+    bool has(const char* key) const { return value_.is_object() && value_.contains(key); }
+    bool isNull() const { return value_.is_null(); }
+    std::vector<Node> items(std::size_t most) const {
+        if (!value_.is_array() || value_.size() > most) fail("not a list of at most " + std::to_string(most));
+        std::vector<Node> all;
+        for (std::size_t i = 0; i < value_.size(); ++i)
+            all.emplace_back(value_[i], path_ + "/" + std::to_string(i), file_);
+        return all;
+    }
+    std::string text() const {
+        if (!value_.is_string()) fail("not a text");
+        return value_.get<std::string>();
+    }
+    double number() const {
+        if (!value_.is_number()) fail("not a number");
+        return value_.get<double>();
+    }
+    int integer(int lo, int hi) const {
+        if (!value_.is_number_integer()) fail("not an integer");
+        const auto value = value_.get<std::int64_t>();
+        if (value < lo || value > hi) fail("not between " + std::to_string(lo) + " and " + std::to_string(hi));
+        return static_cast<int>(value);
+    }
+    bool flag() const {
+        if (!value_.is_boolean()) fail("not true or false");
+        return value_.get<bool>();
+    }
+    glm::dvec3 vector() const {
+        const auto parts = items(3);
+        if (parts.size() != 3) fail("not three numbers");
+        return {parts[0].number(), parts[1].number(), parts[2].number()};
+    }
+
+private:
+    const json& value_;
+    std::string path_;
+    const std::string& file_;
+};
+
+/// `alternating`: where to note that the frames form a D4* lattice; null: that is no lattice here.
+volume::Lattice readLattice(const Node& node, bool* alternating = nullptr) {
+    volume::Lattice lattice;
+    const std::string kind = node["kind"].text();
+    if (kind == volume::kLatticeNames[0])
+        lattice.kind = LatticeKind::CC;
+    else if (kind == volume::kLatticeNames[1])
+        lattice.kind = LatticeKind::BCC;
+    else if (alternating != nullptr && kind == kD4Name)
+        *alternating = true;
+    else
+        node["kind"].fail("unknown lattice '" + kind + "'");
+    const auto size = node["size"].items(3);
+    if (size.size() != 3) node["size"].fail("not three numbers");
+    constexpr int kLargest = 1 << 24;
+    lattice.size = {size[0].integer(1, kLargest), size[1].integer(1, kLargest), size[2].integer(1, kLargest)};
+    lattice.spacing = node["spacing"].vector();
+    lattice.origin = node["origin"].vector();
+    for (int axis = 0; axis < 3; ++axis)
+        if (!(lattice.spacing[axis] > 0)) node["spacing"].fail("not above 0");
+    return lattice;
+}
+
+std::vector<double> readTimes(const Node& node) {
+    std::vector<double> times;
+    for (const Node& time : node.items(1 << 20)) {
+        if (!times.empty() && !(time.number() > times.back())) time.fail("times do not increase");
+        times.push_back(time.number());
+    }
+    if (times.empty()) node.fail("no times");
+    return times;
+}
+
+volume::Parameter readParameter(const Node& node) {
+    volume::Parameter parameter;
+    parameter.name = node["name"].text();
+    parameter.unit = node["unit"].text();
+    parameter.components = node["components"].integer(1, 64);
+    const auto type = volume::parseScalarType(node["type"].text());
+    if (!type) node["type"].fail("unknown number type");
+    parameter.type = *type;
+    parameter.categorical = node["categorical"].flag();
+    constexpr int kMost = 1 << 30;
+    for (const Node& label : node["labels"].items(65536))
+        parameter.labels.push_back({label["value"].integer(-kMost, kMost), label["name"].text(),
+                                    label.has("color") ? label["color"].text() : std::string()});
+    if (node.has("parts")) {
+        parameter.parts.label = node["parts"]["label"].text();
+        for (const Node& part : node["parts"]["regions"].items(65536)) {
+            std::vector<int>& values = parameter.parts.regions.emplace_back();
+            for (const Node& value : part.items(65536)) values.push_back(value.integer(-kMost, kMost));
+        }
+    }
+    if (node.has("unitGuessed")) parameter.unitGuessed = node["unitGuessed"].flag();
+    for (const Node& range : node["ranges"].items(65)) {
+        const auto ends = range.items(2);
+        if (ends.size() != 2) range.fail("not two numbers");
+        parameter.ranges.push_back({ends[0].number(), ends[1].number()});
+    }
+    return parameter;
+}
+
+volume::Quantity readQuantity(const Node& node) {
+    volume::Quantity quantity{node["name"].text(), node["unit"].text(), {}};
+    for (const Node& value : node["values"].items(1 << 20))
+        quantity.values.push_back(value.isNull() ? std::nan("") : value.number());
+    return quantity;
+}
+
+/// By parameter, null where not known.
+json resampledJson(const std::vector<std::optional<ResampleError>>& resampled) {
+    json out = json::array();
+    for (const std::optional<ResampleError>& error : resampled)
+        out.push_back(error ? json{{"meanSquare", error->meanSquare},
+                                   {"largest", error->largest},
+                                   {"samples", error->samples},
+                                   {"share", error->share}}
+                            : json());
+    return out;
+}
+
+std::vector<std::optional<ResampleError>> readResampled(const Node& node, std::size_t parameters) {
+    std::vector<std::optional<ResampleError>> resampled;
+    for (const Node& error : node.items(parameters))
+        resampled.push_back(error.isNull()
+                                ? std::nullopt
+                                : std::optional(ResampleError{error["meanSquare"].number(), error["largest"].number(),
+                                                              error["samples"].number(), error["share"].number()}));
+    return resampled;
+}
+
+/// Of all but the times, which the index has.
+std::string toJson(const Metadata& metadata) {
+    const volume::DatasetInfo& info = metadata.info;
+    json parameters = json::array();
+    for (const volume::Parameter& parameter : info.parameters) parameters.push_back(parameterJson(parameter));
+    json document = {
+        {"program", metadata.program},
+        {"data",
+         {{"name", info.name},
+          {"lattice", latticeJson(info.lattice, metadata.alternating)},
+          {"bounds", {{"lo", vectorJson(info.bounds.lo)}, {"hi", vectorJson(info.bounds.hi)}}},
+          {"lengthUnit", info.lengthUnit},
+          {"parameters", std::move(parameters)},
+          {"timeUnit", info.timeUnit},
+          {"provenance", info.provenance}}},
+        {"grid",
+         {{"brickSize", metadata.grid.brickSize}, {"levels", metadata.grid.levels}, {"phase", metadata.grid.phase}}},
+        {"source", latticeJson(metadata.source)},
+        {"lossless", metadata.lossless},
+        {"maxError", metadata.maxError},
+        {"options", toJson(metadata.options)}};
+    if (info.timeName != volume::DatasetInfo().timeName) document["data"]["timeName"] = info.timeName;
+    for (const volume::Quantity& quantity : metadata.alternating ? metadata.sourceQuantities : info.quantities)
+        document["data"]["quantities"].push_back(quantityJson(quantity));
+    if (!metadata.resampled.empty()) document["resampled"] = resampledJson(metadata.resampled);
+    if (metadata.alternating) document["sourceTimes"] = metadata.sourceTimes;
+    return document.dump(-1, ' ', false, json::error_handler_t::replace);
+}
+
+Metadata metadataFromJson(std::string_view text, bool hasTimes, const std::string& file) {
+    const json document = json::parse(text, nullptr, false);
+    if (document.is_discarded()) throw Error("not JSON", file, "metadata");
+    const Node root(document, "", file);
+    Metadata metadata;
+    metadata.program = root["program"].text();
+    metadata.lossless = root["lossless"].flag();
+    metadata.maxError = root["maxError"].number();
+    metadata.source = readLattice(root["source"]);
+
+    const Node data = root["data"];
+    volume::DatasetInfo& info = metadata.info;
+    info.name = data["name"].text();
+    info.lattice = readLattice(data["lattice"], &metadata.alternating);
+    info.bounds = {data["bounds"]["lo"].vector(), data["bounds"]["hi"].vector()};
+    info.lengthUnit = data["lengthUnit"].text();
+    for (const Node& parameter : data["parameters"].items(4096)) info.parameters.push_back(readParameter(parameter));
+    if (info.parameters.empty()) data["parameters"].fail("no parameters");
+    info.times.clear();
+    if (hasTimes) info.times = readTimes(data["times"]);
+    if (root.has("resampled")) metadata.resampled = readResampled(root["resampled"], info.parameters.size());
+    if (metadata.alternating) metadata.sourceTimes = readTimes(root["sourceTimes"]);
+    info.timeUnit = data["timeUnit"].text();
+    if (data.has("timeName")) info.timeName = data["timeName"].text();
+    if (data.has("quantities")) {
+        std::vector<volume::Quantity>& quantities = metadata.alternating ? metadata.sourceQuantities : info.quantities;
+        for (const Node& quantity : data["quantities"].items(4096)) quantities.push_back(readQuantity(quantity));
+    }
+    info.provenance = data["provenance"].text();
+
+    const Node grid = root["grid"];
+    metadata.grid.lattice = info.lattice;
+    metadata.grid.brickSize = grid["brickSize"].integer(4, 128);
+    if (!std::has_single_bit(static_cast<unsigned>(metadata.grid.brickSize)))
+        grid["brickSize"].fail("not a power of two");
+    metadata.grid.levels = grid["levels"].integer(1, std::bit_width(static_cast<unsigned>(metadata.grid.brickSize)));
+    metadata.grid.phase = grid["phase"].number();
+    if (document.contains("options")) metadata.options = optionsFromJson(document["options"]);
+    return metadata;
+}
+
+} // namespace
+
+Bytes serialise(const Metadata& metadata, std::uint32_t features) {
+    const std::string text = toJson(metadata);
+    const auto plain = std::as_bytes(std::span(text));
+    if ((features & kCompact) != 0) return encodePiece(plain);
+    const Bytes packed = Compressor(kMostEffort).compress(plain);
+    Bytes out;
+    appendU32(out, static_cast<std::uint32_t>(text.size()));
+    if (packed.empty())
+        out.insert(out.end(), plain.begin(), plain.end());
+    else
+        out.insert(out.end(), packed.begin(), packed.end());
+    return out;
+}
+
+Metadata parseMetadata(std::span<const std::byte> block, std::uint32_t version, std::uint32_t features,
+                       const std::string& file) {
+    const auto textOf = [](std::span<const std::byte> bytes) {
+        return std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    };
+    if (version < kGrowingVersion) return metadataFromJson(textOf(block), true, file);
+    if ((features & kCompact) != 0) {
+        Bytes text;
+        if (decodePiece(block, text) != DecodeStatus::Ok)
+            throw Error("the metadata cannot be decoded", file, "metadata");
+        return metadataFromJson(textOf(text), false, file);
+    }
+    constexpr std::size_t kMost = std::size_t(1) << 26, kLeastRatio = 4096; // no text shrinks more than that
+    if (block.size() < 4) throw Error("the metadata is truncated", file, "metadata");
+    const std::size_t length = readU32(block.data());
+    const auto body = block.subspan(4);
+    if (length == body.size()) return metadataFromJson(textOf(body), false, file);
+    if (length > kMost || length / kLeastRatio > body.size())
+        throw Error("the metadata has an impossible length", file, "metadata");
+    Bytes text(length);
+    if (decompress(body, text) != DecodeStatus::Ok) throw Error("the metadata cannot be decoded", file, "metadata");
+    return metadataFromJson(textOf(text), false, file);
+}
+
+} // namespace tessera::codec

@@ -1,0 +1,15 @@
+#pragma once
+
+#include "codec/pack/pack.h"
+
+#include <nlohmann/json_fwd.hpp>
+
+namespace tessera::codec {
+
+/// The options that differ from their defaults, by key; enumerators by name, nested ones as objects.
+nlohmann::json toJson(const PackOptions& options);
+/// The opposite. Takes what it knows: a missing or unknown key, a wrong type or a number out of range keeps the
+/// default.
+PackOptions optionsFromJson(const nlohmann::json& json);
+
+} // namespace tessera::codec

@@ -1,0 +1,203 @@
+#include "codec/pack/continuation.h"
+
+#include "volume/field/part_masks.h"
+#include "volume/field/quantities.h"
+#include "volume/resample/resample.h"
+#include "volume/resample/series_dataset.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tessera::codec {
+
+namespace {
+
+using volume::DatasetInfo;
+using volume::Parameter;
+
+std::string sizeText(const volume::Lattice& lattice) {
+    return std::to_string(lattice.size.x) + " x " + std::to_string(lattice.size.y) + " x " +
+           std::to_string(lattice.size.z);
+}
+
+/// The same samples in space, up to the rounding of numbers in files.
+bool sameLattice(const volume::Lattice& a, const volume::Lattice& b) {
+    constexpr double kRounding = 1e-5; // of a cell
+    bool same = a.kind == b.kind && a.size == b.size;
+    for (int axis = 0; axis < 3; ++axis)
+        same = same && std::abs(a.spacing[axis] - b.spacing[axis]) * a.size[axis] <= kRounding * a.spacing[axis] &&
+               std::abs(a.origin[axis] - b.origin[axis]) <= kRounding * a.spacing[axis];
+    return same;
+}
+
+const Parameter* find(const DatasetInfo& info, const std::string& name) {
+    const auto at = std::find_if(info.parameters.begin(), info.parameters.end(),
+                                 [&](const Parameter& parameter) { return parameter.name == name; });
+    return at == info.parameters.end() ? nullptr : &*at;
+}
+
+void requireSame(const Parameter& old, const Parameter& added, const std::string& path) {
+    const auto refuse = [&](const std::string& what, const std::string& is, const std::string& was) {
+        throw Error(added.name + " has " + what + " " + is + ", in the archive " + was, path);
+    };
+    if (old.type != added.type)
+        refuse("the type", std::string(volume::name(added.type)), std::string(volume::name(old.type)));
+    if (old.components != added.components)
+        refuse("components:", std::to_string(added.components), std::to_string(old.components));
+    if (old.unit != added.unit) refuse("the unit", "\"" + added.unit + "\"", "\"" + old.unit + "\"");
+    if (old.categorical != added.categorical)
+        throw Error(added.name + " holds labels in one of archive and data, numbers in the other", path);
+}
+
+} // namespace
+
+Continuation::Continuation(const DatasetInfo& info) {
+    for (std::size_t p = 0; p < info.parameters.size(); ++p) parameterOf.push_back(int(p));
+}
+
+void Continuation::widen(const DatasetInfo& from, DatasetInfo& to) const {
+    for (std::size_t p = 0; p < from.parameters.size(); ++p) {
+        const std::vector<Range>& ranges = from.parameters[p].ranges;
+        std::vector<Range>& wide = to.parameters[std::size_t(parameterOf[p])].ranges;
+        if (wide.size() != ranges.size()) {
+            if (wide.empty()) wide = ranges;
+            continue;
+        }
+        for (std::size_t c = 0; c < ranges.size(); ++c)
+            wide[c] = {std::min(wide[c].lo, ranges[c].lo), std::max(wide[c].hi, ranges[c].hi)};
+    }
+}
+
+void Continuation::noteResampled(const std::vector<std::optional<ResampleError>>& before,
+                                 const std::vector<ResampleError>& then, Metadata& now) const {
+    if (before.empty() && then.empty()) return;
+    const bool isNew = firstTime == 0;
+    now.resampled.resize(now.info.parameters.size());
+    for (std::size_t p = 0; p < parameterOf.size(); ++p) {
+        std::optional<ResampleError> error;
+        if (p < before.size()) error = before[p];
+        const bool known = before.empty() || error;
+        if (p < then.size()) error = joined(error, then[p]);
+        std::optional<ResampleError>& noted = now.resampled[std::size_t(parameterOf[p])];
+        if (!known || !error)
+            noted.reset();
+        else if (isNew)
+            noted = error;
+        else if (noted) // else the cost at earlier times is not known
+            noted->add(*error);
+    }
+}
+
+bool bringsTimes(const Archive& archive, const DatasetInfo& added) {
+    return std::any_of(added.parameters.begin(), added.parameters.end(), [&](const Parameter& parameter) {
+        return find(archive.metadata().info, parameter.name) != nullptr;
+    });
+}
+
+namespace {
+
+bool sameSamples(const volume::Field& a, const volume::Field& b) {
+    if (!(a.lattice.size == b.lattice.size)) return false;
+    for (std::size_t i = 0; i < a.count(); ++i)
+        if (a.present(i) != b.present(i) || (a.present(i) && a.value(i) != b.value(i))) return false;
+    return true;
+}
+
+/// The label, as packing would store it, is that of the archive at all times.
+void requireSameLabel(const volume::Dataset& source, int label, const Archive& archive) {
+    const Metadata& metadata = archive.metadata();
+    const Parameter& added = source.info.parameters[std::size_t(label)];
+    const Parameter* const old = find(metadata.info, added.name);
+    requireSame(*old, added, archive.path());
+    const volume::Dataset stored =
+        metadata.alternating ? volume::framesOfD4(source, metadata.options.resample, {}).frames : source;
+    if (stored.info.times != metadata.info.times)
+        throw Error("parameters can only be added at all times of the archive, " +
+                        std::to_string(metadata.info.times.size()) + " of them",
+                    archive.path());
+    const bool toBcc = !metadata.alternating && metadata.info.lattice.kind == volume::LatticeKind::BCC;
+    for (int time = 0; time < int(stored.info.times.size()); ++time) {
+        volume::Field field = stored.load(label, 0, time);
+        if (toBcc) field = volume::toBcc(field, true);
+        if (!sameSamples(field, readField(archive, int(old - metadata.info.parameters.data()), 0, time)))
+            throw Error("the archive has another label " + added.name, archive.path());
+    }
+}
+
+} // namespace
+
+std::optional<FurtherParameters> withoutKnownLabels(const volume::Dataset& source, const volume::SliceLoad& slices,
+                                                    const Archive& archive) {
+    std::vector<int> known, further;
+    for (std::size_t p = 0; p < source.info.parameters.size(); ++p)
+        (find(archive.info(), source.info.parameters[p].name) != nullptr ? known : further).push_back(int(p));
+    const auto isLabel = [&](int p) { return source.info.parameters[std::size_t(p)].categorical; };
+    if (known.empty() || further.empty() || !std::ranges::all_of(known, isLabel)) return std::nullopt;
+    for (const int label : known) requireSameLabel(source, label, archive);
+    FurtherParameters out{volume::withParts(source), volume::withParts(source.info, slices)};
+    out.dataset.info.parameters.clear();
+    for (const int p : further) out.dataset.info.parameters.push_back(source.info.parameters[std::size_t(p)]);
+    out.dataset.load = [inner = std::move(out.dataset.load), further](int parameter, int component, int time) {
+        return inner(further[std::size_t(parameter)], component, time);
+    };
+    if (out.slices)
+        out.slices = [inner = std::move(out.slices), further](int parameter, int component, int time, int first,
+                                                              int count) {
+            return inner(further[std::size_t(parameter)], component, time, first, count);
+        };
+    return out;
+}
+
+Continuation continuationOf(const Archive& archive, Metadata& metadata) {
+    const std::string& path = archive.path();
+    const Metadata& old = archive.metadata();
+    const DatasetInfo added = metadata.info;
+    if (!sameLattice(old.source, metadata.source) || !sameLattice(old.info.lattice, added.lattice))
+        throw Error("the samples lie on another grid (" + sizeText(metadata.source) + ") than those of the archive (" +
+                        sizeText(old.source) + ")",
+                    path);
+    if (old.grid.brickSize != metadata.grid.brickSize || old.grid.levels != metadata.grid.levels ||
+        old.grid.phase != metadata.grid.phase)
+        throw Error("the archive has other bricks than its options say", path);
+
+    Continuation place;
+    metadata.info = old.info;
+    metadata.grid = old.grid;
+    metadata.source = old.source;
+    metadata.resampled = old.resampled;
+    metadata.lossless = old.lossless && metadata.lossless;
+    metadata.maxError = std::max(metadata.maxError, old.maxError);
+    if (!bringsTimes(archive, added)) {
+        if (added.times != old.info.times)
+            throw Error("parameters can only be added at all times of the archive, " +
+                            std::to_string(old.info.times.size()) + " of them",
+                        path);
+        place.wholeTimes = false;
+        for (const Parameter& parameter : added.parameters) {
+            place.parameterOf.push_back(int(metadata.info.parameters.size()));
+            metadata.info.parameters.push_back(parameter);
+        }
+        for (const volume::Quantity& quantity : added.quantities)
+            if (!volume::findQuantity(old.info, quantity.name)) metadata.info.quantities.push_back(quantity);
+        return place;
+    }
+    for (const Parameter& parameter : added.parameters) {
+        const Parameter* const before = find(old.info, parameter.name);
+        if (!before) throw Error("the archive has no parameter " + parameter.name + " at its times so far", path);
+        requireSame(*before, parameter, path);
+        place.parameterOf.push_back(int(before - old.info.parameters.data()));
+    }
+    for (const Parameter& parameter : old.info.parameters)
+        if (!find(added, parameter.name)) throw Error("the data has no parameter " + parameter.name, path);
+    if (!(added.times.front() > old.info.times.back()))
+        throw Error("the times to append begin at " + std::to_string(added.times.front()) +
+                        ", not after the last of the archive, " + std::to_string(old.info.times.back()),
+                    path);
+    place.firstTime = old.info.times.size();
+    metadata.info.times.insert(metadata.info.times.end(), added.times.begin(), added.times.end());
+    metadata.info.quantities =
+        volume::joined(old.info.quantities, place.firstTime, added.quantities, added.times.size());
+    return place;
+}
+
+} // namespace tessera::codec

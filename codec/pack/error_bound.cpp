@@ -1,0 +1,167 @@
+#include "codec/pack/error_bound.h"
+
+#include "codec/pack/lossy_field.h"
+
+#include <algorithm>
+#include <cmath>
+#include <concepts>
+#include <limits>
+#include <map>
+#include <utility>
+#include <vector>
+
+namespace tessera::codec {
+
+namespace {
+
+/// Root of the mean of `squareOf(part, i)` over samples that it gives a number for.
+template <class SquareOf> double rmsOf(const FrameSamples& samples, SquareOf&& squareOf) {
+    double squares = 0, count = 0;
+    samples.forSlabs([&](const volume::Field& part, Slab) {
+        volume::dispatch(part.type, [&]<class T>(T) {
+            const auto numbers = part.as<T>();
+            for (std::size_t i = 0; i < numbers.size(); ++i) {
+                if (!part.present(i) || !std::isfinite(double(numbers[i]))) continue;
+                squares += squareOf(numbers[i]), ++count;
+            }
+        });
+        return true;
+    });
+    return count > 0 ? std::sqrt(squares / count) : 0;
+}
+
+/// How often each number occurs among the present samples of a frame.
+struct NumberCounts {
+    std::vector<std::pair<double, double>> counts; ///< number, how often; increasing
+    double samples = 0;
+
+    double rms(std::int64_t step) const {
+        double squares = 0;
+        for (const auto& [number, count] : counts) {
+            const std::int64_t over = std::abs(std::int64_t(number)) % step;
+            const auto apart = double(std::min(over, step - over));
+            squares += count * apart * apart;
+        }
+        return samples > 0 ? std::sqrt(squares / samples) : 0;
+    }
+    double least() const { return counts.empty() ? 0 : counts.front().first; }
+    double most() const { return counts.empty() ? 0 : counts.back().first; }
+};
+
+/// Of 32 bits and many different numbers those of the first and of some others, which stand for all.
+NumberCounts countNumbers(const FrameSamples& samples) {
+    constexpr std::size_t kMost = 1 << 20; // samples of 32 bits that are looked at
+    const std::size_t stride = samples.type() == volume::ScalarType::I32 ? samples.count() / kMost + 1 : 1;
+    std::map<double, double> wide;
+    std::vector<double> narrow(1 << 17, 0);
+    constexpr int kZero = 1 << 16; // place of 0 among the narrow ones
+    double lo = 0, hi = 0;
+    samples.forSlabs([&](const volume::Field& part, Slab) {
+        volume::dispatch(part.type, [&]<class T>(T) {
+            if constexpr (!std::same_as<T, float>) {
+                const auto numbers = part.as<T>();
+                for (std::size_t i = 0; i < numbers.size(); ++i) {
+                    if (!part.present(i)) continue;
+                    const auto number = std::int64_t(numbers[i]);
+                    if constexpr (sizeof(T) > 2) {
+                        lo = std::min(lo, double(number)), hi = std::max(hi, double(number));
+                        if (i % stride == 0) wide[double(number)] += 1;
+                    } else {
+                        narrow[std::size_t(number + kZero)] += 1;
+                    }
+                }
+            }
+        });
+        return true;
+    });
+    NumberCounts out;
+    for (std::size_t i = 0; i < narrow.size(); ++i)
+        if (narrow[i] > 0) wide[double(i) - kZero] += narrow[i];
+    for (const double end : {lo, hi})
+        if (end != 0) wide.try_emplace(end, 0);
+    for (const auto& [number, count] : wide) {
+        out.counts.emplace_back(number, count);
+        out.samples += count;
+    }
+    return out;
+}
+
+/// The largest step, of all small ones and of some of the others (0.14 dB apart), that keeps the root of the mean
+/// square error. Beyond four times that error none is looked for.
+std::int64_t largestStep(volume::ScalarType type, const NumberCounts& counts, double wanted) {
+    constexpr std::int64_t kMost = 1 << 29, kEvery = 64;
+    constexpr double kFar = 4;
+    const double reach = std::max(std::abs(counts.least()), std::abs(counts.most()));
+    std::int64_t best = 1;
+    for (std::int64_t step = 2; step < kMost && double(step) <= 2 * reach; step += 1 + step / kEvery) {
+        const double rms = counts.rms(step);
+        if (rms > kFar * wanted) break;
+        if (rms <= wanted && stepFits(type, step, counts.least(), counts.most())) best = step;
+    }
+    return best;
+}
+
+FrameBound integerBoundForPsnr(const FrameSamples& samples, double wanted) {
+    const std::int64_t step = largestStep(samples.type(), countNumbers(samples), wanted);
+    return {double(step / 2), step};
+}
+
+/// The coarsest bound on the error of floats that gives a root mean square error of at most `wanted`, by trial on the
+/// frame itself: where many samples lie on multiples of any step, as those of a background do, far more than an even
+/// spread would allow.
+double floatBoundForPsnr(const FrameSamples& samples, double wanted, double extent) {
+    constexpr int kTrials = 40;
+    constexpr double kClose = 0.97, kLargestStep = 16; // of the wanted error: 0.26 dB; of a bound from trial to trial
+    double bound = std::sqrt(3.0) * wanted, above = std::numeric_limits<double>::infinity(), best = 0;
+    for (int trial = 0; trial < kTrials && bound > 0; ++trial) {
+        const NumberCoding numbers = chooseCoding(samples, bound);
+        const double rms = numbers.kind != NumberKind::Quantised ? 0 : rmsOf(samples, [&](auto number) {
+            const auto sample = static_cast<float>(number);
+            const double error = double(sampleOf<float>(numbers, codeOf(numbers, sample))) - double(sample);
+            return error * error;
+        });
+        if (rms <= wanted) {
+            best = std::max(best, bound);
+            if (rms >= kClose * wanted || bound >= extent || numbers.kind != NumberKind::Quantised) break;
+        } else {
+            above = std::min(above, bound);
+        }
+        if (std::isfinite(above) && best >= 0.995 * above) break;
+        double next =
+            bound * (rms > 0 ? std::clamp(0.985 * wanted / rms, 1 / kLargestStep, kLargestStep) : kLargestStep);
+        if (next >= above || next <= best) next = best > 0 ? (best + std::min(above, 2 * extent)) / 2 : above / 2;
+        bound = std::min(next, extent);
+    }
+    return best;
+}
+
+FrameBound boundForPsnr(const FrameSamples& samples, double extent, double psnr) {
+    const double wanted = extent * std::pow(10.0, -psnr / 20);
+    if (samples.type() != volume::ScalarType::F32) return integerBoundForPsnr(samples, wanted);
+    return {floatBoundForPsnr(samples, wanted, extent), 1};
+}
+
+} // namespace
+
+double extentOf(const volume::Parameter& parameter) {
+    double extent = 0;
+    for (std::size_t c = 0; c < std::min(parameter.ranges.size(), std::size_t(parameter.components)); ++c)
+        extent = std::max(extent, parameter.ranges[c].hi - parameter.ranges[c].lo);
+    return extent;
+}
+
+FrameBound boundFor(const PackOptions& options, const volume::Parameter& parameter, const FrameSamples& samples) {
+    if (parameter.categorical) return {};
+    double error = std::numeric_limits<double>::infinity();
+    const double scale = std::abs(samples.scale()), extent = extentOf(parameter);
+    if (options.maxError > 0) error = std::min(error, options.maxError * extent / scale);
+    if (options.absError > 0) error = std::min(error, options.absError / scale);
+    const FrameBound stated{error, stepWithin(samples.type(), error)};
+    if (!(options.psnr > 0)) return std::isfinite(error) ? stated : FrameBound();
+    const FrameBound bound = boundForPsnr(samples, extent / scale, options.psnr);
+    const bool stricter =
+        samples.type() == volume::ScalarType::F32 ? stated.error < bound.error : stated.step < bound.step;
+    return std::isfinite(error) && stricter ? stated : bound;
+}
+
+} // namespace tessera::codec

@@ -1,0 +1,76 @@
+#pragma once
+
+#include "codec/brick/frame_samples.h"
+#include "codec/container/resample_error.h"
+#include "volume/base/progress.h"
+#include "volume/field/dataset.h"
+#include "volume/resample/resample.h"
+
+#include <functional>
+#include <future>
+#include <optional>
+#include <vector>
+
+namespace tessera::codec {
+
+/// One parameter at one time, as it is to be stored.
+struct FeedStep {
+    int parameter = 0;
+    std::size_t time = 0;
+    std::vector<FrameSamples> frames; ///< of each component
+    ResampleError resampled;          ///< of all components, where it was measured
+    std::vector<Range> ranges;        ///< of what was read, components, then magnitude; empty where they were known
+    std::uint64_t sourceSamples = 0, sourceBytes = 0;
+    double loadSeconds = 0, resampleSeconds = 0;
+};
+
+/// Widens ranges by those of one more time; empty ranges begin with them.
+void widenRanges(std::vector<Range>& ranges, const std::vector<Range>& more);
+
+/// How frames larger than memory are read: never whole.
+struct SlabReading {
+    volume::SliceLoad load; ///< null: frames are read whole
+    int step = 0;           ///< slices of all components of the source in memory at a time
+    SlabStore store;
+};
+
+/// What is done on the way.
+struct FeedOptions {
+    bool toBcc = false; ///< frames are resampled to the lattice of the grid
+    volume::ResampleOptions resample;
+    volume::BrickGrid grid;
+    SlabReading slabs;
+    bool ahead = false;      ///< the next step is read while the last one is in use, for memory of two
+    bool rangesOnly = false; ///< of slabs: no frames are made
+    bool measures = false;   ///< what resampling costs
+};
+
+/// Reads a data set time by time, in each parameter by parameter, and resamples it: while one step is coded, the next
+/// one is read.
+class FrameFeed {
+public:
+    /// A stop is noticed at the next step, or slab.
+    FrameFeed(volume::Dataset& dataset, FeedOptions options, std::stop_token stop);
+    ~FrameFeed();
+    FrameFeed(const FrameFeed&) = delete;
+    FrameFeed& operator=(const FrameFeed&) = delete;
+
+    /// The next step; called times x parameters times. Throws what reading throws: Error, Cancelled.
+    FeedStep next();
+
+private:
+    FeedStep read(std::size_t number);
+    void readWhole(FeedStep& step, const volume::Parameter& parameter);
+    void readSlabs(FeedStep& step, const volume::Parameter& parameter);
+
+    volume::Dataset& dataset_;
+    volume::DatasetInfo info_; ///< as it was at first
+    FeedOptions options_;
+    std::stop_token stop_;
+    std::function<volume::Field(int parameter, int component, int time)>
+        load_; ///< with parts where frames are resampled
+    std::size_t steps_, taken_ = 0;
+    std::future<FeedStep> coming_;
+};
+
+} // namespace tessera::codec

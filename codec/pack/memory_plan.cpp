@@ -1,0 +1,158 @@
+#include "codec/pack/memory_plan.h"
+
+#include "codec/archive/brick_access.h"
+#include "codec/archive/coded_bricks.h"
+#include "volume/base/error.h"
+#include "volume/resample/series.h"
+
+#include <algorithm>
+#include <cmath>
+#include <thread>
+#include <unistd.h>
+
+namespace tessera::codec {
+
+namespace {
+
+constexpr double kMega = 1e6;
+constexpr double kOwn = 64 * kMega; ///< the program itself, its threads and tables
+
+double quarterOfRam() {
+    const double pages = double(::sysconf(_SC_PHYS_PAGES)), bytes = double(::sysconf(_SC_PAGE_SIZE));
+    return pages > 0 && bytes > 0 ? pages * bytes / 4 : 1e9;
+}
+
+bool isSpline(const volume::ResampleOptions& options) {
+    return options.filter == volume::ResampleFilter::BSpline3 || options.filter == volume::ResampleFilter::BSpline5;
+}
+
+/// What resampling has beside source and result, for each sample of the source.
+double workingBytes(const volume::ResampleOptions& options) {
+    constexpr double kLines = 1.25; // lines being filtered, and what the allocator keeps of them
+    return (isSpline(options) ? kLines * double(sizeof(double)) : 0) +
+           (options.sharpen > 0 ? double(sizeof(float)) + 1 : 0);
+}
+
+/// Bytes that packing in slabs takes.
+class SlabCosts {
+public:
+    SlabCosts(const Metadata& metadata, const volume::DatasetInfo& source, const PackOptions& options)
+        : metadata_(metadata), source_(source), options_(options),
+          bcc_(metadata.info.lattice.kind == volume::LatticeKind::BCC), d4_(metadata.alternating),
+          resampled_(d4_ || (bcc_ && source.lattice.kind == volume::LatticeKind::CC)),
+          sourceSlice_(double(source.lattice.size.x) * source.lattice.size.y),
+          slice_(double(metadata.info.lattice.size.x) * metadata.info.lattice.size.y) {}
+
+    /// Whatever the number of layers is; of one parameter.
+    double always(const volume::Parameter& parameter) const {
+        // Bricks under way: samples, flags, codes and coefficients on every thread, and the bytes of a batch.
+        constexpr double kThreads = 16, kCodes = 12;
+        const std::size_t brick = brickBytes(metadata_.grid, parameter.type);
+        const double samples = double(brick) / double(volume::byteSize(parameter.type));
+        return std::min(kThreads, double(std::thread::hardware_concurrency())) *
+                   (double(brick) + (1 + kCodes) * samples) +
+               double(batchOf(brick) * brick);
+    }
+    double ofLayers(const volume::Parameter& parameter, int layers) const {
+        const double bytes = double(volume::byteSize(parameter.type)) + 1; // and a flag
+        const double texels =
+            std::min(double(layers) * metadata_.grid.brickSize, double(metadata_.info.lattice.texels().z));
+        constexpr double kMargin = 8;   // texels, of both sides
+        constexpr double kSmoothed = 2; // what importance is read from, for each sample
+        const double stored = slice_ * texels * (bcc_ ? 2 : 1), around = slice_ * kMargin * (bcc_ ? 2 : 1);
+        double made = stored * (bytes + 1);
+        if (resampled_) {
+            const double slices = (texels + kMargin) * metadata_.info.lattice.spacing.z / source_.lattice.spacing.z +
+                                  2 * volume::kMostOrder;
+            const double coefficients = isSpline(options_.resample) ? sizeof(double) : 0,
+                         edges = options_.resample.sharpen > 0 ? 2 * (d4_ ? sizeof(float) + 1 : bytes) : 0;
+            // Of D4* a sum of floats is resampled, of as many frames as the filter spans.
+            const double blended = d4_ ? sizeof(float) + 1 : bytes;
+            const double read = d4_ ? volume::framesSpanned(options_.resample) * bytes + blended : bytes;
+            made = sourceSlice_ * std::min(slices, double(source_.lattice.size.z)) *
+                       (read + blended + coefficients + edges) +
+                   (stored + around) * (bytes + blended + 1 + edges);
+        }
+        return std::max(made, (stored + around) * (bytes + kSmoothed));
+    }
+    /// Of a slice while a frame is looked through for its ranges, or prefiltered.
+    double ofSlice(const volume::Parameter& parameter) const {
+        const double bytes = double(volume::byteSize(parameter.type)) + 1;
+        return sourceSlice_ *
+               (parameter.components * bytes + (isSpline(options_.resample) ? 2 * sizeof(double) + 1 : 0));
+    }
+
+private:
+    const Metadata& metadata_;
+    const volume::DatasetInfo& source_;
+    const PackOptions& options_;
+    bool bcc_, d4_, resampled_;
+    double sourceSlice_, slice_; ///< samples
+};
+
+void refuse(double least, double limit) {
+    throw Error("packing frames of this size takes about " + std::to_string(std::lround(std::ceil(least / kMega))) +
+                " MB, the limit of memory is " + std::to_string(std::lround(limit / kMega)) + " MB");
+}
+
+/// As many layers as fit, or `layers` where that is not 0, and slices that take no more. `whole`: what whole frames
+/// take.
+MemoryPlan planSlabs(const Metadata& metadata, const volume::DatasetInfo& source, const PackOptions& options,
+                     int layers, double whole, double limit) {
+    const SlabCosts costs(metadata, source, options);
+    const auto most = [&](auto&& bytesOf) {
+        double bytes = 0;
+        for (const volume::Parameter& parameter : source.parameters) bytes = std::max(bytes, bytesOf(parameter));
+        return bytes;
+    };
+    const double always = kOwn + most([&](const volume::Parameter& parameter) { return costs.always(parameter); });
+    const auto ofLayers = [&](int number) {
+        return most([&](const volume::Parameter& parameter) { return costs.ofLayers(parameter, number); });
+    };
+    const double least = always + ofLayers(1);
+    if (options.memoryMb > 0 && least > limit) refuse(std::min(least, whole), limit);
+    MemoryPlan plan{.keepFrames = false, .readAhead = false, .slabLayers = 1, .slabStep = 1};
+    if (layers > 0) plan.slabLayers = layers;
+    while (layers == 0 && plan.slabLayers < metadata.grid.count().z && always + ofLayers(plan.slabLayers + 1) <= limit)
+        ++plan.slabLayers;
+    const double slice = most([&](const volume::Parameter& parameter) { return costs.ofSlice(parameter); });
+    plan.slabStep = std::clamp(int(ofLayers(plan.slabLayers) / slice), 1, source.lattice.size.z);
+    if (metadata.alternating) { // a slice is made of many; those of all components are there at a time
+        const double components = most([](const volume::Parameter& parameter) { return double(parameter.components); });
+        plan.slabStep = std::max(1, int(plan.slabLayers * metadata.grid.brickSize / (1 + components)));
+    }
+    return plan;
+}
+
+} // namespace
+
+MemoryPlan planMemory(const Metadata& metadata, const volume::DatasetInfo& source, const PackOptions& options,
+                      const SlabInput& slabs) {
+    const double samples = double(source.lattice.count()),
+                 stored = std::max(samples, double(metadata.info.lattice.count()));
+    const bool resampled = options.lattice != StoredLattice::CC && source.lattice.kind == volume::LatticeKind::CC;
+    const double working = resampled ? workingBytes(options.resample) * samples : 0;
+    double step = 0, coding = 0, all = 0, last = 0;
+    for (const volume::Parameter& parameter : source.parameters) {
+        const double bytes = double(volume::byteSize(parameter.type)) + 1; // and a flag
+        step = std::max(step, parameter.components * samples * bytes + stored * bytes + working);
+        coding = std::max(coding, parameter.components * stored * bytes + 2 * stored * bytes);
+        all += parameter.components * samples * bytes;
+        last += parameter.components * stored * bytes;
+    }
+    constexpr double kTimesOfD4 = 6; // that the filter in time may keep
+    const bool d4 = options.lattice == StoredLattice::D4;
+    const double kept = d4 ? kTimesOfD4 * all : 0;
+    const double least = kOwn + kept + std::max(step, coding);
+    const double limit = options.memoryMb > 0 ? options.memoryMb * kMega : quarterOfRam();
+    if (slabs.slices && (slabs.layers > 0 || least > limit))
+        return planSlabs(metadata, source, options, slabs.layers, least, limit);
+    if (options.memoryMb > 0 && least > limit) refuse(least, limit);
+    MemoryPlan plan;
+    const double frames = source.times.size() > 1 ? (d4 ? 2 : 1) * last : 0;
+    plan.keepFrames = least + frames <= limit;
+    plan.readAhead = least + (plan.keepFrames ? frames : 0) + step <= limit;
+    return plan;
+}
+
+} // namespace tessera::codec

@@ -1,0 +1,403 @@
+#include "codec/pack/pack.h"
+
+#include "codec/archive/archive_writer.h"
+#include "codec/archive/brick_access.h"
+#include "codec/bytes/stopwatch.h"
+#include "codec/pack/continuation.h"
+#include "codec/pack/error_bound.h"
+#include "codec/pack/frame_feed.h"
+#include "codec/pack/lossy_field.h"
+#include "codec/pack/memory_plan.h"
+#include "codec/pack/pack_again.h"
+#include "codec/pack/pack_passes.h"
+#include "codec/pack/pack_size.h"
+#include "volume/field/quantities.h"
+#include "volume/resample/resample.h"
+#include "volume/resample/series_dataset.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <filesystem>
+
+namespace tessera::codec {
+
+namespace {
+
+using volume::Field;
+using volume::LatticeKind;
+using volume::ScalarType;
+
+int defaultLevels(const volume::Lattice& lattice, int brickSize) {
+    const glm::ivec3 texels = lattice.texels();
+    const int longest = std::min(brickSize, std::max({texels.x, texels.y, texels.z}));
+    int levels = 1;
+    while (longest >> levels >= 4) ++levels;
+    return levels;
+}
+
+/// The edge of bricks, where options leave it to us: samples that repeat themselves, which only integers that were not
+/// resampled do, are found within a brick alone. What grows keeps its bricks.
+int brickSizeFor(const volume::Lattice& lattice, const volume::DatasetInfo& info, const PackOptions& options,
+                 const Archive* grown) {
+    constexpr int kUsual = 64, kLargest = 128;
+    constexpr std::size_t kSmall = 1 << 19; // samples
+    if (options.brickSize != 0) return options.brickSize;
+    if (grown) return grown->grid().brickSize;
+    const glm::ivec3 size = lattice.size;
+    const int longest = std::max({size.x, size.y, size.z});
+    const auto isInteger = [](const volume::Parameter& parameter) { return parameter.type != ScalarType::F32; };
+    const bool one = lattice.kind == LatticeKind::CC && lattice == info.lattice && info.times.size() == 1 &&
+                     lattice.count() <= kSmall && longest > kUsual && longest <= kLargest &&
+                     std::all_of(info.parameters.begin(), info.parameters.end(), isInteger);
+    return one ? kLargest : kUsual;
+}
+
+volume::BrickGrid gridFor(const volume::Lattice& lattice, const volume::DatasetInfo& info, const PackOptions& options,
+                          const Archive* grown = nullptr) {
+    const int brickSize = brickSizeFor(lattice, info, options, grown);
+    volume::BrickGrid grid{lattice, brickSize, options.levels,
+                           levelPhase(waveletOf(options.wavelet).value_or(Wavelet::W22))};
+    if (brickSize < 4 || brickSize > 128 || !std::has_single_bit(unsigned(brickSize)))
+        throw Error("the brick size must be a power of two from 4 to 128, not " + std::to_string(brickSize));
+    if (grid.levels == 0) grid.levels = defaultLevels(lattice, grid.brickSize);
+    if (grid.levels < 1 || grid.levels > int(std::bit_width(unsigned(grid.brickSize))))
+        throw Error(std::to_string(grid.levels) + " levels do not fit bricks of " + std::to_string(grid.brickSize));
+    return grid;
+}
+
+bool hasThreshold(const PackOptions& options) {
+    return options.threshold.kind != ThresholdChoice::None && options.threshold.value > 0;
+}
+
+/// No sample that is kept changes.
+bool isExact(const PackOptions& options) {
+    return options.maxError == 0 && options.absError == 0 && options.psnr == 0 && !hasThreshold(options);
+}
+
+/// A bound relative to the range of all times needs a pass of its own; one time is read once.
+bool isRelative(const PackOptions& options) {
+    return options.maxError > 0 || options.psnr > 0 || hasThreshold(options) || options.discard > 0;
+}
+
+void check(const volume::DatasetInfo& source, const PackOptions& options) {
+    if (source.parameters.empty() || source.times.empty()) throw Error("there is nothing to pack");
+    if (!(options.maxError >= 0 && options.maxError < 1)) throw Error("the error bound must be from 0 to below 1");
+    if (!(options.absError >= 0) || !(options.psnr >= 0)) throw Error("error bounds must not be negative");
+    if (hasThreshold(options) && (options.psnr > 0 || options.sizeMb > 0))
+        throw Error("a threshold goes with a bound on the error of samples, not with a PSNR or a size");
+    if (!options.lossless && isExact(options) && options.discard == 0)
+        throw Error("without lossless an error bound, a threshold or a part to discard is needed");
+    if (options.lattice == StoredLattice::CC && source.lattice.kind == LatticeKind::BCC)
+        throw Error("the data lies on BCC; it cannot be packed as CC");
+}
+
+/// The slabs of a plan; none where frames are read whole.
+SlabReading slabsOf(const MemoryPlan& plan, const SlabInput& slabs, const volume::SliceMaker& ofD4,
+                    const std::string& path) {
+    if (plan.slabLayers == 0) return {};
+    const std::string folder = std::filesystem::path(path).parent_path().string();
+    return {ofD4 ? ofD4(plan.slabStep, folder) : slabs.slices, plan.slabStep, {plan.slabLayers, folder}};
+}
+
+/// Gives up details of a frame, of the least important bricks the most.
+Thresholded giveUp(FrameSamples& samples, const volume::BrickGrid& grid, const FrameOptions& frame,
+                   const ThresholdOptions& options, double extent) {
+    std::vector<float> strength(brickCount(grid), 1);
+    if (options.byImportance) {
+        const auto importance = importanceOfBricks(grid, samples, frame.range, frame.categorical, frame.importance);
+        float most = 0;
+        for (const volume::BrickImportance& brick : importance) most = std::max(most, brick.importance);
+        for (std::size_t b = 0; b < strength.size() && most > 0; ++b) strength[b] = 1 - importance[b].importance / most;
+    }
+    const auto kind = static_cast<Threshold>(static_cast<int>(options.kind) - 1);
+    const double value =
+        kind == Threshold::Quantile ? options.value : options.value * extent / std::abs(samples.scale());
+    return giveUpDetails(grid, samples, frame.wavelet.value_or(Wavelet::W22), kind, value, strength, frame.maxError);
+}
+
+/// Makes every sample of the bricks that are left out absent.
+void leaveOut(FrameSamples& samples, const volume::BrickGrid& grid, const std::vector<std::uint8_t>& discarded) {
+    if (std::find(discarded.begin(), discarded.end(), std::uint8_t(1)) == discarded.end()) return;
+    samples.change([&](Field& part, Slab slab) {
+        const volume::BrickGrid own = slab.grid(grid);
+        const auto [first, end] = slab.bricks(grid);
+        volume::Mask mask = part.mask ? *part.mask : volume::Mask(part.count(), 1);
+        for (std::size_t b = first; b < end; ++b)
+            if (discarded[b] != 0)
+                forBrickRows(own, brickIndex(own, b - first), [&](std::size_t from, std::size_t, std::size_t n) {
+                    std::fill_n(mask.begin() + std::ptrdiff_t(from), n, std::uint8_t(0));
+                });
+        part.mask = std::make_shared<const volume::Mask>(std::move(mask));
+    });
+}
+
+/// Quantities at the times that D4* frames are made of: those of the source, before it those of the archive.
+std::vector<volume::Quantity> quantitiesOf(const volume::DatasetInfo& source, const std::vector<double>& times,
+                                           const Archive* grown) {
+    const std::size_t old = grown ? grown->metadata().sourceTimes.size() : 0;
+    const std::vector<double> added(times.begin() + std::ptrdiff_t(std::min(old, times.size())), times.end());
+    const std::vector<volume::Quantity> own = volume::atTimes(source.quantities, source.times, added);
+    if (grown && added.empty()) return grown->metadata().sourceQuantities;
+    return grown ? volume::joined(grown->metadata().sourceQuantities, old, own, added.size()) : own;
+}
+
+/// One run of pack or append.
+class Packing {
+public:
+    /// Into a new archive, or behind what is in `grown`, whose options `options` are then.
+    Packing(volume::Dataset& source, const SlabInput& slabs, const PackedAgain& before, const PackOptions& options,
+            const std::string& path, const Archive* grown)
+        : source_(source), dataset_(source), options_(options), path_(path), grown_(grown) {
+        check(source.info, options);
+        metadata_.source =
+            before.grid && source.info.lattice.kind == LatticeKind::BCC ? *before.grid : source.info.lattice;
+        metadata_.alternating = options.lattice == StoredLattice::D4;
+        volume::SliceMaker slicesOfD4;
+        if (metadata_.alternating) {
+            volume::D4Frames made = grown && bringsTimes(*grown, source.info)
+                                        ? volume::continueD4(source, grown->metadata().sourceTimes, grown->info().times,
+                                                             options.resample, slabs.slices)
+                                        : volume::framesOfD4(source, options.resample, slabs.slices);
+            metadata_.sourceTimes = std::move(made.times);
+            metadata_.sourceQuantities = quantitiesOf(source.info, metadata_.sourceTimes, grown);
+            dataset_ = std::move(made.frames);
+            slicesOfD4 = std::move(made.slices);
+        }
+        const volume::DatasetInfo& info = dataset_.info;
+        const bool toBcc = options.lattice == StoredLattice::BCC && info.lattice.kind == LatticeKind::CC;
+        metadata_.info = info;
+        metadata_.info.lattice = toBcc ? volume::bccFor(info.lattice) : info.lattice;
+        metadata_.grid = gridFor(metadata_.info.lattice, source.info, options, grown);
+        metadata_.lossless = isExact(options) && options.discard == 0 && before.lossless;
+        metadata_.program = "tessera";
+        metadata_.options = options;
+        metadata_.options.memoryMb = 0; // of this machine, not of the archive
+        place_ = grown ? continuationOf(*grown, metadata_) : Continuation(info);
+        ranges_.resize(info.parameters.size());
+        errors_.assign(info.parameters.size(), 0);
+        for (const volume::Parameter& parameter : info.parameters)
+            errorsBefore_.push_back(parameter.categorical ? 0 : before.maxError * extentOf(parameter));
+        memory_ = planMemory(metadata_, source.info, options, slabs);
+        reading_ = {.toBcc = toBcc,
+                    .resample = options.resample,
+                    .grid = metadata_.grid,
+                    .slabs = slabsOf(memory_, slabs, slicesOfD4, path),
+                    .ahead = memory_.readAhead,
+                    .rangesOnly = false,
+                    .measures = false};
+        resampledBefore_ = before.resampled;
+    }
+
+    PackSummary run(const Progress& progress);
+    /// How large the archive would be at various bounds; the source knows its ranges then.
+    std::vector<SizeAtBound> estimate(const Progress& progress);
+
+private:
+    std::size_t times() const { return dataset_.info.times.size(); }
+    void gather(const Progress& progress);
+    void addStep(ArchiveWriter& writer, FeedStep fed, const Progress& progress);
+    void addFrame(ArchiveWriter& writer, FrameSamples& samples, int parameter, int component, std::size_t time,
+                  const Progress& progress);
+    Metadata soFar(std::size_t wholeTimes) const;
+
+    volume::Dataset& source_;
+    volume::Dataset dataset_; ///< what is stored, but for BCC
+    PackOptions options_;
+    std::string path_;
+    const Archive* grown_;
+    Metadata metadata_;
+    Continuation place_;
+    MemoryPlan memory_;
+    FeedOptions reading_;
+    std::vector<std::vector<Range>> ranges_;                    ///< gathered on the way, by parameter
+    std::vector<double> errors_;                                ///< largest of a sample, by parameter, in its unit
+    std::vector<double> errorsBefore_;                          ///< that the source had already
+    std::vector<std::uint8_t> discarded_;                       ///< by brick
+    std::vector<std::optional<ResampleError>> resampledBefore_; ///< of the source, by parameter
+    std::vector<ResampleError> resampled_;                      ///< measured so far, by parameter; empty: not measured
+    PackSummary summary_;
+};
+
+/// What has to be known of all times before the first is coded.
+void Packing::gather(const Progress& progress) {
+    if (isRelative(options_) && (times() > 1 || grown_)) {
+        gatherAllRanges(dataset_, reading_, summary_, progress);
+        if (grown_) place_.widen(dataset_.info, metadata_.info);
+    }
+    if (options_.discard > 0)
+        discarded_ = bricksToDiscard(dataset_, reading_, options_, summary_, progress.part(0.8, 1));
+}
+
+/// With the ranges known so far; a reader may come at any time.
+Metadata Packing::soFar(std::size_t wholeTimes) const {
+    volume::DatasetInfo read = dataset_.info;
+    settleRanges(read, ranges_);
+    Metadata now = metadata_;
+    if (wholeTimes < now.info.times.size()) // of D4*: what the frames so far reach
+        std::erase_if(now.sourceTimes, [&](double time) { return time > now.info.times[wholeTimes - 1]; });
+    place_.widen(read, now.info);
+    place_.noteResampled(resampledBefore_, resampled_, now);
+    for (std::size_t p = 0; p < errors_.size(); ++p) {
+        const double extent = extentOf(now.info.parameters[std::size_t(place_.parameterOf[p])]);
+        if (extent > 0) now.maxError = std::max(now.maxError, (errorsBefore_[p] + errors_[p]) / extent);
+    }
+    return now;
+}
+
+void Packing::addFrame(ArchiveWriter& writer, FrameSamples& samples, int parameter, int component, std::size_t time,
+                       const Progress& progress) {
+    const auto p = std::size_t(parameter), c = std::size_t(component);
+    const volume::Parameter& about = dataset_.info.parameters[p];
+    const bool exact = isExact(options_), resamples = reading_.toBcc || metadata_.alternating;
+    FrameOptions frame;
+    frame.wavelet = about.categorical ? Wavelet::N1 : waveletOf(options_.wavelet);
+    frame.zstdLevel = options_.zstdLevel;
+    frame.keepsAbsent = exact && !resamples && options_.discard == 0;
+    frame.categorical = about.categorical;
+    frame.importance = options_.importance;
+    if (options_.bccTransform != BccTransform::Auto)
+        frame.bodyCentred = options_.bccTransform == BccTransform::BodyCentred;
+    // Bounds refer to the range of the whole archive, where that is known by now.
+    const volume::Parameter& whole =
+        grown_ && isRelative(options_) ? metadata_.info.parameters[std::size_t(place_.parameterOf[p])] : about;
+    const std::vector<Range>& known = whole.ranges.empty() ? ranges_[p] : whole.ranges;
+    frame.range = c < known.size() ? known[c] : Range{1, 0};
+
+    leaveOut(samples, metadata_.grid, discarded_);
+    const FrameBound bound = exact ? FrameBound() : boundFor(options_, whole, samples);
+    frame.maxError = bound.error;
+    frame.keepsSquares = options_.psnr > 0;
+    double error = frame.maxError * std::abs(samples.scale());
+    if (hasThreshold(options_) && !about.categorical) {
+        const double scale = std::abs(samples.scale());
+        const Thresholded left = giveUp(samples, metadata_.grid, frame, options_.threshold, extentOf(whole));
+        summary_.weakenedBricks += left.weakened;
+        frame.numbers = left.numbers;
+        frame.maxError = std::max(frame.maxError, left.maxError);
+        frame.spent = left.maxError;
+        // Bricks of floats may repeat earlier ones within what is left.
+        const bool mayRepeat = left.numbers.kind == NumberKind::Quantised && place_.firstTime + time > 0;
+        error = (mayRepeat ? frame.maxError : left.maxError) * scale;
+    } else if (frame.maxError > 0 && samples.type() != ScalarType::F32) {
+        samples.change([&](Field& part, Slab) { part = countedIn(std::move(part), bound.step); });
+        frame.maxError = 0;
+    }
+    errors_[p] = std::max(errors_[p], error);
+    Stopwatch code(summary_.codeSeconds);
+    writer.addFrame(place_.parameterOf[p], component, int(place_.firstTime + time), samples, frame, progress);
+}
+
+void Packing::addStep(ArchiveWriter& writer, FeedStep fed, const Progress& progress) {
+    const auto p = std::size_t(fed.parameter);
+    const volume::Parameter& parameter = dataset_.info.parameters[p];
+    summary_.loadSeconds += fed.loadSeconds;
+    summary_.resampleSeconds += fed.resampleSeconds;
+    widenRanges(ranges_[p], fed.ranges);
+    if (reading_.measures) resampled_[p].add(fed.resampled);
+    if (times() == 1) settleRanges(dataset_.info, ranges_);
+    if (!metadata_.alternating) {
+        summary_.sourceSamples += fed.sourceSamples;
+        summary_.sourceBytes += fed.sourceBytes;
+    } else if (fed.time < source_.info.times.size()) { // as many times as the source has
+        const std::uint64_t samples = source_.info.lattice.count() * fed.frames.size();
+        summary_.sourceSamples += samples;
+        summary_.sourceBytes += samples * volume::byteSize(parameter.type);
+    }
+    const double frames = double(fed.frames.size());
+    for (std::size_t c = 0; c < fed.frames.size(); ++c) {
+        summary_.storedSamples += fed.frames[c].count();
+        summary_.storedBytes += fed.frames[c].count() * volume::byteSize(parameter.type);
+        addFrame(writer, fed.frames[c], fed.parameter, int(c), fed.time,
+                 progress.part(double(c) / frames, double(c + 1) / frames));
+    }
+    const std::size_t wholeTimes = place_.firstTime + fed.time + 1, least = metadata_.alternating ? 2 : 1;
+    if (p + 1 < dataset_.info.parameters.size() || !place_.wholeTimes || wholeTimes < least) return;
+    Stopwatch write(summary_.writeSeconds);
+    writer.commit(soFar(wholeTimes), wholeTimes);
+}
+
+std::vector<SizeAtBound> Packing::estimate(const Progress& progress) {
+    gatherAllRanges(dataset_, reading_, summary_, progress.part(0, 0.5));
+    source_.info.parameters = dataset_.info.parameters;
+    return estimateSizes(dataset_, reading_, options_, progress.part(0.5, 1));
+}
+
+PackSummary Packing::run(const Progress& progress) {
+    {
+        Stopwatch all(summary_.seconds);
+        const bool passes = isRelative(options_) && (times() > 1 || grown_ || options_.discard > 0);
+        const double begin = passes ? 0.3 : 0;
+        gather(progress.part(0, begin));
+        const Progress work = progress.part(begin, 1);
+        summary_.bricks = brickCount(metadata_.grid);
+        const auto writer = grown_ ? std::make_unique<ArchiveWriter>(*grown_, metadata_, memory_.keepFrames)
+                                   : std::make_unique<ArchiveWriter>(path_, metadata_, memory_.keepFrames);
+        reading_.measures = reading_.toBcc; // not in the passes before
+        if (reading_.measures) resampled_.resize(dataset_.info.parameters.size());
+        FrameFeed feed(dataset_, reading_, progress.stop);
+        const std::vector<volume::Parameter>& parameters = dataset_.info.parameters;
+        const std::size_t steps = times() * parameters.size();
+        const double frames = double(times()) * double(componentCount(dataset_.info));
+        double done = 0;
+        for (std::size_t step = 0; step < steps; ++step) {
+            work.advance(done / frames, parameters[step % parameters.size()].name);
+            FeedStep fed = [&] {
+                Stopwatch wait(summary_.waitSeconds);
+                return feed.next();
+            }();
+            const double more = double(fed.frames.size());
+            addStep(*writer, std::move(fed), work.part(done / frames, (done + more) / frames));
+            done += more;
+        }
+        settleRanges(dataset_.info, ranges_);
+        source_.info.parameters = dataset_.info.parameters;
+        Stopwatch write(summary_.writeSeconds);
+        if (!memory_.keepFrames && times() > 1)
+            summary_.notes.push_back("memory is too tight to keep frames: what changes from time to time is not noted");
+        if (memory_.slabLayers > 0)
+            summary_.notes.push_back("frames are larger than the memory: they were packed in slabs of " +
+                                     std::to_string(memory_.slabLayers) + " layers of bricks");
+        summary_.repeatedBricks = writer->repeats().bricks;
+        summary_.repeatedBytes = writer->repeats().bytes;
+        const Metadata known = soFar(metadata_.info.times.size());
+        summary_.maxError = known.maxError;
+        summary_.archiveBytes = writer->finish(known);
+        summary_.addedBytes = summary_.archiveBytes - (grown_ ? grown_->fileBytes() : 0);
+    }
+    progress.advance(1);
+    return summary_;
+}
+
+} // namespace
+
+PackSummary pack(volume::Dataset& source, const PackOptions& options, const std::string& path, const Progress& progress,
+                 const SlabInput& slabs, const PackedAgain& before) {
+    if (options.sizeMb == 0) return Packing(source, slabs, before, options, path, nullptr).run(progress);
+    const auto trial = [&](const PackOptions& with, const std::string& to, const Progress& part) {
+        return Packing(source, slabs, before, with, to, nullptr).run(part);
+    };
+    const auto bytesAt = [&](const Progress& part) {
+        PackOptions plain = options;
+        plain.lossless = true;
+        return Packing(source, slabs, before, plain, path, nullptr).estimate(part);
+    };
+    return packToSize(options, sizeControlFor(source.info), path, bytesAt, trial, progress);
+}
+
+PackSummary append(volume::Dataset& source, const std::string& path, double memoryMb, const Progress& progress,
+                   const SlabInput& slabs, const PackedAgain& before) {
+    const Archive grown(path);
+    PackOptions options = grown.metadata().options;
+    options.memoryMb = memoryMb;
+    std::optional<FurtherParameters> further = withoutKnownLabels(source, slabs.slices, grown);
+    if (!further) return Packing(source, slabs, before, options, path, &grown).run(progress);
+    const SlabInput own{further->slices, slabs.layers};
+    const PackSummary summary = Packing(further->dataset, own, before, options, path, &grown).run(progress);
+    for (volume::Parameter& parameter : source.info.parameters)
+        for (const volume::Parameter& made : further->dataset.info.parameters)
+            if (made.name == parameter.name) parameter.ranges = made.ranges;
+    return summary;
+}
+
+} // namespace tessera::codec

@@ -1,0 +1,28 @@
+#pragma once
+
+#include "codec/wavelet/lifting.h"
+#include "codec/wavelet/threshold.h"
+#include "volume/field/field.h"
+
+#include <cstddef>
+
+/// Compression as it was done before archives: integer wavelet, thresholds, run lengths. Baselines for benchmarks.
+namespace tessera::codec {
+
+struct ThesisCoding {
+    Wavelet wavelet = Wavelet::W22;
+    int levels = 3;
+    Threshold threshold = Threshold::Soft;
+    double value = 0;
+    bool threeDirections = false; ///< runs along x, y or z, whichever is shortest in each band; two bits say which
+};
+
+struct ThesisResult {
+    std::size_t bytes = 0; ///< low frequencies as they are, details as runs
+    double rms = 0;        ///< error of the samples, in stored units
+};
+
+/// Codes a whole field of 8-bit or 16-bit integers on CC. Throws Error for others, and where samples are absent.
+ThesisResult thesisCode(const volume::Field& field, const ThesisCoding& coding);
+
+} // namespace tessera::codec

@@ -1,0 +1,212 @@
+#include "codec/pack/unpack.h"
+
+#include "codec/archive/brick_access.h"
+#include "volume/base/parallel.h"
+#include "volume/field/part_masks.h"
+#include "volume/resample/resample.h"
+#include "volume/resample/series_dataset.h"
+#include "volume/sources/alternating_source.h"
+
+#include <cmath>
+#include <map>
+
+namespace tessera::codec {
+
+namespace {
+
+using volume::Field;
+using volume::Lattice;
+using volume::LatticeKind;
+using volume::ScalarType;
+
+int channelOf(const volume::DatasetInfo& info, int parameter, int component) {
+    const auto channels = info.channels();
+    for (std::size_t c = 0; c < channels.size(); ++c)
+        if (channels[c].parameter == parameter && channels[c].component == component) return int(c);
+    throw Error("no such component");
+}
+
+/// A level of one sublattice as a field on a CC lattice of its own: coarse samples of a BCC lattice lie where fine ones
+/// of their sublattice lie, so the two sublattices of a level no longer form a BCC lattice.
+Field levelField(const volume::BrickSource& source, int channel, int time, int level, int sublattice) {
+    const volume::BrickGrid& grid = source.grid();
+    const bool bcc = grid.lattice.kind == LatticeKind::BCC;
+    const int step = bcc ? 2 : 1, scale = 1 << level;
+    const glm::ivec3 whole = grid.levelSamples(level);
+    Lattice lattice;
+    lattice.size = {whole.x, whole.y, (whole.z + step - 1 - sublattice) / step};
+    lattice.spacing = grid.lattice.spacing * double(scale);
+    lattice.origin = grid.lattice.fromCells(glm::dvec3(grid.levelPhase(level) + 0.5 * sublattice));
+    Field field = volume::makeField(lattice, ScalarType::F32);
+    volume::Mask mask(field.count(), 1);
+    const auto values = field.as<float>();
+    parallelFor(brickCount(grid), [&](std::size_t number) {
+        const glm::ivec3 brick = brickIndex(grid, number);
+        const volume::BrickSamples samples = source.read({channel, time, level, brick});
+        const glm::ivec3 begin = grid.levelBegin(brick, level);
+        for (int z = sublattice; z < samples.size.z; z += step)
+            for (int y = 0; y < samples.size.y; ++y)
+                for (int x = 0; x < samples.size.x; ++x) {
+                    const std::size_t from =
+                        (std::size_t(z) * std::size_t(samples.size.y) + std::size_t(y)) * std::size_t(samples.size.x) +
+                        std::size_t(x);
+                    const std::size_t to = lattice.index({begin.x + x, begin.y + y, (begin.z + z) / step});
+                    values[to] = samples.values[from];
+                    if (!samples.present.empty()) mask[to] = samples.present[from];
+                }
+    });
+    field.mask = std::make_shared<const volume::Mask>(std::move(mask));
+    return field;
+}
+
+/// The mean of two fields on one grid where both are present and of one part, else the first that is.
+Field meanOf(const Field& a, const Field& b) {
+    Field out = a;
+    volume::Mask mask(a.count(), 1);
+    const auto to = out.as<float>();
+    const auto other = b.as<float>();
+    const auto numberAt = [](const Field& field, std::size_t i) {
+        return field.mask ? (*field.mask)[i] : std::uint8_t(1);
+    };
+    for (std::size_t i = 0; i < to.size(); ++i) {
+        if (a.present(i) && numberAt(a, i) == numberAt(b, i))
+            to[i] = 0.5f * to[i] + 0.5f * other[i];
+        else if (!a.present(i) && b.present(i))
+            to[i] = other[i];
+        else
+            mask[i] = a.present(i) ? 1 : 0;
+    }
+    out.mask = std::make_shared<const volume::Mask>(std::move(mask));
+    return out;
+}
+
+} // namespace
+
+volume::Dataset storedDataset(std::shared_ptr<const Archive> archive) {
+    volume::Dataset dataset;
+    dataset.info = archive->info();
+    dataset.load = [archive](int parameter, int component, int time) {
+        return readField(*archive, parameter, component, time);
+    };
+    return dataset;
+}
+
+PackedAgain packedBefore(const Archive& archive) {
+    const Metadata& metadata = archive.metadata();
+    PackedAgain before{{metadata.source, metadata.lossless, metadata.maxError}, metadata.resampled};
+    if (isResampled(metadata)) before.resampled.resize(metadata.info.parameters.size());
+    return before;
+}
+
+volume::SliceLoad storedSlices(std::shared_ptr<const Archive> archive) {
+    return [archive](int parameter, int component, int time, int first, int count) {
+        const volume::BrickGrid& grid = archive->grid();
+        const int slices = grid.end(glm::ivec3(0)).z; // of a layer of bricks
+        const int layer = first / slices, end = (first + count + slices - 1) / slices;
+        const Field layers = readLayers(*archive, parameter, component, time, layer, end);
+        return volume::slicesOf(layers, first - grid.begin({0, 0, layer}).z, count);
+    };
+}
+
+volume::Series storedSeries(std::shared_ptr<const Archive> archive, int parameter, int component) {
+    if (archive->metadata().alternating)
+        return volume::d4SeriesOf(volume::withParts(storedDataset(std::move(archive))), parameter, component);
+    return volume::seriesOf(volume::withParts(gridDataset(std::move(archive), 0)), parameter, component);
+}
+
+namespace {
+
+/// The times that D4* frames were made of, and what belongs to them.
+void atSourceTimes(volume::DatasetInfo& info, const Archive& archive) {
+    info.times = archive.metadata().sourceTimes;
+    info.quantities = archive.metadata().sourceQuantities;
+}
+
+/// Level 0 of D4* frames at the times they came from.
+volume::Dataset steadyDataset(std::shared_ptr<const Archive> archive, const Lattice& target,
+                              volume::TimeFilter filter) {
+    volume::Dataset dataset;
+    dataset.info = archive->info();
+    dataset.info.lattice = target;
+    atSourceTimes(dataset.info, *archive);
+    constexpr std::size_t kFrames = 6; // cubic: four of one parity, and two of the other for a linear step
+    const auto series = std::make_shared<std::map<std::pair<int, int>, volume::Series>>();
+    const volume::Dataset stored = volume::withParts(storedDataset(archive));
+    for (int p = 0; p < int(dataset.info.parameters.size()); ++p)
+        for (int c = 0; c < dataset.info.parameters[std::size_t(p)].components; ++c)
+            (*series)[{p, c}] = volume::remembering(volume::d4SeriesOf(stored, p, c), kFrames);
+    dataset.load = [archive, series, target, filter](int parameter, int component, int time) {
+        const Metadata& metadata = archive->metadata();
+        const double frame = volume::frameAt(metadata.info.times, metadata.sourceTimes[std::size_t(time)]);
+        const volume::Parameter& about = metadata.info.parameters[std::size_t(parameter)];
+        const Field field = volume::atTime(series->at({parameter, component}), frame, filter);
+        const auto kernel = about.categorical ? volume::ResampleFilter::Nearest : volume::ResampleFilter::Cubic;
+        return volume::converted(volume::withoutParts(volume::resample(field, target, kernel)), about.type);
+    };
+    return dataset;
+}
+
+} // namespace
+
+volume::Dataset gridDataset(std::shared_ptr<const Archive> archive, int level, volume::TimeFilter filter) {
+    const Metadata& metadata = archive->metadata();
+    const volume::BrickGrid& grid = archive->grid();
+    if (level < 0 || level >= grid.levels)
+        throw Error("there is no level " + std::to_string(level) + "; the coarsest is " +
+                        std::to_string(grid.levels - 1),
+                    archive->path());
+    const bool bcc = grid.lattice.kind == LatticeKind::BCC || metadata.alternating;
+    if (level == 0 && !bcc) return storedDataset(std::move(archive));
+
+    Lattice target = metadata.source;
+    target.kind = LatticeKind::CC;
+    target.size = levelSize(target.size, level);
+    target.spacing *= double(1 << level);
+    if (level == 0 && metadata.alternating) return steadyDataset(std::move(archive), target, filter);
+    std::shared_ptr<const volume::BrickSource> source = archive;
+    if (metadata.alternating) source = volume::makeAlternatingSource(archive, filter);
+    volume::Dataset dataset;
+    dataset.info = archive->info();
+    dataset.info.lattice = target;
+    if (metadata.alternating) atSourceTimes(dataset.info, *archive);
+    if (level > 0)
+        for (volume::Parameter& parameter : dataset.info.parameters)
+            if (!parameter.categorical) parameter.type = ScalarType::F32;
+    dataset.load = [archive, source, stored = volume::withParts(storedDataset(archive)), target, level,
+                    bcc](int parameter, int component, int wanted) {
+        const volume::DatasetInfo& info = archive->info();
+        // Coarse levels of D4* show the frame nearest in time.
+        const int time = archive->metadata().alternating
+                             ? info.nearestTime(archive->metadata().sourceTimes[std::size_t(wanted)])
+                             : wanted;
+        const bool categorical = info.parameters[std::size_t(parameter)].categorical;
+        const auto cubic = categorical ? volume::ResampleFilter::Nearest : volume::ResampleFilter::Cubic;
+        if (level == 0)
+            return volume::withoutParts(volume::resample(stored.load(parameter, component, time), target, cubic));
+        const auto linear = categorical ? volume::ResampleFilter::Nearest : volume::ResampleFilter::Linear;
+        const int channel = channelOf(info, parameter, component);
+        const int label = volume::labelOf(info, info.parameters[std::size_t(parameter)]);
+        const auto of = [&](int sublattice) {
+            Field field = levelField(*source, channel, time, level, sublattice);
+            if (label >= 0)
+                field = volume::withParts(std::move(field),
+                                          levelField(*source, channelOf(info, label, 0), time, level, sublattice),
+                                          info.parameters[std::size_t(parameter)].parts);
+            return volume::resample(field, target, linear);
+        };
+        Field coarse = of(0);
+        if (bcc && !categorical) coarse = meanOf(coarse, of(1));
+        if (!categorical) return volume::withoutParts(std::move(coarse));
+        Field labels = volume::makeField(target, info.parameters[std::size_t(parameter)].type);
+        labels.mask = coarse.mask;
+        volume::dispatch(labels.type, [&]<class T>(T) {
+            const auto from = coarse.as<float>();
+            const auto to = labels.as<T>();
+            for (std::size_t i = 0; i < to.size(); ++i) to[i] = static_cast<T>(std::lrint(from[i]));
+        });
+        return labels;
+    };
+    return dataset;
+}
+
+} // namespace tessera::codec

@@ -1,0 +1,46 @@
+#pragma once
+
+#include "codec/bytes/uncleared.h"
+#include "codec/wavelet/lift_box.h"
+
+#include <algorithm>
+#include <vector>
+
+namespace tessera::codec {
+
+/// A box with its storage, and the flags of its samples in the same places. What no sample was written to, between the
+/// rows and where absent, is anything.
+template <class Word> class LevelBox {
+public:
+    LevelBox() = default;
+    LevelBox(glm::ivec3 size, bool masked) { reset(size, masked); }
+    /// Becomes a box of another size; its memory is kept for that.
+    void reset(glm::ivec3 size, bool masked) {
+        const std::size_t words = std::size_t(pitchFor(size.x)) * std::size_t(size.y) * std::size_t(size.z);
+        size_ = size;
+        if (values_.size() < words) values_.resize(words);
+        present_.resize(masked ? words : 0);
+        undivided_ = false;
+    }
+    /// Becomes a box of one value without gaps.
+    void fill(glm::ivec3 size, Word value) {
+        reset(size, false);
+        std::fill_n(values_.begin(), std::ptrdiff_t(pitchFor(size.x)) * size.y * size.z, value);
+    }
+    Box<Word> box() { return {values_.data(), size_, pitchFor(size_.x)}; }
+    Box<const Word> box() const { return {values_.data(), size_, pitchFor(size_.x)}; }
+    Box<std::uint8_t> flags() { return {masked() ? present_.data() : nullptr, size_, pitchFor(size_.x)}; }
+    bool masked() const { return !present_.empty(); }
+    /// One band, not seven with a corner for the coarser level.
+    bool undivided() const { return undivided_; }
+    void setUndivided() { undivided_ = true; }
+    glm::ivec3 size() const { return size_; }
+
+private:
+    glm::ivec3 size_{0};
+    Uncleared<Word> values_;
+    std::vector<std::uint8_t> present_;
+    bool undivided_ = false;
+};
+
+} // namespace tessera::codec

@@ -1,0 +1,46 @@
+#pragma once
+
+#include "codec/bytes/cpu.h"
+#include "codec/wavelet/lifting.h"
+
+#include <cstddef>
+
+/// Lifting along x of lines that fit a few registers of 64 bytes: the numbers that codec/wavelet/lift_box.cpp gives by
+/// blocks.
+namespace tessera::codec {
+
+/// The lines of one slice of a box; all rows are `pitch` words apart.
+template <class Word> struct SliceLines {
+    const Word* from;
+    Word* to;
+    int rows;
+    std::size_t pitch; ///< words, all of which may be written; a multiple of 32
+};
+
+/// One wavelet for lines of one width.
+template <class Word> class LineLifter {
+public:
+    static constexpr int kWords = 32; ///< half of the widest line
+
+    /// Lifts nothing where a line or its sums do not fit, or the processor is another.
+    LineLifter(Wavelet wavelet, int width, bool wide, Cpu cpu);
+    bool lifts() const { return split_ != nullptr; }
+    /// Takes lines apart: even samples come first, then details; rows of even number come first, too.
+    void split(const SliceLines<Word>& lines) const { split_(*this, lines); }
+    /// Undoes it.
+    void join(const SliceLines<Word>& lines) const { join_(*this, lines); }
+
+    /// For each word that a step changes, where the words it takes lie: [pair][left, right][word].
+    struct Taps {
+        alignas(64) Word at[3][2][kWords]{};
+    };
+    Taps predict, update;
+    int width = 0, evens = 0, odds = 0;
+
+private:
+    using Loop = void (*)(const LineLifter&, const SliceLines<Word>&);
+    template <Wavelet kWavelet> void use();
+    Loop split_ = nullptr, join_ = nullptr;
+};
+
+} // namespace tessera::codec

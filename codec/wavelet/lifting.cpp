@@ -1,0 +1,295 @@
+#include "codec/wavelet/lifting.h"
+
+#include "codec/wavelet/filter.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cassert>
+#include <cmath>
+#include <cstring>
+#include <vector>
+
+namespace tessera::codec {
+
+namespace {
+
+/// Lines side by side: `rows` samples along the line, `lanes` lines, row by row.
+struct Rows {
+    std::uint32_t* values;
+    std::uint8_t* present; ///< null: all present
+    int rows, lanes;
+
+    std::uint32_t at(int row, int lane) const { return values[std::ptrdiff_t(row) * lanes + lane]; }
+    bool has(int row, int lane) const {
+        return row >= 0 && row < rows && (!present || present[std::ptrdiff_t(row) * lanes + lane] != 0);
+    }
+};
+
+/// floor(x / 2^shift) of a 32-bit value modulo 2^32.
+std::uint32_t shiftDown(std::uint32_t x, int shift) {
+    return static_cast<std::uint32_t>(static_cast<std::int32_t>(x) >> shift);
+}
+
+std::int64_t wide(std::uint32_t x) {
+    return static_cast<std::int32_t>(x);
+}
+
+/// The weighted sum of a step at one sample, by the rule for absent taps. Predict: pair j is (row - j, row + 1 + j);
+/// update: (row - 1 - j, row + j); antisymmetric update: (row - 1 - j, row + 1 + j).
+std::uint32_t tapSum(const LiftStep& step, bool update, const Rows& target, const Rows& source, int row, int lane) {
+    std::int64_t sum = 0;
+    if (step.centre != 0) {
+        if (!source.has(row, lane)) return 0;
+        sum = step.centre * wide(source.at(row, lane));
+    }
+    std::uint32_t left = 0, right = 0;
+    for (int j = 0; j < step.pairs; ++j) {
+        const int l = update ? row - 1 - j : row - j;
+        const int r = update && !step.antisymmetric ? row + j : row + 1 + j;
+        bool hasLeft = source.has(l, lane), hasRight = source.has(r, lane);
+        if (update) { // only details that were predicted from all their even neighbours
+            hasLeft = hasLeft && target.has(l, lane) && (step.antisymmetric || target.has(l + 1, lane));
+            hasRight = hasRight && target.has(r, lane) && (step.antisymmetric || target.has(r + 1, lane));
+        }
+        if (hasLeft && hasRight) {
+            left = source.at(l, lane), right = source.at(r, lane);
+        } else if (step.antisymmetric) {
+            break;
+        } else if (j == 0) {
+            if (!hasLeft && !hasRight) return 0;
+            left = right = source.at(hasLeft ? l : r, lane);
+        } else {
+            // The pair inside stands in for this one and for all further out.
+            int rest = 0;
+            for (int k = j; k < step.pairs; ++k) rest += step.weight[std::size_t(k)];
+            sum += rest * (wide(left) + wide(right));
+            break;
+        }
+        sum += step.weight[std::size_t(j)] * (step.antisymmetric ? wide(right) - wide(left) : wide(left) + wide(right));
+    }
+    const std::int64_t half = step.shift > 0 ? std::int64_t(1) << (step.shift - 1) : 0;
+    return static_cast<std::uint32_t>((sum + half) >> step.shift);
+}
+
+/// The mean of two floats; +0 where it is not finite, so that no NaN payload, whose arithmetic differs between
+/// machines, takes part.
+std::uint32_t floatMean(std::uint32_t a, std::uint32_t b) {
+    const float mean = 0.5f * floatOfCode(a) + 0.5f * floatOfCode(b);
+    return std::isfinite(mean) ? codeOfFloat(mean) : 0;
+}
+
+std::uint32_t floatPrediction(const LiftStep& step, const Rows& source, int row, int lane) {
+    if (step.centre != 0) return source.has(row, lane) ? source.at(row, lane) : 0;
+    const bool left = source.has(row, lane), right = source.has(row + 1, lane);
+    if (!left && !right) return 0;
+    return floatMean(source.at(left ? row : row + 1, lane), source.at(right ? row + 1 : row, lane));
+}
+
+/// target[i] += sign * prediction(i), where sign is 1 or 2^32 - 1.
+void apply(const LiftStep& step, bool update, const Rows& target, const Rows& source, std::uint32_t sign,
+           Arithmetic arithmetic) {
+    const int lanes = target.lanes;
+    const bool masked = target.present != nullptr;
+    int begin = 0, end = 0; // rows done by the fast loops below
+    if (!masked && arithmetic != Arithmetic::Float) {
+        if (step.centre != 0 && step.pairs == 0) {
+            end = std::min(target.rows, source.rows);
+        } else if (step.centre == 0 && step.pairs == 1) {
+            begin = update ? 1 : 0;
+            end = update ? std::min(target.rows - 1, source.rows) : std::min(target.rows, source.rows - 1);
+        }
+        end = std::max(begin, end);
+        const std::size_t count = std::size_t(end - begin) * std::size_t(lanes);
+        std::uint32_t* t = target.values + std::ptrdiff_t(begin) * lanes;
+        if (step.centre != 0 && step.shift == 0) {
+            const std::uint32_t* s = source.values;
+            for (std::size_t i = 0; i < count; ++i) t[i] += sign * s[i];
+        } else if (step.centre != 0 && step.pairs == 0) {
+            const std::uint32_t* s = source.values; // (d + 1) >> 1 without overflow
+            for (std::size_t i = 0; i < count; ++i) t[i] += sign * (shiftDown(s[i], 1) + (s[i] & 1u));
+        } else if (step.pairs == 1 && count > 0) {
+            const std::uint32_t* l = source.values + std::ptrdiff_t(update ? begin - 1 : begin) * lanes;
+            const std::uint32_t* r = l + lanes;
+            if (step.shift == 1) { // ceil((l + r) / 2) without overflow
+                for (std::size_t i = 0; i < count; ++i) t[i] += sign * ((l[i] | r[i]) - shiftDown(l[i] ^ r[i], 1));
+            } else if (arithmetic == Arithmetic::Narrow) {
+                for (std::size_t i = 0; i < count; ++i) t[i] += sign * shiftDown(l[i] + r[i] + 2u, 2);
+            } else {
+                for (std::size_t i = 0; i < count; ++i)
+                    t[i] += sign * static_cast<std::uint32_t>((wide(l[i]) + wide(r[i]) + 2) >> 2);
+            }
+        }
+    }
+    for (int row = 0; row < target.rows; ++row) {
+        if (row == begin && end > begin) row = end;
+        if (row >= target.rows) break;
+        std::uint32_t* t = target.values + std::ptrdiff_t(row) * lanes;
+        for (int lane = 0; lane < lanes; ++lane) {
+            if (masked && !target.has(row, lane)) continue;
+            t[lane] += sign * (arithmetic == Arithmetic::Float ? floatPrediction(step, source, row, lane)
+                                                               : tapSum(step, update, target, source, row, lane));
+        }
+    }
+}
+
+/// Where row i of a line lies when even rows come before odd ones.
+int splitRow(int i, int count) {
+    return i % 2 == 0 ? i / 2 : (count + 1) / 2 + i / 2;
+}
+
+/// `lanes` lines of `count` samples, `pitch` elements apart; the lines are `lanePitch` elements apart.
+struct Lines {
+    std::uint32_t* values;
+    std::uint8_t* present; ///< null: all present
+    int count;
+    std::ptrdiff_t pitch;
+    int lanes;
+    std::ptrdiff_t lanePitch;
+};
+
+/// Copies lines to `scratch` or back; `splitting`: with even rows before odd ones in the copy.
+template <bool toScratch, class T> void copyRows(T* lines, const Lines& shape, T* scratch, bool splitting) {
+    for (int i = 0; i < shape.count; ++i) {
+        T* there = scratch + std::ptrdiff_t(splitting ? splitRow(i, shape.count) : i) * shape.lanes;
+        T* here = lines + i * shape.pitch;
+        if (shape.lanePitch == 1)
+            std::memcpy(toScratch ? there : here, toScratch ? here : there, sizeof(T) * std::size_t(shape.lanes));
+        else
+            for (int lane = 0; lane < shape.lanes; ++lane, here += shape.lanePitch)
+                (toScratch ? there[lane] : *here) = toScratch ? *here : there[lane];
+    }
+}
+
+struct Scratch {
+    std::vector<std::uint32_t> values;
+    std::vector<std::uint8_t> present;
+};
+
+void liftLines(const Lines& lines, const LiftFilter& filter, Arithmetic arithmetic, bool isForward, Scratch& scratch) {
+    if (lines.count < 2 || lines.lanes < 1) return;
+    const int evens = (lines.count + 1) / 2, odds = lines.count / 2;
+    const std::ptrdiff_t oddStart = std::ptrdiff_t(evens) * lines.lanes;
+    const std::size_t all = std::size_t(lines.count) * std::size_t(lines.lanes);
+    if (scratch.values.size() < all) scratch.values.resize(all);
+    std::uint32_t* values = scratch.values.data();
+    std::uint8_t* present = nullptr;
+    if (lines.present) {
+        if (scratch.present.size() < all) scratch.present.resize(all);
+        present = scratch.present.data();
+        copyRows<true>(lines.present, lines, present, isForward);
+    }
+    copyRows<true>(lines.values, lines, values, isForward);
+    const Rows even{values, present, evens, lines.lanes};
+    const Rows odd{values + oddStart, present ? present + oddStart : nullptr, odds, lines.lanes};
+    constexpr std::uint32_t plus = 1, minus = ~0u;
+    if (isForward) {
+        apply(filter.predict, false, odd, even, minus, arithmetic);
+        if (filter.updates) apply(filter.update, true, even, odd, plus, arithmetic);
+    } else {
+        if (filter.updates) apply(filter.update, true, even, odd, minus, arithmetic);
+        apply(filter.predict, false, odd, even, plus, arithmetic);
+    }
+    copyRows<false>(lines.values, lines, values, !isForward);
+    if (present) copyRows<false>(lines.present, lines, present, !isForward);
+}
+
+/// The samples of a block and its line layout: `full` is what the arrays hold, `part` the corner being transformed.
+struct Block {
+    std::uint32_t* values;
+    std::uint8_t* present;
+    glm::ivec3 full;
+};
+
+void liftAxis(const Block& block, glm::ivec3 part, int axis, const LiftFilter& filter, Arithmetic arithmetic,
+              bool isForward, Scratch& scratch) {
+    if (part.x < 1 || part.y < 1 || part.z < 1) return; // the odd sublattice of a single slice
+    const std::ptrdiff_t row = block.full.x, slice = row * block.full.y;
+    const glm::ivec3 low = levelSize(part, 1);
+    const auto lift = [&](std::ptrdiff_t at, int count, std::ptrdiff_t pitch, int lanes, bool samples,
+                          std::ptrdiff_t lanePitch = 1) {
+        const Lines lines{block.values + at, block.present ? block.present + at : nullptr, count, pitch, lanes,
+                          lanePitch};
+        const bool details = arithmetic == Arithmetic::Float && !samples;
+        liftLines(lines, filter, details ? Arithmetic::Wide : arithmetic, isForward, scratch);
+    };
+    // Under Float arithmetic, what an earlier axis made details of is predicted as integers.
+    const bool cut = arithmetic == Arithmetic::Float;
+    if (axis == 0) {
+        for (int z = 0; z < part.z; ++z) lift(z * slice, part.x, 1, part.y, true, row);
+    } else if (axis == 1) {
+        for (int z = 0; z < part.z; ++z) {
+            lift(z * slice, part.y, row, cut ? low.x : part.x, true);
+            if (cut) lift(z * slice + low.x, part.y, row, part.x - low.x, false);
+        }
+    } else {
+        for (int y = 0; y < part.y; ++y) {
+            const bool samples = !cut || y < low.y;
+            const int lanes = cut && samples ? low.x : part.x;
+            lift(y * row, part.z, slice, lanes, samples);
+            if (lanes < part.x) lift(y * row + lanes, part.z, slice, part.x - lanes, false);
+        }
+    }
+}
+
+} // namespace
+
+double levelPhase(Wavelet wavelet) {
+    return wavelet == Wavelet::W11 || wavelet == Wavelet::W13 || wavelet == Wavelet::W15 ? 0.5 : 0.0;
+}
+
+glm::ivec3 levelSize(glm::ivec3 size, int level) {
+    const int up = (1 << level) - 1;
+    return {(size.x + up) >> level, (size.y + up) >> level, (size.z + up) >> level};
+}
+
+void forward(std::span<std::uint32_t> values, std::span<std::uint8_t> present, glm::ivec3 size, int steps,
+             Wavelet wavelet, Arithmetic arithmetic) {
+    const LiftFilter filter = filterOf(wavelet);
+    assert(arithmetic != Arithmetic::Float || !filter.updates);
+    const Block block{values.data(), present.empty() ? nullptr : present.data(), size};
+    Scratch scratch;
+    for (int step = 0; step < steps; ++step)
+        for (int axis = 0; axis < 3; ++axis)
+            liftAxis(block, levelSize(size, step), axis, filter, arithmetic, true, scratch);
+}
+
+void inverse(std::span<std::uint32_t> values, std::span<std::uint8_t> present, glm::ivec3 size, int steps,
+             Wavelet wavelet, Arithmetic arithmetic) {
+    const LiftFilter filter = filterOf(wavelet);
+    assert(arithmetic != Arithmetic::Float || !filter.updates);
+    const Block block{values.data(), present.empty() ? nullptr : present.data(), size};
+    Scratch scratch;
+    for (int step = steps - 1; step >= 0; --step)
+        for (int axis = 2; axis >= 0; --axis)
+            liftAxis(block, levelSize(size, step), axis, filter, arithmetic, false, scratch);
+}
+
+void deinterleave(std::span<std::uint8_t> present, glm::ivec3 size, int steps) {
+    std::vector<std::uint8_t> from;
+    for (int step = 0; step < steps; ++step) {
+        const glm::ivec3 part = levelSize(size, step);
+        from.assign(present.begin(), present.end());
+        std::size_t rowStart = 0;
+        for (int z = 0; z < size.z; ++z)
+            for (int y = 0; y < size.y; ++y, rowStart += std::size_t(size.x)) {
+                if (z >= part.z || y >= part.y) continue;
+                const std::size_t to =
+                    (std::size_t(splitRow(z, part.z)) * std::size_t(size.y) + std::size_t(splitRow(y, part.y))) *
+                    std::size_t(size.x);
+                for (int x = 0; x < part.x; ++x)
+                    present[to + std::size_t(splitRow(x, part.x))] = from[rowStart + std::size_t(x)];
+            }
+    }
+}
+
+std::uint32_t codeOfFloat(float value) {
+    const auto bits = std::bit_cast<std::uint32_t>(value);
+    return (bits & 0x80000000u) != 0 ? ~bits ^ 0x80000000u : bits;
+}
+
+float floatOfCode(std::uint32_t code) {
+    return std::bit_cast<float>((code & 0x80000000u) != 0 ? ~(code ^ 0x80000000u) : code);
+}
+
+} // namespace tessera::codec

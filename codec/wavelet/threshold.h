@@ -1,0 +1,51 @@
+#pragma once
+
+#include "volume/base/describe.h"
+
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+namespace tessera::codec {
+
+/// Which details are given up, as in Donoho: De-noising by soft-thresholding (1995). Unlike an error bound a threshold
+/// promises nothing about a sample: what is given up adds up over the levels.
+enum class Threshold : std::uint8_t {
+    Hard,    ///< those of magnitude `value` or less become 0
+    Soft,    ///< the same, and all others shrink by `value`
+    Quantile ///< the `value` part (0..1) of smallest magnitude become 0
+};
+inline constexpr std::string_view kThresholdNames[] = {"hard", "soft", "quantile"};
+
+enum class ThresholdChoice : std::uint8_t { None, Hard, Soft, Quantile };
+inline constexpr std::string_view kThresholdChoiceNames[] = {"none", "hard", "soft", "quantile"};
+
+/// Which details of an archive are given up.
+struct ThresholdOptions {
+    ThresholdChoice kind = ThresholdChoice::None;
+    double value = 0.005;
+    bool byImportance = true;
+
+    bool operator==(const ThresholdOptions&) const = default;
+    static void describe(auto& self, auto&& visit) {
+        visit(self.kind, FieldInfo{.key = "kind",
+                                   .unit = "",
+                                   .doc = "Which details are given up: hard (small ones become 0), soft (all others "
+                                          "shrink as well), quantile (the smallest of each brick)",
+                                   .names = kThresholdChoiceNames});
+        visit(self.value, FieldInfo{.key = "value",
+                                    .unit = "of range",
+                                    .doc = "Of hard and soft: size of a detail, relative to its parameter's range; of "
+                                           "quantile: the part of the details",
+                                    .range = Range{0, 1}});
+        visit(self.byImportance, FieldInfo{.key = "byImportance",
+                                           .unit = "",
+                                           .doc = "The most important brick of a frame keeps all, the least gives up "
+                                                  "as much as the value says; off: every brick does"});
+    }
+};
+
+/// Thresholds details in place; `value` at least 0. A quantile takes as many as it says, of equal ones the first.
+void applyThreshold(std::span<std::int32_t> details, Threshold kind, double value);
+
+} // namespace tessera::codec

@@ -1,0 +1,243 @@
+#include "vis/demand/choose_bricks.h"
+
+#include "vis/optics/light_volume.h"
+#include "vis/raycast/ray_tables.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/geometric.hpp>
+
+namespace tessera::vis {
+
+namespace {
+
+std::size_t countOf(glm::ivec3 size) {
+    return std::size_t(size.x) * std::size_t(size.y) * std::size_t(size.z);
+}
+
+constexpr std::uint8_t kNotWanted = BrickDemand::kNotWanted;
+constexpr double kInLens = 0.5; ///< bricks in a lens are as urgent as those half as far away
+
+/// An axis-aligned box in world space.
+struct WorldBox {
+    glm::dvec3 centre, half;
+    double below(glm::dvec3 normal) const { // the least dot(normal, p)
+        return glm::dot(normal, centre) - glm::dot(glm::abs(normal), half);
+    }
+};
+
+/// What the picture sees, as planes and as the size of a pixel.
+class Sight {
+public:
+    Sight(const Camera& camera, glm::ivec2 size) {
+        const double aspect = double(size.x) / size.y;
+        const std::array<Ray, 4> corners{cameraRay(camera, aspect, {-1, -1}), cameraRay(camera, aspect, {1, -1}),
+                                         cameraRay(camera, aspect, {1, 1}), cameraRay(camera, aspect, {-1, 1})};
+        const Ray middle = cameraRay(camera, aspect, {0, 0}), up = cameraRay(camera, aspect, {0, 1});
+        perspective_ = camera.projection == Projection::Perspective;
+        eye_ = middle.origin;
+        forward_ = middle.direction;
+        const glm::dvec3 inside = middle.origin + middle.direction;
+        for (std::size_t i = 0; i < 4; ++i) {
+            const Ray &a = corners[i], &b = corners[(i + 1) % 4];
+            glm::dvec3 normal = glm::cross(a.direction, perspective_ ? b.direction : b.origin - a.origin);
+            if (glm::dot(normal, inside - a.origin) < 0) normal = -normal;
+            normals_[i] = glm::normalize(normal);
+            offsets_[i] = glm::dot(normals_[i], a.origin);
+        }
+        const double half = perspective_ ? glm::length(up.direction / glm::dot(up.direction, forward_) - forward_)
+                                         : glm::length(up.origin - middle.origin);
+        pixel_ = 2 * half / size.y;
+    }
+
+    bool sees(const WorldBox& box) const {
+        for (std::size_t i = 0; i < 4; ++i)
+            if (-box.below(-normals_[i]) < offsets_[i]) return false;
+        return !perspective_ || -box.below(-forward_) > glm::dot(forward_, eye_);
+    }
+    /// Distance along the view of the nearest point of a box; 0 when the eye is inside.
+    double depth(const WorldBox& box) const { return std::max(0.0, box.below(forward_) - glm::dot(forward_, eye_)); }
+    /// World size of a pixel at a depth.
+    double pixel(double depth) const { return perspective_ ? pixel_ * std::max(depth, 1e-6) : pixel_; }
+    /// Distance of a point from the middle of the picture.
+    double aside(glm::dvec3 point) const {
+        const glm::dvec3 from = point - eye_;
+        return glm::length(from - forward_ * glm::dot(from, forward_));
+    }
+
+private:
+    bool perspective_ = true;
+    glm::dvec3 eye_{0}, forward_{0, 0, -1};
+    std::array<glm::dvec3, 4> normals_{};
+    std::array<double, 4> offsets_{};
+    double pixel_ = 0; ///< at depth 1, or everywhere
+};
+
+/// Marks bricks where a layer of the field shows something.
+void markShown(std::vector<std::uint8_t>& shown, const RayPlan& plan, int field, const Scene& scene,
+               const volume::DatasetInfo& info) {
+    RayPlan part = plan;
+    std::erase_if(part.layers, [&](const RayLayer& layer) { return layer.field != field; });
+    if (part.layers.empty()) return;
+    const std::optional<BlockDistances> blocks = blockDistances(part, scene, info);
+    for (std::size_t i = 0; i < shown.size(); ++i)
+        if (!blocks || i >= blocks->distance.size() || blocks->distance[i] == 0) shown[i] = 1;
+}
+
+/// The coarsest level whose voxels, of `pixels` at full resolution, are no larger than `detail`.
+std::uint8_t levelOf(double pixels, double detail, int levels) {
+    int level = 0;
+    while (level + 1 < levels && pixels * double(2 << level) <= detail) ++level;
+    return std::uint8_t(level);
+}
+
+/// The level of which light inside the volume is made, whatever the picture shows: its voxels are as large as the parts
+/// of a light cell that are sampled. Nothing where the scene has no such light.
+std::optional<std::uint8_t> lightLevel(const Scene& scene, const WorldFrame& frame, double voxel, int levels) {
+    if (!scene.lighting.shadows.any()) return std::nullopt;
+    const glm::dvec3 part = lightGrid(frame, scene.lighting.shadows).cell() / double(kMatterSamples);
+    return levelOf(voxel, std::min({part.x, part.y, part.z}), levels);
+}
+
+/// How many times as large voxels may be where there is little to show.
+class Coarser {
+public:
+    Coarser(std::span<const float> importance, double levels) : importance_(importance), levels_(levels) {
+        for (const float each : importance) most_ = std::max(most_, each);
+    }
+    double operator()(std::size_t brick) const {
+        return most_ > 0 ? std::exp2(levels_ * (1 - double(importance_[brick]) / double(most_))) : 1;
+    }
+
+private:
+    std::span<const float> importance_;
+    double levels_;
+    float most_ = 0;
+};
+
+/// Leaves the most urgent `share` of the wanted bricks.
+void keepMostUrgent(BrickDemand& demand, double share) {
+    if (share >= 1) return;
+    std::vector<float> priorities;
+    for (std::size_t i = 0; i < demand.level.size(); ++i)
+        if (demand.level[i] != kNotWanted) priorities.push_back(demand.priority[i]);
+    const std::size_t left = std::size_t(share * double(priorities.size()));
+    if (left > 0) std::nth_element(priorities.begin(), priorities.begin() + std::ptrdiff_t(left), priorities.end());
+    for (std::size_t i = 0; i < demand.level.size(); ++i)
+        if (left == 0 || demand.priority[i] >= priorities[left]) demand.level[i] = kNotWanted;
+}
+
+/// Whether a box may reach into a lens.
+bool meets(const PlacedLens& lens, const WorldBox& box) {
+    // How far the unit shape's coordinates go within the box, each by itself.
+    glm::dvec3 reach(0);
+    for (int axis = 0; axis < 3; ++axis) reach += glm::abs(glm::dvec3(lens.toUnit[axis])) * box.half[axis];
+    if (lens.shape != LensShape::Disc) return lens.radius(box.centre) - glm::length(reach) < 1;
+    // A cone: |u_xy| < 1 + u_z.
+    const glm::dvec3 u = lens.toUnit * (box.centre - lens.center);
+    return glm::length(glm::dvec2(u)) - u.z < 1 + glm::length(glm::dvec2(reach)) + reach.z;
+}
+
+} // namespace
+
+std::vector<std::shared_ptr<const BrickDemand>>
+brickDemands(RayPlan plan, const Scene& scene, const volume::DatasetInfo& info, const volume::BrickGrid& grid,
+             const std::vector<const BlockRanges*>& ranges, const std::vector<std::span<const float>>& importance,
+             const DemandSettings& settings, std::span<const std::uint8_t> hidden) {
+    const glm::ivec3 count = grid.count();
+    const std::size_t total = countOf(count), fields = plan.fields.size();
+    const WorldFrame frame = worldFrame(info.bounds, scene.stretch);
+    const volume::Lattice& lattice = grid.lattice;
+    const Sight sight(scene.camera, glm::max(settings.size, glm::ivec2(1)));
+    const glm::dvec3 cellWorld = frame.scale * lattice.spacing, cursor = frame.toWorld(scene.cursor);
+    const glm::dvec3 voxels = worldCell(lattice, frame);
+    const double voxel = std::max({voxels.x, voxels.y, voxels.z});
+
+    std::vector<std::vector<std::uint8_t>> shown(fields, std::vector<std::uint8_t>(total, 0));
+    for (std::size_t f = 0; f < fields; ++f) {
+        plan.fields[f].blocks = ranges[f];
+        if (ranges[f]) markShown(shown[f], plan, int(f), scene, info);
+    }
+    // What gives a layer its colours is looked at where the layer shows.
+    if (std::ranges::any_of(plan.layers, [](const RayLayer& layer) { return layer.color >= 0; })) {
+        const std::vector<std::vector<std::uint8_t>> shapes = shown;
+        for (const RayLayer& layer : plan.layers)
+            for (std::size_t i = 0; layer.color >= 0 && i < total; ++i)
+                if (shapes[std::size_t(layer.field)][i]) shown[std::size_t(layer.color)][i] = 1;
+    }
+    std::vector<Plane> planes;
+    for (const SliceUse& use : plan.slices)
+        planes.push_back(
+            slicePlane(std::get<SliceLayer>(scene.layers[std::size_t(use.layer)].technique), frame, scene.cursor));
+
+    const std::vector<PlacedLens> lenses = placeLenses(scene, frame);
+    BrickDemand none;
+    none.level.assign(total, kNotWanted);
+    none.priority.assign(total, 0);
+    none.hidden.assign(total, 0);
+    const std::optional<std::uint8_t> light = lightLevel(scene, frame, voxel, grid.levels);
+    std::vector<BrickDemand> demands(fields, none);
+    std::vector<Coarser> coarser;
+    for (std::size_t f = 0; f < fields; ++f) coarser.emplace_back(importance[f], settings.importance);
+    std::size_t i = 0;
+    for (int z = 0; z < count.z; ++z)
+        for (int y = 0; y < count.y; ++y)
+            for (int x = 0; x < count.x; ++x, ++i) {
+                // One cell more on every side: the moved sublattice and interpolation reach that far.
+                const glm::dvec3 lo = glm::dvec3(glm::ivec3(x, y, z) * grid.brickSize) - 1.0,
+                                 hi = lo + double(grid.brickSize) + 2.0;
+                const auto world = [&](glm::dvec3 cell) {
+                    return frame.toWorld(lattice.origin + cell * lattice.spacing);
+                };
+                const WorldBox box{0.5 * (world(lo) + world(hi)), 0.5 * glm::abs(cellWorld) * (hi - lo)};
+                if (!sight.sees(box)) continue;
+                const double depth = sight.depth(box), pixels = voxel / sight.pixel(depth);
+                double detail = settings.detail;
+                bool inLens = false;
+                for (const PlacedLens& lens : lenses) {
+                    if (!meets(lens, box)) continue;
+                    inLens = true;
+                    if (lens.detail != 1) detail = settings.detail * lens.detail;
+                }
+                const double toCursor = glm::length(glm::max(glm::abs(cursor - box.centre) - box.half, 0.0));
+                const double priority =
+                    (depth + 0.5 * sight.aside(box.centre) + 0.25 * toCursor) * (inLens ? kInLens : 1);
+                bool any = false;
+                for (std::size_t s = 0; s < planes.size(); ++s) {
+                    const double offset = planes[s].offset;
+                    if (box.below(planes[s].normal) > offset || -box.below(-planes[s].normal) < offset) continue;
+                    shown[std::size_t(plan.slices[s].field)][i] = 1;
+                }
+                for (const std::vector<std::uint8_t>& field : shown) any = any || field[i] != 0;
+                for (const int brush : plan.brushFields)
+                    if (any) shown[std::size_t(brush)][i] = 1;
+                for (std::size_t f = 0; f < fields; ++f)
+                    if (shown[f][i]) {
+                        std::uint8_t level = levelOf(pixels, detail * coarser[f](i), grid.levels);
+                        demands[f].hidden[i] = !hidden.empty() && hidden[i] != 0;
+                        if (demands[f].hidden[i] != 0) level = light ? std::max(level, *light) : kNotWanted;
+                        demands[f].level[i] = level;
+                        demands[f].priority[i] = float(priority);
+                    }
+            }
+    for (BrickDemand& demand : demands) keepMostUrgent(demand, settings.share);
+    // Fields of the same samples (drawn by functions of their own) want them together.
+    for (std::size_t f = 0; f < fields; ++f)
+        for (std::size_t g = 0; g < fields; ++g) {
+            const BoundField &a = plan.fields[f], &b = plan.fields[g];
+            if (f == g || a.channel != b.channel || a.raw != b.raw || a.timeShift != b.timeShift) continue;
+            for (std::size_t k = 0; k < total; ++k)
+                if (shown[g][k]) {
+                    demands[f].level[k] = demands[g].level[k];
+                    demands[f].priority[k] = demands[g].priority[k];
+                    demands[f].hidden[k] = demands[g].hidden[k];
+                }
+        }
+    std::vector<std::shared_ptr<const BrickDemand>> out;
+    for (std::size_t f = 0; f < fields; ++f)
+        out.push_back(ranges[f] ? std::make_shared<const BrickDemand>(std::move(demands[f])) : nullptr);
+    return out;
+}
+
+} // namespace tessera::vis

@@ -1,0 +1,129 @@
+#include "vis/demand/hidden_bricks.h"
+
+#include "vis/demand/picture_bounds.h"
+#include "volume/base/parallel.h"
+
+#include <algorithm>
+#include <glm/geometric.hpp>
+
+namespace tessera::vis {
+
+namespace {
+
+constexpr double kReadBeyond = 3; ///< cells from a sample's place to the farthest that its value and gradient look at
+constexpr int kSplits = 2;        ///< times that a box is cut into eight to fit what hides it more closely
+constexpr int kFewTiles = 4;
+
+/// Boxes in world space before or behind the ends of a picture's rays.
+class RayEnds {
+public:
+    explicit RayEnds(const ReachMap& reach)
+        : reach_(reach), projection_(reach.camera, reach.size),
+          toClip_(projectionMatrix(reach.camera, double(reach.size.x) / reach.size.y) * viewMatrix(reach.camera)),
+          perspective_(reach.camera.projection == Projection::Perspective) {
+        const Ray middle = cameraRay(reach.camera, double(reach.size.x) / reach.size.y, {0, 0});
+        eye_ = middle.origin;
+        forward_ = middle.direction;
+    }
+
+    /// Whether a box lies in the picture, and behind.
+    bool hide(glm::dvec3 lo, glm::dvec3 hi) const {
+        if (seenInTheMiddle(lo, hi)) return false;
+        const std::optional<Tiles> tiles = tilesOf(lo, hi);
+        return tiles && !tiles->empty() && behind(lo, hi, kSplits);
+    }
+
+private:
+    struct Tiles {
+        glm::ivec2 begin, end;
+        bool empty() const { return begin.x >= end.x || begin.y >= end.y; }
+        int count() const { return (end.x - begin.x) * (end.y - begin.y); }
+    };
+    /// Those that a box covers; nullopt where it reaches behind the eye.
+    std::optional<Tiles> tilesOf(glm::dvec3 lo, glm::dvec3 hi) const {
+        const glm::dvec3 half = 0.5 * (hi - lo);
+        const std::optional<PictureBounds> bounds =
+            projection_.bounds(0.5 * (lo + hi), glm::dmat3(half.x, 0, 0, 0, half.y, 0, 0, 0, half.z));
+        if (!bounds) return std::nullopt;
+        // Rays pass through the middles of pixels: the next ones count.
+        const glm::dvec2 top(reach_.tiles());
+        return Tiles{glm::clamp(glm::floor((bounds->lo - 1.0) / double(kReachTile)), glm::dvec2(0), top),
+                     glm::clamp(glm::ceil((bounds->hi + 1.0) / double(kReachTile)), glm::dvec2(0), top)};
+    }
+    float farthest(int x, int y) const { return reach_.farthest[std::size_t(y * reach_.tiles().x + x)]; }
+    /// What most boxes that are seen are: the quick answer.
+    bool seenInTheMiddle(glm::dvec3 lo, glm::dvec3 hi) const {
+        const glm::dvec4 clip = toClip_ * glm::dvec4(0.5 * (lo + hi), 1);
+        if (!(clip.w > 0)) return false;
+        const glm::dvec2 pixel = (glm::dvec2(clip) / clip.w * 0.5 + 0.5) * glm::dvec2(reach_.size);
+        if (!(pixel.x >= 0 && pixel.y >= 0 && pixel.x < reach_.size.x && pixel.y < reach_.size.y)) return false;
+        return double(farthest(int(pixel.x) / kReachTile, int(pixel.y) / kReachTile)) >= nearest(lo, hi);
+    }
+    double nearest(glm::dvec3 lo, glm::dvec3 hi) const {
+        if (perspective_) return glm::length(glm::clamp(eye_, lo, hi) - eye_);
+        const glm::dvec3 half = 0.5 * (hi - lo);
+        return glm::dot(forward_, 0.5 * (lo + hi) - eye_) - glm::dot(glm::abs(forward_), half);
+    }
+    /// Of what lies outside of the picture nothing is seen.
+    bool behind(glm::dvec3 lo, glm::dvec3 hi, int splits) const {
+        const std::optional<Tiles> tiles = tilesOf(lo, hi);
+        if (!tiles) return false;
+        if (tiles->empty()) return true;
+        const double distance = nearest(lo, hi);
+        bool all = true;
+        for (int y = tiles->begin.y; y < tiles->end.y && all; ++y)
+            for (int x = tiles->begin.x; x < tiles->end.x && all; ++x) all = double(farthest(x, y)) < distance;
+        if (all || splits == 0 || tiles->count() <= kFewTiles) return all;
+        const glm::dvec3 half = 0.5 * (hi - lo);
+        for (int part = 0; part < 8; ++part) {
+            const glm::dvec3 from = lo + half * glm::dvec3(part & 1, part >> 1 & 1, part >> 2);
+            if (!behind(from, from + half, splits - 1)) return false;
+        }
+        return true;
+    }
+
+    const ReachMap& reach_;
+    PictureProjection projection_;
+    glm::dmat4 toClip_;
+    bool perspective_;
+    glm::dvec3 eye_{0}, forward_{0, 0, -1};
+};
+
+} // namespace
+
+std::vector<std::uint8_t> hiddenBricks(const ReachMap& reach, const volume::BrickGrid& grid) {
+    const RayEnds ends(reach);
+    const glm::ivec3 count = grid.count();
+    const WorldFrame& frame = reach.frame;
+    const volume::Lattice& lattice = grid.lattice;
+    const auto world = [&](glm::dvec3 cell) { return frame.toWorld(lattice.origin + cell * lattice.spacing); };
+    const glm::dvec3 room = kReadBeyond * glm::abs(lattice.spacing * frame.scale);
+    std::vector<std::uint8_t> hidden(std::size_t(count.x) * std::size_t(count.y) * std::size_t(count.z));
+    parallelFor(std::size_t(count.y) * std::size_t(count.z), [&](std::size_t row) {
+        for (int x = 0; x < count.x; ++x) {
+            const glm::ivec3 brick(x, int(row % std::size_t(count.y)), int(row / std::size_t(count.y)));
+            const glm::dvec3 a = world(glm::dvec3(brick * grid.brickSize)),
+                             b = world(glm::dvec3((brick + 1) * grid.brickSize));
+            // Nothing is looked at outside of the box.
+            const glm::dvec3 lo = glm::clamp(glm::min(a, b) - room, -frame.halfSize, frame.halfSize),
+                             hi = glm::clamp(glm::max(a, b) + room, -frame.halfSize, frame.halfSize);
+            hidden[row * std::size_t(count.x) + std::size_t(x)] = ends.hide(lo, hi);
+        }
+    });
+    if (std::ranges::none_of(hidden, [](std::uint8_t each) { return each != 0; })) hidden.clear();
+    return hidden;
+}
+
+void HiddenInView::learn(std::vector<std::uint8_t> found, bool sameScene) {
+    if (!sameScene) revealed_.clear();
+    revealed_.resize(std::max({revealed_.size(), bricks_.size(), found.size()}), 0);
+    for (std::size_t i = 0; sameScene && i < bricks_.size(); ++i)
+        if (bricks_[i] != 0 && (i >= found.size() || found[i] == 0)) revealed_[i] = 1;
+    for (std::size_t i = 0; i < found.size(); ++i)
+        if (revealed_[i] != 0) found[i] = 0;
+    if (found == bricks_) return;
+    bricks_ = std::move(found);
+    ++revision_;
+}
+
+} // namespace tessera::vis

@@ -1,0 +1,103 @@
+#include "vis/optics/adaptive_step.h"
+
+#include "vis/scene/ray_setup.h"
+#include "vis/scene/scene.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace tessera::vis {
+
+namespace {
+
+constexpr int kNodes = 2048;
+constexpr double kThickestMatter = 0.999; ///< thicker matter ends a ray at once
+
+/// Whether a layer is one that longer steps are known of, or nothing that rays sample.
+bool adapts(const Layer& layer, const Scene& scene, const volume::DatasetInfo& info) {
+    if (!layer.visible) return true;
+    if (const Look* look = lookOf(layer.technique); look && look->any()) return false;
+    const auto* volume = std::get_if<VolumeLayer>(&layer.technique);
+    if (!volume) return true;
+    const std::optional<int> channel = info.findChannel(volume->channel);
+    if (!channel) return true;
+    const std::string name = layer.transfer.empty() ? info.channels()[std::size_t(*channel)].name : layer.transfer;
+    return volume->style == VolumeStyle::Composite && volume->colorBy.empty() && volume->quantity == Quantity::Value &&
+           volume->classification != Classification::PreIntegrated &&
+           transferFor(scene, name).kind == TransferKind::Curve &&
+           (layer.brushes == BrushEffect::None || !scene.selection.active());
+}
+
+} // namespace
+
+CurveMatter::CurveMatter(const TransferFunction& function, Range range, double density, bool shaded) : shaded_(shaded) {
+    std::vector<Bounds>& nodes = levels_.emplace_back();
+    for (int i = 0; i < kNodes; ++i) {
+        const glm::dvec4 at = evaluate(function, range, glm::mix(range.lo, range.hi, double(i) / (kNodes - 1)));
+        const double t = -std::log(1 - std::min(at.a, kThickestMatter)) * density / kReferenceLength;
+        const glm::vec4 matter(linearFromSrgb(glm::dvec3(at)) * t, t);
+        nodes.push_back({matter.x, matter.y, matter.z, matter.w, matter.x, matter.y, matter.z, matter.w});
+    }
+    for (int width = 1; 2 * width <= kNodes; width *= 2) {
+        const std::vector<Bounds>& half = levels_.back();
+        std::vector<Bounds> whole;
+        for (std::size_t i = 0; i + std::size_t(width) < half.size(); ++i)
+            whole.push_back(both(half[i], half[i + std::size_t(width)]));
+        levels_.push_back(std::move(whole));
+    }
+}
+
+CurveMatter::Bounds CurveMatter::both(const Bounds& a, const Bounds& b) {
+    Bounds out;
+    for (std::size_t i = 0; i < 8; ++i) out[i] = i < 4 ? std::min(a[i], b[i]) : std::max(a[i], b[i]);
+    return out;
+}
+
+BlockMatter CurveMatter::between(double a, double b, bool absent) const {
+    const auto node = [](double place) { return std::clamp(place, 0.0, 1.0) * (kNodes - 1); };
+    const std::size_t first(std::size_t(std::floor(node(std::min(a, b))))),
+        last(std::size_t(std::ceil(node(std::max(a, b)))));
+    std::size_t level = 0;
+    while ((std::size_t(2) << level) <= last - first + 1) ++level;
+    const Bounds bounds = both(levels_[level][first], levels_[level][last + 1 - (std::size_t(1) << level)]);
+    BlockMatter out;
+    out.greatest = double(bounds[7]);
+    for (std::size_t i = 0; i < 4; ++i)
+        out.spread = std::max(out.spread, double(bounds[i + 4]) - (absent ? 0 : double(bounds[i])));
+    if (shaded_) out.spread += out.greatest * std::min(1.0, std::sqrt(3.0) * std::abs(b - a) / kFlatGradient);
+    return out;
+}
+
+double longestStep(std::span<const BlockMatter> layers, double accepted) {
+    double spread = 0, thickness = 0, pairs = 0;
+    for (const BlockMatter& layer : layers) {
+        spread += layer.spread;
+        pairs += thickness * layer.greatest;
+        thickness += layer.greatest;
+    }
+    if (pairs > 0) return (std::sqrt(spread * spread + 4 * pairs * accepted) - spread) / (2 * pairs);
+    return spread > 0 ? accepted / spread : std::numeric_limits<double>::infinity();
+}
+
+int stepCode(double step, double unit) {
+    if (!(step > unit)) return 0;
+    return int(std::min(8 * std::log2(step / unit), double(kMostSteps)));
+}
+
+double stepOfCode(int code, double unit) {
+    return unit * std::exp2(code / 8.0);
+}
+
+double stepUnit(glm::dvec3 worldCell) {
+    return std::min({worldCell.x, worldCell.y, worldCell.z}) / 16;
+}
+
+bool stepsAdapt(const Scene& scene, const volume::DatasetInfo& info) {
+    const auto cutsHole = [](const Clip& clip) { return clip.enabled && clip.keep == ClipKeep::Outside; };
+    return scene.render.adaptiveStep > 0 && !scene.lighting.shadows.any() &&
+           std::ranges::none_of(scene.lenses, &Lens::enabled) && std::ranges::none_of(scene.clips, cutsHole) &&
+           std::ranges::all_of(scene.layers, [&](const Layer& layer) { return adapts(layer, scene, info); });
+}
+
+} // namespace tessera::vis

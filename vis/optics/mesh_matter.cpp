@@ -1,0 +1,98 @@
+#include "vis/optics/mesh_matter.h"
+
+#include "vis/scene/ray_setup.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+namespace tessera::vis {
+
+namespace {
+
+constexpr int kMostParts = 512; ///< along an edge
+
+/// Adds an amount to the eight cells around a place in cells (centres at integers), as far as they are in the grid.
+template <class Number> void deposit(Matter<Number>& matter, const LightGrid& grid, glm::dvec3 p, glm::dvec4 amount) {
+    const glm::ivec3 lo(glm::floor(p));
+    const glm::dvec3 w = p - glm::dvec3(lo);
+    for (int c = 0; c < 8; ++c) {
+        const glm::ivec3 up(c & 1, c >> 1 & 1, c >> 2), at = lo + up;
+        if (glm::any(glm::lessThan(at, glm::ivec3(0))) || glm::any(glm::greaterThanEqual(at, grid.size))) continue;
+        const glm::dvec3 parts = glm::mix(1.0 - w, w, glm::dvec3(up));
+        matter[grid.index(at)] += glm::vec<4, Number>(amount * (parts.x * parts.y * parts.z));
+    }
+}
+
+} // namespace
+
+MeshCasters meshCasters(const Scene& scene, const volume::DatasetInfo& info) {
+    MeshCasters out;
+    if (!scene.lighting.shadows.meshes) return out;
+    out.frame = worldFrame(info.bounds, scene.stretch);
+    out.clips = placeClips(scene.clips, out.frame);
+    out.lenses = placeLenses(scene, out.frame);
+    for (const GeometryLayer& layer : scene.geometry) {
+        const int lens = layer.lens.empty() ? -1 : findLens(out.lenses, layer.lens);
+        if (!drawn(scene, layer) || (!layer.lens.empty() && lens < 0) || layer.geometry->mesh.triangles.empty())
+            continue;
+        MeshCasters::Caster caster;
+        caster.geometry = layer.geometry;
+        caster.color = linearFromSrgb(glm::dvec3(layer.color));
+        caster.opacity = double(layer.opacity);
+        caster.lens = lens;
+        const std::optional<int> channel = info.findChannel(layer.channel);
+        caster.scalars = channel && !layer.geometry->mesh.scalars.empty();
+        if (caster.scalars) {
+            caster.function = transferFor(scene, layer.transfer.empty() ? layer.channel : layer.transfer);
+            caster.range = effectiveRange(caster.function, info.channelRange(info.channels()[std::size_t(*channel)]));
+        }
+        out.casters.push_back(std::move(caster));
+    }
+    return out;
+}
+
+template <class Number>
+Matter<Number> meshMatter(const LightGrid& grid, const MeshCasters& casters, std::stop_token stop) {
+    Matter<Number> matter(grid.count(), glm::vec<4, Number>(0));
+    const glm::dvec3 cell = grid.cell();
+    const double cellVolume = cell.x * cell.y * cell.z;
+    for (const MeshCasters::Caster& caster : casters.casters) {
+        const volume::SurfaceMesh& mesh = caster.geometry->mesh;
+        for (const glm::uvec3& triangle : mesh.triangles) {
+            if (stop.stop_requested()) return matter;
+            glm::dvec3 p[3];
+            double scalar = 0, longest = 0;
+            for (int i = 0; i < 3; ++i) {
+                p[i] = casters.frame.toWorld(glm::dvec3(mesh.positions[triangle[i]]));
+                if (caster.scalars) scalar += double(mesh.scalars[triangle[i]]) / 3;
+            }
+            for (int i = 0; i < 3; ++i) longest = std::max(longest, glm::length((p[(i + 1) % 3] - p[i]) / cell));
+            const glm::dvec3 along = p[1] - p[0], across = p[2] - p[0];
+            const double area = 0.5 * glm::length(glm::cross(along, across));
+            if (!(area > 0) || !std::isfinite(area)) continue;
+            glm::dvec3 color = caster.color;
+            if (caster.scalars && !std::isnan(scalar))
+                color = linearFromSrgb(glm::dvec3(evaluate(caster.function, caster.range, scalar)));
+            const int n = std::clamp(int(std::ceil(2 * longest)), 1, kMostParts);
+            for (int j = 0; j < n; ++j)
+                for (int i = 0; i < 2 * (n - j) - 1; ++i) {
+                    // Row j has n - j parts that stand and n - j - 1 that hang between them.
+                    const double third = i % 2 == 0 ? 1.0 / 3 : 2.0 / 3;
+                    const glm::dvec3 world = p[0] + along * ((i / 2 + third) / n) + across * ((j + third) / n);
+                    if (!kept(casters.clips, world)) continue;
+                    const double opacity = caster.opacity * lensAction(casters.lenses, caster.lens, world).opacity;
+                    const double amount =
+                        -std::log(1 - std::min(opacity, kThickest)) * area / (double(n) * n) / cellVolume;
+                    deposit(matter, grid, (world + grid.halfSize) / cell - 0.5, glm::dvec4(color, 1) * amount);
+                }
+        }
+    }
+    return matter;
+}
+
+template Matter<float> meshMatter(const LightGrid&, const MeshCasters&, std::stop_token);
+template Matter<double> meshMatter(const LightGrid&, const MeshCasters&, std::stop_token);
+
+} // namespace tessera::vis

@@ -1,0 +1,279 @@
+#include "vis/passes/geometry_pass.h"
+
+#include "vis/raycast/clip_uniforms.h"
+#include "vis/raycast/lens_uniforms.h"
+#include "vis/raycast/light_uniforms.h"
+#include "vis/scene/ray_setup.h"
+
+#include <algorithm>
+#include <glm/gtc/matrix_transform.hpp>
+
+namespace tessera::vis {
+
+namespace {
+
+constexpr int kColors = 1024; ///< entries of a colour table's row
+/// Texture units that no plan of rays uses.
+constexpr int kTableUnit = 42, kFormerUnit = 43, kGrainUnit = 45, kFormerColorUnit = 46;
+
+Texture makeArray(glm::ivec2 size, int layers, GLenum format, const char* label) {
+    GLuint name = 0;
+    glCreateTextures(GL_TEXTURE_2D_ARRAY, 1, &name);
+    Texture texture(name);
+    glTextureStorage3D(name, 1, format, size.x, size.y, layers);
+    glTextureParameteri(name, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+    glTextureParameteri(name, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+    glObjectLabel(GL_TEXTURE, name, -1, label);
+    return texture;
+}
+
+template <class T> Buffer makeBuffer(const std::vector<T>& content, const char* label) {
+    GLuint name = 0;
+    glCreateBuffers(1, &name);
+    Buffer buffer(name);
+    glNamedBufferStorage(name, GLsizeiptr(content.size() * sizeof(T)), content.data(), 0);
+    glObjectLabel(GL_BUFFER, name, -1, label);
+    return buffer;
+}
+
+/// Attribute `index` of `count` floats, `first` floats into an element.
+void attribute(GLuint array, GLuint index, int count, int first) {
+    glEnableVertexArrayAttrib(array, index);
+    glVertexArrayAttribFormat(array, index, count, GL_FLOAT, GL_FALSE, GLuint(first) * GLuint(sizeof(float)));
+    glVertexArrayAttribBinding(array, index, 0);
+}
+
+/// Position, normal, scalar of each vertex.
+std::vector<float> interleaved(const volume::SurfaceMesh& mesh) {
+    std::vector<float> out;
+    out.reserve(mesh.positions.size() * 7);
+    for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+        const glm::vec3 normal = mesh.normals.empty() ? glm::vec3(0) : mesh.normals[i];
+        for (int c = 0; c < 3; ++c) out.push_back(mesh.positions[i][c]);
+        for (int c = 0; c < 3; ++c) out.push_back(normal[c]);
+        out.push_back(mesh.scalars.empty() ? 0 : mesh.scalars[i]);
+    }
+    return out;
+}
+
+/// Both ends and their scalars of each segment.
+std::vector<float> segmentsOf(const LineSet& lines) {
+    std::vector<float> out;
+    std::uint32_t first = 0;
+    for (const std::uint32_t end : lines.ends) {
+        for (std::uint32_t i = first; i + 1 < std::min<std::size_t>(end, lines.positions.size()); ++i) {
+            for (const std::uint32_t v : {i, i + 1})
+                for (int c = 0; c < 3; ++c) out.push_back(lines.positions[v][c]);
+            for (const std::uint32_t v : {i, i + 1}) out.push_back(lines.scalars.empty() ? 0 : lines.scalars[v]);
+        }
+        first = end;
+    }
+    return out;
+}
+
+} // namespace
+
+void GeometryBuffer::resize(glm::ivec2 wanted, int wantedPeels) {
+    if (size == wanted && peels >= wantedPeels) return;
+    size = wanted;
+    peels = wantedPeels;
+    framebuffers.clear();
+    shown.clear();
+    color = makeArray(size, peels, GL_RGBA16F, "geometry colours");
+    distance = makeArray(size, peels, GL_RG32F, "geometry distances");
+    depth = makeTexture2D(size, GL_DEPTH_COMPONENT32F, GL_NEAREST, "geometry depth");
+    for (int layer = 0; layer < peels; ++layer) {
+        GLuint name = 0;
+        glCreateFramebuffers(1, &name);
+        Framebuffer framebuffer(name);
+        glNamedFramebufferTextureLayer(name, GL_COLOR_ATTACHMENT0, color.name(), 0, layer);
+        glNamedFramebufferTextureLayer(name, GL_COLOR_ATTACHMENT1, distance.name(), 0, layer);
+        glNamedFramebufferTexture(name, GL_DEPTH_ATTACHMENT, depth.name(), 0);
+        const GLenum buffers[] = {GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1};
+        glNamedFramebufferDrawBuffers(name, 2, buffers);
+        glObjectLabel(GL_FRAMEBUFFER, name, -1, "geometry");
+        framebuffers.push_back(std::move(framebuffer));
+        glCreateQueries(GL_ANY_SAMPLES_PASSED, 1, &name);
+        shown.emplace_back(name);
+    }
+}
+
+const GeometryPass::Uploaded& GeometryPass::upload(const std::shared_ptr<const Geometry>& geometry) {
+    std::erase_if(uploaded_, [](const auto& entry) { return entry.second.of.expired(); });
+    Uploaded& up = uploaded_[geometry.get()];
+    if (up.of.lock() == geometry) return up;
+    up = {};
+    up.of = geometry;
+    if (!geometry->mesh.triangles.empty()) {
+        up.vertices = makeBuffer(interleaved(geometry->mesh), "mesh vertices");
+        up.indices = makeBuffer(geometry->mesh.triangles, "mesh triangles");
+        up.indexCount = GLsizei(geometry->mesh.triangles.size() * 3);
+        up.mesh = makeVertexArray("mesh");
+        glVertexArrayVertexBuffer(up.mesh.name(), 0, up.vertices.name(), 0, 7 * sizeof(float));
+        glVertexArrayElementBuffer(up.mesh.name(), up.indices.name());
+        attribute(up.mesh.name(), 0, 3, 0);
+        attribute(up.mesh.name(), 1, 3, 3);
+        attribute(up.mesh.name(), 2, 1, 6);
+    }
+    if (const std::vector<float> segments = segmentsOf(geometry->lines); !segments.empty()) {
+        up.segments = makeBuffer(segments, "line segments");
+        up.segmentCount = GLsizei(segments.size() / 8);
+        up.lines = makeVertexArray("lines");
+        glVertexArrayVertexBuffer(up.lines.name(), 0, up.segments.name(), 0, 8 * sizeof(float));
+        glVertexArrayBindingDivisor(up.lines.name(), 0, 1);
+        attribute(up.lines.name(), 0, 3, 0);
+        attribute(up.lines.name(), 1, 3, 3);
+        attribute(up.lines.name(), 2, 2, 6);
+    }
+    return up;
+}
+
+void GeometryPass::table(const Scene& scene, const volume::DatasetInfo& info) {
+    std::vector<glm::vec4> colors;
+    maps_.clear();
+    for (const GeometryLayer& layer : scene.geometry) {
+        const glm::dvec3 own = linearFromSrgb(glm::dvec3(layer.color));
+        const std::optional<int> channel = layer.channel.empty() ? std::nullopt : info.findChannel(layer.channel);
+        if (!channel) {
+            maps_.emplace_back(0);
+            colors.insert(colors.end(), kColors, glm::vec4(own, 1));
+            continue;
+        }
+        const volume::Channel known = info.channels()[std::size_t(*channel)];
+        const TransferFunction& function = transferFor(scene, layer.transfer.empty() ? known.name : layer.transfer);
+        const Range range = effectiveRange(function, info.channelRange(known));
+        const double width = range.hi - range.lo;
+        maps_.push_back(width == 0 ? glm::vec2(0, 0.5) : glm::vec2(1 / width, -range.lo / width));
+        for (int i = 0; i < kColors; ++i) {
+            const glm::dvec4 srgb = evaluate(function, {0, 1}, double(i) / (kColors - 1));
+            colors.emplace_back(linearFromSrgb(glm::dvec3(srgb)), 1);
+        }
+    }
+    const int rows = int(scene.geometry.size());
+    if (rows > tableRows_) {
+        table_ = makeTexture2D({kColors, rows}, GL_RGBA32F, GL_LINEAR, "geometry colour tables");
+        tableRows_ = rows;
+    }
+    glTextureSubImage2D(table_.name(), 0, 0, 0, kColors, rows, GL_RGBA, GL_FLOAT, colors.data());
+}
+
+const Program& GeometryPass::program(const Scene& scene, bool lines, int look) {
+    const std::string bits = std::to_string(look);
+    ProgramRecipe recipe{lines ? "geometry_lines.vert.glsl" : "geometry_mesh.vert.glsl",
+                         "geometry.frag.glsl",
+                         {},
+                         {{"LINES", lines ? "1" : "0"}, {"LAYERS", "1"}, {"LOOKS", bits}, {"LAYER_LOOK(i)", bits}}};
+    addLighting(recipe, scene);
+    addClipping(recipe, scene);
+    addLenses(recipe, scene);
+    Program& made = programs_[recipe.key()];
+    if (!made) made = makeProgram(recipe);
+    return made;
+}
+
+void GeometryPass::draw(GeometryBuffer& buffer, const Scene& scene, const volume::DatasetInfo& info, glm::ivec2 size,
+                        glm::ivec2 first, const Tile& tile, glm::ivec2 pictureSize, int most, int lightUnit,
+                        GrainTexture& grain, glm::dvec2 jitter) {
+    const int peels = peelsOf(scene);
+    if (peels == 0) return;
+    table(scene, info);
+    const double aspect = double(size.x) / size.y;
+    const WorldFrame frame = worldFrame(info.bounds, scene.stretch);
+    const Ray middle = cameraRay(scene.camera, aspect, {0, 0});
+    // A ray's ndc is its pixel's plus 2 jitter / size, so what is drawn moves the other way.
+    const glm::dmat4 moved = glm::translate(glm::dmat4(1), glm::dvec3(-2.0 * jitter / glm::dvec2(size), 0));
+    const glm::mat4 worldToClip(moved * projectionMatrix(scene.camera, aspect) * viewMatrix(scene.camera));
+    // Brushes take their share of the opacity later.
+    const bool covers = !scene.selection.active();
+    const auto prepare = [&](const Program& program) {
+        program.set("worldScale", glm::vec3(frame.scale));
+        program.set("worldOffset", glm::vec3(frame.offset));
+        glProgramUniformMatrix4fv(program.name(), glGetUniformLocation(program.name(), "worldToClip"), 1, GL_FALSE,
+                                  &worldToClip[0][0]);
+        program.set("rayOrigin", glm::vec3(middle.origin));
+        program.set("forward", glm::vec3(middle.direction));
+        program.set("perspective", scene.camera.projection == Projection::Perspective ? 1 : 0);
+        program.set("halfSize", glm::vec3(glm::max(frame.halfSize, glm::dvec3(1e-5))));
+        setLightUniforms(program, scene, frame, lightUnit);
+        setClipUniforms(program, scene, frame);
+        setLensUniforms(program, scene, frame);
+        program.set("pixels", glm::vec2(size));
+        program.set("colors", kTableUnit);
+        program.set("former", kFormerUnit);
+        program.set("formerColors", kFormerColorUnit);
+        program.set("covers", covers ? 1 : 0);
+    };
+    const std::vector<PlacedLens> placed = placeLenses(scene, frame);
+    // What is drawn, each layer with its own variant.
+    struct Draw {
+        std::size_t layer;
+        int lens;
+        bool lines;
+        const Uploaded* up;
+        const Program* program;
+    };
+    std::vector<Draw> draws;
+    for (std::size_t i = 0; i < scene.geometry.size(); ++i) {
+        const GeometryLayer& layer = scene.geometry[i];
+        const std::optional<int> lens = lensOf(placed, layer.lens);
+        if (!drawn(scene, layer) || !lens) continue;
+        const Uploaded& up = upload(layer.geometry);
+        if (layer.look.charcoal) glBindTextureUnit(kGrainUnit, grain.get());
+        for (const bool lines : {false, true}) {
+            if ((lines ? up.segmentCount : up.indexCount) == 0) continue;
+            const Program& own = program(scene, lines, lookBits(layer.look));
+            prepare(own);
+            draws.push_back({i, *lens, lines, &up, &own});
+        }
+    }
+    glBindTextureUnit(kTableUnit, table_.name());
+    glBindTextureUnit(kFormerUnit, buffer.distance.name());
+    glBindTextureUnit(kFormerColorUnit, buffer.color.name());
+    glDisable(GL_BLEND);
+    glEnable(GL_SCISSOR_TEST);
+    glScissor(first.x + tile.begin.x, first.y + tile.begin.y, tile.end.x - tile.begin.x, tile.end.y - tile.begin.y);
+    glEnable(GL_DEPTH_TEST);
+    glDepthMask(GL_TRUE);
+    glDepthFunc(GL_LESS);
+    glViewport(first.x, first.y, size.x, size.y);
+    const float empty[] = {0, 0, 0, 0}, nowhere[] = {kNoGeometry, 0, 0, 0}, far = 1;
+    for (int peel = 0; peel < peels; ++peel) {
+        const GLuint framebuffer = buffer.framebuffers[std::size_t(peel)].name();
+        glBindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer);
+        glClearNamedFramebufferfv(framebuffer, GL_COLOR, 0, empty);
+        glClearNamedFramebufferfv(framebuffer, GL_COLOR, 1, nowhere);
+        glClearNamedFramebufferfv(framebuffer, GL_DEPTH, 0, &far);
+        if (peel >= most) continue;
+        // A peel that shows nothing is the last: what follows it is not drawn.
+        if (peel > 0) glBeginConditionalRender(buffer.shown[std::size_t(peel) - 1].name(), GL_QUERY_WAIT);
+        glBeginQuery(GL_ANY_SAMPLES_PASSED, buffer.shown[std::size_t(peel)].name());
+        for (const Draw& each : draws) {
+            const GeometryLayer& layer = scene.geometry[each.layer];
+            const Program& own = *each.program;
+            own.set("peel", peel);
+            own.set("row", (float(each.layer) + 0.5f) / float(tableRows_));
+            own.set("map", maps_[each.layer]);
+            own.set("plain", glm::vec3(linearFromSrgb(glm::dvec3(layer.color))));
+            own.set("opacity", layer.opacity);
+            own.set("lens", each.lens);
+            own.set("lineWidth", layer.lineWidth);
+            own.set("brushEffect", float(int(layer.brushes)));
+            // Layers share variants: what looks say is set anew for each.
+            setLookUniforms(own, {layer.look.any() ? &layer.look : nullptr}, scene, frame,
+                            worldCell(info.lattice, frame), pictureSize, kGrainUnit);
+            glUseProgram(own.name());
+            glBindVertexArray(each.lines ? each.up->lines.name() : each.up->mesh.name());
+            if (each.lines)
+                glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, each.up->segmentCount);
+            else
+                glDrawElements(GL_TRIANGLES, each.up->indexCount, GL_UNSIGNED_INT, nullptr);
+        }
+        glEndQuery(GL_ANY_SAMPLES_PASSED);
+        if (peel > 0) glEndConditionalRender();
+        glTextureBarrier(); // the next peel reads what this one wrote
+    }
+    glDisable(GL_DEPTH_TEST);
+    glDisable(GL_SCISSOR_TEST);
+}
+
+} // namespace tessera::vis

@@ -1,0 +1,111 @@
+#include "vis/passes/point_cloud.h"
+
+#include "vis/gl/handles.h"
+#include "vis/gl/program.h"
+#include "vis/scene/ray_setup.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tessera::vis {
+
+struct PointCloud::Impl {
+    Buffer buffer;
+    VertexArray array;
+    std::size_t count = 0;
+    Program splat, resolve;
+    Texture sums, throughs, picture;
+    Framebuffer splats, shown;
+    glm::ivec2 size{0};
+
+    void resize(glm::ivec2 wanted) {
+        if (size == wanted) return;
+        sums = makeTexture2D(wanted, GL_RGBA16F, GL_NEAREST, "splat sums");
+        throughs = makeTexture2D(wanted, GL_R16F, GL_NEAREST, "splat transmission");
+        picture = makeTexture2D(wanted, GL_RGBA8, GL_LINEAR, "point cloud");
+        splats = makeFramebuffer({sums.name(), throughs.name()}, "splats");
+        shown = makeFramebuffer({picture.name()}, "point cloud");
+        size = wanted;
+    }
+};
+
+PointCloud::PointCloud() : impl_(std::make_unique<Impl>()) {}
+PointCloud::~PointCloud() = default;
+PointCloud::PointCloud(PointCloud&&) noexcept = default;
+PointCloud& PointCloud::operator=(PointCloud&&) noexcept = default;
+
+std::size_t PointCloud::count() const {
+    return impl_->count;
+}
+
+void PointCloud::upload(std::span<const CloudPoint> points) {
+    impl_->count = points.size();
+    if (points.empty()) return;
+    GLuint name = 0;
+    glCreateBuffers(1, &name);
+    impl_->buffer = Buffer(name);
+    glNamedBufferStorage(name, GLsizeiptr(points.size_bytes()), points.data(), 0);
+    glObjectLabel(GL_BUFFER, name, -1, "points");
+    impl_->array = makeVertexArray("points");
+    const GLuint array = impl_->array.name();
+    glVertexArrayVertexBuffer(array, 0, name, 0, sizeof(CloudPoint));
+    for (const GLuint attribute : {0u, 1u}) {
+        glEnableVertexArrayAttrib(array, attribute);
+        glVertexArrayAttribFormat(array, attribute, 4, GL_FLOAT, GL_FALSE, attribute * GLuint(sizeof(glm::vec4)));
+        glVertexArrayAttribBinding(array, attribute, 0);
+    }
+}
+
+std::uint32_t PointCloud::draw(const CloudView& view) {
+    Impl& own = *impl_;
+    if (!own.splat) {
+        own.splat = makeProgram({"points.vert.glsl", "points.frag.glsl", {}, {}});
+        own.resolve = makeProgram({"screen.vert.glsl", "points_resolve.frag.glsl", {}, {}});
+    }
+    own.resize(glm::max(view.size, glm::ivec2(1)));
+    const float none[] = {0, 0, 0, 0}, all[] = {1, 1, 1, 1};
+    glClearNamedFramebufferfv(own.splats.name(), GL_COLOR, 0, none);
+    glClearNamedFramebufferfv(own.splats.name(), GL_COLOR, 1, all);
+    glViewport(0, 0, own.size.x, own.size.y);
+    glDisable(GL_SCISSOR_TEST);
+    glDisable(GL_DEPTH_TEST);
+    const double share = std::clamp(view.share, 0.0, 1.0);
+    if (const auto drawn = GLsizei(std::ceil(double(own.count) * share)); drawn > 0) {
+        const glm::mat4 rotation(view.rotation);
+        const double smaller = std::min(own.size.x, own.size.y);
+        // Radii are given for the middle of the picture, whose magnification depends on the eyes alone.
+        const double middle = project(view.projection, 1, glm::dvec4(0)).scale / view.projection.zoom;
+        glProgramUniformMatrix4fv(own.splat.name(), glGetUniformLocation(own.splat.name(), "rotation"), 1, GL_FALSE,
+                                  &rotation[0][0]);
+        own.splat.set("eyes", glm::vec3(std::max(view.projection.eye, 1.05), std::max(view.projection.eye3, 1.05),
+                                        view.projection.zoom));
+        own.splat.set("perPixel", glm::vec2(smaller / glm::dvec2(own.size)));
+        own.splat.set("radius", float(view.radiusPixels / middle));
+        own.splat.set("opacityPower", float(double(own.count) / drawn));
+        glBindFramebuffer(GL_DRAW_FRAMEBUFFER, own.splats.name());
+        glEnable(GL_PROGRAM_POINT_SIZE);
+        glEnable(GL_BLEND);
+        glBlendFunci(0, GL_ONE, GL_ONE);
+        glBlendFunci(1, GL_ZERO, GL_ONE_MINUS_SRC_COLOR);
+        glUseProgram(own.splat.name());
+        glBindVertexArray(own.array.name());
+        glDrawArrays(GL_POINTS, 0, drawn);
+        glDisable(GL_BLEND);
+        glDisable(GL_PROGRAM_POINT_SIZE);
+        glBlendFunc(GL_ONE, GL_ZERO);
+    }
+    own.resolve.set("sums", 0);
+    own.resolve.set("throughs", 1);
+    own.resolve.set("background", glm::vec3(linearFromSrgb(glm::dvec3(view.background))));
+    glBindTextureUnit(0, own.sums.name());
+    glBindTextureUnit(1, own.throughs.name());
+    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, own.shown.name());
+    glUseProgram(own.resolve.name());
+    if (!own.array) own.array = makeVertexArray("points");
+    glBindVertexArray(own.array.name());
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
+    return own.picture.name();
+}
+
+} // namespace tessera::vis

@@ -1,0 +1,117 @@
+#include "vis/passes/renderer_impl.h"
+
+#include "vis/demand/box_lines.h"
+#include "vis/optics/context_blur.h"
+#include "vis/optics/grain.h"
+#include "vis/raycast/look_uniforms.h"
+#include "vis/raycast/ray_uniforms.h"
+#include "volume/base/error.h"
+
+#include <cmath>
+
+namespace tessera::vis {
+
+namespace {
+
+constexpr int kSeenUnit = 44; ///< beyond those of any plan
+
+bool isRough(const std::optional<Paper>& paper) {
+    return paper && paper->tooth > 0;
+}
+
+ProgramRecipe resolveRecipe(const Scene& scene, bool lines) {
+    const auto flag = [](bool on) { return std::string(on ? "1" : "0"); };
+    return {"screen.vert.glsl",
+            "resolve.frag.glsl",
+            {},
+            {{"BLUR", flag(blursContext(scene))},
+             {"LINES", flag(lines)},
+             {"TONE", flag(scene.tone.curve != ToneCurve::None)},
+             {"PAPER", flag(isRough(paperOf(scene)))},
+             {"GROUND", flag(scene.showGround)}}};
+}
+
+} // namespace
+
+/// Gives the program that presents pictures what it wants, but the place to draw to.
+void Renderer::Impl::setPresented(const Program& resolve, const ViewTarget& target, const Scene& scene,
+                                  const BoxLines& lines, bool reduced) {
+    const std::optional<Paper> paper = paperOf(scene);
+    const RayBuffer& from = reduced ? target.reduced : target.full;
+    const glm::vec2 used(reduced ? target.reducedSize : target.size), whole(from.size), first(from.first);
+    resolve.set("source", 0);
+    resolve.set("sourceScale", used / glm::vec2(target.size) / whole);
+    resolve.set("sourceFirst", first / whole);
+    resolve.set("sourceLimit", (first + used - 0.5f) / whole);
+    resolve.set("background", glm::vec3(linearFromSrgb(glm::dvec3(groundColor(scene)))));
+    if (isRough(paper)) {
+        resolve.set("paper", glm::vec2(paper->tooth, kGrainTexels / double(paper->grain)));
+        resolve.set("grainTile", RayUnits::kPaper);
+        glBindTextureUnit(GLuint(RayUnits::kPaper), grain.get());
+    }
+    resolve.set("boxColor", glm::vec3(linearFromSrgb(glm::dvec3(scene.boxColor))));
+    resolve.set("lineWidth", 1.3f);
+    resolve.set("toneCurve", int(scene.tone.curve));
+    resolve.set("seen", kSeenUnit);
+    resolve.set("blurRadius", scene.selection.contextBlur * float(target.size.y));
+    resolve.set("blurTaps", kBlurTaps);
+    if (blursContext(scene)) glBindTextureUnit(GLuint(kSeenUnit), from.pick.name());
+    resolve.set("tone", glm::vec2(std::exp2(scene.tone.exposure), scene.tone.white));
+    resolve.set("edgeCount", int(lines.edges.size()));
+    resolve.set("frontCount", lines.front);
+    resolve.set("edges", lines.edges);
+    glBindTextureUnit(0, from.color.name());
+}
+
+BoxLines Renderer::Impl::box(const ViewTarget& target, const Scene& scene) const {
+    if (!scene.showBox || !source) return {};
+    return boxLines(scene.camera, worldFrame(source->info().bounds, scene.stretch).halfSize, target.size);
+}
+
+void Renderer::Impl::present(ViewTarget& target, const Scene& scene, bool reduced, const Tile& tile) {
+    const BoxLines lines = box(target, scene);
+    const Program* resolve = programs.find(resolveRecipe(scene, !lines.edges.empty()));
+    if (!resolve) throw Error("the program that presents pictures does not compile");
+    setPresented(*resolve, target, scene, lines, reduced);
+    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, target.outputFramebuffer.name());
+    glViewport(0, 0, target.size.x, target.size.y);
+    glEnable(GL_SCISSOR_TEST);
+    glScissor(tile.begin.x, tile.begin.y, tile.end.x - tile.begin.x, tile.end.y - tile.begin.y);
+    glUseProgram(resolve->name());
+    glBindVertexArray(vertices.name());
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+    target.shows = true;
+}
+
+/// Whether the program that presents the scene is there; else brings it on its way.
+bool Renderer::Impl::presentable(const ViewTarget& target, const Scene& scene) {
+    const BoxLines lines = box(target, scene);
+    const ProgramRecipe recipe = resolveRecipe(scene, !lines.edges.empty());
+    const ProgramAnswer answer = programs.request(recipe, 0);
+    if (answer.stage == ProgramStage::Linked) {
+        setPresented(*answer.program, target, scene, lines, false);
+        programs.warmUp(recipe, target.outputFramebuffer);
+    }
+    return answer.stage == ProgramStage::Ready || answer.stage == ProgramStage::Failed; // present() says which
+}
+
+/// The background while the first picture is on its way, with the box as soon as that can be drawn.
+void Renderer::Impl::blank(ViewTarget& target, const Scene& scene) {
+    if (presentable(target, scene)) return nothing(target, scene);
+    const glm::vec4 ground(groundColor(scene), scene.showGround ? 1 : 0);
+    glDisable(GL_SCISSOR_TEST);
+    glClearNamedFramebufferfv(target.outputFramebuffer.name(), GL_COLOR, 0, &ground.x);
+}
+
+/// The background alone: nothing is loaded, or the program does not compile.
+void Renderer::Impl::nothing(ViewTarget& target, const Scene& scene) {
+    const float empty[] = {0, 0, 0, 0}, nowhere[] = {-1e9f, 0, 0, 0}, endless[] = {1e9f, 0, 0, 0};
+    glDisable(GL_SCISSOR_TEST);
+    glClearNamedFramebufferfv(target.full.framebuffer.name(), GL_COLOR, 0, empty);
+    glClearNamedFramebufferfv(target.full.framebuffer.name(), GL_COLOR, 1, nowhere);
+    glClearNamedFramebufferfv(target.full.framebuffer.name(), GL_COLOR, 2, endless);
+    present(target, scene, false, target.everything());
+    target.fullValid = target.stillDone = true;
+}
+
+} // namespace tessera::vis

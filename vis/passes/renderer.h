@@ -1,0 +1,110 @@
+#pragma once
+
+#include "vis/scene/scene.h"
+#include "volume/bricks/brick_source.h"
+
+#include <chrono>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+/// The shared renderer: one per GL context. Needs a current GL 4.5 core context in every call, its destructor too.
+namespace tessera::vis {
+
+struct RendererOptions {
+    /// Bytes of textures, and of decoded bricks kept in RAM, if that is less than the scene's limits.
+    std::size_t textureBudget = ~std::size_t(0), memoryBudget = ~std::size_t(0);
+    int decodeThreads = 2;
+    /// Largest channel, in texels, kept as one texture: cheapest to sample. Larger ones are cut into bricks.
+    std::size_t denseTexels = std::size_t(32) << 20;
+    bool exactTextures = false; ///< 32-bit float bricks instead of 16-bit: for comparison with the reference
+    /// Bytes of data textures that the driver is taken to have; more is refused as a driver does. For tests.
+    std::size_t driverMemory = ~std::size_t(0);
+    bool countSamples = false; ///< instead of colours, readLinear gives how often each ray reconstructed a layer (red)
+};
+
+/// What a data set has in common with the one that was shown before it: its first channels, at the first times, have
+/// the same samples in the same bricks.
+struct SameSamples {
+    int channels = 0, times = 0;
+};
+
+/// How a picture is wanted now.
+struct FrameRequest {
+    glm::ivec2 size{512, 512};
+    bool moving = false; ///< something is being dragged: reduced size and step within the budget
+    /// GUI time this call may take (roughly); unfinished work goes on in the next call. 0: the scene's frame time.
+    double budgetMs = 0;
+    bool wait = false; ///< headless: decode and refine until complete before returning
+};
+
+/// What came of it. The texture stays the property of the target and is valid until its next frame.
+struct FrameStatus {
+    std::uint32_t texture = 0; ///< GL name, RGBA8, `request.size` large (upscaled while reduced), sRGB encoded, opaque
+    bool current = false;      ///< the texture shows this scene, however coarse
+    bool complete = false;   ///< full resolution, all bricks at the level wanted: nothing to do until the scene changes
+    bool compiling = false;  ///< its program is on the way: what shows meanwhile is a former picture, or nothing
+    int bricksMissing = 0;   ///< bricks still shown at a coarser level
+    double milliseconds = 0; ///< of the last full pass
+    /// Lattice samples of the channels drawn, at the levels drawn, and bytes of the textures that hold them.
+    std::size_t samples = 0, bytes = 0;
+};
+
+/// Bytes in use and allowed; bricks in textures, bricks that a view wants and that are not there yet, bricks not wanted
+/// since they are hidden in every view that would show them, jobs under way; of this data set so far, bricks uploaded,
+/// and bricks of another time that were shown with texels that were there.
+struct ResidencyInfo {
+    std::size_t textureBytes = 0, textureBudget = 0, memoryBytes = 0, memoryBudget = 0;
+    int bricksResident = 0, bricksWanted = 0, bricksHidden = 0, bricksQueued = 0, bricksUploaded = 0, bricksKept = 0;
+};
+
+/// What lies under a pixel: the first sample along the ray with noticeable opacity.
+struct Pick {
+    glm::dvec3 position; ///< physical
+};
+
+/// The picture of one view: framebuffers and how far refinement has come. One per view; may be dropped at any time.
+class ViewTarget;
+struct ViewTargetDeleter {
+    void operator()(ViewTarget* target) const;
+};
+using ViewTargetPtr = std::unique_ptr<ViewTarget, ViewTargetDeleter>;
+
+class Renderer {
+public:
+    explicit Renderer(const RendererOptions& options = {});
+    ~Renderer();
+    Renderer(const Renderer&) = delete;
+    Renderer& operator=(const Renderer&) = delete;
+
+    /// Shows another data set; drops every brick of the former one but for those they have in common. Null shows
+    /// nothing.
+    void setSource(std::shared_ptr<const volume::BrickSource> source, SameSamples same = {});
+    const volume::BrickSource* source() const;
+
+    /// A new, empty target for a view.
+    ViewTargetPtr makeTarget();
+    /// Draws, or refines, the scene into the target. Repeated calls with an equal scene and request go on refining.
+    /// Where the driver has no memory for a picture so large the former one stays, and a message says so; a request
+    /// that waits throws MachineError.
+    FrameStatus render(ViewTarget& target, const Scene& scene, const FrameRequest& request);
+    /// What lies under a pixel (x right, y down, of the last request's size) of the target's last picture.
+    std::optional<Pick> pick(ViewTarget& target, glm::ivec2 pixel);
+    /// Linear float RGBA of the target's last complete picture before the background, premultiplied, rows top down:
+    /// what the tests compare with the reference.
+    std::vector<glm::vec4> readLinear(ViewTarget& target);
+    /// RGBA8 of the picture, rows top down.
+    std::vector<std::uint8_t> readPixels(ViewTarget& target, glm::ivec2& size);
+
+    ResidencyInfo residency() const;
+    /// Messages since the last call (shader failures, damaged bricks), for the log pane.
+    std::vector<std::string> takeMessages();
+
+private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+} // namespace tessera::vis

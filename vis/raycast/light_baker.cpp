@@ -1,0 +1,143 @@
+#include "vis/raycast/light_baker.h"
+
+#include "volume/base/background.h"
+
+#include <algorithm>
+#include <chrono>
+
+namespace tessera::vis {
+
+namespace {
+
+/// Lenses that face the viewer turn with the camera, others may lie at the cursor.
+bool sameLenses(const Scene& a, const Scene& b) {
+    return placeLenses(a, {}) == placeLenses(b, {});
+}
+
+/// Equal matter: everything that opacity and colour of a place depend on.
+bool sameMatter(const Scene& a, const Scene& b) {
+    return a.layers == b.layers && a.transfer == b.transfer && a.selection == b.selection && a.clips == b.clips &&
+           sameLenses(a, b) && a.render.filter == b.render.filter && a.stretch == b.stretch &&
+           a.geometry == b.geometry && a.lighting.shadows.meshes == b.lighting.shadows.meshes;
+}
+
+bool sameSpread(const Shadows& a, const Shadows& b) {
+    return (a.strength > 0) == (b.strength > 0) && (a.occlusion > 0) == (b.occlusion > 0) && a.reach == b.reach &&
+           a.translucency == b.translucency && a.scatter == b.scatter;
+}
+
+} // namespace
+
+bool LightBaker::same(const Spread& a, const Spread& b) {
+    return a.matter == b.matter && a.lights == b.lights && sameSpread(a.shadows, b.shadows);
+}
+
+bool LightBaker::ready() const {
+    return version_ > 0 && same(wanted_, shown_);
+}
+
+void LightBaker::update(const Scene& scene, const volume::DatasetInfo& info, const Matter& matter,
+                        const Program& program, const std::function<void(const Program&)>& setUniforms, GLuint vertices,
+                        double budgetMs, bool wait) {
+    const LightGrid grid = lightGrid(worldFrame(info.bounds, scene.stretch), scene.lighting.shadows);
+    if (!scene_ || !(grid == grid_) || !(matter == matterKey_) || !sameMatter(*scene_, scene)) {
+        scene_ = scene;
+        grid_ = grid;
+        matterKey_ = matter;
+        ++wanted_.matter;
+        matterReady_ = false;
+        rows_ = 0;
+        casters_ = meshCasters(scene, info);
+        casting_ = !casters_.casters.empty();
+        worker_.request_stop();
+        job_.reset();
+    }
+    wanted_.lights = placeLights(scene.lighting, scene.camera);
+    wanted_.shadows = scene.lighting.shadows;
+    if (!matterReady_ && !drawMatter(program, setUniforms, vertices, budgetMs, wait)) return;
+    // A spreading that is under way is shown even if a light has moved since: light follows while the camera turns.
+    while (true) {
+        if (job_ && wait) worker_.join();
+        if (job_ && job_->done) take();
+        if (job_ || ready()) return;
+        start();
+        if (!wait) return;
+    }
+}
+
+/// Draws some rows of the matter; true when all of it is here.
+bool LightBaker::drawMatter(const Program& program, const std::function<void(const Program&)>& setUniforms,
+                            GLuint vertices, double budgetMs, bool wait) {
+    using Clock = std::chrono::steady_clock;
+    const Clock::time_point begin = Clock::now();
+    const glm::ivec2 size(grid_.size.x, grid_.size.y * grid_.size.z);
+    if (atlasSize_ != size) {
+        atlas_ = makeTexture2D(size, kMatterFormat, GL_NEAREST, "matter of the light volume");
+        framebuffer_ = makeFramebuffer({atlas_.name()}, "matter of the light volume");
+        atlasSize_ = size;
+    }
+    setUniforms(program);
+    program.set("gridSize", grid_.size);
+    program.set("matterSamples", kMatterSamples * kMatterSamples * kMatterSamples);
+    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer_.name());
+    glViewport(0, 0, size.x, size.y);
+    glEnable(GL_SCISSOR_TEST);
+    glUseProgram(program.name());
+    glBindVertexArray(vertices);
+    while (rows_ < size.y) {
+        const int count = std::min(wait ? size.y : 2 * grid_.size.y, size.y - rows_);
+        glScissor(0, rows_, size.x, count);
+        glDrawArrays(GL_TRIANGLES, 0, 3);
+        rows_ += count;
+        glFinish();
+        if (!wait && std::chrono::duration<double, std::milli>(Clock::now() - begin).count() > budgetMs) break;
+    }
+    if (rows_ < size.y) return false;
+    auto read = std::make_shared<vis::Matter<float>>(grid_.count());
+    glGetTextureImage(atlas_.name(), 0, GL_RGBA, GL_FLOAT, GLsizei(read->size() * sizeof(glm::vec4)), read->data());
+    matter_ = std::move(read);
+    matterReady_ = true;
+    return true;
+}
+
+void LightBaker::start() {
+    job_ = std::make_shared<Job>();
+    job_->key = wanted_;
+    job_->matter = matter_;
+    worker_ =
+        std::jthread([job = job_, grid = grid_, casters = casting_ ? casters_ : MeshCasters()](std::stop_token stop) {
+            workInBackground();
+            if (!casters.casters.empty()) {
+                vis::Matter<float> sum = meshMatter<float>(grid, casters, stop);
+                for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += (*job->matter)[i];
+                job->matter = std::make_shared<const vis::Matter<float>>(std::move(sum));
+            }
+            job->result = spreadLight<float>(grid, *job->matter, job->key.lights, job->key.shadows, stop);
+            job->done = !stop.stop_requested();
+        });
+}
+
+/// The finished job's light becomes textures.
+void LightBaker::take() {
+    const LightVolume<float>& light = job_->result;
+    const glm::ivec3 size = light.grid.size;
+    if (!visible_ || shownGrid_.size != size) visible_ = makeTexture3D(size, GL_RGBA16, GL_LINEAR, "light volume");
+    glTextureSubImage3D(visible_.name(), 0, 0, 0, 0, size.x, size.y, size.z, GL_RGBA, GL_FLOAT, light.visible.data());
+    if (!light.scattered.empty()) {
+        if (!scattered_ || shownGrid_.size != size)
+            scattered_ = makeTexture3D(size, GL_RGBA32F, GL_LINEAR, "scattered light");
+        std::vector<glm::vec4> texels;
+        for (const glm::vec3& each : light.scattered) texels.emplace_back(each, 0);
+        glTextureSubImage3D(scattered_.name(), 0, 0, 0, 0, size.x, size.y, size.z, GL_RGBA, GL_FLOAT, texels.data());
+    } else {
+        scattered_ = {};
+    }
+    shownGrid_ = light.grid;
+    shown_ = job_->key;
+    matter_ = job_->matter;
+    casting_ = false;
+    job_.reset();
+    ++version_;
+}
+
+} // namespace tessera::vis

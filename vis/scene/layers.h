@@ -1,0 +1,212 @@
+#pragma once
+
+#include "vis/scene/brush_effect.h"
+#include "vis/scene/flow_layer.h"
+#include "vis/scene/look.h"
+#include "volume/base/describe.h"
+
+#include <glm/vec3.hpp>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace tessera::vis {
+
+enum class VolumeStyle { Composite, Maximum, Minimum, Average, XRay, LocalMaximum };
+inline constexpr std::string_view kVolumeStyleNames[] = {"composite", "maximum", "minimum",
+                                                         "average",   "xray",    "localmaximum"};
+
+/// What a volume layer shows of its channel.
+enum class Quantity { Value, Gradient };
+inline constexpr std::string_view kQuantityNames[] = {"value", "gradient"};
+
+/// Where between samples and picture a transfer function is applied; for composite layers.
+enum class Classification { Post, Pre, PreIntegrated };
+inline constexpr std::string_view kClassificationNames[] = {"post", "pre", "preintegrated"};
+
+/// A scalar drawn through its transfer function by the ray caster.
+struct VolumeLayer {
+    static constexpr std::string_view kType = "volume";
+    std::string channel;
+    VolumeStyle style = VolumeStyle::Composite;
+    Quantity quantity = Quantity::Value;
+    Classification classification = Classification::Post; ///< of values; composite only
+    double threshold = 0;                                 ///< physical; local maximum only
+    bool shaded = true;                                   ///< Phong by the gradient; composite only
+    float density = 1;                                    ///< factor on optical depth
+    std::string colorBy = {};                             ///< "" = `channel`
+    Look look = {};                                       ///< composite only
+    bool operator==(const VolumeLayer&) const = default;
+    static void describe(auto& self, auto&& visit) {
+        visit(self.channel, FieldInfo{.key = "channel", .unit = "", .doc = "Parameter shown", .refersTo = "channel"});
+        visit(self.colorBy, FieldInfo{.key = "colorBy",
+                                      .unit = "",
+                                      .doc = "Parameter whose transfer function gives the colours; the opacity stays "
+                                             "that of the parameter shown; gray where it has no value",
+                                      .refersTo = "colorChannel"});
+        visit(self.style, FieldInfo{.key = "style",
+                                    .unit = "",
+                                    .doc = "How samples along a ray become one colour",
+                                    .names = kVolumeStyleNames});
+        visit(self.quantity, FieldInfo{.key = "quantity",
+                                       .unit = "",
+                                       .doc = "What is shown: the value, or how steeply it changes",
+                                       .names = kQuantityNames});
+        visit(self.classification,
+              FieldInfo{.key = "classification",
+                        .unit = "",
+                        .doc = "Composite: colour of interpolated values (post), interpolated colours of samples "
+                               "(pre), or the mean colour of all values between two samples (preintegrated)",
+                        .names = kClassificationNames,
+                        .applies = self.style == VolumeStyle::Composite && self.quantity == Quantity::Value});
+        visit(self.threshold, FieldInfo{.key = "threshold",
+                                        .unit = "",
+                                        .doc = "Local maximum: value that the first maximum must reach",
+                                        .applies = self.style == VolumeStyle::LocalMaximum});
+        visit(self.shaded, FieldInfo{.key = "shaded",
+                                     .unit = "",
+                                     .doc = "Phong shading by the gradient",
+                                     .applies = self.style == VolumeStyle::Composite});
+        visit(self.density, FieldInfo{.key = "density",
+                                      .unit = "",
+                                      .doc = "Factor on the optical depth",
+                                      .range = Range{0.01, 100},
+                                      .logScale = true});
+        visit(self.look, lookField(self.style == VolumeStyle::Composite));
+    }
+};
+
+enum class SurfaceMethod { Rays, Polygons };
+inline constexpr std::string_view kSurfaceMethodNames[] = {"rays", "polygons"};
+
+/// A surface of equal value: met by the rays, intersection refined by bisection, or extracted as a mesh.
+struct IsoLayer {
+    static constexpr std::string_view kType = "iso";
+    std::string channel;
+    double value = 0.5;                  ///< physical
+    glm::vec3 color{0.8f, 0.45f, 0.15f}; ///< sRGB
+    float opacity = 1;
+    SurfaceMethod method = SurfaceMethod::Rays;
+    std::string colorBy = {}; ///< "" = `color`
+    Look look = {};
+    bool operator==(const IsoLayer&) const = default;
+    static void describe(auto& self, auto&& visit) {
+        visit(
+            self.channel,
+            FieldInfo{.key = "channel", .unit = "", .doc = "Parameter whose surface is shown", .refersTo = "channel"});
+        visit(self.value, FieldInfo{.key = "value", .unit = "", .doc = "Value on the surface"});
+        visit(self.color,
+              FieldInfo{.key = "color", .unit = "", .doc = "Colour of the surface (sRGB)", .range = Range{0, 1}});
+        visit(self.opacity,
+              FieldInfo{.key = "opacity", .unit = "", .doc = "Opacity of the surface", .range = Range{0, 1}});
+        visit(self.method, FieldInfo{.key = "method",
+                                     .unit = "",
+                                     .doc = "Found along each ray, or extracted once as polygons",
+                                     .names = kSurfaceMethodNames});
+        visit(self.colorBy, FieldInfo{.key = "colorBy",
+                                      .unit = "",
+                                      .doc = "Parameter whose transfer function colours the surface; where it has no "
+                                             "value the surface has its own colour",
+                                      .refersTo = "colorChannel"});
+        visit(self.look, lookField());
+    }
+};
+
+enum class SliceOrientation { X, Y, Z, Oblique };
+inline constexpr std::string_view kSliceOrientationNames[] = {"x", "y", "z", "oblique"};
+
+/// A plane coloured by a channel, with contour lines.
+struct SliceLayer {
+    static constexpr std::string_view kType = "slice";
+    std::string channel;
+    SliceOrientation orientation = SliceOrientation::Z;
+    bool atCursor = true;      ///< passes through the linked cursor
+    double position = 0.5;     ///< 0..1 along the normal through the box, if !atCursor
+    glm::vec3 normal{0, 0, 1}; ///< of an oblique slice, world axes
+    int contours = 0;          ///< contour lines over the colour range
+    float opacity = 1;
+    bool operator==(const SliceLayer&) const = default;
+    static void describe(auto& self, auto&& visit) {
+        visit(self.channel, FieldInfo{.key = "channel", .unit = "", .doc = "Parameter shown", .refersTo = "channel"});
+        visit(self.orientation, FieldInfo{.key = "orientation",
+                                          .unit = "",
+                                          .doc = "Axis the slice is perpendicular to",
+                                          .names = kSliceOrientationNames});
+        visit(self.atCursor, FieldInfo{.key = "atCursor", .unit = "", .doc = "Pass through the linked cursor"});
+        visit(self.position, FieldInfo{.key = "position",
+                                       .unit = "",
+                                       .doc = "Place along the normal, 0 to 1 through the box",
+                                       .range = Range{0, 1},
+                                       .applies = !self.atCursor});
+        visit(self.normal, FieldInfo{.key = "normal",
+                                     .unit = "",
+                                     .doc = "Normal of an oblique slice",
+                                     .range = Range{-1, 1},
+                                     .applies = self.orientation == SliceOrientation::Oblique});
+        visit(self.contours,
+              FieldInfo{
+                  .key = "contours", .unit = "", .doc = "Number of contour lines, 0 = none", .range = Range{0, 50}});
+        visit(self.opacity,
+              FieldInfo{.key = "opacity", .unit = "", .doc = "Opacity of the slice", .range = Range{0, 1}});
+    }
+};
+
+using Technique = std::variant<VolumeLayer, IsoLayer, SliceLayer, FlowLayer>;
+
+/// Colour of a volume (sRGB) where the parameter that it is coloured by has no value.
+inline constexpr glm::vec3 kNoValueColor{0.5f};
+
+/// The parameter that gives a technique its colours beside the one it shows; "": none does.
+inline const std::string& colorByOf(const Technique& technique) {
+    static const std::string kNone;
+    return std::visit(
+        [](const auto& own) -> const std::string& {
+            if constexpr (requires { own.colorBy; })
+                return own.colorBy;
+            else
+                return kNone;
+        },
+        technique);
+}
+
+/// The look of a technique that takes one, else null.
+inline const Look* lookOf(const Technique& technique) {
+    return std::visit(
+        [](const auto& own) -> const Look* {
+            if constexpr (requires { own.look; })
+                return &own.look;
+            else
+                return nullptr;
+        },
+        technique);
+}
+
+struct Layer {
+    std::string name;
+    bool visible = true;
+    Technique technique;
+    std::string lens = {};     ///< name of the lens that it is drawn in alone; "" = everywhere
+    std::string transfer = {}; ///< name of a transfer function of its own, "" = that of its channel
+    double timeShift = 0;      ///< seconds, from the time of the scene to the one it shows
+    BrushEffect brushes = BrushEffect::Fade;
+    bool operator==(const Layer&) const = default;
+    static void describe(auto& self, auto&& visit) {
+        visit(self.name, FieldInfo{.key = "name", .unit = "", .doc = "Name of the layer"});
+        visit(self.visible, FieldInfo{.key = "visible", .unit = "", .doc = "Show the layer"});
+        visit(self.technique, FieldInfo{.key = "technique", .unit = "", .doc = "What the layer draws"});
+        visit(self.lens,
+              FieldInfo{.key = "lens", .unit = "", .doc = "Lens inside which alone it is drawn", .refersTo = "lens"});
+        visit(self.transfer, FieldInfo{.key = "transfer",
+                                       .unit = "",
+                                       .doc = "Name of its own transfer function; none: that of its parameter"});
+        visit(self.timeShift,
+              FieldInfo{.key = "timeShift", .unit = "s", .doc = "How much later than the others the layer is shown"});
+        visit(self.brushes, FieldInfo{.key = "brushes",
+                                      .unit = "",
+                                      .doc = "What brushes do to it: what is not brushed fades, nothing, only what is "
+                                             "not brushed (context) or only what is brushed (focus) stays",
+                                      .names = kBrushEffectNames});
+    }
+};
+
+} // namespace tessera::vis

@@ -1,0 +1,154 @@
+#include "vis/scene/lens.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/gtc/quaternion.hpp>
+#include <glm/matrix.hpp>
+
+namespace tessera::vis {
+
+namespace {
+
+constexpr double kStrongest = 8; ///< factor on opacity by which a lens enhances, or its inverse to suppress
+
+void setEffect(PlacedLens& placed, const Lens& lens) {
+    const double strength = double(lens.strength);
+    switch (lens.effect) {
+    case LensEffect::Replace:
+        placed.inside = 1 - strength;
+        break;
+    case LensEffect::Only:
+        placed.outside = 1 - strength;
+        break;
+    case LensEffect::Enhance:
+        placed.inside = std::pow(kStrongest, strength);
+        break;
+    case LensEffect::Suppress:
+        placed.inside = std::pow(kStrongest, -strength);
+        placed.saturation = 1 - strength;
+        break;
+    case LensEffect::Magnify:
+        placed.magnification = 1 + strength * (double(lens.magnification) - 1);
+        break;
+    case LensEffect::Focus:
+        placed.focus = strength;
+        break;
+    }
+}
+
+/// Rows of a matrix.
+glm::dmat3 rows(glm::dvec3 x, glm::dvec3 y, glm::dvec3 z) {
+    return glm::transpose(glm::dmat3(x, y, z));
+}
+
+void setPlace(PlacedLens& placed, const Lens& lens, const Camera& camera) {
+    const glm::dvec3 size = glm::max(glm::dvec3(lens.size), glm::dvec3(1e-6));
+    if (lens.shape != LensShape::Disc) {
+        const glm::dmat3 turned = glm::mat3_cast(glm::dquat(glm::radians(glm::dvec3(lens.rotation))));
+        placed.fromUnit = turned * glm::dmat3(size.x, 0, 0, 0, size.y, 0, 0, 0, size.z);
+        placed.toUnit = glm::inverse(placed.fromUnit);
+        return;
+    }
+    const glm::dmat3 eyeAxes = glm::transpose(glm::mat3_cast(glm::normalize(glm::dquat(camera.orientation))));
+    const glm::dvec3 right = eyeAxes[0], up = eyeAxes[1], forward = -eyeAxes[2];
+    placed.fromUnit = glm::dmat3(right * size.x, up * size.x, glm::dvec3(0));
+    placed.toUnit = rows(right / size.x, up / size.x, glm::dvec3(0));
+    if (camera.projection == Projection::Orthographic) return;
+    // Sideways of the line from the eye through its middle, measured at the middle's depth.
+    const glm::dvec3 away = placed.center - cameraRay(camera, 1, {0, 0}).origin;
+    const double depth = glm::dot(away, forward);
+    if (!(depth > 1e-6)) return;
+    const glm::dvec3 ahead = forward / depth;
+    placed.toUnit =
+        rows((right - glm::dot(away, right) * ahead) / size.x, (up - glm::dot(away, up) * ahead) / size.x, ahead);
+}
+
+} // namespace
+
+double PlacedLens::radius(glm::dvec3 world) const {
+    const glm::dvec3 u = toUnit * (world - center);
+    switch (shape) {
+    case LensShape::Sphere:
+        return glm::length(u);
+    case LensShape::Box:
+        return std::max({std::abs(u.x), std::abs(u.y), std::abs(u.z)});
+    case LensShape::Cylinder:
+        return std::max(std::hypot(u.x, u.y), std::abs(u.z));
+    case LensShape::Disc:
+        return std::hypot(u.x, u.y) / std::max(1 + u.z, 1e-6);
+    }
+    return 0;
+}
+
+double PlacedLens::weight(glm::dvec3 world) const {
+    const double r = radius(world);
+    const double t = rim > 0 ? std::clamp((1 - r) / rim, 0.0, 1.0) : r < 1 ? 1.0 : 0.0;
+    const double own = t * t * (3 - 2 * t);
+    return inverted ? 1 - own : own;
+}
+
+glm::dvec3 PlacedLens::bend(glm::dvec3 world) const {
+    const double r = radius(world);
+    if (!(r < 1)) return world;
+    const double share = 1 / (1 + (magnification - 1) * (1 - r));
+    return world - (1 - share) * (fromUnit * (toUnit * (world - center)));
+}
+
+std::vector<PlacedLens> placeLenses(const std::vector<Lens>& lenses, const WorldFrame& frame, const Camera& camera,
+                                    glm::dvec3 cursor) {
+    std::vector<PlacedLens> all;
+    for (const Lens& lens : lenses) {
+        if (!lens.enabled || all.size() == std::size_t(kMaxLenses)) continue;
+        PlacedLens placed;
+        placed.name = lens.name;
+        placed.shape = lens.shape;
+        placed.effect = lens.effect;
+        placed.rim = double(lens.rim);
+        placed.inverted = lens.inverted;
+        placed.marks = lens.marks;
+        placed.detail = double(lens.detail);
+        placed.center = frame.toWorld(lens.followsCursor ? cursor : lens.center);
+        setPlace(placed, lens, camera);
+        setEffect(placed, lens);
+        all.push_back(placed);
+    }
+    return all;
+}
+
+int findLens(const std::vector<PlacedLens>& lenses, const std::string& name) {
+    for (std::size_t i = 0; i < lenses.size(); ++i)
+        if (lenses[i].name == name) return int(i);
+    return -1;
+}
+
+LensAction lensAction(const std::vector<PlacedLens>& lenses, int own, glm::dvec3 world) {
+    LensAction action;
+    if (own >= 0) action.opacity = lenses[std::size_t(own)].weight(world);
+    for (std::size_t i = std::size_t(own + 1); i < lenses.size(); ++i) {
+        const double weight = lenses[i].weight(world);
+        action.opacity *= glm::mix(lenses[i].outside, lenses[i].inside, weight);
+        action.saturation *= glm::mix(1.0, lenses[i].saturation, weight);
+    }
+    return action;
+}
+
+glm::dvec3 bend(const std::vector<PlacedLens>& lenses, glm::dvec3 world, glm::dvec3 halfSize) {
+    const glm::dvec3 most = glm::max(halfSize, glm::abs(world));
+    for (auto lens = lenses.rbegin(); lens != lenses.rend(); ++lens)
+        if (lens->magnification > 1) world = lens->bend(world);
+    return glm::clamp(world, -most, most);
+}
+
+double confine(const std::vector<PlacedLens>& lenses, double doi, glm::dvec3 world) {
+    double most = 0, share = 0;
+    for (const PlacedLens& lens : lenses) {
+        if (!(lens.focus > 0)) continue;
+        share = std::max(share, lens.focus);
+        most = std::max(most, lens.weight(world));
+    }
+    return glm::mix(doi, 1.0, share * (1 - most));
+}
+
+} // namespace tessera::vis

@@ -1,0 +1,265 @@
+#pragma once
+
+#include "vis/scene/camera.h"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+/// How surfaces and samples of the ray caster are lit: the lights, the surface model, and the formulas, shared by the
+/// shader (vis/shaders/lib/lighting.glsl, float) and the reference ray caster (double).
+///
+/// All light is linear. A light of intensity 1 that falls straight on a white Lambert surface makes it 1. Colours of
+/// lights are sRGB and become linear first.
+namespace tessera::vis {
+
+enum class LightKind { Viewer, World, Point };
+inline constexpr std::string_view kLightKindNames[] = {"viewer", "world", "point"};
+
+/// One light. `viewer` and `world` are infinitely far away; their direction is given from the viewer's axes, or from
+/// the data's, where azimuth 0 and elevation 0 is towards +z and elevation 90 towards +y. A point light stands at
+/// `position` (world, longest edge of the box = 1, its centre = 0) and falls off with the square of the distance
+/// from 1.
+struct Light {
+    bool enabled = true;
+    LightKind kind = LightKind::Viewer;
+    glm::vec3 color{1}; ///< sRGB
+    float intensity = 1;
+    float azimuth = -30, elevation = 40; ///< degrees
+    glm::vec3 position{-0.5f, 1, 1};
+
+    bool operator==(const Light&) const = default;
+    static void describe(auto& self, auto&& visit) {
+        visit(self.enabled, FieldInfo{.key = "enabled", .unit = "", .doc = "The light is on"});
+        visit(self.kind, FieldInfo{.key = "kind",
+                                   .unit = "",
+                                   .doc = "Far away, turning with the viewer or fixed to the data; or a point",
+                                   .names = kLightKindNames});
+        visit(self.color, FieldInfo{.key = "color", .unit = "", .doc = "Colour (sRGB)", .range = Range{0, 1}});
+        visit(self.intensity,
+              FieldInfo{.key = "intensity", .unit = "", .doc = "1 makes white white", .range = Range{0, 20}});
+        visit(self.azimuth, FieldInfo{.key = "azimuth",
+                                      .unit = "deg",
+                                      .doc = "To the right of the viewer, or of the z axis",
+                                      .range = Range{-180, 180},
+                                      .applies = self.kind != LightKind::Point});
+        visit(self.elevation, FieldInfo{.key = "elevation",
+                                        .unit = "deg",
+                                        .doc = "Above the viewer, or towards the y axis",
+                                        .range = Range{-90, 90},
+                                        .applies = self.kind != LightKind::Point});
+        visit(self.position, FieldInfo{.key = "position",
+                                       .unit = "",
+                                       .doc = "Of a point light, from the centre, longest edge = 1",
+                                       .range = Range{-10, 10},
+                                       .applies = self.kind == LightKind::Point});
+    }
+};
+
+enum class Environment { None, Sky, Studio, SoftBox, Picture };
+inline constexpr std::string_view kEnvironmentNames[] = {"none", "sky", "studio", "softBox", "picture"};
+
+/// Light from all around (vis/optics/light_maps.h).
+struct EnvironmentLight {
+    Environment kind = Environment::None;
+    std::string picture = {}; ///< file of Environment::Picture (vis/image/light_picture.h)
+    float strength = 1, reflection = 1;
+    float turn = 0;       ///< degrees
+    bool follows = false; ///< turns with the viewer
+    bool operator==(const EnvironmentLight&) const = default;
+    static void describe(auto& self, auto&& visit) {
+        visit(self.kind, FieldInfo{.key = "kind",
+                                   .unit = "",
+                                   .doc = "Surroundings that light and are mirrored",
+                                   .names = kEnvironmentNames});
+        visit(self.picture,
+              FieldInfo{.key = "picture",
+                        .unit = "",
+                        .doc = "Picture of the surroundings for kind \"picture\", Radiance (.hdr) or PNG: "
+                               "2:1 all around, its middle behind the data, or a cross of 4:3 or 3:4",
+                        .refersTo = "path",
+                        .applies = self.kind == Environment::Picture});
+        visit(self.strength, FieldInfo{.key = "strength",
+                                       .unit = "",
+                                       .doc = "Brightness of the surroundings",
+                                       .range = Range{0, 5},
+                                       .applies = self.kind != Environment::None});
+        visit(self.reflection, FieldInfo{.key = "reflection",
+                                         .unit = "",
+                                         .doc = "How much of them is mirrored",
+                                         .range = Range{0, 4},
+                                         .applies = self.kind != Environment::None});
+        visit(self.turn, FieldInfo{.key = "turn",
+                                   .unit = "deg",
+                                   .doc = "Turns them around the vertical axis",
+                                   .range = Range{-180, 180},
+                                   .applies = self.kind != Environment::None});
+        visit(self.follows, FieldInfo{.key = "follows",
+                                      .unit = "",
+                                      .doc = "They turn with the viewer",
+                                      .applies = self.kind != Environment::None});
+    }
+};
+
+/// Shadows and light inside the volume (vis/optics/light_volume.h); all off by default.
+struct Shadows {
+    float strength = 0;     ///< of shadows
+    float occlusion = 0;    ///< of ambient occlusion
+    float reach = 0.12f;    ///< world: how far occlusion looks
+    float translucency = 0; ///< share of light that matter passes on, coloured
+    float scatter = 0.5f;   ///< how soft that light becomes
+    bool meshes = true;     ///< surfaces of polygons cast them too
+    int resolution = 64;    ///< cells along the longest edge
+    bool any() const { return strength > 0 || occlusion > 0 || translucency > 0; }
+    bool operator==(const Shadows&) const = default;
+    static void describe(auto& self, auto&& visit) {
+        visit(self.strength, FieldInfo{.key = "strength",
+                                       .unit = "",
+                                       .doc = "Darkness of shadows of the first three lights, 0 = none",
+                                       .range = Range{0, 1}});
+        visit(self.occlusion, FieldInfo{.key = "occlusion",
+                                        .unit = "",
+                                        .doc = "Darkening of hollows (ambient occlusion), 0 = none",
+                                        .range = Range{0, 1}});
+        visit(self.reach, FieldInfo{.key = "reach",
+                                    .unit = "",
+                                    .doc = "How far ambient occlusion looks, longest edge = 1",
+                                    .range = Range{0.01, 1},
+                                    .logScale = true,
+                                    .applies = self.occlusion > 0});
+        visit(self.translucency, FieldInfo{.key = "translucency",
+                                           .unit = "",
+                                           .doc = "Light that matter passes on in its colour, 0 = none",
+                                           .range = Range{0, 1}});
+        visit(self.scatter, FieldInfo{.key = "scatter",
+                                      .unit = "",
+                                      .doc = "How far that light spreads on its way",
+                                      .range = Range{0, 1},
+                                      .applies = self.translucency > 0});
+        visit(self.meshes, FieldInfo{.key = "meshes",
+                                     .unit = "",
+                                     .doc = "Surfaces of polygons cast shadows on volumes and on each other",
+                                     .applies = self.any()});
+        visit(self.resolution, FieldInfo{.key = "resolution",
+                                         .unit = "",
+                                         .doc = "Cells of the light volume along the longest edge",
+                                         .range = Range{16, 128},
+                                         .applies = self.any()});
+    }
+};
+
+enum class LightModel { Phong, Physical };
+inline constexpr std::string_view kLightModelNames[] = {"phong", "physical"};
+
+struct Lighting {
+    LightModel model = LightModel::Phong;
+    std::vector<Light> lights = std::vector<Light>(1);
+    bool inMaps = false; ///< the lights shine through cube maps
+    EnvironmentLight environment;
+    Shadows shadows;
+    float ambient = 0.25f;
+    float diffuse = 0.65f, specular = 0.25f, shininess = 30;       ///< of Phong
+    float roughness = 0.4f, metalness = 0.0f, reflectance = 0.04f; ///< of the physical model
+
+    bool operator==(const Lighting&) const = default;
+    static void describe(auto& self, auto&& visit) {
+        visit(self.model, FieldInfo{.key = "model",
+                                    .unit = "",
+                                    .doc = "Phong, or microfacets (GGX) over Lambert that keep the energy",
+                                    .names = kLightModelNames});
+        visit(self.lights, FieldInfo{.key = "lights",
+                                     .unit = "",
+                                     .doc = "The lights; up to 16 take part one by one, any number in maps"});
+        visit(self.inMaps, FieldInfo{.key = "inMaps",
+                                     .unit = "",
+                                     .doc = "Any number of lights through cube maps, at the cost of one; no shadows"});
+        visit(self.environment, FieldInfo{.key = "environment", .unit = "", .doc = "Light from all around"});
+        visit(self.shadows, FieldInfo{.key = "shadows", .unit = "", .doc = "Shadows, ambient occlusion, translucency"});
+        visit(self.ambient,
+              FieldInfo{.key = "ambient", .unit = "", .doc = "Light from everywhere", .range = Range{0, 1}});
+        visit(self.diffuse, FieldInfo{.key = "diffuse",
+                                      .unit = "",
+                                      .doc = "Diffuse reflection (Phong)",
+                                      .range = Range{0, 1},
+                                      .applies = self.model == LightModel::Phong});
+        visit(self.specular, FieldInfo{.key = "specular",
+                                       .unit = "",
+                                       .doc = "Specular reflection (Phong)",
+                                       .range = Range{0, 1},
+                                       .applies = self.model == LightModel::Phong});
+        visit(self.shininess, FieldInfo{.key = "shininess",
+                                        .unit = "",
+                                        .doc = "Phong exponent",
+                                        .range = Range{1, 200},
+                                        .logScale = true,
+                                        .applies = self.model == LightModel::Phong});
+        visit(self.roughness, FieldInfo{.key = "roughness",
+                                        .unit = "",
+                                        .doc = "Of the surface: 0.05 polished, 1 dull (physical)",
+                                        .range = Range{0.05, 1},
+                                        .applies = self.model == LightModel::Physical});
+        visit(self.metalness, FieldInfo{.key = "metalness",
+                                        .unit = "",
+                                        .doc = "1: reflects in its colour (physical)",
+                                        .range = Range{0, 1},
+                                        .applies = self.model == LightModel::Physical});
+        visit(self.reflectance, FieldInfo{.key = "reflectance",
+                                          .unit = "",
+                                          .doc = "Share mirrored straight on: 0.04 plastic, 0.17 gem (physical)",
+                                          .range = Range{0, 1},
+                                          .applies = self.model == LightModel::Physical});
+    }
+};
+
+inline constexpr int kMaxLights = 16;   ///< MAX_LIGHTS of the shader; further ones are left out
+inline constexpr double kEdgeOn = 0.25; ///< cosine to the viewer below which both sides of a gradient are lit
+
+/// A light in world axes.
+struct PlacedLight {
+    bool point = false;
+    glm::dvec3 place{0, 0, 1}; ///< direction towards it (length 1), or its position
+    glm::dvec3 color{1};       ///< linear, times intensity
+    bool operator==(const PlacedLight&) const = default;
+};
+
+/// Direction towards a far light, in world axes, length 1.
+glm::dvec3 lightDirection(const Light& light, const Camera& camera);
+/// The enabled lights, at most `limit`.
+std::vector<PlacedLight> placeLights(const Lighting& lighting, const Camera& camera, int limit = kMaxLights);
+/// Whether samples look at cube maps.
+inline bool usesMaps(const Lighting& lighting) {
+    return lighting.inMaps || lighting.environment.kind != Environment::None;
+}
+
+/// A place on a surface, seen by the eye: all unit vectors in world axes. `front` says how much the side that the
+/// normal points to is seen: 1 facing the viewer, 0 turned away, between while |n.v| < kEdgeOn, so that a gradient
+/// across the view, as at the border of absent samples, does not make light and dark patches. Light on the other side
+/// counts with 1 - front.
+struct Facing {
+    glm::dvec3 normal{0, 0, 1}, toViewer{0, 0, 1};
+    double front = 1;
+};
+Facing facing(glm::dvec3 gradient, glm::dvec3 toViewer);
+
+/// Light that one light of colour 1 sends to the viewer.
+///   Phong: albedo diffuse n.l + specular (n.h)^shininess, h between l and v.
+glm::dvec3 phongLight(const Facing& at, glm::dvec3 albedo, glm::dvec3 toLight, const Lighting& surface);
+/// What a surface makes of light that comes evenly from everywhere, colour 1: the share `diffuse` that the inside
+/// scatters and `specular` that is mirrored.
+///   Phong: the albedo, and nothing.
+///   Physical: specular = (F0 A + B) lost, A and B the fit of the GGX lobe's integral of Karis (Physically based
+///   shading on mobile, 2014), lost = 1 + F0 (1 / (1 - roughness^3 / 2) - 1) what bounces between microfacets (fitted
+///   here; after Lagarde and Golubev after Turquin, Practical multiple scattering compensation for microfacet models,
+///   2018); F0 = mix(reflectance, albedo, metalness); diffuse = (1 - specular) (1 - metalness) albedo: no more leaves
+///   than came.
+struct Reflected {
+    glm::dvec3 diffuse{0}, specular{0};
+};
+Reflected evenLight(const Facing& at, glm::dvec3 albedo, const Lighting& surface);
+///   Physical: n.l (diffuse + pi D V F lost), `diffuse` that of evenLight, F = F0 + (1 - F0) (1 - v.h)^5 (Schlick
+///   1994), D and V of Trowbridge-Reitz (GGX) with alpha = roughness^2 and height-correlated masking (Heitz,
+///   Understanding the masking-shadowing function, 2014). pi as light of intensity 1 is an irradiance of pi.
+glm::dvec3 physicalLight(const Facing& at, glm::dvec3 albedo, const Reflected& even, glm::dvec3 toLight,
+                         const Lighting& surface);
+
+} // namespace tessera::vis

@@ -1,0 +1,40 @@
+#pragma once
+
+#include "volume/base/describe.h"
+
+namespace tessera::vis {
+
+/// What the renderer may take of the machine.
+struct RenderLimits {
+    int textureMemory = 1024;   ///< MiB; a picture that is waited for may take more
+    int brickMemory = 2048;     ///< MiB of decoded bricks in RAM
+    float keptChange = 0.0005f; ///< share of a parameter's range: textures of bricks that move less with time stay
+    float frameTime = 60;       ///< ms of the window's time that one frame may take while something moves
+
+    bool operator==(const RenderLimits&) const = default;
+    static void describe(auto& self, auto&& visit) {
+        visit(self.textureMemory, FieldInfo{.key = "textureMemory",
+                                            .unit = "MiB",
+                                            .doc = "Memory for textures",
+                                            .range = Range{64, 65536},
+                                            .logScale = true});
+        visit(self.brickMemory, FieldInfo{.key = "brickMemory",
+                                          .unit = "MiB",
+                                          .doc = "Memory for decoded bricks",
+                                          .range = Range{64, 1048576},
+                                          .logScale = true});
+        visit(self.keptChange, FieldInfo{.key = "keptChange",
+                                         .unit = "",
+                                         .doc = "Bricks whose values move less than this share of their range between "
+                                                "two times keep their textures; 0 = only bricks that do not move",
+                                         .range = Range{0, 0.1}});
+        visit(self.frameTime, FieldInfo{.key = "frameTime",
+                                        .unit = "ms",
+                                        .doc = "Time one frame may take while something moves; resolution and step "
+                                               "follow it",
+                                        .range = Range{5, 1000},
+                                        .logScale = true});
+    }
+};
+
+} // namespace tessera::vis

@@ -1,0 +1,285 @@
+#pragma once
+
+#include "volume/base/describe.h"
+
+#include <glm/vec3.hpp>
+#include <optional>
+
+/// Looks: styles of drawing that a volume layer or an iso-surface may take, each part of its own and all of them
+/// together. What the parts compute is written down in vis/optics/look_shading.h.
+namespace tessera::vis {
+
+/// Warm where light falls, cool where it does not (Gooch et al.: A non-photorealistic lighting model, 1998).
+struct WarmCool {
+    float amount = 1;
+    glm::vec3 warmColor{0.95f, 0.78f, 0.35f}, coolColor{0.12f, 0.2f, 0.5f}; ///< sRGB
+    float ownColor = 0.35f;
+    bool operator==(const WarmCool&) const = default;
+    static void describe(auto& self, auto&& visit) {
+        visit(self.amount, FieldInfo{.key = "amount", .unit = "", .doc = "From plain to toned", .range = Range{0, 1}});
+        visit(self.warmColor, FieldInfo{.key = "warmColor",
+                                        .unit = "",
+                                        .doc = "Colour towards the first light (sRGB)",
+                                        .range = Range{0, 1}});
+        visit(self.coolColor, FieldInfo{.key = "coolColor",
+                                        .unit = "",
+                                        .doc = "Colour away from the first light (sRGB)",
+                                        .range = Range{0, 1}});
+        visit(self.ownColor, FieldInfo{.key = "ownColor",
+                                       .unit = "",
+                                       .doc = "How much of the own colour is added where light falls",
+                                       .range = Range{0, 2}});
+    }
+};
+
+/// Opacity by steepness (Rheingans and Ebert: Volume illustration, 2001).
+struct BoundaryEnhancement {
+    float retained = 0.2f, strength = 2, exponent = 1;
+    bool operator==(const BoundaryEnhancement&) const = default;
+    static void describe(auto& self, auto&& visit) {
+        visit(self.retained, FieldInfo{.key = "retained",
+                                       .unit = "",
+                                       .doc = "Share of opacity that stays where nothing changes",
+                                       .range = Range{0, 2}});
+        visit(self.strength, FieldInfo{.key = "strength",
+                                       .unit = "",
+                                       .doc = "Opacity added where values change most",
+                                       .range = Range{0, 20}});
+        visit(self.exponent, FieldInfo{.key = "exponent",
+                                       .unit = "",
+                                       .doc = "Of the steepness: larger = the steepest places alone",
+                                       .range = Range{0.1, 8},
+                                       .logScale = true});
+    }
+};
+
+/// Opacity where the surface turns away from the viewer (Rheingans and Ebert 2001).
+struct SilhouetteEnhancement {
+    float retained = 0.15f, strength = 3, exponent = 2.5f;
+    bool operator==(const SilhouetteEnhancement&) const = default;
+    static void describe(auto& self, auto&& visit) {
+        visit(self.retained, FieldInfo{.key = "retained",
+                                       .unit = "",
+                                       .doc = "Share of opacity that stays where the viewer looks straight on",
+                                       .range = Range{0, 2}});
+        visit(self.strength, FieldInfo{.key = "strength",
+                                       .unit = "",
+                                       .doc = "Opacity added where the surface turns away",
+                                       .range = Range{0, 20}});
+        visit(self.exponent, FieldInfo{.key = "exponent",
+                                       .unit = "",
+                                       .doc = "Larger = narrower silhouettes",
+                                       .range = Range{0.25, 16},
+                                       .logScale = true});
+    }
+};
+
+/// Colours pale with distance, as in air.
+struct DistanceColor {
+    float amount = 0.7f, exponent = 1.3f;
+    bool toBackground = true;
+    glm::vec3 color{0.55f, 0.65f, 0.8f}; ///< sRGB
+    bool operator==(const DistanceColor&) const = default;
+    static void describe(auto& self, auto&& visit) {
+        visit(self.amount,
+              FieldInfo{.key = "amount", .unit = "", .doc = "At the far end of the box", .range = Range{0, 1}});
+        visit(self.exponent, FieldInfo{.key = "exponent",
+                                       .unit = "",
+                                       .doc = "Larger = the foreground keeps its colours longer",
+                                       .range = Range{0.1, 8},
+                                       .logScale = true});
+        visit(self.toBackground, FieldInfo{.key = "toBackground", .unit = "", .doc = "Blend to the background"});
+        visit(self.color, FieldInfo{.key = "color",
+                                    .unit = "",
+                                    .doc = "Blend to this otherwise (sRGB)",
+                                    .range = Range{0, 1},
+                                    .applies = !self.toBackground});
+    }
+};
+
+/// Light in steps, outlines of even width (Kindlmann et al.: Curvature-based transfer functions, 2003).
+struct Cartoon {
+    float amount = 1;
+    int steps = 3;
+    float shadow = 0.35f;
+    float outline = 2; ///< pixels
+    glm::vec3 outlineColor{0.05f, 0.05f, 0.08f};
+    bool operator==(const Cartoon&) const = default;
+    static void describe(auto& self, auto&& visit) {
+        visit(self.amount, FieldInfo{.key = "amount", .unit = "", .doc = "From plain to flat", .range = Range{0, 1}});
+        visit(self.steps, FieldInfo{.key = "steps", .unit = "", .doc = "Bands of light", .range = Range{2, 12}});
+        visit(self.shadow, FieldInfo{.key = "shadow", .unit = "", .doc = "Light in the shade", .range = Range{0, 1}});
+        visit(self.outline,
+              FieldInfo{.key = "outline", .unit = "pixel", .doc = "Width of outlines", .range = Range{0, 12}});
+        visit(self.outlineColor, FieldInfo{.key = "outlineColor",
+                                           .unit = "",
+                                           .doc = "Colour of outlines (sRGB)",
+                                           .range = Range{0, 1},
+                                           .applies = self.outline > 0});
+    }
+};
+
+enum class Stick { Charcoal, Chalk };
+inline constexpr std::string_view kStickNames[] = {"charcoal", "chalk"};
+
+/// Strokes on paper grain (after Majumder and Gopi: Hardware accelerated real time charcoal rendering, 2002). The grain
+/// is fixed to the object; the paper is the scene's.
+struct CharcoalDrawing {
+    Stick stick = Stick::Charcoal;
+    glm::vec3 color{0.07f, 0.067f, 0.065f}; ///< sRGB
+    float pressure = 0.93f, contrast = 0.9f, localTone = 0.15f;
+    float steepness = 0;
+    float outline = 2.2f, outlineStrength = 0.9f, closure = 0.5f;
+    float grain = 2.4f; ///< pixels
+    float hardness = 0.6f, strokes = 0.7f, angle = 0, smudge = 0.15f;
+    bool operator==(const CharcoalDrawing&) const = default;
+    static void describe(auto& self, auto&& visit) {
+        visit(self.stick, FieldInfo{.key = "stick",
+                                    .unit = "",
+                                    .doc = "Charcoal draws what is dark, chalk what is light",
+                                    .names = kStickNames});
+        visit(self.color,
+              FieldInfo{.key = "color", .unit = "", .doc = "Colour of the stick (sRGB)", .range = Range{0, 1}});
+        visit(self.pressure, FieldInfo{.key = "pressure",
+                                       .unit = "",
+                                       .doc = "How much of the paper a stroke covers at most",
+                                       .range = Range{0, 1}});
+        visit(self.contrast, FieldInfo{.key = "contrast",
+                                       .unit = "",
+                                       .doc = "Exponent on darkness: larger = more bare paper",
+                                       .range = Range{0.25, 6},
+                                       .logScale = true});
+        visit(self.localTone, FieldInfo{.key = "localTone",
+                                        .unit = "",
+                                        .doc = "How much the own colour darkens, beside light and shade",
+                                        .range = Range{0, 1}});
+        visit(self.steepness, FieldInfo{.key = "steepness",
+                                        .unit = "",
+                                        .doc = "How much tone is drawn only where values change steeply",
+                                        .range = Range{0, 1}});
+        visit(self.outline,
+              FieldInfo{.key = "outline", .unit = "pixel", .doc = "Width of outlines", .range = Range{0, 12}});
+        visit(self.outlineStrength,
+              FieldInfo{.key = "outlineStrength", .unit = "", .doc = "Darkness of outlines", .range = Range{0, 1}});
+        visit(self.closure, FieldInfo{.key = "closure",
+                                      .unit = "",
+                                      .doc = "How much outlines are left open where light falls",
+                                      .range = Range{0, 1}});
+        visit(self.grain, FieldInfo{.key = "grain",
+                                    .unit = "pixel",
+                                    .doc = "Size of the paper's grain, on the object",
+                                    .range = Range{0.5, 24},
+                                    .logScale = true});
+        visit(self.hardness, FieldInfo{.key = "hardness",
+                                       .unit = "",
+                                       .doc = "Of the grain: hard is ink or paper, soft is tone",
+                                       .range = Range{0, 1}});
+        visit(self.strokes,
+              FieldInfo{.key = "strokes", .unit = "", .doc = "How much single strokes show", .range = Range{0, 1}});
+        visit(
+            self.angle,
+            FieldInfo{.key = "angle", .unit = "deg", .doc = "Turns the direction of strokes", .range = Range{-90, 90}});
+        visit(self.smudge, FieldInfo{.key = "smudge",
+                                     .unit = "",
+                                     .doc = "From grain and strokes to rubbed, even tone",
+                                     .range = Range{0, 1}});
+    }
+};
+
+/// Lines where the surface meets planes of even distance along x, y and z: a wire frame of the shape, whatever it is
+/// made of.
+struct WireFrame {
+    float spacing = 0.08f;
+    float width = 1.2f; ///< pixels
+    float retained = 0.05f;
+    glm::vec3 color{0.75f, 0.8f, 0.88f}; ///< sRGB
+    float ownColor = 0.3f;
+    bool operator==(const WireFrame&) const = default;
+    static void describe(auto& self, auto&& visit) {
+        visit(self.spacing, FieldInfo{.key = "spacing",
+                                      .unit = "",
+                                      .doc = "Distance between lines, longest edge of the data = 1",
+                                      .range = Range{0.002, 1},
+                                      .logScale = true});
+        visit(self.width,
+              FieldInfo{.key = "width", .unit = "pixel", .doc = "Width of the lines", .range = Range{0.2, 8}});
+        visit(self.retained, FieldInfo{.key = "retained",
+                                       .unit = "",
+                                       .doc = "Share of opacity that stays between the lines",
+                                       .range = Range{0, 1}});
+        visit(self.color,
+              FieldInfo{.key = "color", .unit = "", .doc = "Colour of the lines (sRGB)", .range = Range{0, 1}});
+        visit(self.ownColor, FieldInfo{.key = "ownColor",
+                                       .unit = "",
+                                       .doc = "From that to the colour that lies there",
+                                       .range = Range{0, 1}});
+    }
+};
+
+/// What brushes leave of a look.
+enum class LookPart { Everything, Context, Focus };
+inline constexpr std::string_view kLookPartNames[] = {"everything", "context", "focus"};
+
+struct Look {
+    LookPart part = LookPart::Everything;
+    std::optional<WarmCool> tone;
+    std::optional<BoundaryEnhancement> boundary;
+    std::optional<SilhouetteEnhancement> silhouette;
+    std::optional<DistanceColor> distance;
+    std::optional<Cartoon> cartoon;
+    std::optional<CharcoalDrawing> charcoal;
+    std::optional<WireFrame> wire;
+    bool any() const { return tone || boundary || silhouette || distance || cartoon || charcoal || wire; }
+    bool operator==(const Look&) const = default;
+
+    static constexpr std::string_view kPresetNames[] = {"plain",  "tone",     "illustration", "boundaries",
+                                                        "glass",  "distance", "cartoon",      "charcoal",
+                                                        "pencil", "sanguine", "chalk",        "wire"};
+    /// One of kPresetNames; nullopt of others.
+    static std::optional<Look> preset(std::string_view name);
+
+    static void describe(auto& self, auto&& visit) {
+        visit(self.part, FieldInfo{.key = "part",
+                                   .unit = "",
+                                   .doc = "What is drawn so while brushes are active: everything, what is not brushed, "
+                                          "or what is",
+                                   .names = kLookPartNames});
+        visit(self.tone, FieldInfo{.key = "tone", .unit = "", .doc = "Warm light, cool shade (Gooch)"});
+        visit(self.boundary,
+              FieldInfo{.key = "boundary", .unit = "", .doc = "More opacity where values change steeply"});
+        visit(self.silhouette,
+              FieldInfo{.key = "silhouette", .unit = "", .doc = "More opacity where surfaces turn away"});
+        visit(self.distance, FieldInfo{.key = "distance", .unit = "", .doc = "Colours pale with distance"});
+        visit(self.cartoon, FieldInfo{.key = "cartoon", .unit = "", .doc = "Light in steps, with outlines"});
+        visit(self.charcoal, FieldInfo{.key = "charcoal", .unit = "", .doc = "Strokes on paper grain"});
+        visit(self.wire, FieldInfo{.key = "wire", .unit = "", .doc = "Lines across the surface, little between them"});
+    }
+};
+
+constexpr FieldInfo lookField(bool applies = true) {
+    return {.key = "look", .unit = "", .doc = "Style of drawing", .applies = applies};
+}
+
+/// What the picture lies on.
+struct Paper {
+    glm::vec3 color{0.945f, 0.925f, 0.88f}; ///< sRGB
+    float tooth = 0.5f, grain = 2;
+    bool operator==(const Paper&) const = default;
+    static void describe(auto& self, auto&& visit) {
+        visit(self.color, FieldInfo{.key = "color",
+                                    .unit = "",
+                                    .doc = "Colour, in place of the theme's background (sRGB)",
+                                    .range = Range{0, 1}});
+        visit(self.tooth, FieldInfo{.key = "tooth",
+                                    .unit = "",
+                                    .doc = "How much its texture shows, 0 = a plain background",
+                                    .range = Range{0, 1}});
+        visit(self.grain, FieldInfo{.key = "grain",
+                                    .unit = "pixel",
+                                    .doc = "Size of its texture",
+                                    .range = Range{0.5, 16},
+                                    .logScale = true});
+    }
+};
+
+} // namespace tessera::vis

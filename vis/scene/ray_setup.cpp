@@ -1,0 +1,91 @@
+#include "vis/scene/ray_setup.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <limits>
+
+namespace tessera::vis {
+
+std::optional<RaySegment> clipToBox(const Ray& ray, glm::dvec3 halfSize, bool perspective) {
+    RaySegment segment{perspective ? 0 : -std::numeric_limits<double>::infinity(),
+                       std::numeric_limits<double>::infinity()};
+    for (int axis = 0; axis < 3; ++axis) {
+        const double origin = ray.origin[axis], direction = ray.direction[axis], half = halfSize[axis];
+        if (std::abs(direction) < 1e-12) {
+            if (std::abs(origin) > half) return std::nullopt;
+            continue;
+        }
+        const double a = (-half - origin) / direction, b = (half - origin) / direction;
+        segment.enter = std::max(segment.enter, std::min(a, b));
+        segment.exit = std::min(segment.exit, std::max(a, b));
+    }
+    if (!(segment.enter < segment.exit)) return std::nullopt;
+    return segment;
+}
+
+glm::dvec3 worldCell(const volume::Lattice& lattice, const WorldFrame& frame) {
+    const double replaced = lattice.kind == volume::LatticeKind::BCC ? volume::kBccSpacing : 1;
+    return glm::abs(lattice.spacing * frame.scale) / replaced;
+}
+
+RaySamples raySamples(const RaySegment& segment, glm::dvec3 direction, glm::dvec3 cell, double stepVoxels) {
+    const double length = segment.exit - segment.enter;
+    const double wanted = stepVoxels / glm::length(direction / cell);
+    RaySamples samples;
+    samples.count = std::max(1, static_cast<int>(std::ceil(length / wanted - 1e-4)));
+    samples.step = length / samples.count;
+    samples.enter = segment.enter;
+    return samples;
+}
+
+double correctedOpacity(double opacity, double step, double density) {
+    return 1 - std::pow(1 - std::clamp(opacity, 0.0, 1.0), density * step / kReferenceLength);
+}
+
+glm::dvec3 quantizedDirection(glm::dvec3 v, int bits) {
+    const double sum = std::abs(v.x) + std::abs(v.y) + std::abs(v.z);
+    if (!(sum > 0)) return glm::dvec3(0);
+    v /= sum;
+    const auto fold = [](double x, double y) { return (1 - std::abs(y)) * (x < 0 ? -1 : 1); };
+    glm::dvec2 at = v.z < 0 ? glm::dvec2(fold(v.x, v.y), fold(v.y, v.x)) : glm::dvec2(v);
+    const double steps = std::exp2(bits) - 1;
+    at = glm::floor((0.5 * at + 0.5) * steps + 0.5) / steps * 2.0 - 1.0;
+    glm::dvec3 n(at, 1 - std::abs(at.x) - std::abs(at.y));
+    if (n.z < 0) n = {fold(n.x, n.y), fold(n.y, n.x), n.z};
+    return glm::normalize(n);
+}
+
+Plane slicePlane(const SliceLayer& layer, const WorldFrame& frame, glm::dvec3 cursor) {
+    Plane plane;
+    if (layer.orientation == SliceOrientation::Oblique) {
+        const glm::dvec3 normal(layer.normal);
+        const double length = glm::length(normal);
+        if (length > 1e-9) plane.normal = normal / length;
+    } else {
+        plane.normal = glm::dvec3(0);
+        plane.normal[static_cast<int>(layer.orientation)] = 1;
+    }
+    plane.offset = layer.atCursor ? glm::dot(plane.normal, frame.toWorld(cursor))
+                                  : (2 * layer.position - 1) * glm::dot(glm::abs(plane.normal), frame.halfSize);
+    return plane;
+}
+
+double linearFromSrgb(double encoded) {
+    return encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4);
+}
+
+double srgbFromLinear(double linear) {
+    return linear <= 0.0031308 ? linear * 12.92 : 1.055 * std::pow(linear, 1 / 2.4) - 0.055;
+}
+
+glm::dvec3 linearFromSrgb(glm::dvec3 encoded) {
+    return {linearFromSrgb(encoded.x), linearFromSrgb(encoded.y), linearFromSrgb(encoded.z)};
+}
+
+double luminance(glm::dvec3 linear) {
+    return glm::dot(linear, glm::dvec3(0.2126, 0.7152, 0.0722));
+}
+
+} // namespace tessera::vis

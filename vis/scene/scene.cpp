@@ -1,0 +1,53 @@
+#include "vis/scene/scene.h"
+
+#include <algorithm>
+
+namespace tessera::vis {
+
+const TransferFunction& transferFor(const Scene& scene, const std::string& name) {
+    static const TransferFunction fallback;
+    const auto found = scene.transfer.find(name);
+    return found == scene.transfer.end() ? fallback : found->second;
+}
+
+int peelsOf(const Scene& scene) {
+    const bool brushed = scene.selection.active();
+    int peels = 0;
+    for (const GeometryLayer& layer : scene.geometry) {
+        if (!drawn(scene, layer)) continue;
+        const bool fades = brushed && layer.brushes != BrushEffect::None &&
+                           !(layer.brushes == BrushEffect::Fade && scene.selection.contextOpacity >= 1);
+        const bool translucent = layer.opacity < 1 || layer.look.silhouette || layer.look.boundary || layer.look.wire;
+        peels = std::max(peels, translucent || fades || !layer.lens.empty() ? kPeels : 1);
+    }
+    return peels;
+}
+
+bool drawn(const Scene& scene, const GeometryLayer& layer) {
+    // Nothing is context where nothing is brushed.
+    return layer.geometry && layer.opacity > 0 &&
+           (layer.brushes != BrushEffect::ContextOnly || scene.selection.active());
+}
+
+std::vector<PlacedLens> placeLenses(const Scene& scene, const WorldFrame& frame) {
+    return placeLenses(scene.lenses, frame, scene.camera, scene.cursor);
+}
+
+std::optional<Paper> paperOf(const Scene& scene) {
+    if (scene.paper) return scene.paper;
+    for (const Layer& layer : scene.layers) {
+        const Look* look = lookOf(layer.technique);
+        if (!layer.visible || !layer.lens.empty() || !look || !look->charcoal) continue;
+        Paper paper;
+        if (look->charcoal->stick == Stick::Chalk) paper.color = {0.13f, 0.14f, 0.15f};
+        return paper;
+    }
+    return std::nullopt;
+}
+
+glm::vec3 groundColor(const Scene& scene) {
+    const std::optional<Paper> paper = paperOf(scene);
+    return paper ? paper->color : scene.background;
+}
+
+} // namespace tessera::vis

@@ -1,0 +1,257 @@
+#pragma once
+
+#include "vis/scene/lens.h"
+#include "volume/base/describe.h"
+
+#include <functional>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <span>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace tessera::vis {
+
+/// Values of a channel between lo and hi, with a soft edge outside. NaN never matches.
+struct BrushInterval {
+    std::string channel;
+    double lo = 0, hi = 1; ///< physical values; degree of interest 1 between them
+    double soft = 0;       ///< physical width over which it falls linearly to 0 outside
+
+    bool operator==(const BrushInterval&) const = default;
+    static void describe(auto& self, auto&& visit) {
+        visit(self.channel,
+              FieldInfo{.key = "channel", .unit = "", .doc = "Parameter that is brushed", .refersTo = "channel"});
+        visit(self.lo, FieldInfo{.key = "lo", .unit = "", .doc = "Lower end"});
+        visit(self.hi, FieldInfo{.key = "hi", .unit = "", .doc = "Upper end"});
+        visit(self.soft, FieldInfo{.key = "soft", .unit = "", .doc = "Width of the soft edge"});
+    }
+};
+
+inline constexpr FieldInfo kSoftShare{
+    .key = "soft", .unit = "", .doc = "Width of the soft edge outside, as a share of the radius", .range = Range{0, 2}};
+inline constexpr FieldInfo kBrushX{
+    .key = "x", .unit = "", .doc = "Parameter along the first axis", .refersTo = "channel"};
+inline constexpr FieldInfo kBrushY{
+    .key = "y", .unit = "", .doc = "Parameter along the second axis", .refersTo = "channel"};
+
+/// An interval in one channel, a rectangle in two, a box in more: all intervals must hold, so the DOI is their minimum.
+struct RangeRegion {
+    static constexpr std::string_view kType = "range";
+    std::vector<BrushInterval> intervals;
+    bool operator==(const RangeRegion&) const = default;
+    static void describe(auto& self, auto&& visit) {
+        visit(self.intervals, FieldInfo{.key = "intervals", .unit = "", .doc = "Parameter ranges that must all hold"});
+    }
+};
+
+/// An ellipse in two channels: with u, v the distances from the centre in radii and c the correlation, inside is
+/// (u^2 - 2 c u v + v^2) / (1 - c^2) <= 1, which the rectangle |u|, |v| <= 1 just holds.
+struct EllipseRegion {
+    static constexpr std::string_view kType = "ellipse";
+    std::string x, y;
+    glm::dvec2 center{0}, radius{1}; ///< physical values
+    double correlation = 0;
+    double soft = 0;
+    bool operator==(const EllipseRegion&) const = default;
+    static void describe(auto& self, auto&& visit) {
+        visit(self.x, kBrushX);
+        visit(self.y, kBrushY);
+        visit(self.center, FieldInfo{.key = "center", .unit = "", .doc = "Values in the middle"});
+        visit(self.radius, FieldInfo{.key = "radius", .unit = "", .doc = "Half widths along both axes"});
+        visit(self.correlation, FieldInfo{.key = "correlation",
+                                          .unit = "",
+                                          .doc = "Tilt: 0 upright, towards 1 along the rising diagonal",
+                                          .range = Range{-0.99, 0.99}});
+        visit(self.soft, kSoftShare);
+    }
+};
+
+/// A polygon in two channels, closed by itself; even-odd rule. The DOI is defined by lassoTable().
+struct LassoRegion {
+    static constexpr std::string_view kType = "lasso";
+    std::string x, y;
+    std::vector<glm::dvec2> points; ///< physical values; fewer than three hold nothing
+    double soft = 0;                ///< share of the half size of the polygon's box
+    bool operator==(const LassoRegion&) const = default;
+    static void describe(auto& self, auto&& visit) {
+        visit(self.x, kBrushX);
+        visit(self.y, kBrushY);
+        visit(self.points, FieldInfo{.key = "points", .unit = "", .doc = "Corners of the polygon", .hidden = true});
+        visit(self.soft, kSoftShare);
+    }
+};
+
+/// A ball in space; in data that are shown stretched its radii differ, so that it looks round.
+struct SphereRegion {
+    static constexpr std::string_view kType = "sphere";
+    glm::dvec3 center{0}, radius{1}; ///< physical
+    double soft = 0;
+    bool operator==(const SphereRegion&) const = default;
+    static void describe(auto& self, auto&& visit) {
+        visit(self.center, FieldInfo{.key = "center", .unit = "m", .doc = "Middle of the ball"});
+        visit(self.radius, FieldInfo{.key = "radius", .unit = "m", .doc = "Radii along x, y, z"});
+        visit(self.soft, kSoftShare);
+    }
+};
+
+struct BoxRegion {
+    static constexpr std::string_view kType = "box";
+    glm::dvec3 center{0}, radius{1}; ///< physical; half of the edges
+    double soft = 0;
+    bool operator==(const BoxRegion&) const = default;
+    static void describe(auto& self, auto&& visit) {
+        visit(self.center, FieldInfo{.key = "center", .unit = "m", .doc = "Middle of the box"});
+        visit(self.radius, FieldInfo{.key = "radius", .unit = "m", .doc = "Half of its edges along x, y, z"});
+        visit(self.soft, kSoftShare);
+    }
+};
+
+/// What lies in a lens, wherever that is now.
+struct LensRegion {
+    static constexpr std::string_view kType = "lens";
+    std::string lens; ///< name; "" = in any lens that marks
+    bool operator==(const LensRegion&) const = default;
+    static void describe(auto& self, auto&& visit) {
+        visit(self.lens, FieldInfo{.key = "lens",
+                                   .unit = "",
+                                   .doc = "Lens whose inside is brushed; none: all that mark",
+                                   .refersTo = "lens"});
+    }
+};
+
+using Region = std::variant<RangeRegion, EllipseRegion, LassoRegion, SphereRegion, BoxRegion, LensRegion>;
+
+enum class BrushCombine { And, Or, Minus };
+inline constexpr std::string_view kBrushCombineNames[] = {"and", "or", "minus"};
+
+struct Brush {
+    std::string name = "brush";
+    glm::vec3 color{1.0f, 0.69f, 0.25f};
+    bool enabled = true;
+    bool inverted = false;
+    BrushCombine combine = BrushCombine::And; ///< with the enabled brushes before it
+    Region region;
+
+    bool operator==(const Brush&) const = default;
+    static void describe(auto& self, auto&& visit) {
+        visit(self.name, FieldInfo{.key = "name", .unit = "", .doc = "Name of the brush"});
+        visit(self.color, FieldInfo{.key = "color", .unit = "", .doc = "Colour in the plots", .range = Range{0, 1}});
+        visit(self.enabled, FieldInfo{.key = "enabled", .unit = "", .doc = "Takes part in the selection"});
+        visit(self.inverted, FieldInfo{.key = "inverted", .unit = "", .doc = "Selects what lies outside"});
+        visit(self.combine, FieldInfo{.key = "combine",
+                                      .unit = "",
+                                      .doc = "How it meets the brushes before it: and, or, minus",
+                                      .names = kBrushCombineNames});
+        visit(self.region, FieldInfo{.key = "region", .unit = "", .doc = "What it holds"});
+    }
+};
+
+/// The one selection that every view shares. The degree of interest (DOI) of a sample is 1 when no brush is enabled.
+/// Else the enabled brushes meet in their order: and = min, or = max, minus = min with 1 - d; the first meets 1, or 0
+/// if it says "or".
+struct Selection {
+    std::vector<Brush> brushes;
+    float contextOpacity = 0.04f;   ///< opacity factor of samples with DOI 0
+    float contextSaturation = 0.1f; ///< colour saturation of samples with DOI 0
+    float contextLightness = 1;     ///< of samples with DOI 0: 0 black, 1 as they are, 2 white
+    float brushColor = 0;           ///< how much samples take the colour of the brush that holds them most
+    float contextBlur = 0;          ///< share of the picture's height: radius over which DOI 0 is out of focus
+
+    bool operator==(const Selection&) const = default;
+    static void describe(auto& self, auto&& visit) {
+        visit(self.brushes,
+              FieldInfo{.key = "brushes", .unit = "", .doc = "Brushes, in the order they meet", .hidden = true});
+        visit(self.contextOpacity,
+              FieldInfo{
+                  .key = "contextOpacity", .unit = "", .doc = "Opacity of what is not brushed", .range = Range{0, 1}});
+        visit(self.contextSaturation, FieldInfo{.key = "contextSaturation",
+                                                .unit = "",
+                                                .doc = "Colour saturation of what is not brushed",
+                                                .range = Range{0, 1}});
+        visit(self.contextLightness, FieldInfo{.key = "contextLightness",
+                                               .unit = "",
+                                               .doc = "Lightness of what is not brushed: 0 black, 1 as it is, 2 white",
+                                               .range = Range{0, 2}});
+        visit(self.brushColor, FieldInfo{.key = "brushColor",
+                                         .unit = "",
+                                         .doc = "How much what is brushed takes the colour of its brush",
+                                         .range = Range{0, 1}});
+        visit(self.contextBlur, FieldInfo{.key = "contextBlur",
+                                          .unit = "",
+                                          .doc = "How far out of focus what is not brushed is, share of the height",
+                                          .range = Range{0, 0.05}});
+    }
+    /// True when at least one brush is enabled.
+    bool active() const;
+};
+
+/// A brush of intervals: what a drag in a plot makes.
+Brush rangeBrush(std::vector<BrushInterval> intervals, std::string name = "brush");
+
+/// Channels a region looks at, each once; empty for regions in space.
+std::vector<std::string> regionChannels(const Region& region);
+/// Channels that the enabled brushes look at, each once.
+std::vector<std::string> selectedChannels(const Selection& selection);
+/// Whether an enabled brush lies in space.
+bool selectsSpace(const Selection& selection);
+/// Whether an enabled brush is a lens.
+bool selectsLens(const Selection& selection);
+
+/// 1 inside [lo, hi], 0 beyond the soft edge, linear between.
+double intervalDoi(const BrushInterval& interval, double value);
+/// Of a point at `radii` times the radius: 1 up to 1, 0 from 1 + soft on, linear between.
+double radialDoi(double radii, double soft);
+/// Distance of (u, v) from the middle of an ellipse, in radii.
+double ellipseRadii(double u, double v, double correlation);
+
+inline constexpr int kLassoTable = 128; ///< entries a side
+/// The DOI of a lasso: entry (i, j) is that of the point center + halfSize * extent * (2 (i, j) / (kLassoTable - 1) -
+/// 1), linear between entries, 0 beyond them. Entries follow from the distance to the polygon, measured in half sizes
+/// of its box.
+struct LassoPlace {
+    glm::dvec2 center{0}, halfSize{1}; ///< of the polygon's box
+    double extent = 1;                 ///< of the table, in half sizes
+};
+LassoPlace lassoPlace(const LassoRegion& lasso);
+struct LassoTable {
+    LassoPlace place;
+    std::vector<float> doi; ///< kLassoTable x kLassoTable, x fastest
+    double at(double x, double y) const;
+};
+LassoTable lassoTable(const LassoRegion& lasso);
+
+/// A selection made ready for many points. Brushes that are lenses hold nothing if `space` lacks the lens.
+class DoiFunction {
+public:
+    explicit DoiFunction(const Selection& selection, LensSpace space = {});
+    /// The values to give, in this order.
+    const std::vector<std::string>& channels() const { return channels_; }
+    /// Degree of interest of a point: values of channels() (NaN = absent) and its physical position. Thread-safe.
+    double operator()(std::span<const double> values, glm::dvec3 position) const;
+    /// Of the brush that holds a point most (the first of equals; those that take away, or hold what lies outside, hold
+    /// nothing): its colour (sRGB) and how much it holds it. The same arguments.
+    struct Holder {
+        glm::vec3 color{0};
+        double interest = 0;
+    };
+    Holder holder(std::span<const double> values, glm::dvec3 position) const;
+
+private:
+    struct Part {
+        Brush brush;
+        std::vector<int> channel; ///< positions in channels_: one per interval, or x and y
+        LassoTable lasso;
+    };
+    double regionDoi(const Part& part, std::span<const double> values, glm::dvec3 position) const;
+    std::vector<std::string> channels_;
+    std::vector<Part> parts_;
+    LensSpace space_;
+};
+
+/// Degree of interest of one point whose channels `valueOf` gives (NaN = absent).
+double degreeOfInterest(const Selection& selection, const std::function<double(const std::string& channel)>& valueOf,
+                        glm::dvec3 position = glm::dvec3(0));
+
+} // namespace tessera::vis

@@ -1,0 +1,45 @@
+#pragma once
+
+#include "volume/base/describe.h"
+
+#include <glm/vec3.hpp>
+
+/// From the light that the ray caster accumulates, which may exceed 1, to what a screen can show. Twin of
+/// vis/shaders/lib/tone.glsl.
+namespace tessera::vis {
+
+enum class ToneCurve { None, Reinhard, Filmic };
+inline constexpr std::string_view kToneCurveNames[] = {"none", "reinhard", "filmic"};
+
+struct Tone {
+    ToneCurve curve = ToneCurve::None;
+    float exposure = 0; ///< stops
+    float white = 4;    ///< of Reinhard
+    bool operator==(const Tone&) const = default;
+    static void describe(auto& self, auto&& visit) {
+        visit(self.curve, FieldInfo{.key = "curve",
+                                    .unit = "",
+                                    .doc = "How bright light is brought into range; none cuts it off",
+                                    .names = kToneCurveNames});
+        visit(self.exposure, FieldInfo{.key = "exposure",
+                                       .unit = "stops",
+                                       .doc = "Brightens (each stop doubles) or darkens, with a curve only",
+                                       .range = Range{-6, 6},
+                                       .applies = self.curve != ToneCurve::None});
+        visit(self.white, FieldInfo{.key = "white",
+                                    .unit = "",
+                                    .doc = "Light that becomes white (Reinhard)",
+                                    .range = Range{1, 20},
+                                    .logScale = true,
+                                    .applies = self.curve == ToneCurve::Reinhard});
+    }
+};
+
+/// Linear light, each channel x = light * 2^exposure >= 0:
+///   none: the light as it is, without exposure;
+///   reinhard: x (1 + x / white^2) / (1 + x) (Reinhard et al., Photographic tone reproduction, 2002, equation 4);
+///   filmic: x (2.51 x + 0.03) / (x (2.43 x + 0.59) + 0.14) (Narkowicz's fit of the ACES curve, 2016), at most 1.
+/// The picture's colour is divided by its opacity before and multiplied after, so that the background keeps its colour.
+glm::dvec3 toneMap(glm::dvec3 light, const Tone& tone);
+
+} // namespace tessera::vis

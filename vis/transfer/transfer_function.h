@@ -1,0 +1,164 @@
+#pragma once
+
+#include "volume/base/describe.h"
+
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace tessera::vis {
+
+/// A colour at a place of a colour map of one's own.
+struct ColorStop {
+    float position = 0; ///< 0..1 along the range
+    glm::vec3 color{1}; ///< sRGB
+    bool operator==(const ColorStop&) const = default;
+    static void describe(auto& self, auto&& visit) {
+        visit(self.position,
+              FieldInfo{.key = "position", .unit = "", .doc = "Place along the colour map", .range = Range{0, 1}});
+        visit(self.color, FieldInfo{.key = "color", .unit = "", .doc = "Colour there (sRGB)", .range = Range{0, 1}});
+    }
+};
+
+enum class RegionShape { Rectangle, Triangle, Gaussian };
+inline constexpr std::string_view kRegionShapeNames[] = {"rectangle", "triangle", "gaussian"};
+
+/// Part of the plane of value (x, 0..1 along the range) and gradient magnitude (y, 0..1 up to gradientTop) that has
+/// opacity: the whole box of `size` around `centre`, the triangle that stands on its tip in it (after G. Kindlmann's
+/// and J. Kniss's widgets), or a Gaussian that fades to nothing at the ellipse in it (three standard deviations).
+struct TransferRegion {
+    RegionShape shape = RegionShape::Rectangle;
+    glm::vec2 centre{0.5f, 0.5f}, size{0.3f, 0.6f};
+    float soft = 0.5f;    ///< share of the half width over which the opacity fades, not for Gaussians
+    float opacity = 0.5f; ///< of a layer `kReferenceLength` thick
+    bool ownColor = true; ///< else the colour map's
+    glm::vec3 color{0.95f, 0.75f, 0.35f};
+    bool operator==(const TransferRegion&) const = default;
+    static void describe(auto& self, auto&& visit) {
+        visit(self.shape,
+              FieldInfo{.key = "shape", .unit = "", .doc = "Shape of the region", .names = kRegionShapeNames});
+        visit(self.centre, FieldInfo{.key = "centre",
+                                     .unit = "",
+                                     .doc = "Middle: value, then gradient magnitude, both 0 to 1",
+                                     .range = Range{-1, 2}});
+        visit(self.size, FieldInfo{.key = "size", .unit = "", .doc = "Width and height", .range = Range{0.001, 4}});
+        visit(self.soft, FieldInfo{.key = "soft",
+                                   .unit = "",
+                                   .doc = "Part of the half width over which the opacity fades",
+                                   .range = Range{0, 1}});
+        visit(self.opacity, FieldInfo{.key = "opacity", .unit = "", .doc = "Greatest opacity", .range = Range{0, 1}});
+        visit(self.ownColor,
+              FieldInfo{.key = "ownColor", .unit = "", .doc = "Use the region's colour and not the colour map's"});
+        visit(self.color,
+              FieldInfo{.key = "color", .unit = "", .doc = "Colour of the region (sRGB)", .range = Range{0, 1}});
+    }
+};
+
+/// What decides the opacity of composite layers.
+enum class TransferKind { Curve, Regions };
+inline constexpr std::string_view kTransferKindNames[] = {"curve", "regions"};
+
+/// How values of one channel become colour and opacity; shared by every view that shows the channel.
+struct TransferFunction {
+    std::string colormap = "viridis";
+    bool reversed = false;
+    bool autoRange = true;  ///< follow the parameter's range over all times
+    bool aboutZero = false; ///< the parameter's range as far below 0 as above, so that the middle is 0
+    Range range{0, 1};      ///< physical values at the ends of the colour map, used if !autoRange
+    /// Opacity curve: x in 0..1 along the range, y the opacity of a layer `kReferenceLength` thick. Sorted by x, at
+    /// least 2.
+    std::vector<glm::vec2> opacity{{0.0f, 0.0f}, {1.0f, 0.8f}};
+    std::vector<ColorStop> colors; ///< sorted by position; a colour map of one's own, used instead of `colormap`
+    TransferKind kind = TransferKind::Curve;
+    std::vector<TransferRegion> regions;
+    float gradientTop = 0.1f; ///< gradient magnitude at the top of the plane, in ranges per cell
+    /// Emphasis b(x) of boundaries: x in 0..1 for -1..1 cells from the middle of a boundary, y the opacity. Sorted by
+    /// x.
+    std::vector<glm::vec2> emphasis{{0.25f, 0.0f}, {0.5f, 0.6f}, {0.75f, 0.0f}};
+
+    bool operator==(const TransferFunction&) const = default;
+    static void describe(auto& self, auto&& visit) {
+        visit(self.colormap, FieldInfo{.key = "colormap", .unit = "", .doc = "Colour map", .refersTo = "colormap"});
+        visit(self.reversed, FieldInfo{.key = "reversed", .unit = "", .doc = "Run the colour map backwards"});
+        visit(self.autoRange,
+              FieldInfo{.key = "autoRange", .unit = "", .doc = "Colour the parameter's own range over all times"});
+        visit(self.aboutZero, FieldInfo{.key = "aboutZero",
+                                        .unit = "",
+                                        .doc = "Range of its own reaches as far below 0 as above: the middle is 0",
+                                        .applies = self.autoRange});
+        visit(self.range, FieldInfo{.key = "range", .unit = "", .doc = "Values at the ends of the colour map"});
+        visit(self.opacity,
+              FieldInfo{
+                  .key = "opacity", .unit = "", .doc = "Opacity curve: (position 0..1, opacity 0..1)", .hidden = true});
+        visit(self.colors, FieldInfo{.key = "colors",
+                                     .unit = "",
+                                     .doc = "Colours of one's own along the range, instead of the colour map",
+                                     .hidden = true});
+        visit(self.kind, FieldInfo{.key = "kind",
+                                   .unit = "",
+                                   .doc = "What gives opacity: the curve over values, or regions of value and "
+                                          "gradient magnitude",
+                                   .names = kTransferKindNames});
+        visit(self.regions, FieldInfo{.key = "regions",
+                                      .unit = "",
+                                      .doc = "Regions of value and gradient magnitude that have opacity",
+                                      .hidden = true});
+        visit(self.gradientTop, FieldInfo{.key = "gradientTop",
+                                          .unit = "ranges/cell",
+                                          .doc = "Gradient magnitude at the top of the regions' plane and, where the "
+                                                 "gradient is shown, at the end of the colour map",
+                                          .range = Range{1e-4, 2},
+                                          .logScale = true});
+        visit(self.emphasis, FieldInfo{.key = "emphasis",
+                                       .unit = "",
+                                       .doc = "Opacity by distance from a boundary: (position 0..1 for -2..2 "
+                                              "deviations of its blur, opacity 0..1)",
+                                       .hidden = true});
+    }
+};
+
+/// World length (longest stretched edge = 1) over which an opacity of the curve applies; shorter steps get
+/// 1 - (1 - a)^(step / kReferenceLength).
+inline constexpr double kReferenceLength = 1.0 / 128;
+
+struct ColormapInfo {
+    std::string_view name, kind; ///< kind: "sequential", "diverging", "cyclic", "categorical", "other"
+};
+/// The colour maps that can be chosen, perceptually uniform ones first.
+std::span<const ColormapInfo> colormaps();
+
+/// Colour (sRGB, 0..1) of a map at x in 0..1, linear between its control colours (a categorical map shows its colours
+/// as equal steps); unknown names give viridis.
+glm::dvec3 colormapColor(std::string_view name, double x);
+
+/// Range in use: the channel's own, made even about 0 where that is asked for, or the stated one.
+Range effectiveRange(const TransferFunction& function, Range channelRange);
+
+/// For values whose sign matters: diverging colours with 0 in the middle, transparent there.
+TransferFunction divergingFunction();
+
+/// Colour and opacity at a physical value: the one definition that legends, tables, plots and the reference use. A
+/// categorical map colours a value by its nearest integer, whatever the range: label n has colour n modulo their
+/// number.
+glm::dvec4 evaluate(const TransferFunction& function, Range range, double value);
+
+/// Colour and opacity of a composite layer at a place of the plane of value and gradient magnitude (in ranges per
+/// cell): evaluate() where the curve decides; else of all regions there, seen together: opacity 1 - prod(1 - a), colour
+/// their mean weighted by opacity.
+glm::dvec4 evaluate(const TransferFunction& function, Range range, double value, double gradient);
+
+/// Opacity of a region alone at a place of the plane, 0..1 each.
+double regionOpacity(const TransferRegion& region, glm::dvec2 place);
+
+/// Linear between the points of a curve (sorted by x); beyond its ends the end values, at a jump the later one; 0 where
+/// there is no point.
+double curveAt(std::span<const glm::vec2> curve, double x);
+
+/// evaluate() at the centres of `size` equal parts of the range, for a colour bar. RGBA, sRGB colour, not
+/// premultiplied. Only categorical maps depend on the range.
+std::vector<glm::vec4> makeTable(const TransferFunction& function, int size, Range range = {0, 1});
+
+} // namespace tessera::vis

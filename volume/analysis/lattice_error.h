@@ -1,0 +1,41 @@
+#pragma once
+
+#include "volume/field/lattice4.h"
+#include "volume/reconstruct/gradient.h"
+
+#include <cstddef>
+#include <functional>
+#include <string_view>
+
+namespace tessera::volume {
+
+/// Filters of volume/reconstruct/reconstruct.h: `linear` on samples as they are, on prefiltered ones; of BCC
+/// `tetrahedral`, `cosineWeighted`, and `quinticBox` on prefiltered samples.
+enum class LatticeFilter { Linear, Quasi, Tetrahedral, Cosine, Quintic };
+inline constexpr std::string_view kLatticeFilterNames[] = {"linear", "quasi", "tetrahedral", "cosine", "quintic"};
+
+struct LatticeError {
+    double rms = 0, max = 0;
+    double samples = 0; ///< of the lattice per box: its volume over the volume per sample
+};
+
+/// How well a lattice and a filter carry a signal: the signal is sampled without rounding, reconstructed at `points`
+/// random positions of the box (uniform, from `seed`) and compared with itself. The lattice starts at `box.lo` and
+/// goes on beyond the box, so borders play no part. `spacing` is the cell edge (of one sublattice on BCC).
+LatticeError latticeError(const std::function<double(glm::dvec3)>& signal, LatticeKind kind, double spacing,
+                          LatticeFilter filter, const Box& box, std::size_t points = 60000, unsigned seed = 1);
+
+/// How far the directions of reconstructed gradients lie from those of `slope`, the gradient of the signal, in degrees:
+/// the mean over the same points, each counted by the length of its slope.
+double latticeGradientError(const std::function<double(glm::dvec3)>& signal,
+                            const std::function<glm::dvec3(glm::dvec3)>& slope, LatticeKind kind, double spacing,
+                            LatticeFilter filter, GradientSpan span, const Box& box, std::size_t points = 20000,
+                            unsigned seed = 1);
+
+/// The error of latticeError() in space and time, for a signal on the unit cube of space and time: reconstructed
+/// linearly between frames and samples, on D4* as the mean of both grids (volume/resample/series.h), as they are or
+/// prefiltered. `spacing` is the cell edge of one grid along all four axes. Points lie a quarter inside the cube.
+LatticeError latticeError4(const std::function<double(glm::dvec4)>& signal, LatticeKind4 kind, double spacing,
+                           bool prefilter, std::size_t points = 60000, unsigned seed = 1);
+
+} // namespace tessera::volume

@@ -1,0 +1,33 @@
+#include "volume/base/background.h"
+
+#include <sys/resource.h>
+#include <tbb/task_scheduler_observer.h>
+#include <unistd.h>
+
+namespace tessera {
+
+namespace {
+
+struct Helpers : tbb::task_scheduler_observer {
+    Helpers() { observe(true); }
+    ~Helpers() override { observe(false); }
+    void on_scheduler_entry(bool isWorker) override {
+        if (isWorker) workInBackground();
+    }
+};
+
+} // namespace
+
+void workInBackground() {
+    constexpr int kNiceness = 10;
+    const auto thread = id_t(gettid());
+    if (getpriority(PRIO_PROCESS, thread) >= kNiceness) return; // as it began: not to be raised
+    // Where the system refuses, it works as before.
+    [[maybe_unused]] const int refused = setpriority(PRIO_PROCESS, thread, kNiceness);
+}
+
+void helpInBackground() {
+    static const Helpers helpers;
+}
+
+} // namespace tessera

@@ -1,0 +1,40 @@
+#pragma once
+
+#include "volume/bricks/brick_source.h"
+
+#include <functional>
+#include <memory>
+
+namespace tessera::volume {
+
+/// Keeps decoded bricks of another source, the least recently used ones leaving when the byte budget is full. A brick
+/// is decoded once however many threads ask for it at the same time; a failure is not remembered.
+class BrickCache final : public BrickSource {
+public:
+    BrickCache(std::shared_ptr<const BrickSource> source, std::size_t budget);
+    ~BrickCache() override;
+
+    const DatasetInfo& info() const override;
+    const BrickGrid& grid() const override;
+    BrickStats stats(const BrickKey& key) const override;
+    std::optional<BrickDistribution> distribution(const BrickKey& key) const override;
+    std::optional<BrickImportance> importance(const BrickKey& key) const override;
+    std::optional<BrickChange> change(const BrickKey& key, int toTime) const override;
+    BrickSamples read(const BrickKey& key) const override;
+
+    /// The brick itself, shared with the cache.
+    std::shared_ptr<const BrickSamples> get(const BrickKey& key) const;
+    /// Takes over the bricks for which `keep` is true from the cache of another source that gives the same ones.
+    void adopt(const BrickCache& other, const std::function<bool(const BrickKey&)>& keep);
+    /// True when the brick is here already, so that get() is quick.
+    bool has(const BrickKey& key) const;
+    std::size_t bytes() const;
+    /// Another byte budget; what is beyond it leaves.
+    void setBudget(std::size_t bytes);
+
+private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+} // namespace tessera::volume

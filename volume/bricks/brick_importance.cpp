@@ -1,0 +1,319 @@
+#include "volume/bricks/brick_importance.h"
+
+#include "volume/base/number_extent.h"
+#include "volume/base/parallel.h"
+#include "volume/bricks/smoothed_half.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <concepts>
+#include <glm/common.hpp>
+#include <limits>
+#include <map>
+
+namespace tessera::volume {
+
+namespace {
+
+constexpr int kTones = 256;
+/// Sums over the samples of one brick.
+struct Sums {
+    double weight = 0, value = 0, square = 0, details = 0, axes = 0;
+    int samples = 0;
+    std::array<std::array<double, kTones>, 2> tones{}; ///< by turns, as one would wait for the one before
+
+    static std::size_t toneOf(float value01) { return std::size_t(std::min(int(value01 * kTones), kTones - 1)); }
+    void add(float sample01, double w) {
+        const double value01 = double(sample01);
+        weight += w;
+        value += w * value01;
+        square += w * value01 * value01;
+        tones[0][toneOf(sample01)] += w;
+        ++samples;
+    }
+    /// The same of `count` values of one weight.
+    void add(const float* values, int count, double w) {
+        constexpr int kTurns = 4; // as one sum would wait for the one before
+        std::array<double, kTurns> first{}, second{};
+        int x = 0;
+        for (; x + kTurns <= count; x += kTurns)
+            for (int i = 0; i < kTurns; ++i) {
+                const double value01 = double(values[x + i]);
+                first[std::size_t(i)] += value01;
+                second[std::size_t(i)] += value01 * value01;
+            }
+        for (; x < count; ++x) {
+            first[0] += double(values[x]);
+            second[0] += double(values[x]) * double(values[x]);
+        }
+        for (x = 0; x < count; ++x) tones[std::size_t(x % 2)][toneOf(values[x])] += w;
+        weight += w * count;
+        value += w * ((first[0] + first[1]) + (first[2] + first[3]));
+        square += w * ((second[0] + second[1]) + (second[2] + second[3]));
+        samples += count;
+    }
+    double entropy() const {
+        double bits = 0;
+        for (std::size_t i = 0; i < kTones; ++i)
+            if (const double tone = tones[0][i] + tones[1][i]; tone > 0)
+                bits -= tone / weight * std::log2(tone / weight);
+        return samples > 1 ? std::min(bits / std::log2(double(std::min(samples, kTones))), 1.0) : 0.0;
+    }
+    BrickImportance result() const {
+        if (weight == 0) return {};
+        // What is below these is the rounding of floats.
+        constexpr double kLeastVariance = 1e-12, kLeastDetail = 1e-6;
+        const double mean = value / weight, variance = square / weight - mean * mean;
+        const double detail = axes > 0 ? std::sqrt(details / axes) : 0.0;
+        return {variance < kLeastVariance ? 0.0f : float(std::cbrt(std::min(mean * 4 * variance * entropy(), 1.0))),
+                detail < kLeastDetail ? 0.0f : float(std::min(detail, 1.0))};
+    }
+};
+
+/// Sum of the squares of what is left of `count` samples when the means of those a step before and behind are taken.
+double squaresOfDetails(const float* row, std::ptrdiff_t step, int count) {
+    constexpr int kTurns = 8; // as one sum would wait for the one before
+    std::array<float, kTurns> sums{};
+    int x = 0;
+    for (; x + kTurns <= count; x += kTurns)
+        for (int i = 0; i < kTurns; ++i) {
+            const float detail = row[x + i] - 0.5f * (row[x + i - step] + row[x + i + step]);
+            sums[std::size_t(i)] += detail * detail;
+        }
+    double sum = 0;
+    for (; x < count; ++x) {
+        const float detail = row[x] - 0.5f * (row[x - step] + row[x + step]);
+        sum += double(detail * detail);
+    }
+    for (const float part : sums) sum += double(part);
+    return sum;
+}
+
+/// Adds a row of a brick of which everything is there; `border`: all of it lies on a face.
+void addRow(const Smoothed& from, int begin, int end, int y, int z, bool border, double borderWeight, Sums& sums) {
+    const auto step = std::ptrdiff_t(from.size.x), slice = step * from.size.y;
+    const float* row = from.values.data() + from.index({begin, y, z});
+    const int count = end - begin, first = begin == 0 ? 1 : 0, last = end == from.size.x ? count - 1 : count;
+    if (last > first) sums.details += squaresOfDetails(row + first, 1, last - first), sums.axes += last - first;
+    if (y > 0 && y + 1 < from.size.y) sums.details += squaresOfDetails(row, step, count), sums.axes += count;
+    if (z > 0 && z + 1 < from.size.z) sums.details += squaresOfDetails(row, slice, count), sums.axes += count;
+    if (border || count < 2) {
+        sums.add(row, count, borderWeight);
+        return;
+    }
+    sums.add(row[0], borderWeight);
+    sums.add(row + 1, count - 2, 1);
+    sums.add(row[count - 1], borderWeight);
+}
+
+/// Adds what a sublattice has of the brick whose samples are [begin, end) of the halved one.
+void addBrick(const Smoothed& from, glm::ivec3 begin, glm::ivec3 end, double borderWeight, Sums& sums) {
+    const std::size_t steps[] = {1, std::size_t(from.size.x), std::size_t(from.size.x) * std::size_t(from.size.y)};
+    for (int z = begin.z; z < end.z; ++z)
+        for (int y = begin.y; y < end.y; ++y) {
+            if (from.coverage.empty()) {
+                const bool border = y == begin.y || y == end.y - 1 || z == begin.z || z == end.z - 1;
+                addRow(from, begin.x, end.x, y, z, border, borderWeight, sums);
+                continue;
+            }
+            for (int x = begin.x; x < end.x; ++x) {
+                const glm::ivec3 at(x, y, z);
+                const std::size_t i = from.index(at);
+                if (!from.has(i)) continue;
+                bool border = false;
+                for (int axis = 0; axis < 3; ++axis) {
+                    border = border || at[axis] == begin[axis] || at[axis] == end[axis] - 1;
+                    if (at[axis] == 0 || at[axis] + 1 == from.size[axis]) continue;
+                    const std::size_t left = i - steps[axis], right = i + steps[axis];
+                    if (!from.has(left) || !from.has(right)) continue;
+                    const double detail =
+                        double(from.values[i]) - 0.5 * (double(from.values[left]) + double(from.values[right]));
+                    sums.details += detail * detail;
+                    ++sums.axes;
+                }
+                sums.add(from.values[i], border ? borderWeight : 1);
+            }
+        }
+}
+
+/// Of labels: the entropy of their numbers.
+BrickImportance importanceOfLabels(const BrickGrid& grid, const Field& field, glm::ivec3 brick) {
+    const glm::ivec3 begin = grid.begin(brick), end = grid.end(brick);
+    std::map<double, std::size_t> counts;
+    std::size_t samples = 0;
+    for (int z = begin.z; z < end.z; ++z)
+        for (int y = begin.y; y < end.y; ++y)
+            for (int x = begin.x; x < end.x; ++x) {
+                const std::size_t i = field.lattice.index({x, y, z});
+                if (!field.present(i)) continue;
+                const double label = field.value(i);
+                if (!std::isfinite(label)) continue;
+                ++counts[label];
+                ++samples;
+            }
+    if (counts.size() < 2) return {};
+    double bits = 0;
+    for (const auto& [label, count] : counts) {
+        const double part = double(count) / double(samples);
+        bits -= part * std::log2(part);
+    }
+    const auto entropy = float(bits / std::log2(double(std::min<std::size_t>(samples, kTones))));
+    return {std::min(entropy, 1.0f), std::min(entropy, 1.0f)};
+}
+
+/// Range of present, finite samples, and whether there are others.
+struct Extent {
+    Range range{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+    bool gaps = false;
+
+    void add(const Extent& part) {
+        range = {std::min(range.lo, part.range.lo), std::max(range.hi, part.range.hi)};
+        gaps = gaps || part.gaps;
+    }
+    SmoothedRange within(Range whole) const { return {whole, gaps, whole.lo <= range.lo && range.hi <= whole.hi}; }
+};
+
+Extent extentOf(const Field& field) {
+    Extent extent;
+    dispatch(field.type, [&]<class T>(T) {
+        const auto samples = field.as<T>();
+        T lo{}, hi{};
+        bool any = false;
+        if constexpr (!std::same_as<T, float>)
+            if (!field.mask && !samples.empty()) {
+                const NumberExtent<T> all = extentOfNumbers(std::span<const T>(samples));
+                lo = all.least, hi = all.most, any = true;
+            }
+        const std::size_t seen = any ? samples.size() : 0;
+        for (std::size_t i = seen; i < samples.size(); ++i) {
+            bool there = field.present(i);
+            if constexpr (std::same_as<T, float>) there = there && std::isfinite(samples[i]);
+            if (!there) {
+                extent.gaps = true;
+                continue;
+            }
+            if (!any) lo = hi = samples[i];
+            any = true;
+            lo = std::min(lo, samples[i]);
+            hi = std::max(hi, samples[i]);
+        }
+        const double a = field.offset + field.scale * double(lo), b = field.offset + field.scale * double(hi);
+        if (any) extent.range = {std::min(a, b), std::max(a, b)};
+    });
+    return extent;
+}
+
+glm::ivec3 brickAt(glm::ivec3 count, std::size_t number) {
+    const std::size_t nx = std::size_t(count.x), ny = std::size_t(count.y);
+    return {int(number % nx), int(number / nx % ny), int(number / (nx * ny))};
+}
+
+/// Each brick gets a share of what its most important neighbour has more.
+std::vector<BrickImportance> withNeighbours(const std::vector<BrickImportance>& own, glm::ivec3 count, double share) {
+    std::vector<BrickImportance> out = own;
+    for (std::size_t i = 0; i < own.size(); ++i) {
+        const glm::ivec3 brick = brickAt(count, i);
+        BrickImportance most = own[i];
+        const glm::ivec3 lo = glm::max(brick - 1, glm::ivec3(0)), hi = glm::min(brick + 2, count);
+        for (int z = lo.z; z < hi.z; ++z)
+            for (int y = lo.y; y < hi.y; ++y)
+                for (int x = lo.x; x < hi.x; ++x) {
+                    const BrickImportance& near = own[std::size_t((z * count.y + y) * count.x + x)];
+                    most.importance = std::max(most.importance, near.importance);
+                    most.detail = std::max(most.detail, near.detail);
+                }
+        out[i].importance += float(share) * (most.importance - own[i].importance);
+        out[i].detail += float(share) * (most.detail - own[i].detail);
+    }
+    return out;
+}
+
+/// Bricks on their own, without what they get of their neighbours.
+struct OwnImportance {
+    const BrickGrid& grid;
+    SmoothedRange about;
+    double borderWeight;
+    std::vector<BrickImportance>& bricks; ///< of the whole grid
+
+    std::size_t perLayer() const { return std::size_t(grid.count().x) * std::size_t(grid.count().y); }
+    int slices() const { return grid.lattice.kind == LatticeKind::BCC ? 2 : 1; } ///< of a texel
+
+    /// The layers [layer, end) of bricks from a part of the frame: its slices from texel `first` (an even one) on,
+    /// kMargin texels more than those layers on both sides where there are so many.
+    void take(const Field& part, int first, int layer, int end) const {
+        std::vector<Smoothed> halves;
+        for (int s = 0; s < slices(); ++s) halves.push_back(smoothedHalf(part, s, about));
+        const glm::ivec3 shift(0, 0, first / 2);
+        parallelFor(perLayer() * std::size_t(end - layer), [&](std::size_t i) {
+            const std::size_t number = perLayer() * std::size_t(layer) + i;
+            const glm::ivec3 brick = brickAt(grid.count(), number);
+            Sums sums;
+            for (const Smoothed& half : halves) {
+                const glm::ivec3 lo = (brick * grid.brickSize + 1) / 2 - shift,
+                                 hi = glm::min((brick * grid.brickSize + grid.brickSize + 1) / 2 - shift, half.size);
+                addBrick(half, lo, hi, borderWeight, sums);
+            }
+            bricks[number] = sums.result();
+        });
+    }
+    /// The same of labels, whose parts have no margins.
+    void takeLabels(const Field& part, int layer, int end) const {
+        BrickGrid own = grid;
+        own.lattice = part.lattice;
+        parallelFor(perLayer() * std::size_t(end - layer), [&](std::size_t i) {
+            bricks[perLayer() * std::size_t(layer) + i] = importanceOfLabels(own, part, brickAt(own.count(), i));
+        });
+    }
+
+    static constexpr int kMargin = 4; ///< reach of the details of smoothed samples
+};
+
+} // namespace
+
+std::vector<BrickImportance> importanceOfBricks(const BrickGrid& grid, const Field& field, Range range,
+                                                bool categorical, const ImportanceOptions& options) {
+    const glm::ivec3 count = grid.count();
+    std::vector<BrickImportance> own(countOf(count));
+    if (categorical) {
+        OwnImportance{grid, {range}, 1, own}.takeLabels(field, 0, count.z);
+        return withNeighbours(own, count, options.neighbours);
+    }
+    const Extent extent = extentOf(field);
+    if (!(range.lo <= range.hi)) range = extent.range;
+    if (!(range.lo < range.hi)) return own; // one value, or nothing
+    OwnImportance{grid, extent.within(range), options.borderWeight, own}.take(field, 0, 0, count.z);
+    return withNeighbours(own, count, options.neighbours);
+}
+
+std::vector<BrickImportance> importanceOfBricks(const BrickGrid& grid, const SliceReader& read, int layers, Range range,
+                                                bool categorical, const ImportanceOptions& options) {
+    const glm::ivec3 count = grid.count();
+    std::vector<BrickImportance> own(countOf(count));
+    const OwnImportance plain{grid, {range}, 1, own};
+    const int texels = grid.lattice.texels().z;
+    /// Calls `visit(part, first texel, layer, end)`.
+    const auto forParts = [&](int margin, auto&& visit) {
+        for (int layer = 0; layer < count.z; layer += layers) {
+            const int end = std::min(layer + layers, count.z);
+            const int first = std::max(layer * grid.brickSize - margin, 0),
+                      last = std::min(end * grid.brickSize + margin, texels);
+            const int from = first * plain.slices(), to = std::min(last * plain.slices(), grid.lattice.size.z);
+            visit(read(from, to - from), first, layer, end);
+        }
+    };
+    if (categorical) {
+        forParts(0, [&](const Field& part, int, int layer, int end) { plain.takeLabels(part, layer, end); });
+        return withNeighbours(own, count, options.neighbours);
+    }
+    Extent extent;
+    forParts(0, [&](const Field& part, int, int, int) { extent.add(extentOf(part)); });
+    if (!(range.lo <= range.hi)) range = extent.range;
+    if (!(range.lo < range.hi)) return own;
+    const OwnImportance smooth{grid, extent.within(range), options.borderWeight, own};
+    forParts(OwnImportance::kMargin,
+             [&](const Field& part, int first, int layer, int end) { smooth.take(part, first, layer, end); });
+    return withNeighbours(own, count, options.neighbours);
+}
+
+} // namespace tessera::volume

@@ -1,0 +1,51 @@
+#pragma once
+
+#include "volume/base/describe.h"
+#include "volume/bricks/brick_source.h"
+#include "volume/field/field.h"
+#include "volume/field/slices.h"
+
+#include <vector>
+
+/// How much bricks have to show, and how much they change: what decides which of them come first, how finely they are
+/// kept, and whether they have to be read again. (Röber 2002, sections 4.2.2 and 4.2.3.)
+namespace tessera::volume {
+
+struct ImportanceOptions {
+    double borderWeight = 2;
+    double neighbours = 0.25;
+
+    bool operator==(const ImportanceOptions&) const = default;
+    static void describe(auto& self, auto&& visit) {
+        visit(self.borderWeight, FieldInfo{.key = "borderWeight",
+                                           .unit = "",
+                                           .doc = "Weight of the samples at the faces of a brick, those inside have 1",
+                                           .range = Range{1, 16}});
+        visit(self.neighbours, FieldInfo{.key = "neighbours",
+                                         .unit = "",
+                                         .doc = "Share of what the most important neighbour has more that a brick gets",
+                                         .range = Range{0, 1}});
+    }
+};
+
+/// Importance of every brick, x fastest, of the samples smoothed by a Gaussian (binomial, of one sample) and read at
+/// every second one of each sublattice. With g the value as part of `range`, held within 0..1, and 256 tones:
+///
+///     importance = cube root of mean(g) * 4 variance(g) * entropy(g) / its largest possible
+///     detail     = RMS of what the mean of two neighbours, along each axis, leaves of a sample
+///
+/// The cube root keeps the order and spreads the product over 0..1. Labels are neither smoothed nor ordered: of
+/// `categorical` both are the entropy alone. Absent samples and floats that are not finite take no part; a brick
+/// without samples, or of one value among such, has 0. A range of nothing: that of the samples.
+std::vector<BrickImportance> importanceOfBricks(const BrickGrid& grid, const Field& field, Range range,
+                                                bool categorical, const ImportanceOptions& options = {});
+
+/// The same of a frame that is read in slices, `layers` layers of bricks at a time and a few slices around them.
+std::vector<BrickImportance> importanceOfBricks(const BrickGrid& grid, const SliceReader& read, int layers, Range range,
+                                                bool categorical, const ImportanceOptions& options = {});
+
+/// How far the samples of one brick move from one frame to another, as a reader sees them. Both frames have the grid's
+/// lattice and one type; scale and offset may differ.
+BrickChange changeOfBrick(const BrickGrid& grid, glm::ivec3 brick, const Field& before, const Field& after);
+
+} // namespace tessera::volume

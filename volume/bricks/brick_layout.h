@@ -1,0 +1,65 @@
+#pragma once
+
+#include "volume/base/describe.h"
+#include "volume/bricks/brick_source.h"
+
+#include <span>
+#include <string_view>
+#include <vector>
+
+/// Bricks put together by importance: what is left out, and which neighbours are alike. One layout serves all
+/// parameters and times. (Röber 2002, section 4.2.2.)
+namespace tessera::volume {
+
+/// Which shapes merging makes, and how it goes about it.
+enum class MergeShape : std::uint8_t {
+    Uniform, ///< cubes of 1, 2, 4, ... bricks a side: along x, y and z, or not at all
+    Mixed,   ///< boxes: along x as far as it goes, then whole rows along y, then whole slices along z
+    Best     ///< boxes: the fewest of sweeps in every order of the axes and of always joining the most alike
+};
+inline constexpr std::string_view kMergeShapeNames[] = {"uniform", "mixed", "best"};
+
+struct MergeOptions {
+    double discardBelow = 0; ///< importance, 0..1
+    double alike = 0.1;      ///< most by which the importance of merged bricks differs
+    int mostBricks = 4;      ///< along an axis
+    MergeShape shape = MergeShape::Best;
+
+    bool operator==(const MergeOptions&) const = default;
+    static void describe(auto& self, auto&& visit) {
+        visit(self.discardBelow, FieldInfo{.key = "discardBelow",
+                                           .unit = "importance",
+                                           .doc = "Bricks less important than this are left out; 0 = none",
+                                           .range = Range{0, 1}});
+        visit(self.alike, FieldInfo{.key = "alike",
+                                    .unit = "importance",
+                                    .doc = "Most by which the importance of bricks that are merged differs",
+                                    .range = Range{0, 1}});
+        visit(self.mostBricks, FieldInfo{.key = "mostBricks",
+                                         .unit = "bricks",
+                                         .doc = "Edge of the largest merged brick",
+                                         .range = Range{1, 64}});
+        visit(self.shape, FieldInfo{.key = "shape",
+                                    .unit = "",
+                                    .doc = "Which merged bricks are listed: cubes (uniform), boxes along x, then y, "
+                                           "then z (mixed), boxes grown in all directions (best)",
+                                    .names = kMergeShapeNames});
+    }
+};
+
+/// A box of bricks [begin, end) of the grid.
+struct MergedBrick {
+    glm::ivec3 begin{0}, end{0};
+    float importance = 0; ///< the largest of its bricks
+    bool operator==(const MergedBrick&) const = default;
+};
+
+/// Boxes that hold each brick that is not discarded once, and no other; by their first brick, x fastest. `importance`:
+/// of the bricks of a grid of `count`, x fastest.
+std::vector<MergedBrick> mergeBricks(glm::ivec3 count, std::span<const float> importance, const MergeOptions& options);
+
+/// The larger of importance and detail of every brick, the most of all stored components and times; bricks of which
+/// nothing is known have 1.
+std::vector<float> mostImportant(const BrickSource& source);
+
+} // namespace tessera::volume

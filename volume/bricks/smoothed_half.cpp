@@ -1,0 +1,156 @@
+#include "volume/bricks/smoothed_half.h"
+
+#include "volume/base/parallel.h"
+
+#include <algorithm>
+#include <cmath>
+#include <concepts>
+#include <cstdint>
+#include <type_traits>
+
+namespace tessera::volume {
+
+namespace {
+
+constexpr int kBinomial[] = {1, 4, 6, 4, 1}; // of 16 along each axis
+constexpr int kTapReach = 2;
+constexpr float kAllWeights = 16 * 16 * 16;
+
+/// Row `y` of slice `k` of a field as parts of a range, and whether each is there.
+struct PartRows {
+    const Field& field;
+    double lo, scale; ///< part = (value - lo) * scale
+    bool masked;
+
+    void read(int k, int y, float* values, float* present) const {
+        const std::size_t row = field.lattice.index({0, y, k}), n = std::size_t(field.lattice.size.x);
+        dispatch(field.type, [&]<class T>(T) {
+            const T* from = field.as<T>().data() + row;
+            const auto factor = float(field.scale * scale), shift = float((field.offset - lo) * scale);
+            for (std::size_t x = 0; x < n; ++x) {
+                const float part = float(from[x]) * factor + shift;
+                values[x] = std::min(std::max(part, 0.0f), 1.0f);
+            }
+            if (!masked) return;
+            for (std::size_t x = 0; x < n; ++x) {
+                bool there = field.present(row + x);
+                if constexpr (std::same_as<T, float>) there = there && std::isfinite(from[x]);
+                present[x] = there ? 1.0f : 0.0f;
+                if (!there) values[x] = 0;
+            }
+        });
+    }
+};
+
+/// Five numbers in a row, fiveWeighted. Of bytes the sums of two axes fit 16 bits: 256 * 255.
+template <class Sum> Sum fiveWeighted(Sum a, Sum b, Sum c, Sum d, Sum e) {
+    return static_cast<Sum>((a + e) + Sum(kBinomial[1]) * (b + d) + Sum(kBinomial[2]) * c);
+}
+
+/// Slices of the sublattice halved along x and y, then along z, where `finish` makes values of sums with the weights of
+/// all three axes. `read(slice, y, room)` gives a row, in the room given or where it lies.
+template <class Number, class Sum, class Read, class Finish>
+std::vector<float> halved(glm::ivec3 size, const Read& read, const Finish& finish) {
+    const glm::ivec3 half = (size + 1) / 2;
+    const std::size_t nx = std::size_t(size.x), hx = std::size_t(half.x), slice = hx * std::size_t(half.y);
+    std::vector<Sum> flat(slice * std::size_t(size.z));
+    std::vector<float> out(countOf(half));
+    parallelRanges(std::size_t(size.z), [&](std::size_t begin, std::size_t end) {
+        std::vector<Number> room(nx);
+        std::vector<Sum> evens(hx), odds(hx), rows(hx * std::size_t(size.y));
+        // In the middle of a row all taps are inside.
+        const std::size_t first = 1, last = nx > 2 ? (nx - 3) / 2 + 1 : 0;
+        for (std::size_t z = begin; z < end; ++z) {
+            for (int y = 0; y < size.y; ++y) {
+                const Number* const from = read(int(z), y, room.data());
+                Sum* to = rows.data() + std::size_t(y) * hx;
+                Sum *even = evens.data(), *odd = odds.data();
+                for (std::size_t x = 0; x < nx / 2; ++x) even[x] = Sum(from[2 * x]), odd[x] = Sum(from[2 * x + 1]);
+                if (nx % 2 != 0) even[hx - 1] = Sum(from[nx - 1]);
+                for (std::size_t x = first; x < last; ++x)
+                    to[x] = fiveWeighted<Sum>(even[x - 1], odd[x - 1], even[x], odd[x], even[x + 1]);
+                for (std::size_t x = 0; x < hx; ++x) {
+                    if (x == first && last > first) x = last;
+                    if (x == hx) break;
+                    Sum taps[5];
+                    for (int tap = 0; tap < 5; ++tap)
+                        taps[tap] = Sum(from[std::clamp(2 * int(x) + tap - kTapReach, 0, size.x - 1)]);
+                    to[x] = fiveWeighted<Sum>(taps[0], taps[1], taps[2], taps[3], taps[4]);
+                }
+            }
+            for (int y = 0; y < half.y; ++y) {
+                const Sum* taps[5];
+                for (int tap = 0; tap < 5; ++tap)
+                    taps[tap] = rows.data() + std::size_t(std::clamp(2 * y + tap - kTapReach, 0, size.y - 1)) * hx;
+                Sum* to = flat.data() + z * slice + std::size_t(y) * hx;
+                for (std::size_t x = 0; x < hx; ++x)
+                    to[x] = fiveWeighted<Sum>(taps[0][x], taps[1][x], taps[2][x], taps[3][x], taps[4][x]);
+            }
+        }
+    });
+    parallelFor(std::size_t(half.z), [&](std::size_t z) {
+        using Wide = std::conditional_t<std::same_as<Sum, float>, float, std::int32_t>;
+        const Sum* taps[5];
+        for (int tap = 0; tap < 5; ++tap)
+            taps[tap] = flat.data() + std::size_t(std::clamp(2 * int(z) + tap - kTapReach, 0, size.z - 1)) * slice;
+        float* to = out.data() + z * slice;
+        for (std::size_t i = 0; i < slice; ++i)
+            to[i] = finish(fiveWeighted<Wide>(taps[0][i], taps[1][i], taps[2][i], taps[3][i], taps[4][i]));
+    });
+    return out;
+}
+
+} // namespace
+
+Smoothed smoothedHalf(const Field& field, int sublattice, const SmoothedRange& about) {
+    const Lattice& lattice = field.lattice;
+    const int slices = lattice.kind == LatticeKind::BCC ? 2 : 1;
+    const glm::ivec3 size = lattice.sublatticeSize(sublattice);
+    const PartRows parts{field, about.range.lo, 1 / (about.range.hi - about.range.lo), about.gaps};
+    Smoothed out;
+    out.size = (size + 1) / 2;
+    if (countOf(size) == 0) {
+        out.size = glm::ivec3(0);
+        return out;
+    }
+    if (field.type == ScalarType::U8 && about.inside && !about.gaps) { // parts are made of sums, not of samples
+        const auto factor = float(field.scale * parts.scale) / kAllWeights,
+                   shift = float((field.offset - parts.lo) * parts.scale);
+        const std::uint8_t* samples = field.as<std::uint8_t>().data();
+        out.values = halved<std::uint8_t, std::uint16_t>(
+            size,
+            [&](int k, int y, std::uint8_t*) {
+                return samples + lattice.index({0, y, k * slices + sublattice});
+            },
+            [=](std::int32_t sum) { return std::min(std::max(float(sum) * factor + shift, 0.0f), 1.0f); });
+        return out;
+    }
+    const auto inAll = [](float sum) { return sum / kAllWeights; };
+    if (!about.gaps) {
+        out.values = halved<float, float>(
+            size, [&](int k, int y, float* to) { return parts.read(k * slices + sublattice, y, to, nullptr), to; },
+            inAll);
+        return out;
+    }
+    out.values = halved<float, float>(
+        size,
+        [&](int k, int y, float* to) {
+            std::vector<float> present(std::size_t(size.x));
+            parts.read(k * slices + sublattice, y, to, present.data());
+            return to;
+        },
+        inAll);
+    out.coverage = halved<float, float>(
+        size,
+        [&](int k, int y, float* to) {
+            std::vector<float> values(std::size_t(size.x));
+            parts.read(k * slices + sublattice, y, values.data(), to);
+            return to;
+        },
+        inAll);
+    for (std::size_t i = 0; i < out.values.size(); ++i)
+        if (out.coverage[i] > 0) out.values[i] /= out.coverage[i];
+    return out;
+}
+
+} // namespace tessera::volume

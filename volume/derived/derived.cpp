@@ -1,0 +1,173 @@
+#include "volume/derived/derived.h"
+
+#include "volume/base/error.h"
+#include "volume/derived/derived_bricks.h"
+#include "volume/derived/derived_names.h"
+#include "volume/sources/memory_source.h"
+
+#include <algorithm>
+#include <limits>
+#include <mutex>
+#include <unordered_map>
+
+namespace tessera::volume {
+
+namespace {
+
+constexpr double kRangeSamples = 3e6; // looked at to find a range, over all times
+
+class DerivedSource final : public BrickSource {
+public:
+    /// `known`: its ranges; empty: they are looked for.
+    DerivedSource(std::shared_ptr<const BrickSource> source, DerivedParameter derived, const Progress& progress,
+                  std::vector<Range> known = {})
+        : below_(std::move(source)), bricks_(below_, derived.recipe), derived_(std::move(derived)),
+          info_(below_->info()), first_(int(info_.channels().size())) {
+        Parameter parameter;
+        parameter.name = derived_.name;
+        parameter.unit = derived_.unit;
+        parameter.components = componentsOf(derived_.recipe);
+        parameter.parts = partsOf(derived_.recipe, info_);
+        info_.parameters.push_back(parameter);
+        info_.parameters.back().ranges =
+            known.empty() ? scan(parameter.components == 3 ? 4 : 1, progress) : std::move(known);
+    }
+
+    const DatasetInfo& info() const override { return info_; }
+    const BrickGrid& grid() const override { return below_->grid(); }
+    const std::shared_ptr<const BrickSource>& below() const { return below_; }
+
+    BrickStats stats(const BrickKey& key) const override {
+        if (key.channel < first_) return below_->stats(key);
+        BrickKey fine = key;
+        fine.level = 0;
+        {
+            const std::lock_guard lock(statsMutex_);
+            if (const auto found = stats_.find(fine); found != stats_.end()) return found->second;
+        }
+        const BrickSamples samples = read(fine);
+        BrickStats stats{std::numeric_limits<float>::infinity(), -std::numeric_limits<float>::infinity(), 0};
+        std::size_t present = 0;
+        for (std::size_t i = 0; i < samples.values.size(); ++i) {
+            if (!samples.present.empty() && samples.present[i] == 0) continue;
+            ++present;
+            stats.min = std::min(stats.min, samples.values[i]);
+            stats.max = std::max(stats.max, samples.values[i]);
+        }
+        if (!samples.values.empty()) stats.presentFraction = float(double(present) / double(samples.values.size()));
+        const std::lock_guard lock(statsMutex_);
+        return stats_.try_emplace(fine, stats).first->second;
+    }
+
+    std::optional<BrickDistribution> distribution(const BrickKey& key) const override {
+        return key.channel < first_ ? below_->distribution(key) : BrickSource::distribution(key);
+    }
+
+    std::optional<BrickImportance> importance(const BrickKey& key) const override {
+        return key.channel < first_ ? below_->importance(key) : BrickSource::importance(key);
+    }
+
+    std::optional<BrickChange> change(const BrickKey& key, int toTime) const override {
+        if (key.channel < first_) return below_->change(key, toTime);
+        return key.time == toTime ? BrickChange{} : bricks_.change(key, toTime);
+    }
+
+    BrickSamples read(const BrickKey& key) const override {
+        if (key.channel < first_) return below_->read(key);
+        const auto component = std::size_t(key.channel - first_);
+        const auto bricks = bricks_.get(key);
+        if (component < bricks->size()) return (*bricks)[component];
+        return magnitude((*bricks)[0], (*bricks)[1], (*bricks)[2]);
+    }
+
+private:
+    /// Ranges of the channels: exact for coordinates, else of a coarse level.
+    std::vector<Range> scan(int channels, const Progress& progress) const {
+        if (std::holds_alternative<TimeRecipe>(derived_.recipe)) return {{info_.times.front(), info_.times.back()}};
+        const BrickGrid& bricks = grid();
+        int level = 0;
+        const auto samples = [&] {
+            const glm::dvec3 size(bricks.levelSamples(level));
+            return size.x * size.y * size.z * double(info_.times.size());
+        };
+        while (level + 1 < bricks.levels && samples() > kRangeSamples) ++level;
+        std::vector<Range> ranges(std::size_t(channels),
+                                  {std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()});
+        const glm::ivec3 count = bricks.count();
+        const int total = count.x * count.y * count.z * int(info_.times.size());
+        for (int n = 0; n < total; ++n) {
+            progress.advance(double(n) / total, derived_.name);
+            const int brick = n % (count.x * count.y * count.z);
+            BrickKey key{0,
+                         n / (count.x * count.y * count.z),
+                         level,
+                         {brick % count.x, brick / count.x % count.y, brick / (count.x * count.y)}};
+            for (int c = 0; c < channels; ++c) {
+                key.channel = first_ + c;
+                const BrickSamples read = this->read(key);
+                Range& range = ranges[std::size_t(c)];
+                for (std::size_t i = 0; i < read.values.size(); ++i)
+                    if (presentAt(read, i)) {
+                        range.lo = std::min(range.lo, double(read.values[i]));
+                        range.hi = std::max(range.hi, double(read.values[i]));
+                    }
+            }
+        }
+        for (Range& range : ranges)
+            if (range.lo > range.hi) range = {0, 1}; // absent everywhere
+        if (std::holds_alternative<PositionRecipe>(derived_.recipe))
+            for (int axis = 0; axis < 3; ++axis)
+                ranges[std::size_t(axis)] = {info_.bounds.lo[axis], info_.bounds.hi[axis]};
+        return ranges;
+    }
+
+    std::shared_ptr<const BrickSource> below_;
+    DerivedBricks bricks_;
+    DerivedParameter derived_;
+    DatasetInfo info_;
+    int first_; ///< of our channels
+    mutable std::mutex statsMutex_;
+    mutable std::unordered_map<BrickKey, BrickStats, BrickKeyHash> stats_;
+};
+
+} // namespace
+
+std::shared_ptr<const BrickSource> derive(std::shared_ptr<const BrickSource> source, const DerivedParameter& parameter,
+                                          const Progress& progress) {
+    if (const std::string problem = derivedProblem(parameter, source->info()); !problem.empty())
+        throw Error(problem, parameter.name);
+    return std::make_shared<const DerivedSource>(std::move(source), parameter, progress);
+}
+
+std::shared_ptr<const BrickSource> deriveAll(std::shared_ptr<const BrickSource> source,
+                                             const std::vector<DerivedParameter>& parameters,
+                                             std::vector<std::string>& messages, const Progress& progress) {
+    for (std::size_t i = 0; i < parameters.size(); ++i) {
+        const double n = double(parameters.size());
+        try {
+            source = derive(source, parameters[i], progress.part(double(i) / n, double(i + 1) / n));
+        } catch (const Error& error) {
+            messages.push_back("derived parameter " + std::string(error.what()));
+        }
+    }
+    return source;
+}
+
+std::shared_ptr<const BrickSource> deriveLike(const BrickSource& like, std::shared_ptr<const BrickSource> source,
+                                              const std::vector<DerivedParameter>& parameters) {
+    const std::vector<Parameter>& known = like.info().parameters;
+    for (const DerivedParameter& parameter : parameters) {
+        const auto found =
+            std::ranges::find_if(known, [&](const Parameter& other) { return other.name == parameter.name; });
+        if (found == known.end() || !derivedProblem(parameter, source->info()).empty()) continue;
+        source = std::make_shared<const DerivedSource>(source, parameter, Progress{}, found->ranges);
+    }
+    return source;
+}
+
+std::shared_ptr<const BrickSource> underived(std::shared_ptr<const BrickSource> source) {
+    while (const auto* derived = dynamic_cast<const DerivedSource*>(source.get())) source = derived->below();
+    return source;
+}
+
+} // namespace tessera::volume

@@ -1,0 +1,369 @@
+#include "volume/derived/derived_bricks.h"
+
+#include "volume/base/load_once.h"
+#include "volume/bricks/brick_cache.h"
+#include "volume/bricks/sample_position.h"
+#include "volume/bricks/source_at_time.h"
+#include "volume/derived/derived_names.h"
+#include "volume/derived/expression.h"
+#include "volume/derived/other_source.h"
+#include "volume/derived/stencil.h"
+#include "volume/sources/memory_source.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+namespace tessera::volume {
+
+namespace {
+
+using Bricks = DerivedBricks::Bricks;
+
+constexpr std::size_t kInputBudget = std::size_t(96) << 20, kResultBudget = std::size_t(96) << 20;
+
+/// Channels of the components of a vector.
+std::vector<int> componentsOf(const DatasetInfo& info, const std::string& vector) {
+    std::vector<int> out;
+    for (const char* suffix : {".x", ".y", ".z"}) out.push_back(info.findChannel(vector + suffix).value_or(0));
+    return out;
+}
+
+std::size_t bytesOf(const Bricks& bricks) {
+    std::size_t bytes = 0;
+    for (const BrickSamples& brick : bricks) bytes += brick.values.size() * 4 + brick.present.size();
+    return bytes;
+}
+
+void setAbsent(BrickSamples& samples, std::size_t i) {
+    if (samples.present.empty()) samples.present.assign(samples.values.size(), 1);
+    samples.present[i] = 0;
+    samples.values[i] = 0;
+}
+/// No number: absent.
+void set(BrickSamples& samples, std::size_t i, double value) {
+    const auto narrow = float(value);
+    if (std::isfinite(narrow))
+        samples.values[i] = narrow;
+    else
+        setAbsent(samples, i);
+}
+
+constexpr int kTimeName = -4; // FormulaNames::channel
+
+/// The values of a channel at the time that a formula or a difference means.
+class InputTime {
+public:
+    InputTime(std::shared_ptr<const BrickSource> source, int channel, const TimeReference& reference)
+        : source_(std::move(source)), channel_(channel), reference_(reference) {
+        if (reference.which == OtherTime::Other) channel_ = *otherChannel(source_->info(), channel);
+        if (const auto fixed = isFixed(reference) ? times(0) : std::nullopt; fixed && fixed->between())
+            between_ = sourceAt(source_, *fixed).source;
+    }
+    std::optional<TimePair> times(int now) const { return timesOf(reference_, source_->info().times, now); }
+    bool exists(int now) const { return times(now).has_value(); }
+    /// The time itself.
+    double time(int now) const {
+        const std::vector<double>& all = source_->info().times;
+        const TimePair at = *times(now);
+        return (1 - at.weight) * all[std::size_t(at.earlier)] + at.weight * all[std::size_t(at.later)];
+    }
+    BrickSamples read(BrickKey key) const {
+        key.channel = channel_;
+        key.time = between_ ? 0 : times(key.time)->earlier;
+        return (between_ ? between_ : source_)->read(key);
+    }
+    /// Whether it is the same in a brick at both times, as is known without reading it.
+    bool stays(BrickKey key, int toTime) const {
+        const std::optional<TimePair> from = times(key.time), to = times(toTime);
+        if (from == to) return true;
+        if (!from || !to) return false;
+        key.channel = channel_;
+        key.time = from->earlier; // all but fixed ones are stored times
+        const std::optional<BrickChange> change = source_->change(key, to->earlier);
+        return change && change->max == 0;
+    }
+
+private:
+    std::shared_ptr<const BrickSource> source_, between_;
+    int channel_;
+    TimeReference reference_;
+};
+
+} // namespace
+
+struct DerivedBricks::Impl {
+    Impl(std::shared_ptr<const BrickSource> source, DerivedRecipe recipe)
+        : source_(std::move(source)), cached_(std::make_shared<const BrickCache>(source_, kInputBudget)),
+          inputs_(*cached_), recipe_(std::move(recipe)), names_(source_->info()),
+          results_(
+              kResultBudget, [this](const BrickKey& key) { return std::make_shared<const Bricks>(compute(key)); },
+              bytesOf),
+          means_(
+              kResultBudget, [this](const BrickKey& key) { return std::make_shared<const Bricks>(moments(key)); },
+              bytesOf) {
+        if (const auto* formula = std::get_if<ExpressionRecipe>(&recipe_)) {
+            expression_.emplace(formula->formula, names_.names, OtherTimes::Allowed);
+            for (const Expression::Input& input : expression_->inputs())
+                times_.emplace_back(cached_, names_.channel[std::size_t(input.name)],
+                                    input.at.value_or(TimeReference{}));
+        }
+        if (const auto* difference = std::get_if<DifferenceRecipe>(&recipe_)) {
+            const int channel = channelOf(difference->channel);
+            times_.emplace_back(cached_, channel, difference->reference());
+            if (difference->from == OtherTime::Other) toOwnUnit_ = otherConversion(source_->info(), channel).value();
+        }
+    }
+
+    /// A channel of the source below, at a brick.
+    BrickSamples input(int channel, BrickKey key) const {
+        key.channel = channel;
+        return inputs_.read(key);
+    }
+    /// The same at another time.
+    BrickSamples input(const InputTime& at, const BrickKey& key) const {
+        return at.exists(key.time) ? at.read(key) : nothing(key);
+    }
+    int channelOf(const std::string& name) const { return *source_->info().findChannel(name); }
+
+    BrickSamples empty(const BrickKey& key) const {
+        BrickSamples out;
+        out.size = source_->grid().brickSamples(key.index, key.level);
+        out.values.resize(std::size_t(out.size.x) * std::size_t(out.size.y) * std::size_t(out.size.z));
+        return out;
+    }
+    BrickSamples nothing(const BrickKey& key) const {
+        BrickSamples out = empty(key);
+        out.present.assign(out.values.size(), 0);
+        return out;
+    }
+    Bricks compute(const BrickKey& key) const {
+        return std::visit([&](const auto& recipe) { return make(recipe, key); }, recipe_);
+    }
+
+    Bricks make(const ExpressionRecipe&, const BrickKey& key) const {
+        BrickSamples out = empty(key);
+        const std::size_t count = out.values.size();
+        std::vector<BrickSamples> samples;
+        std::vector<std::vector<double>> values;
+        for (std::size_t n = 0; n < expression_->inputs().size(); ++n) {
+            const Expression::Input& used = expression_->inputs()[n];
+            const int channel = names_.channel[std::size_t(used.name)];
+            std::vector<double>& of = values.emplace_back(count);
+            if (used.at && channel == kTimeName && !times_[n].exists(key.time)) {
+                samples.push_back(nothing(key));
+            } else if (channel >= 0) {
+                samples.push_back(used.at ? input(times_[n], key) : input(channel, key));
+                std::copy(samples.back().values.begin(), samples.back().values.end(), of.begin());
+            } else if (channel == kTimeName) {
+                const double now = source_->info().times[std::size_t(key.time)];
+                std::fill(of.begin(), of.end(), used.at ? times_[n].time(key.time) : now);
+            } else {
+                SamplePositions position(source_->grid(), key.index, key.level);
+                for (std::size_t i = 0; i < count; ++i, position.next()) of[i] = position.at()[-1 - channel];
+            }
+        }
+        std::vector<double> results(count);
+        expression_->evaluate(values, results);
+        for (std::size_t i = 0; i < count; ++i) {
+            const bool present =
+                std::all_of(samples.begin(), samples.end(), [&](const BrickSamples& of) { return presentAt(of, i); });
+            if (present)
+                set(out, i, results[i]);
+            else
+                setAbsent(out, i);
+        }
+        return {std::move(out)};
+    }
+
+    Bricks make(const MagnitudeRecipe& recipe, const BrickKey& key) const {
+        return {magnitude(input(channelOf(recipe.x), key), input(channelOf(recipe.y), key),
+                          input(channelOf(recipe.z), key))};
+    }
+
+    /// Calls `body(place, index)` for the samples of a brick that are present in all neighbourhoods; the others become
+    /// absent in every brick of `out`.
+    template <class Body>
+    void everywhere(const std::vector<Neighbourhood>& around, Bricks& out, const Body& body) const {
+        const glm::ivec3 size = around.front().size();
+        std::size_t i = 0;
+        for (int z = 0; z < size.z; ++z)
+            for (int y = 0; y < size.y; ++y)
+                for (int x = 0; x < size.x; ++x, ++i) {
+                    const glm::ivec3 at(x, y, z);
+                    if (std::all_of(around.begin(), around.end(),
+                                    [&](const Neighbourhood& n) { return n.at(at).has_value(); }))
+                        body(at, i);
+                    else
+                        for (BrickSamples& brick : out) setAbsent(brick, i);
+                }
+    }
+    std::vector<Neighbourhood> around(const std::vector<int>& channels, const BrickKey& key) const {
+        std::vector<Neighbourhood> out;
+        for (const int channel : channels) {
+            BrickKey own = key;
+            own.channel = channel;
+            out.emplace_back(
+                source_->grid(), own, 1, [&](const BrickKey& near) { return inputs_.read(near); },
+                partLabel(source_->info(), channel));
+        }
+        return out;
+    }
+
+    Bricks make(const GradientRecipe& recipe, const BrickKey& key) const {
+        Bricks out(3, empty(key));
+        const auto near = around({channelOf(recipe.channel)}, key);
+        everywhere(near, out, [&](glm::ivec3 at, std::size_t i) {
+            for (int axis = 0; axis < 3; ++axis) set(out[std::size_t(axis)], i, near[0].derivative(at, axis));
+        });
+        return out;
+    }
+
+    Bricks make(const DivergenceRecipe& recipe, const BrickKey& key) const {
+        Bricks out(1, empty(key));
+        const auto near = around(componentsOf(source_->info(), recipe.vector), key);
+        everywhere(near, out, [&](glm::ivec3 at, std::size_t i) {
+            set(out[0], i, near[0].derivative(at, 0) + near[1].derivative(at, 1) + near[2].derivative(at, 2));
+        });
+        return out;
+    }
+
+    Bricks make(const VorticityRecipe& recipe, const BrickKey& key) const {
+        Bricks out(3, empty(key));
+        const auto near = around(componentsOf(source_->info(), recipe.vector), key);
+        everywhere(near, out, [&](glm::ivec3 at, std::size_t i) {
+            for (int axis = 0; axis < 3; ++axis) {
+                const int next = (axis + 1) % 3, last = (axis + 2) % 3;
+                set(out[std::size_t(axis)], i,
+                    near[std::size_t(last)].derivative(at, next) - near[std::size_t(next)].derivative(at, last));
+            }
+        });
+        return out;
+    }
+
+    /// Mean and standard deviation over the times at which a sample is present.
+    Bricks moments(const BrickKey& key) const {
+        const int channel = channelOf(std::get<DeviationRecipe>(recipe_).channel);
+        Bricks out(2, empty(key));
+        const std::size_t count = out[0].values.size();
+        std::vector<double> n(count), mean(count), squares(count);
+        for (int time = 0; time < int(source_->info().times.size()); ++time) {
+            BrickKey own = key;
+            own.time = time;
+            own.channel = channel;
+            const BrickSamples samples = source_->read(own);
+            for (std::size_t i = 0; i < count; ++i) {
+                if (!presentAt(samples, i)) continue;
+                // Welford: close values keep their digits.
+                const double value = double(samples.values[i]), before = value - mean[i];
+                n[i] += 1;
+                mean[i] += before / n[i];
+                squares[i] += before * (value - mean[i]);
+            }
+        }
+        for (std::size_t i = 0; i < count; ++i) {
+            set(out[0], i, mean[i]);
+            set(out[1], i, n[i] > 0 ? std::sqrt(squares[i] / n[i]) : 0);
+        }
+        return out;
+    }
+
+    Bricks make(const DeviationRecipe& recipe, const BrickKey& key) const {
+        BrickKey overTime = key;
+        overTime.time = 0;
+        const auto both = means_.get(overTime);
+        BrickSamples out = input(channelOf(recipe.channel), key);
+        for (std::size_t i = 0; i < out.values.size(); ++i) {
+            if (!presentAt(out, i)) continue;
+            if (recipe.measure == TimeMeasure::FromMean)
+                set(out, i, double(out.values[i]) - double((*both)[0].values[i]));
+            else
+                set(out, i, double((*both)[1].values[i]));
+        }
+        return {std::move(out)};
+    }
+
+    Bricks make(const SmoothRecipe& recipe, const BrickKey& key) const {
+        BrickKey own = key;
+        own.channel = channelOf(recipe.channel);
+        return {smoothed(
+            source_->grid(), own, recipe.width, [&](const BrickKey& near) { return inputs_.read(near); },
+            partLabel(source_->info(), own.channel))};
+    }
+
+    Bricks make(const DifferenceRecipe& recipe, const BrickKey& key) const {
+        const int channel = channelOf(recipe.channel);
+        BrickSamples out = input(channel, key);
+        const BrickSamples other = input(times_.front(), key);
+        for (std::size_t i = 0; i < out.values.size(); ++i) {
+            if (presentAt(out, i) && presentAt(other, i))
+                set(out, i, double(out.values[i]) - toOwnUnit_(double(other.values[i])));
+            else
+                setAbsent(out, i);
+        }
+        return {std::move(out)};
+    }
+
+    Bricks make(const PositionRecipe&, const BrickKey& key) const {
+        Bricks out(3, empty(key));
+        SamplePositions position(source_->grid(), key.index, key.level);
+        for (std::size_t i = 0; i < out[0].values.size(); ++i, position.next())
+            for (int axis = 0; axis < 3; ++axis) set(out[std::size_t(axis)], i, position.at()[axis]);
+        return out;
+    }
+
+    Bricks make(const TimeRecipe&, const BrickKey& key) const {
+        Bricks out(1, empty(key));
+        std::fill(out[0].values.begin(), out[0].values.end(), float(source_->info().times[std::size_t(key.time)]));
+        return out;
+    }
+
+    /// Whether a channel is the same in the brick at both times, as is known without reading it.
+    bool stays(int channel, BrickKey key, int toTime) const {
+        key.channel = channel;
+        const std::optional<BrickChange> change = source_->change(key, toTime);
+        return change && change->max == 0;
+    }
+    bool stays(const BrickKey& key, int toTime) const {
+        if (const auto* difference = std::get_if<DifferenceRecipe>(&recipe_)) {
+            return stays(channelOf(difference->channel), key, toTime) && times_.front().stays(key, toTime);
+        }
+        if (!expression_) return false;
+        for (std::size_t n = 0; n < expression_->inputs().size(); ++n) {
+            const Expression::Input& used = expression_->inputs()[n];
+            const int channel = names_.channel[std::size_t(used.name)];
+            const bool fixed = used.at && isFixed(*used.at);
+            if (channel == kTimeName
+                    ? !fixed
+                    : channel >= 0 && !(used.at ? times_[n].stays(key, toTime) : stays(channel, key, toTime)))
+                return false;
+        }
+        return true;
+    }
+
+    std::shared_ptr<const BrickSource> source_;
+    std::shared_ptr<const BrickCache> cached_;
+    const BrickCache& inputs_;
+    DerivedRecipe recipe_;
+    FormulaNames names_;
+    std::optional<Expression> expression_;
+    UnitConversion toOwnUnit_;     ///< of the other data of a difference
+    std::vector<InputTime> times_; ///< of the inputs of the expression, or of the difference
+    mutable LoadOnce<BrickKey, Bricks, BrickKeyHash> results_, means_;
+};
+
+DerivedBricks::DerivedBricks(std::shared_ptr<const BrickSource> source, DerivedRecipe recipe)
+    : impl_(std::make_unique<Impl>(std::move(source), std::move(recipe))) {}
+
+DerivedBricks::~DerivedBricks() = default;
+
+std::shared_ptr<const DerivedBricks::Bricks> DerivedBricks::get(BrickKey key) const {
+    key.channel = 0;
+    return impl_->results_.get(key);
+}
+
+std::optional<BrickChange> DerivedBricks::change(const BrickKey& key, int toTime) const {
+    return impl_->stays(key, toTime) ? std::optional(BrickChange{}) : std::nullopt;
+}
+
+} // namespace tessera::volume

@@ -1,0 +1,39 @@
+#pragma once
+
+#include "volume/derived/derived.h"
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+/// Bricks computed by a recipe: inside of volume/derived/derived.cpp.
+namespace tessera::volume {
+
+/// Computes bricks of a derived parameter from those of a source, and keeps the latest.
+class DerivedBricks {
+public:
+    /// Components of a brick.
+    using Bricks = std::vector<BrickSamples>;
+
+    /// The recipe fits the source (derivedProblem).
+    DerivedBricks(std::shared_ptr<const BrickSource> source, DerivedRecipe recipe);
+    ~DerivedBricks();
+    DerivedBricks(const DerivedBricks&) = delete;
+    DerivedBricks& operator=(const DerivedBricks&) = delete;
+
+    /// A brick of every component; key.channel counts for nothing. From any thread.
+    std::shared_ptr<const Bricks> get(BrickKey key) const;
+
+    /// No change where every sample that the brick is made of stays as it is from key.time to `toTime`, else nothing.
+    std::optional<BrickChange> change(const BrickKey& key, int toTime) const;
+
+private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+inline bool presentAt(const BrickSamples& samples, std::size_t i) {
+    return samples.present.empty() || samples.present[i] != 0;
+}
+
+} // namespace tessera::volume

@@ -1,0 +1,183 @@
+#include "volume/derived/derived_names.h"
+
+#include "volume/base/error.h"
+#include "volume/base/unit_conversion.h"
+#include "volume/derived/expression.h"
+#include "volume/derived/other_source.h"
+
+#include <algorithm>
+#include <map>
+#include <set>
+#include <utility>
+
+namespace tessera::volume {
+
+FormulaNames::FormulaNames(const DatasetInfo& info) {
+    static constexpr const char* kCoordinates[] = {"x", "y", "z", "t"};
+    for (int i = 0; i < 4; ++i) add(kCoordinates[i], -1 - i);
+    const std::vector<Channel> channels = info.channels();
+    for (std::size_t i = 0; i < channels.size(); ++i)
+        if (channels[i].magnitude) add(info.parameters[std::size_t(channels[i].parameter)].name, int(i));
+    for (std::size_t i = 0; i < channels.size(); ++i) add(channels[i].name, int(i));
+}
+
+void FormulaNames::add(const std::string& name, int which) {
+    names.push_back(name);
+    channel.push_back(which);
+}
+
+int componentsOf(const DerivedRecipe& recipe) {
+    const bool vector = std::holds_alternative<GradientRecipe>(recipe) ||
+                        std::holds_alternative<VorticityRecipe>(recipe) ||
+                        std::holds_alternative<PositionRecipe>(recipe);
+    return vector ? 3 : 1;
+}
+
+namespace {
+
+const Parameter* findVector(const DatasetInfo& info, const std::string& name) {
+    for (const Parameter& parameter : info.parameters)
+        if (parameter.name == name && parameter.components == 3) return &parameter;
+    return nullptr;
+}
+
+/// What is wrong with a recipe; "" if nothing is.
+struct Problem {
+    const DatasetInfo& info;
+    std::string channel(const std::string& name) const {
+        return info.findChannel(name) ? "" : "no parameter is named \"" + name + "\"";
+    }
+    std::string operator()(const ExpressionRecipe& recipe) const {
+        try {
+            const FormulaNames names(info);
+            const Expression check(recipe.formula, names.names, OtherTimes::Allowed);
+            for (const Expression::Input& input : check.inputs())
+                if (input.at)
+                    if (const std::string problem =
+                            timeProblem(*input.at, info, names.channel[std::size_t(input.name)]);
+                        !problem.empty())
+                        throw Error(problem, {}, "position " + std::to_string(input.position));
+            return {};
+        } catch (const Error& error) {
+            return error.what();
+        }
+    }
+    std::string operator()(const MagnitudeRecipe& recipe) const {
+        for (const std::string& name : {recipe.x, recipe.y, recipe.z})
+            if (const std::string problem = channel(name); !problem.empty()) return problem;
+        return {};
+    }
+    std::string vector(const std::string& name) const {
+        return findVector(info, name) ? "" : "no vector is named \"" + name + "\"";
+    }
+    std::string operator()(const GradientRecipe& recipe) const { return channel(recipe.channel); }
+    std::string operator()(const DivergenceRecipe& recipe) const { return vector(recipe.vector); }
+    std::string operator()(const VorticityRecipe& recipe) const { return vector(recipe.vector); }
+    std::string operator()(const DeviationRecipe& recipe) const { return channel(recipe.channel); }
+    std::string operator()(const SmoothRecipe& recipe) const {
+        if (!(recipe.width >= 0.1 && recipe.width <= 16)) return "the width must be between 0.1 and 16 cells";
+        return channel(recipe.channel);
+    }
+    std::string operator()(const DifferenceRecipe& recipe) const {
+        if (const std::string problem = channel(recipe.channel); !problem.empty()) return problem;
+        const int of = *info.findChannel(recipe.channel);
+        if (const std::string problem = timeProblem(recipe.reference(), info, of); !problem.empty()) return problem;
+        if (recipe.from != OtherTime::Other) return {};
+        const std::vector<Channel> channels = info.channels();
+        const Channel &own = channels[std::size_t(of)], &other = channels[std::size_t(*otherChannel(info, of))];
+        if (unitConversion(other.unit, own.unit)) return {};
+        return own.name + " is in " + (own.unit.empty() ? "no unit" : own.unit) + ", in the other data in " +
+               (other.unit.empty() ? "no unit" : other.unit) + ": they have no difference";
+    }
+    std::string operator()(const PositionRecipe&) const { return {}; }
+    std::string operator()(const TimeRecipe&) const { return {}; }
+};
+
+} // namespace
+
+namespace {
+
+/// Names of what a recipe is made of.
+struct Inputs {
+    const DatasetInfo& info;
+    std::vector<std::string> operator()(const ExpressionRecipe& recipe) const {
+        const FormulaNames names(info);
+        const Expression formula(recipe.formula, names.names, OtherTimes::Allowed);
+        std::vector<std::string> out;
+        for (const Expression::Input& input : formula.inputs())
+            if (names.channel[std::size_t(input.name)] >= 0) out.push_back(names.names[std::size_t(input.name)]);
+        return out;
+    }
+    std::vector<std::string> operator()(const MagnitudeRecipe& recipe) const { return {recipe.x, recipe.y, recipe.z}; }
+    std::vector<std::string> operator()(const GradientRecipe& recipe) const { return {recipe.channel}; }
+    std::vector<std::string> operator()(const DivergenceRecipe& recipe) const { return {recipe.vector}; }
+    std::vector<std::string> operator()(const VorticityRecipe& recipe) const { return {recipe.vector}; }
+    std::vector<std::string> operator()(const DeviationRecipe& recipe) const { return {recipe.channel}; }
+    std::vector<std::string> operator()(const SmoothRecipe& recipe) const { return {recipe.channel}; }
+    std::vector<std::string> operator()(const DifferenceRecipe& recipe) const { return {recipe.channel}; }
+    std::vector<std::string> operator()(const PositionRecipe&) const { return {}; }
+    std::vector<std::string> operator()(const TimeRecipe&) const { return {}; }
+};
+
+/// Regions that are one part in both.
+Parts refined(const Parts& a, const Parts& b) {
+    if (a.count() == 1 || a.label.empty()) return b;
+    if (b.count() == 1 || b.label != a.label) return a;
+    std::map<std::pair<std::size_t, std::size_t>, std::vector<int>> groups;
+    groups[{0, 0}] = {}; // values in none
+    std::set<int> values;
+    for (const Parts* parts : {&a, &b})
+        for (const std::vector<int>& region : parts->regions) values.insert(region.begin(), region.end());
+    for (const int value : values) groups[{a.partOf(value), b.partOf(value)}].push_back(value);
+    Parts out{a.label, {}};
+    for (auto& [which, regions] : groups) out.regions.push_back(std::move(regions));
+    return out;
+}
+
+/// Of a label itself: each value is a part.
+Parts partsOfLabel(const Parameter& label) {
+    constexpr double kMost = 64;
+    if (label.ranges.empty() || label.ranges[0].hi - label.ranges[0].lo >= kMost) return {};
+    Parts parts{label.name, {}};
+    for (int value = int(label.ranges[0].lo); value <= int(label.ranges[0].hi); ++value)
+        parts.regions.push_back({value});
+    return parts;
+}
+
+} // namespace
+
+Parts partsOf(const DerivedRecipe& recipe, const DatasetInfo& info) {
+    const std::vector<Channel> channels = info.channels();
+    Parts parts;
+    for (const std::string& name : std::visit(Inputs{info}, recipe))
+        if (const auto channel = info.findChannel(name)) {
+            const Parameter& own = info.parameters[std::size_t(channels[std::size_t(*channel)].parameter)];
+            parts = refined(parts, own.categorical ? partsOfLabel(own) : own.parts);
+        }
+    return parts;
+}
+
+std::string derivedProblem(const DerivedParameter& parameter, const DatasetInfo& info) {
+    if (parameter.name.empty()) return "it needs a name";
+    if (parameter.name.find('`') != std::string::npos) return "the name must not hold a back quote";
+    if (std::any_of(info.parameters.begin(), info.parameters.end(),
+                    [&](const Parameter& own) { return own.name == parameter.name; }) ||
+        info.findChannel(parameter.name))
+        return "the name \"" + parameter.name + "\" is taken";
+    return std::visit(Problem{info}, parameter.recipe);
+}
+
+std::vector<std::string> derivedProblems(const std::vector<DerivedParameter>& parameters, DatasetInfo info) {
+    std::vector<std::string> problems;
+    for (const DerivedParameter& each : parameters) {
+        problems.push_back(derivedProblem(each, info));
+        if (!problems.back().empty()) continue;
+        Parameter parameter;
+        parameter.name = each.name;
+        parameter.components = componentsOf(each.recipe);
+        info.parameters.push_back(std::move(parameter));
+    }
+    return problems;
+}
+
+} // namespace tessera::volume

@@ -1,0 +1,28 @@
+#pragma once
+
+#include "volume/derived/derived.h"
+
+#include <string>
+#include <vector>
+
+/// What the names in a recipe mean for a data set: inside of derived parameters.
+namespace tessera::volume {
+
+/// Names a formula may use: channels, vectors (for their magnitude), then x, y, z, t where these are free.
+struct FormulaNames {
+    std::vector<std::string> names;
+    std::vector<int> channel; ///< by name; -1 - axis for a coordinate, -4 for the time
+
+    explicit FormulaNames(const DatasetInfo& info);
+
+private:
+    void add(const std::string& name, int which);
+};
+
+/// Components of a derived parameter: 3 of a vector, else 1.
+int componentsOf(const DerivedRecipe& recipe);
+
+/// Where a derived parameter jumps: where any of those that it is made of does. Of labels that differ the first counts.
+Parts partsOf(const DerivedRecipe& recipe, const DatasetInfo& info);
+
+} // namespace tessera::volume

@@ -1,0 +1,47 @@
+#pragma once
+
+#include "volume/derived/other_time.h"
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+/// Formulas over named values, read by muParser: + - * / ^, comparisons, && ||, a ? b : c, abs, sqrt, exp, ln, log10,
+/// sin, min, max, ... Names may be those of channels ("U.x", "|U|"); any other name is written between back quotes.
+namespace tessera::volume {
+
+/// Whether a formula may name values at another time: at(T, first), at(T, 0.3), with T a name.
+enum class OtherTimes { Refused, Allowed };
+
+class Expression {
+public:
+    /// Values that a formula is made of: those of a name, now or at another time.
+    struct Input {
+        int name = 0;
+        std::optional<TimeReference> at = {};
+        std::size_t position = 0; ///< of the other time in the formula, counted from 1
+    };
+
+    /// `names` are what the formula may use; the later of two equal ones counts. Throws Error whose place says where in
+    /// the formula ("position 5", counted from 1) something is wrong.
+    Expression(const std::string& text, std::span<const std::string> names,
+               OtherTimes otherTimes = OtherTimes::Refused);
+
+    /// What the formula uses, each once: names rising, of one name its values now first.
+    const std::vector<Input>& inputs() const { return inputs_; }
+    /// The names of the inputs, in their order.
+    const std::vector<int>& used() const { return used_; }
+
+    /// The formula at every point: inputs[i] holds the values of inputs()[i], out.size() of them. Thread-safe.
+    void evaluate(std::span<const std::vector<double>> inputs, std::span<double> out) const;
+
+private:
+    std::string translated_; ///< names replaced by words muParser takes
+    std::vector<Input> inputs_;
+    std::vector<std::string> variables_; ///< of the inputs, in `translated_`
+    std::vector<int> used_;
+};
+
+} // namespace tessera::volume

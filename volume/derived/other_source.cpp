@@ -1,0 +1,329 @@
+#include "volume/derived/other_source.h"
+
+#include "volume/base/error.h"
+#include "volume/bricks/brick_cache.h"
+#include "volume/bricks/sample_position.h"
+#include "volume/derived/derived_bricks.h"
+#include "volume/reconstruct/probe.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/common.hpp>
+#include <glm/vector_relational.hpp>
+#include <limits>
+#include <map>
+
+namespace tessera::volume {
+
+namespace {
+
+constexpr std::size_t kOtherBudget = std::size_t(192) << 20;
+constexpr double kRangeSamples = 3e6;
+
+double metres(const std::string& unit) {
+    static const std::map<std::string, double, std::less<>> known = {{"m", 1},          {"cm", 1e-2},    {"mm", 1e-3},
+                                                                     {"um", 1e-6},      {"nm", 1e-9},    {"km", 1e3},
+                                                                     {"\u00b5m", 1e-6}, {"micron", 1e-6}};
+    const auto found = known.find(unit);
+    return found == known.end() ? 0 : found->second;
+}
+
+/// Units of length `to` per one of `from`.
+double lengthScale(const std::string& from, const std::string& to) {
+    if (from == to) return 1;
+    if (metres(from) == 0 || metres(to) == 0)
+        throw Error("lengths in " + (from.empty() ? "no unit" : from) + " and in " + (to.empty() ? "no unit" : to) +
+                    " cannot be compared");
+    // Of powers of ten one is exact, the other one not: divide by the one that is.
+    const double ratio = metres(from) / metres(to);
+    return ratio >= 1 ? std::round(ratio) : 1 / std::round(1 / ratio);
+}
+
+bool near(glm::dvec3 a, glm::dvec3 b, glm::dvec3 scale) {
+    return glm::all(glm::lessThanEqual(glm::abs(a - b), 1e-6 * glm::abs(scale)));
+}
+
+/// Whether brick for brick the samples of two grids lie at the same places.
+bool sameSamples(const BrickGrid& a, const BrickGrid& b, double scale) {
+    return a.lattice.kind == b.lattice.kind && a.lattice.size == b.lattice.size && a.brickSize == b.brickSize &&
+           a.levels == b.levels && a.phase == b.phase &&
+           near(a.lattice.spacing, b.lattice.spacing * scale, a.lattice.spacing / glm::dvec3(a.lattice.size)) &&
+           near(a.lattice.origin, b.lattice.origin * scale, a.lattice.spacing);
+}
+
+/// Whether two data sets have samples at the same places, however these are cut into bricks.
+bool samePlaces(const BrickSource& source, const BrickSource& other) {
+    BrickGrid a = other.grid();
+    a.brickSize = source.grid().brickSize, a.levels = source.grid().levels, a.phase = source.grid().phase;
+    return sameSamples(a, source.grid(), lengthScale(source.info().lengthUnit, other.info().lengthUnit));
+}
+
+BrickStats statsOfSamples(const BrickSamples& samples) {
+    BrickStats stats{std::numeric_limits<float>::infinity(), -std::numeric_limits<float>::infinity(), 0};
+    std::size_t present = 0;
+    for (std::size_t i = 0; i < samples.values.size(); ++i) {
+        if (!presentAt(samples, i)) continue;
+        ++present;
+        stats.min = std::min(stats.min, samples.values[i]);
+        stats.max = std::max(stats.max, samples.values[i]);
+    }
+    if (!samples.values.empty()) stats.presentFraction = float(double(present) / double(samples.values.size()));
+    return stats;
+}
+
+BrickSamples absentBrick(const BrickGrid& grid, const BrickKey& key) {
+    BrickSamples out;
+    out.size = grid.brickSamples(key.index, key.level);
+    const auto count = std::size_t(out.size.x) * std::size_t(out.size.y) * std::size_t(out.size.z);
+    out.values.assign(count, 0);
+    out.present.assign(count, 0);
+    return out;
+}
+
+} // namespace
+
+SampledOnto::SampledOnto(std::shared_ptr<const BrickSource> source, const BrickGrid& grid,
+                         const std::string& lengthUnit)
+    : source_(std::make_shared<const BrickCache>(source, kOtherBudget)), grid_(grid),
+      scale_(lengthScale(lengthUnit, source->info().lengthUnit)), sameGrid_(sameSamples(source->grid(), grid, scale_)) {
+}
+
+BrickSamples SampledOnto::read(const BrickSource& at, const BrickKey& key) const {
+    if (sameGrid_) return at.read(key);
+    const Box& box = at.info().bounds;
+    const glm::dvec3 slack = at.grid().lattice.spacing * 1e-6;
+    std::vector<glm::dvec3> positions;
+    BrickSamples out = absentBrick(grid_, key);
+    SamplePositions position(grid_, key.index, key.level);
+    for (std::size_t i = 0; i < out.values.size(); ++i, position.next()) {
+        const glm::dvec3 wanted = position.at() * scale_, inside = glm::clamp(wanted, box.lo, box.hi);
+        // What lies on the border lies inside, however it is rounded.
+        positions.push_back(glm::all(glm::lessThanEqual(glm::abs(wanted - inside), slack)) ? inside : wanted);
+    }
+    const std::vector<ProbeValue> values = probeAlong(at, key.channel, positions, key.time);
+    for (std::size_t i = 0; i < out.values.size(); ++i)
+        if (const std::optional<double>& value = values[i].interpolated) {
+            out.values[i] = float(*value);
+            out.present[i] = 1;
+        }
+    if (std::ranges::find(out.present, std::uint8_t(0)) == out.present.end()) out.present.clear();
+    return out;
+}
+
+namespace {
+
+class WithOther final : public BrickSource {
+public:
+    WithOther(std::shared_ptr<const BrickSource> source, std::shared_ptr<const BrickSource> other)
+        : source_(std::move(source)), other_(std::move(other)),
+          onto_(other_, source_->grid(), source_->info().lengthUnit), info_(source_->info()),
+          own_(int(info_.channels().size())) {
+        matchTimes();
+        const bool single = info_.parameters.size() == 1 && other_->info().parameters.size() == 1;
+        for (Parameter parameter : other_->info().parameters) {
+            if (single) parameter.name = info_.parameters.front().name;
+            parameter.name += kOtherSuffix;
+            if (!parameter.parts.label.empty()) parameter.parts.label += kOtherSuffix;
+            if (!onto_.sameGrid() && !parameter.categorical) parameter.type = ScalarType::F32;
+            info_.parameters.push_back(std::move(parameter));
+        }
+        info_.provenance += (info_.provenance.empty() ? "" : "; ") + std::string("(other): ") + other_->info().name +
+                            ", " + otherText(*source_, *other_);
+    }
+
+    const DatasetInfo& info() const override { return info_; }
+    const BrickGrid& grid() const override { return source_->grid(); }
+    BrickStats stats(const BrickKey& key) const override {
+        if (key.channel < own_) return source_->stats(key);
+        const auto& at = times_[std::size_t(key.time)];
+        if (at && onto_.sameGrid()) return at->source->stats(inOther(key));
+        BrickKey fine = key;
+        fine.level = 0;
+        return statsOfSamples(read(fine));
+    }
+    std::optional<BrickDistribution> distribution(const BrickKey& key) const override {
+        if (key.channel < own_) return source_->distribution(key);
+        return noted(key) ? other_->distribution(inOther(key)) : std::nullopt;
+    }
+    std::optional<BrickImportance> importance(const BrickKey& key) const override {
+        if (key.channel < own_) return source_->importance(key);
+        return noted(key) ? other_->importance(inOther(key)) : std::nullopt;
+    }
+    std::optional<BrickChange> change(const BrickKey& key, int toTime) const override {
+        if (key.channel < own_) return source_->change(key, toTime);
+        if (key.time == toTime) return BrickChange{};
+        BrickKey to = key;
+        to.time = toTime;
+        if (noted(key) && noted(to)) return other_->change(inOther(key), inOther(to).time);
+        // One time beside many.
+        return times_[std::size_t(key.time)] && other_->info().times.size() == 1 ? std::optional(BrickChange{})
+                                                                                 : std::nullopt;
+    }
+    BrickSamples read(const BrickKey& key) const override {
+        if (key.channel < own_) return source_->read(key);
+        const auto& at = times_[std::size_t(key.time)];
+        return at ? onto_.read(*at->source, inOther(key)) : absentBrick(grid(), key);
+    }
+    const std::shared_ptr<const BrickSource>& own() const { return source_; }
+    const std::shared_ptr<const BrickSource>& other() const { return other_; }
+
+private:
+    void matchTimes() {
+        const std::vector<double>&own = info_.times, &all = other_->info().times;
+        if (all.size() > 1 && own.size() > 1 &&
+            (info_.timeUnit != other_->info().timeUnit || info_.timeName != other_->info().timeName))
+            throw Error("times in " + info_.timeName + " [" + info_.timeUnit + "] and " + other_->info().timeName +
+                        " [" + other_->info().timeUnit + "] cannot be compared");
+        const double slack = 1e-9 * std::max(std::abs(all.front()), std::abs(all.back()));
+        for (const double time : own) {
+            const bool there = all.size() == 1 || (time >= all.front() - slack && time <= all.back() + slack);
+            times_.push_back(there ? std::optional(sourceAt(onto_.source(), timesAround(all, time))) : std::nullopt);
+        }
+    }
+    /// Whether what the other knows of its bricks is true of this one.
+    bool noted(const BrickKey& key) const {
+        const auto& at = times_[std::size_t(key.time)];
+        return at && onto_.sameGrid() && at->source == onto_.source();
+    }
+    BrickKey inOther(BrickKey key) const {
+        key.channel -= own_;
+        key.time = times_[std::size_t(key.time)]->time;
+        return key;
+    }
+
+    std::shared_ptr<const BrickSource> source_, other_;
+    SampledOnto onto_;
+    DatasetInfo info_;
+    int own_; ///< channels of the source
+    std::vector<std::optional<SourceAtTime>> times_;
+};
+
+class Difference final : public BrickSource {
+public:
+    Difference(const FieldAt& of, const FieldAt& minus, const Progress& progress)
+        : onto_(of.source, minus.source->grid(), minus.source->info().lengthUnit),
+          of_(sourceAt(onto_.source(), of.time)), minus_(sourceAt(minus.source, minus.time)), ofChannel_(of.channel),
+          minusChannel_(minus.channel) {
+        const DatasetInfo &left = of.source->info(), &right = minus.source->info();
+        const Channel a = left.channels()[std::size_t(of.channel)], b = right.channels()[std::size_t(minus.channel)];
+        const auto toUnit = unitConversion(b.unit, a.unit);
+        if (!toUnit)
+            throw Error(a.name + " in " + (a.unit.empty() ? "no unit" : a.unit) + " and " + b.name + " in " +
+                        (b.unit.empty() ? "no unit" : b.unit) + " have no difference");
+        toUnit_ = *toUnit;
+        info_.name = left.name;
+        info_.lattice = right.lattice;
+        info_.bounds = right.bounds;
+        info_.lengthUnit = right.lengthUnit;
+        info_.timeName = right.timeName;
+        info_.timeUnit = right.timeUnit;
+        info_.times = {minus_.source->info().times[std::size_t(minus_.time)]};
+        Parameter& parameter = info_.parameters.emplace_back();
+        parameter.name = "difference";
+        parameter.unit = a.unit;
+        parameter.ranges = {scan(progress)};
+    }
+    const DatasetInfo& info() const override { return info_; }
+    const BrickGrid& grid() const override { return minus_.source->grid(); }
+    BrickStats stats(const BrickKey& key) const override {
+        BrickKey fine = key;
+        fine.level = 0;
+        return statsOfSamples(read(fine));
+    }
+    BrickSamples read(const BrickKey& key) const override {
+        BrickSamples out = onto_.read(*of_.source, {ofChannel_, of_.time, key.level, key.index});
+        const BrickSamples other = minus_.source->read({minusChannel_, minus_.time, key.level, key.index});
+        for (std::size_t i = 0; i < out.values.size(); ++i) {
+            const bool there = presentAt(out, i) && presentAt(other, i);
+            out.values[i] = there ? float(double(out.values[i]) - toUnit_(double(other.values[i]))) : 0;
+            if (there) continue;
+            if (out.present.empty()) out.present.assign(out.values.size(), 1);
+            out.present[i] = 0;
+        }
+        return out;
+    }
+
+private:
+    Range scan(const Progress& progress) const {
+        int level = 0;
+        const auto samples = [&] {
+            const glm::dvec3 size(grid().levelSamples(level));
+            return size.x * size.y * size.z;
+        };
+        while (level + 1 < grid().levels && samples() > kRangeSamples) ++level;
+        Range range{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+        const glm::ivec3 count = grid().count();
+        const int total = count.x * count.y * count.z;
+        for (int n = 0; n < total; ++n) {
+            progress.advance(double(n) / total);
+            const BrickStats stats =
+                statsOfSamples(read({0, 0, level, {n % count.x, n / count.x % count.y, n / (count.x * count.y)}}));
+            range.lo = std::min(range.lo, double(stats.min));
+            range.hi = std::max(range.hi, double(stats.max));
+        }
+        return range.lo <= range.hi ? range : Range{0, 0};
+    }
+
+    SampledOnto onto_;
+    SourceAtTime of_, minus_;
+    int ofChannel_, minusChannel_;
+    UnitConversion toUnit_; ///< of what is taken away
+    DatasetInfo info_;
+};
+
+} // namespace
+
+std::shared_ptr<const BrickSource> withOther(std::shared_ptr<const BrickSource> source,
+                                             std::shared_ptr<const BrickSource> other) {
+    return std::make_shared<const WithOther>(std::move(source), std::move(other));
+}
+
+std::shared_ptr<const BrickSource> otherOf(const BrickSource& source) {
+    const auto* with = dynamic_cast<const WithOther*>(&source);
+    return with ? with->other() : nullptr;
+}
+
+std::shared_ptr<const BrickSource> besideOther(const BrickSource& source) {
+    const auto* with = dynamic_cast<const WithOther*>(&source);
+    return with ? with->own() : nullptr;
+}
+
+std::string otherText(const BrickSource& source, const BrickSource& other) {
+    std::string text =
+        samePlaces(source, other) ? "on the same grid" : "interpolated onto the grid of " + source.info().name;
+    const bool single = source.info().parameters.size() == 1 && other.info().parameters.size() == 1;
+    for (const Parameter& own : source.info().parameters) {
+        const auto same = std::ranges::find_if(other.info().parameters, [&](const Parameter& candidate) {
+            return (single || candidate.name == own.name) && candidate.components == own.components;
+        });
+        if (same != other.info().parameters.end() && same->unit != own.unit && unitConversion(same->unit, own.unit))
+            text += ", " + own.name + " from " + same->unit + " to " + (own.unit.empty() ? "1" : own.unit);
+    }
+    return text;
+}
+
+std::optional<int> otherChannel(const DatasetInfo& info, int channel) {
+    const std::vector<Channel> channels = info.channels();
+    const Channel& wanted = channels[std::size_t(channel)];
+    const Parameter& parameter = info.parameters[std::size_t(wanted.parameter)];
+    for (std::size_t i = 0; i < channels.size(); ++i) {
+        const Parameter& own = info.parameters[std::size_t(channels[i].parameter)];
+        if (own.name == parameter.name + std::string(kOtherSuffix) && own.components == parameter.components &&
+            channels[i].component == wanted.component)
+            return int(i);
+    }
+    return std::nullopt;
+}
+
+std::optional<UnitConversion> otherConversion(const DatasetInfo& info, int channel) {
+    const std::optional<int> other = otherChannel(info, channel);
+    if (!other) return std::nullopt;
+    const std::vector<Channel> channels = info.channels();
+    return unitConversion(channels[std::size_t(*other)].unit, channels[std::size_t(channel)].unit);
+}
+
+std::shared_ptr<const BrickSource> differenceSource(const FieldAt& of, const FieldAt& minus, const Progress& progress) {
+    return std::make_shared<const Difference>(of, minus, progress);
+}
+
+} // namespace tessera::volume

@@ -1,0 +1,75 @@
+#pragma once
+
+#include "volume/base/progress.h"
+#include "volume/base/unit_conversion.h"
+#include "volume/bricks/brick_source.h"
+#include "volume/bricks/source_at_time.h"
+
+#include <memory>
+#include <string>
+#include <string_view>
+
+/// Two data sets beside each other: two designs, two solvers, before and after packing.
+namespace tessera::volume {
+
+/// Ends the names of the parameters of the other one: "T (other)".
+inline constexpr std::string_view kOtherSuffix = " (other)";
+
+/// Values of one data set at the samples of another: the samples themselves where both have the same grid, else
+/// interpolated (volume/reconstruct/probe.h) at full resolution and absent outside of its box; labels are those of the
+/// nearest sample.
+class SampledOnto {
+public:
+    /// `grid` is that of the other one, its lengths in `lengthUnit`. Throws Error when the units of length cannot be
+    /// converted.
+    SampledOnto(std::shared_ptr<const BrickSource> source, const BrickGrid& grid, const std::string& lengthUnit);
+    bool sameGrid() const { return sameGrid_; }
+    /// key.channel and key.time belong to `at`, which is the source or sourceAt(it), the rest to the grid.
+    BrickSamples read(const BrickSource& at, const BrickKey& key) const;
+    /// With bricks kept.
+    const std::shared_ptr<const BrickSource>& source() const { return source_; }
+
+private:
+    std::shared_ptr<const BrickSource> source_;
+    BrickGrid grid_;
+    double scale_ = 1; ///< units of length of the source per one of the grid
+    bool sameGrid_ = false;
+};
+
+/// A data set with the parameters of another one after its own, named "T (other)": on its grid and at its times. Where
+/// either has a single parameter, that of the other one is named after the first, however it is called. The other one
+/// is taken at the same time, between its stored times interpolated and absent beyond them; one of a single time is
+/// compared with every time. The provenance says so. Throws Error when units of length or time cannot be converted.
+std::shared_ptr<const BrickSource> withOther(std::shared_ptr<const BrickSource> source,
+                                             std::shared_ptr<const BrickSource> other);
+
+/// The other data set of one made so, null if it is none.
+std::shared_ptr<const BrickSource> otherOf(const BrickSource& source);
+/// And the first one.
+std::shared_ptr<const BrickSource> besideOther(const BrickSource& source);
+
+/// "interpolated onto the grid of A" or, where nothing is interpolated, "on the same grid", and which parameters are
+/// converted before their difference is taken: ", p from bar to Pa".
+std::string otherText(const BrickSource& source, const BrickSource& other);
+
+/// The channel of the other data that is called as this one; nothing where there is none.
+std::optional<int> otherChannel(const DatasetInfo& info, int channel);
+
+/// What makes values of otherChannel(info, channel) ones in the unit of the channel. Nothing where there is none, or
+/// one that measures something else.
+std::optional<UnitConversion> otherConversion(const DatasetInfo& info, int channel);
+
+/// One channel of a source at a time.
+struct FieldAt {
+    std::shared_ptr<const BrickSource> source;
+    int channel = 0;
+    TimePair time;
+};
+
+/// One field minus another at the samples of the latter, as a data set of one parameter "difference" and one time;
+/// absent where either is, in the unit of the former. Its range is that of a coarse level. Throws Error when the units
+/// cannot be converted, Cancelled.
+std::shared_ptr<const BrickSource> differenceSource(const FieldAt& of, const FieldAt& minus,
+                                                    const Progress& progress = {});
+
+} // namespace tessera::volume

@@ -1,0 +1,51 @@
+#pragma once
+
+#include "volume/bricks/brick_source.h"
+#include "volume/field/parts.h"
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <vector>
+
+/// Differences and smoothing on the samples of one brick, at its level, with what lies around it.
+namespace tessera::volume {
+
+using ReadSamples = std::function<BrickSamples(const BrickKey&)>;
+
+/// Where the parts of a channel are said (volume/field/parts.h).
+struct PartLabel {
+    int channel = 0; ///< of the label
+    Parts parts;
+};
+/// That of a channel, nothing where all of it is one part.
+std::optional<PartLabel> partLabel(const DatasetInfo& info, int channel);
+
+/// A brick with `reach` samples of each sublattice around it. Samples beyond the lattice are absent, and from a sample
+/// so are those of other parts.
+class Neighbourhood {
+public:
+    Neighbourhood(const BrickGrid& grid, const BrickKey& key, int reach, const ReadSamples& read,
+                  const std::optional<PartLabel>& label = {});
+
+    glm::ivec3 size() const { return size_; } ///< of the brick itself
+    /// The sample at a place of the brick, `steps` samples of its sublattice away along an axis; nothing where absent.
+    std::optional<double> at(glm::ivec3 in, int axis = 0, int steps = 0) const;
+    /// Change per physical length along an axis: central difference, one-sided beside absent samples, 0 where both
+    /// neighbours are absent. The sample itself must be present.
+    double derivative(glm::ivec3 in, int axis) const;
+
+private:
+    BrickSamples samples_;
+    std::vector<std::uint8_t> parts_; ///< of the samples; empty: all are of one
+    glm::ivec3 size_, first_, whole_;
+    glm::dvec3 spacing_; ///< between samples of a sublattice at this level
+    int reach_, slices_;
+};
+
+/// A Gaussian of `width` cells over the present samples of each sublattice, part by part, cut at three widths; absent
+/// samples stay absent.
+BrickSamples smoothed(const BrickGrid& grid, const BrickKey& key, double width, const ReadSamples& read,
+                      const std::optional<PartLabel>& label = {});
+
+} // namespace tessera::volume

@@ -1,0 +1,43 @@
+#pragma once
+
+#include "volume/base/progress.h"
+#include "volume/field/dataset.h"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+/// Writing data sets for other programs. Frames are loaded and written one component at a time.
+namespace tessera::volume {
+
+/// What to write; empty lists mean all.
+struct ExportSelection {
+    std::vector<int> parameters; ///< indices into DatasetInfo::parameters
+    std::vector<int> times;      ///< indices into DatasetInfo::times, increasing
+    std::optional<int> channel;  ///< .nrrd: index into DatasetInfo::channels(); needed where there are several
+    /// Integers with a scaling as the values they stand for: in their own type where that holds them, else in the
+    /// smallest one that does, else as floats. For samples whose scaling is not that of the source.
+    bool values = false;
+};
+
+/// Writes the CC data set `source` to `path`; its ending says how:
+///
+/// - .vti  VTK image data, point data, appended raw, one time; vectors as arrays of 3; field data TimeValue and units
+///         ("O2 mol/m3; T K"). Several times: OUT_0000.vti ... and OUT.pvd. A .pvd path gives the same with any number.
+/// - .nrrd one channel at one time.
+/// - .raw  (or .json) samples `[time][component][z][y][x]` as stored, and the sidecar beside them that `openFiles`
+///         reads; a parameter whose type differs from the first's has its own "dtype", each component its own "scale"
+///         and "offset".
+///
+/// Without `selection.values`, integers whose scaling the format cannot say - in .vti and .nrrd any, in .raw one that
+/// changes in time - are written as physical floats (24 significant bits), and so are integer vectors whose components
+/// lack different samples where only one array of flags could say so. Absent samples are NaN in floating point;
+/// integers that have some get a companion array NAME.present (0 = absent). In .raw they keep their stored numbers, bit
+/// for bit: where one number tells them from the present ones, the sidecar states it as missing_value, else there is
+/// the companion array. Files appear complete or not at all; existing ones are replaced. Returns the files written.
+/// Throws Error for another ending, a BCC lattice or a selection the format cannot hold, MachineError when the disk
+/// refuses, Cancelled.
+std::vector<std::string> exportDataset(const Dataset& source, const ExportSelection& selection, const std::string& path,
+                                       const Progress& progress = {});
+
+} // namespace tessera::volume

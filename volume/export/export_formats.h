@@ -1,0 +1,72 @@
+#pragma once
+
+#include "volume/base/progress.h"
+#include "volume/field/dataset.h"
+#include "volume/system/atomic_file.h"
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+/// What the formats of volume/export/export.h share, and those that have a file of their own.
+namespace tessera::volume {
+
+/// How the numbers of one component are read: physical value = offset + scale * stored value.
+struct Scaling {
+    double scale = 1, offset = 0;
+    bool operator==(const Scaling&) const = default;
+};
+
+/// How a parameter is written at the chosen times.
+struct Storage {
+    ScalarType type = ScalarType::F32; ///< of all components
+    bool presence = false;             ///< some sample is absent, and the type has no NaN
+    std::vector<Scaling> scaling;      ///< of each component
+};
+
+/// Looks at every integer frame once. Integers stay integers where each component has one scaling at all times; else
+/// all components are floats.
+Storage storageOf(const Dataset& dataset, int parameter, const std::vector<int>& times);
+
+/// The data set with ExportSelection::values: looks at every integer frame of the selection once.
+Dataset withValues(Dataset dataset, const std::vector<int>& parameters, const std::vector<int>& times);
+
+/// Physical values as floats.
+Storage floatStorage(int components);
+
+/// Whether each time's components lack the same samples: one array of flags can only speak for all of them then.
+bool masksAgree(const Dataset& dataset, int parameter, const std::vector<int>& times);
+
+/// False: the samples have to be converted.
+bool isStoredAs(const Field& field, int component, const Storage& storage);
+
+/// Physical values as float, absent ones NaN.
+Field asFloat(const Field& field);
+
+/// A frame as `storage` has it, absent floats NaN.
+Field loadAs(const Dataset& dataset, int parameter, int component, int time, const Storage& storage);
+
+/// A flag for each sample.
+std::vector<std::uint8_t> presenceOf(const Field& field);
+
+void writeField(AtomicFile& file, const Field& field);
+
+/// Shortest text that reads back equal.
+std::string exactText(double value);
+
+/// One time as VTK image data.
+void writeVti(const Dataset& dataset, const std::vector<int>& parameters, int time, const std::string& path,
+              const Progress& progress);
+
+/// Times as VTK image data, and the .pvd that lists them; the files written.
+std::vector<std::string> writeSeries(const Dataset& dataset, const std::vector<int>& parameters,
+                                     const std::vector<int>& times, const std::filesystem::path& path,
+                                     const Progress& progress);
+
+/// Samples as stored, and the sidecar; the files written.
+std::vector<std::string> writeRaw(const Dataset& dataset, const std::vector<int>& parameters,
+                                  const std::vector<int>& times, const std::filesystem::path& path,
+                                  const Progress& progress);
+
+} // namespace tessera::volume

@@ -1,0 +1,181 @@
+#include "volume/base/error.h"
+#include "volume/export/export_formats.h"
+#include "volume/field/labels.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+
+namespace tessera::volume {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+std::string escaped(const std::string& name) {
+    std::string out;
+    for (const char c : name) {
+        switch (c) {
+        case '&':
+            out += "&amp;";
+            break;
+        case '<':
+            out += "&lt;";
+            break;
+        case '>':
+            out += "&gt;";
+            break;
+        case '"':
+            out += "&quot;";
+            break;
+        default:
+            out += c;
+        }
+    }
+    return out;
+}
+
+/// A name in a list of names and units: separators as %20, %2C, %3B.
+std::string listed(const std::string& name) {
+    std::string out;
+    for (const char c : name) {
+        char code[4] = {c, 0, 0, 0};
+        if (c == ' ' || c == ',' || c == ';' || c == '%') std::snprintf(code, sizeof code, "%%%02X", unsigned(c));
+        out += code;
+    }
+    return out;
+}
+
+std::string_view vtkName(ScalarType type) {
+    constexpr std::string_view kNames[] = {"UInt8", "Int16", "UInt16", "Int32", "Float32"};
+    return kNames[std::size_t(type)];
+}
+
+} // namespace
+
+void writeVti(const Dataset& dataset, const std::vector<int>& parameters, int time, const std::string& path,
+              const Progress& progress) {
+    const DatasetInfo& info = dataset.info;
+    const Lattice& lattice = info.lattice;
+    struct Block {
+        int parameter;
+        Storage storage;
+        bool flags; ///< the presence flags of the parameter instead of its samples
+    };
+    std::vector<Block> blocks;
+    std::string units, labels;
+    for (const int p : parameters) {
+        Storage storage = storageOf(dataset, p, {time});
+        const bool plain = std::all_of(storage.scaling.begin(), storage.scaling.end(),
+                                       [](const Scaling& scaling) { return scaling == Scaling{}; });
+        if (!plain || (storage.presence && !masksAgree(dataset, p, {time})))
+            storage = floatStorage(dataset.info.parameters[std::size_t(p)].components);
+        blocks.push_back({p, storage, false});
+        if (storage.presence) blocks.push_back({p, storage, true});
+        const Parameter& what = info.parameters[std::size_t(p)];
+        units += (units.empty() ? "" : "; ") + listed(what.name) + " " +
+                 (what.unit.empty() || what.unitGuessed ? "-" : what.unit);
+        for (const Label& label : what.labels)
+            labels += (labels.empty() ? "" : "; ") + listed(what.name) + " " + std::to_string(label.value) + " " +
+                      labelText(label);
+    }
+    const std::string extent = "0 " + std::to_string(lattice.size.x - 1) + " 0 " + std::to_string(lattice.size.y - 1) +
+                               " 0 " + std::to_string(lattice.size.z - 1);
+    const auto triple = [](glm::dvec3 v) { return exactText(v.x) + " " + exactText(v.y) + " " + exactText(v.z); };
+    std::string head = "<?xml version=\"1.0\"?>\n<VTKFile type=\"ImageData\" version=\"1.0\" "
+                       "byte_order=\"LittleEndian\" header_type=\"UInt64\">\n";
+    head += "<ImageData WholeExtent=\"" + extent + "\" Origin=\"" + triple(lattice.origin) + "\" Spacing=\"" +
+            triple(lattice.spacing) + "\">\n<FieldData>\n";
+    head += "<DataArray type=\"Float64\" Name=\"TimeValue\" NumberOfTuples=\"1\" format=\"ascii\">" +
+            exactText(info.times[std::size_t(time)]) + "</DataArray>\n";
+    for (const Quantity& quantity : info.quantities) {
+        units += "; " + listed(quantity.name) + " " + (quantity.unit.empty() ? "-" : quantity.unit);
+        if (std::isfinite(quantity.values[std::size_t(time)]))
+            head += "<DataArray type=\"Float64\" Name=\"" + escaped(quantity.name) +
+                    "\" NumberOfTuples=\"1\" format=\"ascii\">" + exactText(quantity.values[std::size_t(time)]) +
+                    "</DataArray>\n";
+    }
+    const auto words = [](const std::string& name, const std::string& value) {
+        std::string codes;
+        for (const char c : value) codes += std::to_string(int(static_cast<unsigned char>(c))) + " ";
+        return "<Array type=\"String\" Name=\"" + name + "\" NumberOfTuples=\"1\" format=\"ascii\">" + codes +
+               "0</Array>\n";
+    };
+    head += words("units", units);
+    if (!labels.empty()) head += words("labels", labels);
+    head +=
+        words("length_unit", info.lengthUnit) + words("time_name", info.timeName) + words("time_unit", info.timeUnit);
+    head += "</FieldData>\n<Piece Extent=\"" + extent + "\">\n<PointData>\n";
+    std::size_t offset = 0;
+    const auto sizeOf = [&](const Block& block) {
+        const Parameter& what = info.parameters[std::size_t(block.parameter)];
+        return block.flags ? lattice.count()
+                           : lattice.count() * std::size_t(what.components) * byteSize(block.storage.type);
+    };
+    for (const Block& block : blocks) {
+        const Parameter& what = info.parameters[std::size_t(block.parameter)];
+        head += "<DataArray type=\"" + std::string(block.flags ? "UInt8" : vtkName(block.storage.type)) + "\" Name=\"" +
+                escaped(what.name) + (block.flags ? ".present" : "") + "\"";
+        if (what.components > 1 && !block.flags)
+            head += " NumberOfComponents=\"" + std::to_string(what.components) + "\"";
+        head += " format=\"appended\" offset=\"" + std::to_string(offset) + "\"/>\n";
+        offset += sizeof(std::uint64_t) + sizeOf(block);
+    }
+    head += "</PointData>\n</Piece>\n</ImageData>\n<AppendedData encoding=\"raw\">\n_";
+
+    AtomicFile file(path);
+    file.write(head);
+    for (std::size_t b = 0; b < blocks.size(); ++b) {
+        const Block& block = blocks[b];
+        const Parameter& what = info.parameters[std::size_t(block.parameter)];
+        progress.advance(double(b) / double(blocks.size()), what.name);
+        const std::uint64_t size = sizeOf(block);
+        file.write(&size, sizeof size);
+        if (block.flags) {
+            const auto flags = presenceOf(dataset.load(block.parameter, 0, time));
+            file.write(flags.data(), flags.size());
+        } else if (what.components == 1) {
+            writeField(file, loadAs(dataset, block.parameter, 0, time, block.storage));
+        } else { // components side by side
+            const std::size_t bytes = byteSize(block.storage.type), stride = bytes * std::size_t(what.components);
+            std::vector<std::byte> tuples(size);
+            for (int c = 0; c < what.components; ++c) {
+                const Field field = loadAs(dataset, block.parameter, c, time, block.storage);
+                for (std::size_t i = 0; i < field.count(); ++i)
+                    std::memcpy(tuples.data() + i * stride + std::size_t(c) * bytes, field.samples.data() + i * bytes,
+                                bytes);
+            }
+            file.write(tuples.data(), tuples.size());
+        }
+    }
+    file.write("\n</AppendedData>\n</VTKFile>\n");
+    file.commit();
+}
+
+std::vector<std::string> writeSeries(const Dataset& dataset, const std::vector<int>& parameters,
+                                     const std::vector<int>& times, const fs::path& path, const Progress& progress) {
+    std::vector<std::string> written;
+    fs::path base = path;
+    base.replace_extension();
+    std::string list = "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" "
+                       "byte_order=\"LittleEndian\">\n<Collection>\n";
+    for (std::size_t t = 0; t < times.size(); ++t) {
+        char number[32];
+        std::snprintf(number, sizeof number, "_%04zu.vti", t);
+        const fs::path frame = base.string() + number;
+        writeVti(dataset, parameters, times[t], frame.string(),
+                 progress.part(double(t) / double(times.size()), double(t + 1) / double(times.size())));
+        written.push_back(frame.string());
+        list += "<DataSet timestep=\"" + exactText(dataset.info.times[std::size_t(times[t])]) +
+                "\" group=\"\" part=\"0\" file=\"" + escaped(frame.filename().string()) + "\"/>\n";
+    }
+    list += "</Collection>\n</VTKFile>\n";
+    AtomicFile file(base.string() + ".pvd");
+    file.write(list);
+    file.commit();
+    written.push_back(file.path());
+    return written;
+}
+
+} // namespace tessera::volume

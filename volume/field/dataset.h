@@ -1,0 +1,87 @@
+#pragma once
+
+#include "volume/base/describe.h"
+#include "volume/field/field.h"
+#include "volume/field/lattice.h"
+#include "volume/field/parts.h"
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace tessera::volume {
+
+/// A value of a categorical parameter, its name, e.g. 1 "air side", and its colour.
+struct Label {
+    int value = 0;
+    std::string name;
+    std::string color = {}; ///< "#rrggbb"; "" = chosen by the program
+    bool operator==(const Label&) const = default;
+};
+
+/// A number that belongs to each time of a data set: a voltage, a current density, an operating point.
+struct Quantity {
+    std::string name, unit;
+    std::vector<double> values; ///< one for each time, NaN where not known
+    bool operator==(const Quantity&) const = default;
+};
+
+/// One quantity per point: a scalar (1 component) or a vector (3).
+struct Parameter {
+    std::string name, unit;
+    int components = 1;
+    ScalarType type = ScalarType::F32;
+    bool categorical = false; ///< a label: nearest neighbour, named values, no arithmetic
+    std::vector<Label> labels;
+    /// Physical range of present samples over all times, one per component, then for a vector that of its magnitude.
+    /// Empty while not yet known.
+    std::vector<Range> ranges;
+    /// Regions whose samples are never mixed (volume/field/parts.h).
+    Parts parts = {};
+    bool unitGuessed = false; ///< the unit follows from the name alone, no file and no user states it
+    bool operator==(const Parameter&) const = default;
+};
+
+/// A scalar to look at: a component of a parameter, or the magnitude of a vector. Named "T", "U.x", "U.y", "U.z",
+/// "|U|".
+struct Channel {
+    int parameter = 0;
+    int component = 0; ///< == components of a vector parameter: its magnitude (derived, never stored)
+    std::string name, unit;
+    bool magnitude = false;
+    bool operator==(const Channel&) const = default;
+};
+
+/// All that is known of a data set without reading a sample.
+struct DatasetInfo {
+    std::string name;
+    Lattice lattice;
+    Box bounds; ///< what is shown: the box of the first to the last sample of the CC grid it came from
+    std::string lengthUnit = "m";
+    std::vector<Parameter> parameters;
+    std::vector<double> times{0};     ///< strictly increasing
+    std::string timeName = "time";    ///< what `times` count: time, operating point, voltage, step
+    std::string timeUnit = "s";       ///< of `times`, "" where there is none
+    std::vector<Quantity> quantities; ///< over the times
+    std::string provenance;           ///< where it came from, free text
+    bool operator==(const DatasetInfo&) const = default;
+
+    /// Every channel: parameters in order, for vectors the components, then the magnitude.
+    std::vector<Channel> channels() const;
+    /// Index into channels() of a channel name; a vector's plain name means its magnitude.
+    std::optional<int> findChannel(std::string_view wanted) const;
+    /// Physical range of a channel, {0, 1} while not known.
+    Range channelRange(const Channel& channel) const;
+    /// Index of the time nearest to `time`.
+    int nearestTime(double time) const;
+};
+
+/// A data set whose frames are read when asked for: `load(parameter, component, time index)` gives one stored
+/// component. May be called from any thread, one call at a time per data set; throws Error when the file is bad.
+struct Dataset {
+    DatasetInfo info;
+    std::function<Field(int parameter, int component, int time)> load;
+};
+
+} // namespace tessera::volume

@@ -1,0 +1,29 @@
+#include "volume/field/field.h"
+
+#include "volume/base/parallel.h"
+
+namespace tessera::volume {
+
+double Field::value(std::size_t index) const {
+    return dispatch(type, [&]<class T>(T) { return offset + scale * static_cast<double>(as<T>()[index]); });
+}
+
+Field makeField(const Lattice& lattice, ScalarType type) {
+    Field field;
+    field.lattice = lattice;
+    field.type = type;
+    field.samples.resize(lattice.count() * byteSize(type));
+    return field;
+}
+
+std::vector<double> physicalValues(const Field& field) {
+    std::vector<double> values(field.count());
+    dispatch(field.type, [&]<class T>(T) {
+        const auto stored = field.as<T>();
+        parallelFor(
+            values.size(), [&](std::size_t i) { values[i] = field.offset + field.scale * double(stored[i]); }, 1 << 16);
+    });
+    return values;
+}
+
+} // namespace tessera::volume

@@ -1,0 +1,115 @@
+#include "volume/field/part_masks.h"
+
+#include "volume/base/error.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+#include <utility>
+#include <vector>
+
+namespace tessera::volume {
+
+namespace {
+
+/// By parameter, the label of its parts or -1.
+std::vector<int> labelsOf(const DatasetInfo& info) {
+    std::vector<int> labels;
+    for (const Parameter& parameter : info.parameters) labels.push_back(labelOf(info, parameter));
+    return labels;
+}
+
+bool noneHasParts(const std::vector<int>& labels) {
+    return std::all_of(labels.begin(), labels.end(), [](int label) { return label < 0; });
+}
+
+std::vector<Parts> partsOf(const DatasetInfo& info) {
+    std::vector<Parts> parts;
+    for (const Parameter& parameter : info.parameters) parts.push_back(parameter.parts);
+    return parts;
+}
+
+} // namespace
+
+int labelOf(const DatasetInfo& info, const Parameter& parameter) {
+    if (parameter.categorical || parameter.parts.count() < 2) return -1;
+    for (std::size_t p = 0; p < info.parameters.size(); ++p) {
+        const Parameter& label = info.parameters[p];
+        if (label.categorical && label.components == 1 && label.name == parameter.parts.label) return int(p);
+    }
+    return -1;
+}
+
+Field withParts(Field field, const Field& label, const Parts& parts) {
+    if (parts.count() > kMostParts) throw Error("more than " + std::to_string(kMostParts) + " parts");
+    if (label.count() != field.count()) throw Error("a label has another number of samples");
+    auto mask = std::make_shared<Mask>(field.count());
+    dispatch(label.type, [&]<class T>(T) {
+        const auto stored = label.as<T>();
+        T known{};
+        std::uint8_t code = 0;
+        for (std::size_t i = 0; i < stored.size(); ++i) {
+            if (code == 0 || stored[i] != known) {
+                known = stored[i];
+                const double value = label.offset + label.scale * double(known);
+                code = std::uint8_t(1 + (std::abs(value) < 2e9 ? parts.partOf(int(std::lround(value))) : 0));
+            }
+            (*mask)[i] = !field.present(i) ? std::uint8_t(0) : label.present(i) ? code : std::uint8_t(1);
+        }
+    });
+    field.mask = std::move(mask);
+    return field;
+}
+
+Field withoutParts(Field field) {
+    if (!field.mask) return field;
+    const auto [least, most] = std::minmax_element(field.mask->begin(), field.mask->end());
+    if (*least != 0) {
+        field.mask.reset();
+    } else if (*most > 1) {
+        auto plain = std::make_shared<Mask>(*field.mask);
+        for (std::uint8_t& flag : *plain) flag = flag != 0 ? 1 : 0;
+        field.mask = std::move(plain);
+    }
+    return field;
+}
+
+Dataset withParts(const Dataset& dataset) {
+    const std::vector<int> labels = labelsOf(dataset.info);
+    if (noneHasParts(labels)) return dataset;
+    Dataset out = dataset;
+    struct Kept {
+        int label = -1, time = -1;
+        Field field;
+    };
+    out.load = [load = dataset.load, labels, parts = partsOf(dataset.info),
+                kept = std::make_shared<Kept>()](int parameter, int component, int time) {
+        Field field = load(parameter, component, time);
+        const int label = labels[std::size_t(parameter)];
+        if (label < 0) return field;
+        if (kept->label != label || kept->time != time) *kept = {label, time, load(label, 0, time)};
+        return withParts(std::move(field), kept->field, parts[std::size_t(parameter)]);
+    };
+    return out;
+}
+
+SliceLoad withParts(const DatasetInfo& info, SliceLoad slices) {
+    const std::vector<int> labels = labelsOf(info);
+    if (!slices || noneHasParts(labels)) return slices;
+    struct Kept {
+        std::array<int, 4> key{-1, -1, -1, -1};
+        Field field;
+    };
+    return [load = std::move(slices), labels, parts = partsOf(info),
+            kept = std::make_shared<Kept>()](int parameter, int component, int time, int first, int count) {
+        Field field = load(parameter, component, time, first, count);
+        const int label = labels[std::size_t(parameter)];
+        if (label < 0) return field;
+        const std::array<int, 4> key{label, time, first, count};
+        if (kept->key != key) *kept = {key, load(label, 0, time, first, count)};
+        return withParts(std::move(field), kept->field, parts[std::size_t(parameter)]);
+    };
+}
+
+} // namespace tessera::volume

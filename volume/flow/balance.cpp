@@ -1,0 +1,148 @@
+#include "volume/flow/balance.h"
+
+#include "volume/bricks/brick_cache.h"
+#include "volume/bricks/brick_columns.h"
+#include "volume/bricks/sample_cells.h"
+#include "volume/derived/stencil.h"
+
+#include <map>
+#include <optional>
+
+namespace tessera::volume {
+
+namespace {
+
+constexpr std::size_t kCacheBytes = std::size_t(256) << 20;
+
+void add(Crossing& to, double area, double carried, double flow) {
+    to.area += area;
+    (carried > 0 ? to.out : to.in) += std::abs(carried);
+    to.flow += flow;
+}
+
+void add(Crossing& to, const Crossing& other) {
+    to.area += other.area;
+    to.in += other.in;
+    to.out += other.out;
+    to.flow += other.flow;
+}
+
+/// Of one region in one brick.
+struct Part {
+    std::array<Crossing, 6> faces;
+    std::map<int, Crossing> borders;
+    double volume = 0, amount = 0;
+};
+
+/// A brick with a sample of each channel around it.
+class Around {
+public:
+    Around(const BrickSource& source, const BalanceQuery& query, glm::ivec3 index) {
+        const auto of = [&](int channel) {
+            return Neighbourhood(source.grid(), {channel, query.time, 0, index}, 1,
+                                 [&](const BrickKey& key) { return source.read(key); });
+        };
+        value_.push_back(of(query.channel));
+        for (const int channel : query.velocity) value_.push_back(of(channel));
+        if (query.label >= 0) label_.push_back(of(query.label));
+    }
+    glm::ivec3 size() const { return value_.front().size(); }
+    /// The label of a sample, 0 without one; nothing where it is absent or beyond the lattice.
+    std::optional<int> region(glm::ivec3 in, int axis = 0, int steps = 0) const {
+        if (label_.empty()) return 0;
+        const auto label = label_.front().at(in, axis, steps);
+        if (!label) return std::nullopt;
+        return int(std::lround(*label));
+    }
+    std::optional<double> carried(glm::ivec3 in, int axis = 0, int steps = 0) const {
+        return value_[0].at(in, axis, steps);
+    }
+    /// Component of the velocity along `along`.
+    std::optional<double> velocity(glm::ivec3 in, int along, int axis = 0, int steps = 0) const {
+        return value_[std::size_t(1 + along)].at(in, axis, steps);
+    }
+
+private:
+    std::vector<Neighbourhood> value_, label_;
+};
+
+/// Everything that leaves the cell of one sample.
+void addSample(const Around& around, const SampleCells& cells, glm::ivec3 in, glm::ivec3 at, int own, Part& part) {
+    const auto c = around.carried(in);
+    if (!c) return;
+    const double volume = cells.volume(at);
+    part.volume += volume;
+    part.amount += *c * volume;
+    const glm::dvec3 box = cells.size(at);
+    const int s = cells.sublatticeOf(at);
+    for (int axis = 0; axis < 3; ++axis) {
+        const auto u = around.velocity(in, axis);
+        if (!u) continue;
+        const double area = box[(axis + 1) % 3] * box[(axis + 2) % 3] / cells.sublattices();
+        for (const int side : {-1, 1}) {
+            const int next = cells.within(at)[axis] + side;
+            if (next < 0 || next >= cells.count(s, axis)) {
+                add(part.faces[std::size_t(2 * axis + (side > 0 ? 1 : 0))], area, *c * *u * side * area,
+                    *u * side * area);
+                continue;
+            }
+            const auto other = around.region(in, axis, side);
+            if (!other || *other == own) continue;
+            const auto otherC = around.carried(in, axis, side), otherU = around.velocity(in, axis, axis, side);
+            if (!otherC || !otherU) continue;
+            add(part.borders[*other], area, 0.5 * (*c * *u + *otherC * *otherU) * side * area,
+                0.5 * (*u + *otherU) * side * area);
+        }
+    }
+}
+
+} // namespace
+
+Crossing RegionBalance::total() const {
+    Crossing sum;
+    for (const Crossing& face : faces) add(sum, face);
+    for (const BorderCrossing& border : borders) add(sum, border.crossing);
+    return sum;
+}
+
+std::vector<RegionBalance> computeBalance(const BrickSource& source, const BalanceQuery& query,
+                                          const Progress& progress) {
+    const std::vector<int> regions = query.label >= 0 ? query.regions : std::vector<int>{0};
+    // Bricks are read again for their neighbours; the cache does not own the source.
+    const BrickCache cache(std::shared_ptr<const BrickSource>(std::shared_ptr<void>(), &source), kCacheBytes);
+    const BrickGrid grid = source.grid();
+    const SampleCells cells(grid, source.info().bounds, 0);
+    std::vector<Part> total(regions.size());
+    inBrickOrder(
+        allBricks(grid),
+        [&](glm::ivec3 index) {
+            std::vector<Part> parts(regions.size());
+            const Around around(cache, query, index);
+            const glm::ivec3 first = grid.levelBegin(index, 0);
+            forSamples(grid, index, 0, [&](std::size_t, glm::ivec3 at) {
+                const auto own = around.region(at - first);
+                if (!own) return;
+                for (std::size_t r = 0; r < regions.size(); ++r)
+                    if (regions[r] == *own) addSample(around, cells, at - first, at, *own, parts[r]);
+            });
+            return parts;
+        },
+        [&](const std::vector<Part>& parts) {
+            for (std::size_t r = 0; r < parts.size(); ++r) {
+                for (std::size_t f = 0; f < 6; ++f) add(total[r].faces[f], parts[r].faces[f]);
+                for (const auto& [value, crossing] : parts[r].borders) add(total[r].borders[value], crossing);
+                total[r].volume += parts[r].volume;
+                total[r].amount += parts[r].amount;
+            }
+        },
+        [&](double fraction) { progress.advance(fraction, "balance"); });
+    std::vector<RegionBalance> out;
+    for (std::size_t r = 0; r < regions.size(); ++r) {
+        RegionBalance balance{regions[r], total[r].faces, {}, total[r].volume, total[r].amount};
+        for (const auto& [value, crossing] : total[r].borders) balance.borders.push_back({value, crossing});
+        out.push_back(std::move(balance));
+    }
+    return out;
+}
+
+} // namespace tessera::volume

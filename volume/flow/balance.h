@@ -1,0 +1,54 @@
+#pragma once
+
+#include "volume/base/progress.h"
+#include "volume/bricks/brick_source.h"
+
+#include <array>
+#include <vector>
+
+/// What is carried into and out of regions by a flow, counted sample by sample.
+namespace tessera::volume {
+
+struct BalanceQuery {
+    int channel = 0;                      ///< of what is carried, e.g. a concentration c
+    std::array<int, 3> velocity{0, 0, 0}; ///< channels of the components of the velocity U
+    int label = -1;                       ///< channel of a label; -1: the whole box is one region
+    std::vector<int> regions;             ///< of its values, in the order wanted
+    int time = 0;
+};
+
+/// What crosses one surface of a region, as integrals of c U.n dA, n pointing out of the region.
+struct Crossing {
+    double area = 0;        ///< where c and U exist (on both sides of a border)
+    double in = 0, out = 0; ///< parts that flow in and out, neither negative where c is not
+    double flow = 0;        ///< volume flow, out less in
+    double net() const { return out - in; }
+};
+
+struct BorderCrossing {
+    int region = 0; ///< the label value on the other side
+    Crossing crossing;
+};
+
+struct RegionBalance {
+    int region = 0;
+    std::array<Crossing, 6> faces;       ///< of the box: x from below, x from above, y ...
+    std::vector<BorderCrossing> borders; ///< to other regions, by rising label value
+    double volume = 0;                   ///< of its samples that have c
+    double amount = 0;                   ///< integral of c over them
+
+    Crossing total() const;
+    /// Out less in: what comes into being inside (negative: what is used up) if nothing is stored and all is carried
+    /// by convection.
+    double residual() const { return total().net(); }
+};
+
+/// Flux over each surface by the midpoint rule: through a face of the box the values of the first or last samples, each
+/// times the area of its cell; through the border between neighbouring samples of two regions the mean of c U.n of
+/// both. Where c or U is absent on either side of a border nothing crosses it. On BCC each sublattice is counted by
+/// itself and both averaged. Convection alone: what diffuses is in the residual, and so is what is stored between
+/// times. Throws Error, Cancelled.
+std::vector<RegionBalance> computeBalance(const BrickSource& source, const BalanceQuery& query,
+                                          const Progress& progress = {});
+
+} // namespace tessera::volume

@@ -1,0 +1,82 @@
+#pragma once
+
+#include "volume/base/load_once.h"
+#include "volume/reconstruct/sample_grid.h"
+
+#include <functional>
+#include <optional>
+#include <span>
+#include <vector>
+
+/// Lines that follow a vector field.
+namespace tessera::volume {
+
+/// A value between the samples as in probe.h, of the part of the nearest one alone; empty where absent.
+std::optional<double> valueAt(const SampleGrid& grid, glm::dvec3 position);
+
+/// A vector parameter at one time and level of detail, in memory.
+struct VectorGrid {
+    SampleGrid x, y, z;
+    Box bounds; ///< of the data set: nothing flows beyond it
+    /// Between the samples as in probe.h, in the parameter's unit; empty outside of the bounds and where a component is
+    /// absent.
+    std::optional<glm::dvec3> at(glm::dvec3 position) const;
+};
+
+/// `parameter`: index of DatasetInfo::parameters, with three components. Throws Error, Cancelled.
+VectorGrid readVector(const BrickSource& source, int parameter, int time, int level, const Progress& progress = {});
+
+using VectorField = std::function<std::optional<glm::dvec3>(glm::dvec3 position)>;
+
+/// A vector parameter at all its times, read when asked for; between two of them, linear. Refers to the source.
+/// May be used from several threads. Throws what readVector does.
+class VectorSeries {
+public:
+    VectorSeries(const BrickSource& source, int parameter, int level);
+    /// Empty before the first and after the last time, and where either neighbour has no vector.
+    std::optional<glm::dvec3> at(glm::dvec3 position, double time) const;
+
+private:
+    std::vector<double> times_;
+    mutable LoadOnce<std::size_t, VectorGrid, std::hash<std::size_t>> frames_;
+};
+
+using ChangingField = std::function<std::optional<glm::dvec3>(glm::dvec3 position, double time)>;
+
+struct StreamlineSettings {
+    glm::dvec3 cell{1};       ///< steps and errors are measured in these lengths
+    double tolerance = 1e-4;  ///< error of a step, cells
+    double longestStep = 0.5; ///< cells
+    double longest = 1e300;   ///< of a line, each way, physical
+    double slowest = 0;       ///< a line ends where the field is no faster
+    int mostSteps = 5000;     ///< each way
+};
+
+/// The line through a point along the field, from its upstream to its downstream end; the point is one of its vertices.
+/// Ends where the field does, to 1/256 of a cell. Empty where the point has no vector, or a slow one.
+///
+/// J. R. Dormand, P. J. Prince: A family of embedded Runge-Kutta formulae, J. Comp. Appl. Math. 6, 1980: fifth order,
+/// the step adapted to the difference from the fourth.
+std::vector<glm::dvec3> streamline(const VectorField& field, glm::dvec3 seed, const StreamlineSettings& settings);
+
+/// Of each seed, in order; the same lines on any number of threads. `field` is called from all of them. Cancelled.
+std::vector<std::vector<glm::dvec3>> streamlines(const VectorField& field, std::span<const glm::dvec3> seeds,
+                                                 const StreamlineSettings& settings, const Progress& progress = {});
+
+/// Where a particle is: vertices in the order of time.
+struct Pathline {
+    std::vector<glm::dvec3> places;
+    std::vector<double> times;
+};
+
+/// The way of a particle that is at `seed` at a time, from where it enters the field, or `begin`, to where it leaves
+/// it, or `end`. The integrator, and what ends a line, as of streamline(). The field's unit: lengths over times.
+Pathline pathline(const ChangingField& field, glm::dvec3 seed, double time, double begin, double end,
+                  const StreamlineSettings& settings);
+
+/// Of each seed, as streamlines().
+std::vector<Pathline> pathlines(const ChangingField& field, std::span<const glm::dvec3> seeds, double time,
+                                double begin, double end, const StreamlineSettings& settings,
+                                const Progress& progress = {});
+
+} // namespace tessera::volume

@@ -1,0 +1,32 @@
+#pragma once
+
+#include "volume/field/dataset.h"
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+/// Which parameters play a part that their names and units tell: velocity, density, the label of regions.
+namespace tessera::volume {
+
+/// Channels of the components of a vector parameter by name; "" finds the velocity: the first vector in m/s (or of
+/// length per time), else one named U, u, v, vel or velocity. Nothing where there is none.
+std::optional<std::array<int, 3>> velocityChannels(const DatasetInfo& info, const std::string& name = {});
+
+/// Channel of the density: a scalar named rho, density or Density, in kg/m3 where it has a unit.
+std::optional<int> densityChannel(const DatasetInfo& info);
+
+/// Channel of a categorical parameter by name; "" finds the first one.
+std::optional<int> labelChannel(const DatasetInfo& info, const std::string& name = {});
+
+/// The parameter a channel belongs to.
+const Parameter& parameterOf(const DatasetInfo& info, int channel);
+
+/// The name of a label value: what the data state, else the name of the label and the value, "region 3".
+std::string labelName(const Parameter& label, int value);
+
+/// A value by the name or number of a label. Nothing where the data have neither.
+std::optional<int> labelValue(const Parameter& label, const std::string& nameOrNumber);
+
+} // namespace tessera::volume

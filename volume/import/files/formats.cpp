@@ -1,0 +1,90 @@
+#include "volume/import/files/formats.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cstdint>
+#include <fstream>
+
+namespace tessera::volume {
+
+namespace {
+
+constexpr FileFormat kFormats[] = {
+#define TESSERA_FORMAT(name, suffixes, lengthUnit, slices, ...) FileFormat{name, suffixes, "", lengthUnit, slices},
+#define TESSERA_UNREAD(name, suffixes, advice) FileFormat{name, suffixes, advice, "", false},
+#include "volume/import/files/format_rows.inc"
+};
+
+/// Calls body(suffix) for each suffix of a row.
+void eachSuffix(const FileFormat& format, auto&& body) {
+    std::string_view rest = format.suffixes;
+    while (!rest.empty()) {
+        const std::size_t end = std::min(rest.size(), rest.find(' '));
+        body(rest.substr(0, end));
+        rest.remove_prefix(std::min(rest.size(), end + 1));
+    }
+}
+
+} // namespace
+
+std::span<const FileFormat> fileFormats() {
+    return kFormats;
+}
+
+const FileFormat* formatOf(std::string_view path) {
+    std::string name(path.substr(path.find_last_of('/') == std::string_view::npos ? 0 : path.find_last_of('/') + 1));
+    std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+    const FileFormat* best = nullptr;
+    std::size_t longest = 0;
+    for (const FileFormat& format : kFormats)
+        eachSuffix(format, [&](std::string_view suffix) {
+            if (suffix.size() <= longest || !name.ends_with(suffix)) return;
+            best = &format;
+            longest = suffix.size();
+        });
+    return best;
+}
+
+const FileFormat* formatNamed(std::string_view name) {
+    const auto at = std::find_if(std::begin(kFormats), std::end(kFormats),
+                                 [&](const FileFormat& format) { return format.name == name; });
+    return at == std::end(kFormats) ? nullptr : at;
+}
+
+const FileFormat* formatOfFile(const std::string& path) {
+    if (const FileFormat* format = formatOf(path)) return format;
+    std::ifstream in(path, std::ios::binary);
+    char head[132] = {};
+    in.read(head, sizeof head);
+    return in && std::string_view(head + 128, 4) == "DICM" ? formatNamed("DICOM") : nullptr;
+}
+
+bool isSlice(const FileFormat& format, const std::string& path) {
+    if (!format.slices || format.name != "TIFF") return format.slices;
+    std::ifstream in(path, std::ios::binary);
+    const auto number = [&](std::size_t bytes, bool big) {
+        unsigned char raw[8] = {};
+        in.read(reinterpret_cast<char*>(raw), static_cast<std::streamsize>(bytes));
+        std::uint64_t value = 0;
+        for (std::size_t i = 0; i < bytes; ++i) value = value * 256 + raw[big ? i : bytes - 1 - i];
+        return value;
+    };
+    char order[2] = {};
+    in.read(order, 2);
+    const bool big = order[0] == 'M', wide = number(2, big) == 43; // BigTIFF
+    if (wide) number(4, big);
+    const std::uint64_t directory = number(wide ? 8 : 4, big);
+    in.seekg(static_cast<std::streamoff>(directory));
+    const std::uint64_t entries = number(wide ? 8 : 2, big);
+    in.seekg(static_cast<std::streamoff>(entries * (wide ? 20 : 12)), std::ios::cur);
+    return number(wide ? 8 : 4, big) == 0 || !in;
+}
+
+std::string readableSuffixes() {
+    std::string all;
+    for (const FileFormat& format : kFormats)
+        if (format.advice.empty()) all += (all.empty() ? "" : " ") + std::string(format.suffixes);
+    return all;
+}
+
+} // namespace tessera::volume

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+
+/// The file formats known: the rows of volume/import/files/format_rows.inc.
+namespace tessera::volume {
+
+struct FileFormat {
+    std::string_view name;       ///< as `tessera info` says it
+    std::string_view suffixes;   ///< in small letters, separated by blanks; the longest that fits a file counts
+    std::string_view advice;     ///< for formats without a reader: which one the program that wrote it can write
+    std::string_view lengthUnit; ///< taken where a file says none; simulations write metres
+    bool slices = false;         ///< files numbered alike are slices of one volume (single-page TIFF, DICOM)
+};
+
+std::span<const FileFormat> fileFormats();
+
+/// The format that a file's name tells; null where its suffix is in no row.
+const FileFormat* formatOf(std::string_view path);
+
+/// That of a name, as a Piece has it.
+const FileFormat* formatNamed(std::string_view name);
+
+/// The format of a file by its name, else by its first bytes (DICOM files need no suffix).
+const FileFormat* formatOfFile(const std::string& path);
+
+/// A page of a TIFF file is a slice if it is the only one there.
+bool isSlice(const FileFormat& format, const std::string& path);
+
+/// All suffixes with a reader, separated by blanks.
+std::string readableSuffixes();
+
+} // namespace tessera::volume

@@ -1,0 +1,151 @@
+#include "volume/import/files/named_files.h"
+
+#include "volume/base/error.h"
+#include "volume/import/files/series.h"
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <fstream>
+#include <glob.h>
+#include <set>
+#include <string_view>
+
+namespace tessera::volume {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr std::size_t kMostFiles = 100'000;
+
+std::string ending(const fs::path& path) {
+    std::string text = path.extension().string();
+    std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+    return text;
+}
+
+bool isHeader(const std::string& kind) {
+    constexpr std::array<std::string_view, 14> kHeaders = {".json",  ".nhdr", ".mhd",  ".vtm",  ".pvtu",
+                                                           ".pvti",  ".pvtr", ".pvts", ".pvtk", ".case",
+                                                           ".encas", ".xmf",  ".xdmf", ".vthb"};
+    return std::find(kHeaders.begin(), kHeaders.end(), kind) != kHeaders.end();
+}
+
+/// The beginning of a file, where headers name others.
+std::string headOf(const fs::path& path) {
+    constexpr std::size_t kMost = 1 << 20;
+    std::string text(kMost, '\0');
+    std::ifstream in(path, std::ios::binary);
+    in.read(text.data(), std::streamsize(text.size()));
+    text.resize(std::size_t(std::max<std::streamsize>(in.gcount(), 0)));
+    return text;
+}
+
+/// Every piece of a text that may be the name of a file: words, what stands in quotation marks, what follows the colon
+/// or equals sign of a line.
+std::set<std::string> possibleNames(const std::string& text) {
+    constexpr std::size_t kLongest = 1024;
+    std::set<std::string> names;
+    const auto add = [&names](std::string_view name) {
+        constexpr std::string_view kSpace = " \t\r";
+        const std::size_t first = name.find_first_not_of(kSpace);
+        if (first == std::string_view::npos) return;
+        name = name.substr(first, name.find_last_not_of(kSpace) - first + 1);
+        if (name.size() <= kLongest && name.find('.') != std::string_view::npos) names.emplace(name);
+    };
+    const auto addPieces = [&](std::string_view line, std::string_view separators) {
+        for (std::size_t at = 0; at < line.size();) {
+            const std::size_t end = std::min(line.find_first_of(separators, at), line.size());
+            add(line.substr(at, end - at));
+            at = end + 1;
+        }
+    };
+    const std::string_view all = text;
+    for (std::size_t at = 0; at < all.size();) {
+        const std::size_t end = std::min(all.find('\n', at), all.size());
+        const std::string_view line = all.substr(at, end - at);
+        addPieces(line, " \t\r\"'");
+        addPieces(line, "\"'");
+        if (const std::size_t mark = line.find_first_of(":="); mark != std::string_view::npos)
+            add(line.substr(mark + 1));
+        at = end + 1;
+    }
+    return names;
+}
+
+/// Files beside a header that fit a name of it, in which stars stand for anything.
+std::vector<fs::path> fitting(const fs::path& header, const std::string& name) {
+    const fs::path path = fs::path(name).is_absolute() ? fs::path(name) : header.parent_path() / name;
+    if (name.find('*') == std::string::npos) return {path};
+    glob_t found{};
+    std::vector<fs::path> paths;
+    if (glob(path.c_str(), 0, nullptr, &found) == 0) paths.assign(found.gl_pathv, found.gl_pathv + found.gl_pathc);
+    globfree(&found);
+    return paths;
+}
+
+/// Files that one names directly.
+std::vector<fs::path> namedDirectly(const fs::path& path) {
+    std::vector<fs::path> named;
+    std::error_code problem;
+    const auto addFolder = [&](const fs::path& folder) {
+        for (fs::recursive_directory_iterator at(folder, problem), end;
+             !problem && at != end && named.size() < kMostFiles; at.increment(problem))
+            named.push_back(at->path());
+    };
+    const std::string kind = ending(path);
+    if (kind == ".foam" || (fs::is_directory(path, problem) && fs::exists(path / "system" / "controlDict", problem))) {
+        addFolder(kind == ".foam" ? path.parent_path() : path);
+    } else if (fs::is_directory(path, problem) || kind == ".pvd" || kind == ".series" || !fs::exists(path, problem)) {
+        for (const SeriesFile& file : expandPaths({path.string()})) {
+            named.emplace_back(file.path);
+            named.insert(named.end(), file.slices.begin(), file.slices.end());
+        }
+    } else if (kind == ".cas" || kind == ".msh") { // the values of Fluent, and those of PLOT3D
+        named.push_back(fs::path(path).replace_extension(".dat"));
+    } else if (kind == ".xyz" || kind == ".p3d" || kind == ".x") {
+        for (const char* values : {".q", ".Q", ".qst", ".f", ".fun", ".F"})
+            named.push_back(fs::path(path).replace_extension(values));
+    } else if (kind == ".raw") {
+        named.push_back(fs::path(path).replace_extension(".json"));
+    } else if (isHeader(kind)) {
+        if (kind == ".json") named.push_back(fs::path(path).replace_extension(".raw"));
+        for (const std::string& name : possibleNames(headOf(path)))
+            for (fs::path& file : fitting(path, name)) named.push_back(std::move(file));
+    }
+    return named;
+}
+
+} // namespace
+
+std::vector<std::string> filesNamedBy(const std::string& path) {
+    const auto normal = [](const fs::path& file) {
+        std::error_code problem;
+        return fs::absolute(file, problem).lexically_normal();
+    };
+    const fs::path first = normal(path);
+    std::set<fs::path> found;
+    std::vector<fs::path> pending{first};
+    while (!pending.empty() && found.size() < kMostFiles) {
+        const fs::path next = std::move(pending.back());
+        pending.pop_back();
+        std::vector<fs::path> named;
+        try {
+            named = namedDirectly(next);
+        } catch (const Error&) {
+            continue; // opening it says why
+        }
+        for (const fs::path& file : named) {
+            std::error_code problem;
+            const fs::path known = normal(file);
+            if (known != first && fs::is_regular_file(known, problem) && found.insert(known).second)
+                pending.push_back(known);
+        }
+    }
+    std::vector<std::string> files;
+    for (const fs::path& file : found) files.push_back(file.string());
+    return files;
+}
+
+} // namespace tessera::volume

@@ -1,0 +1,19 @@
+#pragma once
+
+#include "volume/import/files/raw.h"
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace tessera::volume {
+
+enum class NrrdEncoding { Raw, Text };
+
+/// Form of a scalar .nrrd or .nhdr file of up to three axes with this encoding, from the beginning of the file (`head`,
+/// up to 1 MiB); nothing for other encodings and vectors, which VTK reads. The keys "unit" and "time" that
+/// exportDataset writes are understood. Throws Error for a broken header.
+std::optional<RawForm> parseNrrd(std::string_view head, const std::string& file,
+                                 NrrdEncoding wanted = NrrdEncoding::Raw);
+
+} // namespace tessera::volume

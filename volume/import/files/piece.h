@@ -1,0 +1,51 @@
+#pragma once
+
+#include "volume/field/dataset.h"
+#include "volume/field/slices.h"
+
+#include <functional>
+#include <string>
+#include <vector>
+
+/// What every reader gives: arrays on one grid or mesh, as the file names them. `assemble` makes a data set of them.
+namespace tessera::volume {
+
+/// One named array of a file, before renaming.
+struct Array {
+    std::string name, unit;
+    int components = 1; ///< 1 or 3
+    ScalarType type = ScalarType::F32;
+    bool categorical = false;
+    std::vector<Label> labels;
+    bool operator==(const Array&) const = default;
+};
+
+/// One block of one file: a raw file, an image, a mesh, a region of a multi-block file.
+struct Piece {
+    std::string file;       ///< as the user named it
+    std::string format;     ///< "raw", "vti", "OpenFOAM", ...
+    std::string name;       ///< of the block, "" where the file is one block
+    bool resamples = false; ///< `load` can sample on any grid; a grid only on its own otherwise
+    bool mesh = false;      ///< cells that are sampled; else samples lie on `lattice` as they are
+    bool cellData = false;  ///< mesh: values belong to cells, so samples go to the middle of cells
+    Lattice lattice;        ///< of a grid
+    Box box;                ///< extent of a mesh
+    double cells = 0;       ///< of a mesh
+    glm::dvec3 cellSize{0}; ///< harmonic mean of the extents of a mesh's cells, per axis
+    std::string lengthUnit, timeUnit, provenance; ///< "" = not stated
+    std::string timeName;                         ///< "" = not stated
+    std::string note;                             ///< for the user: how the samples came about
+    std::vector<Array> arrays;
+    std::vector<double> times;        ///< empty: one frame whose time is not stated
+    std::vector<Quantity> quantities; ///< one value for each time, or one for the only frame
+    /// One component of one array at the piece's own time index, sampled on `target` (equal to `lattice` for grids;
+    /// samples outside a mesh are absent).
+    std::function<Field(int array, int component, int time, const Lattice& target)> load;
+    /// The same of slices [first, first + count) of a grid; null where it can only be read whole.
+    SliceLoad slices;
+    /// Ranges of an array's own values, at points or cells: one per component, then for a vector that of its magnitude;
+    /// lo > hi where there is no value. Null, or empty, where they are not known.
+    std::function<std::vector<Range>(int array, int time)> ranges;
+};
+
+} // namespace tessera::volume

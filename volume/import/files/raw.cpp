@@ -1,0 +1,219 @@
+#include "volume/import/files/raw.h"
+
+#include "volume/base/error.h"
+
+#include <algorithm>
+#include <bit>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <type_traits>
+
+namespace tessera::volume {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+std::size_t storedBytes(RawType type) {
+    constexpr std::size_t kBytes[] = {1, 1, 2, 2, 4, 4, 8};
+    return kBytes[static_cast<std::size_t>(type)];
+}
+
+ScalarType loadedType(RawType type) {
+    constexpr ScalarType kTypes[] = {ScalarType::U8,  ScalarType::I16, ScalarType::U16, ScalarType::I16,
+                                     ScalarType::I32, ScalarType::F32, ScalarType::F32};
+    return kTypes[static_cast<std::size_t>(type)];
+}
+
+template <class To, class From> void convert(std::span<const char> bytes, std::span<To> out, bool swap) {
+    for (std::size_t i = 0; i < out.size(); ++i) {
+        char one[sizeof(From)];
+        std::memcpy(one, bytes.data() + i * sizeof(From), sizeof(From));
+        if (swap) std::reverse(one, one + sizeof(From));
+        out[i] = static_cast<To>(std::bit_cast<From>(one));
+    }
+}
+
+/// Reads slices [first, first + count) of one component at one time.
+Field readComponent(const std::string& path, const RawForm& form, std::size_t component, std::size_t time, int first,
+                    int count) {
+    std::size_t at = form.skip, frame = 0;
+    for (std::size_t c = 0; c < form.components.size(); ++c) {
+        const std::size_t size = form.lattice.count() * storedBytes(form.components[c].type);
+        if (c < component) at += size;
+        frame += size;
+    }
+    const RawForm::Component& what = form.components[component];
+    Field field = makeField(slicesOf(form.lattice, first, count), loadedType(what.type));
+    const std::size_t size = field.count() * storedBytes(what.type);
+    at += time * frame + size / std::size_t(count) * std::size_t(first);
+    field.scale = what.scale;
+    field.offset = what.offset;
+
+    std::ifstream in(path, std::ios::binary);
+    if (!in) throw Error("cannot be read", path);
+    in.seekg(static_cast<std::streamoff>(at));
+    const bool swap = form.bigEndian && storedBytes(what.type) > 1;
+    const bool direct = what.type != RawType::I8 && what.type != RawType::F64;
+    std::vector<char> bytes(direct ? 0 : size);
+    char* to = direct ? reinterpret_cast<char*>(field.samples.data()) : bytes.data();
+    in.read(to, static_cast<std::streamsize>(size));
+    if (static_cast<std::size_t>(in.gcount()) != size)
+        throw Error("ends early, the file has changed", path, "byte " + std::to_string(at));
+    if (what.type == RawType::I8)
+        convert<std::int16_t, std::int8_t>(bytes, field.as<std::int16_t>(), false);
+    else if (what.type == RawType::F64)
+        convert<float, double>(bytes, field.as<float>(), swap);
+    else if (swap)
+        for (std::size_t i = 0, step = storedBytes(what.type); i < size; i += step) std::reverse(to + i, to + i + step);
+
+    if (!what.missing.empty()) {
+        Mask mask(field.count(), 1);
+        bool any = false;
+        dispatch(field.type, [&]<class T>(T) {
+            const auto values = field.as<T>();
+            for (const double missing : what.missing)
+                for (std::size_t i = 0; i < values.size(); ++i)
+                    if (std::is_same_v<T, float> ? float(values[i]) == float(missing) : double(values[i]) == missing) {
+                        mask[i] = 0;
+                        any = true;
+                    }
+        });
+        if (any) field.mask = std::make_shared<const Mask>(std::move(mask));
+    }
+    return field;
+}
+
+/// Three components A.x, A.y, A.z of one type and unit that follow each other are the vector A.
+bool isVectorAt(const RawForm& form, std::size_t c) {
+    if (c + 3 > form.components.size()) return false;
+    const auto& first = form.components[c];
+    if (first.name.size() < 3 || !first.name.ends_with(".x")) return false;
+    const std::string base = first.name.substr(0, first.name.size() - 1);
+    for (std::size_t i = 1; i < 3; ++i) {
+        const auto& next = form.components[c + i];
+        if (next.name != base + "xyz"[i] || next.type != first.type || next.unit != first.unit || next.categorical ||
+            !next.presenceOf.empty())
+            return false;
+    }
+    return !first.categorical && first.presenceOf.empty();
+}
+
+} // namespace
+
+std::size_t RawForm::bytes() const {
+    std::size_t frame = 0;
+    for (const Component& component : components) frame += lattice.count() * storedBytes(component.type);
+    return skip + frames() * frame;
+}
+
+bool isRaw(const std::string& path, const std::string& rawOption) {
+    const std::string ending = fs::path(path).extension().string();
+    return ending == ".raw" || ending == ".json" || (!rawOption.empty() && ending != ".vti");
+}
+
+bool hasSidecar(const std::string& path) {
+    const fs::path file(path);
+    std::error_code unknown;
+    return file.extension() == ".raw" && fs::exists(fs::path(file).replace_extension(".json"), unknown);
+}
+
+Piece openRaw(const std::string& path, const std::string& rawOption) {
+    RawForm form;
+    fs::path data = path;
+    if (!rawOption.empty()) {
+        form = parseRawOption(rawOption);
+    } else {
+        fs::path sidecar = path;
+        if (sidecar.extension() != ".json") sidecar.replace_extension(".json");
+        if (!fs::exists(path)) throw Error("no such file", path);
+        if (!fs::exists(sidecar)) {
+            std::error_code unknown;
+            if (fs::file_size(path, unknown) == 0) throw Error("is empty", path);
+            throw Error("has no sidecar " + sidecar.filename().string() +
+                            "; state its form, such as dims=64x64x64,type=u8, with --raw or in the field Raw layout of "
+                            "File > Open",
+                        path);
+        }
+        constexpr std::uintmax_t kMostSidecar = 16 << 20;
+        if (fs::file_size(sidecar) > kMostSidecar) throw Error("is too large for a sidecar", sidecar.string());
+        std::ifstream in(sidecar, std::ios::binary);
+        const std::string text{std::istreambuf_iterator<char>(in), {}};
+        form = parseSidecar(text, sidecar.string());
+        if (data.extension() == ".json") {
+            data = sidecar;
+            data.replace_extension(".raw");
+            if (!form.dataFile.empty()) data = sidecar.parent_path() / form.dataFile;
+        }
+    }
+    return openForm(form, path, data.string(), "raw");
+}
+
+Piece openForm(const RawForm& form, const std::string& path, const std::string& data, const std::string& format) {
+    std::error_code failed;
+    const auto size = fs::file_size(data, failed);
+    if (failed) throw Error("no such file", data);
+    if (size == 0) throw Error("is empty", data);
+    const auto counted = [](std::size_t n, const char* one) {
+        return std::to_string(n) + " " + one + (n == 1 ? "" : "s");
+    };
+    if (size != form.bytes())
+        throw Error("has " + std::to_string(size) + " bytes, its form asks for " + std::to_string(form.bytes()) + " (" +
+                        std::to_string(form.lattice.size.x) + " x " + std::to_string(form.lattice.size.y) + " x " +
+                        std::to_string(form.lattice.size.z) + " samples, " +
+                        counted(form.components.size(), "component") + ", " + counted(form.frames(), "time") + ")",
+                    data);
+
+    Piece piece;
+    piece.file = path;
+    piece.format = format;
+    piece.lattice = form.lattice;
+    piece.times = form.times;
+    piece.lengthUnit = form.lengthUnit;
+    piece.timeName = form.timeName;
+    piece.timeUnit = form.timeUnit;
+    piece.quantities = form.quantities;
+    piece.provenance = form.provenance;
+    std::vector<std::size_t> firstComponent;
+    std::vector<std::size_t> presence; // index + 1 of the component with the presence flags, 0 = none
+    for (std::size_t c = 0; c < form.components.size();) {
+        const RawForm::Component& what = form.components[c];
+        if (!what.presenceOf.empty()) {
+            ++c;
+            continue;
+        }
+        Array array{what.name, what.unit, 1, loadedType(what.type), what.categorical, what.labels};
+        const bool vector = isVectorAt(form, c);
+        if (vector) {
+            array.components = 3;
+            array.name.resize(array.name.size() - 2);
+        }
+        std::size_t flags = 0;
+        for (std::size_t other = 0; other < form.components.size(); ++other)
+            if (form.components[other].presenceOf == array.name) flags = other + 1;
+        piece.arrays.push_back(std::move(array));
+        firstComponent.push_back(c);
+        presence.push_back(flags);
+        c += vector ? 3 : 1;
+    }
+    if (piece.arrays.empty()) throw Error("holds no parameter", path);
+    piece.slices = [form, firstComponent, presence, data](int array, int component, int time, int first, int count) {
+        const auto a = static_cast<std::size_t>(array), t = static_cast<std::size_t>(time);
+        Field field =
+            readComponent(data, form, firstComponent[a] + static_cast<std::size_t>(component), t, first, count);
+        if (presence[a] != 0) {
+            const Field flags = readComponent(data, form, presence[a] - 1, t, first, count);
+            Mask mask(field.count());
+            for (std::size_t i = 0; i < mask.size(); ++i) mask[i] = field.present(i) && flags.value(i) != 0 ? 1 : 0;
+            field.mask = std::make_shared<const Mask>(std::move(mask));
+        }
+        return field;
+    };
+    piece.load = [slices = piece.slices](int array, int component, int time, const Lattice& whole) {
+        return slices(array, component, time, 0, whole.size.z);
+    };
+    return piece;
+}
+
+} // namespace tessera::volume

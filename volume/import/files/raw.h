@@ -1,0 +1,66 @@
+#pragma once
+
+#include "volume/import/files/piece.h"
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace tessera::volume {
+
+/// The number types a raw file may hold; those that are no ScalarType are converted when read.
+enum class RawType : std::uint8_t { U8, I8, U16, I16, I32, F32, F64 };
+
+/// Form of a headless file `[time][component][z][y][x]`, x fastest; a component may have its own type.
+struct RawForm {
+    struct Component {
+        std::string name, unit;
+        RawType type = RawType::U8;
+        double scale = 1, offset = 0; ///< physical = offset + scale * stored
+        std::vector<double> missing;  ///< stored values that mean "absent" (NaN always does)
+        std::string presenceOf;       ///< this component says where that one is present (0 = absent)
+        bool categorical = false;
+        std::vector<Label> labels;
+    };
+    Lattice lattice;
+    std::vector<Component> components;
+    std::vector<double> times; ///< empty: one frame without a stated time
+    bool bigEndian = false;
+    std::size_t skip = 0; ///< bytes before the first sample
+    std::string dataFile; ///< name of the samples' file, relative to the sidecar; "" = same name with .raw
+    std::string lengthUnit, timeName, timeUnit, provenance;
+    std::vector<Quantity> quantities; ///< one value for each frame
+
+    std::size_t frames() const { return times.empty() ? 1 : times.size(); }
+    /// Bytes a file of this form has; no overflow for forms the parsers let through.
+    std::size_t bytes() const;
+};
+
+/// Reads a JSON sidecar. Required keys: dims, dtype. Throws Error (file is `file`) for anything that is missing, of the
+/// wrong type or out of range.
+RawForm parseSidecar(std::string_view json, const std::string& file);
+
+/// Reads the text of `--raw`: "dims=XxYxZ,type=u8,spacing=AxBxC,origin=AxBxC,components=N,times=N,big-endian,skip=N".
+RawForm parseRawOption(std::string_view text);
+
+/// The text of `--raw` that a file's name tells: "engine_149x208x110_uint8.raw" gives "dims=149x208x110,type=u8". ""
+/// where the name has no dims or no type, or where the file has other bytes than they ask for. Words c5 and t12 of the
+/// name are 5 components and 12 times.
+std::string rawOptionOfName(const std::string& path);
+
+/// True for a *.raw file beside which lies a sidecar of its name.
+bool hasSidecar(const std::string& path);
+
+/// Opens a raw file named by itself or by its sidecar; `rawOption` (may be empty) takes the place of the sidecar.
+/// Checks the size of the file against the form; samples are read on demand.
+Piece openRaw(const std::string& path, const std::string& rawOption);
+
+/// Opens the file of a form found elsewhere; `named` is what the user calls it, `data` holds the samples. Checks the
+/// size.
+Piece openForm(const RawForm& form, const std::string& named, const std::string& data, const std::string& format);
+
+/// True for paths openRaw takes: *.raw, *.bin, *.dat with a form, or a *.json that is a sidecar.
+bool isRaw(const std::string& path, const std::string& rawOption);
+
+} // namespace tessera::volume

@@ -1,0 +1,303 @@
+#include "volume/import/files/series.h"
+
+#include "volume/base/error.h"
+#include "volume/import/files/formats.h"
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <glob.h>
+#include <iterator>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <string_view>
+
+namespace tessera::volume {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr std::size_t kMostFiles = 1'000'000;
+constexpr std::uintmax_t kMostListBytes = 256u << 20;
+
+std::string readText(const std::string& path) {
+    std::error_code failed;
+    const auto size = fs::file_size(path, failed);
+    if (failed) throw Error("cannot be read", path);
+    if (size > kMostListBytes) throw Error("is too large for a list of files", path);
+    std::ifstream in(path, std::ios::binary);
+    if (!in) throw Error("cannot be read", path);
+    return {std::istreambuf_iterator<char>(in), {}};
+}
+
+std::string ending(const std::string& path) {
+    std::string text = fs::path(path).extension().string();
+    std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+    return text;
+}
+
+std::string besides(const std::string& list, const std::string& name) {
+    const fs::path path(name);
+    return path.is_absolute() ? name : (fs::path(list).parent_path() / path).string();
+}
+
+std::optional<double> parseTime(std::string_view text) {
+    double value = 0;
+    const auto parsed = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (parsed.ec != std::errc() || !std::isfinite(value)) return std::nullopt;
+    return value;
+}
+
+/// Replaces the five entities of XML.
+std::string unescape(std::string text) {
+    static constexpr std::pair<std::string_view, char> kEntities[] = {
+        {"&lt;", '<'}, {"&gt;", '>'}, {"&quot;", '"'}, {"&apos;", '\''}, {"&amp;", '&'}};
+    for (const auto& [entity, character] : kEntities)
+        for (std::size_t at = 0; (at = text.find(entity, at)) != std::string::npos; ++at)
+            text.replace(at, entity.size(), 1, character);
+    return text;
+}
+
+/// Value of an attribute in the text of one XML tag.
+std::optional<std::string> attribute(std::string_view tag, std::string_view name) {
+    for (std::size_t at = 0; (at = tag.find(name, at)) != std::string_view::npos; at += name.size()) {
+        if (at == 0 || !std::isspace(static_cast<unsigned char>(tag[at - 1]))) continue;
+        std::string_view rest = tag.substr(at + name.size());
+        while (!rest.empty() && (std::isspace(static_cast<unsigned char>(rest[0])) || rest[0] == '='))
+            rest.remove_prefix(1);
+        if (rest.empty() || (rest[0] != '"' && rest[0] != '\'')) continue;
+        const std::size_t end = rest.find(rest[0], 1);
+        if (end == std::string_view::npos) return std::nullopt;
+        return unescape(std::string(rest.substr(1, end - 1)));
+    }
+    return std::nullopt;
+}
+
+/// Attributes of a tag that are numbers and not those of every .pvd.
+std::vector<std::pair<std::string, double>> furtherNumbers(std::string_view tag) {
+    std::vector<std::pair<std::string, double>> numbers;
+    for (std::size_t at = 0; (at = tag.find('=', at)) != std::string_view::npos;) {
+        std::size_t end = at, begin;
+        while (end > 0 && std::isspace(static_cast<unsigned char>(tag[end - 1]))) --end;
+        for (begin = end; begin > 0 && !std::isspace(static_cast<unsigned char>(tag[begin - 1]));) --begin;
+        const std::string name(tag.substr(begin, end - begin));
+        const std::size_t quote = tag.find_first_of("\"'", at);
+        if (quote == std::string_view::npos) break;
+        at = tag.find(tag[quote], quote + 1); // an equals sign within a value is no attribute
+        if (at == std::string_view::npos) break;
+        static constexpr std::array<std::string_view, 5> kKnown = {"timestep", "group", "part", "file", "name"};
+        if (name.empty() || std::ranges::find(kKnown, name) != kKnown.end()) continue;
+        const std::string_view text = tag.substr(quote + 1, at - quote - 1);
+        double value = 0;
+        const auto parsed = std::from_chars(text.data(), text.data() + text.size(), value);
+        if (parsed.ec == std::errc() && parsed.ptr == text.data() + text.size() && std::isfinite(value))
+            numbers.emplace_back(name, value);
+    }
+    return numbers;
+}
+
+std::vector<std::string> expandPattern(const std::string& pattern) {
+    glob_t found{};
+    const int status = glob(pattern.c_str(), 0, nullptr, &found);
+    std::vector<std::string> paths;
+    if (status == 0) paths.assign(found.gl_pathv, found.gl_pathv + found.gl_pathc);
+    globfree(&found);
+    if (paths.empty()) throw Error("no file fits this pattern", pattern);
+    return paths;
+}
+
+std::vector<std::string> expandFolder(const std::string& folder) {
+    std::map<std::string, std::vector<std::string>> byEnding;
+    std::map<const FileFormat*, std::vector<std::string>> byFormat;
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+        const std::string name = entry.path().filename().string();
+        if (name.starts_with(".")) continue;
+        if (!entry.is_regular_file()) continue;
+        byEnding[ending(name)].push_back(entry.path().string());
+        const FileFormat* format =
+            ending(name) == ".txt" ? nullptr : formatOfFile(entry.path().string()); // words, mostly
+        if (format != nullptr && format->advice.empty()) byFormat[format].push_back(entry.path().string());
+    }
+    for (const char* list : {".foam", ".pvd", ".series"})
+        if (const auto at = byEnding.find(list); at != byEnding.end()) {
+            if (at->second.size() > 1) throw Error("holds several " + std::string(list) + " files, name one", folder);
+            return at->second;
+        }
+    if (fs::exists(fs::path(folder) / "system" / "controlDict")) return {folder};
+    std::vector<std::string> best = byEnding[".raw"];
+    for (const auto& [format, paths] : byFormat) // in the order of the table
+        if (paths.size() > best.size()) best = paths;
+    if (best.empty()) throw Error("holds no data file", folder);
+    std::sort(best.begin(), best.end());
+    return best;
+}
+
+/// Files whose only page is a slice become one entry for each volume: TIFF by numbers in names, DICOM by folder.
+std::vector<SeriesFile> withSlices(std::vector<SeriesFile> files) {
+    std::vector<SeriesFile> out;
+    for (SeriesFile& entry : files) {
+        const FileFormat* format = entry.time ? nullptr : formatOfFile(entry.path);
+        if (format == nullptr || !format->slices || !isSlice(*format, entry.path)) {
+            out.push_back(std::move(entry));
+            continue;
+        }
+        if (format->name == "DICOM") entry.group = fs::path(entry.path).parent_path().string() + "#DICOM";
+        const auto volume = std::ranges::find_if(
+            out, [&](const SeriesFile& other) { return !other.slices.empty() && other.group == entry.group; });
+        if (volume != out.end()) {
+            volume->slices.push_back(entry.path);
+            continue;
+        }
+        entry.slices = {entry.path};
+        out.push_back(std::move(entry));
+    }
+    for (SeriesFile& entry : out)
+        if (entry.slices.size() == 1)
+            entry.slices.clear();
+        else if (!entry.slices.empty())
+            entry.number.reset(); // counts slices
+    return out;
+}
+
+} // namespace
+
+NumberedName numberedName(const std::string& path) {
+    const fs::path file(path);
+    std::string stem = file.filename().string(), tail;
+    if (const std::size_t dot = stem.rfind('.'); dot != std::string::npos && dot > 0) {
+        tail = stem.substr(dot);
+        stem.resize(dot);
+        if (tail == ".gz" && stem.ends_with(".nii")) {
+            stem.resize(stem.size() - 4);
+            tail = ".nii.gz";
+        }
+    }
+    const auto isDigit = [](char c) { return c >= '0' && c <= '9'; };
+    std::size_t end = stem.size();
+    while (end > 0 && !isDigit(stem[end - 1])) --end;
+    std::size_t begin = end;
+    while (begin > 0 && isDigit(stem[begin - 1])) --begin;
+    NumberedName name;
+    if (begin == end || end - begin > 15) {
+        name.pattern = (file.parent_path() / (stem + tail)).string();
+        return name;
+    }
+    name.number = parseTime(std::string_view(stem).substr(begin, end - begin));
+    name.pattern = (file.parent_path() / (stem.substr(0, begin) + "#" + stem.substr(end) + tail)).string();
+    return name;
+}
+
+std::vector<SeriesFile> parsePvd(const std::string& xml, const std::string& file) {
+    if (xml.find("<Collection") == std::string::npos) throw Error("holds no Collection: not a .pvd file", file);
+    std::vector<SeriesFile> files;
+    for (std::size_t at = 0; (at = xml.find("<DataSet", at)) != std::string::npos;) {
+        const std::size_t end = xml.find('>', at);
+        if (end == std::string::npos) throw Error("ends within a DataSet", file, "byte " + std::to_string(at));
+        const std::string_view tag = std::string_view(xml).substr(at, end - at);
+        const std::optional<std::string> name = attribute(tag, "file"), time = attribute(tag, "timestep");
+        if (!name || name->empty()) throw Error("DataSet without a file", file, "byte " + std::to_string(at));
+        SeriesFile entry;
+        entry.path = besides(file, *name);
+        if (time) {
+            entry.time = parseTime(*time);
+            if (!entry.time)
+                throw Error("timestep \"" + time->substr(0, 40) + "\" is no number", file,
+                            "byte " + std::to_string(at));
+        }
+        const std::string part = attribute(tag, "part").value_or("0");
+        entry.group = file + "#" + attribute(tag, "group").value_or("") + "#" + part;
+        entry.part = attribute(tag, "name").value_or(attribute(tag, "group").value_or(""));
+        entry.numbers = furtherNumbers(tag);
+        files.push_back(std::move(entry));
+        if (files.size() > kMostFiles) throw Error("lists too many files", file);
+        at = end;
+    }
+    if (files.empty()) throw Error("lists no file", file);
+    return files;
+}
+
+std::vector<SeriesFile> parseSeries(const std::string& text, const std::string& file) {
+    const nlohmann::json document = nlohmann::json::parse(text, nullptr, false);
+    if (document.is_discarded() || !document.is_object()) throw Error("is not JSON of a file series", file);
+    const auto list = document.find("files");
+    if (list == document.end() || !list->is_array() || list->empty()) throw Error("lists no file", file, "files");
+    if (list->size() > kMostFiles) throw Error("lists too many files", file);
+    std::vector<SeriesFile> files;
+    for (std::size_t i = 0; i < list->size(); ++i) {
+        const nlohmann::json& item = (*list)[i];
+        const std::string place = "files[" + std::to_string(i) + "]";
+        if (!item.is_object() || !item.contains("name") || !item["name"].is_string())
+            throw Error("wants a name", file, place);
+        SeriesFile entry;
+        entry.path = besides(file, item["name"].get<std::string>());
+        if (item.contains("time")) {
+            if (!item["time"].is_number()) throw Error("time is no number", file, place);
+            entry.time = item["time"].get<double>();
+        }
+        for (const auto& [key, value] : item.items())
+            if (key != "time" && value.is_number()) entry.numbers.emplace_back(key, value.get<double>());
+        entry.group = file;
+        files.push_back(std::move(entry));
+    }
+    return files;
+}
+
+std::vector<SeriesFile> expandPaths(const std::vector<std::string>& paths) {
+    std::vector<SeriesFile> files;
+    std::vector<std::string> pending(paths.rbegin(), paths.rend());
+    std::set<std::string> seen; // what is named twice counts once
+    int rounds = 0;
+    while (!pending.empty()) {
+        const std::string path = pending.back();
+        pending.pop_back();
+        if (!seen.insert(path).second) continue;
+        if (++rounds > int(kMostFiles)) throw Error("names too many files", path);
+        std::error_code ignored;
+        if (fs::is_directory(path, ignored) && !fs::exists(fs::path(path) / "system" / "controlDict")) {
+            const std::vector<std::string> inside = expandFolder(path);
+            pending.insert(pending.end(), inside.rbegin(), inside.rend());
+            continue;
+        }
+        if (fs::is_directory(path, ignored)) {
+            const std::vector<std::string> inside = expandFolder(path);
+            files.push_back({inside.front(), {}, {}, inside.front(), {}});
+            continue;
+        }
+        if (!fs::exists(path, ignored)) {
+            if (path.find_first_of("*?[") == std::string::npos) throw Error("no such file", path);
+            const std::vector<std::string> fits = expandPattern(path);
+            pending.insert(pending.end(), fits.rbegin(), fits.rend());
+            continue;
+        }
+        const std::string kind = ending(path);
+        if (kind == ".pvd" || kind == ".series") {
+            std::vector<SeriesFile> listed =
+                kind == ".pvd" ? parsePvd(readText(path), path) : parseSeries(readText(path), path);
+            for (SeriesFile& entry : listed)
+                if (!fs::exists(entry.path, ignored))
+                    throw Error("lists " + entry.path + ", which does not exist", path);
+            files.insert(files.end(), listed.begin(), listed.end());
+            continue;
+        }
+        const NumberedName name = numberedName(path);
+        files.push_back({path, {}, name.number, name.pattern, {}});
+    }
+    // Groups in the order of their first file; within a group by time, then number.
+    std::map<std::string, std::size_t> rank;
+    for (const SeriesFile& entry : files) rank.emplace(entry.group, rank.size());
+    std::stable_sort(files.begin(), files.end(), [&](const SeriesFile& a, const SeriesFile& b) {
+        if (a.group != b.group) return rank[a.group] < rank[b.group];
+        if (a.time && b.time && *a.time != *b.time) return *a.time < *b.time;
+        return a.number && b.number && *a.number < *b.number;
+    });
+    const auto same = [](const SeriesFile& a, const SeriesFile& b) { return a.path == b.path && a.time == b.time; };
+    files.erase(std::unique(files.begin(), files.end(), same), files.end());
+    return withSlices(std::move(files));
+}
+
+} // namespace tessera::volume

@@ -1,0 +1,232 @@
+#include "volume/import/files/stream.h"
+
+#include "volume/base/error.h"
+#include "volume/field/labels.h"
+#include "volume/import/files/import_limits.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+namespace tessera::volume {
+
+namespace {
+
+using nlohmann::json;
+
+constexpr std::size_t kMostPieces = 100'000, kMostArrays = 10'000;
+
+template <class T> T take(std::span<const std::byte> bytes, std::size_t at) {
+    T value;
+    std::memcpy(&value, bytes.data() + at, sizeof value);
+    return value;
+}
+
+struct HeaderReader {
+    const json& object;
+    const std::string& file;
+    std::string place;
+
+    [[noreturn]] void fail(const char* key) const {
+        throw Error("tessera-import sent a bad header", file, place + key);
+    }
+    const json& get(const char* key) const {
+        const auto at = object.find(key);
+        if (at == object.end()) fail(key);
+        return *at;
+    }
+    std::string text(const char* key) const {
+        const auto at = object.find(key);
+        if (at == object.end()) return {};
+        if (!at->is_string()) fail(key);
+        return at->get<std::string>();
+    }
+    bool flag(const char* key) const {
+        const json& value = get(key);
+        if (!value.is_boolean()) fail(key);
+        return value.get<bool>();
+    }
+    /// Finite numbers.
+    std::vector<double> numbers(const char* key, std::size_t atLeast, std::size_t atMost) const {
+        const json& value = get(key);
+        if (!value.is_array() || value.size() < atLeast || value.size() > atMost) fail(key);
+        std::vector<double> out;
+        for (const json& item : value) {
+            if (!item.is_number() || !std::isfinite(item.get<double>())) fail(key);
+            out.push_back(item.get<double>());
+        }
+        return out;
+    }
+    glm::dvec3 triple(const char* key) const {
+        const std::vector<double> v = numbers(key, 3, 3);
+        return {v[0], v[1], v[2]};
+    }
+};
+
+Array parseArray(const json& entry, const std::string& file, const std::string& place) {
+    const HeaderReader reader{entry, file, place + "."};
+    if (!entry.is_object()) reader.fail("");
+    Array array;
+    array.name = reader.text("name");
+    array.unit = reader.text("unit");
+    if (array.name.empty()) reader.fail("name");
+    const json& components = reader.get("components");
+    if (components != 1 && components != 3) reader.fail("components");
+    array.components = components.get<int>();
+    const std::optional<ScalarType> type = parseScalarType(reader.text("type"));
+    if (!type) reader.fail("type");
+    array.type = *type;
+    if (const auto labels = entry.find("labels"); labels != entry.end()) {
+        if (!labels->is_object() || labels->size() > kMostArrays) reader.fail("labels");
+        for (const auto& [key, name] : labels->items()) {
+            int value = 0;
+            const auto parsed = std::from_chars(key.data(), key.data() + key.size(), value);
+            if (parsed.ec != std::errc() || parsed.ptr != key.data() + key.size() || !name.is_string())
+                reader.fail("labels");
+            array.labels.push_back(labelOf(value, name.get<std::string>()));
+        }
+        std::sort(array.labels.begin(), array.labels.end(),
+                  [](const Label& a, const Label& b) { return a.value < b.value; });
+        array.categorical = !array.labels.empty() && array.components == 1;
+    }
+    return array;
+}
+
+Quantity parseQuantity(const json& entry, std::size_t times, const std::string& file, const std::string& place) {
+    const HeaderReader reader{entry, file, place + "."};
+    if (!entry.is_object()) reader.fail("");
+    Quantity quantity{reader.text("name"), reader.text("unit"), {}};
+    if (quantity.name.empty()) reader.fail("name");
+    const json& values = reader.get("values");
+    if (!values.is_array() || values.size() != std::max<std::size_t>(times, 1)) reader.fail("values");
+    for (const json& value : values) {
+        if (!value.is_number() && !value.is_null()) reader.fail("values");
+        quantity.values.push_back(value.is_null() ? std::nan("") : value.get<double>());
+    }
+    return quantity;
+}
+
+Piece parsePiece(const json& entry, const std::string& file, const std::string& place) {
+    const HeaderReader reader{entry, file, place + "."};
+    if (!entry.is_object()) reader.fail("");
+    Piece piece;
+    piece.file = file;
+    piece.name = reader.text("name");
+    piece.lengthUnit = reader.text("lengthUnit");
+    piece.timeUnit = reader.text("timeUnit");
+    piece.timeName = reader.text("timeName");
+    piece.note = reader.text("note");
+    piece.mesh = reader.flag("mesh");
+    if (piece.mesh) {
+        piece.cellData = reader.flag("cellData");
+        const std::vector<double> box = reader.numbers("box", 6, 6);
+        piece.box = {{box[0], box[1], box[2]}, {box[3], box[4], box[5]}};
+        piece.cellSize = reader.triple("cellSize");
+        piece.cells = reader.numbers("cells", 1, 1)[0];
+        for (int axis = 0; axis < 3; ++axis)
+            if (piece.box.lo[axis] > piece.box.hi[axis] || piece.cellSize[axis] < 0) reader.fail("box");
+        if (!(piece.cells >= 1)) reader.fail("cells");
+    } else {
+        const std::vector<double> dims = reader.numbers("dims", 3, 3);
+        piece.lattice.spacing = reader.triple("spacing");
+        piece.lattice.origin = reader.triple("origin");
+        double samples = 1;
+        for (int axis = 0; axis < 3; ++axis) {
+            const double n = dims[std::size_t(axis)];
+            if (!(n >= 1 && n <= kMostSamplesPerAxis) || n != std::floor(n)) reader.fail("dims");
+            if (!(piece.lattice.spacing[axis] > 0)) reader.fail("spacing");
+            piece.lattice.size[axis] = static_cast<int>(n);
+            samples *= n;
+        }
+        if (samples > 1e12) reader.fail("dims");
+    }
+    piece.times = reader.numbers("times", 0, kMostTimes);
+    for (std::size_t t = 1; t < piece.times.size(); ++t)
+        if (piece.times[t] <= piece.times[t - 1]) reader.fail("times");
+    if (const auto list = entry.find("quantities"); list != entry.end()) {
+        if (!list->is_array() || list->size() > kMostArrays) reader.fail("quantities");
+        for (std::size_t q = 0; q < list->size(); ++q)
+            piece.quantities.push_back(
+                parseQuantity((*list)[q], piece.times.size(), file, place + ".quantities[" + std::to_string(q) + "]"));
+    }
+    const json& arrays = reader.get("arrays");
+    if (!arrays.is_array() || arrays.size() > kMostArrays) reader.fail("arrays");
+    for (std::size_t a = 0; a < arrays.size(); ++a)
+        piece.arrays.push_back(parseArray(arrays[a], file, place + ".arrays[" + std::to_string(a) + "]"));
+    return piece;
+}
+
+} // namespace
+
+std::uint64_t frameBytes(const Lattice& lattice, ScalarType type, bool mask) {
+    return kFrameHeadBytes + std::uint64_t(lattice.count()) * (byteSize(type) + (mask ? 1 : 0));
+}
+
+MessageHead parseMessageHead(std::span<const std::byte> bytes, const Lattice& lattice, ScalarType type) {
+    if (bytes.size() < kMessageHeadBytes || take<std::uint32_t>(bytes, 0) != kStreamMagic)
+        throw Error("tessera-import sent something that is no message");
+    const auto kind = take<std::uint32_t>(bytes, 4);
+    const auto length = take<std::uint64_t>(bytes, 8);
+    if (kind < 1 || kind > 3) throw Error("tessera-import sent a message of unknown kind " + std::to_string(kind));
+    const MessageHead head{static_cast<MessageKind>(kind), length};
+    const bool fits = head.kind == MessageKind::Frame
+                          ? length == frameBytes(lattice, type, false) || length == frameBytes(lattice, type, true)
+                          : length <= kMostTextBytes;
+    if (!fits) throw Error("tessera-import sent a message of impossible length " + std::to_string(length));
+    return head;
+}
+
+std::vector<Piece> parseStreamHeader(std::string_view text, const std::string& file) {
+    const json document = json::parse(text, nullptr, false);
+    if (document.is_discarded() || !document.is_object())
+        throw Error("tessera-import sent a header that is no JSON", file);
+    const HeaderReader reader{document, file, ""};
+    const json& list = reader.get("pieces");
+    if (!list.is_array() || list.size() > kMostPieces) reader.fail("pieces");
+    std::vector<Piece> pieces;
+    for (std::size_t p = 0; p < list.size(); ++p) {
+        pieces.push_back(parsePiece(list[p], file, "pieces[" + std::to_string(p) + "]"));
+        pieces.back().format = reader.text("format");
+    }
+    return pieces;
+}
+
+std::vector<Range> parseRanges(std::string_view text, const std::string& file) {
+    const json document = json::parse(text, nullptr, false);
+    const bool fits = document.is_object() && document.contains("ranges") && document["ranges"].is_array() &&
+                      document["ranges"].size() <= 4;
+    if (!fits) throw Error("tessera-import sent ranges out of form", file);
+    std::vector<Range> ranges;
+    for (const json& pair : document["ranges"]) {
+        ranges.push_back({std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()});
+        if (pair.is_null()) continue;
+        if (!pair.is_array() || pair.size() != 2 || !pair[0].is_number() || !pair[1].is_number())
+            throw Error("tessera-import sent ranges out of form", file);
+        ranges.back() = {pair[0].get<double>(), pair[1].get<double>()};
+    }
+    return ranges;
+}
+
+Field parseFrame(std::span<const std::byte> bytes, const Lattice& lattice, ScalarType type) {
+    if (bytes.size() < kFrameHeadBytes) throw Error("tessera-import sent a frame that is too short");
+    const auto mask = take<std::uint32_t>(bytes, 4);
+    const glm::ivec3 size(take<std::int32_t>(bytes, 8), take<std::int32_t>(bytes, 12), take<std::int32_t>(bytes, 16));
+    if (take<std::uint32_t>(bytes, 0) != static_cast<std::uint32_t>(type) || mask > 1 || size != lattice.size ||
+        bytes.size() != frameBytes(lattice, type, mask == 1))
+        throw Error("tessera-import sent a frame of another form than asked for");
+    Field field = makeField(lattice, type);
+    std::memcpy(field.samples.data(), bytes.data() + kFrameHeadBytes, field.samples.size());
+    if (mask == 1) {
+        Mask flags(field.count());
+        std::memcpy(flags.data(), bytes.data() + kFrameHeadBytes + field.samples.size(), flags.size());
+        for (std::uint8_t& flag : flags) flag = flag != 0 ? 1 : 0;
+        field.mask = std::make_shared<const Mask>(std::move(flags));
+    }
+    return field;
+}
+
+} // namespace tessera::volume

@@ -1,0 +1,71 @@
+#pragma once
+
+#include "volume/import/files/piece.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+/// What tessera-import and the main program say to each other.
+///
+/// `tessera-import [--like | --slices N] FILE ...` reads request lines from stdin and writes messages to stdout;
+/// everything for people goes to stderr. All numbers are little-endian. A message is
+///
+///     u32 magic "TSI1"   u32 kind   u64 length   length bytes
+///
+/// kind 1, header: JSON text; one for each FILE, in order, before any request. A FILE after `--like` is expected to
+/// have the form of the one before it; N files after `--slices` are slices of one volume and count as one. Keys:
+/// "format", "pieces": [{"name", "mesh", "cellData", "dims", "spacing", "origin", "box" (6 numbers, x first), "cells",
+/// "cellSize", "lengthUnit", "timeName", "timeUnit", "note", "times", "quantities": [{"name", "unit", "values": [a
+/// number or null for each time]}], "arrays": [{"name", "unit", "components", "type", "labels": {"1": "air"}}]}].
+/// "timeName", "note" and "quantities" may be missing.
+///
+/// kind 2, frame: u32 type (ScalarType), u32 mask (0 or 1), i32 nx, ny, nz, then nx*ny*nz samples, x fastest, then, if
+/// mask is 1, as many bytes (1 present, 0 absent). The answer to the line
+///
+///     frame FILE PIECE ARRAY COMPONENT TIME NX NY NZ OX OY OZ SX SY SZ
+///
+/// with the indices of the headers, the size, origin and spacing of the grid to sample on. ARRAY -1 asks for the cover
+/// of the piece: ones of uint8, absent outside.
+///
+/// To the line
+///
+///     ranges FILE PIECE ARRAY TIME
+///
+/// the answer is of kind 1: {"ranges": [[lo, hi], ...]}, those of the array's own values at points or cells (not NaN),
+/// one per component, then for a vector that of its magnitude; null in place of a pair where there is no value.
+///
+/// kind 3, failure: one line of text instead of a header or frame. The program ends when stdin does.
+namespace tessera::volume {
+
+enum class MessageKind : std::uint32_t { Header = 1, Frame = 2, Failure = 3 };
+
+struct MessageHead {
+    MessageKind kind = MessageKind::Failure;
+    std::uint64_t length = 0;
+};
+
+inline constexpr std::uint32_t kStreamMagic = 0x31495354; // "TSI1"
+inline constexpr std::size_t kMessageHeadBytes = 16, kFrameHeadBytes = 20;
+inline constexpr std::uint64_t kMostTextBytes = std::uint64_t(64) << 20;
+
+/// Bytes of a frame message's contents.
+std::uint64_t frameBytes(const Lattice& lattice, ScalarType type, bool mask);
+
+/// Reads the head of a message. Throws Error unless the magic, the kind and the length are possible: text of at most
+/// 64 MiB, or a frame of one of the two lengths that fit `lattice` and `type`.
+MessageHead parseMessageHead(std::span<const std::byte> bytes, const Lattice& lattice, ScalarType type);
+
+/// Pieces of a header message, without `load`. Throws Error for anything out of form.
+std::vector<Piece> parseStreamHeader(std::string_view json, const std::string& file);
+
+/// Ranges of an answer to "ranges". Throws Error for anything out of form.
+std::vector<Range> parseRanges(std::string_view json, const std::string& file);
+
+/// Samples of a frame message. Throws Error unless its size and type are those expected.
+Field parseFrame(std::span<const std::byte> bytes, const Lattice& lattice, ScalarType type);
+
+} // namespace tessera::volume

@@ -1,0 +1,44 @@
+#pragma once
+
+#include "volume/field/lattice.h"
+#include "volume/resample/resample.h"
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+/// Where the samples of one lattice lie among those of another, axis by axis: inside of resampling.
+namespace tessera::volume {
+
+/// Source samples behind one target coordinate of one axis: `count` of them from `first` on, some of weight 0.
+struct Tap {
+    static constexpr int kMost = 2 * kMostOrder;
+    int first = 0, count = 1;
+    std::array<double, kMost> weight{};
+    int nearest = 0;
+    std::array<int, 2> cell{}; ///< the two samples around, equal at a face
+    double fraction = 0;
+};
+
+/// Samples a kernel spans along an axis, at most `count`. The same for every target coordinate.
+int tapCount(const ResampleOptions& options, int count);
+
+/// The tap of a coordinate in cells of the source (sample i at i), which has `count` samples along the axis. The
+/// weights sum to 1. For B-splines they refer to the coefficients of volume/resample/spline_prefilter.h.
+///
+/// Catmull-Rom: E. Catmull, R. Rom, A class of local interpolating splines, 1974. B-splines: M. Unser, Splines, a
+/// perfect fit for signal and image processing, 1999. Sinc: C. Duchon, Lanczos filtering in one and two dimensions,
+/// 1979.
+Tap tapAt(double cells, int count, const ResampleOptions& options);
+
+struct AxisTaps {
+    std::vector<Tap> x, y, z;
+};
+
+/// Cells, in the source's even sublattice, of sample `i` of a target sublattice.
+double sourceCells(const Lattice& source, const Lattice& target, int sublattice, int axis, int i);
+
+/// The taps of every sample of a target sublattice in a CC source.
+AxisTaps tapsFor(const Lattice& source, const Lattice& target, int sublattice, const ResampleOptions& options);
+
+} // namespace tessera::volume
