@@ -1,5 +1,7 @@
 #include "app/importer/describe_source.h"
 
+#include "app/importer/readers/vtk_messages.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>

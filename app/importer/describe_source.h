@@ -1,6 +1,6 @@
 #pragma once
 
-#include "app/importer/readers/source.h"
+#include "app/importer/open_source.h"
 #include "volume/import/files/piece.h"
 
 #include <vector>

@@ -1,7 +1,8 @@
 // tessera-import: reads files of other programs with VTK and streams them (volume/import/files/stream.h). The only
 // program that links VTK, so that the workbench starts light and a reader that crashes costs an error message.
 #include "app/importer/describe_source.h"
-#include "app/importer/readers/source.h"
+#include "app/importer/open_source.h"
+#include "app/importer/readers/vtk_messages.h"
 #include "app/importer/sampler.h"
 #include "volume/import/files/stream.h"
 

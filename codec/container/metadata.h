@@ -1,8 +1,8 @@
 #pragma once
 
 #include "codec/bytes/entropy.h"
+#include "codec/container/pack_options.h"
 #include "codec/container/resample_error.h"
-#include "codec/pack/pack.h"
 #include "volume/bricks/brick_source.h"
 
 #include <optional>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "codec/pack/pack.h"
+#include "codec/container/pack_options.h"
 
 #include <nlohmann/json_fwd.hpp>
 

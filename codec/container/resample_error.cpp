@@ -1,7 +1,6 @@
 #include "codec/container/resample_error.h"
 
 #include "codec/container/metadata.h"
-#include "codec/pack/error_bound.h"
 #include "volume/resample/resample.h"
 
 #include <algorithm>

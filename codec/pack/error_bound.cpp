@@ -143,13 +143,6 @@ FrameBound boundForPsnr(const FrameSamples& samples, double extent, double psnr)
 
 } // namespace
 
-double extentOf(const volume::Parameter& parameter) {
-    double extent = 0;
-    for (std::size_t c = 0; c < std::min(parameter.ranges.size(), std::size_t(parameter.components)); ++c)
-        extent = std::max(extent, parameter.ranges[c].hi - parameter.ranges[c].lo);
-    return extent;
-}
-
 FrameBound boundFor(const PackOptions& options, const volume::Parameter& parameter, const FrameSamples& samples) {
     if (parameter.categorical) return {};
     double error = std::numeric_limits<double>::infinity();

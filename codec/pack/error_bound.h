@@ -8,9 +8,6 @@
 /// What the error bounds of pack mean for a frame.
 namespace tessera::codec {
 
-/// Extent of all components of a parameter: what an error relative to its range refers to.
-double extentOf(const volume::Parameter& parameter);
-
 /// What a frame is rounded to.
 struct FrameBound {
     double error = 0;      ///< largest of a sample, in stored numbers; 0: exact

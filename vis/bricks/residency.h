@@ -1,9 +1,9 @@
 #pragma once
 
 #include "vis/bricks/brick_levels.h"
+#include "vis/bricks/residency_options.h"
 #include "vis/gl/handles.h"
 #include "vis/gl/job_queue.h"
-#include "vis/passes/renderer.h"
 
 #include <deque>
 #include <map>

@@ -1,8 +1,16 @@
 #include "volume/field/dataset.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace tessera::volume {
+
+double extentOf(const Parameter& parameter) {
+    double extent = 0;
+    for (std::size_t c = 0; c < std::min(parameter.ranges.size(), std::size_t(parameter.components)); ++c)
+        extent = std::max(extent, parameter.ranges[c].hi - parameter.ranges[c].lo);
+    return extent;
+}
 
 std::vector<Channel> DatasetInfo::channels() const {
     std::vector<Channel> all;

@@ -43,6 +43,9 @@ struct Parameter {
     bool operator==(const Parameter&) const = default;
 };
 
+/// Largest extent of a component: what an error relative to the range of the parameter refers to.
+double extentOf(const Parameter& parameter);
+
 /// A scalar to look at: a component of a parameter, or the magnitude of a vector. Named "T", "U.x", "U.y", "U.z",
 /// "|U|".
 struct Channel {

@@ -1,6 +1,7 @@
 // NRRD by VTK's reader, but for samples written as text: of those that stand in the file of the header itself VTK reads
 // none, and leaves what was in memory.
 #include "app/importer/readers/read_files.h"
+#include "app/importer/readers/vtk_messages.h"
 #include "app/importer/readers/whole_file.h"
 #include "volume/import/files/nrrd.h"
 

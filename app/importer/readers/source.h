@@ -8,10 +8,10 @@
 #include <string_view>
 #include <vector>
 #include <vtkAlgorithm.h>
-#include <vtkDataSet.h>
+#include <vtkDataObject.h>
 #include <vtkSmartPointer.h>
 
-/// Opening a file with the reader its ending asks for (app/importer/formats.h).
+/// What a reader gives: an opened file.
 namespace tessera::importer {
 
 /// An opened file: its header has been read, its samples not.
@@ -29,19 +29,6 @@ struct Source {
     std::string note;                         ///< for the user: how the samples came about
 };
 
-/// A leaf of a composite data set with the name of its block.
-struct Block {
-    std::string name;
-    vtkSmartPointer<vtkDataSet> data;
-};
-
-/// Chooses a reader and reads the header of a file, or of several that are slices of one volume. Throws
-/// std::runtime_error with one line of reason.
-Source openSource(const std::vector<std::string>& files);
-
-/// Reads everything at one time and gives the non-empty blocks of the highest dimension.
-std::vector<Block> readBlocks(const Source& source, int time);
-
 /// Names that VTK's programs give to the time of a file.
 inline constexpr std::array<std::string_view, 3> kTimeNames = {"TimeValue", "TIME", "Time"};
 
@@ -50,11 +37,5 @@ double meantTime(double time);
 
 /// Time stated in the field data (TimeValue), appended to `times`.
 void findTime(vtkDataObject* data, std::vector<double>& times);
-
-/// Throws what VTK's readers reported since the last call, if anything.
-void throwReported();
-
-/// Catches VTK's messages from now on: errors are kept for throwReported, all go to stderr.
-void catchMessages();
 
 } // namespace tessera::importer

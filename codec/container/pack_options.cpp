@@ -1,4 +1,4 @@
-#include "codec/pack/pack.h"
+#include "codec/container/pack_options.h"
 
 namespace tessera::codec {
 

@@ -1,0 +1,141 @@
+#include "app/importer/open_source.h"
+
+#include "app/importer/even_grid.h"
+#include "app/importer/formats.h"
+#include "app/importer/readers/vtk_messages.h"
+#include "app/importer/readers/whole_file.h"
+#include "volume/import/files/formats.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <stdexcept>
+#include <vtkAbstractArray.h>
+#include <vtkCell.h>
+#include <vtkCompositeDataSet.h>
+#include <vtkDataObjectTree.h>
+#include <vtkFieldData.h>
+#include <vtkInformation.h>
+#include <vtkInformationVector.h>
+#include <vtkMultiBlockDataSet.h>
+#include <vtkStreamingDemandDrivenPipeline.h>
+
+namespace tessera::importer {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+void flatten(vtkDataObject* data, const std::string& name, std::vector<Block>& blocks) {
+    if (vtkDataObjectTree::SafeDownCast(data) != nullptr) {
+        auto* multi = vtkMultiBlockDataSet::SafeDownCast(data);
+        for (unsigned i = 0; multi != nullptr && i < multi->GetNumberOfBlocks(); ++i) {
+            std::string inner;
+            if (multi->HasMetaData(i) != 0 && multi->GetMetaData(i)->Has(vtkCompositeDataSet::NAME()) != 0)
+                inner = multi->GetMetaData(i)->Get(vtkCompositeDataSet::NAME());
+            // A region of OpenFOAM is a block named after it that holds "internalMesh".
+            const bool keep = inner == "internalMesh" || inner == "default" || inner.empty();
+            flatten(multi->GetBlock(i), keep && !name.empty() ? name : inner, blocks);
+        }
+        if (multi == nullptr) throw std::runtime_error("holds a kind of composite data that is not read");
+        return;
+    }
+    auto* leaf = vtkDataSet::SafeDownCast(data);
+    if (leaf != nullptr && leaf->GetNumberOfPoints() > 0 && leaf->GetNumberOfCells() > 0)
+        blocks.push_back({name, leaf});
+}
+
+int arraysIn(vtkDataObject* data) {
+    int found = 0;
+    for (const int kind : {vtkDataObject::POINT, vtkDataObject::CELL, vtkDataObject::FIELD})
+        if (vtkFieldData* arrays = data->GetAttributesAsFieldData(kind)) found += arrays->GetNumberOfArrays();
+    return found;
+}
+
+/// What VTK's reader gives at one time: a copy, because the reader overwrites its output at the next.
+vtkSmartPointer<vtkDataObject> readByVtk(const Source& source, int time) {
+    if (static_cast<std::size_t>(time) < source.readerTimes.size())
+        source.reader->UpdateTimeStep(source.readerTimes[static_cast<std::size_t>(time)]);
+    else
+        source.reader->Update();
+    vtkDataObject* output = source.reader->GetOutputDataObject(0);
+    if (output != nullptr && source.format == "vtk")
+        checkLegacy(source.path, static_cast<std::size_t>(arraysIn(output)));
+    try {
+        throwReported();
+    } catch (const std::runtime_error& error) { // "Error reading binary data!"
+        if (source.format != "vtk") throw;
+        throw std::runtime_error("ends early or is damaged: " + std::string(error.what()));
+    }
+    if (output == nullptr) throw std::runtime_error("gave no data");
+    vtkSmartPointer<vtkDataObject> copy = vtkSmartPointer<vtkDataObject>::Take(output->NewInstance());
+    copy->ShallowCopy(output);
+    return copy;
+}
+
+int dimensionOf(vtkDataSet* data) {
+    const int type = data->GetDataObjectType();
+    if (type == VTK_IMAGE_DATA || type == VTK_UNIFORM_GRID || type == VTK_RECTILINEAR_GRID) return 3;
+    int most = 0;
+    // Cells of different dimension are mixed in practice (patches after volume cells): the first thousand tell.
+    const vtkIdType count = std::min<vtkIdType>(data->GetNumberOfCells(), 1000);
+    for (vtkIdType i = 0; i < count; ++i) most = std::max(most, data->GetCell(i)->GetCellDimension());
+    return most;
+}
+
+} // namespace
+
+Source openSource(const std::vector<std::string>& files) {
+    const std::string& path = files.front();
+    if (!fs::exists(path)) throw std::runtime_error("no such file");
+    const volume::FileFormat* format =
+        fs::is_directory(path) ? volume::formatNamed("OpenFOAM") : volume::formatOfFile(path);
+    if (format == nullptr)
+        throw std::runtime_error("unknown ending \"" + fs::path(path).extension().string() +
+                                 "\": " + volume::readableSuffixes() + " or .raw");
+    const auto known = std::find_if(readers().begin(), readers().end(),
+                                    [&](const Reader& reader) { return reader.format == format->name; });
+    if (known == readers().end())
+        throw std::runtime_error("is " + std::string(format->name) +
+                                 ", which is not read: " + std::string(format->advice));
+    Source source;
+    source.path = path;
+    if (files.size() > 1) source.files = files;
+    source.format = format->name;
+    known->open(source);
+    throwReported();
+    if (source.reader == nullptr) return source;
+    source.reader->UpdateInformation();
+    throwReported();
+    vtkInformation* information = source.reader->GetOutputInformation(0);
+    const auto* key = vtkStreamingDemandDrivenPipeline::TIME_STEPS();
+    auto* steps = const_cast<vtkInformationDoubleVectorKey*>(key);
+    if (information->Has(steps) != 0)
+        source.readerTimes.assign(information->Get(steps), information->Get(steps) + information->Length(steps));
+    for (const double time : source.readerTimes) source.times.push_back(meantTime(time));
+    if (!std::is_sorted(source.times.begin(), source.times.end(), std::less_equal<>())) source.times.clear();
+    return source;
+}
+
+std::vector<Block> readBlocks(const Source& source, int time) {
+    if (source.check) source.check(source, static_cast<std::size_t>(time));
+    std::vector<Block> blocks;
+    flatten(source.read ? source.read(static_cast<std::size_t>(time)) : readByVtk(source, time), "", blocks);
+    int most = 0;
+    std::vector<int> dimensions;
+    for (const Block& block : blocks) {
+        dimensions.push_back(dimensionOf(block.data));
+        most = std::max(most, dimensions.back());
+    }
+    std::vector<Block> kept;
+    for (std::size_t i = 0; i < blocks.size(); ++i)
+        if (dimensions[i] == most) kept.push_back({blocks[i].name, asEvenGrid(blocks[i].data)});
+    if (kept.empty()) throw std::runtime_error("holds no grid and no cells");
+    for (const Block& block : kept) {
+        const double* box = block.data->GetBounds();
+        const bool flat = box[0] == box[1] || box[2] == box[3] || box[4] == box[5];
+        if (most < 3 && !flat) throw std::runtime_error("holds surfaces or points only, no volume");
+    }
+    return kept;
+}
+
+} // namespace tessera::importer

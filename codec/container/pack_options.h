@@ -1,0 +1,135 @@
+#pragma once
+
+#include "codec/wavelet/lifting.h"
+#include "codec/wavelet/threshold.h"
+#include "volume/base/describe.h"
+#include "volume/bricks/brick_importance.h"
+#include "volume/resample/resample.h"
+
+#include <optional>
+#include <string_view>
+
+/// How an archive is packed; noted in it.
+namespace tessera::codec {
+
+/// A wavelet, or by trial on some bricks of each frame, among those whose coarse samples lie on fine ones.
+enum class WaveletChoice : std::uint8_t { Auto, N1, N2, W11, W13, W15, W22, W24, W26, N4, W42, W44, W46 };
+inline constexpr std::string_view kWaveletChoiceNames[] = {"auto", "1,0", "2,0", "1,1", "1,3", "1,5", "2,2",
+                                                           "2,4",  "2,6", "4,0", "4,2", "4,4", "4,6"};
+constexpr std::optional<Wavelet> waveletOf(WaveletChoice choice) {
+    if (choice == WaveletChoice::Auto) return std::nullopt;
+    return static_cast<Wavelet>(static_cast<int>(choice) - 1);
+}
+
+/// How BCC is taken apart: each of its grids by itself, or one predicted from the other; auto: the shorter by trial.
+enum class BccTransform : std::uint8_t { Auto, Separable, BodyCentred };
+inline constexpr std::string_view kBccTransformNames[] = {"auto", "separable", "bodyCentred"};
+
+/// Where the stored samples lie.
+enum class StoredLattice : std::uint8_t { CC, BCC, D4 };
+inline constexpr std::string_view kStoredLatticeNames[] = {"cc", "bcc", "d4"};
+
+/// How to pack. Described once: widgets, JSON and command-line options come from here.
+struct PackOptions {
+    StoredLattice lattice = StoredLattice::BCC;
+    volume::ResampleOptions resample;
+    bool lossless = true;
+    double maxError = 0;
+    double absError = 0;
+    double psnr = 0;
+    double sizeMb = 0;
+    ThresholdOptions threshold;
+    double discard = 0;
+    WaveletChoice wavelet = WaveletChoice::Auto;
+    BccTransform bccTransform = BccTransform::Auto;
+    int brickSize = 0;
+    int levels = 0;
+    int zstdLevel = 9;
+    double memoryMb = 0;
+    volume::ImportanceOptions importance;
+
+    bool operator==(const PackOptions&) const = default;
+    /// Settings for a purpose.
+    static constexpr std::string_view kPresetNames[] = {"none", "lossless", "visual", "small", "thesis"};
+    static constexpr std::string_view kPresetDoc =
+        "Settings for a purpose, which options given beside it override: lossless (every sample of the source, on CC), "
+        "visual (error 0.001 of range), small (0.01, most effort), thesis (BCC, bricks of 16, 3 levels, (2,2) on each "
+        "grid, soft threshold by importance)";
+    /// One of kPresetNames; nullopt of others.
+    static std::optional<PackOptions> preset(std::string_view name);
+    /// True if the lattice is part of a preset; others go with any.
+    static bool presetHasLattice(std::string_view name);
+    static void describe(auto& self, auto&& visit) {
+        visit(self.lattice, FieldInfo{.key = "lattice",
+                                      .unit = "",
+                                      .doc = "Lattice of the stored samples: bcc keeps 70.7 % of them, d4 (in space "
+                                             "and time, for two times or more) 50 %",
+                                      .names = kStoredLatticeNames});
+        visit(self.resample,
+              FieldInfo{.key = "resample", .unit = "", .doc = "How samples of another lattice are made"});
+        visit(self.lossless,
+              FieldInfo{.key = "lossless", .unit = "", .doc = "Store every sample of the lattice bit for bit"});
+        visit(self.maxError, FieldInfo{.key = "maxError",
+                                       .unit = "of range",
+                                       .doc = "Largest error of a sample, relative to its parameter's range; above 0 "
+                                              "it replaces lossless",
+                                       .range = Range{0, 1}});
+        visit(self.absError, FieldInfo{.key = "absError",
+                                       .unit = "of the parameter",
+                                       .doc = "Largest error of a sample, in the unit of its parameter; 0 = no such "
+                                              "bound. Of several bounds the strictest holds",
+                                       .range = Range{0, 1e30}});
+        visit(self.psnr, FieldInfo{.key = "psnr",
+                                   .unit = "dB",
+                                   .doc = "Least peak signal-to-noise ratio of each frame, its parameter's range over "
+                                          "the RMS error; 0 = not asked for",
+                                   .range = Range{0, 200}});
+        visit(self.sizeMb,
+              FieldInfo{.key = "targetSize",
+                        .unit = "MB",
+                        .doc = "Largest size of the archive: the least error of samples, relative to their "
+                               "ranges, that fits is searched for; 0 = not asked for",
+                        .range = Range{0, 1e9}});
+        visit(self.threshold, FieldInfo{.key = "threshold",
+                                        .unit = "",
+                                        .doc = "Details given up on top of rounding; bounds hold all the same, without "
+                                               "one the error is measured and noted"});
+        visit(self.discard, FieldInfo{.key = "discard",
+                                      .unit = "importance",
+                                      .doc = "Bricks that are less important than this in every parameter at every "
+                                             "time are left out, as absent samples; 0 = none",
+                                      .range = Range{0, 1}});
+        visit(self.wavelet, FieldInfo{.key = "wavelet",
+                                      .unit = "",
+                                      .doc = "Vanishing moments N,N~ of the integer wavelet; auto: the best by trial",
+                                      .names = kWaveletChoiceNames});
+        visit(self.bccTransform, FieldInfo{.key = "bccTransform",
+                                           .unit = "",
+                                           .doc = "Of BCC: take each of its two grids apart by itself, or predict one "
+                                                  "from the other; auto: the shorter by trial",
+                                           .names = kBccTransformNames});
+        visit(self.brickSize, FieldInfo{.key = "brickSize",
+                                        .unit = "texel",
+                                        .doc = "Edge of a brick, a power of two; 0 = 64, of one small volume of "
+                                               "integers as much as it takes to be one brick",
+                                        .range = Range{0, 128}});
+        visit(self.levels, FieldInfo{.key = "levels",
+                                     .unit = "",
+                                     .doc = "Levels of detail; 0 = until a brick is 4 texels wide",
+                                     .range = Range{0, 8}});
+        visit(self.zstdLevel, FieldInfo{.key = "zstdLevel",
+                                        .unit = "",
+                                        .doc = "Effort of zstd, which codes masks and what repeats itself",
+                                        .range = Range{1, 19}});
+        visit(self.memoryMb, FieldInfo{.key = "memory",
+                                       .unit = "MB",
+                                       .doc = "Most memory for samples while packing; 0 = a quarter of the machine's. "
+                                              "Where it is tight, frames are neither compared with the one before "
+                                              "nor read ahead; those larger than it go through in slabs",
+                                       .range = Range{0, 1e9}});
+        visit(self.importance,
+              FieldInfo{.key = "importance", .unit = "", .doc = "How much a brick has to show, by its samples"});
+    }
+};
+
+} // namespace tessera::codec
