@@ -1,8 +1,8 @@
 #include "app/views/shadow_cube/wall_projection.h"
 #include "tests/vis/function_source.h"
 #include "vis/gl/headless.h"
+#include "vis/optics/ray_setup.h"
 #include "vis/passes/renderer.h"
-#include "vis/scene/ray_setup.h"
 
 #include <algorithm>
 #include <cmath>

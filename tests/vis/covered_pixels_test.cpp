@@ -1,6 +1,6 @@
 #include "vis/demand/covered_pixels.h"
 
-#include "vis/scene/ray_setup.h"
+#include "vis/optics/ray_setup.h"
 
 #include <gtest/gtest.h>
 #include <random>

@@ -1,5 +1,5 @@
 #include "tests/vis/gl_fixture.h"
-#include "vis/scene/ray_setup.h"
+#include "vis/optics/ray_setup.h"
 #include "vis/shapes/flow_geometry.h"
 #include "volume/sources/memory_source.h"
 

@@ -1,4 +1,5 @@
 #include "vis/optics/light_volume.h"
+#include "vis/optics/surface_light.h"
 
 #include <cmath>
 #include <glm/geometric.hpp>

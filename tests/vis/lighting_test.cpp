@@ -1,4 +1,5 @@
 #include "vis/optics/shade.h"
+#include "vis/optics/surface_light.h"
 
 #include <cmath>
 #include <glm/gtc/constants.hpp>

@@ -1,5 +1,6 @@
 #include "tests/vis/ball_silhouette.h"
 #include "tests/vis/raycast_compare.h"
+#include "vis/optics/surface_light.h"
 
 #include "vis/optics/look_shading.h"
 

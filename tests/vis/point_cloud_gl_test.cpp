@@ -1,7 +1,7 @@
 #include "vis/passes/point_cloud.h"
 
 #include "tests/vis/gl_fixture.h"
-#include "vis/scene/ray_setup.h"
+#include "vis/optics/ray_setup.h"
 
 #include <algorithm>
 #include <cmath>

@@ -4,9 +4,9 @@
 #include "vis/gl/headless.h"
 #include "vis/image/image_io.h"
 #include "vis/image/light_picture.h"
+#include "vis/optics/ray_setup.h"
 #include "vis/passes/renderer.h"
 #include "vis/reference/raycast.h"
-#include "vis/scene/ray_setup.h"
 
 #include <algorithm>
 #include <cmath>

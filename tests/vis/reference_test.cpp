@@ -1,6 +1,6 @@
 #include "tests/vis/function_source.h"
+#include "vis/optics/ray_setup.h"
 #include "vis/reference/raycast.h"
-#include "vis/scene/ray_setup.h"
 
 #include <cmath>
 #include <gtest/gtest.h>

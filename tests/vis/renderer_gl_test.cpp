@@ -1,6 +1,6 @@
 #include "tests/vis/renderer_scenes.h"
 
-#include "vis/scene/ray_setup.h"
+#include "vis/optics/ray_setup.h"
 #include "volume/base/error.h"
 
 #include <algorithm>

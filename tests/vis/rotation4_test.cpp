@@ -1,6 +1,6 @@
 #include "vis/shapes/rotation4.h"
 
-#include "vis/scene/ray_setup.h"
+#include "vis/optics/ray_setup.h"
 #include "vis/shapes/cloud4.h"
 
 #include <cmath>

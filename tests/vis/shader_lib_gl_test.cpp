@@ -1,9 +1,9 @@
 #include "tests/vis/shader_probe.h"
 #include "vis/optics/jitter.h"
+#include "vis/optics/ray_setup.h"
+#include "vis/optics/surface_light.h"
 #include "vis/raycast/ray_tables.h"
 #include "vis/scene/clipping.h"
-#include "vis/scene/lighting.h"
-#include "vis/scene/ray_setup.h"
 #include "vis/scene/tone.h"
 
 #include <algorithm>

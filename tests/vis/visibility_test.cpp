@@ -1,7 +1,7 @@
 #include "vis/optics/visibility.h"
 
 #include "tests/volume/fields.h"
-#include "vis/scene/ray_setup.h"
+#include "vis/optics/ray_setup.h"
 
 #include <cmath>
 #include <gtest/gtest.h>

@@ -123,6 +123,19 @@ TEST(Architecture, IncludesOnlyPointUpTheListOfRooms) {
     }
 }
 
+// "| Where is ...? | `file` |"
+TEST(Architecture, FilesThatTheRoomsPageNamesExist) {
+    int named = 0;
+    for (const std::string& line : linesOf(textOf(kRoot / "docs/rooms.md"))) {
+        const std::size_t open = line.starts_with("|") ? line.find('`') : std::string::npos;
+        if (open == std::string::npos) continue;
+        const std::string file = line.substr(open + 1, line.find('`', open + 1) - open - 1);
+        EXPECT_TRUE(fs::is_regular_file(kRoot / file)) << file;
+        ++named;
+    }
+    EXPECT_GE(named, 10);
+}
+
 TEST(Architecture, AWrongIncludeIsNoticed) {
     const std::vector<std::string> rooms = roomsInOrder();
     EXPECT_TRUE(mayInclude(rooms, "volume/field", "volume/base"));

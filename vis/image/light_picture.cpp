@@ -1,7 +1,7 @@
 #include "vis/image/light_picture.h"
 
 #include "vis/image/image_io.h"
-#include "vis/scene/ray_setup.h"
+#include "vis/optics/ray_setup.h"
 #include "volume/base/error.h"
 #include "volume/base/parallel.h"
 

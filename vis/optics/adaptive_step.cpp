@@ -1,6 +1,6 @@
 #include "vis/optics/adaptive_step.h"
 
-#include "vis/scene/ray_setup.h"
+#include "vis/optics/ray_setup.h"
 #include "vis/scene/scene.h"
 
 #include <algorithm>

@@ -1,5 +1,6 @@
 #include "vis/optics/light_maps.h"
 
+#include "vis/optics/surface_light.h"
 #include "volume/base/parallel.h"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "vis/scene/lighting.h"
+#include "vis/optics/surface_light.h"
 
 #include <glm/vec4.hpp>
 #include <span>

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "vis/optics/grain.h"
-#include "vis/scene/lighting.h"
+#include "vis/optics/surface_light.h"
 #include "vis/scene/look.h"
 #include "vis/scene/scene.h"
 

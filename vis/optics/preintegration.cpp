@@ -1,6 +1,6 @@
 #include "vis/optics/preintegration.h"
 
-#include "vis/scene/ray_setup.h"
+#include "vis/optics/ray_setup.h"
 #include "volume/base/parallel.h"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 #include "vis/optics/shade.h"
 
-#include "vis/scene/ray_setup.h"
+#include "vis/optics/ray_setup.h"
 
 #include <algorithm>
 #include <cmath>

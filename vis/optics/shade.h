@@ -2,6 +2,7 @@
 
 #include "vis/optics/light_maps.h"
 #include "vis/optics/light_volume.h"
+#include "vis/optics/surface_light.h"
 
 #include <memory>
 

@@ -1,9 +1,9 @@
 #include "vis/passes/geometry_pass.h"
 
+#include "vis/optics/ray_setup.h"
 #include "vis/raycast/clip_uniforms.h"
 #include "vis/raycast/lens_uniforms.h"
 #include "vis/raycast/light_uniforms.h"
-#include "vis/scene/ray_setup.h"
 
 #include <algorithm>
 #include <glm/gtc/matrix_transform.hpp>

@@ -1,3 +1,4 @@
+#include "vis/optics/surface_light.h"
 #include "vis/passes/renderer_impl.h"
 
 #include "vis/raycast/ray_uniforms.h"

@@ -2,7 +2,7 @@
 
 #include "vis/gl/handles.h"
 #include "vis/gl/program.h"
-#include "vis/scene/ray_setup.h"
+#include "vis/optics/ray_setup.h"
 
 #include <algorithm>
 #include <cmath>

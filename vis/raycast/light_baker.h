@@ -3,6 +3,7 @@
 #include "vis/gl/handles.h"
 #include "vis/gl/program.h"
 #include "vis/optics/mesh_matter.h"
+#include "vis/optics/surface_light.h"
 
 #include <atomic>
 #include <functional>

@@ -2,6 +2,7 @@
 
 #include "vis/image/light_picture.h"
 #include "vis/optics/shade.h"
+#include "vis/optics/surface_light.h"
 
 #include <algorithm>
 

@@ -2,7 +2,7 @@
 
 #include "vis/bricks/texels.h"
 #include "vis/gl/program.h"
-#include "vis/scene/ray_setup.h"
+#include "vis/optics/ray_setup.h"
 #include "vis/scene/scene.h"
 
 #include <optional>

@@ -1,6 +1,7 @@
 #include "vis/reference/prepared.h"
 
 #include "vis/optics/mesh_matter.h"
+#include "vis/optics/surface_light.h"
 #include "volume/base/parallel.h"
 
 #include <algorithm>

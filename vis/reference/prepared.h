@@ -3,9 +3,9 @@
 #include "vis/optics/adaptive_step.h"
 #include "vis/optics/look_shading.h"
 #include "vis/optics/preintegration.h"
+#include "vis/optics/ray_setup.h"
 #include "vis/optics/shade.h"
 #include "vis/reference/raycast.h"
-#include "vis/scene/ray_setup.h"
 
 #include <map>
 #include <memory>

@@ -6,7 +6,7 @@
 
 namespace tessera::vis::reference {
 
-/// What a layer that looks at the whole ray has seen of it; the styles are those of vis/scene/ray_setup.h.
+/// What a layer that looks at the whole ray has seen of it; the styles are those of vis/optics/ray_setup.h.
 class Projected {
 public:
     /// A sample at a world place, `step` long; absent ones end the rise to a local maximum.

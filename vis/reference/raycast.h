@@ -6,7 +6,7 @@
 #include "vis/scene/scene.h"
 #include "volume/bricks/brick_source.h"
 
-/// The judge of everything the ray caster's shader draws: the formulas of vis/scene/ray_setup.h and
+/// The judge of everything the ray caster's shader draws: the formulas of vis/optics/ray_setup.h and
 /// volume/reconstruct/reconstruct.h, one sample at a time, on the CPU, without any shortcut (no skipping, no levels, no
 /// textures).
 namespace tessera::vis::reference {

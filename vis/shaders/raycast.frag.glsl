@@ -1,5 +1,5 @@
 // The one ray loop: volume-like layers and slices of a scene, composited front to back in linear light. What happens
-// along a ray is written down in vis/scene/ray_setup.h; the reference ray caster does the same in double precision.
+// along a ray is written down in vis/optics/ray_setup.h; the reference ray caster does the same in double precision.
 //
 // March until hit, then shade: the inner loop only advances until something contributes, so that software GL, which
 // has no branches, shades all lanes of a group at once. What leaves the inner loop is the sample's number alone; its

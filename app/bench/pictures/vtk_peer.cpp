@@ -1,6 +1,7 @@
 #include "app/bench/pictures/vtk_peer.h"
 
-#include "vis/scene/ray_setup.h"
+#include "vis/optics/ray_setup.h"
+#include "vis/optics/surface_light.h"
 
 #include <algorithm>
 #include <cstdio>

@@ -1,6 +1,6 @@
 #include "app/views/shadow_cube/wall_projection.h"
 
-#include "vis/scene/ray_setup.h"
+#include "vis/optics/ray_setup.h"
 #include "volume/reconstruct/probe.h"
 
 #include <algorithm>

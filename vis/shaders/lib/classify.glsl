@@ -1,5 +1,5 @@
 // From samples to colour (linear, not premultiplied) and opacity of a layer kReferenceLength thick, for the composite
-// layers. Twin: classification in vis/reference/raycast.cpp; what the lookups mean stands in vis/scene/ray_setup.h.
+// layers. Twin: classification in vis/reference/raycast.cpp; what the lookups mean stands in vis/optics/ray_setup.h.
 
 // Place of the gradient's magnitude, 0..1 and beyond.
 float gradientPlace(int layer, vec3 gradient) {

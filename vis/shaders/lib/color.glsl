@@ -1,4 +1,4 @@
-// Colour in linear light. Twins in vis/scene/ray_setup.h.
+// Colour in linear light. Twins in vis/optics/ray_setup.h.
 
 float luminance(vec3 linearColor) {
     return dot(linearColor, vec3(0.2126, 0.7152, 0.0722));

@@ -1,5 +1,5 @@
 // Directions of few bits: two coordinates of `bits` each on the unfolded octahedron (Q. Meyer et al.: On floating-point
-// normal vectors, 2010). Twin: quantizedDirection() in vis/scene/ray_setup.h. A direction of length 1, of any vector;
+// normal vectors, 2010). Twin: quantizedDirection() in vis/optics/ray_setup.h. A direction of length 1, of any vector;
 // zero stays zero.
 vec3 quantizedDirection(vec3 v, int bits) {
     float sum = abs(v.x) + abs(v.y) + abs(v.z);

@@ -1,5 +1,5 @@
 // Projections: layers that look at the whole ray, and show one of its values. What each does stands in
-// vis/scene/ray_setup.h.
+// vis/optics/ray_setup.h.
 #if HAS_PROJECTION
 
 // Best score and its sample; sums. A local maximum that is found has weight 1.

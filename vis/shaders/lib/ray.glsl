@@ -1,4 +1,4 @@
-// Geometry of rays; twins in vis/scene/ray_setup.h.
+// Geometry of rays; twins in vis/optics/ray_setup.h.
 
 // Entry and exit of a ray in the box |p| <= halfSize; empty when x >= y.
 vec2 clipToBox(vec3 origin, vec3 direction, vec3 halfSize) {

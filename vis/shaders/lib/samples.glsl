@@ -1,4 +1,4 @@
-// The samples of this pixel's ray; twin: RaySamples in vis/scene/ray_setup.h.
+// The samples of this pixel's ray; twin: RaySamples in vis/optics/ray_setup.h.
 
 struct RaySamples {
     vec3 origin, direction;

@@ -1,4 +1,4 @@
-#include "vis/scene/ray_setup.h"
+#include "vis/optics/ray_setup.h"
 
 #include <algorithm>
 #include <cmath>
