@@ -56,7 +56,7 @@ Json archiveJson(const codec::Archive& archive) {
         for (const volume::Label& label : parameter.labels) entry["labels"][std::to_string(label.value)] = label.name;
         for (const Range& range : parameter.ranges) entry["ranges"].push_back({range.lo, range.hi});
         if (codec::isResampled(archive.metadata()))
-            entry["resampled"] = resampledJson(archive.metadata(), parameters.size(), codec::extentOf(parameter));
+            entry["resampled"] = resampledJson(archive.metadata(), parameters.size(), volume::extentOf(parameter));
         parameters.push_back(std::move(entry));
         stored += double(info.lattice.count()) * double(info.times.size()) * parameter.components *
                   double(volume::byteSize(parameter.type));

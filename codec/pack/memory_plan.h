@@ -1,6 +1,7 @@
 #pragma once
 
 #include "codec/container/metadata.h"
+#include "codec/pack/pack.h"
 
 namespace tessera::codec {
 

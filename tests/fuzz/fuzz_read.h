@@ -1,7 +1,7 @@
 #pragma once
 
 #include "app/importer/describe_source.h"
-#include "app/importer/readers/source.h"
+#include "app/importer/readers/vtk_messages.h"
 
 #include <cstdint>
 #include <cstdio>

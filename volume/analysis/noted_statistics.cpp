@@ -98,10 +98,10 @@ struct NotedSums {
         squares += n * (variance + (brick.mean - shift) * (brick.mean - shift));
     }
     Summary summary() const {
-        constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-        if (samples == 0) return {0, 0, kNone, kNone, kNone, kNone, kNone};
+        constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
+        if (samples == 0) return {0, 0, kNothing, kNothing, kNothing, kNothing, kNothing};
         const double mean = sum / samples, variance = std::max(squares / samples - mean * mean, 0.0);
-        return {samples, volume, shift + mean, std::sqrt(variance), min, max, kNone};
+        return {samples, volume, shift + mean, std::sqrt(variance), min, max, kNothing};
     }
 };
 

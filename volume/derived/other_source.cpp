@@ -18,7 +18,7 @@ namespace tessera::volume {
 namespace {
 
 constexpr std::size_t kOtherBudget = std::size_t(192) << 20;
-constexpr double kRangeSamples = 3e6;
+constexpr double kOtherRangeSamples = 3e6;
 
 double metres(const std::string& unit) {
     static const std::map<std::string, double, std::less<>> known = {{"m", 1},          {"cm", 1e-2},    {"mm", 1e-3},
@@ -250,7 +250,7 @@ private:
             const glm::dvec3 size(grid().levelSamples(level));
             return size.x * size.y * size.z;
         };
-        while (level + 1 < grid().levels && samples() > kRangeSamples) ++level;
+        while (level + 1 < grid().levels && samples() > kOtherRangeSamples) ++level;
         Range range{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
         const glm::ivec3 count = grid().count();
         const int total = count.x * count.y * count.z;

@@ -12,7 +12,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 constexpr glm::ivec2 kWindow{1500, 950};
-constexpr int kSteps = 9;         // of a drag, of which the median counts
+constexpr int kTimedSteps = 9;         // of a drag, of which the median counts
 constexpr int kMostFrames = 60;   // until every view has followed
 constexpr int kMostAtRest = 5000; // until every view is refined
 
@@ -79,9 +79,9 @@ Followed TimedWorkbench::drag(const std::function<void(Session&, double)>& edit)
         io.MousePos = {40, float(kWindow.y) - 6};
         io.MouseDown[0] = true;
     };
-    for (int step = 0; step <= kSteps; ++step) {
+    for (int step = 0; step <= kTimedSteps; ++step) {
         const Clock::time_point begin = Clock::now();
-        edit(session(), double(step) / kSteps);
+        edit(session(), double(step) / kTimedSteps);
         std::map<std::string, double> first;
         bool behind = true;
         for (int frame = 0; frame < kMostFrames && behind; ++frame) {

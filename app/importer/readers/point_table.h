@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 #include <vector>
+#include <vtkDataSet.h>
 #include <vtkDataSetAttributes.h>
 
 /// Tables of points, as text formats hold them: columns of numbers with names and units.
