@@ -22,10 +22,10 @@ struct DerivativeQuery {
     bool operator==(const DerivativeQuery&) const = default;
 };
 
-/// The histogram volume of Kindlmann and Durkin, its axis of second derivatives reduced to their sum. Samples on the
-/// surface of the lattice and those with an absent neighbour take no part. Where a neighbour is of another part
-/// (volume/field/parts.h), the sample's own part is continued to it. Element gradient * valueBins + value; a
-/// gradient beyond the top counts in the last bin.
+/// The histogram volume of Kindlmann and Durkin, with the axis of second derivatives reduced to their sum. Samples on
+/// the surface of the lattice and those with an absent neighbour are skipped. A neighbour in another part
+/// (volume/field/parts.h) is replaced by extrapolation of the sample's own part. Element gradient * valueBins + value;
+/// gradients above the top count in the last bin.
 struct DerivativeHistogram {
     int valueBins = 0, gradientBins = 0;
     Range range;
@@ -36,8 +36,8 @@ struct DerivativeHistogram {
     std::uint64_t samples = 0;
 };
 
-/// Counts, on all cores, by slabs of bricks; the result does not depend on the number of threads. Throws Error when a
-/// brick is damaged, Cancelled.
+/// Computes the histogram on all cores; the result does not depend on the number of threads. Throws Error when a brick
+/// is damaged, Cancelled.
 DerivativeHistogram derivativeHistogram(const BrickSource& source, const DerivativeQuery& query,
                                         const Progress& progress = {});
 

@@ -9,8 +9,8 @@
 
 namespace tessera::volume {
 
-/// Filters of volume/reconstruct/reconstruct.h: `linear` on samples as they are, on prefiltered ones; of BCC
-/// `tetrahedral`, `cosineWeighted`, and `quinticBox` on prefiltered samples.
+/// Filters of volume/reconstruct/reconstruct.h: `linear` on unfiltered samples, and on prefiltered ones (quasi); for
+/// BCC also `tetrahedral`, `cosineWeighted`, and `quinticBox` on prefiltered samples.
 enum class LatticeFilter { Linear, Quasi, Tetrahedral, Cosine, Quintic };
 inline constexpr std::string_view kLatticeFilterNames[] = {"linear", "quasi", "tetrahedral", "cosine", "quintic"};
 
@@ -19,14 +19,14 @@ struct LatticeError {
     double samples = 0; ///< of the lattice per box: its volume over the volume per sample
 };
 
-/// How well a lattice and a filter carry a signal: the signal is sampled without rounding, reconstructed at `points`
+/// Reconstruction error of a lattice with a filter: the signal is sampled without rounding, reconstructed at `points`
 /// random positions of the box (uniform, from `seed`) and compared with itself. The lattice starts at `box.lo` and
-/// goes on beyond the box, so borders play no part. `spacing` is the cell edge (of one sublattice on BCC).
+/// continues beyond the box, so borders have no influence. `spacing` is the cell edge (of one sublattice on BCC).
 LatticeError latticeError(const std::function<double(glm::dvec3)>& signal, LatticeKind kind, double spacing,
                           LatticeFilter filter, const Box& box, std::size_t points = 60000, unsigned seed = 1);
 
-/// How far the directions of reconstructed gradients lie from those of `slope`, the gradient of the signal, in degrees:
-/// the mean over the same points, each counted by the length of its slope.
+/// Mean angle, in degrees, between reconstructed gradients and `slope`, the gradient of the signal, over the same
+/// points, each weighted by the length of its slope.
 double latticeGradientError(const std::function<double(glm::dvec3)>& signal,
                             const std::function<glm::dvec3(glm::dvec3)>& slope, LatticeKind kind, double spacing,
                             LatticeFilter filter, GradientSpan span, const Box& box, std::size_t points = 20000,

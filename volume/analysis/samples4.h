@@ -26,10 +26,10 @@ struct SamplesQuery {
     bool operator==(const SamplesQuery&) const = default;
 };
 
-/// The finest level of detail that has at most eight samples per sample of the budget, and of it as many as the budget
-/// allows, chosen by a hash of their place (not by chance: equal questions have equal answers), in an order of which
-/// every first part is a fair sample. Bricks are read whole, one after the other. `coarsest`: the coarsest level
-/// instead, for a first picture. Throws Error, Cancelled.
+/// Uses the finest level with at most eight samples per sample of the budget, and of it as many samples as the budget
+/// allows, chosen by a hash of their position (equal queries give equal results), in an order of which every prefix is
+/// a fair sample. Bricks are read completely, one after the other. `coarsest`: use the coarsest level instead, for a
+/// first picture. Throws Error, Cancelled.
 Samples4 gatherSamples(const BrickSource& source, const SamplesQuery& query, bool coarsest,
                        const Progress& progress = {});
 

@@ -13,7 +13,7 @@
 
 namespace tessera::volume {
 
-/// What to count. All channels share one layout of bricks, so any number of them and of pairs is one pass.
+/// What to compute. All channels share one layout of bricks, so any number of channels and pairs needs one pass.
 struct StatisticsQuery {
     std::vector<int> channels;             ///< indices of DatasetInfo::channels()
     std::vector<std::array<int, 2>> pairs; ///< joint histograms wanted: positions in `channels`, {x, y}
@@ -50,7 +50,7 @@ struct JointHistogram {
     std::vector<double> mean; ///< of the channel StatisticsQuery::meanOf per bin, NaN where it has no sample
 };
 
-/// Of present samples, each with a weight. `mean`, `deviation`, `min` and `max` are NaN when there is no sample.
+/// Weighted statistics of present samples. `mean`, `deviation`, `min` and `max` are NaN if there is no sample.
 struct Summary {
     double samples = 0; ///< sum of the weights
     double volume = 0;  ///< they stand for, in cubic length units: every sample's cell within DatasetInfo::bounds
@@ -71,19 +71,19 @@ struct Statistics {
     int level = 0;                           ///< of detail; grid().levels where no sample was read
 };
 
-/// Histograms and summaries from what the source knows of its bricks without reading a sample; `query.level` is
-/// ignored. Nothing where a brick's distribution is not known, as of magnitudes, or where more is asked for: joint
-/// histograms, a degree of interest.
+/// Histograms and summaries from the stored statistics of bricks, without reading a sample; `query.level` is ignored.
+/// Empty if the distribution of a brick is unknown (as for magnitudes), or if the query has joint histograms or a
+/// degree of interest.
 ///
-/// Samples, min and max are those of computeStatistics at full resolution, the mean is within 2^-24 of the largest
-/// range of a brick. Within each bin of a brick samples are taken to lie evenly, on the values that may occur: so the
-/// sum of a histogram's bins up to any border is off by less than what the bins of bricks around that border hold (and
-/// by one where it is rounded), and the deviation by at most the root mean square, over samples, of the widths of their
-/// bins. Where a part of a brick is absent its volume counts by that part.
+/// Samples, min and max are those of computeStatistics at full resolution; the mean is within 2^-24 of the largest
+/// range of a brick. Within each bin of a brick samples are assumed to be uniform over the values that can occur. So
+/// the sum of histogram bins up to any border is off by less than the content of the brick bins around that border (and
+/// by one from rounding), and the deviation by at most the RMS width of the brick bins, over samples. Bricks with
+/// absent samples contribute their volume in proportion.
 std::optional<Statistics> notedStatistics(const BrickSource& source, const StatisticsQuery& query);
 
-/// Counts, on all cores; the result does not depend on the number of threads (degrees of interest are summed in units
-/// of 2^-10). Throws Error when a brick is damaged, Cancelled.
+/// Computes statistics on all cores; the result does not depend on the number of threads (degrees of interest are
+/// summed in units of 2^-10). Throws Error when a brick is damaged, Cancelled.
 Statistics computeStatistics(const BrickSource& source, const StatisticsQuery& query, const Progress& progress = {});
 
 } // namespace tessera::volume

@@ -10,8 +10,7 @@
 #include <span>
 #include <vector>
 
-/// Sums and histograms on their way, whose order of adding is either fixed or does not matter: inside of
-/// volume/analysis/statistics.cpp.
+/// Partial sums and histograms, merged in fixed order or independent of it: internal to volume/analysis/statistics.cpp.
 namespace tessera::volume {
 
 inline constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
@@ -28,15 +27,15 @@ struct Column {
     bool whole = true;              ///< every sample is present
 };
 
-/// Samples [begin, end) of a brick with their weights (null: 1).
+/// A range of samples [begin, end) of a brick, with their weights (null: all 1).
 struct Stretch {
     std::size_t begin, end;
     const float* weight;
     double weightOf(std::size_t i) const { return weight != nullptr ? double(weight[i]) : 1.0; }
 };
 
-/// N sums over a stretch. Of each eight side by side, so that the compiler can use vector instructions without
-/// changing the result; `addTo(i, lanes, lane)` adds sample i to lanes[n][lane].
+/// N sums over a stretch, in eight independent lanes, so that the compiler can vectorise without changing the result;
+/// `addTo(i, lanes, lane)` adds sample i to lanes[n][lane].
 template <std::size_t N> std::array<double, N> laneSums(const Stretch& stretch, const auto& addTo) {
     constexpr std::size_t kLanes = 8;
     double lanes[N][kLanes] = {};
@@ -129,7 +128,7 @@ struct Sums {
 struct PairSums {
     double n = 0, x = 0, y = 0, xx = 0, yy = 0, xy = 0;
 
-    /// Adds a stretch. Of whole columns only the products are new; the rest is in their moments.
+    /// Adds a stretch. For complete columns only the products are computed; the rest is taken from their moments.
     void add(const Column& a, const Column& b, const Moments& ofA, const Moments& ofB, const Stretch& stretch) {
         if (a.whole && b.whole) {
             n += ofA.n;
@@ -175,13 +174,13 @@ struct PairSums {
     }
 };
 
-/// What one brick adds besides histograms; merged in the order of the bricks.
+/// Sums of one brick, besides histograms; merged in the order of the bricks.
 struct BrickSums {
     std::vector<Sums> inside, outside; ///< per channel
     std::vector<PairSums> pairs, focusPairs;
 };
 
-/// Histograms on their way: `packed` takes samples fast, the others are exact for any number of them.
+/// Histograms being accumulated: `packed` takes samples fast, the others are exact for any number of them.
 struct Bins {
     std::vector<std::uint64_t> packed, count, focus;
     std::vector<std::uint64_t> third, thirdCount; ///< sum in units of a channel's range / 65535, and how many; or empty
@@ -207,7 +206,7 @@ struct Bins {
     }
 };
 
-/// The histograms of one thread. Each axis has one bin more than asked for, which takes what belongs in none.
+/// The histograms of one thread. Each axis has one extra bin for values that belong in none.
 struct BinSet {
     std::vector<Bins> channels, pairs;
     std::size_t samples = 0; ///< since the last flush

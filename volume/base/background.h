@@ -1,11 +1,11 @@
 #pragma once
 
-/// Threads that nobody waits for at once let the others go first where processors are scarce.
+/// Lower priority for threads whose results nobody waits for.
 namespace tessera {
 
-/// Puts the calling thread behind others.
+/// Lowers the priority of the calling thread.
 void workInBackground();
-/// Puts the threads that parallelFor() starts behind those that call it, from now on.
+/// Lowers the priority of the threads that parallelFor() starts from now on, below that of its callers.
 void helpInBackground();
 
 } // namespace tessera

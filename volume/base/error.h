@@ -5,8 +5,8 @@
 
 namespace tessera {
 
-/// A failure the user can act on: bad input, a missing file, a machine without GL. Thrown anywhere, caught once per
-/// command or job. `what()` is one line "file: place: reason" with the empty parts left out.
+/// A failure that the user can act on: bad input, a missing file, a machine without OpenGL. Thrown anywhere, caught
+/// once per command or job. `what()` is one line "file: place: reason" without the empty parts.
 class Error : public std::runtime_error {
 public:
     explicit Error(const std::string& reason, const std::string& file = {}, const std::string& place = {})
@@ -27,7 +27,7 @@ private:
     std::string reason_, file_, place_;
 };
 
-/// The machine cannot do it (no GL, disk full): exit status 3 instead of 2.
+/// The machine cannot do it (no OpenGL, disk full): exit status 3 instead of 2.
 class MachineError : public Error {
 public:
     using Error::Error;

@@ -11,14 +11,14 @@
 
 namespace tessera::volume {
 
-/// Values by key within a byte budget, each loaded once however many threads ask at the same time; the least recently
-/// used leave when the budget is full (never the one just asked for). A failure is thrown to all who wait for it and
-/// not remembered.
+/// A cache with a byte budget: each value is loaded once however many threads request it at the same time; the least
+/// recently used are evicted when the budget is exceeded (never the one just requested). A failure is thrown to all who
+/// wait for the value, and not cached.
 template <class Key, class Value, class Hash> class LoadOnce {
 public:
     using Pointer = std::shared_ptr<const Value>;
 
-    /// `load` is called outside of any lock, for different keys at once; `bytes` says what a value costs.
+    /// `load` is called without holding a lock, concurrently for different keys; `bytes` is the cost of a value.
     LoadOnce(std::size_t budget, std::function<Pointer(const Key&)> load,
              std::function<std::size_t(const Value&)> bytes)
         : budget_(budget), load_(std::move(load)), bytes_(std::move(bytes)) {}
@@ -62,7 +62,7 @@ public:
         return found != entries_.end() && found->second.loaded;
     }
 
-    /// Takes over what another one has loaded of the keys for which `keep` is true, as recently used as it was there.
+    /// Copies the values of another cache for the keys for which `keep` is true, in the same order of recent use.
     template <class Keep> void adopt(const LoadOnce& other, Keep&& keep) {
         const std::scoped_lock lock(mutex_, other.mutex_);
         for (const Key& key : other.recent_) {

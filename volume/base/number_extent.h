@@ -8,7 +8,7 @@ namespace tessera::volume {
 
 template <class T> struct NumberExtent { T least{}, most{}; };
 
-/// The least and the largest of numbers, of which there is at least one. In lanes that do not wait for each other.
+/// Minimum and maximum of at least one number, computed in independent lanes.
 template <class T> NumberExtent<T> extentOfNumbers(std::span<const T> numbers) {
     constexpr std::size_t kLanes = 64 / sizeof(T);
     std::array<T, kLanes> least, most;

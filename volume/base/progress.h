@@ -8,7 +8,7 @@
 
 namespace tessera {
 
-/// How a long job says how far it is and learns that it should stop. Copyable; both members may be empty.
+/// Progress of a long job, and its cancellation. Copyable; both members may be empty.
 struct Progress {
     std::function<void(double fraction, const std::string& what)> report;
     std::stop_token stop;
@@ -19,7 +19,7 @@ struct Progress {
         if (report) report(fraction, what);
     }
 
-    /// The part of this job that runs from `begin` to `end`, itself counting 0..1.
+    /// Progress of the section of this job from `begin` to `end`, scaled to 0..1.
     Progress part(double begin, double end) const {
         Progress inner{{}, stop};
         if (report)

@@ -7,8 +7,8 @@
 
 namespace tessera::volume {
 
-/// Keeps decoded bricks of another source, the least recently used ones leaving when the byte budget is full. A brick
-/// is decoded once however many threads ask for it at the same time; a failure is not remembered.
+/// Caches decoded bricks of another source within a byte budget, evicting the least recently used. A brick is decoded
+/// once however many threads request it at the same time; failures are not cached.
 class BrickCache final : public BrickSource {
 public:
     BrickCache(std::shared_ptr<const BrickSource> source, std::size_t budget);
@@ -24,12 +24,12 @@ public:
 
     /// The brick itself, shared with the cache.
     std::shared_ptr<const BrickSamples> get(const BrickKey& key) const;
-    /// Takes over the bricks for which `keep` is true from the cache of another source that gives the same ones.
+    /// Copies the bricks for which `keep` is true from the cache of another source with identical bricks.
     void adopt(const BrickCache& other, const std::function<bool(const BrickKey&)>& keep);
     /// True when the brick is here already, so that get() is quick.
     bool has(const BrickKey& key) const;
     std::size_t bytes() const;
-    /// Another byte budget; what is beyond it leaves.
+    /// Sets the byte budget and evicts bricks beyond it.
     void setBudget(std::size_t bytes);
 
 private:

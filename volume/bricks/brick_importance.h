@@ -7,8 +7,8 @@
 
 #include <vector>
 
-/// How much bricks have to show, and how much they change: what decides which of them come first, how finely they are
-/// kept, and whether they have to be read again. (Röber 2002, sections 4.2.2 and 4.2.3.)
+/// Importance of bricks and their change over time: they decide which bricks are loaded first, at which level, and
+/// whether they must be read again. (Röber 2002, sections 4.2.2 and 4.2.3.)
 namespace tessera::volume {
 
 struct ImportanceOptions {
@@ -40,12 +40,12 @@ struct ImportanceOptions {
 std::vector<BrickImportance> importanceOfBricks(const BrickGrid& grid, const Field& field, Range range,
                                                 bool categorical, const ImportanceOptions& options = {});
 
-/// The same of a frame that is read in slices, `layers` layers of bricks at a time and a few slices around them.
+/// The same for a frame that is read in slices, `layers` layers of bricks at a time plus a few slices around them.
 std::vector<BrickImportance> importanceOfBricks(const BrickGrid& grid, const SliceReader& read, int layers, Range range,
                                                 bool categorical, const ImportanceOptions& options = {});
 
-/// How far the samples of one brick move from one frame to another, as a reader sees them. Both frames have the grid's
-/// lattice and one type; scale and offset may differ.
+/// Largest and RMS difference between two frames within a brick, of the decoded values. Both frames have the lattice of
+/// the grid and the same type; scale and offset may differ.
 BrickChange changeOfBrick(const BrickGrid& grid, glm::ivec3 brick, const Field& before, const Field& after);
 
 } // namespace tessera::volume

@@ -7,11 +7,11 @@
 #include <string_view>
 #include <vector>
 
-/// Bricks put together by importance: what is left out, and which neighbours are alike. One layout serves all
-/// parameters and times. (Röber 2002, section 4.2.2.)
+/// Merging of bricks by importance: which bricks are omitted, and which neighbours form a larger brick. One layout
+/// serves all parameters and times. (Röber 2002, section 4.2.2.)
 namespace tessera::volume {
 
-/// Which shapes merging makes, and how it goes about it.
+/// Shape of merged bricks, and the algorithm that finds them.
 enum class MergeShape : std::uint8_t {
     Uniform, ///< cubes of 1, 2, 4, ... bricks a side: along x, y and z, or not at all
     Mixed,   ///< boxes: along x as far as it goes, then whole rows along y, then whole slices along z
@@ -54,12 +54,12 @@ struct MergedBrick {
     bool operator==(const MergedBrick&) const = default;
 };
 
-/// Boxes that hold each brick that is not discarded once, and no other; by their first brick, x fastest. `importance`:
-/// of the bricks of a grid of `count`, x fastest.
+/// Boxes that cover each brick that is not discarded exactly once, and no other; ordered by their first brick, x
+/// fastest. `importance`: one value per brick of a grid of `count` bricks, x fastest.
 std::vector<MergedBrick> mergeBricks(glm::ivec3 count, std::span<const float> importance, const MergeOptions& options);
 
-/// The larger of importance and detail of every brick, the most of all stored components and times; bricks of which
-/// nothing is known have 1.
+/// For every brick the larger of importance and detail, maximised over all stored components and times; 1 where
+/// unknown.
 std::vector<float> mostImportant(const BrickSource& source);
 
 } // namespace tessera::volume

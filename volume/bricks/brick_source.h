@@ -21,7 +21,7 @@ struct BrickGrid {
     Lattice lattice;
     int brickSize = 32; ///< texels a side, a power of two
     int levels = 4;     ///< level 0 is full resolution; 2^(levels - 1) <= brickSize
-    /// Fine cells by which a level-1 sample lies beyond its fine sample: 0 for filters whose coarse samples stay on
+    /// Offset of a level-1 sample from its fine sample, in fine cells: 0 for filters whose coarse samples coincide with
     /// fine ones (all but the (1, x) family), 0.5 for means of two.
     double phase = 0;
 
@@ -59,48 +59,48 @@ struct BrickKeyHash {
     }
 };
 
-/// What is known of a brick without decoding it. Physical values of present samples at full resolution; an empty brick
-/// has presentFraction 0 and min > max.
+/// Statistics of a brick that are known without decoding it: physical values of present samples at full resolution. An
+/// empty brick has presentFraction 0 and min > max.
 struct BrickStats {
     float min = 0, max = 0;
     float presentFraction = 1;
 };
 
-/// How the values of a brick are distributed, known without decoding it: physical values of present, finite samples at
-/// full resolution.
+/// Mean and histogram of a brick, known without decoding it: physical values of present, finite samples at full
+/// resolution.
 struct BrickDistribution {
     std::uint64_t samples = 0; ///< 0: the rest means nothing
     Range range;               ///< of the values; lo = hi where all are one
     double mean = 0;           ///< at most 2^-24 of the range beside the true one
-    /// Bin b of B, up to 32 by the number of samples, covers range.lo + [b, b + 1] / B of the range; a border belongs
-    /// to the bin above it, range.hi to the last. Exact; `samples` in sum.
+    /// Bin b of B (up to 32, depending on the number of samples) covers range.lo + [b, b + 1] / B of the range; a value
+    /// on a border belongs to the bin above, range.hi to the last bin. The counts are exact and sum to `samples`.
     std::vector<std::uint32_t> counts;
     double step = 0; ///< values lie at range.lo + i * step; 0: anywhere
 };
 
-/// How much a brick has to show, 0 to 1 each (volume/bricks/brick_importance.h).
+/// Importance and detail of a brick, 0 to 1 each (volume/bricks/brick_importance.h).
 struct BrickImportance {
     float importance = 0; ///< by mean, contrast and entropy
     float detail = 0;     ///< by the energy of its details
     float largest() const { return importance > detail ? importance : detail; }
 };
 
-/// How far the samples of a brick move between two times: physical values at full resolution. A sample that is there at
-/// one of them only moves infinitely far. Rounded up, so that a change of 0 says that every sample is the same.
+/// Change of a brick between two times: physical values at full resolution. A sample that is present at only one of
+/// them has infinite change. Rounded up, so that 0 means that all samples are equal.
 struct BrickChange {
     float max = 0, rms = 0; ///< rms: over the samples present
     bool operator==(const BrickChange&) const = default;
 };
 
-/// The least float that is not below a value.
+/// The smallest float that is not below a value.
 float roundedUp(double value);
 
-/// Bounds on the change over two steps, from those of each. (Minkowski's inequality.)
+/// Upper bound on the change over two steps, from those of each step (Minkowski's inequality).
 BrickChange accumulated(const BrickChange& first, const BrickChange& second);
 
 /// Bounds for the magnitude of a vector from those of its components.
 BrickChange magnitudeChange(std::span<const BrickChange> components);
-/// The most important of a vector's components stands for its magnitude.
+/// The importance of a magnitude: the largest of its components.
 BrickImportance magnitudeImportance(std::span<const BrickImportance> components);
 
 /// Samples of one brick at one level, without border: physical values, x fastest, storage order of the lattice.
@@ -110,7 +110,7 @@ struct BrickSamples {
     std::vector<std::uint8_t> present; ///< empty: all present; else one byte per sample, 0 = absent (value undefined)
 };
 
-/// Gives bricks of a data set: an in-memory data set and an archive both are one. All functions may be called from any
+/// A data set as bricks; implemented by in-memory data sets and by archives. All functions may be called from any
 /// thread at any time.
 class BrickSource {
 public:
@@ -124,17 +124,16 @@ public:
     virtual std::optional<BrickDistribution> distribution(const BrickKey& key) const;
     /// Importance of a brick; `key.level` is ignored. As cheap as `stats`; nothing where it is not known.
     virtual std::optional<BrickImportance> importance(const BrickKey& key) const;
-    /// A bound on how far the samples of a brick at full resolution move from key.time to `toTime`, which may come
-    /// before it; nothing where none is known. Of coarser levels only a change of 0 says something: they stay as they
-    /// are. As cheap as `stats`.
+    /// Upper bound on the change of a brick at full resolution from key.time to `toTime`, which may be earlier; empty
+    /// if unknown. For coarser levels only a change of 0 is meaningful: they are unchanged, too. As cheap as `stats`.
     virtual std::optional<BrickChange> change(const BrickKey& key, int toTime) const;
     /// Reads, and if need be decodes, one brick. Throws Error when the data is damaged.
     virtual BrickSamples read(const BrickKey& key) const = 0;
 };
 
-/// Samples of a brick with a border of `halo` samples of each sublattice around it, as the renderer wants them: CC
-/// (n + 2 halo) per axis; BCC (nx + 2 halo, ny + 2 halo, 2 (texels z + 2 halo)), even and odd slices alternating from
-/// an even one. Beyond the lattice the nearest sample is repeated (present flag too). `read` gives one brick without
+/// Samples of a brick with a border of `halo` samples of each sublattice, as the renderer needs them: CC (n + 2 halo)
+/// per axis; BCC (nx + 2 halo, ny + 2 halo, 2 (texels z + 2 halo)), with alternating even and odd slices, starting with
+/// an even one. Beyond the lattice the nearest sample is repeated, including its flag. `read` returns one brick without
 /// border.
 BrickSamples gather(const BrickGrid& grid, const BrickKey& key, int halo,
                     const std::function<BrickSamples(const BrickKey&)>& read);

@@ -7,11 +7,11 @@
 #include <optional>
 #include <vector>
 
-/// Parts of a parameter (volume/field/parts.h), brick by brick: the label's brick of the same time, level and index
-/// says the part of each sample of a parameter's brick.
+/// Parts of a parameter (volume/field/parts.h), brick by brick: the label's brick with the same time, level and index
+/// gives the part of each sample.
 namespace tessera::volume {
 
-/// The channel of the label that says the parts of a parameter; nothing where all of it is one part.
+/// The channel of the label of a parameter's parts; empty if it has one part.
 std::optional<int> labelChannel(const DatasetInfo& info, const Parameter& parameter);
 
 /// The part of each sample of a brick, from the label's brick; of an absent label sample the first.
@@ -23,9 +23,9 @@ BrickSamples onlyPart(BrickSamples values, const BrickSamples& labels, const Par
 /// A label's brick of a coarser level: every 2^level-th sample of each sublattice of the one of level 0.
 BrickSamples coarserLabels(const BrickGrid& grid, const BrickKey& key, const BrickSamples& fine);
 
-/// A brick of a coarser level out of those of level 0, each sample of fine ones of one part only: that which the
-/// coarser brick of the label says. The fine sample that it lies on (BrickGrid::phase 0) where that is of the part,
-/// else the mean; present where half of the fine samples are and one of the part.
+/// A brick of a coarser level computed from level 0, each sample from fine samples of one part only, given by the
+/// coarser brick of the label: the fine sample at its position (BrickGrid::phase 0) if that belongs to the part, else
+/// the mean of those that do. Present if half of the fine samples are present and at least one belongs to the part.
 BrickSamples coarserOfParts(const BrickGrid& grid, int level, const BrickSamples& fine, const BrickSamples& fineLabels,
                             const BrickSamples& coarseLabels, const Parts& parts);
 

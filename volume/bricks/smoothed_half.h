@@ -22,7 +22,7 @@ struct Smoothed {
     bool has(std::size_t i) const { return coverage.empty() || coverage[i] > 0; }
 };
 
-/// What is known of all samples of a frame that a field is a part of.
+/// Range of a whole frame that a field is a part of.
 struct SmoothedRange {
     Range range;         ///< lo < hi
     bool gaps = false;   ///< some are absent, or not finite

@@ -13,9 +13,9 @@ struct SourceAtTime {
     int time = 0;
 };
 
-/// The data at any time: at a stored one the source itself; in between a source of one time whose samples are
-/// (1 - weight) * earlier + weight * later. A sample absent at either time is what it is at the nearer one, and so are
-/// labels. Statistics of bricks are bounds: the union of both times'.
+/// The data at any time: at a stored time the source itself; in between, a source with one time whose samples are (1 -
+/// weight) * earlier + weight * later. A sample that is absent at either time, or a label, is taken from the nearer
+/// time. Statistics of bricks are bounds: the union of those of both times.
 SourceAtTime sourceAt(std::shared_ptr<const BrickSource> source, const TimePair& time);
 
 } // namespace tessera::volume

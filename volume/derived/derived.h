@@ -9,8 +9,8 @@
 #include <variant>
 #include <vector>
 
-/// Parameters that are computed from others when a brick of them is read: at the level asked for, absent where any
-/// input is absent or the result is no number.
+/// Parameters computed from others on demand, brick by brick at the requested level; absent where any input is absent
+/// or the result is not a number.
 namespace tessera::volume {
 
 /// A formula over channels, position and time, point by point: "O2 / (O2 + H2O)", "T - at(T, first)". See Expression.
@@ -70,7 +70,7 @@ struct VorticityRecipe {
 enum class TimeMeasure { FromMean, StandardDeviation };
 inline constexpr std::string_view kTimeMeasureNames[] = {"fromMean", "standardDeviation"};
 
-/// How a channel departs, at every point, from its mean over all times where it is present.
+/// Difference of a channel, at every point, from its mean over all times at which it is present.
 struct DeviationRecipe {
     static constexpr std::string_view kType = "deviation";
     std::string channel;
@@ -101,7 +101,7 @@ struct SmoothRecipe {
     }
 };
 
-/// Where a sample lies: a vector "name.x", "name.y", "name.z" in the data's length unit.
+/// The position of a sample: a vector "name.x", "name.y", "name.z" in the data's length unit.
 struct PositionRecipe {
     static constexpr std::string_view kType = "position";
     bool operator==(const PositionRecipe&) const = default;
@@ -115,7 +115,7 @@ struct TimeRecipe {
     static void describe(auto&, auto&&) {}
 };
 
-/// A channel minus itself at another time, or in the data set beside (volume/derived/other_source.h): absent where
+/// A channel minus itself at another time, or in the other data set (volume/derived/other_source.h); absent where
 /// either is.
 struct DifferenceRecipe {
     static constexpr std::string_view kType = "difference";
@@ -153,10 +153,10 @@ struct DerivedParameter {
     }
 };
 
-/// What is wrong with a derived parameter of a data set, with the place in the formula; "" if nothing is.
+/// Error message for a derived parameter of a data set, with the position in the formula; "" if it is valid.
 std::string derivedProblem(const DerivedParameter& parameter, const DatasetInfo& info);
 
-/// What is wrong with each of several, which may use the ones before them.
+/// Error messages for several derived parameters, each of which may use those before it.
 std::vector<std::string> derivedProblems(const std::vector<DerivedParameter>& parameters, DatasetInfo info);
 
 /// The source with one more parameter. Its range is that of a coarse level over all times, scanned here. Throws Error
@@ -164,13 +164,13 @@ std::vector<std::string> derivedProblems(const std::vector<DerivedParameter>& pa
 std::shared_ptr<const BrickSource> derive(std::shared_ptr<const BrickSource> source, const DerivedParameter& parameter,
                                           const Progress& progress = {});
 
-/// Derives one after the other, each of the former ones too; those that cannot be are left out with a message.
+/// Adds several derived parameters, each of which may use those before it; invalid ones are skipped with a message.
 std::shared_ptr<const BrickSource> deriveAll(std::shared_ptr<const BrickSource> source,
                                              const std::vector<DerivedParameter>& parameters,
                                              std::vector<std::string>& messages, const Progress& progress = {});
 
-/// The same for what shows the same data otherwise: the ranges of derived parameters are those found in `like`, which
-/// has them already.
+/// The same for another source of the same data: ranges of derived parameters are copied from `like`, which has them
+/// already.
 std::shared_ptr<const BrickSource> deriveLike(const BrickSource& like, std::shared_ptr<const BrickSource> source,
                                               const std::vector<DerivedParameter>& parameters);
 

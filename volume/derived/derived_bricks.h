@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-/// Bricks computed by a recipe: inside of volume/derived/derived.cpp.
+/// Bricks computed by a recipe: internal to volume/derived/derived.cpp.
 namespace tessera::volume {
 
 /// Computes bricks of a derived parameter from those of a source, and keeps the latest.
@@ -21,10 +21,11 @@ public:
     DerivedBricks(const DerivedBricks&) = delete;
     DerivedBricks& operator=(const DerivedBricks&) = delete;
 
-    /// A brick of every component; key.channel counts for nothing. From any thread.
+    /// The brick for every component; key.channel is ignored. Thread-safe.
     std::shared_ptr<const Bricks> get(BrickKey key) const;
 
-    /// No change where every sample that the brick is made of stays as it is from key.time to `toTime`, else nothing.
+    /// A change of 0 if all samples from which the brick is computed are unchanged from key.time to `toTime`, else
+    /// empty.
     std::optional<BrickChange> change(const BrickKey& key, int toTime) const;
 
 private:

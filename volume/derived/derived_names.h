@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-/// What the names in a recipe mean for a data set: inside of derived parameters.
+/// Resolves names in recipes for a data set: internal to derived parameters.
 namespace tessera::volume {
 
 /// Names a formula may use: channels, vectors (for their magnitude), then x, y, z, t where these are free.
@@ -22,7 +22,7 @@ private:
 /// Components of a derived parameter: 3 of a vector, else 1.
 int componentsOf(const DerivedRecipe& recipe);
 
-/// Where a derived parameter jumps: where any of those that it is made of does. Of labels that differ the first counts.
+/// The parts of a derived parameter: those of its inputs. If their labels differ, the first one is used.
 Parts partsOf(const DerivedRecipe& recipe, const DatasetInfo& info);
 
 } // namespace tessera::volume

@@ -17,19 +17,20 @@ enum class OtherTimes { Refused, Allowed };
 
 class Expression {
 public:
-    /// Values that a formula is made of: those of a name, now or at another time.
+    /// An input of a formula: the values of a name, at the time shown or at another one.
     struct Input {
         int name = 0;
         std::optional<TimeReference> at = {};
         std::size_t position = 0; ///< of the other time in the formula, counted from 1
     };
 
-    /// `names` are what the formula may use; the later of two equal ones counts. Throws Error whose place says where in
-    /// the formula ("position 5", counted from 1) something is wrong.
+    /// `names` are those the formula may use; of equal names the later one is used. Throws Error with the position in
+    /// the formula ("position 5", counted from 1).
     Expression(const std::string& text, std::span<const std::string> names,
                OtherTimes otherTimes = OtherTimes::Refused);
 
-    /// What the formula uses, each once: names rising, of one name its values now first.
+    /// The inputs of the formula, without duplicates, by rising index of the name; for each name its values at the time
+    /// shown first.
     const std::vector<Input>& inputs() const { return inputs_; }
     /// The names of the inputs, in their order.
     const std::vector<int>& used() const { return used_; }

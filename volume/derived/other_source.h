@@ -9,10 +9,10 @@
 #include <string>
 #include <string_view>
 
-/// Two data sets beside each other: two designs, two solvers, before and after packing.
+/// Two data sets compared: two designs, two solvers, before and after packing.
 namespace tessera::volume {
 
-/// Ends the names of the parameters of the other one: "T (other)".
+/// Suffix of parameter names of the other data set: "T (other)".
 inline constexpr std::string_view kOtherSuffix = " (other)";
 
 /// Values of one data set at the samples of another: the samples themselves where both have the same grid, else
@@ -20,13 +20,14 @@ inline constexpr std::string_view kOtherSuffix = " (other)";
 /// nearest sample.
 class SampledOnto {
 public:
-    /// `grid` is that of the other one, its lengths in `lengthUnit`. Throws Error when the units of length cannot be
+    /// `grid`: the grid to sample onto, with lengths in `lengthUnit`. Throws Error when the units of length cannot be
     /// converted.
     SampledOnto(std::shared_ptr<const BrickSource> source, const BrickGrid& grid, const std::string& lengthUnit);
     bool sameGrid() const { return sameGrid_; }
-    /// key.channel and key.time belong to `at`, which is the source or sourceAt(it), the rest to the grid.
+    /// key.channel and key.time refer to `at`, which is the source or sourceAt(it); the rest of the key refers to the
+    /// grid.
     BrickSamples read(const BrickSource& at, const BrickKey& key) const;
-    /// With bricks kept.
+    /// The source, behind a brick cache.
     const std::shared_ptr<const BrickSource>& source() const { return source_; }
 
 private:
@@ -36,27 +37,27 @@ private:
     bool sameGrid_ = false;
 };
 
-/// A data set with the parameters of another one after its own, named "T (other)": on its grid and at its times. Where
-/// either has a single parameter, that of the other one is named after the first, however it is called. The other one
-/// is taken at the same time, between its stored times interpolated and absent beyond them; one of a single time is
-/// compared with every time. The provenance says so. Throws Error when units of length or time cannot be converted.
+/// A data set with the parameters of another one appended, named "T (other)", on its grid and at its times. If either
+/// has a single parameter, that of the other data set is named after the first one. The other data set is read at the
+/// same time, interpolated between its stored times and absent outside them; one with a single time is used at every
+/// time. The provenance says so. Throws Error when units of length or time cannot be converted.
 std::shared_ptr<const BrickSource> withOther(std::shared_ptr<const BrickSource> source,
                                              std::shared_ptr<const BrickSource> other);
 
-/// The other data set of one made so, null if it is none.
+/// The other data set of a source made by withOther; null for other sources.
 std::shared_ptr<const BrickSource> otherOf(const BrickSource& source);
-/// And the first one.
+/// The first data set of a source made by withOther.
 std::shared_ptr<const BrickSource> besideOther(const BrickSource& source);
 
 /// "interpolated onto the grid of A" or, where nothing is interpolated, "on the same grid", and which parameters are
 /// converted before their difference is taken: ", p from bar to Pa".
 std::string otherText(const BrickSource& source, const BrickSource& other);
 
-/// The channel of the other data that is called as this one; nothing where there is none.
+/// The channel of the other data set with the same name; empty if there is none.
 std::optional<int> otherChannel(const DatasetInfo& info, int channel);
 
-/// What makes values of otherChannel(info, channel) ones in the unit of the channel. Nothing where there is none, or
-/// one that measures something else.
+/// Converts values of otherChannel(info, channel) to the unit of the channel. Empty if there is no such channel, or its
+/// unit measures something else.
 std::optional<UnitConversion> otherConversion(const DatasetInfo& info, int channel);
 
 /// One channel of a source at a time.
@@ -66,9 +67,9 @@ struct FieldAt {
     TimePair time;
 };
 
-/// One field minus another at the samples of the latter, as a data set of one parameter "difference" and one time;
-/// absent where either is, in the unit of the former. Its range is that of a coarse level. Throws Error when the units
-/// cannot be converted, Cancelled.
+/// The difference of two fields at the samples of the second one, as a data set with one parameter "difference" and one
+/// time; absent where either is, in the unit of the first. Its range is that of a coarse level. Throws Error when the
+/// units cannot be converted, Cancelled.
 std::shared_ptr<const BrickSource> differenceSource(const FieldAt& of, const FieldAt& minus,
                                                     const Progress& progress = {});
 

@@ -7,10 +7,10 @@
 #include <string>
 #include <string_view>
 
-/// Which values of a parameter are meant beside those of the time shown: at(T, first), at(T, 0.3), at(T, other).
+/// References to another time or data set in formulas: at(T, first), at(T, 0.3), at(T, other).
 namespace tessera::volume {
 
-/// Other: those of the data set shown beside (volume/derived/other_source.h), at the same time.
+/// Other: the values of the other data set (volume/derived/other_source.h) at the same time.
 enum class OtherTime { First, Last, Previous, Next, Time, Other };
 inline constexpr std::string_view kOtherTimeNames[] = {"first", "last", "previous", "next", "time", "other"};
 
@@ -20,19 +20,19 @@ struct TimeReference {
     bool operator==(const TimeReference&) const = default;
 };
 
-/// Whether it is the same time whichever is shown.
+/// Whether the reference does not depend on the time shown.
 inline bool isFixed(const TimeReference& reference) {
     return reference.which <= OtherTime::Last || reference.which == OtherTime::Time;
 }
 
-/// The stored times that make up the one meant, seen from the stored time of index `now`; nothing where there is none:
-/// before the first and after the last one.
+/// The stored times (and weight) that a reference means, seen from the stored time of index `now`; empty if there is
+/// none: before the first or after the last one.
 std::optional<TimePair> timesOf(const TimeReference& reference, const std::vector<double>& times, int now);
 
-/// What is wrong with a reference to a channel (< 0: a coordinate) of a data set; "" if nothing is.
+/// Error message for a reference to a channel (< 0: a coordinate) of a data set; "" if it is valid.
 std::string timeProblem(const TimeReference& reference, const DatasetInfo& info, int channel);
 
-/// "first", "0.3 s": as a reader sees it.
+/// The reference as displayed: "first", "0.3 s".
 std::string timeText(const TimeReference& reference, const DatasetInfo& info);
 
 } // namespace tessera::volume

@@ -8,17 +8,17 @@
 #include <optional>
 #include <vector>
 
-/// Differences and smoothing on the samples of one brick, at its level, with what lies around it.
+/// Derivatives and smoothing on the samples of one brick at its level, with its neighbourhood.
 namespace tessera::volume {
 
 using ReadSamples = std::function<BrickSamples(const BrickKey&)>;
 
-/// Where the parts of a channel are said (volume/field/parts.h).
+/// The label of a channel's parts (volume/field/parts.h).
 struct PartLabel {
     int channel = 0; ///< of the label
     Parts parts;
 };
-/// That of a channel, nothing where all of it is one part.
+/// The label of a channel's parts; empty if it has one part.
 std::optional<PartLabel> partLabel(const DatasetInfo& info, int channel);
 
 /// A brick with `reach` samples of each sublattice around it. Samples beyond the lattice are absent, and from a sample

@@ -15,8 +15,8 @@ struct ExportSelection {
     std::vector<int> parameters; ///< indices into DatasetInfo::parameters
     std::vector<int> times;      ///< indices into DatasetInfo::times, increasing
     std::optional<int> channel;  ///< .nrrd: index into DatasetInfo::channels(); needed where there are several
-    /// Integers with a scaling as the values they stand for: in their own type where that holds them, else in the
-    /// smallest one that does, else as floats. For samples whose scaling is not that of the source.
+    /// Write scaled integers as the values they represent: in their own type if it holds them, else in the smallest
+    /// type that does, else as floats. For samples whose scaling is not that of the source.
     bool values = false;
 };
 

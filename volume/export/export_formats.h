@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-/// What the formats of volume/export/export.h share, and those that have a file of their own.
+/// Shared by the formats of volume/export/export.h, and the formats that have a file of their own.
 namespace tessera::volume {
 
 /// How the numbers of one component are read: physical value = offset + scale * stored value.
@@ -25,8 +25,8 @@ struct Storage {
     std::vector<Scaling> scaling;      ///< of each component
 };
 
-/// Looks at every integer frame once. Integers stay integers where each component has one scaling at all times; else
-/// all components are floats.
+/// Examines every integer frame once. Integers stay integers if each component has the same scaling at all times; else
+/// all components become floats.
 Storage storageOf(const Dataset& dataset, int parameter, const std::vector<int>& times);
 
 /// The data set with ExportSelection::values: looks at every integer frame of the selection once.
@@ -35,7 +35,7 @@ Dataset withValues(Dataset dataset, const std::vector<int>& parameters, const st
 /// Physical values as floats.
 Storage floatStorage(int components);
 
-/// Whether each time's components lack the same samples: one array of flags can only speak for all of them then.
+/// Whether at each time all components lack the same samples, so that one array of flags is enough.
 bool masksAgree(const Dataset& dataset, int parameter, const std::vector<int>& times);
 
 /// False: the samples have to be converted.

@@ -56,7 +56,7 @@ struct Channel {
     bool operator==(const Channel&) const = default;
 };
 
-/// All that is known of a data set without reading a sample.
+/// Description of a data set, known without reading a sample.
 struct DatasetInfo {
     std::string name;
     Lattice lattice;
@@ -80,8 +80,8 @@ struct DatasetInfo {
     int nearestTime(double time) const;
 };
 
-/// A data set whose frames are read when asked for: `load(parameter, component, time index)` gives one stored
-/// component. May be called from any thread, one call at a time per data set; throws Error when the file is bad.
+/// A data set that is read on demand: `load(parameter, component, time index)` returns one stored component. May be
+/// called from any thread, one call at a time per data set; throws Error when the file is bad.
 struct Dataset {
     DatasetInfo info;
     std::function<Field(int parameter, int component, int time)> load;

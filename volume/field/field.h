@@ -11,7 +11,8 @@
 
 namespace tessera::volume {
 
-/// Which samples exist: one byte each, 1 present, 0 absent, in the order of the samples. Shared where equal.
+/// Which samples are present: one byte per sample, 1 present, 0 absent, in the order of the samples. Equal masks are
+/// shared.
 using Mask = std::vector<std::uint8_t>;
 
 /// One component of one parameter at one time on one lattice: the samples as stored, x fastest, and how to read them.

@@ -4,19 +4,20 @@
 
 #include <string>
 
-/// Data sampled from a mesh, or anew from grids, say so in DatasetInfo::provenance, which archives keep.
+/// Provenance texts (DatasetInfo::provenance, stored in archives) of data that were sampled from a mesh or resampled
+/// from other grids.
 namespace tessera::volume {
 
 inline constexpr std::string_view kFromMesh = "resampled from a mesh";
 
-/// `cells` of the mesh, as a sentence that begins with kFromMesh and tells the samples of the grid.
+/// A sentence that starts with kFromMesh and states the cells of the mesh and the samples of the grid.
 inline std::string meshProvenance(double cells, glm::ivec3 samples) {
     return std::string(kFromMesh) + " of " + std::to_string(static_cast<long long>(cells)) + " cells to " +
            std::to_string(samples.x) + " x " + std::to_string(samples.y) + " x " + std::to_string(samples.z) +
            " samples";
 }
 
-/// Data of several grids that differ, or of points that fill none, sampled on one.
+/// Data of several different grids, or of points that do not fill a grid, sampled on one grid.
 inline constexpr std::string_view kFromGrids = "resampled from grids that differ",
                                   kFromPoints = "resampled from scattered points";
 

@@ -6,9 +6,9 @@
 
 namespace tessera::volume {
 
-/// Where the values of a parameter jump. A label (a categorical parameter) says which region each sample belongs to;
-/// regions across whose borders the parameter is continuous form one part. Samples of different parts are never mixed:
-/// every filter uses samples of one part only and continues it beyond its border from its own side.
+/// Parts of a parameter, between which its values jump. A label (a categorical parameter) gives the region of each
+/// sample; regions across whose borders the parameter is continuous form one part. Samples of different parts are never
+/// mixed: every filter uses samples of one part and extrapolates it beyond its border.
 struct Parts {
     std::string label;                     ///< name of the categorical parameter; "" = everything is one part
     std::vector<std::vector<int>> regions; ///< values of the label that form each part; a value in none: the first part

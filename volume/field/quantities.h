@@ -7,11 +7,11 @@
 #include <string_view>
 #include <vector>
 
-/// Numbers that belong to each time of a data set: between times, at other times, of a series that grows.
+/// Quantities over time (one number per time of a data set): interpolation, resampling and appending.
 namespace tessera::volume {
 
-/// Value at a time: linear between the times around it; NaN before the first, after the last, and where one of the two
-/// is not known.
+/// Value at a time, interpolated linearly; NaN before the first and after the last time, and where a neighbour is
+/// unknown.
 double valueAt(std::span<const double> times, std::span<const double> values, double time);
 
 /// Index into info.quantities; none where there is no such name.
@@ -21,12 +21,12 @@ std::optional<int> findQuantity(const DatasetInfo& info, std::string_view name);
 std::vector<Quantity> atTimes(const std::vector<Quantity>& quantities, std::span<const double> times,
                               std::span<const double> wanted);
 
-/// Of a series that goes on: `old` at `oldTimes` times, then `added` at `addedTimes`. What one of them lacks is NaN
-/// there.
+/// Quantities of an extended series: `old` at `oldTimes` times, then `added` at `addedTimes`; NaN where one of them is
+/// missing.
 std::vector<Quantity> joined(const std::vector<Quantity>& old, std::size_t oldTimes, const std::vector<Quantity>& added,
                              std::size_t addedTimes);
 
-/// Adds a quantity, in the place of one of the same name. Throws Error unless it has one value for each time.
+/// Adds a quantity, replacing one of the same name. Throws Error unless it has one value for each time.
 void setQuantity(DatasetInfo& info, Quantity quantity);
 
 } // namespace tessera::volume

@@ -11,15 +11,15 @@
 /// Lines that follow a vector field.
 namespace tessera::volume {
 
-/// A value between the samples as in probe.h, of the part of the nearest one alone; empty where absent.
+/// The interpolated value as in probe.h, using only the part of the nearest sample; empty where absent.
 std::optional<double> valueAt(const SampleGrid& grid, glm::dvec3 position);
 
 /// A vector parameter at one time and level of detail, in memory.
 struct VectorGrid {
     SampleGrid x, y, z;
     Box bounds; ///< of the data set: nothing flows beyond it
-    /// Between the samples as in probe.h, in the parameter's unit; empty outside of the bounds and where a component is
-    /// absent.
+    /// The interpolated vector as in probe.h, in the parameter's unit; empty outside the bounds and where a component
+    /// is absent.
     std::optional<glm::dvec3> at(glm::dvec3 position) const;
 };
 
@@ -69,8 +69,8 @@ struct Pathline {
     std::vector<double> times;
 };
 
-/// The way of a particle that is at `seed` at a time, from where it enters the field, or `begin`, to where it leaves
-/// it, or `end`. The integrator, and what ends a line, as of streamline(). The field's unit: lengths over times.
+/// The path of a particle that is at `seed` at a time, from where it enters the field (or `begin`) to where it leaves
+/// it (or `end`). Integrator and end criteria are those of streamline(). The unit of the field is lengths per time.
 Pathline pathline(const ChangingField& field, glm::dvec3 seed, double time, double begin, double end,
                   const StreamlineSettings& settings);
 

@@ -10,7 +10,7 @@
 #include <glm/matrix.hpp>
 #include <optional>
 
-/// How a part of a field (volume/field/parts.h) goes on beyond its border: extrapolated from its own samples.
+/// Extrapolation of a part of a field (volume/field/parts.h) beyond its border, from its own samples.
 namespace tessera::volume {
 
 /// Directions to neighbours on a lattice, in half cells, and how far these are, nearest first.
@@ -45,7 +45,7 @@ inline glm::ivec3 storageOf(LatticeKind kind, glm::ivec3 half) {
     return {half.x >> 1, half.y >> 1, half.z};
 }
 
-/// The lesser of two numbers of one sign, else 0.
+/// minmod: the number with the smaller magnitude if both have the same sign, else 0.
 inline double lesserOf(double a, double b) {
     return a * b <= 0 ? 0 : std::abs(a) < std::abs(b) ? a : b;
 }
@@ -57,8 +57,8 @@ inline const std::array<LineDirection, 26>& directionsOf(LatticeKind kind) {
     return kDirections[kind == LatticeKind::BCC ? 1 : 0];
 }
 
-/// Change per half cell around a sample of value `here`, by least squares over its neighbours; 0 across the directions
-/// that these do not span. `sampleAt(place)`, of half cells, gives samples.
+/// Slope per half cell at a sample of value `here`: least squares over its neighbours, 0 in directions that they do not
+/// span. `sampleAt(place)` returns the sample at a place in half cells.
 template <class Sampled>
 glm::dvec3 slopeAround(LatticeKind kind, glm::ivec3 place, double here, const Sampled& sampleAt) {
     glm::dmat3 squares(0);
@@ -76,12 +76,12 @@ glm::dvec3 slopeAround(LatticeKind kind, glm::ivec3 place, double here, const Sa
     return glm::inverse(squares + glm::dmat3(kUnspanned * trace)) * changes;
 }
 
-/// The value with which a part goes on at a storage index that it has no sample at; `own(index)` gives its samples,
-/// nothing elsewhere and beyond the lattice. The nearest samples along the lines to neighbours are continued: of all
-/// lines those count whose samples are nearest, of equals the mean. Two samples of a line go on linearly, four with the
-/// lesser of their two bends where these have one sign: an even bend is kept, noise and kinks make none. Lines of one
-/// sample, as where a layer is one sample thick, count where no other is as near, and go on with the slope around it.
-/// `counts(index)`: whether a line may begin at a sample, so that none does beyond a gap. Nothing where no sample lies
+/// The value extrapolated to a storage index where the part has no sample. `own(index)` returns samples of the part,
+/// empty elsewhere and beyond the lattice. Extrapolates along the lines to neighbours; the lines with the nearest
+/// samples count, averaged over equals. Two samples on a line extrapolate linearly, four with the minmod of their two
+/// second differences, so that constant curvature is kept while noise and kinks add none. Lines with a single sample,
+/// as in a layer one sample thick, are used only if no other is as near, with the slope around that sample.
+/// `counts(index)`: whether a line may start at a sample, so that none starts beyond a gap. Empty if no sample lies
 /// within kLineReach steps.
 inline constexpr int kLineReach = 3;
 template <class Own, class Counts>
@@ -127,12 +127,12 @@ inline bool isBeside(LatticeKind kind, glm::ivec3 a, glm::ivec3 b) {
     return apart.x <= 2 && apart.y <= 2 && apart.z <= 2;
 }
 
-/// Of the neighbours of a sample, OwnPart looks no further than so many samples of a sublattice away from it.
+/// How far from a sample OwnPart looks for its neighbours, in samples of a sublattice.
 inline constexpr int kOwnPartReach = 4;
 
-/// A sample accessor (volume/reconstruct/reconstruct.h) that shows one part of another: that of the sample at `near`, a
-/// storage index inside a lattice of `size`, continued to the places of other parts. `partOf(at)` may be asked for any
-/// place, as `samples`. Refers to both.
+/// A sample accessor (volume/reconstruct/reconstruct.h) that shows one part of another accessor: that of the sample at
+/// `near`, a storage index inside a lattice of `size`, extrapolated to samples of other parts. `partOf(at)` accepts the
+/// same indices as `samples`. Keeps references to both.
 template <class Samples, class PartOf> class OwnPart {
 public:
     OwnPart(LatticeKind kind, glm::ivec3 size, const Samples& samples, const PartOf& partOf, glm::ivec3 near)

@@ -9,13 +9,12 @@
 /// Gradients of a reconstructed signal, by differences along the lattice's own directions.
 namespace tessera::volume {
 
-/// Over which places the differences go. Neighbours: from half-way to one nearest neighbour to half-way to the one
-/// across, so that a difference spans one sample distance: along the three axes on CC, along the four diagonals <111>
-/// on BCC. This is the derivative of the reconstruction kernel, smoothed over that distance; where a place is half-way
-/// between two samples of an interpolating filter it is their difference. (Compare Z. Hossain, U. Alim, T. Moeller,
-/// Toward high-quality gradient estimation on regular lattices, TVCG 2011: derivatives along nearest neighbours,
-/// shifted to between them.) Wide: along the three axes over two cells of the CC grid, which smooths noise and damps
-/// fine detail.
+/// Span of the differences. Neighbours: from half-way towards one nearest neighbour to half-way towards the opposite
+/// one, so that a difference spans one sample distance: along the three axes on CC, along the four diagonals <111> on
+/// BCC. This is the derivative of the reconstruction kernel, smoothed over that distance; half-way between two samples
+/// of an interpolating filter it is their difference. (Compare Z. Hossain, U. Alim, T. Moeller, Toward high-quality
+/// gradient estimation on regular lattices, TVCG 2011: derivatives along nearest neighbours, shifted to between them.)
+/// Wide: along the three axes over two cells of the CC grid, which smooths noise and damps fine detail.
 enum class GradientSpan { Neighbours, Wide };
 inline constexpr std::string_view kGradientSpanNames[] = {"neighbours", "wide"};
 

@@ -1,20 +1,21 @@
 #pragma once
 
-/// Which part of a parameter (volume/field/parts.h) a place between samples belongs to: twin of lib/between_times.glsl.
+/// Chooses the part of a parameter (volume/field/parts.h) at a position between samples; twin of
+/// lib/between_times.glsl.
 namespace tessera::volume {
 
-/// By how much the coverage of a part must exceed that of a lower one: places half-way between samples of two parts,
-/// which rays meet often, belong to the lower one whatever the rounding.
+/// Margin by which the coverage of a part must exceed that of a lower one: positions half-way between samples of two
+/// parts, which rays often hit, belong to the lower one regardless of rounding.
 inline constexpr double kPartMargin = 1.0 / 512;
 
-/// The part whose samples carry the most weight at a place. The place is present where those of all parts together
-/// carry enough (kPresentCoverage), so parts do not change where a parameter ends.
+/// The part whose samples have the largest weight at a position. Presence is decided by all parts together
+/// (kPresentCoverage), so parts do not change where a parameter ends.
 struct PartChoice {
     int part = 0;
     double coverage = 0; ///< of that part
     double total = 0;    ///< of all parts
 
-    /// The coverage of each part in turn, from part 0 on; true where it is the one chosen so far.
+    /// Call with the coverage of each part in turn, from part 0 on; true if it is the choice so far.
     bool add(int next, double covered) {
         total += covered;
         if (next > 0 && !(covered > coverage + kPartMargin)) return false;

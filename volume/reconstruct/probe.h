@@ -9,12 +9,12 @@
 
 namespace tessera::volume {
 
-/// What a data set says about one point, in physical units.
+/// Values of a data set at one point, in physical units.
 struct ProbeValue {
-    /// Between the samples: trilinear (CC) or linear box spline (BCC), which leave the range of the samples nowhere;
-    /// for labels the nearest sample. Empty where the nearest sample is absent, or less than half of the weight is
-    /// present. Where regions are kept apart (volume/field/parts.h) of the part of the nearest sample alone, continued
-    /// linearly from it beyond its border, within the channel's range.
+    /// Interpolated value: trilinear (CC) or linear box spline (BCC), which never exceed the range of the samples; for
+    /// labels the nearest sample. Empty where the nearest sample is absent, or less than half of the weight is present.
+    /// For parameters with parts (volume/field/parts.h) only the part of the nearest sample is used, extrapolated
+    /// linearly beyond its border, within the channel's range.
     std::optional<double> interpolated;
     std::optional<double> nearest; ///< the nearest sample; empty where that is absent
 };

@@ -125,7 +125,7 @@ BrickSamples prefilter(const BrickSamples& gathered, const LevelGeometry& geomet
 /// present and an absent sample, which rays meet often, are present whatever the rounding.
 inline constexpr double kPresentCoverage = 0.5 - 1.0 / 512;
 
-/// A weighted sum on its way: value() is normalised by coverage.
+/// A weighted sum being accumulated: value() is normalised by coverage.
 struct Blend {
     double sum = 0, coverage = 0;
     void add(double weight, const Sample& sample) {

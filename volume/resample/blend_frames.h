@@ -8,20 +8,21 @@
 #include <span>
 #include <vector>
 
-/// Frames that share a grid, blended in time: inside of volume/resample/series.h.
+/// Weighted sums of frames on the same grid, for interpolation in time: internal to volume/resample/series.h.
 namespace tessera::volume {
 
-/// What a frame of a series counts for.
+/// A frame of a series and its weight.
 struct FrameWeight {
     int frame = 0;
     double weight = 0;
     double linear = 0; ///< where a frame lacks the sample: never negative
 };
 
-/// The filter along time: B-splines, which need coefficients of the whole series, are Catmull-Rom there.
+/// The filter along time: the one of space, except that B-splines, which need coefficients of the whole series, are
+/// replaced by Catmull-Rom.
 ResampleOptions optionsInTime(ResampleOptions options);
 
-/// Those of a series of `count` frames that are blended at `cells` of it. Not for the coefficients of B-splines.
+/// Frames and weights to interpolate a series of `count` frames at position `cells`. Not for B-spline coefficients.
 std::vector<FrameWeight> frameWeights(double cells, int count, const ResampleOptions& options);
 
 struct WeightedFrame {
@@ -29,12 +30,12 @@ struct WeightedFrame {
     FrameWeight weight;
 };
 
-/// Whether the sum may leave the range of what is summed.
+/// Whether the weighted sum can exceed the range of its inputs (a weight is negative).
 bool overshoots(std::span<const FrameWeight> weights);
 
-/// The weighted sum of frames, as float in the units of the first. One frame alone stays as it is. A sum that
-/// overshoots is held within the present samples of the frames; of parts of frames `extents` says what the wholes have,
-/// by frame.
+/// The weighted sum of frames, as float in the units of the first. A single frame is returned unchanged. A sum that can
+/// overshoot is clamped to the range of the present samples of the frames; if the frames are parts of larger ones,
+/// `extents` gives the ranges of the whole frames.
 Field blendFrames(std::span<const WeightedFrame> frames, std::span<const StoredExtent> extents = {});
 
 } // namespace tessera::volume

@@ -37,7 +37,7 @@ struct CcPart {
 Field resampleCc(const CcTaps& taps, const CcPart& part, const StoredExtent& extent, int first, int count,
                  const Progress& progress);
 
-/// Slices of a target that a gap of a mask can reach: so many more on either side make the ones between right.
+/// Number of target slices on either side that a gap in a mask can influence.
 inline constexpr int kGapSlices = 2;
 
 } // namespace tessera::volume

@@ -6,9 +6,9 @@
 
 #include <string>
 
-/// Resampling of frames larger than memory: slices of the result from slices of the source, equal to the bit to those
-/// of volume/resample/resample.h, whose filters have a short reach along z. The prefilter of B-splines has not: their
-/// coefficients are made once, whole lines along z from a scratch file.
+/// Resampling of frames larger than memory: slices of the result from slices of the source, bit for bit equal to those
+/// of volume/resample/resample.h. Its filters are short along z, except the prefilter of B-splines: their coefficients
+/// are computed once, in whole lines along z, through a scratch file.
 namespace tessera::volume {
 
 /// A frame that is read in slices.

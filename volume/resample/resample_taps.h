@@ -10,7 +10,7 @@
 /// Where the samples of one lattice lie among those of another, axis by axis: inside of resampling.
 namespace tessera::volume {
 
-/// Source samples behind one target coordinate of one axis: `count` of them from `first` on, some of weight 0.
+/// Source samples that one target coordinate of one axis uses: `count` of them from `first` on, some with weight 0.
 struct Tap {
     static constexpr int kMost = 2 * kMostOrder;
     int first = 0, count = 1;

@@ -8,7 +8,7 @@
 #include <functional>
 #include <memory>
 
-/// A field over time, frame by frame, and what can be made of it without holding more than a few frames.
+/// A field over time, frame by frame, and operations that hold only a few frames at once.
 namespace tessera::volume {
 
 /// Component of a parameter on a lattice in space and time. `frame(k)` lies on lattice.grid(k); may be called from one
@@ -20,19 +20,19 @@ struct Series {
     std::function<std::shared_ptr<const Field>(int frame)> frame;
 };
 
-/// The same series, the last `frames` different frames kept.
+/// The same series with a cache of the last `frames` different frames.
 Series remembering(Series series, std::size_t frames);
 
-/// Frames that the time axis of `toD4Frame` spans: what `remembering` should keep.
+/// Number of frames that `toD4Frame` spans in time: the cache size for `remembering`.
 int framesSpanned(const ResampleOptions& options);
 
-/// The first frame of a CC series of `count` frames that a frame of D4* at `cells` of it is made of.
+/// The first frame of a CC series of `count` frames that is needed for a D4* frame at position `cells`.
 int firstFrameSpanned(double cells, int count, const ResampleOptions& options);
 
 /// A float field in another type, rounded and held within it.
 Field converted(const Field& field, ScalarType type);
 
-/// How values between frames are made: of two frames of each parity, or four (Catmull-Rom).
+/// Interpolation between frames: of two frames of each parity, or of four (Catmull-Rom).
 enum class TimeFilter : std::uint8_t { Linear, Cubic };
 inline constexpr std::string_view kTimeFilterNames[] = {"linear", "cubic"};
 
@@ -40,9 +40,9 @@ inline constexpr std::string_view kTimeFilterNames[] = {"linear", "cubic"};
 /// Result in the type of the source; 32-bit integers keep 24 bits.
 Field toD4Frame(const Series& cc, const Lattice4& d4, int frame, const ResampleOptions& options);
 
-/// A CC or D4* series at any real time (of its lattice; beyond the ends the nearest frame): on D4* each parity is
-/// interpolated between its own frames, which gives a BCC field. The type is float unless one frame alone is the
-/// answer. A sample is absent where frames of more than half of the (linear) weight lack it.
+/// A CC or D4* series at any real time (in frames; beyond the ends the nearest frame). On D4* each parity is
+/// interpolated between its own frames, which gives a BCC field. The type is float unless the result is a single frame.
+/// A sample is absent where frames with more than half of the (linear) weight lack it.
 Field atTime(const Series& series, double time, TimeFilter filter);
 
 /// A D4* series with samples filtered for quasi-interpolation of order two: 5/3 at the centre and -1/24 on the sixteen

@@ -7,7 +7,7 @@
 
 #include <string>
 
-/// Frames of D4* lattices larger than memory.
+/// Slices of D4* frames, for data larger than memory.
 namespace tessera::volume {
 
 /// Slices of the frames of a D4* lattice, from number `first` of it on, out of slices of the series of CC frames that

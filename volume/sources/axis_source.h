@@ -7,17 +7,17 @@
 #include <string_view>
 #include <vector>
 
-/// Data whose times are counted otherwise: by a voltage in place of seconds.
+/// Data with another time axis: a quantity over time, such as a voltage, instead of the times.
 namespace tessera::volume {
 
-/// What is known of data on another axis, and where each of its times was before.
+/// Description of the data on another axis, and the original index of each of its times.
 struct OtherAxis {
     DatasetInfo info;
     std::vector<int> order; ///< time k was time order[k]
 };
 
-/// With a quantity in place of the times: they are its values, rising; the times become a quantity. Nothing where there
-/// is no such quantity, one of its values is not known, or it does not rise or fall all the time.
+/// Uses a quantity as the time axis: times become its values in rising order, and the old times become a quantity.
+/// Empty if there is no such quantity, one of its values is unknown, or it is not strictly monotonic.
 std::optional<OtherAxis> axisBy(const DatasetInfo& info, std::string_view quantity);
 
 /// The same samples on that axis.

@@ -6,15 +6,15 @@
 
 namespace tessera::volume {
 
-/// Shows a Dataset without an archive: frames are loaded when asked for (and resampled to BCC if wanted), kept within a
-/// byte budget, cut into bricks. `info().lattice` is the lattice shown, `info().bounds` stays the box of the CC grid.
-/// Ranges missing in `info` are not computed here.
+/// A source of bricks from a Dataset: frames are loaded on demand (and resampled to BCC if wanted), cached within a
+/// byte budget and cut into bricks. `info().lattice` is the lattice shown, `info().bounds` remains the box of the CC
+/// grid. Ranges missing in `info` are not computed here.
 ///
-/// A sample of level l is the mean of the present ones among 2^l fine samples a side of its own sublattice (the most
-/// frequent label for categorical parameters) and present when at least half of them are: means alias less than
-/// every 2^l-th sample would, never leave the brick, and lie at BrickGrid::phase 0.5. Of a parameter of several parts
-/// (volume/field/parts.h) it is made of samples of one part, that of the label's coarse sample. The coarsest level of a
-/// whole brick is 4 texels a side. A frame loads once however many threads ask for it.
+/// A sample of level l is the mean of the present samples among 2^l fine samples a side of its own sublattice (the most
+/// frequent label for categorical parameters), and present if at least half of them are. Means alias less than taking
+/// every 2^l-th sample, stay within the brick, and have BrickGrid::phase 0.5. For a parameter with several parts
+/// (volume/field/parts.h) it uses samples of one part only, that of the label's coarse sample. The coarsest level of a
+/// whole brick is 4 texels a side. A frame is loaded once however many threads request it.
 struct MemorySourceOptions {
     LatticeKind lattice = LatticeKind::CC;
     int brickSize = 32;
@@ -22,14 +22,14 @@ struct MemorySourceOptions {
 };
 std::shared_ptr<const BrickSource> makeMemorySource(Dataset dataset, const MemorySourceOptions& options);
 
-/// A source that makeMemorySource gave, on BCC or CC as `options` say: of the same data set and of the frames that one
-/// keeps, which are not loaded twice. `options.budget` is for frames made of them. The source itself where nothing
-/// differs. Throws Error for other sources.
+/// A source made by makeMemorySource, on BCC or CC as `options` say: of the same data set, using the frames that are
+/// already loaded. `options.budget` is for frames computed from them. Returns the source itself if nothing differs.
+/// Throws Error for other sources.
 std::shared_ptr<const BrickSource> onLattice(const std::shared_ptr<const BrickSource>& source,
                                              const MemorySourceOptions& options);
 
-/// Magnitude of a vector whose components these are in one brick: sqrt(x^2 + y^2 + z^2), present where all three are.
-/// The bricks have one size. For sources that store components and answer for DatasetInfo::channels().
+/// Magnitude of a vector in one brick, sqrt(x^2 + y^2 + z^2), present where all three components are. The bricks have
+/// the same size. For sources that store components but serve DatasetInfo::channels().
 BrickSamples magnitude(const BrickSamples& x, const BrickSamples& y, const BrickSamples& z);
 
 /// Bounds of that magnitude from those of the components, rounded outwards; the real extremes may lie further inside.

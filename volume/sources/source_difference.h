@@ -7,7 +7,7 @@
 
 namespace tessera::volume {
 
-/// How the samples of one data set differ from those of another on the same lattice.
+/// Sample-by-sample difference of two data sets on the same lattice.
 struct SourceDifference {
     std::size_t samples = 0;     ///< present in both
     std::size_t differing = 0;   ///< of these, or present in one alone

@@ -5,8 +5,8 @@
 
 namespace tessera {
 
-/// A file that appears under its name only when complete: written beside it, renamed by `commit`, removed if destroyed
-/// before. Throws MachineError when the disk refuses.
+/// A file that gets its name only when complete: written to a temporary file beside it, renamed by `commit`, removed by
+/// the destructor otherwise. Throws MachineError when writing fails.
 class AtomicFile {
 public:
     explicit AtomicFile(const std::string& path);

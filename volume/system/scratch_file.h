@@ -7,8 +7,8 @@
 
 namespace tessera::volume {
 
-/// Bytes on disk that go with the object, for what is larger than memory. Calls may come from any threads, writing each
-/// to places of its own.
+/// A temporary file that lives as long as the object, for data larger than memory. Thread-safe if threads write to
+/// different ranges.
 class ScratchFile {
 public:
     /// An empty file, without a name, in a folder. Throws MachineError.
