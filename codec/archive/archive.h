@@ -16,7 +16,7 @@ struct MergedBrick;
 
 namespace tessera::codec {
 
-/// What verify found.
+/// Result of verifyArchive.
 struct VerifyReport {
     std::uint64_t bricks = 0;        ///< decoded, every level of each counted once
     std::uint64_t samples = 0;       ///< at full resolution
@@ -29,10 +29,10 @@ struct VerifyReport {
     bool damagedHeader = false; ///< one of its two copies, as a crash during a commit may leave it; part of `damaged`
 };
 
-/// An open .tsr archive: a source of bricks that reads a memory map, from any thread. Nothing in the file is trusted:
-/// header, metadata and index are checked when it is opened, each piece of a brick before it is decoded.
+/// An open .tsr archive: a source of bricks that reads a memory map. Thread-safe. Nothing in the file is trusted:
+/// header, metadata and index are checked when it is opened, each segment of a brick before it is decoded.
 ///
-/// It shows what was in the file when it was opened, even while the file grows; to see more, open it again.
+/// It shows the contents of the file when it was opened, even while the file grows; open it again to see more.
 class Archive final : public volume::BrickSource {
 public:
     /// Throws Error with file, place and reason when it is not an archive, of a newer version, truncated or damaged.
@@ -42,22 +42,22 @@ public:
     const volume::DatasetInfo& info() const override;
     const volume::BrickGrid& grid() const override;
     volume::BrickStats stats(const volume::BrickKey& key) const override;
-    /// Nothing of archives from before there were such statistics, and of magnitudes.
+    /// Empty for archives without such statistics, and for magnitudes.
     std::optional<volume::BrickDistribution> distribution(const volume::BrickKey& key) const override;
     std::optional<volume::BrickImportance> importance(const volume::BrickKey& key) const override;
-    /// Of D4* frames: between frames of the same parity.
+    /// On D4*: between frames of the same parity.
     std::optional<volume::BrickChange> change(const volume::BrickKey& key, int toTime) const override;
-    /// Coarse levels are held within the brick's range; floats that are not finite count as absent. Where several parts
-    /// of a parameter (volume/field/parts.h) meet in a brick its coarse samples are made of one each.
+    /// Coarse levels are clamped to the range of the brick; floats that are not finite count as absent. Where several
+    /// parts of a parameter (volume/field/parts.h) meet in a brick, each coarse sample is computed from one part.
     volume::BrickSamples read(const volume::BrickKey& key) const override;
 
     const Metadata& metadata() const;
     const std::string& path() const;
-    /// Of the format.
+    /// Version of the format.
     std::uint32_t version() const;
-    /// Of the archive; the file may be longer, by an append that is under way or was not finished.
+    /// Bytes of the archive; the file can be longer, by an append that is in progress or incomplete.
     std::uint64_t fileBytes() const;
-    /// Times it was brought to a whole state; of versions 1 and 2 always 1.
+    /// Number of commits; always 1 in versions 1 and 2.
     int commits() const;
     /// True when the file has been appended to, or replaced, since it was opened.
     bool outdated() const;
@@ -65,15 +65,15 @@ public:
     std::uint64_t levelBytes(int level) const;
     std::uint64_t maskBytes() const;
     int maskCount() const;
-    /// Bricks that are those of an earlier time, and the bytes they would have taken.
+    /// Number of bricks that repeat an earlier time, and the bytes they would have taken.
     struct Repeats {
         std::uint64_t bricks = 0, bytes = 0;
     };
     Repeats repeats() const;
-    /// Times before that of a key at which the stored brick lies: 0 where it has bytes of its own. Of stored
-    /// components.
+    /// How many times before the time of the key the stored brick lies; 0 if it has bytes of its own. For stored
+    /// components only.
     int repeats(const volume::BrickKey& key) const;
-    /// Bytes that the levels of a brick take, whether they are its own or those it repeats. Of stored components.
+    /// Bytes of all levels of a brick, whether its own or those of the brick it repeats. For stored components only.
     std::uint64_t brickBytes(const volume::BrickKey& key) const;
 
 private:
@@ -94,7 +94,7 @@ std::shared_ptr<const volume::BrickSource> openArchive(const std::string& path);
 /// The stored samples of one component of a parameter at a time index, in their type: bit for bit what was packed when
 /// the archive is lossless. An odd frame of D4* lies on its moved grid. Throws Error when the data is damaged.
 volume::Field readField(const Archive& archive, int parameter, int component, int time);
-/// The same of the slices that the layers [layer, end) of bricks hold.
+/// The same for the slices of the brick layers [layer, end).
 volume::Field readLayers(const Archive& archive, int parameter, int component, int time, int layer, int end);
 
 /// Computes every checksum and decodes every brick at every level, on all cores. Throws Cancelled.

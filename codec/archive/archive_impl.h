@@ -13,8 +13,8 @@
 #include <utility>
 #include <vector>
 
-/// An open archive as the files that read it see it: archive.cpp what it says of itself, archive_read.cpp its samples,
-/// archive_state.cpp what a writer goes on from, archive_verify.cpp all its bytes.
+/// Implementation of Archive: archive.cpp has its metadata, archive_read.cpp its samples, archive_state.cpp the state
+/// from which a writer continues, archive_verify.cpp the check of all bytes.
 namespace tessera::codec {
 
 struct Archive::Impl {
@@ -25,10 +25,10 @@ struct Archive::Impl {
     Index index;
     std::vector<volume::Channel> channels;
     std::size_t components = 0, bricks = 0;
-    /// The models used last, the latest first; their tables take about 200 KiB each.
+    /// Decoders of the most recently used models, latest first; their tables take about 200 KiB each.
     mutable std::list<std::pair<std::int32_t, std::shared_ptr<const BandDecoder>>> decoders;
     mutable std::mutex decodersMutex;
-    /// Bricks whose memory waits to be used again.
+    /// Pool of bricks whose memory is reused.
     mutable std::vector<std::unique_ptr<DecodedBrick>> idle;
     mutable std::mutex idleMutex;
 
@@ -40,13 +40,13 @@ struct Archive::Impl {
         return index
             .frames[std::size_t(time) * components + firstComponent(metadata.info, parameter) + std::size_t(component)];
     }
-    /// The frame that holds the bytes of a brick: itself, or the one it repeats.
+    /// The frame that contains the bytes of a brick: itself, or the one it repeats.
     const FrameRecord& holding(const FrameRecord& frame, std::size_t brick) const {
         const int repeats = frame.bricks[brick].notes.repeats;
         if (repeats == 0) return frame;
         return index.frames[(std::size_t(frame.time) - std::size_t(repeats)) * components + frame.component];
     }
-    /// Bytes that decoding all of a brick takes.
+    /// Number of bytes that are decoded for a whole brick.
     std::uint64_t bytesOf(const FrameRecord& frame, std::size_t brick) const {
         const FrameRecord& held = holding(frame, brick);
         std::uint64_t sum = 0;
@@ -76,12 +76,12 @@ struct Archive::Impl {
     std::shared_ptr<const BandDecoder> decoder(std::int32_t model) const;
     void decode(const FrameRecord& frame, const BrickFormat& format, std::size_t brick, int level,
                 std::span<const std::uint8_t> present, DecodedBrick& out) const;
-    /// The stored numbers of a brick decoded at full resolution; those of absent samples mean nothing.
+    /// The stored numbers of a brick decoded at full resolution; undefined for absent samples.
     Bytes numbersOf(const FrameRecord& frame, volume::ScalarType type, const DecodedBrick& decoded) const;
     volume::BrickSamples readComponent(int parameter, int component, const volume::BrickKey& key) const;
-    /// The same; where several parts of the parameter (volume/field/parts.h) meet in the brick, coarser levels are made
-    /// of level 0, part by part: those stored mix them. So are those of labels, which a prediction between the grids of
-    /// BCC mixes too.
+    /// The same; where several parts of the parameter (volume/field/parts.h) meet in the brick, coarser levels are
+    /// computed from level 0, part by part, since the stored ones mix parts. So are those of labels, which the
+    /// prediction between the sublattices of BCC mixes too.
     volume::BrickSamples readOfParts(int parameter, int component, const volume::BrickKey& key) const;
     volume::BrickStats statsOf(int parameter, int component, const volume::BrickKey& key) const;
     std::optional<volume::BrickChange> changeOf(int parameter, int component, const volume::BrickKey& key,
@@ -90,7 +90,7 @@ struct Archive::Impl {
     bool hasNotes() const { return (header.header.features & kBrickNotes) != 0; }
 };
 
-/// A brick to decode into, given back at the end.
+/// A pooled brick to decode into; the destructor returns it to the pool.
 class Lent {
 public:
     explicit Lent(const auto& archive) : idle_(archive.idle), mutex_(archive.idleMutex) {
@@ -114,10 +114,10 @@ private:
     std::unique_ptr<DecodedBrick> brick_;
 };
 
-/// Throws Error for what lies at a byte of an archive.
+/// Throws Error for damage at a byte offset of an archive.
 [[noreturn]] void damaged(const std::string& path, std::uint64_t offset, const std::string& what);
 
-/// A part of the bytes; throws Error when its checksum is not `sum`.
+/// A range of the bytes; throws Error when its checksum is not `sum`.
 std::span<const std::byte> checkedPart(std::span<const std::byte> bytes, std::uint64_t offset, std::uint64_t length,
                                        std::uint64_t sum, const std::string& path, const char* what);
 

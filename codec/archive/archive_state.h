@@ -9,10 +9,10 @@
 #include <utility>
 #include <vector>
 
-/// What a writer has to know of an archive to go on with it as if it had never stopped.
+/// The state from which a writer continues an archive as if it had never stopped.
 namespace tessera::codec {
 
-/// The frame a model was made for: frames to come whose codes are as wide are like it.
+/// A model and the frame it was made for; it is tried first for later frames with codes of the same width.
 struct KnownModel {
     std::int32_t number = -1;
     Model model;
@@ -35,7 +35,7 @@ struct ArchiveState {
     std::vector<std::pair<std::size_t, SeenFrame>> lastFrames; ///< by component, of D4* two of each
 };
 
-/// `withFrames`: the last frames too. Throws Error when a model, a mask or a brick of a last frame is damaged.
+/// `withFrames`: also read the last frames. Throws Error when a model, a mask or a brick of a last frame is damaged.
 ArchiveState stateOf(const Archive& archive, bool withFrames);
 
 } // namespace tessera::codec

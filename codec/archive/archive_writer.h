@@ -21,7 +21,8 @@ struct FrameOptions {
     std::optional<NumberCoding> numbers; ///< none: chosen for the bound
     double maxError = 0;                 ///< absolute, in stored units; 0: every sample exactly
     double spent = 0; ///< of maxError, by what was done to the samples before: codes and repeats have what is left
-    /// A brick may repeat only one whose squares of differences sum up to no more than those of its own codes would.
+    /// A brick may repeat an earlier one only if its sum of squared differences is no larger than that of its own codes
+    /// would be.
     bool keepsSquares = false;
     bool keepsAbsent = false; ///< also the stored numbers of absent samples
     int zstdLevel = 3;
@@ -30,45 +31,43 @@ struct FrameOptions {
     volume::ImportanceOptions importance;
 };
 
-/// About how many bytes a frame is coded in, from the tokens of at most `bricks` of its bricks.
+/// Estimated bytes of a coded frame, from the tokens of at most `bricks` of its bricks.
 double estimateFrameBytes(const volume::BrickGrid& grid, const FrameSamples& samples, const FrameOptions& options,
                           std::size_t bricks);
 
-/// Writes an archive frame by frame, whole times at a time: what is committed stays readable whatever happens later.
-/// One frame and its coded bytes are in memory at a time (of one in a scratch file a slab of it, its coded bytes in
-/// another), and if frames are kept the last one of each component (of D4* the last two): then bricks that did not
-/// change are stored as repeats of earlier ones, and it is noted how far the others move. Whoever keeps none saves the
-/// memory.
+/// Writes an archive frame by frame. Committed times stay readable whatever happens later. In memory are one frame and
+/// its coded bytes (for a frame in a scratch file, a slab of it, with its coded bytes in another), and, with
+/// `keepsFrames`, the last frame of each component (the last two on D4*). The latter are needed to store unchanged
+/// bricks as repeats of earlier ones and to store the change of the others.
 ///
-/// A new archive is made under a temporary name beside `path`; with its first commit it takes its name, where readers
-/// see it grow, and disappears if finish() is not reached. A file that is there already is replaced by finish() only.
-/// An archive that is appended to keeps every commit.
+/// A new archive is created under a temporary name beside `path`. It gets its name with the first commit, after which
+/// readers see it grow, and is removed if finish() is not reached. An existing file is replaced by finish() only. An
+/// archive that is appended to keeps every commit.
 class ArchiveWriter {
 public:
     /// A new archive. `metadata` gives the shape (lattice, grid, parameters, times); throws MachineError when the file
     /// cannot be made.
     ArchiveWriter(const std::string& path, const Metadata& metadata, bool keepsFrames = true);
-    /// Appends to an archive: `metadata` is that of the archive with times behind its last or parameters behind its
-    /// last. Throws Error when the archive is of an older version, has changed since it was opened, or another program
-    /// is writing it. Bytes of an append that was not finished are cut off.
+    /// Appends to an archive: `metadata` is that of the archive with times after its last or parameters after its last.
+    /// Throws Error when the archive has an older version, has changed since it was opened, or another program is
+    /// writing it. Bytes of an incomplete append are cut off.
     ArchiveWriter(const Archive& archive, const Metadata& metadata, bool keepsFrames = true);
     ~ArchiveWriter();
     ArchiveWriter(const ArchiveWriter&) = delete;
     ArchiveWriter& operator=(const ArchiveWriter&) = delete;
 
     /// Codes and writes one component of a parameter at a time index; each once, in any order. The samples must lie on
-    /// the lattice of the metadata and have the parameter's type; frames in scratch files go with a writer that keeps
-    /// none. Bricks are coded on all cores; the bytes do not
-    /// depend on how many there are.
+    /// the lattice of the metadata and have the type of the parameter; frames in scratch files need a writer that keeps
+    /// no frames. Bricks are coded on all cores; the bytes do not depend on their number.
     void addFrame(int parameter, int component, int time, const FrameSamples& samples, const FrameOptions& options,
                   const Progress& progress = {});
 
-    /// Makes all that was added readable, in a new archive and an appended one: the first `times` times of the
-    /// metadata, which must have all their frames. A commit writes the metadata (with the ranges so far) again, so
-    /// little is left to wait for the next one: less than 64 times that much.
+    /// Makes everything added so far readable: the first `times` times of the metadata, which must have all their
+    /// frames. A commit writes the metadata (with the ranges so far) again, so small additions are delayed: until they
+    /// are 64 times as large as the metadata.
     void commit(const Metadata& metadata, std::size_t times);
 
-    /// Bricks added that repeat earlier ones, and the bytes that saves.
+    /// Number of added bricks that repeat earlier ones, and the bytes saved.
     Archive::Repeats repeats() const;
 
     /// Commits everything and closes the file. Returns its bytes.

@@ -7,10 +7,10 @@
 #include <algorithm>
 #include <cstring>
 
-/// Small pieces shared by the writer and the reader of an archive.
+/// Helpers shared by the writer and the reader of an archive.
 namespace tessera::codec {
 
-/// Bricks in the order of the file, x fastest.
+/// Number of bricks; their order in the file is x fastest.
 inline std::size_t brickCount(const volume::BrickGrid& grid) {
     const glm::ivec3 count = grid.count();
     return std::size_t(count.x) * std::size_t(count.y) * std::size_t(count.z);
@@ -39,7 +39,7 @@ inline BrickFormat brickFormat(const volume::BrickGrid& grid, glm::ivec3 brick, 
             frame.numbers,     frame.keepsAbsent,           frame.codeBits, frame.bodyCentred};
 }
 
-/// Components of the parameters before one: where its frames start within a time.
+/// Number of components of the parameters before one: the index of its first frame within a time.
 inline std::size_t firstComponent(const volume::DatasetInfo& info, int parameter) {
     std::size_t first = 0;
     for (int p = 0; p < parameter; ++p) first += std::size_t(info.parameters[std::size_t(p)].components);

@@ -5,7 +5,7 @@
 #include "volume/bricks/brick_source.h"
 #include "volume/field/field.h"
 
-/// The samples of a brick on their way into an archive, and as a reader will see them.
+/// The samples of a brick before coding, and as decoded later.
 namespace tessera::codec {
 
 /// The samples of one brick as encodeBrick wants them.
@@ -14,7 +14,7 @@ struct BrickInput {
     std::vector<std::uint8_t> present; ///< empty: all
 
     void take(const volume::BrickGrid& grid, glm::ivec3 brick, const FrameSamples& frame, bool masked);
-    /// Any box of the lattice.
+    /// Copies any box of the lattice.
     void take(const volume::BrickGrid& grid, glm::ivec3 begin, glm::ivec3 size, const FrameSamples& frame, bool masked);
 };
 
@@ -22,14 +22,14 @@ struct BrickInput {
 void putSamples(const volume::BrickGrid& grid, glm::ivec3 brick, std::span<const std::byte> samples,
                 volume::Field& field);
 
-/// Turns samples into what a reader will decode: of floats within a bound those of their codes.
+/// Replaces samples by their decoded values: for floats with an error bound, the values of their codes.
 void roundAsDecoded(const BrickFormat& format, double maxError, BrickInput& input);
 
-/// Range of the samples a reader will decode, as physical values, and their tally if it is wanted.
+/// Range of the decoded samples, as physical values, and their statistics if `withTally` is set.
 FrameBrick tallyOf(const volume::Field& field, const BrickInput& decoded, bool withTally);
 
-/// The latest frame of a component as a reader sees it: what the next one may repeat, and what its change is counted
-/// from.
+/// The latest frame of a component, as decoded: the next frame may repeat its bricks, and its change is measured from
+/// it.
 struct SeenFrame {
     int time = -1;
     bool keepsAbsent = false;
@@ -38,11 +38,12 @@ struct SeenFrame {
     std::vector<std::uint64_t> bytes; ///< that each brick takes, of repeats those of the first
 };
 
-/// True if `decoded`, which a reader sees of an earlier frame, may stand for `input`: the same samples present, all of
-/// them equal bit by bit, or of floats at most `maxError` apart; `absentToo`: those absent equal as well.
+/// True if `decoded`, a brick of an earlier frame as decoded, may replace `input`: the same samples are present, and
+/// all are equal bit by bit, or, for floats, at most `maxError` apart; `absentToo`: absent samples must be equal as
+/// well.
 bool mayStandFor(volume::ScalarType type, const BrickInput& decoded, const BrickInput& input, double maxError,
                  bool absentToo);
-/// Sum of the squares of the differences of present samples, as stored; those that are not finite do not count.
+/// Sum of squared differences of present samples, as stored; samples that are not finite are skipped.
 double squaredError(volume::ScalarType type, const BrickInput& decoded, const BrickInput& input);
 
 } // namespace tessera::codec

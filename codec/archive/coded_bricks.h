@@ -9,22 +9,24 @@
 
 namespace tessera::codec {
 
-/// Bricks of so many bytes that are coded before their bytes are put away: some for every core, few enough to keep.
+/// Number of bricks of this many bytes to code before their bytes are stored: several for every core, few enough to
+/// hold in memory.
 constexpr std::size_t batchOf(std::size_t brickBytes) {
     constexpr std::size_t kBytes = std::size_t(16) << 20, kLeast = 8, kMost = 64;
     const std::size_t fit = kBytes / (brickBytes > 0 ? brickBytes : 1);
     return fit < kLeast ? kLeast : fit > kMost ? kMost : fit;
 }
 
-/// The coded segments of a frame's bricks until all are there: a file has them segment by segment, not brick by brick.
+/// Collects the coded segments of the bricks of a frame, since a file stores them segment by segment, not brick by
+/// brick.
 class CodedBricks {
 public:
-    /// `folder`: of a scratch file they go to; none, and they stay in memory.
+    /// `folder`: where to create a scratch file for them; null: keep them in memory.
     CodedBricks(std::size_t bricks, std::size_t segments, const std::string* folder);
 
-    /// Takes a brick's segments; one call at a time.
+    /// Stores the segments of a brick; one call at a time.
     void put(std::size_t brick, std::vector<Bytes> segments);
-    /// Gives a segment back, once.
+    /// Returns a segment; once each.
     Bytes take(std::size_t brick, std::size_t segment);
 
 private:

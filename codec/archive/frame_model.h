@@ -7,10 +7,10 @@
 #include <optional>
 #include <vector>
 
-/// How a frame is to be coded, found by trial on some of its bricks: filter, sublattices, tables.
+/// Chooses how a frame is coded, by trial on some of its bricks: filter, sublattices, tables.
 namespace tessera::codec {
 
-/// Bricks of a frame that were taken apart for its model, to be coded without doing that again.
+/// Bricks that were transformed while choosing the model, kept to be coded without transforming them again.
 struct Taken {
     Wavelet wavelet{};
     bool bodyCentred = false;
@@ -23,23 +23,23 @@ struct Taken {
     }
 };
 
-/// Bits of |code| over the present samples of a frame of floats.
+/// Width of |code| over the present samples of a frame of floats, in bits.
 int codeBitsOf(const FrameSamples& samples, const NumberCoding& numbers);
 
-/// How the numbers of a frame are coded; `last` is the model of the frame before, or none. Where decimals or fractions
-/// have as many digits as floats have bits they are no disguise, and what is shorter by trial is taken.
+/// The coding of the numbers of a frame; `last` is the model of the previous frame, or none. If decimals or binary
+/// fractions need as many digits as floats have bits, the shorter of both codings is chosen by trial.
 NumberCoding chooseNumbers(const volume::BrickGrid& grid, const FrameSamples& samples, const KnownModel* last,
                            const FrameOptions& options);
 
-/// Effort of zstd for the bricks of a frame: small frames take no time worth saving.
+/// Effort of zstd for the bricks of a frame: for small frames it costs little time.
 int effortFor(const FrameSamples& samples, int zstdLevel);
 
-/// What is left of the bound for samples of a frame, beside their codes and beside those of a brick they repeat.
+/// The part of the error bound that is left for rounding samples to codes and for repeating bricks.
 double boundOf(const FrameRecord& frame, const FrameOptions& options);
 
-/// The model of a frame: `last`, that of the component's frame before (or none), where its tables serve as well as new
-/// ones would, else a new one, not written yet (frame.model is -1). The filter is tried again only where the tables do
-/// not fit at all. Sets wavelet, bodyCentred and model of the frame. `byBand`: the archive knows such contexts.
+/// The model of a frame: `last`, the one of the component's previous frame (or none), if its tables are as good as new
+/// ones; else a new one that is not written yet (frame.model is -1). The filter is chosen again only if the tables do
+/// not fit at all. Sets wavelet, bodyCentred and model of the frame. `byBand`: the archive supports contexts by band.
 Model chooseModel(const volume::BrickGrid& grid, const FrameSamples& samples, const KnownModel* last, bool byBand,
                   FrameRecord& frame, const FrameOptions& options, Taken& taken);
 

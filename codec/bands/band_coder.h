@@ -11,12 +11,12 @@
 /// magnitude as the context is from Wu and Memon: CALIC (1997). (FORMAT.md "Bands".)
 namespace tessera::codec {
 
-/// The model laid out for encoding; one for all bricks of a frame.
+/// The model as tables for encoding; shared by all bricks of a frame.
 class BandEncoder {
 public:
     explicit BandEncoder(Model model);
     const Model& model() const { return model_; }
-    /// Appends the coefficients of bands; nothing when all of them are 0. Any value can be coded. Every choice of `cpu`
+    /// Appends the coded coefficients of bands; no bytes if all are 0. Any value can be coded. Every choice of `cpu`
     /// gives the same bytes.
     void encode(const TokenRun& run, int level, Bytes& out, Cpu cpu = bestCpu()) const;
 
@@ -31,12 +31,12 @@ private:
     std::vector<std::uint32_t> packed_; ///< the same: frequency | start << 16
 };
 
-/// The model laid out for decoding; one for all bricks of a frame, used from any thread.
+/// The model as tables for decoding; shared by all bricks of a frame. Thread-safe.
 class BandDecoder {
 public:
     explicit BandDecoder(Model model);
     const Model& model() const { return model_; }
-    /// Fills the bands from exactly these bytes. Values beyond a Word are cut to it.
+    /// Fills the bands from exactly these bytes. Values that do not fit into a Word are truncated.
     template <class Word>
     DecodeStatus decode(std::span<const std::byte> in, std::span<const Band<Word>> bands, int level,
                         Cpu cpu = bestCpu()) const;

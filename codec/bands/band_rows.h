@@ -8,7 +8,7 @@
 #include <glm/common.hpp>
 #include <vector>
 
-/// What the files on bands share: contexts, and the way through the rows.
+/// Shared by the band coder files: contexts, and the order of rows.
 namespace tessera::codec {
 
 inline constexpr int kLanes = 16, kMostGroups = 4;
@@ -36,7 +36,7 @@ struct Magnitudes {
     }
 };
 
-/// The neighbours a row sees.
+/// The context neighbours of a row.
 struct Neighbours {
     const std::uint16_t *north, *before, *beforeNorth, *beforeSouth;
     Neighbours(Magnitudes& magnitudes, int z, int y)
@@ -60,7 +60,7 @@ TESSERA_INLINE std::uint16_t magnitudeOf(std::int32_t value, int shift) {
     return static_cast<std::uint16_t>(size < kLargestMagnitude ? size : kLargestMagnitude);
 }
 
-/// Chunks of lanes that the bands take, the widest row, and so how many groups of states there are.
+/// Number of lane chunks of the bands, the widest row, and from these the number of groups of coder states.
 struct Lanes {
     std::size_t chunks = 0;
     int groups = 1, used = 0; ///< used: states that are stored
@@ -78,7 +78,7 @@ struct Lanes {
     }
 };
 
-/// Calls `visit(band number, z, y)` for every row: rows of all bands by turns.
+/// Calls `visit(band number, z, y)` for every row, alternating between the bands.
 template <class AnyBand, class Visit> TESSERA_INLINE bool forBandRows(std::span<const AnyBand> bands, Visit&& visit) {
     glm::ivec3 most(0);
     for (const AnyBand& band : bands)
@@ -91,8 +91,8 @@ template <class AnyBand, class Visit> TESSERA_INLINE bool forBandRows(std::span<
     return true;
 }
 
-/// Before a slice is filled anew, nothing of the one two before may show: rows are written whole, so only the first
-/// two slices see what is not theirs, and that is zeros.
+/// Magnitudes for a set of bands. Before a slice is written again, its old contents must not be visible: rows are
+/// written completely, so only the first two slices see foreign values, which are zeros.
 inline std::vector<Magnitudes> magnitudesFor(auto bands) {
     std::vector<Magnitudes> all;
     all.reserve(bands.size());

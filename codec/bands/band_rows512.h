@@ -12,8 +12,8 @@ TESSERA_AVX512 TESSERA_INLINE __m512i load512(const std::uint16_t* from) {
     return _mm512_loadu_si512(from);
 }
 
-/// What Neighbours::sum gives for 32 places from x on. A row of at most 32 is all in registers: loads of what lies one
-/// to the side cross lines of the cache and wait for the stores before them.
+/// Neighbours::sum for 32 positions from x on. A row of at most 32 is kept in registers: unaligned loads one element to
+/// the side cross cache lines and wait for the preceding stores.
 template <bool kByBand> TESSERA_AVX512 TESSERA_INLINE __m512i sums512(const Neighbours& near, int x, int width) {
     const __m512i north = load512(near.north + x), both = _mm512_add_epi16(north, load512(near.before + x));
     const __m512i ends = _mm512_add_epi16(load512(near.beforeNorth + x), load512(near.beforeSouth + x));
@@ -45,7 +45,7 @@ TESSERA_AVX512 TESSERA_INLINE __m512i classes512(__m256i sums) {
                             _mm512_set1_epi32(254));
 }
 
-/// Sixteen entries of a table. One load after the other: that takes processors no longer than their own gathering.
+/// Sixteen table entries. Scalar loads are as fast as the gather instruction.
 TESSERA_AVX512 TESSERA_INLINE __m512i entries512(const std::uint32_t* table, __m512i places) {
     alignas(64) std::uint32_t at[kLanes];
     _mm512_store_si512(at, places);

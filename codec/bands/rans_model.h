@@ -9,17 +9,17 @@
 #include <span>
 #include <vector>
 
-/// The probabilities the coefficient coder uses: a few tables, shared by all bricks of a frame, and which of them each
-/// context takes. (FORMAT.md "Models".)
+/// Probabilities of the coefficient coder: a few tables shared by all bricks of a frame, and the table of each context.
+/// (FORMAT.md "Models".)
 namespace tessera::codec {
 
 inline constexpr int kProbabilityBits = 12;
 inline constexpr std::uint32_t kProbabilityOne = 1u << kProbabilityBits;
-/// Classes of a place: half octaves of its neighbours' magnitude.
+/// Number of context classes: half octaves of the magnitude of the neighbours.
 inline constexpr int kClasses = 32;
 /// Kinds of bands: 0 an undivided box, else the bits of the axes along which it holds the high half.
 inline constexpr int kBandKinds = 8;
-/// A token is a symbol below 32, or an octave of four parts and so many raw bits, or the escape: all 32 bits raw.
+/// A token is a symbol below 32, or a quarter of an octave followed by raw bits, or the escape: all 32 bits raw.
 inline constexpr int kDirect = 32, kTokens = 141, kEscape = 140;
 
 struct Token {
@@ -42,7 +42,7 @@ constexpr std::uint32_t symbolBase(std::uint32_t token) {
     return token == kEscape ? 0 : (4u + (token - kDirect) % 4u) << rawBitsOf(token);
 }
 
-/// What the coder tells places apart by before it codes them.
+/// What contexts depend on.
 struct Contexts {
     int shift = 0;       ///< magnitudes are divided by 2^shift
     bool byBand = false; ///< one more neighbour to each side, and the two finest levels tell kinds of bands apart
@@ -50,14 +50,14 @@ struct Contexts {
 
     static constexpr int kLevelsByBand = 2;
     int kindsOf(int level) const { return byBand && level < kLevelsByBand ? kBandKinds : 1; }
-    /// The first of the contexts of the classes of a kind at a level; of all levels: the number of contexts.
+    /// Index of the first context of a kind at a level; for the number of levels: the number of contexts.
     std::size_t first(int level, int kind = 0) const {
         const int kinds = byBand ? level + (kBandKinds - 1) * (level < kLevelsByBand ? level : kLevelsByBand) : level;
         return static_cast<std::size_t>((kinds + (kindsOf(level) > 1 ? kind : 0)) * kClasses);
     }
 };
 
-/// How often each token came in each context, about: what a model is made of.
+/// Approximate counts of each token in each context: the statistics for a model.
 struct Histogram {
     Histogram(int levelCount, Contexts of) : levels(levelCount), contexts(of), counts(of.first(levelCount)) {}
     int levels = 0;
@@ -65,7 +65,7 @@ struct Histogram {
     std::vector<std::array<std::uint32_t, kTokens>> counts; ///< [contexts.first(level, kind) + class]
     /// Bits the tokens and their raw bits take with ideal tables of this histogram, without the model itself.
     double bits() const;
-    /// Adds those of the same levels and contexts.
+    /// Adds the counts of another histogram with the same levels and contexts.
     void add(const Histogram& other);
 };
 
@@ -85,11 +85,11 @@ Model makeModel(const Histogram& histogram, int mostTables);
 double bitsWith(const Model& model, const Histogram& histogram);
 
 Bytes serialise(const Model& model);
-/// Reads a model for `levels` levels; the bytes must end with it. No bytes at all are the model of no tokens.
+/// Parses a model for `levels` levels; the bytes must end with it. No bytes are the model without tokens.
 DecodeStatus parseModel(std::span<const std::byte> bytes, int levels, Model& model);
 
-/// The model laid out for decoding: entry [table << kProbabilityBits | slot] holds the token in bits 0..7, its
-/// frequency in 8..19 and the slot's place within it in 20..31.
+/// The model as a table for decoding: entry [table << kProbabilityBits | slot] has the token in bits 0..7, its
+/// frequency in 8..19 and the offset of the slot within it in 20..31.
 std::vector<std::uint32_t> decodeTable(const Model& model);
 
 } // namespace tessera::codec

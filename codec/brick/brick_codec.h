@@ -14,7 +14,7 @@
 /// One brick of one component: samples to bytes, level by level, and back. (FORMAT.md "Bricks".)
 namespace tessera::codec {
 
-/// All that a decoder must know before it reads the bytes of a brick.
+/// What a decoder must know before it reads the bytes of a brick.
 struct BrickFormat {
     volume::LatticeKind kind = volume::LatticeKind::CC;
     glm::ivec3 size{1}; ///< storage samples of the brick at full resolution; a BCC brick starts on an even slice
@@ -31,13 +31,13 @@ struct BrickFormat {
     int sublattices() const { return kind == volume::LatticeKind::BCC ? 2 : 1; }
     /// Full-resolution samples of one sublattice of the brick.
     glm::ivec3 sublatticeSize(int sublattice) const;
-    /// Whether a brick, `masked` if samples of it are absent, predicts its odd grid.
+    /// Whether a brick (`masked` if it has absent samples) predicts its odd sublattice.
     bool predictsOdd(bool masked) const;
-    /// True when samples may be stored beside the codes.
+    /// True if samples can be stored exactly, in addition to their codes.
     bool canHaveExact() const;
 };
 
-/// Bits of the codes of a type whose numbers are the codes.
+/// Width of the codes of a type whose numbers are the codes, in bits.
 int codeBitsOf(volume::ScalarType type);
 
 inline std::size_t countOf(glm::ivec3 size) {
@@ -46,53 +46,53 @@ inline std::size_t countOf(glm::ivec3 size) {
 
 /// Storage samples of the brick at a level.
 glm::ivec3 samplesAt(const BrickFormat& format, int level);
-/// Every 2^level-th flag of each sublattice: what is present at a level. Empty in, empty out.
+/// The mask at a level: every 2^level-th flag of each sublattice. Empty in, empty out.
 std::vector<std::uint8_t> maskAt(const BrickFormat& format, std::span<const std::uint8_t> present, int level);
 
-/// Arithmetic of the lifting, and its wavelet: floats are only predicted, as an update would mix exponents and
-/// overshoot by powers of two.
+/// Arithmetic and wavelet of the lifting: floats are only predicted, since an update would mix exponents and overshoot
+/// by powers of two.
 Arithmetic arithmeticOf(const BrickFormat& format);
 Wavelet effectiveWavelet(const BrickFormat& format);
 
-/// A brick as tokens: all that does not depend on a model.
+/// A brick as tokens: the part of coding that does not depend on a model.
 struct PreparedBrick {
     std::vector<TokenRun> levels;                                 ///< the last is the coarsest
     std::vector<std::uint32_t> exactIndex, exactBits, absentBits; ///< what is stored beside them
 };
 
-/// What taking a brick apart leaves for the next one: its memory.
+/// Working memory of the transform, reused from brick to brick.
 struct SplitMemory {
     std::vector<LevelBox<std::int16_t>> boxes16;
     std::vector<LevelBox<std::int32_t>> boxes32;
 };
 
-/// Takes a brick apart. `samples` are numbers of format.type, x fastest; `present` one flag each, or empty: all.
-/// Quantised numbers off by more than `maxError` are stored exactly.
+/// Transforms a brick. `samples` are numbers of format.type, x fastest; `present` has one flag each, or is empty: all
+/// present. Quantised numbers with an error above `maxError` are stored exactly.
 PreparedBrick prepareBrick(const BrickFormat& format, std::span<const std::byte> samples,
                            std::span<const std::uint8_t> present, double maxError, Contexts contexts,
                            SplitMemory& memory);
-/// Adds its tokens to the statistics a model is made of, or of long runs a part of them (countTokens).
+/// Adds the tokens of a brick to the statistics of a model; for long runs only a part of them (countTokens).
 void countBrick(const PreparedBrick& brick, Histogram& histogram, int every = 1);
 
-/// The coded brick: segment 0 holds the coarsest level, segment i what level `levels - 1 - i` adds. `brick` must be
-/// prepared from the same samples, with the contexts of the model. Same input, same bytes.
+/// The coded brick: segment 0 has the coarsest level, segment i the details of level `levels - 1 - i`. `brick` must be
+/// prepared from the same samples, with the contexts of the model. Deterministic.
 std::vector<Bytes> encodeBrick(const BrickFormat& format, const PreparedBrick& brick,
                                std::span<const std::byte> samples, std::span<const std::uint8_t> present,
                                Compressor& compressor, const BandEncoder& bands);
 
-/// Both in one.
+/// prepareBrick and encodeBrick in one call.
 std::vector<Bytes> encodeBrick(const BrickFormat& format, std::span<const std::byte> samples,
                                std::span<const std::uint8_t> present, double maxError, Compressor& compressor,
                                const BandEncoder& bands);
 
-/// A sample stored as its bits beside the codes.
+/// A sample stored exactly, as its bits, in addition to its code.
 struct ExactSample {
     std::uint32_t index = 0, bits = 0;
 };
 
-/// One level of a brick. Decoding into the same object again reuses its memory.
+/// One decoded level of a brick. Decoding into the same object again reuses its memory.
 struct DecodedBrick {
-    /// Boxes of the sublattices; all but `samples` is working memory.
+    /// Boxes of the sublattices; all except `samples` are working memory.
     template <class Word> struct Boxes { std::array<LevelBox<Word>, 2> samples, details, spare; };
 
     glm::ivec3 size{0}; ///< storage samples of the level
@@ -128,8 +128,8 @@ struct DecodedBrick {
     std::vector<std::uint32_t> codes() const;
 };
 
-/// Decodes `level` from the segments up to it (levels - level of them, coarsest first). Never throws for what the bytes
-/// say, never reads beyond them.
+/// Decodes `level` from the segments up to it (levels - level segments, coarsest first). Never throws because of the
+/// contents of the bytes, never reads beyond them.
 DecodeStatus decodeBrick(const BrickFormat& format, std::span<const std::span<const std::byte>> segments, int level,
                          std::span<const std::uint8_t> present, const BandDecoder& bands, DecodedBrick& out);
 

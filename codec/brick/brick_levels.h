@@ -3,31 +3,32 @@
 #include "codec/brick/brick_codec.h"
 #include "codec/wavelet/level_box.h"
 
-/// A brick taken apart into levels: for each sublattice and level a box whose low corner the next coarser level gives.
+/// The levels of a transformed brick: for each sublattice and level a box, whose low corner is replaced by the next
+/// coarser level.
 namespace tessera::codec {
 
-/// [level * sublattices + sublattice]; the last level holds the coarsest samples, the others details; boxes behind them
-/// are working memory.
+/// Index [level * sublattices + sublattice]. The last level has the coarsest samples, the others have details; further
+/// boxes are working memory.
 template <class Word> using BrickLevels = std::vector<LevelBox<Word>>;
 
-/// True when words of 16 bits do for a brick.
+/// True if 16-bit words are sufficient for a brick.
 bool fitsInt16(const BrickFormat& format, bool masked);
 
-/// Takes codes in storage order apart, down to `levels` levels in all. What `out` was before is used as memory. Of a
-/// brick that predicts its odd grid that is at level 0 what the prediction leaves, undivided, and at the others
-/// nothing.
+/// Transforms codes in storage order into `levels` levels. The memory of `out` is reused. For a brick that predicts its
+/// odd sublattice, that sublattice has at level 0 the differences from the prediction, not divided into bands, and
+/// nothing at the others.
 template <class Word>
 void splitBrick(const BrickFormat& format, std::span<const std::uint32_t> codes, std::span<const std::uint8_t> present,
                 int levels, BrickLevels<Word>& out);
-/// The same of integers that are all present, which are their own codes.
+/// The same for integers without absent samples, which are their own codes.
 template <class Word>
 void splitIntegers(const BrickFormat& format, std::span<const std::byte> samples, int levels, BrickLevels<Word>& out);
 
-/// The samples of a level from those of the coarser one and the details in `fine`, which are used up.
+/// The samples of a level from those of the coarser one and the details in `fine`, which is overwritten.
 template <class Word>
 void joinLevel(const BrickFormat& format, const LevelBox<Word>& coarse, LevelBox<Word>& fine, LevelBox<Word>& samples);
 
-/// The flags of one level in the places of its samples (the coarsest) or of its coefficients.
+/// The mask of one level, in the layout of its samples (coarsest level) or of its coefficients.
 template <class Word>
 void placeFlags(const BrickFormat& format, std::span<const std::uint8_t> present, int level, int sublattice, bool split,
                 LevelBox<Word>& out);
@@ -39,11 +40,11 @@ std::span<LevelBox<Word>> boxesAt(BrickLevels<Word>& levels, const BrickFormat& 
     return std::span(levels).subspan(std::size_t(level) * step, step);
 }
 
-/// The seven bands of details of each box, or the boxes themselves where undivided or of the coarsest level.
+/// The seven bands of details of each box, or the whole box if it is undivided or of the coarsest level.
 template <class Word> std::vector<Band<Word>> bandsOf(std::span<LevelBox<Word>> boxes, bool coarsest);
 
-/// How the coefficients of a segment are coded: as bands, or none is other than 0; the other modes are those of streams
-/// and of whole bricks.
+/// Mode byte of a segment: coded as bands, or all coefficients are 0; the other modes are those of streams and whole
+/// bricks.
 inline constexpr std::byte kBands{4}, kNothing{0};
 
 /// Calls `visit(word)` for the present coefficients, band by band.

@@ -8,10 +8,10 @@
 #include <span>
 #include <vector>
 
-/// What an archive notes of the values of a brick: range, mean and histogram. (FORMAT.md "Statistics".)
+/// Statistics of a brick that an archive stores: range, mean and histogram. (FORMAT.md "Statistics".)
 namespace tessera::codec {
 
-/// Of the values of a brick that are present and finite, at full resolution, as a reader decodes them.
+/// Mean and histogram of the present, finite values of a brick at full resolution, as decoded.
 struct BrickTally {
     std::uint32_t samples = 0;         ///< how many there are
     std::uint32_t infinite = 0;        ///< that are present beside them
@@ -23,10 +23,11 @@ struct BrickTally {
 
 inline constexpr std::uint32_t kMeanParts = (1u << 24) - 1;
 
-/// Bins of a histogram of so many samples, a power of two up to 32: about an eighth of the root of their number.
+/// Number of histogram bins for a number of samples, a power of two up to 32: about an eighth of the square root of the
+/// number.
 int binsOf(std::uint32_t samples);
 
-/// Whether a brick of that range has a mean and a histogram: one of a single value, or of none, says it all by that.
+/// Whether a brick with this range has a mean and a histogram; a single value, or none, needs neither.
 bool hasSpread(float min, float max);
 
 struct TalliedBrick {
@@ -34,20 +35,22 @@ struct TalliedBrick {
     BrickTally tally;
 };
 
-/// Tallies the stored numbers of a brick, whose physical values are offset + scale * number. `present`: one flag each,
-/// or empty: all. `withTally` false: the range alone.
+/// Statistics of the stored numbers of a brick, whose physical values are offset + scale * number. `present`: one flag
+/// each, or empty: all present. `withTally` false: only the range.
 TalliedBrick tallied(volume::ScalarType type, double offset, double scale, std::span<const std::byte> samples,
                      std::span<const std::uint8_t> present, bool withTally);
 
-/// Whether a brick is as it is noted to be; of the mean the last digits may differ.
+/// Whether the statistics of a brick equal the stored ones; the mean may differ in its last digits.
 bool agree(const TalliedBrick& brick, float min, float max, const BrickTally& noted);
 
-/// Writes the tally of a brick of that range; `isFloat`: samples may be present and not finite.
+/// Writes the statistics of a brick with this range; `isFloat`: samples can be present and not finite.
 void put(BitWriter& out, float min, float max, bool isFloat, const BrickTally& tally);
-/// Reads it back. `present`: samples of the brick that are. False where the bits are not those of a tally, or end.
+/// Reads the statistics written by put. `present`: number of present samples of the brick. False if the bits are
+/// invalid or end early.
 bool take(BitReader& in, float min, float max, bool isFloat, std::uint32_t present, BrickTally& tally);
 
-/// As a source gives it; nothing where the range is not finite. `step`: between stored numbers, 0 for floats.
+/// The statistics as volume::BrickSource returns them; empty if the range is not finite. `step`: distance between
+/// stored numbers, 0 for floats.
 std::optional<volume::BrickDistribution> distributionOf(float min, float max, double step, const BrickTally& tally);
 
 } // namespace tessera::codec

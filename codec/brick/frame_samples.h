@@ -13,27 +13,27 @@
 
 namespace tessera::codec {
 
-/// Consecutive slices of a frame that are whole layers of bricks.
+/// A range of whole brick layers of a frame, with its slices.
 struct Slab {
     int first = 0, count = 0; ///< slices
 
     /// Numbers [begin, end) of its bricks.
     std::pair<std::size_t, std::size_t> bricks(const volume::BrickGrid& grid) const;
-    /// The grid that its bricks make by themselves.
+    /// The brick grid of the slab alone.
     volume::BrickGrid grid(volume::BrickGrid whole) const;
 };
 
 /// The slices of one layer of bricks.
 Slab layerOf(const volume::BrickGrid& grid, int layer);
 
-/// Where the samples of frames go that are larger than memory.
+/// Storage of frames that are larger than memory.
 struct SlabStore {
     int layers = 1;     ///< of bricks in memory at a time
     std::string folder; ///< for scratch files
 };
 
-/// One component at one time on its way into an archive: a field, or where that is larger than memory its samples and
-/// flags in a scratch file, looked at slab by slab. A field is one slab.
+/// One component at one time, to be written to an archive: a field, or, if larger than memory, samples and flags in a
+/// scratch file that is read slab by slab. A field is a single slab.
 class FrameSamples {
 public:
     /// The field is referred to, not copied: it must outlive this.
@@ -58,11 +58,11 @@ public:
 
     /// Visits every slab in order until `visit` returns false; true if none did.
     bool forSlabs(const std::function<bool(const volume::Field& part, Slab slab)>& visit) const;
-    /// Changes samples, flags, offset and scale slab by slab, the latter two alike in all.
+    /// Changes samples, flags, offset and scale slab by slab; offset and scale must be equal in all slabs.
     void change(const std::function<void(volume::Field& part, Slab slab)>& visit);
-    /// Any slices, as a field of their own.
+    /// Any range of slices, as a field.
     volume::Field slices(int first, int count) const;
-    /// Reads samples `at` .. `at` + `n` of one in a scratch file, and their flags where those are wanted.
+    /// For a frame in a scratch file: reads samples `at` .. `at` + `n`, and their flags if `present` is not null.
     void read(std::size_t at, std::size_t n, std::byte* samples, std::uint8_t* present) const;
 
 private:

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <span>
 
-/// Numbers of so many bits, lowest first; the last byte is filled up with zeros.
+/// LSB-first bit stream, zero-padded to whole bytes.
 namespace tessera::codec {
 
 class BitWriter {
@@ -37,7 +37,7 @@ public:
         return value;
     }
     std::size_t bytesRead() const { return (at_ + 7) / 8; }
-    /// All bytes are read, and the last is filled up as it should be.
+    /// Whether all bytes have been read and the padding is zero.
     bool atEnd() {
         const auto left = static_cast<int>(8 * bytesRead() - at_);
         return get(left) == 0 && !failed && at_ == 8 * bytes_.size();

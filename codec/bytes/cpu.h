@@ -2,8 +2,8 @@
 
 #include <cstdint>
 
-/// Which vector instructions the inner loops of the codec may use. Every choice gives the same numbers; tests compare
-/// them.
+/// The vector instructions that the inner loops of the codec may use. Every choice gives the same numbers; tests
+/// compare them.
 namespace tessera::codec {
 
 enum class Cpu : std::uint8_t { Portable, Avx2, Avx512 };
@@ -17,10 +17,10 @@ enum class Cpu : std::uint8_t { Portable, Avx2, Avx512 };
 #define TESSERA_AVX2
 #define TESSERA_AVX512
 #endif
-/// For bodies that are compiled once for each kind of processor.
+/// For function bodies that are compiled once for each kind of processor.
 #define TESSERA_INLINE [[gnu::always_inline]] inline
 
-/// The best the processor at hand can do.
+/// The best choice that this processor supports.
 inline Cpu bestCpu() {
 #if TESSERA_X86
     if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512vl") &&

@@ -4,7 +4,7 @@
 
 namespace tessera::codec {
 
-/// What a decoder of foreign bytes says; it never throws for what they contain and never reads beyond them.
+/// Result of decoding untrusted bytes. Decoders never throw because of their contents and never read beyond them.
 enum class [[nodiscard]] DecodeStatus : std::uint8_t{
     Ok,
     Truncated, ///< fewer bytes than announced

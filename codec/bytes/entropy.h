@@ -13,13 +13,13 @@ namespace tessera::codec {
 
 using Bytes = std::vector<std::byte>;
 
-/// The most effort of zstd that is of use.
+/// The highest useful effort of zstd.
 inline constexpr int kMostEffort = 19;
 
 /// Working memory of the encoder; one per thread. Holds no state that changes the output.
 class Compressor {
 public:
-    /// `thorough`: streams try LZMA as well, where zstd is at its most effort.
+    /// `thorough`: also try LZMA for streams, at the highest effort of zstd.
     explicit Compressor(int zstdLevel, bool thorough = false);
     ~Compressor();
     Compressor(Compressor&&) noexcept;

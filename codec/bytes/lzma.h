@@ -3,8 +3,8 @@
 #include "codec/bytes/decode_status.h"
 #include "codec/bytes/entropy.h"
 
-/// LZMA: slow, and a good deal shorter than zstd where bytes are few. Raw streams, as they stand in .lzma files behind
-/// 13 bytes of header, without an end marker. (FORMAT.md "Streams", "Pieces".)
+/// LZMA: slow, and much smaller than zstd for few bytes. Raw streams, as in .lzma files after the 13-byte header,
+/// without an end marker. (FORMAT.md "Streams", "Pieces".)
 namespace tessera::codec {
 
 inline constexpr int kMostLiteralBits = 4;
@@ -14,11 +14,11 @@ Bytes encodeLzma(std::span<const std::byte> in, int literalBits);
 /// Decodes all of `in`, which must give exactly out.size() bytes.
 DecodeStatus decodeLzma(std::span<const std::byte> in, int literalBits, std::span<std::byte> out) noexcept;
 
-/// Longer pieces are not worth the time that decoding them would take; none of them is LZMA. Part of the format.
+/// Longer blocks are never LZMA, since decoding would take too long. Part of the format.
 inline constexpr std::size_t kLongPiece = 1 << 16;
 
-/// Text or a page of the index: its length, then LZMA that goes on from a fixed dictionary; of what is long or would
-/// not become shorter, or if it is to be plain, the bytes themselves.
+/// Codes text or an index page: its length, then LZMA with a fixed dictionary; if it is long, would not become shorter,
+/// or `plain` is set, the bytes themselves.
 Bytes encodePiece(std::span<const std::byte> in, bool plain = false);
 /// Undoes encodePiece; never allocates more than the bytes of `in` or kLongPiece.
 DecodeStatus decodePiece(std::span<const std::byte> in, Bytes& out);

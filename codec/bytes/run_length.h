@@ -3,9 +3,8 @@
 #include "codec/bytes/decode_status.h"
 #include "codec/bytes/entropy.h"
 
-/// Run lengths as of PackBits (Salomon: Data Compression, 1998): the coder that archives are compared with, not one
-/// that they use. A byte n of 1..127 says that the next byte comes n times, one of 129..255 that 256 - n bytes follow
-/// as they are.
+/// PackBits run-length coding (Salomon: Data Compression, 1998): a baseline for comparisons, not used in archives. A
+/// byte n of 1..127 is followed by one byte to repeat n times, a byte of 129..255 by 256 - n literal bytes.
 namespace tessera::codec {
 
 Bytes encodeRuns(std::span<const std::byte> bytes);

@@ -6,7 +6,7 @@
 
 namespace tessera::codec {
 
-/// Leaves what has no value of its own as the memory was.
+/// An allocator that leaves elements uninitialised if they are given no value.
 template <class T> struct UnclearedAllocator : std::allocator<T> {
     template <class Other> struct rebind { using other = UnclearedAllocator<Other>; };
     template <class Made> void construct(Made* at) { ::new (static_cast<void*>(at)) Made; }

@@ -2,7 +2,7 @@
 
 #include "codec/bytes/cpu.h"
 
-/// The processor's vector instructions where it is an x86.
+/// x86 vector instructions, if the processor is an x86.
 #if TESSERA_X86
 #if defined(__GNUC__) && !defined(__clang__)
 // gcc 12 takes its own undefined vectors for a mistake.

@@ -8,24 +8,24 @@
 #include <span>
 #include <string>
 
-/// The outermost bytes of a .tsr file. (FORMAT.md "File".)
+/// The container of a .tsr file. (FORMAT.md "File".)
 ///
 ///     0        80             160                                                              fileSize
 ///     | header | header again | chunks, metadata, page | chunks, metadata, page | ... | last page | unfinished ...
 ///
-/// A file only ever grows behind fileSize; then both headers, one after the other, name the new end. So at every
-/// moment one of them describes a whole archive.
+/// Bytes are only added behind fileSize; then both headers, one after the other, state the new end. So at every moment
+/// one of them describes a complete archive.
 namespace tessera::codec {
 
-/// Version 1 knew neither models nor bands, version 2 did not grow; both are read, never written.
+/// Version 1 had neither models nor bands, version 2 could not grow; both are read, never written.
 inline constexpr std::uint32_t kFormatVersion = 3, kOldestVersion = 1, kGrowingVersion = 3;
 inline constexpr std::size_t kHeaderBytes = 80;
-/// Feature: the index says how important each brick is, how it changes, and which repeat an earlier one; frames may be
-/// coded body-centred, and integers in steps.
+/// Feature: the index has importance, change and repeats of bricks; frames can be coded body-centred, and integers in
+/// steps.
 inline constexpr std::uint32_t kBrickNotes = 1;
-/// Feature: metadata and pages of the index are pieces (codec/bytes/lzma.h), streams may be LZMA, models may be empty.
+/// Feature: metadata and index pages are LZMA blocks (codec/bytes/lzma.h), streams can be LZMA, models can be empty.
 inline constexpr std::uint32_t kCompact = 2;
-/// Feature: models may have contexts that tell bands apart.
+/// Feature: models can have contexts that distinguish bands.
 inline constexpr std::uint32_t kBandContexts = 4;
 /// Feature: the index has mean and histogram of each brick.
 inline constexpr std::uint32_t kBrickTallies = 8,
@@ -59,8 +59,8 @@ struct HeaderState {
 };
 
 Bytes serialise(const Header& header);
-/// The header that holds of the first bytes of a file that has `fileBytes`: of two, the one whose archive is larger and
-/// whole. Checks magic, version, features, checksum and where the parts lie; throws Error naming `file`.
+/// The valid header among the two copies at the start of a file of `fileBytes` bytes: of two valid ones, that of the
+/// larger complete archive. Checks magic, version, features, checksum and positions; throws Error naming `file`.
 HeaderState parseHeaders(std::span<const std::byte> bytes, std::uint64_t fileBytes, const std::string& file);
 
 /// Little-endian numbers, appended.

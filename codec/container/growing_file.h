@@ -7,16 +7,16 @@
 
 namespace tessera::codec {
 
-/// The file of an archive under construction: bytes are appended, a commit makes them count.
+/// The file of an archive that is being written: bytes are appended; a commit makes them part of the archive.
 ///
-/// A new file is made under a temporary name beside its path. Where nothing is there yet it takes its name with the
-/// first commit, so that readers see it grow, and disappears with an object that did not finish. Where a file is there
-/// already, that one stays until finish() replaces it. A file that is appended to keeps every commit.
+/// A new file has a temporary name beside its path. If there is no file of that name yet, it gets its name with the
+/// first commit, so that readers see it grow, and the destructor removes it if finish() was not called. An existing
+/// file is replaced by finish() only. A file that is appended to keeps every commit.
 class GrowingFile {
 public:
-    /// A new file; its first bytes are left for the headers. Throws MachineError when it cannot be made.
+    /// A new file; its first bytes are reserved for the headers. Throws MachineError when it cannot be created.
     explicit GrowingFile(const std::string& path);
-    /// Goes on behind the archive with this header; bytes behind it are cut off. Throws Error when the file holds
+    /// Continues behind the archive with this header; bytes behind it are cut off. Throws Error when the file contains
     /// another archive, or another program is writing it.
     GrowingFile(const std::string& path, const Header& header);
     ~GrowingFile();
@@ -26,7 +26,7 @@ public:
     std::uint64_t position() const { return position_; }
     /// Throws MachineError, as all below do, when the disk is full or gone.
     void append(std::span<const std::byte> bytes);
-    /// Makes a header hold whose fileSize is the position, first on disk everything before it.
+    /// Writes a header whose fileSize is the position, after everything before it has reached the disk.
     void commit(const Header& header);
     /// Gives the file its name and closes it.
     void finish();

@@ -8,17 +8,17 @@
 
 #include <vector>
 
-/// Where the bricks of an archive lie and how they are coded. (FORMAT.md "Index".)
+/// Index of an archive: positions and coding of bricks. (FORMAT.md "Index".)
 namespace tessera::codec {
 
-/// A coded piece of a brick; where it lies follows from the lengths before it.
+/// A segment of a coded brick; its position follows from the lengths before it.
 struct Segment {
     std::uint64_t offset = 0; ///< in the file; not stored
     std::uint32_t length = 0;
     std::uint64_t checksum = 0;
 };
 
-/// The flags of one brick; no bytes when all or none are present.
+/// The mask of one brick; no bytes if all or none of its samples are present.
 struct MaskBrick {
     Segment segment;
     std::uint32_t present = 0; ///< how many samples are
@@ -32,7 +32,7 @@ struct MaskRecord {
 struct FrameBrick {
     float min = 0, max = -1; ///< physical values of present samples; min > max: none
     BrickTally tally;        ///< only with kBrickTallies, and not of repeats
-    /// What archives without kBrickNotes do not say of their bricks.
+    /// Properties of bricks that archives without kBrickNotes lack.
     struct Notes {
         volume::BrickImportance importance;             ///< stored with 16 bits each
         volume::BrickChange change{kUnknown, kUnknown}; ///< from the frame before; rms is stored as a share of max
@@ -42,7 +42,7 @@ struct FrameBrick {
     static constexpr float kUnknown = -1;
 };
 
-/// As the archive will give them back, the change rounded up.
+/// The values as read back from the archive, the change rounded up.
 FrameBrick::Notes rounded(const FrameBrick::Notes& notes);
 
 /// One component of one parameter at one time.
@@ -88,12 +88,12 @@ struct IndexShape {
     std::uint64_t times = 0; ///< versions 1 and 2 only
 };
 
-/// What all pages of a compact archive may decode to: no small file asks for much memory.
+/// Largest decoded size of all pages of a compact archive, so that a small file cannot request much memory.
 constexpr std::uint64_t mostPageBytes(std::uint64_t fileSize) {
     return (std::uint64_t(1) << 22) + 16 * fileSize;
 }
 
-/// The bytes of a page, which compact archives hold as a piece (codec/bytes/lzma.h). `features`: of the header.
+/// The bytes of a page, as an LZMA block (codec/bytes/lzma.h) in compact archives. `features`: of the header.
 Bytes serialise(const IndexPage& page, std::uint32_t features);
 
 /// Reads and checks the index a header names. Throws Error naming `file` when a checksum or a length is wrong, frames

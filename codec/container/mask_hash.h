@@ -9,7 +9,7 @@ struct XXH3_state_s;
 
 namespace tessera::codec {
 
-/// Tells masks apart by their flags, which may come part by part.
+/// Hash of a mask, computed part by part.
 class MaskHash {
 public:
     using Value = std::array<std::uint64_t, 2>;
@@ -20,7 +20,7 @@ public:
     MaskHash& operator=(const MaskHash&) = delete;
 
     void add(const volume::Mask& part);
-    /// Of a field without a mask: everything is present.
+    /// Adds a part; a field without a mask has all samples present.
     void add(const volume::Field& part);
     Value value() const;
     /// Whether anything is absent.

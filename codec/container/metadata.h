@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-/// The JSON part of an archive: all that is known of the data set, and how it was packed.
+/// The metadata of an archive (JSON): description of the data set, and how it was packed.
 namespace tessera::codec {
 
 struct Metadata {
@@ -20,21 +20,21 @@ struct Metadata {
     /// grid of the even ones.
     bool alternating = false;
     std::vector<double> sourceTimes; ///< of an alternating archive: the times the samples came from
-    /// Of an alternating archive: info.quantities at the times the samples came from.
+    /// For D4* archives: info.quantities at the times of the source.
     std::vector<volume::Quantity> sourceQuantities = {};
     bool lossless = true; ///< every stored sample is exact
     double maxError = 0;  ///< otherwise: bound on |error|, relative to a parameter's range
-    /// What resampling cost, by parameter; none where it is not known. Empty: nothing was resampled, or all is unknown.
+    /// Resampling errors, by parameter; empty entries are unknown. Empty: nothing was resampled, or all is unknown.
     std::vector<std::optional<ResampleError>> resampled;
     std::string program; ///< that wrote it, with its version
     PackOptions options; ///< what it was packed with, and is when it grows
     bool operator==(const Metadata&) const = default;
 };
 
-/// A block of the file: the JSON of all but the times, as short as the features of the header allow.
+/// The metadata block of the file: JSON without the times, compressed as far as the features of the header allow.
 Bytes serialise(const Metadata& metadata, std::uint32_t features);
-/// Reads that; of versions 1 and 2 plain JSON, times and all. Throws Error naming `file` and the JSON path when a key
-/// is missing, has the wrong type or an impossible value.
+/// Parses it; in versions 1 and 2 plain JSON including times. Throws Error naming `file` and the JSON path when a key
+/// is missing or has the wrong type or an invalid value.
 Metadata parseMetadata(std::span<const std::byte> block, std::uint32_t version, std::uint32_t features,
                        const std::string& file);
 

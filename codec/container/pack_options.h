@@ -12,7 +12,8 @@
 /// How an archive is packed; noted in it.
 namespace tessera::codec {
 
-/// A wavelet, or by trial on some bricks of each frame, among those whose coarse samples lie on fine ones.
+/// A wavelet; Auto: chosen by trial on some bricks of each frame, among those whose coarse samples coincide with fine
+/// ones.
 enum class WaveletChoice : std::uint8_t { Auto, N1, N2, W11, W13, W15, W22, W24, W26, N4, W42, W44, W46 };
 inline constexpr std::string_view kWaveletChoiceNames[] = {"auto", "1,0", "2,0", "1,1", "1,3", "1,5", "2,2",
                                                            "2,4",  "2,6", "4,0", "4,2", "4,4", "4,6"};
@@ -21,7 +22,7 @@ constexpr std::optional<Wavelet> waveletOf(WaveletChoice choice) {
     return static_cast<Wavelet>(static_cast<int>(choice) - 1);
 }
 
-/// How BCC is taken apart: each of its grids by itself, or one predicted from the other; auto: the shorter by trial.
+/// Transform of BCC: each sublattice by itself, or one predicted from the other; Auto: the shorter one, by trial.
 enum class BccTransform : std::uint8_t { Auto, Separable, BodyCentred };
 inline constexpr std::string_view kBccTransformNames[] = {"auto", "separable", "bodyCentred"};
 

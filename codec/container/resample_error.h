@@ -7,13 +7,14 @@
 #include <string>
 #include <vector>
 
-/// What resampling to BCC cost: the stored lattice interpolated back at the samples of the source, as unpacking does.
+/// The error of resampling to BCC: the stored lattice is interpolated back to the samples of the source, as unpacking
+/// does.
 namespace tessera::codec {
 
 struct Metadata;
 
-/// Of one parameter, all components and times together, in its unit. Of labels a sample counts 1 where its label is
-/// another. Samples that are absent on either side do not count.
+/// Error of one parameter over all components and times, in its unit. For labels a sample counts 1 if its label
+/// differs. Samples absent on either side are skipped.
 struct ResampleError {
     double meanSquare = 0, largest = 0;
     double samples = 0; ///< compared
@@ -26,23 +27,24 @@ struct ResampleError {
 /// Peak signal-to-noise ratio, dB, of a range; infinite without an error.
 double psnrOf(const ResampleError& error, double extent);
 
-/// At most, of samples that were resampled twice: errors add up.
+/// Upper bound of the error of samples that were resampled twice: errors add up.
 ResampleError joined(const std::optional<ResampleError>& before, const ResampleError& then);
 
-/// Compares a frame with what was made of it. Small frames of up to 32 slices are looked at as one, others in blocks of
-/// 8 slices, at most 32 that are evenly spread along z; no more than a block and the stored slices around it are in
-/// memory then. Throws Cancelled and what reading throws.
+/// Compares a frame with its stored version. Frames of up to 32 slices are compared completely, larger ones in at most
+/// 32 blocks of 8 slices, evenly spread along z; then only a block and the stored slices around it are in memory.
+/// Throws Cancelled and what reading throws.
 ResampleError resampleError(const volume::Field& source, const volume::Field& stored, bool categorical);
 ResampleError resampleError(const volume::Lattice& source, const volume::SliceReader& readSource,
                             const volume::Lattice& stored, const volume::SliceReader& readStored, bool categorical);
 
-/// Whether the stored samples are others than those of the source, errors of coding apart.
+/// Whether the stored samples were resampled from those of the source.
 bool isResampled(const Metadata& metadata);
 
-/// How the stored samples came from those of the source, and how exact they are, in words:
-/// "every sample is exact"; "every sample of the BCC grid is exact; the source was resampled (PSNR 38.9 dB)".
+/// Text on the relation of stored samples to those of the source: "every sample is exact"; "every sample of the BCC
+/// grid is exact; the source was resampled (PSNR 38.9 dB)".
 std::string exactnessText(const Metadata& metadata);
-/// Of one parameter: "resampled: PSNR 38.9 dB, error at most 2734 HU"; "" where nothing was resampled or noted.
+/// The same for one parameter: "resampled: PSNR 38.9 dB, error at most 2734 HU"; "" if it was not resampled or the
+/// error is unknown.
 std::string resampledText(const Metadata& metadata, std::size_t parameter);
 
 } // namespace tessera::codec

@@ -9,7 +9,7 @@
 
 namespace tessera::codec {
 
-/// Where the frames of a data set go in an archive that it begins or continues.
+/// Mapping from the frames of a data set to an archive that it begins or continues.
 struct Continuation {
     std::size_t firstTime = 0;
     std::vector<int> parameterOf; ///< number in the archive of each parameter of the data set
@@ -20,14 +20,14 @@ struct Continuation {
     Continuation() = default;
     /// Widens the ranges of the archive's parameters by those that are known of the data set's.
     void widen(const volume::DatasetInfo& from, volume::DatasetInfo& to) const;
-    /// Adds what resampling has cost, by parameter of the data set, to what `now`, the metadata of the archive as it
-    /// was, notes: `before`, that the data set had already (of what was resampled at an unknown cost: nothing), and
-    /// `then`.
+    /// Adds resampling errors, by parameter of the data set, to those in `now`, the metadata of the archive before:
+    /// `before` are errors that the data set had already (empty if it was resampled with unknown error), `then` the new
+    /// ones.
     void noteResampled(const std::vector<std::optional<ResampleError>>& before, const std::vector<ResampleError>& then,
                        Metadata& now) const;
 };
 
-/// True if a data set brings later times of parameters of the archive, not further parameters.
+/// True if a data set has later times of parameters of the archive, instead of further parameters.
 bool bringsTimes(const Archive& archive, const volume::DatasetInfo& added);
 
 /// Further parameters for an archive, without labels that it holds already.
@@ -35,13 +35,13 @@ struct FurtherParameters {
     volume::Dataset dataset; ///< its frames say the parts of their samples (volume/field/part_masks.h)
     volume::SliceLoad slices;
 };
-/// Nothing where a data set brings no such label, or other parameters that the archive has. `slices` may be null.
-/// Throws Error where the archive's label is not that of the data.
+/// Empty if the data set has no label that the archive has, or other parameters of the archive. `slices` may be null.
+/// Throws Error if the archive's label differs from that of the data.
 std::optional<FurtherParameters> withoutKnownLabels(const volume::Dataset& source, const volume::SliceLoad& slices,
                                                     const Archive& archive);
 
-/// How the data set of `metadata`, made as for an archive of its own, continues an archive; `metadata` becomes that of
-/// both together. Throws Error when lattice, bricks, parameters or times do not fit.
+/// How a data set continues an archive. `metadata` describes the data set as if for an archive of its own, and becomes
+/// that of both together. Throws Error when lattice, bricks, parameters or times do not fit.
 Continuation continuationOf(const Archive& archive, Metadata& metadata);
 
 } // namespace tessera::codec

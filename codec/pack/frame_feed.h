@@ -27,14 +27,14 @@ struct FeedStep {
 /// Widens ranges by those of one more time; empty ranges begin with them.
 void widenRanges(std::vector<Range>& ranges, const std::vector<Range>& more);
 
-/// How frames larger than memory are read: never whole.
+/// How frames larger than memory are read, in slabs.
 struct SlabReading {
     volume::SliceLoad load; ///< null: frames are read whole
     int step = 0;           ///< slices of all components of the source in memory at a time
     SlabStore store;
 };
 
-/// What is done on the way.
+/// Options of reading and resampling.
 struct FeedOptions {
     bool toBcc = false; ///< frames are resampled to the lattice of the grid
     volume::ResampleOptions resample;
@@ -45,11 +45,11 @@ struct FeedOptions {
     bool measures = false;   ///< what resampling costs
 };
 
-/// Reads a data set time by time, in each parameter by parameter, and resamples it: while one step is coded, the next
-/// one is read.
+/// Reads and resamples a data set time by time, and within each time parameter by parameter, one step ahead of the
+/// caller.
 class FrameFeed {
 public:
-    /// A stop is noticed at the next step, or slab.
+    /// A stop request takes effect at the next step or slab.
     FrameFeed(volume::Dataset& dataset, FeedOptions options, std::stop_token stop);
     ~FrameFeed();
     FrameFeed(const FrameFeed&) = delete;

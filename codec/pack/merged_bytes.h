@@ -10,15 +10,15 @@
 
 namespace tessera::codec {
 
-/// Bytes of a box of bricks, of all stored components and times, without their records in the index.
+/// Bytes of a box of bricks, over all stored components and times, without their index entries.
 struct MergedBytes {
     std::uint64_t apart = 0;    ///< as they lie in the archive
     std::uint64_t together = 0; ///< if the box were coded as one brick
 };
 
-/// What merged bricks would gain, by coding each box with the filter of its frame and its tables, or new ones where
-/// they pay; those count to the first box. Where all bricks of a box repeat an earlier time, neither way takes bytes.
-/// Throws Error for archives of version 1 and damaged ones, Cancelled.
+/// Bytes that merged bricks would take: each box is coded with the filter and tables of its frame, or with new tables
+/// if they pay; these count towards the first box. If all bricks of a box repeat an earlier time, it takes no bytes
+/// either way. Throws Error for archives of version 1 and damaged ones, Cancelled.
 std::vector<MergedBytes> bytesOfMerged(const Archive& archive, std::span<const volume::MergedBrick> boxes,
                                        const Progress& progress = {});
 

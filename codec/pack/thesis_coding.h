@@ -6,7 +6,7 @@
 
 #include <cstddef>
 
-/// Compression as it was done before archives: integer wavelet, thresholds, run lengths. Baselines for benchmarks.
+/// Compression as in the thesis: integer wavelet, thresholds, run lengths. A baseline for benchmarks.
 namespace tessera::codec {
 
 struct ThesisCoding {

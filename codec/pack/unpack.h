@@ -12,9 +12,9 @@ namespace tessera::codec {
 
 /// An archive as a data set of frames: on the lattice it is stored on, samples in their type.
 volume::Dataset storedDataset(std::shared_ptr<const Archive> archive);
-/// What is to be told when one of these data sets is packed.
+/// What pack needs to know about such a data set: its errors so far.
 PackedAgain packedBefore(const Archive& archive);
-/// Reads slices of its frames: the layers of bricks that hold them are decoded.
+/// Reads slices of its frames by decoding the brick layers that contain them.
 volume::SliceLoad storedSlices(std::shared_ptr<const Archive> archive);
 
 /// An archive as a data set on a CC grid, for other programs. Level 0 of a CC archive: the stored samples. Of a BCC

@@ -4,7 +4,7 @@
 
 #include <array>
 
-/// The lifting steps of each wavelet, for the files that carry them out.
+/// The lifting steps of each wavelet.
 namespace tessera::codec {
 
 /// target +- floor((centre * c + sum of weight[j] * (left_j +- right_j) + half) / 2^shift)
@@ -27,7 +27,7 @@ constexpr bool isCubic(const LiftStep& step) {
     return step.pairs == 2 && step.weight[0] == 9 && step.weight[1] == -1;
 }
 
-/// Which elements a sum takes: pairs of indices, incomplete ones replaced by the pair inside them.
+/// Indices of the elements in a sum: pairs, where incomplete ones are replaced by the next pair inside.
 struct Pairs {
     std::array<int, 3> left{}, right{};
     bool none = false;
@@ -57,7 +57,7 @@ constexpr Pairs pairsAt(int i, int count, int sources, bool update) {
     return pairs;
 }
 
-/// Details that an update may use: those predicted from two sides; all for a mean of two.
+/// Number of details that an update may use: those predicted from both sides; all for the mean of two.
 constexpr int usableDetails(int pairs, int evens, int odds) {
     return pairs == 0 || evens > odds ? odds : evens - 1;
 }

@@ -8,13 +8,13 @@
 
 namespace tessera::codec {
 
-/// A box with its storage, and the flags of its samples in the same places. What no sample was written to, between the
-/// rows and where absent, is anything.
+/// A box with its storage and mask in the same layout. Elements that hold no sample (between rows, and where absent)
+/// are undefined.
 template <class Word> class LevelBox {
 public:
     LevelBox() = default;
     LevelBox(glm::ivec3 size, bool masked) { reset(size, masked); }
-    /// Becomes a box of another size; its memory is kept for that.
+    /// Resizes the box; memory is reused.
     void reset(glm::ivec3 size, bool masked) {
         const std::size_t words = std::size_t(pitchFor(size.x)) * std::size_t(size.y) * std::size_t(size.z);
         size_ = size;
@@ -22,7 +22,7 @@ public:
         present_.resize(masked ? words : 0);
         undivided_ = false;
     }
-    /// Becomes a box of one value without gaps.
+    /// Resizes the box and fills it with one value, without absent samples.
     void fill(glm::ivec3 size, Word value) {
         reset(size, false);
         std::fill_n(values_.begin(), std::ptrdiff_t(pitchFor(size.x)) * size.y * size.z, value);
@@ -31,7 +31,7 @@ public:
     Box<const Word> box() const { return {values_.data(), size_, pitchFor(size_.x)}; }
     Box<std::uint8_t> flags() { return {masked() ? present_.data() : nullptr, size_, pitchFor(size_.x)}; }
     bool masked() const { return !present_.empty(); }
-    /// One band, not seven with a corner for the coarser level.
+    /// Whether the box is one band instead of seven and a corner for the coarser level.
     bool undivided() const { return undivided_; }
     void setUndivided() { undivided_ = true; }
     glm::ivec3 size() const { return size_; }

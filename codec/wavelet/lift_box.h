@@ -6,19 +6,19 @@
 #include <cstddef>
 #include <cstdint>
 
-/// The lifting of boxes in which every sample is present: the same numbers as codec/wavelet/lifting.h gives, by rows
-/// that compilers vectorise.
+/// Lifting of boxes without absent samples: bit for bit the results of codec/wavelet/lifting.h, by rows that compilers
+/// vectorise.
 namespace tessera::codec {
 
-/// True for the wavelets that this file knows: all but the antisymmetric updates of (1,3) and (1,5).
+/// True for the wavelets that this file supports: all but the antisymmetric updates of (1,3) and (1,5).
 bool liftsBoxes(Wavelet wavelet);
 
-/// Codes of so many bits keep every sum of every wavelet within words of 16 bits (single pairs) or sums of 32 bits:
-/// what three axes of all levels make of them grows less than a hundredfold. (tests/codec/lift_box_test.cpp computes
-/// it.)
+/// Largest widths of codes, in bits, for which every sum of every wavelet fits into 16-bit words (single pairs) or
+/// 32-bit sums: over three axes and all levels values grow less than a hundredfold (tests/codec/lift_box_test.cpp
+/// computes it).
 inline constexpr int kBitsOfInt16 = 8, kBitsOfInt32 = 16;
 
-/// A box of words: rows of `size.x`, x fastest, `pitch` words apart, what lies between them is nobody's.
+/// A box of words: rows of `size.x`, x fastest, `pitch` words apart; words between rows are undefined.
 template <class Word> struct Box {
     Word* values = nullptr;
     glm::ivec3 size{0};
@@ -27,7 +27,7 @@ template <class Word> struct Box {
     Word* row(int y, int z) const { return values + (std::ptrdiff_t(z) * size.y + y) * pitch; }
 };
 
-/// Rows of boxes are a multiple of this many words apart, and loops run over whole rows.
+/// Pitches are multiples of this many words, and loops run over whole rows.
 inline constexpr int kRowWords = 32;
 constexpr int pitchFor(int width) {
     return (width + kRowWords - 1) / kRowWords * kRowWords;

@@ -5,8 +5,7 @@
 
 #include <cstddef>
 
-/// Lifting along x of lines that fit a few registers of 64 bytes: the numbers that codec/wavelet/lift_box.cpp gives by
-/// blocks.
+/// Lifting along x of lines that fit into a few 64-byte registers: the same numbers as codec/wavelet/lift_box.cpp.
 namespace tessera::codec {
 
 /// The lines of one slice of a box; all rows are `pitch` words apart.
@@ -22,15 +21,15 @@ template <class Word> class LineLifter {
 public:
     static constexpr int kWords = 32; ///< half of the widest line
 
-    /// Lifts nothing where a line or its sums do not fit, or the processor is another.
+    /// Does nothing if a line or its sums do not fit, or the processor lacks the instructions.
     LineLifter(Wavelet wavelet, int width, bool wide, Cpu cpu);
     bool lifts() const { return split_ != nullptr; }
-    /// Takes lines apart: even samples come first, then details; rows of even number come first, too.
+    /// Forward transform: even samples first, then details; rows of even number first, too.
     void split(const SliceLines<Word>& lines) const { split_(*this, lines); }
-    /// Undoes it.
+    /// Inverse of the above.
     void join(const SliceLines<Word>& lines) const { join_(*this, lines); }
 
-    /// For each word that a step changes, where the words it takes lie: [pair][left, right][word].
+    /// For each word that a step changes, the positions of its inputs: [pair][left, right][word].
     struct Taps {
         alignas(64) Word at[3][2][kWords]{};
     };

@@ -49,7 +49,7 @@ void forward(std::span<std::uint32_t> values, std::span<std::uint8_t> present, g
              Wavelet wavelet, Arithmetic arithmetic);
 void inverse(std::span<std::uint32_t> values, std::span<std::uint8_t> present, glm::ivec3 size, int steps,
              Wavelet wavelet, Arithmetic arithmetic);
-/// The reordering of `forward` alone: where the flags of a mask go.
+/// Only the reordering of `forward`, for masks.
 void deinterleave(std::span<std::uint8_t> present, glm::ivec3 size, int steps);
 
 /// A float as a signed integer of the same order (+0 is 0, -0 is -1, NaNs lie beyond the infinities), and back, bit for

@@ -8,8 +8,8 @@
 
 namespace tessera::codec {
 
-/// Which details are given up, as in Donoho: De-noising by soft-thresholding (1995). Unlike an error bound a threshold
-/// promises nothing about a sample: what is given up adds up over the levels.
+/// Thresholding of wavelet details, as in Donoho: De-noising by soft-thresholding (1995). Unlike an error bound it
+/// guarantees nothing about a single sample: the errors of all levels add up.
 enum class Threshold : std::uint8_t {
     Hard,    ///< those of magnitude `value` or less become 0
     Soft,    ///< the same, and all others shrink by `value`
@@ -20,7 +20,7 @@ inline constexpr std::string_view kThresholdNames[] = {"hard", "soft", "quantile
 enum class ThresholdChoice : std::uint8_t { None, Hard, Soft, Quantile };
 inline constexpr std::string_view kThresholdChoiceNames[] = {"none", "hard", "soft", "quantile"};
 
-/// Which details of an archive are given up.
+/// Thresholding of an archive.
 struct ThresholdOptions {
     ThresholdChoice kind = ThresholdChoice::None;
     double value = 0.005;
@@ -45,7 +45,8 @@ struct ThresholdOptions {
     }
 };
 
-/// Thresholds details in place; `value` at least 0. A quantile takes as many as it says, of equal ones the first.
+/// Thresholds details in place; `value` is at least 0. A quantile removes exactly its share; of equal details the first
+/// ones.
 void applyThreshold(std::span<std::int32_t> details, Threshold kind, double value);
 
 } // namespace tessera::codec
