@@ -18,11 +18,11 @@ public:
     /// Room for at least `slots` bricks as far as the driver's texture size allows. Throws MachineError when refused.
     BrickAtlas(int brickSize, int components, bool exact, std::size_t slots, int maxTextureSize);
 
-    /// First texel of a free slot, which has one holder then; nullopt when full.
+    /// First texel of a free slot, with one reference; nullopt if the atlas is full.
     std::optional<glm::ivec3> allocate();
-    /// One holder more: several times of a channel may show the same texels.
+    /// Adds a reference to a slot: several times of a channel can share the same texels.
     void share(glm::ivec3 slot) { ++holders_[number(slot)]; }
-    /// One holder less; the last one frees the slot.
+    /// Removes a reference; without references the slot is free.
     void release(glm::ivec3 slot);
     void upload(glm::ivec3 slot, const TexelBlock& block);
     /// Copies a slot of another atlas of the same kind.
@@ -46,8 +46,8 @@ private:
     std::vector<int> holders_; ///< of each slot
 };
 
-/// Where the bricks of one channel are: per brick of full resolution the first texel of its part of a slot, then its
-/// level, kAbsent (no sample there) or kNowhere.
+/// Page table of one channel: for each brick of full resolution the first texel of its part of a slot, then its level,
+/// kAbsent (no present sample) or kNowhere (not resident).
 struct PageTable {
     static constexpr std::uint16_t kNowhere = 254, kAbsent = 255;
     explicit PageTable(glm::ivec3 bricks);

@@ -5,8 +5,8 @@
 
 namespace tessera::vis {
 
-/// What one picture needs of a channel: per brick of full resolution, x fastest, the level it should be shown at and
-/// how urgent that is (smaller: sooner).
+/// Bricks of a channel that one picture needs: for each brick of full resolution, x fastest, the wanted level and its
+/// urgency (smaller: sooner).
 struct BrickDemand {
     static constexpr std::uint8_t kNotWanted = 255; ///< out of sight, transparent or hidden
     std::vector<std::uint8_t> level;

@@ -6,43 +6,43 @@
 
 namespace tessera::vis {
 
-/// A brick of an atlas: at level l, `brickSize` texels of that level a side, so it stands for 2^l bricks of full
-/// resolution along each axis.
+/// A brick in an atlas: `brickSize` texels a side at level l, so it covers 2^l bricks of full resolution along each
+/// axis.
 struct BrickId {
     int level = 0;
     glm::ivec3 index{0};
 };
 
-/// Which bricks of one channel are resident, at which levels, and what the shader sees of them: every place shows the
-/// finest brick that is here. The coarsest level comes first and never leaves, so there is no hole.
+/// Residency of the bricks of one channel at all levels, and its page table: every place shows the finest resident
+/// brick. The coarsest level is loaded first and never evicted, so there are no holes.
 class BrickLevels {
 public:
     BrickLevels(const volume::BrickGrid& grid, const ChannelSummary& summary, const TexelEncoding& encoding);
 
-    /// Says what a view needs now; null: the coarsest level. Replaces what was said before. Of bricks equally near
-    /// those with more to show are more urgent.
+    /// Sets what a view needs now; null: the coarsest level. Replaces the previous demand. At equal distance, more
+    /// important bricks are more urgent.
     void want(const BrickDemand* demand, std::uint64_t frame);
-    /// Wanted bricks that are not here.
+    /// Number of wanted bricks that are not resident.
     int missing() const { return missing_; }
-    /// The most urgent of them that nobody has asked for, at most `count`; they count as asked for.
+    /// The most urgent wanted bricks that have not been requested, at most `count`; marks them as requested.
     std::vector<BrickId> ask(std::size_t count);
-    /// A brick that was asked for will not come: it may be asked for again.
+    /// Cancels the request of a brick, so that it can be requested again.
     void forget(const BrickId& id);
-    /// The same of all that were asked for.
+    /// Cancels all requests.
     void forgetAsked();
 
-    /// Whether a brick belongs here and is not here.
+    /// Whether a brick is part of the channel and not resident.
     bool lacks(const BrickId& id) const { return at(id).state == State::Away || at(id).state == State::Asked; }
     bool holds(const BrickId& id) const { return at(id).state == State::Here; }
     void put(const BrickId& id, glm::ivec3 slot, const BlockRanges& blocks, int time);
-    /// Shows what another time of the channel shows of a brick that is here there.
+    /// Shares the texels of a brick with another time of the channel where it is resident.
     void putFrom(const BrickId& id, const BrickLevels& other);
-    /// The time that the texels of a brick here were made of.
+    /// The time from which the texels of a resident brick were made.
     int time(const BrickId& id) const { return at(id).time; }
     glm::ivec3 slot(const BrickId& id) const { return at(id).slot; }
-    /// Takes a brick away and gives its slot; a coarser one shows in its place.
+    /// Evicts a brick and returns its slot; a coarser brick is shown instead.
     glm::ivec3 take(const BrickId& id);
-    /// A brick that could make room: `stale` if no view wanted it since `frame`.
+    /// An eviction candidate: `stale` if no view wanted it since `frame`.
     struct Guest {
         BrickId id;
         bool stale = false;
@@ -64,7 +64,7 @@ public:
     /// After slots moved.
     void resolveAll();
 
-    /// The coarsest level is complete: something shows everywhere.
+    /// Whether the coarsest level is complete, so that the channel can be drawn.
     bool drawable() const { return coarsestMissing_ == 0; }
     int resident() const { return resident_; }
     /// The page table with every change in it.
@@ -98,7 +98,7 @@ private:
 
     volume::BrickGrid grid_;
     std::vector<Level> levels_;
-    /// The last frames in which a brick of full resolution was hidden in a view, and seen in one.
+    /// The last frames in which a brick of full resolution was hidden in a view, and visible in one.
     struct Sight {
         std::uint64_t hidden = 0, seen = 0;
     };

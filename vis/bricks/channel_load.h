@@ -10,7 +10,7 @@
 #include <stop_token>
 #include <string>
 
-/// The work of the decode threads: one channel at one level, or one brick of it, as texels. No GL.
+/// Decoding threads: one channel at one level, or one brick of it, to texels. No OpenGL.
 namespace tessera::vis {
 
 struct ChannelKey {
@@ -27,7 +27,7 @@ struct ChannelSummary {
     std::vector<float> importance;          ///< of them, 0..1; empty: not known
 };
 
-/// Texels ready to upload, or the word that there are none.
+/// Texels ready to upload, or a flag that there are none.
 struct LoadedTexels {
     ChannelKey key;
     int level = 0;
@@ -41,7 +41,7 @@ struct LoadedTexels {
     bool damaged = false;
 };
 
-/// What threads and the renderer share; outlives the renderer while a job still runs.
+/// State shared between decoding threads and the renderer; outlives the renderer while a job runs.
 struct LoadExchange {
     std::shared_ptr<const volume::BrickSource> source;
     std::unique_ptr<volume::BrickCache> bricks;
@@ -63,7 +63,8 @@ struct LoadRequest {
     bool coverage = false; ///< wanted even if no sample is known to be absent
 };
 
-/// Does a request and puts the result, or the failure, into the exchange. Never throws; a stop leaves nothing.
+/// Executes a request and stores the result, or the failure, in the exchange. Never throws; stores nothing when
+/// stopped.
 void loadTexels(LoadExchange& exchange, const LoadRequest& request, std::stop_token stop);
 
 } // namespace tessera::vis

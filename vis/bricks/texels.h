@@ -30,8 +30,8 @@ struct ChannelStats {
 };
 ChannelStats channelStats(std::span<const volume::BrickStats> bricks);
 
-/// What a channel is encoded by: the range of all its times, so that bricks which do not move may stay as they are,
-/// where one time uses a fair share of it (a sixteenth); else its own.
+/// The range that a channel is encoded with: that of all its times, so that unchanged bricks can keep their texels, if
+/// the time uses at least a sixteenth of it; else its own.
 ChannelStats commonStats(const ChannelStats& own, Range allTimes);
 
 /// The encoding that holds a channel: unfiltered values in [0, 1] of the 16 bits minus headroom for the prefilter's
@@ -70,7 +70,7 @@ struct TexelBlock {
 };
 
 using SharedBrick = std::shared_ptr<const volume::BrickSamples>;
-/// Gives one decoded brick; called from several threads at once.
+/// Returns one decoded brick; called from several threads at once.
 using ReadBrick = std::function<SharedBrick(const volume::BrickKey&)>;
 
 /// Samples of a box with `halo` texels around it, the nearest sample repeated beyond the lattice.

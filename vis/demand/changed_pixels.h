@@ -3,8 +3,8 @@
 #include "vis/raycast/tile.h"
 #include "vis/scene/scene.h"
 
-/// Which part of a picture a change of its scene can touch, so that what is dragged over a finished picture does not
-/// cost the whole of it.
+/// Part of a picture that a change of its scene can affect, so that dragging something does not redraw the whole
+/// picture.
 namespace tessera::vis {
 
 /// Whether a visible slice moves with the linked cursor.

@@ -6,10 +6,10 @@
 #include <memory>
 #include <span>
 
-/// Which bricks a picture needs, and how finely.
+/// Chooses the bricks that a picture needs, and their levels.
 namespace tessera::vis {
 
-/// What a picture asks of bricks besides the scene.
+/// Inputs of the choice besides the scene.
 struct DemandSettings {
     glm::ivec2 size{512, 512}; ///< of the picture
     double detail = 1;         ///< pixels: voxels smaller than this are wanted at a coarser level; 0 = full resolution

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-/// Where in a picture anything can show: rays that meet no occupied block are not drawn at all.
+/// Part of a picture in which anything is visible: rays that meet no occupied block are not drawn.
 namespace tessera::vis {
 
 /// A box in world axes.

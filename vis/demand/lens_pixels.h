@@ -8,8 +8,8 @@
 #include <span>
 #include <vector>
 
-/// Where lenses lie in a picture. Beyond them it is drawn without them and their layers: software GL would evaluate
-/// these everywhere.
+/// Pixels of lenses in a picture. Outside them it is drawn without lenses and their layers, which software GL would
+/// evaluate everywhere.
 namespace tessera::vis {
 
 /// Pixels of the rays that pass through a lens, of a picture of `size` pixels; nullopt where it reaches behind the eye.
@@ -19,10 +19,10 @@ std::optional<Tile> lensPixels(const PlacedLens& lens, const Camera& camera, glm
 /// that act outside of themselves or choose what is brushed.
 std::optional<std::vector<Tile>> lensTiles(const Scene& scene, const WorldFrame& frame, glm::ivec2 size);
 
-/// What `cut` leaves of a tile, in tiles apart from each other.
+/// The remainder of a tile outside `cut`, as disjoint tiles.
 std::vector<Tile> remainder(const Tile& whole, std::span<const Tile> cut);
 
-/// What rays do beyond all lenses: the plan without what is drawn in lenses alone. Goes with a scene without lenses.
+/// The plan for rays outside all lenses: without layers drawn in lenses. To be used with a scene without lenses.
 RayPlan beyondLenses(RayPlan plan);
 
 } // namespace tessera::vis

@@ -5,7 +5,7 @@
 #include <glm/mat3x3.hpp>
 #include <optional>
 
-/// Where bodies lie in a picture.
+/// Bounding rectangles of bodies in a picture.
 namespace tessera::vis {
 
 inline constexpr double kNear = 1e-3; ///< world units before the eye from which lines and boxes can be drawn
@@ -19,7 +19,7 @@ struct PictureBounds {
 class PictureProjection {
 public:
     PictureProjection(const Camera& camera, glm::ivec2 size);
-    /// Of the box with a middle and half edges (columns, world); nullopt where it reaches behind the eye.
+    /// Bounds of a box with centre and half edges (columns, world); nullopt where it reaches behind the eye.
     std::optional<PictureBounds> bounds(glm::dvec3 center, const glm::dmat3& halfEdges) const;
 
 private:

@@ -9,7 +9,7 @@
 
 namespace tessera::vis {
 
-/// Reads back how far the rays of a picture went, without waiting for it: one picture at a time.
+/// Reads back the termination depths of a picture asynchronously, one picture at a time.
 class ReachReader {
 public:
     /// Room for pictures up to this size. Throws MachineError when the driver has no memory for it.
@@ -19,7 +19,7 @@ public:
     void start(const Program& program, GLuint vertices, GLuint reach, glm::ivec2 first, glm::ivec2 size,
                const Camera& camera, const WorldFrame& frame);
     bool pending() const { return fence_ != nullptr; }
-    /// What was begun, once it is here; `wait`: until then.
+    /// The result of start(), once it is available; `wait`: block until then.
     std::optional<ReachMap> take(bool wait);
 
 private:

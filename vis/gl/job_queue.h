@@ -9,10 +9,10 @@
 
 namespace tessera::vis {
 
-/// Whether other threads go before those of a queue (volume/base/background.h).
+/// Priority of the threads of a queue (volume/base/background.h).
 enum class JobThreads { Equal, Background };
 
-/// Threads that run jobs, the most urgent first. Jobs must not throw; they should look at the token now and then.
+/// Threads that run jobs, the most urgent first. Jobs must not throw, and should check the stop token regularly.
 class JobQueue {
 public:
     using Work = std::function<void(std::stop_token)>;
@@ -22,7 +22,7 @@ public:
 
     /// Smaller priorities run first; equal ones in the order they came.
     void add(double priority, Work work);
-    /// Drops what has not begun and asks what runs to stop, without waiting for it.
+    /// Removes waiting jobs and requests running ones to stop, without waiting for them.
     void cancel();
     /// Waits until a job ends or nothing is queued or running.
     void waitForOne();

@@ -19,8 +19,8 @@
 ///     program.set("halfSize", glm::vec3(0.5f));
 namespace tessera::vis {
 
-/// Which files make a program. `#include "path"` names a file relative to vis/shaders; `#include <slot:name>` names
-/// the file that `slots` gives for it. Each file is taken once.
+/// The files of a program. `#include "path"` names a file relative to vis/shaders; `#include <slot:name>` names the
+/// file that `slots` assigns to the slot. Each file is included once.
 struct ProgramRecipe {
     std::string vertex, fragment;
     std::map<std::string, std::string> slots;
@@ -39,7 +39,7 @@ struct ComposedShader {
 /// Resolves includes and slots. Throws Error naming the file and line of a missing include or slot.
 ComposedShader composeShader(const std::string& root, const ProgramRecipe& recipe);
 
-/// Both stages of a recipe: all that the driver needs, so that another thread can compile it.
+/// Both stages of a recipe, ready to be compiled by any thread.
 struct ProgramText {
     std::string vertex, fragment; ///< file names
     ComposedShader vertexShader, fragmentShader;
@@ -83,7 +83,7 @@ private:
 
 /// Composes, compiles and links. Throws Error with "path:line: text" lines when the compiler refuses.
 Program makeProgram(const ProgramRecipe& recipe);
-/// Compiles and links what is composed already.
+/// Compiles and links composed shaders.
 Program linkProgram(const ProgramText& text);
 
 } // namespace tessera::vis

@@ -10,14 +10,14 @@
 
 namespace tessera::vis {
 
-/// The programs made so far, by recipe. New ones are made on a thread with a context of its own where there is one, so
-/// that nobody waits for a compiler:
+/// A cache of programs by recipe. New ones are compiled on a thread with its own context, if there is one, so that
+/// nobody waits for the compiler:
 ///
 ///     const ProgramAnswer answer = cache.request(recipe, 10);
 ///     if (answer.stage == ProgramStage::Linked) { set its uniforms, bind its textures; cache.warmUp(recipe, ...); }
 ///     if (answer.stage != ProgramStage::Ready) show the former picture;
 ///
-/// One that does not compile is tried once; the reason becomes a message.
+/// A program that does not compile is tried once; the reason becomes a message.
 enum class ProgramStage {
     Linking, ///< on the way
     Linked,  ///< wants warmUp() once its uniforms and textures are set
@@ -35,11 +35,11 @@ public:
     ProgramCache();
     ~ProgramCache(); ///< waits for a compilation that has begun
 
-    /// The program of a recipe, made now if need be; null when it does not compile.
+    /// The program of a recipe, compiled now if necessary; null if it does not compile.
     const Program* find(const ProgramRecipe& recipe);
-    /// The same in the background; waits at most so long for it. Ready at once where there is no second context.
+    /// The same in the background; waits at most this long. Ready at once if there is no second context.
     ProgramAnswer request(const ProgramRecipe& recipe, double milliseconds);
-    /// Lets the other context draw with a linked program, in the state that will draw it here.
+    /// Makes the other context draw with a linked program in the current state, so that its machine code is ready here.
     void warmUp(const ProgramRecipe& recipe, const Framebuffer& framebuffer);
     /// True once per program: its first draw may take long, so nobody should time it.
     bool firstUse(const Program& program) { return drawn_.insert(program.name()).second; }

@@ -5,7 +5,7 @@
 
 namespace tessera::vis {
 
-/// A file of vis/shaders as it was when the program was built; `path` is relative to that folder.
+/// A file of vis/shaders, embedded at build time; `path` is relative to that folder.
 struct ShaderFile {
     std::string_view path, text;
 };

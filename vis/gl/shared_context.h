@@ -8,7 +8,7 @@ namespace tessera::vis {
 /// worker thread: shaders compile there while the first one draws.
 class SharedContext {
 public:
-    /// Null where the current context is not EGL's or the driver refuses: then everything happens in one context.
+    /// Null if the current context is not an EGL context or the driver refuses: then everything runs in one context.
     static std::unique_ptr<SharedContext> make();
     ~SharedContext();
     SharedContext(const SharedContext&) = delete;

@@ -11,7 +11,7 @@
 
 namespace tessera::vis {
 
-/// What the rasteriser found at each pixel: surfaces by distance along the ray, nearest in layer 0 of both arrays.
+/// Rasterised geometry at each pixel: surfaces by distance along the ray, nearest in layer 0 of both arrays.
 struct GeometryBuffer {
     Texture color;    ///< linear light, premultiplied
     Texture distance; ///< world units from the ray's origin, kNoGeometry: nothing; BrushEffect of the layer

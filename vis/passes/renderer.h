@@ -14,7 +14,7 @@
 /// The shared renderer: one per GL context. Needs a current GL 4.5 core context in every call, its destructor too.
 namespace tessera::vis {
 
-/// How a picture is wanted now.
+/// Parameters of one call to render.
 struct FrameRequest {
     glm::ivec2 size{512, 512};
     bool moving = false; ///< something is being dragged: reduced size and step within the budget
@@ -23,7 +23,7 @@ struct FrameRequest {
     bool wait = false; ///< headless: decode and refine until complete before returning
 };
 
-/// What came of it. The texture stays the property of the target and is valid until its next frame.
+/// Result of render. The texture belongs to the target and is valid until its next frame.
 struct FrameStatus {
     std::uint32_t texture = 0; ///< GL name, RGBA8, `request.size` large (upscaled while reduced), sRGB encoded, opaque
     bool current = false;      ///< the texture shows this scene, however coarse
@@ -35,12 +35,12 @@ struct FrameStatus {
     std::size_t samples = 0, bytes = 0;
 };
 
-/// What lies under a pixel: the first sample along the ray with noticeable opacity.
+/// Result of picking: the first sample along the ray with noticeable opacity.
 struct Pick {
     glm::dvec3 position; ///< physical
 };
 
-/// The picture of one view: framebuffers and how far refinement has come. One per view; may be dropped at any time.
+/// The picture of one view: framebuffers and the state of refinement. One per view; may be destroyed at any time.
 class ViewTarget;
 struct ViewTargetDeleter {
     void operator()(ViewTarget* target) const;
@@ -61,9 +61,9 @@ public:
 
     /// A new, empty target for a view.
     ViewTargetPtr makeTarget();
-    /// Draws, or refines, the scene into the target. Repeated calls with an equal scene and request go on refining.
-    /// Where the driver has no memory for a picture so large the former one stays, and a message says so; a request
-    /// that waits throws MachineError.
+    /// Draws or refines the scene into the target. Repeated calls with an equal scene and request continue the
+    /// refinement. If the driver has no memory for a picture of this size, the former one is kept, with a message; a
+    /// request that waits throws MachineError.
     FrameStatus render(ViewTarget& target, const Scene& scene, const FrameRequest& request);
     /// What lies under a pixel (x right, y down, of the last request's size) of the target's last picture.
     std::optional<Pick> pick(ViewTarget& target, glm::ivec2 pixel);

@@ -3,8 +3,8 @@
 #include "vis/gl/handles.h"
 #include "vis/raycast/ray_plan.h"
 
-/// From the selection of a scene to what lib/doi.glsl reads: every brush becomes tests in a row, one per interval or
-/// one for another shape.
+/// The selection of a scene as input of lib/doi.glsl: every brush becomes a row of tests, one per interval, or one for
+/// another shape.
 namespace tessera::vis {
 
 inline constexpr int kMaxBrushTests = 128;
@@ -21,16 +21,16 @@ struct BrushTests {
 };
 BrushTests brushTests(const RayPlan& plan, const Scene& scene, const volume::DatasetInfo& info);
 
-/// Which kinds of tests the program needs, and how many it has room for.
+/// Kinds and number of tests that the program must support.
 std::vector<std::pair<std::string, std::string>> brushDefines(const BrushTests& tests, const Scene& scene);
 
 /// Whether what is not brushed is shown out of focus (vis/optics/context_blur.h); proxy geometry does not.
 bool blursContext(const Scene& scene);
 
-/// Sets the brushes and how what they leave out is drawn.
+/// Sets the uniforms of brushes and context.
 void setBrushUniforms(const Program& program, const BrushTests& tests, const Scene& scene);
 
-/// The tables of lassos, one below the other, made when they change; says when brushes had to be dropped.
+/// The tables of lassos, stacked vertically, rebuilt when they change; reports dropped brushes.
 class BrushTables {
 public:
     /// The texture of the tests' lassos; 0 when there are none.

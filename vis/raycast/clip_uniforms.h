@@ -3,7 +3,7 @@
 #include "vis/gl/program.h"
 #include "vis/scene/scene.h"
 
-/// What a program of the ray caster knows of the scene's clips (vis/shaders/lib/bindings.glsl).
+/// Uniforms of the scene's clips (vis/shaders/lib/bindings.glsl).
 namespace tessera::vis {
 
 void addClipping(ProgramRecipe& recipe, const Scene& scene);

@@ -15,32 +15,32 @@ namespace tessera::vis {
 
 inline constexpr GLenum kMatterFormat = GL_RGBA32F; ///< of the texture that the matter is drawn to
 
-/// Keeps the textures of a picture's light volume (vis/optics/light_volume.h) up to date without holding up the window:
-/// matter is drawn some rows a call, meshes are added and light is spread by a thread of its own; until then the former
-/// volume shows.
+/// Updates the textures of a picture's light volume (vis/optics/light_volume.h) without blocking the window: extinction
+/// is drawn a few rows per call; a separate thread adds meshes and propagates light. Until then the former volume is
+/// used.
 class LightBaker {
 public:
-    /// What the matter depends on besides the scene.
+    /// Inputs of the extinction besides the scene.
     struct Matter {
         std::uint64_t revision = 0; ///< of what is resident
         double time = 0;            ///< of the data
         bool operator==(const Matter&) const = default;
     };
 
-    /// Goes on with the work. `setUniforms` sets those of the bound picture on the program
-    /// of the matter. Changes the framebuffer, viewport and scissor. Works about `budgetMs`, or until ready if `wait`.
+    /// Continues the work. `setUniforms` sets the uniforms of the bound picture on the extinction program. Changes the
+    /// framebuffer, viewport and scissor. Works for about `budgetMs`, or until ready if `wait`.
     void update(const Scene& scene, const volume::DatasetInfo& info, const Matter& matter, const Program& program,
                 const std::function<void(const Program&)>& setUniforms, GLuint vertices, double budgetMs, bool wait);
-    /// The textures show what was last asked for.
+    /// Whether the textures are up to date.
     bool ready() const;
-    /// Counts the volumes finished; 0: there is none yet.
+    /// Number of finished volumes; 0: there is none yet.
     std::uint64_t version() const { return version_; }
     GLuint visible() const { return visible_.name(); }
     GLuint scattered() const { return scattered_.name(); }
     const LightGrid& grid() const { return shownGrid_; }
 
 private:
-    /// What one spreading was made for.
+    /// Inputs of one light propagation.
     struct Spread {
         std::uint64_t matter = 0;
         std::vector<PlacedLight> lights;

@@ -9,7 +9,7 @@
 #include <future>
 #include <optional>
 
-/// What a program of the ray caster knows of light: its variant and its uniforms (vis/shaders/lib/bindings.glsl).
+/// Variant and uniforms for light (vis/shaders/lib/bindings.glsl).
 namespace tessera::vis {
 
 void addLighting(ProgramRecipe& recipe, const Scene& scene);

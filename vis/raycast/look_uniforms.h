@@ -3,7 +3,7 @@
 #include "vis/gl/handles.h"
 #include "vis/raycast/ray_plan.h"
 
-/// From the looks of a plan's layers to what lib/draw_look.glsl reads.
+/// Looks of a plan's layers as input of lib/draw_look.glsl.
 namespace tessera::vis {
 
 /// The parts of a look that a program needs; numbers known to lib/draw_look.glsl.

@@ -2,11 +2,10 @@
 
 #include "vis/raycast/ray_plan.h"
 
-/// Physical values of a channel in the terms of its texture and of its transfer function.
+/// Conversion between physical values, texel values and transfer-function positions of a channel.
 namespace tessera::vis {
 
-/// The transfer function of a field: of its channel, whatever word a layer names it by, or its layer's own; and the
-/// range it runs over.
+/// The transfer function of a field (that of its channel, or its layer's own) and the range it covers.
 struct ChannelTransfer {
     const TransferFunction& function;
     Range range;
@@ -17,7 +16,7 @@ ChannelTransfer transferOf(const Scene& scene, const volume::DatasetInfo& info, 
 /// the range has no width.
 glm::dvec2 transferMap(const BoundField& field, const Scene& scene, const volume::DatasetInfo& info);
 
-/// The texel value that stands for a physical value.
+/// The texel value of a physical value.
 double toTexel(const BoundField& field, double value);
 
 /// The block grid that all ray layers' channels have in common; null where they have none.

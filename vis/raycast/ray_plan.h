@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-/// From a scene to one program of the ray caster: which channels it samples, which variant it needs.
+/// Plan of one ray-casting program for a scene: the channels it samples, and the variant it needs.
 namespace tessera::vis {
 
 /// A channel as the program sees it now.
@@ -37,8 +37,9 @@ struct BoundField {
 /// Numbers known to lib/bindings.glsl; those of volume layers are VolumeStyle's.
 enum class RayStyle { Composite, Maximum, Minimum, Average, XRay, LocalMaximum, Iso };
 
-/// How a composite layer comes to colour and opacity: by the curve at its value, by a table over value and gradient, by
-/// the curve at the samples around it, by the pre-integration table. Numbers known to lib/bindings.glsl.
+/// Classification of a composite layer: by the curve at its value (Curve), by a table over value and gradient (Plane),
+/// by the curve at the surrounding samples (Lattice), or by the pre-integration table (Slab). Numbers known to
+/// lib/bindings.glsl.
 enum class RayLookup { Curve, Plane, Lattice, Slab };
 
 struct RayLayer {
@@ -65,7 +66,7 @@ struct SliceUse {
     int row = 0; ///< of the transfer tables
 };
 
-/// What a scene needs, independent of what is resident.
+/// Requirements of a scene, independent of what is resident.
 struct RayPlan {
     std::vector<BoundField> fields;
     /// Fields from here on, of those of one time, are further parts of the ones before.

@@ -2,7 +2,7 @@
 
 #include "vis/raycast/ray_plan.h"
 
-/// What the ray caster looks up beside the data: transfer functions as tables, and where nothing can show.
+/// Lookup tables of the ray caster: transfer functions, and where nothing is visible.
 namespace tessera::vis {
 
 inline constexpr int kTableSize = 2048;

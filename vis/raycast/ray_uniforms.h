@@ -2,7 +2,7 @@
 
 #include "vis/raycast/ray_plan.h"
 
-/// Everything a program of the ray caster is told before it draws.
+/// All uniforms of a ray-casting program.
 namespace tessera::vis {
 
 /// Texture units: channels from 0, then page tables, atlases, the transfer tables, the block distances, the tables of

@@ -6,7 +6,7 @@
 #include <array>
 #include <vector>
 
-/// What is carried into and out of regions by a flow, counted sample by sample.
+/// Convective balances of regions: what a flow carries into and out of them, sample by sample.
 namespace tessera::volume {
 
 struct BalanceQuery {
@@ -17,7 +17,7 @@ struct BalanceQuery {
     int time = 0;
 };
 
-/// What crosses one surface of a region, as integrals of c U.n dA, n pointing out of the region.
+/// Flux through one surface of a region, as integrals of c U.n dA, with n pointing out of the region.
 struct Crossing {
     double area = 0;        ///< where c and U exist (on both sides of a border)
     double in = 0, out = 0; ///< parts that flow in and out, neither negative where c is not
@@ -38,16 +38,16 @@ struct RegionBalance {
     double amount = 0;                   ///< integral of c over them
 
     Crossing total() const;
-    /// Out less in: what comes into being inside (negative: what is used up) if nothing is stored and all is carried
-    /// by convection.
+    /// Outflow minus inflow: the amount produced inside (negative: consumed), if nothing is stored and all transport is
+    /// convection.
     double residual() const { return total().net(); }
 };
 
-/// Flux over each surface by the midpoint rule: through a face of the box the values of the first or last samples, each
-/// times the area of its cell; through the border between neighbouring samples of two regions the mean of c U.n of
-/// both. Where c or U is absent on either side of a border nothing crosses it. On BCC each sublattice is counted by
-/// itself and both averaged. Convection alone: what diffuses is in the residual, and so is what is stored between
-/// times. Throws Error, Cancelled.
+/// Flux through each surface by the midpoint rule: a face of the box uses the values of the first or last samples, each
+/// times the area of its cell; the border between neighbouring samples of two regions uses the mean of c U.n of both.
+/// If c or U is absent on either side of a border, its flux is 0. On BCC each sublattice is integrated by itself and
+/// both are averaged. Convection only: diffusion, and changes of what is stored over time, are in the residual. Throws
+/// Error, Cancelled.
 std::vector<RegionBalance> computeBalance(const BrickSource& source, const BalanceQuery& query,
                                           const Progress& progress = {});
 

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-/// Lines that follow a vector field.
+/// Streamlines and pathlines of a vector field.
 namespace tessera::volume {
 
 /// The interpolated value as in probe.h, using only the part of the nearest sample; empty where absent.
@@ -28,8 +28,8 @@ VectorGrid readVector(const BrickSource& source, int parameter, int time, int le
 
 using VectorField = std::function<std::optional<glm::dvec3>(glm::dvec3 position)>;
 
-/// A vector parameter at all its times, read when asked for; between two of them, linear. Refers to the source.
-/// May be used from several threads. Throws what readVector does.
+/// A vector parameter at all its times, read on demand and interpolated linearly in time. Keeps a reference to the
+/// source. Thread-safe. Throws what readVector does.
 class VectorSeries {
 public:
     VectorSeries(const BrickSource& source, int parameter, int level);
@@ -52,18 +52,19 @@ struct StreamlineSettings {
     int mostSteps = 5000;     ///< each way
 };
 
-/// The line through a point along the field, from its upstream to its downstream end; the point is one of its vertices.
-/// Ends where the field does, to 1/256 of a cell. Empty where the point has no vector, or a slow one.
+/// The streamline through a point, from its upstream to its downstream end; the point is one of its vertices. Ends
+/// where the field does, to 1/256 of a cell. Empty if the vector at the point is absent or too small.
 ///
 /// J. R. Dormand, P. J. Prince: A family of embedded Runge-Kutta formulae, J. Comp. Appl. Math. 6, 1980: fifth order,
 /// the step adapted to the difference from the fourth.
 std::vector<glm::dvec3> streamline(const VectorField& field, glm::dvec3 seed, const StreamlineSettings& settings);
 
-/// Of each seed, in order; the same lines on any number of threads. `field` is called from all of them. Cancelled.
+/// Streamlines of all seeds, in order; the result does not depend on the number of threads. `field` is called from
+/// several threads. Throws Cancelled.
 std::vector<std::vector<glm::dvec3>> streamlines(const VectorField& field, std::span<const glm::dvec3> seeds,
                                                  const StreamlineSettings& settings, const Progress& progress = {});
 
-/// Where a particle is: vertices in the order of time.
+/// The path of a particle: vertices in order of time.
 struct Pathline {
     std::vector<glm::dvec3> places;
     std::vector<double> times;
@@ -74,7 +75,7 @@ struct Pathline {
 Pathline pathline(const ChangingField& field, glm::dvec3 seed, double time, double begin, double end,
                   const StreamlineSettings& settings);
 
-/// Of each seed, as streamlines().
+/// Pathlines of all seeds, as streamlines().
 std::vector<Pathline> pathlines(const ChangingField& field, std::span<const glm::dvec3> seeds, double time,
                                 double begin, double end, const StreamlineSettings& settings,
                                 const Progress& progress = {});

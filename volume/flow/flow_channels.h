@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-/// Which parameters play a part that their names and units tell: velocity, density, the label of regions.
+/// Parameters recognised by name and unit: velocity, density, the label of regions.
 namespace tessera::volume {
 
 /// Channels of the components of a vector parameter by name; "" finds the velocity: the first vector in m/s (or of
@@ -26,7 +26,7 @@ const Parameter& parameterOf(const DatasetInfo& info, int channel);
 /// The name of a label value: what the data state, else the name of the label and the value, "region 3".
 std::string labelName(const Parameter& label, int value);
 
-/// A value by the name or number of a label. Nothing where the data have neither.
+/// A label value by its name or number. Empty if the data have neither.
 std::optional<int> labelValue(const Parameter& label, const std::string& nameOrNumber);
 
 } // namespace tessera::volume

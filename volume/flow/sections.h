@@ -21,7 +21,8 @@ struct SectionQuery {
     int density = -1;                        ///< channel; -1: mass flow is volume flow
     SectionWeight weight = SectionWeight::Area;
     SpaceAxis axis = SpaceAxis::Z; ///< the planes are those that samples lie in
-    /// Instead of an axis: from here to there, `planes` of them, each in the middle of a slab of equal thickness.
+    /// Instead of an axis: a line from the first to the second point, with `planes` planes across it, each in the
+    /// middle of a slab of equal thickness.
     std::optional<std::array<glm::dvec3, 2>> line;
     int planes = 100;
     int label = -1;           ///< channel of a label

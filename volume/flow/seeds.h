@@ -8,7 +8,7 @@
 
 namespace tessera::volume {
 
-/// How points are spread in a box from corner to corner.
+/// Arrangement of seed points between two corners of a box.
 enum class SeedShape {
     Line,   ///< even distances along its diagonal
     Plane,  ///< a grid on the middle plane across its thinnest direction
@@ -25,8 +25,8 @@ struct SeedSettings {
     std::uint32_t random = 1;  ///< the same points for the same number, on every machine
 };
 
-/// Points where lines or glyphs begin. `weight`, 0..1, decides how likely a random point is kept, and 0 drops a point
-/// of a line or plane. Fewer than wanted where the weight leaves no room.
+/// Seed points of lines or glyphs. `weight`, 0..1, is the probability that a random point is kept; 0 removes a point of
+/// a line or plane. Fewer points than requested if the weight leaves no room.
 std::vector<glm::dvec3> placeSeeds(const SeedSettings& settings, const std::function<double(glm::dvec3)>& weight);
 
 } // namespace tessera::volume

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-/// Which samples are absent: rules by label, value or NaN, and the masks that follow from them, shared where equal.
+/// Absent samples: rules by label, value or NaN, and the resulting masks, shared where equal.
 namespace tessera::volume {
 
 /// One rule of ImportOptions::absent, e.g. "O2=region:0,3", "O2=0", "*=nan", "O2=none".
@@ -19,23 +19,23 @@ struct AbsentRule {
     bool operator==(const AbsentRule&) const = default;
 };
 
-/// Throws Error when the text is no rule. NaN is always absent, so "=nan" gives a rule without values.
+/// Throws Error when the text is not a rule. NaN is always absent, so "=nan" gives a rule without values.
 AbsentRule parseAbsentRule(std::string_view text);
 std::string toText(const AbsentRule& rule);
 
-/// Rules that look right: a parameter that is exactly 0 on all samples of certain values of a label (at every probed
-/// time) but not on all samples. Reads up to three times of every parameter.
+/// Suggested rules: a parameter that is exactly 0 at all samples with certain values of a label (at every probed time),
+/// but not everywhere. Reads up to three times of every parameter.
 std::vector<AbsentRule> suggestAbsentRules(const Dataset& dataset, const Progress& progress = {});
 
-/// Values and names of labels that state none: the distinct values at the first time, at most 256.
+/// Fills in the values of labels that state none: the distinct values at the first time, at most 256.
 void findLabels(Dataset& dataset);
 
-/// The data set with NaN and the samples that rules name absent; equal masks are one. Throws Error for a parameter or
+/// The data set with NaN and the samples of the rules absent; equal masks are shared. Throws Error for a parameter or
 /// label that does not exist.
 Dataset withAbsent(Dataset dataset, const std::vector<AbsentRule>& rules);
 SlicedDataset withAbsent(SlicedDataset data, const std::vector<AbsentRule>& rules);
 
-/// True for names under which files keep labels: region, material, label, id, zone, ... (also "regionId", "mat_id").
+/// True for usual names of labels: region, material, label, id, zone, ... (also "regionId", "mat_id").
 bool isLabelName(std::string_view name);
 
 } // namespace tessera::volume

@@ -14,7 +14,7 @@ struct OpenedFile {
     std::vector<Piece> pieces;
 };
 
-/// Files put together.
+/// A data set assembled from files.
 struct Assembled {
     Dataset dataset;  ///< with the file's own array names
     SliceLoad slices; ///< of its frames; null where one of the files can only be read whole
@@ -26,12 +26,12 @@ struct Assembled {
     bool madeLabel = false; ///< the last parameter is a label made from blocks
 };
 
-/// Puts files together into one data set: files of a group follow each other in time, arrays of equal name from several
-/// meshes are merged onto one grid (the first that has a sample wins), several files on one grid add parameters. A
-/// `region` label is made from the names of mesh blocks where there is no label. Where files store an array in
-/// different types, all its frames get one that holds their numbers (commonType). `gridSize` (0 = chosen) is for
-/// meshes. Throws Error when things do not fit. Without `readSamples` no sample is read (the values of a made label are
-/// then not yet known).
+/// Assembles files into one data set: files of a group are consecutive times, arrays of equal name from several meshes
+/// are merged onto one grid (the first that has a sample is used), several files on one grid add parameters. If there
+/// is no label, `region` is created from the names of mesh blocks. If files store an array in different types, all its
+/// frames get one type that holds their numbers (commonType). `gridSize` (0 = automatic) is for meshes. Without
+/// `readSamples` no sample is read (the values of a created label are then not yet known). Throws Error when the files
+/// do not fit together.
 Assembled assemble(std::vector<OpenedFile> files, glm::ivec3 gridSize, bool readSamples, const Progress& progress);
 
 } // namespace tessera::volume

@@ -7,10 +7,10 @@
 
 namespace tessera::volume {
 
-/// The grid on which all samples of `files` lie: that of their grids where they are the same, to 1e-4 of their spacing,
-/// else a new one for meshes, of `gridSize` samples (0 = chosen). `notes` get what it does to the samples, or why
-/// `gridSize` does not count. `bounds` becomes the box of the data: of meshes their own, which reaches half a cell
-/// beyond samples in the middle of cells. Throws Error where a grid that differs cannot be sampled anew.
+/// The grid for all samples of `files`: their common grid if they agree to 1e-4 of its spacing, else a new one for
+/// meshes, of `gridSize` samples (0 = automatic). `notes` receives what this does to the samples, or why `gridSize` is
+/// ignored. `bounds` becomes the box of the data: for meshes their own, which extends half a cell beyond samples at
+/// cell centres. Throws Error where a different grid cannot be resampled.
 Lattice chooseLattice(const std::vector<OpenedFile>& files, glm::ivec3 gridSize, Box& bounds,
                       std::vector<std::string>& notes);
 

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-/// Which regions a parameter jumps between: stated by rules, or found from the samples on either side of their borders.
+/// Parts of parameters: stated by rules, or found from the samples on either side of region borders.
 namespace tessera::volume {
 
 /// One rule of ImportOptions::parts: "p=region:1|3", "T=region:0,1,3" (one part), "T=joined", "p=jumps".
@@ -19,30 +19,31 @@ struct PartsRule {
     bool operator==(const PartsRule&) const = default;
 };
 
-/// Throws Error when the text is no rule.
+/// Throws Error when the text is not a rule.
 PartsRule parsePartsRule(std::string_view text);
 
-/// "2 parts by region: 1 | 3", "2 parts by jumps of the data: ..." where the label was made from these, "" where all of
-/// a parameter is one part.
+/// Text such as "2 parts by region: 1 | 3", or "2 parts by jumps of the data: ..." for a label created from jumps; ""
+/// for a parameter with one part.
 std::string partsText(const Parameter& parameter);
 
-/// Sets the parts that rules state, but for those that say jumps. Throws Error for a parameter, label or value that
-/// does not exist, or a value in two parts. Of two rules for a parameter the last one counts.
+/// Sets the parts stated by rules, except "jumps" rules. Throws Error for a parameter, label or value that does not
+/// exist, or a value in two parts. The last of several rules for a parameter is used.
 void setParts(DatasetInfo& info, const std::vector<PartsRule>& rules);
 
-/// Samples of two regions this far apart along an axis, with only absent ones between, meet in no filter.
+/// Samples of two regions at this distance along an axis, with only absent ones between, are never used together by a
+/// filter.
 inline constexpr int kPartsApart = 5;
 
-/// The parts of a parameter by a label, from up to three times (the first, the middle and the last). Between two
-/// regions whose samples lie closer than kPartsApart along an axis the parameter jumps where, on a quarter of the
-/// border or more, the values continued from both sides to the middle differ by more than three times what neighbours
-/// inside do, and by more than a five-hundredth of the range (a tenth, where one side is a layer of one sample
-/// everywhere and a bend cannot be told from a jump). What jumps are different parts; regions joined by no jump share
-/// one, as do those too far apart to meet.
+/// The parts of a parameter by a label, from up to three times (first, middle and last). Between two regions whose
+/// samples are closer than kPartsApart along an axis the parameter jumps if, on a quarter of the border or more, the
+/// values extrapolated from both sides to the middle differ by more than three times the usual difference inside, and
+/// by more than a five-hundredth of the range (a tenth if one side is a layer of one sample everywhere, where curvature
+/// and jump cannot be distinguished). Regions separated by a jump are in different parts; all others share one,
+/// including those too far apart to meet.
 Parts foundParts(const Dataset& dataset, int parameter, int label, const Progress& progress = {});
 
-/// foundParts of every parameter (of those in `only`, where that is not empty), by the first label, but for those that
-/// `stated` names. Returns what was found in words, a line each.
+/// Applies foundParts to every parameter (or those in `only`, if not empty) with the first label, except those named in
+/// `stated`. Returns a description, one line each.
 std::vector<std::string> findParts(Dataset& dataset, const std::vector<PartsRule>& stated,
                                    const std::vector<std::string>& only = {}, const Progress& progress = {});
 

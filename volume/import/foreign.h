@@ -9,9 +9,9 @@
 
 namespace tessera::volume {
 
-/// Opens files of other programs through `tessera-import`, one process for all of them; gives the pieces of each file.
-/// The process lives as long as a piece does, and answers one request at a time. A process that crashes, ends or talks
-/// nonsense is an Error with the file and its last line of stderr; a requested stop ends it and throws Cancelled.
+/// Opens files of other programs through one `tessera-import` process for all of them; returns the pieces of each file.
+/// The process lives as long as a piece does, and answers one request at a time. If it crashes, ends or sends invalid
+/// answers, Error is thrown with the file and the last line of stderr; a stop request ends it and throws Cancelled.
 std::vector<std::vector<Piece>> openForeign(const std::vector<SeriesFile>& entries, const Progress& progress);
 
 /// The program: $TESSERA_IMPORT, else "tessera-import" beside the running executable; "" when there is none.

@@ -8,11 +8,11 @@
 #include <string>
 #include <vector>
 
-/// Opening foreign files as a Dataset on a CC grid: raw with a JSON sidecar here, everything else through the second
-/// program `tessera-import` (VTK's readers), which streams frames over a pipe.
+/// Import of foreign files as a Dataset on a CC grid: raw files with a JSON sidecar here, everything else through the
+/// second program `tessera-import` (VTK's readers), which streams frames over a pipe.
 namespace tessera::volume {
 
-/// What the user states about files that do not say it themselves. Remembered per parameter name by the caller.
+/// What the user states about files that lack this information. Remembered per parameter name by the caller.
 struct ImportOptions {
     glm::ivec3 gridSize{0}; ///< meshes are resampled to this grid; 0 = chosen from the number of cells
     std::string
@@ -24,14 +24,14 @@ struct ImportOptions {
     std::string lengthUnit;                    ///< "" = what the file says, else m for simulations, none for voxels
     std::vector<double> times;                 ///< overrides the times of a series
     std::vector<std::string> parameters;       ///< only these (by final name); empty = all
-    /// Finds a label such as `region` and fields that are exactly 0 wherever the label has certain values, and takes
-    /// them as absent there. Rules of `absent` for the same parameter take its place ("O2=none": nothing is absent).
+    /// Find a label such as `region` and parameters that are exactly 0 wherever the label has certain values, and treat
+    /// them as absent there. Rules of `absent` for the same parameter take precedence ("O2=none": nothing is absent).
     bool autoAbsent = true;
     /// Names, and after a '#' colours, of label values: "region:0=cathode,1=anode#e07b39".
     std::vector<std::string> labels;
-    /// Regions whose samples are never mixed, by parameter: "p=region:1|3" (1 and 3 are two parts), "T=region:0,1,3"
-    /// (one part), "T=joined" (one part, whatever the data show), "p=jumps" (what the jumps of its own samples enclose,
-    /// without a label; volume/import/data_jumps.h). Parameters not named: found from the data.
+    /// Parts by parameter: "p=region:1|3" (1 and 3 are two parts), "T=region:0,1,3" (one part), "T=joined" (one part,
+    /// whatever the data show), "p=jumps" (regions enclosed by jumps of its own samples, without a label;
+    /// volume/import/data_jumps.h). For other parameters they are found from the data.
     std::vector<std::string> parts;
     std::string timeName, timeUnit; ///< of the axis of a series; "" = what the files say
     std::string overTime;           ///< CSV file with quantities over time, "" = none
@@ -63,7 +63,7 @@ struct ImportOptions {
     }
 };
 
-/// What a look at the headers tells, before any sample is read.
+/// Contents of files as far as their headers tell, without reading samples.
 struct ImportPreview {
     std::string format;             ///< "raw", "vti", "OpenFOAM", ...
     DatasetInfo info;               ///< ranges empty; for a mesh the grid it would be resampled to
@@ -71,11 +71,11 @@ struct ImportPreview {
     std::vector<std::string> notes; ///< e.g. "unstructured mesh of 41 000 cells, resampled to 24 x 32 x 88"
 };
 
-/// Looks at files that belong together (several parameters, a series: see volume/import/files/series.h). Throws Error.
+/// Previews files that belong together (several parameters, a series: see volume/import/files/series.h). Throws Error.
 ImportPreview previewFiles(const std::vector<std::string>& paths, const ImportOptions& options,
                            const Progress& progress = {});
 
-/// Opens them; frames are read when asked for. Throws Error.
+/// Opens the files; frames are read on demand. Throws Error.
 Dataset openFiles(const std::vector<std::string>& paths, const ImportOptions& options, const Progress& progress = {});
 
 /// Fills in Parameter::ranges (present samples, all times) by reading every frame once. Throws Error, Cancelled.

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-/// A table of quantities over time beside the data: what a solver or a test bench writes as history.csv.
+/// A table of quantities over time in a file beside the data, such as the history.csv of a solver or test bench.
 namespace tessera::volume {
 
 struct TimeTable {
@@ -29,10 +29,10 @@ TimeTable readTimeTable(const std::string& path);
 /// Error where the units do not fit or the table has none of the data's times.
 void addTable(DatasetInfo& info, const TimeTable& table);
 
-/// What the user states of the axis and of quantities: names, units, a table. Throws Error.
+/// Applies what the user states about the time axis and quantities: names, units, a table. Throws Error.
 void stateQuantities(DatasetInfo& info, const ImportOptions& options);
 
-/// True for a .csv or .tsv file whose first line does not name places in space (x, y, z), as tables of samples do.
+/// True for a .csv or .tsv file whose first line has no columns x, y, z, which tables of samples have.
 bool isTimeTable(const std::string& path);
 
 } // namespace tessera::volume

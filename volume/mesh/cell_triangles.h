@@ -4,7 +4,7 @@
 
 #include <memory>
 
-/// The two ways from crossed edges to triangles; see isosurface.h.
+/// Marching cubes and marching tetrahedra: from crossed edges to triangles; see isosurface.h.
 namespace tessera::volume {
 
 /// Triangles of one slab of cells. Vertices of their own (centres) are numbered from 0 with kOwnVertex set.
@@ -15,7 +15,7 @@ struct CellTriangles {
     std::vector<std::vector<std::uint32_t>> own;
 };
 
-/// Slabs of the grid that can be done one by one.
+/// Number of slabs of the grid that can be processed independently.
 int slabCount(const SampleGrid& grid);
 CellTriangles cubeTriangles(const SampleGrid& grid, const CrossedEdges& edges, float value, int slab);
 CellTriangles tetrahedronTriangles(const CrossedEdges& edges, int slab);

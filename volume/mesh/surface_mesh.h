@@ -18,7 +18,7 @@ struct SurfaceMesh {
     bool operator==(const SurfaceMesh&) const = default;
 };
 
-/// Leaves out vertices that no triangle uses; the others keep their order.
+/// Removes vertices that no triangle uses; the others keep their order.
 void removeUnused(SurfaceMesh& mesh);
 
 /// Cuts away what lies outside of a box. New vertices lie on its faces, with attributes interpolated; they are shared

@@ -6,9 +6,9 @@
 #include <map>
 #include <string>
 
-/// A computed tomogram of a part that was never cast: an engine block of light metal (two bores in a water jacket, a
-/// pipe, a flange) with liners and bolts of steel. Three materials with sharp borders, and noise: what classification,
-/// shading and edges are judged by.
+/// A computed CT scan of an imaginary cast part: an engine block of light metal (two bores in a water jacket, a pipe, a
+/// flange) with liners and bolts of steel. Three materials with sharp borders, and noise: test data for classification,
+/// shading and edges.
 namespace tessera::volume {
 
 struct Casting {

@@ -9,9 +9,9 @@
 
 namespace tessera::volume {
 
-/// What may be set of the built-in fuel cell: a straight channel of a low-temperature PEM cell (353 K, one gas phase),
+/// Settings of the built-in fuel cell: a straight channel of a low-temperature PEM cell (353 K, one gas phase),
 /// hydrogen and air in counter-flow. x lateral, y through-plane (anode below, cathode above), z along the air flow.
-/// docs/fuel-cell-model.md says which equations are solved and where every number comes from.
+/// docs/fuel-cell-model.md has the equations and the source of every number.
 struct FuelCellSettings {
     int nx = 11, ny = 13, nz = 101;
     int times = 24;

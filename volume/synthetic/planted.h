@@ -6,15 +6,16 @@
 #include <map>
 #include <string>
 
-/// The built-in fuel cell with events planted in it whose place, time and size are known, so that looking for them has
-/// a right answer. docs/fuel-cell-model.md lists them.
+/// The built-in fuel cell with added events of known place, time and size, so that searches for them have a right
+/// answer. docs/fuel-cell-model.md lists them.
 namespace tessera::volume {
 
 /// Lower and upper corners in m, times in s. Every sample whose position lies in a box (corners included) belongs to
 /// it.
 namespace planted {
 
-/// Flooded: water far above saturation (16.2 mol/m3 at 353 K), and little oxygen, in the air's layer and channel.
+/// Flooded: water far above saturation (16.2 mol/m3 at 353 K) and little oxygen, in the gas-diffusion layer and channel
+/// of the air.
 inline constexpr Box kFlooded{{0.7e-3, 0.7e-3, 24e-3}, {1.5e-3, 1.3e-3, 28e-3}};
 inline constexpr double kFloodedWater = 22;    ///< mol/m3, set
 inline constexpr double kFloodedOxygen = 0.25; ///< factor

@@ -17,16 +17,16 @@ struct FileFormat {
 
 std::span<const FileFormat> fileFormats();
 
-/// The format that a file's name tells; null where its suffix is in no row.
+/// The format by the suffix of a file name; null if no row has it.
 const FileFormat* formatOf(std::string_view path);
 
-/// That of a name, as a Piece has it.
+/// The format by its name, as stored in Piece.
 const FileFormat* formatNamed(std::string_view name);
 
 /// The format of a file by its name, else by its first bytes (DICOM files need no suffix).
 const FileFormat* formatOfFile(const std::string& path);
 
-/// A page of a TIFF file is a slice if it is the only one there.
+/// Whether a file is a single slice of a volume: a TIFF file only if it has one page.
 bool isSlice(const FileFormat& format, const std::string& path);
 
 /// All suffixes with a reader, separated by blanks.

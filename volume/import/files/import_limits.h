@@ -2,7 +2,7 @@
 
 #include <cstddef>
 
-/// What a header may claim at most, whatever the format: more is a damaged file.
+/// Limits on what headers may announce, for any format: more means a damaged file.
 namespace tessera::volume {
 
 inline constexpr int kMostSamplesPerAxis = 1 << 20;

@@ -10,9 +10,9 @@ namespace tessera::volume {
 
 enum class NrrdEncoding { Raw, Text };
 
-/// Form of a scalar .nrrd or .nhdr file of up to three axes with this encoding, from the beginning of the file (`head`,
-/// up to 1 MiB); nothing for other encodings and vectors, which VTK reads. The keys "unit" and "time" that
-/// exportDataset writes are understood. Throws Error for a broken header.
+/// Layout of a scalar .nrrd or .nhdr file of up to three axes with this encoding, from the beginning of the file
+/// (`head`, up to 1 MiB); empty for other encodings and vectors, which VTK reads. The keys "unit" and "time" that
+/// exportDataset writes are supported. Throws Error for a broken header.
 std::optional<RawForm> parseNrrd(std::string_view head, const std::string& file,
                                  NrrdEncoding wanted = NrrdEncoding::Raw);
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-/// What every reader gives: arrays on one grid or mesh, as the file names them. `assemble` makes a data set of them.
+/// The result of every reader: arrays on one grid or mesh, as named in the file. `assemble` turns them into a data set.
 namespace tessera::volume {
 
 /// One named array of a file, before renaming.

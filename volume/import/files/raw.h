@@ -9,10 +9,10 @@
 
 namespace tessera::volume {
 
-/// The number types a raw file may hold; those that are no ScalarType are converted when read.
+/// Number types of raw files; those that are not ScalarTypes are converted when read.
 enum class RawType : std::uint8_t { U8, I8, U16, I16, I32, F32, F64 };
 
-/// Form of a headless file `[time][component][z][y][x]`, x fastest; a component may have its own type.
+/// Layout of a file without header `[time][component][z][y][x]`, x fastest; components can have different types.
 struct RawForm {
     struct Component {
         std::string name, unit;
@@ -33,7 +33,7 @@ struct RawForm {
     std::vector<Quantity> quantities; ///< one value for each frame
 
     std::size_t frames() const { return times.empty() ? 1 : times.size(); }
-    /// Bytes a file of this form has; no overflow for forms the parsers let through.
+    /// Size in bytes of a file with this layout; does not overflow for layouts that the parsers accept.
     std::size_t bytes() const;
 };
 
@@ -44,9 +44,9 @@ RawForm parseSidecar(std::string_view json, const std::string& file);
 /// Reads the text of `--raw`: "dims=XxYxZ,type=u8,spacing=AxBxC,origin=AxBxC,components=N,times=N,big-endian,skip=N".
 RawForm parseRawOption(std::string_view text);
 
-/// The text of `--raw` that a file's name tells: "engine_149x208x110_uint8.raw" gives "dims=149x208x110,type=u8". ""
-/// where the name has no dims or no type, or where the file has other bytes than they ask for. Words c5 and t12 of the
-/// name are 5 components and 12 times.
+/// The text of `--raw` derived from a file name: "engine_149x208x110_uint8.raw" gives "dims=149x208x110,type=u8". "" if
+/// the name has no dims or no type, or the file has another size. The words c5 and t12 in a name mean 5 components and
+/// 12 times.
 std::string rawOptionOfName(const std::string& path);
 
 /// True for a *.raw file beside which lies a sidecar of its name.
@@ -56,7 +56,7 @@ bool hasSidecar(const std::string& path);
 /// Checks the size of the file against the form; samples are read on demand.
 Piece openRaw(const std::string& path, const std::string& rawOption);
 
-/// Opens the file of a form found elsewhere; `named` is what the user calls it, `data` holds the samples. Checks the
+/// Opens a file with a known layout; `named` is the name the user gave, `data` the file with the samples. Checks its
 /// size.
 Piece openForm(const RawForm& form, const std::string& named, const std::string& data, const std::string& format);
 

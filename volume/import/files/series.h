@@ -8,26 +8,26 @@
 /// Which files belong together: directories, patterns, .pvd, .series and numbered files become a flat list.
 namespace tessera::volume {
 
-/// One file to open and what its surroundings say of it.
+/// One file to open, with information from its directory or list file.
 struct SeriesFile {
     std::string path;
     std::optional<double> time;   ///< stated by a .pvd or .series
     std::optional<double> number; ///< last run of digits in the name
-    /// Files of equal group follow each other in time; different groups hold different parts or parameters of the same
-    /// thing. The name with its last number replaced by '#', or the .pvd's part.
+    /// Files of the same group are consecutive times; different groups are different parts or parameters of the same
+    /// data. The name with its last number replaced by '#', or the part of the .pvd.
     std::string group;
     std::string part; ///< name of the part in a .pvd, "" = none
-    /// Further numbers that a .pvd or .series states of the file, by name: voltage="0.7".
+    /// Additional numbers that a .pvd or .series states for the file, by name: voltage="0.7".
     std::vector<std::pair<std::string, double>> numbers = {};
     /// All files of a volume whose slices are files, `path` first; else empty.
     std::vector<std::string> slices = {};
     bool operator==(const SeriesFile&) const = default;
 };
 
-/// Expands what the user named: a directory (an OpenFOAM case, its one .pvd or .series, or its files of the commonest
-/// known ending), a pattern with * or ?, a ParaView .pvd or .series file, or files. Groups keep the order of their
-/// first file; files of a group are sorted by time, then number. What is named twice counts once. Throws Error for what
-/// does not exist or cannot be read.
+/// Expands the paths given by the user: a directory (an OpenFOAM case, its single .pvd or .series, or its files of the
+/// most frequent known suffix), a pattern with * or ?, a ParaView .pvd or .series file, or files. Groups keep the order
+/// of their first file; files of a group are sorted by time, then number. Duplicate paths are ignored. Throws Error for
+/// paths that do not exist or cannot be read.
 std::vector<SeriesFile> expandPaths(const std::vector<std::string>& paths);
 
 /// Contents of a .pvd (XML Collection). `file` names it in errors; paths are relative to its folder.

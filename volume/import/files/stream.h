@@ -9,34 +9,34 @@
 #include <string_view>
 #include <vector>
 
-/// What tessera-import and the main program say to each other.
+/// The protocol between tessera-import and the main program.
 ///
 /// `tessera-import [--like | --slices N] FILE ...` reads request lines from stdin and writes messages to stdout;
-/// everything for people goes to stderr. All numbers are little-endian. A message is
+/// messages for people go to stderr. All numbers are little-endian. A message is
 ///
 ///     u32 magic "TSI1"   u32 kind   u64 length   length bytes
 ///
 /// kind 1, header: JSON text; one for each FILE, in order, before any request. A FILE after `--like` is expected to
-/// have the form of the one before it; N files after `--slices` are slices of one volume and count as one. Keys:
+/// have the layout of the one before it; N files after `--slices` are slices of one volume and count as one. Keys:
 /// "format", "pieces": [{"name", "mesh", "cellData", "dims", "spacing", "origin", "box" (6 numbers, x first), "cells",
 /// "cellSize", "lengthUnit", "timeName", "timeUnit", "note", "times", "quantities": [{"name", "unit", "values": [a
 /// number or null for each time]}], "arrays": [{"name", "unit", "components", "type", "labels": {"1": "air"}}]}].
-/// "timeName", "note" and "quantities" may be missing.
+/// "timeName", "note" and "quantities" are optional.
 ///
 /// kind 2, frame: u32 type (ScalarType), u32 mask (0 or 1), i32 nx, ny, nz, then nx*ny*nz samples, x fastest, then, if
-/// mask is 1, as many bytes (1 present, 0 absent). The answer to the line
+/// mask is 1, as many bytes (1 present, 0 absent). It answers the line
 ///
 ///     frame FILE PIECE ARRAY COMPONENT TIME NX NY NZ OX OY OZ SX SY SZ
 ///
-/// with the indices of the headers, the size, origin and spacing of the grid to sample on. ARRAY -1 asks for the cover
-/// of the piece: ones of uint8, absent outside.
+/// with the indices of the headers, and the size, origin and spacing of the grid to sample on. ARRAY -1 requests the
+/// cover of the piece: ones of uint8, absent outside.
 ///
-/// To the line
+/// The line
 ///
 ///     ranges FILE PIECE ARRAY TIME
 ///
-/// the answer is of kind 1: {"ranges": [[lo, hi], ...]}, those of the array's own values at points or cells (not NaN),
-/// one per component, then for a vector that of its magnitude; null in place of a pair where there is no value.
+/// is answered with kind 1: {"ranges": [[lo, hi], ...]}, of the array's own values at points or cells (without NaN),
+/// one per component, then for a vector that of its magnitude; null instead of a pair if there is no value.
 ///
 /// kind 3, failure: one line of text instead of a header or frame. The program ends when stdin does.
 namespace tessera::volume {
@@ -59,10 +59,10 @@ std::uint64_t frameBytes(const Lattice& lattice, ScalarType type, bool mask);
 /// 64 MiB, or a frame of one of the two lengths that fit `lattice` and `type`.
 MessageHead parseMessageHead(std::span<const std::byte> bytes, const Lattice& lattice, ScalarType type);
 
-/// Pieces of a header message, without `load`. Throws Error for anything out of form.
+/// Pieces of a header message, without `load`. Throws Error for malformed messages.
 std::vector<Piece> parseStreamHeader(std::string_view json, const std::string& file);
 
-/// Ranges of an answer to "ranges". Throws Error for anything out of form.
+/// Ranges of an answer to "ranges". Throws Error for malformed messages.
 std::vector<Range> parseRanges(std::string_view json, const std::string& file);
 
 /// Samples of a frame message. Throws Error unless its size and type are those expected.
