@@ -11,12 +11,11 @@
 
 namespace tessera::app {
 
-/// Notices that an archive has been appended to or replaced. A thread of its own reads its header, which says up to
-/// where it is whole, as every reader does: it is cheap, and an archive that is being written is not told of before its
-/// next whole state.
+/// Watches whether an archive is appended to or replaced. A separate thread reads its header, as every reader does;
+/// this is cheap, and reports only complete commits.
 class GrowthWatch {
 public:
-    /// `wake` is called from the thread after each change. What happened before counts as one.
+    /// `wake` is called from the thread after each change; a change before construction counts.
     GrowthWatch(std::string path, std::function<void()> wake,
                 std::chrono::milliseconds interval = std::chrono::seconds(1));
 

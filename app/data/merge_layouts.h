@@ -5,7 +5,7 @@
 
 namespace tessera::app {
 
-/// Bricks of an archive merged in one way, and what each merged brick takes.
+/// One way of merging the bricks of an archive, with the bytes of each merged brick.
 struct MergeLayout {
     volume::MergeShape shape{};
     std::vector<volume::MergedBrick> boxes;

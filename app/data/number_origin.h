@@ -16,7 +16,7 @@ struct Metadata;
 
 namespace tessera::app {
 
-/// Where the samples that numbers are read from come from.
+/// Origin of the samples that numbers are read from.
 struct NumberOrigin {
     bool mesh = false;      ///< resampled from cells that are no regular grid
     bool stored = false;    ///< read from an archive, or from data packed as one

@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-/// Opening anything the program is given: sessions, pictures that carry one, layouts, archives, data files and built-in
-/// models. Plain functions that work off the GUI thread; the workbench only takes over what they return.
+/// Opens anything: sessions, pictures that contain one, layouts, archives, data files and built-in models. Plain
+/// functions that run off the GUI thread; the workbench only installs what they return.
 namespace tessera::app {
 
 struct OpenRequest {
@@ -42,17 +42,17 @@ Opened open(const OpenRequest& request, const Progress& progress = {});
 /// (`opened.source`) with or without time along an axis, time and cross-hair go over into the other way.
 Opened openWith(Opened opened, const DataRef& data, const Progress& progress = {});
 
-/// Puts a session with its history on other data, which `to` describes, or on the same ones made or cut otherwise;
-/// `from` describes what it was on, null if nothing. Where only one of the two has time along an axis, time and
-/// cross-hair go over into the other way; one message for each thing that does not fit.
+/// Moves a session with its history to other data, which `to` describes, or to the same data on another lattice or cut;
+/// `from` describes its previous data, null if none. If only one of the two has time along an axis, time and cross-hair
+/// are converted; one message for each thing that does not fit.
 void moveTo(Session& session, History& history, const volume::DatasetInfo* from, const volume::DatasetInfo& to,
             const DataRef& data, std::vector<std::string>& messages);
 
-/// The data set that files given together make.
+/// The data set of files that are opened together.
 DataRef dataOf(const std::vector<std::string>& paths, const volume::ImportOptions& options);
 
-/// What the words of a command name: a built-in model (where no file is called so), or files with what has been stated
-/// of them before. Throws Error.
+/// The data set named on a command line: a built-in model (if no file has that name), or files with what has been
+/// stated about them before. Throws Error.
 DataRef dataNamed(const std::vector<std::string>& inputs, const volume::ImportOptions& stated,
                   const Progress& progress = {});
 
@@ -63,15 +63,15 @@ std::string sessionTextOfPicture(const std::string& path);
 std::vector<std::string> layoutNames();
 std::string findLayout(const std::string& nameOrPath);
 
-/// A layout laid over a data set: what it leaves out or cannot mean for this data comes from the data's own defaults.
-/// Variants of a comparison that are other sizes of another model are left out.
+/// Applies a layout to a data set: what it omits, or what does not fit these data, comes from the defaults for the
+/// data. Variants of a comparison that are other sizes of another model are omitted.
 Session applyLayout(const SessionDocument& layout, const volume::DatasetInfo& info, const DataRef& data,
                     std::vector<std::string>& messages);
 
-/// Surfaces whose value does not exist at the session's time, or, with `own` false, lies near the ends of what does,
-/// get the middle of the range at that time: parameters may be far from their overall range then. One message for each
-/// parameter that has no surface at all. Reads statistics of the bricks of one time; with a damaged one the rest
-/// stays as it is.
+/// Moves surfaces whose value does not exist at the session's time (or, with `own` false, is near the ends of the
+/// existing range) to the middle of the range at that time: parameters can be far from their overall range then. One
+/// message for each parameter that has no surface at all. Reads statistics of the bricks of one time; if one is
+/// damaged, the rest is unchanged.
 void fitSurfaces(Session& session, const volume::BrickSource& source, bool own, std::vector<std::string>& messages);
 
 /// A layout chosen for data that are already shown: theme, time and cross-hair stay as in `shown`, and where the layout

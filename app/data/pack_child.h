@@ -8,7 +8,7 @@
 
 namespace tessera::app {
 
-/// What a finished `tessera pack` says of its archive.
+/// Summary of an archive made by `tessera pack`.
 struct PackedArchive {
     double sourceBytes = 0, archiveBytes = 0, seconds = 0;
 };

@@ -12,12 +12,12 @@
 
 namespace tessera::app {
 
-/// What a document is shown from. Both have the same parameters (derived ones too) and times.
+/// The sources of a document. Both have the same parameters (including derived ones) and times.
 struct Sources {
     std::shared_ptr<const volume::BrickSource>
         pictures; ///< on the lattice that pictures are drawn from, packed if asked
-    /// What statistics, plots, profiles, read-outs and exports read: the samples as computed where they are at hand
-    /// (data files on their own grid, built-in models), else those of the archive. May be `pictures`.
+    /// Read by statistics, plots, profiles, read-outs and exports: the samples as computed where available (data files
+    /// on their own grid, built-in models), else those of the archive. May be `pictures`.
     std::shared_ptr<const volume::BrickSource> numbers;
     NumberOrigin origin = {}; ///< of the numbers
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-/// Variants of a session side by side, apart from how they are drawn.
+/// Variants of a session for comparison, independent of drawing.
 namespace tessera::app {
 
 /// The session with a variant's changes. Throws Error naming the place where a change does not fit.

@@ -7,8 +7,8 @@
 #include <string>
 #include <string_view>
 
-/// Ways of drawing what is not brushed, each one click: the settings of the selection, and for some a layer with the
-/// hull of what is shown. All that a style sets can be changed afterwards like any other setting.
+/// Styles of drawing what is not brushed: settings of the selection, and for some a layer with the hull of what is
+/// shown. All of them can be changed afterwards like any other setting.
 namespace tessera::app {
 
 enum class ContextStyle { Faint, Grey, Blurred, Hidden, Silhouette, Hull, Wire, Drawn };
@@ -22,9 +22,9 @@ inline constexpr std::string_view kHullLayer = "context hull";
 /// The hull's place in the session's layers, nothing where there is none.
 std::optional<std::size_t> hullLayer(const Session& session);
 
-/// Draws the context so. Hulls are surfaces of the first visible volume's or surface's parameter, at the value where
-/// its opacity comes to a tenth of the greatest (of curves without one in the middle of the range); a hull that is
-/// there keeps its parameter and value.
+/// Applies a style. Hulls are surfaces of the first visible volume's or surface's parameter, at the value where its
+/// opacity reaches a tenth of its maximum (for curves without such a value, in the middle of the range); an existing
+/// hull keeps its parameter and value.
 void setContextStyle(Session& session, const volume::DatasetInfo& info, ContextStyle style);
 
 } // namespace tessera::app

@@ -8,16 +8,16 @@ namespace tessera::app {
 /// The labels of a parameter with what the session states about them, whether the data show it already or not.
 std::vector<volume::Label> statedLabels(const Session& session, const volume::Parameter& parameter);
 
-/// States name and colour of a value: as a rule of the session's import options, which the data are then opened with,
-/// and as the colours of the parameter's transfer function. A name that is empty, or that a rule cannot hold, stays
-/// as it was.
+/// Sets name and colour of a label value: as a rule of the session's import options, with which the data are then
+/// opened, and as colours of the parameter's transfer function. A name that is empty, or that a rule cannot contain, is
+/// not changed.
 void stateLabel(Session& session, const volume::Parameter& parameter, const volume::Label& label);
 
-/// Takes the stated name of a value back: the data then have the one of their own again. A stated colour stays.
+/// Removes the stated name of a value, so that the data's own name is used again. A stated colour stays.
 void unstateLabelName(Session& session, const volume::Parameter& parameter, int value);
 
-/// Adds a brush that holds a region, with its name and colour; with other regions of the label it makes a union. One
-/// that is there already goes instead.
+/// Adds a brush that selects a region, with its name and colour, combined with other regions of the label by "or";
+/// removes it if it exists already.
 void toggleRegionBrush(Session& session, const volume::Parameter& parameter, int value);
 /// True when there is an enabled brush of this region alone.
 bool regionBrushed(const Session& session, const volume::Parameter& parameter, int value);

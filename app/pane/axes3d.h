@@ -8,7 +8,7 @@
 #include <optional>
 #include <vector>
 
-/// Axes of a picture in space: which edges of the box carry ticks, and the triad that shows and sets the direction.
+/// Axes of a 3D picture: which edges of the box have ticks, and the triad that shows and sets the direction.
 namespace tessera::app {
 
 /// Where a picture of the data lies on screen and how it is seen.

@@ -8,14 +8,14 @@
 
 namespace tessera::app {
 
-/// How places along an axis are written: its letter, and the unit that suits its extent.
+/// Label of positions along an axis: its letter, and a suitable unit for its extent.
 struct AxisLabel {
     std::string name = "x";
     LengthUnit unit;
 };
 using AxisLabels = std::array<AxisLabel, 3>;
 
-/// The axis that time takes the place of in data which `info` describes; null where they are data in space, which have
+/// The time axis of data with time along an axis of space, which `info` describes; null for data in space, which have
 /// several times.
 const volume::TimeAxis* timeAxisOf(const Session& session, const volume::DatasetInfo& info);
 

@@ -6,7 +6,7 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
-/// Plots as vector graphics and tables, for papers and other programs.
+/// Plots as vector graphics and tables, for export.
 namespace tessera::app {
 
 struct FigureAxis {
@@ -49,7 +49,7 @@ struct FigurePanel {
 /// What is between the axes of a panel, and the height of texts, in points.
 inline constexpr glm::dvec2 kFigurePlot{226, 176};
 inline constexpr double kFigureText = 9;
-/// About the width of a number's text in points, in the letters of a figure.
+/// Approximate width of a text in points, in the font of figures.
 double figureTextWidth(const std::string& text);
 
 /// Panels in rows of `columns`, black on white.

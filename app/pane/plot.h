@@ -12,8 +12,8 @@
 #include <string_view>
 #include <vector>
 
-/// 2D plots of our own on an ImDrawList: axes, density images, bars, cross-hairs. Sizes follow the font, colours the
-/// style, so that themes and dense displays need nothing here.
+/// 2D plots on an ImDrawList: axes, density images, bars, cross-hairs. Sizes follow the font and colours the style, so
+/// themes and high-resolution displays need nothing here.
 namespace tessera::app {
 
 /// A plot's data area on screen and the values at its edges. Pixels run down, values up.

@@ -5,7 +5,7 @@
 
 #include <string>
 
-/// The bar that says how long something on screen is.
+/// Scale bar.
 namespace tessera::app {
 
 /// A length that is a round number, and how long it is on screen.

@@ -16,8 +16,8 @@ struct ImFont;
 
 namespace tessera::app {
 
-/// What a view keeps between frames besides its saved state: render targets, plot textures, running jobs. Losing it
-/// never changes what is drawn, only how long it takes. Each view derives its own.
+/// Cached state of a view between frames: render targets, plot textures, running jobs. Losing it changes only how long
+/// drawing takes, never the result. Each view derives its own.
 struct ViewCache {
     virtual ~ViewCache() = default;
     /// Renderers of its own beside the window's.
@@ -30,16 +30,16 @@ struct ViewExport {
     std::function<std::string(const Progress&)> svg, csv;
 };
 
-/// What one frame of the window gives to each view. Views read and edit `session`, nothing else; the workbench compares
-/// it with the former frame's and keeps the history.
+/// Input of a view in one frame of the window. Views read and edit `session`, nothing else; the workbench compares it
+/// with that of the previous frame and records the history.
 struct ViewContext {
     Session& session;
     std::shared_ptr<const volume::BrickSource> source; ///< what pictures are drawn from; null while nothing is loaded
     vis::Renderer& renderer;
     Jobs& jobs;                                                ///< background work
     std::map<std::string, std::unique_ptr<ViewCache>>& caches; ///< by pane key; kept while data only grow
-    /// What numbers are read from: the samples as computed where they are at hand, whatever lattice pictures are on.
-    /// The channels and times of `source`; null when that is.
+    /// Source of numbers: the samples as computed where available, whatever lattice pictures use. It has the channels
+    /// and times of `source`; null when that is.
     std::shared_ptr<const volume::BrickSource> numbers = source;
     NumberOrigin origin = {};   ///< of `numbers`, for words beside them (originText)
     ImFont* iconFont = nullptr; ///< Font Awesome glyphs; null where the package is missing
@@ -51,7 +51,7 @@ struct ViewContext {
     std::function<void(const std::string& command)> runCommand = {};
     /// Asks where to save, then writes what `make` returns, in the background; null in tests.
     std::function<void(const std::string& fileName, std::function<std::string(const Progress&)> make)> exportText = {};
-    /// Takes what a view can be exported as, once its numbers are there; null where nobody asks.
+    /// Receives the exports of a view, once its numbers are available; null if not requested.
     std::function<void(ViewExport)> offerExport = {};
     /// Asks for a file to open, then changes the session by it as an edit; an Error goes to the log. Null in tests.
     std::function<void(const std::string& title, std::function<void(Session&, const std::string& path)> take)> askFile =

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-/// Small pieces that several views use.
+/// Helpers that several views use.
 namespace tessera::app {
 
 /// Glyphs of Font Awesome 4 and the words that stand for them where the font is missing.
@@ -36,14 +36,15 @@ ImVec2 iconSize(const ViewContext& context, Icon icon);
 /// Two or three lines in the middle of the pane where there is nothing to draw.
 void drawHint(const char* title, const char* hint = "");
 
-/// Goes on in the line where an item of this width fits, else in the next: tool bars of narrow panes stay whole.
+/// Continues the line if an item of this width fits, else starts the next one, so that toolbars of narrow panes stay
+/// complete.
 void continueLine(float width);
 float buttonWidth(const char* text);
 
 /// Wrapped help on hover of the last item.
 void tooltip(const char* text);
 
-/// Where the numbers of these channels (none: all) come from, in words: originText of the view's numbers.
+/// Text on the origin of the numbers of these channels (none: all): originText of the view's numbers.
 std::string originText(const ViewContext& context, const std::vector<int>& channels = {});
 /// The same as faint text: on in the line where it fits, cut where it does not; whole on hover.
 void drawOrigin(const ViewContext& context, const std::vector<int>& channels = {});

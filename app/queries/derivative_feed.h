@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-/// Values against gradients for the transfer function's views, counted in the background.
+/// Histograms of value and gradient for the transfer-function views, computed in the background.
 namespace tessera::app {
 
 /// What a channel's derivatives tell.

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-/// Flow layers for views, made in the background and kept for a while, so that going back in time costs nothing.
+/// Flow layers for views, computed in the background and cached, so that going back in time is immediate.
 namespace tessera::app {
 
 class FlowFeed {

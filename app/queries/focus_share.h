@@ -7,7 +7,7 @@
 
 namespace tessera::app {
 
-/// How many samples the brushes have in focus, and of how many: samples weighted by their degree of interest.
+/// Number of samples in focus, and of how many: samples weighted by their degree of interest.
 struct FocusShare {
     double focus = 0, all = 0; ///< in focus; of the whole grid, whatever exists there
     std::string channel;       ///< exists at a part of the grid only: what is brushed, else what exists at most points
@@ -22,7 +22,7 @@ FocusShare focusShare(const StatisticsResult& result, const volume::DatasetInfo&
 /// "4.7 % of all samples, 13.4 % of where O2 exists".
 std::string shareText(const FocusShare& share);
 
-/// The same ever shorter: the whole one, then "4.7 % of all samples", ... down to "4.7%".
+/// Shorter and shorter versions: the full text, then "4.7 % of all samples", ... down to "4.7%".
 std::vector<std::string> shareTexts(const FocusShare& share);
 
 } // namespace tessera::app

@@ -12,8 +12,8 @@
 
 namespace tessera::app {
 
-/// Every parameter at the linked cursor, read in the background when the cursor or the time moves; the former values
-/// stay until then.
+/// Values of every parameter at the linked cross-hair, read in the background when cross-hair or time change; until
+/// then the previous values are shown.
 struct Readout {
     struct State {
         std::vector<volume::ProbeValue> values; ///< by channel

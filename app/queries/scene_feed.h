@@ -3,7 +3,7 @@
 #include "app/queries/flow_feed.h"
 #include "app/queries/surface_feed.h"
 
-/// What a 3D view draws of a session: its scene with everything that is made outside of the renderer.
+/// The scene that a 3D view draws, including everything computed outside the renderer.
 namespace tessera::app {
 
 class SceneFeed {

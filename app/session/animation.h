@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-/// What plays: the times of the data, or keyframes of any described parameter of a session.
+/// Animation: the times of the data, or keyframes of any setting of a session.
 namespace tessera::app {
 
 struct Session;
@@ -15,7 +15,7 @@ struct Session;
 enum class Loop { Once, Repeat, PingPong };
 inline constexpr std::string_view kLoopNames[] = {"once", "repeat", "pingPong"};
 
-/// How the way from one key to the next is gone.
+/// Interpolation from one key to the next.
 enum class Easing { Step, Linear, In, Out, InOut };
 inline constexpr std::string_view kEasingNames[] = {"step", "linear", "in", "out", "inOut"};
 
@@ -35,7 +35,7 @@ struct Keyframe {
     }
 };
 
-/// The keys of one parameter, in order of time.
+/// The keys of one setting, in order of time.
 struct Track {
     std::string path; ///< JSON pointer into the session, e.g. "/camera/distance"
     std::vector<Keyframe> keys;
@@ -80,11 +80,11 @@ struct Animation {
     }
 };
 
-/// Share of the way gone after the share `t` of the time, both in [0, 1]; cubic polynomials (R. Penner, Motion,
-/// Tweening, and Easing, 2002): in t^3, out 1 - (1 - t)^3, inOut half of either.
+/// Progress 0..1 after the share `t` of the time, both in [0, 1]; cubic polynomials (R. Penner, Motion, Tweening, and
+/// Easing, 2002): in t^3, out 1 - (1 - t)^3, inOut half of either.
 double eased(Easing easing, double t);
 
-/// What lies between two values of a parameter.
+/// How a setting is interpolated between two values.
 enum class Between { Nothing, Line, Arc };
 
 /// A track's value: before its first key that of the first, after its last that of the last; empty without keys.

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-/// The arrangement of panes: a binary tree of splits whose leaves are stacks of tabs. Pure data and tree surgery;
+/// The arrangement of panes: a binary tree of splits whose leaves are stacks of tabs. Data and operations on them;
 /// drawing and dragging are in app/ui/dock.h.
 namespace tessera::app {
 
@@ -62,14 +62,14 @@ struct DockTree {
 
 enum class DockSide { Center, Left, Right, Top, Bottom };
 
-/// Node surgery; every function leaves a valid tree (no empty stacks but a lone root, two children per split).
+/// Edits of the tree; every function leaves a valid tree (no empty stacks except a lone root, two children per split).
 void removePane(DockTree& tree, const std::string& pane);
 /// Puts a pane (new or from elsewhere in the tree) beside, or as a tab into, the stack with that node id.
 void insertPane(DockTree& tree, const std::string& pane, int node, DockSide side);
 void floatPane(DockTree& tree, const std::string& pane, FloatingPane place);
 /// Every pane of the tree, floating ones included.
 std::vector<std::string> panesOf(const DockTree& tree);
-/// Takes over which tabs are in front in stacks that are the same in both trees.
+/// Copies which tabs are in front, for stacks that are the same in both trees.
 void followTabs(DockNode& tree, const DockNode& now);
 /// Repairs a tree from a file: drops duplicates and unknown panes, adds missing ones to the first stack, clamps ratios.
 void repair(DockTree& tree, const std::vector<std::string>& panes);

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-/// What happened to a session: each finished edit as an RFC 6902 patch with its inverse. Undo, redo, replay, autosave
-/// and the history pane all read this one list.
+/// History of a session: each finished edit as an RFC 6902 patch with its inverse. Used by undo, redo, replay, autosave
+/// and the history pane.
 namespace tessera::app {
 
 struct HistoryStep {
@@ -20,15 +20,13 @@ public:
     /// Starts over with this session as the base.
     void reset(const Session& session);
 
-    /// Call once per frame with the session as it is now. While `editing` (mouse held, text being typed) changes are
-    /// only watched; when it ends they become one step. Edits of the same member within `mergeSeconds` become one
-    /// (turning the wheel). What plays by itself (time during an animation) is no edit, nor which tabs are in front.
-    /// Returns true when a step was
-    /// added.
+    /// Call once per frame with the current session. While `editing` (mouse held, text being typed) changes are only
+    /// watched; afterwards they become one step. Edits of the same member within `mergeSeconds` become one step
+    /// (turning the wheel). Playing (time during an animation) and the choice of tabs are not edits. Returns true when
+    /// a step was added.
     bool observe(const Session& session, bool editing, double seconds, double mergeSeconds = 0.6);
 
-    /// The step that the next change becomes is called so, and joins none before it; one without changes takes
-    /// the name away.
+    /// Names the step of the next change, which is then not merged with the one before. Dropped if the edit is empty.
     void nameNext(std::string name) { nextName_ = std::move(name); }
 
     bool canUndo() const { return position_ > 0; }
@@ -39,13 +37,13 @@ public:
     /// The session after the first `position` steps.
     Session seek(std::size_t position);
 
-    /// The same history of a session whose data were found elsewhere: no step.
+    /// Replaces the data of the base, for data found at another place: not a step.
     void setData(const DataRef& data) { base_.data = data; }
     const DataRef& data() const { return base_.data; }
 
     const std::vector<HistoryStep>& steps() const { return steps_; }
     std::size_t position() const { return position_; }
-    /// True while the watched session differs from the base: an edit is going on.
+    /// Whether an edit is in progress: the watched session differs from the base.
     bool pending() const { return pending_; }
 
     /// The list as JSON, and back. A list that does not fit the session is refused with Error.

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-/// One described parameter of a struct, found by its JSON pointer.
+/// Access to one setting of a struct by its JSON pointer.
 namespace tessera::app {
 
 namespace detail {
@@ -61,16 +61,16 @@ void MemberAt<T, Visit>::operator()(M& member, const FieldInfo& info) const {
 
 } // namespace detail
 
-/// Calls visit(member, FieldInfo) for the member that a JSON pointer names; false where there is none. Lists and maps
-/// are entered by index and key, variants without a word.
+/// Calls visit(member, FieldInfo) for the member that a JSON pointer names; false if there is none. Lists and maps are
+/// entered by index and key, variants directly.
 template <class T, class Visit> bool visitParameter(T& value, std::string_view pointer, Visit&& visit) {
     return detail::visitPath(value, FieldInfo{.key = "", .unit = "", .doc = ""}, pointer, visit);
 }
 
 struct Session;
 
-/// The paths of all parameters of a session that a reader may set one by one: numbers, switches, choices, texts; not
-/// what belongs to the window (views, dock, appearance) or to playing.
+/// The paths of all settings of a session that users can set one by one: numbers, switches, choices, texts; except
+/// those of the window (views, dock, appearance) and of playing.
 std::vector<std::string> parameterPaths(const Session& session);
 
 /// "/layers/0/technique/density" -> "Layers 1: technique: density", with the name of the layer where it has one.

@@ -7,12 +7,12 @@
 
 namespace tessera::app {
 
-/// What is shown of the planes of a section (app/views/curves/section_data.h).
+/// The quantity shown for the planes of a section (app/views/curves/section_data.h).
 enum class SectionMeasure { Mean, Least, Most, Integral, Flux, Flow, Area };
 inline constexpr std::string_view kSectionMeasureNames[] = {"mean", "least", "most", "integral",
                                                             "flux", "flow",  "area"};
 
-/// What the planes lie across: an axis, or the line of the view.
+/// The direction perpendicular to the planes: an axis, or the line of the view.
 enum class SectionAcross { X, Y, Z, Line };
 inline constexpr std::string_view kSectionAcrossNames[] = {"x", "y", "z", "line"};
 

@@ -20,7 +20,7 @@ namespace tessera::app {
 
 inline constexpr int kSessionSchema = 3;
 
-/// A file a session shows, found again by path (relative to the session file), size and hash.
+/// A data file of a session, identified by path (relative to the session file), size and hash.
 struct DataFile {
     std::string path;         ///< relative to the session file where possible, '/' separators
     std::string absolutePath; ///< where it was when saved; tried second
@@ -36,11 +36,11 @@ struct DataFile {
     }
 };
 
-/// Lattice that pictures of unpacked data are drawn from. Numbers come from the samples as computed on either.
+/// Lattice of pictures of data files. Numbers always come from the samples as computed.
 enum class PictureLattice { Grid, BodyCentred };
 inline constexpr std::string_view kPictureLatticeNames[] = {"grid", "bodyCentred"};
 
-/// A second data set, whose parameters stand beside those of the first.
+/// A second data set, whose parameters are added to those of the first.
 struct OtherData {
     std::vector<DataFile> files;
     std::string model;
@@ -207,8 +207,8 @@ void colorDifferences(Session& session);
 /// replaced by ones that do (one message each), brushes on absent parameters are dropped, cursor and time lie inside.
 void fitSession(Session& session, const volume::DatasetInfo& info, std::vector<std::string>& messages);
 
-/// A sensible session for data never seen before: layers, transfer functions, stretch of thin domains, cursor in the
-/// middle, the overview arrangement of panes.
+/// The default session for a data set: layers, transfer functions, stretch of thin domains, cross-hair in the middle,
+/// the overview arrangement of panes.
 Session defaultSession(const volume::DatasetInfo& info, const DataRef& data);
 
 } // namespace tessera::app

@@ -60,7 +60,7 @@ struct ResolvedData {
 /// absolute path, then by name in the folder.
 ResolvedData resolveData(const DataRef& data, const std::string& folder);
 
-/// States where a file that was missing is.
+/// Sets the new path of a missing file.
 void locate(DataRef& data, const MissingData& missing, const std::string& path);
 
 /// Notes size and hash of the tables over time, where that has not been done.

@@ -7,7 +7,7 @@
 #include <imgui.h>
 #include <string>
 
-/// Making and editing brushes with the mouse, the same in scatterplots (two channels) and histograms (one).
+/// Creating and editing brushes with the mouse, in scatterplots (two channels) and histograms (one).
 namespace tessera::app {
 
 /// What a plot shows on its axes; `y` is empty for a histogram.
@@ -16,7 +16,7 @@ struct PlotChannels {
     bool operator==(const PlotChannels&) const = default;
 };
 
-/// What a drag on an empty place of a plot makes.
+/// The brush that a drag on an empty area of a plot creates.
 struct BrushPen {
     BrushTool tool = BrushTool::Rectangle;
     float softness = 0; ///< soft edge of new brushes, as a share of their width
@@ -35,7 +35,7 @@ struct BrushDrag {
 
 enum BrushEdge { kLeftEdge = 1, kRightEdge = 2, kBottomEdge = 4, kTopEdge = 8 };
 
-/// True if the brush looks at axes of the plot alone: then it is drawn and edited there.
+/// True if the brush uses only axes of the plot: then it is drawn and edited there.
 bool brushFits(const vis::Brush& brush, const PlotChannels& plot);
 
 /// The brush under a point and which of its edges, -1 if there is none; the last made lies on top.
@@ -45,9 +45,9 @@ struct BrushHit {
 BrushHit hitBrush(const vis::Selection& selection, const PlotFrame& frame, const PlotChannels& plot, ImVec2 at);
 
 /// Handles the mouse on a plot whose InvisibleButton (left and right) was the last ImGui item; returns true when the
-/// selection changed. Left drag on the plot makes a brush, replacing those of this very plot; Shift keeps them and adds
-/// ("or"), Ctrl keeps them and takes away ("minus"); dragging a brush moves it, its edges and corners resize it; Esc
-/// takes the drag back; right click removes the brush under the mouse, or all of them where there is none.
+/// selection changed. Left drag on the plot creates a brush and replaces those of this plot; with Shift it is added
+/// ("or"), with Ctrl it is subtracted ("minus"). Dragging a brush moves it, dragging its edges and corners resizes it;
+/// Esc cancels the drag; right click removes the brush under the mouse, or all of them if there is none.
 bool editBrushes(BrushDrag& drag, vis::Selection& selection, const PlotFrame& frame, const PlotChannels& plot,
                  const BrushPen& pen);
 
@@ -61,8 +61,8 @@ std::string newBrushName(const vis::Selection& selection, const std::string& bas
 glm::vec3 newBrushColor(const vis::Selection& selection);
 /// A brush's colour on the theme's background.
 ImU32 brushColor(const vis::Brush& brush, float alpha = 1);
-/// The colour that stands for what plots mark: that of the only brush that adds to the selection, of the only lens that
-/// marks where nothing is brushed, and a common one for several.
+/// The colour of marked samples in plots: that of the only brush that adds to the selection, or of the only lens that
+/// marks if nothing is brushed; a common one for several.
 ImU32 focusColor(const Session& session);
 
 } // namespace tessera::app

@@ -3,17 +3,17 @@
 #include "app/pane/axes3d.h"
 #include "app/pane/view_context.h"
 
-/// Brushes outside of the plots: their list, and those that lie in space.
+/// The list of brushes, and brushes in space.
 namespace tessera::app {
 
 /// Every brush with its colour, name, switches and numbers, and buttons that add brushes in space at the cursor.
 void drawBrushList(ViewContext& context);
 
-/// What the enabled brushes hold together, by their numbers: "(1 and 2) or 3", with a hint how to join them otherwise
-/// where they are only narrowed down; "" for fewer than two.
+/// The combination of the enabled brushes by their numbers: "(1 and 2) or 3", with a hint on other combinations if they
+/// only narrow the selection; "" for fewer than two.
 std::string combinationText(const vis::Selection& selection);
 
-/// A ball or box around the cursor that looks a sixth of the shown box wide, whatever the stretch.
+/// A ball or box around the cross-hair that appears a sixth as wide as the box, whatever the stretch.
 vis::Brush spaceBrush(const Session& session, const volume::DatasetInfo& info, bool box);
 
 /// Items of a view's menu that place a brush at the cursor and clear all brushes.

@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <imgui.h>
 
-/// The mouse and keys that move the camera over a picture of the scene, the same in every 3D view.
+/// Camera control by mouse and keys, the same in every 3D view.
 namespace tessera::app {
 
 enum class CameraDrag { None, Orbit, Pan, Zoom, Roll };
 
-/// What a picture of the scene keeps of the mouse between frames.
+/// Mouse state of a picture between frames.
 struct CameraHand {
     CameraDrag drag = CameraDrag::None;
     ImVec2 last{0, 0};    ///< mouse of the former frame

@@ -3,9 +3,9 @@
 #include "app/pane/axes3d.h"
 #include "app/pane/view_context.h"
 
-/// Lenses worked by hand in a picture in space: the dot in the middle moves one in the plane that faces the viewer
-/// (with Shift nearer or farther), squares at the ends of its axes resize it, the ring beside it turns it; with Alt the
-/// mouse does the same anywhere: left moves, right turns, the wheel resizes. Escape takes a drag back.
+/// Editing lenses with the mouse in a 3D picture: the dot in the centre moves a lens in the plane that faces the viewer
+/// (with Shift nearer or farther), squares at the ends of its axes resize it, the ring beside it rotates it. With Alt
+/// the mouse does the same anywhere: left moves, right rotates, the wheel resizes. Escape cancels a drag.
 namespace tessera::app {
 
 enum class LensGrip { None, Middle, AxisX, AxisY, AxisZ, Turn };
@@ -29,8 +29,8 @@ LensHandles lensHandles(const SpaceFrame& frame, const vis::PlacedLens& placed);
 /// The topmost enabled lens whose inside a pixel shows, -1 for none.
 int lensUnder(const SpaceFrame& frame, const Session& session, ImVec2 at);
 
-/// Turns the mouse over the picture (its InvisibleButton is the last item) into edits of the lenses; true while it has
-/// the mouse for itself. A lens that follows the cursor takes the cursor along.
+/// Handles the mouse over the picture (its InvisibleButton is the last item) and edits the lenses; true while it uses
+/// the mouse. A lens that follows the cross-hair takes the cross-hair along.
 bool editLenses(LensDrag& drag, Session& session, const SpaceFrame& frame, bool hovered);
 
 /// Lenses that follow the pointer move with it, in the plane through their middle that faces the viewer; F pins those

@@ -5,7 +5,7 @@
 
 #include <map>
 
-/// The lenses outside of the pictures: their list with all their settings, and what they hold.
+/// The list of lenses with all their settings, and statistics of what is inside them.
 namespace tessera::app {
 
 /// Statistics of the lenses that are unfolded.
@@ -19,16 +19,16 @@ void drawLensList(ViewContext& context, const std::string& pane, LensStatistics&
 /// A lens of an effect around the cursor, with a name and colour of its own, that fits the shown box.
 vis::Lens newLens(const Session& session, const volume::DatasetInfo& info, vis::LensEffect effect);
 
-/// Adds a lens at the cursor in which a technique stands in for the other layers.
+/// Adds a lens at the cross-hair in which a technique replaces the other layers.
 void addLensWith(Session& session, const volume::DatasetInfo& info, vis::Technique technique);
 
-/// Gives a lens another name; what belongs to it follows.
+/// Renames a lens; references to it follow.
 void renameLens(Session& session, std::size_t index, const std::string& name);
 
-/// Gives a lens another place in the order in which they lie over each other.
+/// Moves a lens in the order in which lenses lie over each other.
 void moveLens(Session& session, std::size_t from, std::size_t to);
 
-/// Takes a lens away; its layers are hidden.
+/// Removes a lens; its layers are no longer drawn.
 void removeLens(Session& session, std::size_t index);
 
 /// Items of a menu that add a lens.

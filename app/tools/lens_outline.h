@@ -3,7 +3,7 @@
 #include "app/pane/axes3d.h"
 #include "app/pane/view_context.h"
 
-/// Lenses as lines: their outlines in space, their sections in slices.
+/// Outlines of lenses in space, and their sections in slices.
 namespace tessera::app {
 
 /// Pixel of a world point; nothing behind the eye.

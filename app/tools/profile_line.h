@@ -3,7 +3,7 @@
 #include "app/pane/axes3d.h"
 #include "app/pane/view_context.h"
 
-/// The lines of line-profile views as the views in space show them.
+/// Lines of line-profile views, drawn in 3D views and slices.
 namespace tessera::app {
 
 /// Corners of a profile's line: its own, or the longest axis through the cursor.

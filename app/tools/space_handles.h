@@ -7,12 +7,12 @@
 #include <string>
 #include <vector>
 
-/// What lies in space and is worked by dots: where flow begins (its line, plane, ball or box), brushes in space, the
-/// corners of profile lines. A dot moves in the plane that faces the viewer, with Shift nearer or farther; Escape takes
-/// a drag back. In slices the same dots move along the slice. Lenses have more to them (lens_edit.h).
+/// Objects in space that are edited by dots: seed points of flow (line, plane, ball or box), brushes in space, the
+/// corners of profile lines. A dot moves in the plane that faces the viewer, with Shift nearer or farther; Escape
+/// cancels a drag. In slices the same dots move along the slice. Lenses have further handles (lens_edit.h).
 namespace tessera::app {
 
-/// What a pixel of the picture looks at.
+/// The ray through a pixel of the picture.
 vis::Ray rayThrough(const SpaceFrame& frame, const vis::Camera& camera, ImVec2 at);
 
 /// A world place `from` moved as the mouse moved from `start`: in the plane through it that faces the viewer, or with
@@ -33,7 +33,7 @@ struct SpaceHandle {
     bool whole = false; ///< moves the object as it is
 };
 
-/// Something with dots and the lines that show it.
+/// An object with its dots and the lines that show it.
 struct HandledObject {
     std::string key; ///< the same from frame to frame
     std::string name;
@@ -54,8 +54,7 @@ struct HandleDrag {
     glm::dvec3 before{0}; ///< the dot's place, physical
 };
 
-/// Turns the mouse over a picture in space (its InvisibleButton is the last item) into edits; true while it has the
-/// mouse for itself.
+/// Handles the mouse over a 3D picture (its InvisibleButton is the last item); true while it uses the mouse.
 bool editHandles(HandleDrag& drag, Session& session, const volume::DatasetInfo& info, const SpaceFrame& frame,
                  bool hovered);
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-/// The one table of what can be done: it feeds the menus, the shortcuts, the command palette and the help.
+/// The table of all commands: it feeds the menus, the shortcuts, the command palette and the help.
 namespace tessera::app {
 
 struct Command {

@@ -19,7 +19,7 @@ struct DockPanes {
     std::string none = {};                                ///< said where no pane is open
 };
 
-/// What the hand is doing; lost without harm.
+/// State of a drag in the dock; may be lost at any time.
 struct DockHand {
     std::string dragged; ///< pane whose tab is held, "" = none
     bool moving = false; ///< the tab has been pulled far enough to count as dragged

@@ -33,7 +33,7 @@ struct DockLayout {
 };
 DockLayout layoutDock(DockTree& tree, DockRect whole, float scale);
 
-/// Where a dragged tab would go.
+/// The target of a dragged tab.
 struct DockDrop {
     int node = 0;
     DockSide side = DockSide::Center;

@@ -10,7 +10,7 @@ namespace tessera::app {
 
 enum class FileMode { Open, Save };
 
-/// What is known of a file before it is opened.
+/// Preview of a file before it is opened.
 struct FilePreview {
     std::string text;    ///< "" while it is being read
     bool failed = false; ///< it cannot be opened, for the reason that `text` gives
@@ -32,7 +32,8 @@ public:
     bool shown() const { return shown_; }
     const std::string& folder() const { return folder_; }
     const std::string& purpose() const { return purpose_; }
-    /// Why the last answer was none, such as a name that no file has; "" for nothing. Stands under the name.
+    /// Why there was no last answer, for example a file name that does not exist; "" if there is no problem. Shown
+    /// below the name.
     const std::string& problem() const { return problem_; }
 
     /// Asked every frame for the file that would be opened. One that failed is not opened.

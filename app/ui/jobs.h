@@ -11,8 +11,8 @@
 
 namespace tessera::app {
 
-/// Background work of the window: runs off the GUI thread, shows progress, can be cancelled, and hands its result back
-/// on the GUI thread.
+/// Background jobs of the window: they run off the GUI thread, show progress, can be cancelled, and deliver their
+/// result on the GUI thread.
 class Jobs {
 public:
     using Finish = std::function<void()>;

@@ -20,7 +20,7 @@ Fonts loadFonts(float scale);
 /// Sets ImGui's style: sizes for the scale, colours for the theme.
 void applyTheme(Theme theme, float scale);
 
-/// Colours for what is drawn by hand, for the theme last applied.
+/// Colours for custom drawing, for the theme last applied.
 struct Palette {
     ImU32 text, muted, accent, accentSoft, panel, plot, grid, line, warning, failure, good;
 };

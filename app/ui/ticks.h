@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-/// Numbers on axes, legends and in read-outs: where ticks lie and how values are written. No ImGui here.
+/// Number formatting for axes, legends and read-outs: tick positions and texts. Does not use ImGui.
 namespace tessera::app {
 
 /// The smallest of 1, 2, 5 times a power of ten that divides `span` into at most `most` steps; 0 for an empty span.

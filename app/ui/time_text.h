@@ -5,8 +5,7 @@
 #include <string>
 #include <string_view>
 
-/// How a time of a data set is written, everywhere: by the name and unit of its axis, with the quantities that belong
-/// to it. No ImGui here.
+/// Text of a time of a data set: the name and unit of its axis, with the quantities over time. Does not use ImGui.
 namespace tessera::app {
 
 /// "t = 0.26 s", "operating point 11", "voltage 0.62 V".

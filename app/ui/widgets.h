@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-/// Widgets for everything that is described: label to the left, control to the right, help as a tooltip, unit behind
-/// the number. A widget function edits its value and says whether it changed; nothing else.
+/// Widgets for described structs: label to the left, control to the right, help as a tooltip, unit behind the number. A
+/// widget function edits its value and returns whether it changed.
 namespace tessera::app {
 
 /// What widgets may offer as choices and scales.
@@ -84,7 +84,7 @@ template <class T> bool drawDescribedList(const WidgetContext& context, const Fi
     return true;
 }
 
-/// A choice of the ready-made values; the one that `value` equals is the one chosen.
+/// A choice of presets; the one that equals `value` is selected.
 template <class T> bool drawPresets(const WidgetContext& context, T& value) {
     static constexpr std::string_view kOwn = "own settings";
     std::vector<std::string_view> names(std::begin(T::kPresetNames), std::end(T::kPresetNames));

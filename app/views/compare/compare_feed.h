@@ -10,8 +10,8 @@
 #include <memory>
 #include <optional>
 
-/// Pictures of the variants of a comparison and how far each is from the reference. Variants of the same data are
-/// drawn by the window's renderer; other data, opened in the background, get one of their own.
+/// Pictures of the variants of a comparison, and their difference from the reference. Variants of the same data are
+/// drawn by the window's renderer; other data, opened in the background, by renderers of their own.
 namespace tessera::app {
 
 /// Data of variants that are not those of the session.

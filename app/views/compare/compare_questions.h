@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-/// Questions put to whoever compares pictures ("Which spot is hotter?"), answered below them. The session keeps the
-/// answers and how long each took.
+/// Questions about compared pictures ("Which spot is hotter?"), answered below them. The session stores the answers and
+/// the time each took.
 namespace tessera::app {
 
 /// When the questions came on screen.

@@ -7,8 +7,8 @@
 #include <optional>
 #include <string>
 
-/// How the values of the first layer's parameter differ between two variants of a comparison: variant minus reference,
-/// in their unit, at the same place, drawn on the three planes through the cross-hair.
+/// Difference of the values of the first layer's parameter between two variants of a comparison: variant minus
+/// reference, in their unit, at the same position, drawn on the three planes through the cross-hair.
 namespace tessera::app {
 
 /// One of the two: a session and the data it shows.

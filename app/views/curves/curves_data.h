@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-/// What the curves over time show, as numbers, tables and vector graphics.
+/// Data of the curves over time, as numbers, tables and vector graphics.
 namespace tessera::app {
 
 /// What is asked for; equal wishes have equal answers.

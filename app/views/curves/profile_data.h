@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-/// What a line profile shows, as numbers.
+/// Data of a line profile.
 namespace tessera::app {
 
 /// What is asked for; equal wishes have equal answers.

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-/// Curves of averages over planes, as numbers, tables and figures.
+/// Averages over planes, as numbers, tables and figures.
 namespace tessera::app {
 
 /// What is asked for; equal wishes have equal answers.
@@ -73,7 +73,7 @@ std::string sectionCsv(const volume::DatasetInfo& info, const SectionCurves& cur
 std::vector<FigurePanel> sectionPanels(const volume::DatasetInfo& info, const SectionCurves& curves,
                                        SectionMeasure measure);
 
-/// What a reader has to know about the numbers, a sentence each.
+/// Notes on how the numbers were computed, one sentence each.
 std::vector<std::string> sectionNotes(const volume::DatasetInfo& info, const SectionCurves& curves);
 
 } // namespace tessera::app

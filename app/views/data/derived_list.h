@@ -20,7 +20,7 @@ void drawDerivedList(ViewContext& context, DerivedDraft& draft);
 /// A derived parameter of this kind that can be computed at once where the data allow it, with a name that is free.
 volume::DerivedParameter newDerived(const volume::DatasetInfo& info, std::size_t kind, const std::string& channel);
 
-/// "T minus first": a channel minus itself at another time.
+/// The derived parameter "T minus first": a channel minus itself at another time.
 volume::DerivedParameter newDifference(const volume::DatasetInfo& info, const std::string& channel,
                                        const volume::TimeReference& from);
 
