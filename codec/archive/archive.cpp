@@ -25,7 +25,7 @@ std::span<const std::byte> checkedPart(std::span<const std::byte> bytes, std::ui
 
 namespace {
 
-/// Bricks of a grid whose sizes come from a file.
+/// Number of bricks of a grid from a file; throws Error when it is too large.
 std::uint64_t checkedBrickCount(const volume::BrickGrid& grid, const std::string& path) {
     const glm::ivec3 count = grid.count();
     std::uint64_t bricks = 1;
@@ -68,7 +68,7 @@ std::optional<volume::BrickChange> Archive::Impl::changeOf(int number, int compo
 }
 
 Archive::Archive(const std::string& path) {
-    // A file that grows may name an end behind what was mapped a moment before.
+    // The header of a growing file can name an end beyond what was mapped a moment before: try again.
     for (int attempt = 0; !impl_; ++attempt) {
         std::error_code failed;
         const std::uint64_t before = std::filesystem::file_size(path, failed);
@@ -91,7 +91,7 @@ Archive::Archive(const std::string& path) {
     impl.index =
         readIndex(bytes, header, {impl.components, bricks, impl.metadata.grid, impl.metadata.info.times.size()}, path);
     if (header.version >= kGrowingVersion) impl.metadata.info.times = impl.index.times;
-    // While an archive is written, and once it has grown, the metadata may tell of more or fewer times.
+    // Metadata and index can differ in the number of times while an archive is written or has grown.
     const auto fit = [](std::vector<volume::Quantity>& quantities, std::size_t times) {
         for (volume::Quantity& quantity : quantities)
             quantity.values.resize(times, std::numeric_limits<double>::quiet_NaN());
@@ -168,7 +168,7 @@ std::uint64_t Archive::levelBytes(int level) const {
 volume::BrickStats Archive::stats(const volume::BrickKey& key) const {
     const volume::Channel& channel = impl_->channelOf(key);
     if (!channel.magnitude) return impl_->statsOf(channel.parameter, channel.component, key);
-    // Two at a time: |(|(x, y)|, z)| = |(x, y, z)| for any number of components.
+    // Combined in pairs: |(|(x, y)|, z)| = |(x, y, z)| for any number of components.
     volume::BrickStats sum = impl_->statsOf(channel.parameter, 0, key);
     const volume::BrickStats nothing{0, 0, 1};
     for (int c = 1; c < channel.component; ++c)

@@ -16,7 +16,7 @@ namespace tessera::codec {
 
 namespace {
 
-/// Whether no code of a frame stands for a value that is not finite.
+/// Whether all codes of a frame represent finite values.
 bool isAlwaysFinite(const FrameRecord& frame) {
     constexpr double kLargestCode = 4294967296.0, kLargest = 3e38;
     if (frame.numbers.kind == NumberKind::Float) return false;
@@ -40,7 +40,7 @@ void leaveOutInfinite(volume::BrickSamples& brick) {
 
 } // namespace
 
-/// Bytes of a segment, once their checksum is found right.
+/// Bytes of a segment; throws Error when their checksum is wrong.
 std::span<const std::byte> Archive::Impl::segment(const Segment& segment) const {
     return checkedPart(file.bytes(), segment.offset, segment.length, segment.checksum, path, "a brick");
 }
@@ -87,7 +87,7 @@ Model Archive::Impl::model(std::int32_t number) const {
     return parsed;
 }
 
-/// The decoder of a model, kept for the next brick.
+/// The decoder of a model, cached.
 std::shared_ptr<const BandDecoder> Archive::Impl::decoder(std::int32_t model) const {
     const std::lock_guard lock(decodersMutex);
     for (auto at = decoders.begin(); at != decoders.end(); ++at)
@@ -136,7 +136,7 @@ volume::BrickSamples Archive::Impl::readComponent(int number, int component, con
     out.size = decoded->size;
     out.values.resize(countOf(out.size));
     out.present = decoded->present;
-    // Coarse levels stay within the range of the samples: row by row, while those are at hand.
+    // Clamp coarse levels to the range of the samples, row by row while these are in the cache.
     const FrameBrick& range = record.bricks[brick];
     const bool isHeld = key.level > 0 && range.min <= range.max, isFinite = isAlwaysFinite(record);
     const auto hold = [&](std::span<float> values) {
@@ -231,7 +231,7 @@ volume::Field readLayers(const Archive& archive, int parameter, int component, i
                     out[placeOf(i)] = static_cast<T>(bits);
             };
             for (const ExactSample& exact : decoded->exact) put(exact.index, exact.bits);
-            // Absent samples: as stored, else a value that cannot be mistaken for data.
+            // Absent samples: the stored value, else one that cannot be mistaken for data.
             std::size_t next = 0;
             for (std::size_t i = 0; i < fine.size(); ++i)
                 if (fine[i] == 0)

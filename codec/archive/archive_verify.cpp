@@ -19,7 +19,7 @@ struct Verifier {
         if (report.damage.size() < 100) report.damage.push_back(what);
     }
 
-    /// True if it is whole.
+    /// Runs `body`; false, with a report, if it throws Error.
     template <class Body> bool guarded(const std::string& what, Body&& body) {
         try {
             body();
@@ -30,7 +30,7 @@ struct Verifier {
         }
     }
 
-    /// Whether what a brick needs beside its own bytes, and was looked at before, is damaged.
+    /// Whether something that a brick needs besides its own bytes, and that was checked before, is damaged.
     bool lacks(std::size_t number, std::size_t brick) const {
         const FrameRecord& record = impl.index.frames[number];
         const std::size_t repeats = std::size_t(record.bricks[brick].notes.repeats);
@@ -115,7 +115,7 @@ struct Verifier {
         }
     }
 
-    /// Before the bricks, so that each is noted once.
+    /// Checked before the bricks, so that each is reported once.
     void masks() {
         for (std::size_t m = 0; m < impl.index.masks.size(); ++m) {
             FrameRecord user;

@@ -56,7 +56,7 @@ struct ArchiveWriter::Impl {
     std::map<std::size_t, KnownModel> lastModel; ///< by component
     bool keepsFrames = true;
     Archive::Repeats repeats;
-    /// By component, of D4* by parity too. One that is not there: nothing is known of what changes.
+    /// By component, and on D4* by parity. A missing entry: changes are unknown.
     std::map<std::pair<std::size_t, int>, SeenFrame> lastFrames;
 
     int step() const { return metadata.alternating ? 2 : 1; } ///< times from a frame to the next of its grid
@@ -123,7 +123,7 @@ void ArchiveWriter::Impl::writeModel(const Model& chosen, bool idle, std::size_t
     lastModel[component] = {frame.model, model, frame.wavelet, frame.numbers.kind, frame.codeBits, frame.bodyCentred};
 }
 
-/// The last frame of the component on the same grid, if it is here and its numbers mean the same.
+/// The last frame of the component on the same grid, if it is in memory and has the same scale and offset.
 const SeenFrame* ArchiveWriter::Impl::frameBefore(const FrameRecord& frame, const FrameSamples& samples) const {
     const int time = int(frame.time);
     const auto found = lastFrames.find({frame.component, time % step()});
@@ -162,7 +162,7 @@ ArchiveWriter::ArchiveWriter(const std::string& path, const Metadata& metadata, 
     : impl_(std::make_unique<Impl>(path)) {
     impl_->metadata = metadata;
     impl_->keepsFrames = keepsFrames;
-    // A volume of one brick is read as quickly as what is noted of it, and small enough for that to count.
+    // A volume of one brick is read as quickly as its statistics, and is so small that their bytes matter.
     if (metadata.grid.count() == glm::ivec3(1)) impl_->header.features &= ~kBrickTallies;
 }
 
@@ -224,7 +224,7 @@ void ArchiveWriter::addFrame(int parameter, int component, int time, const Frame
     taken.bricks.resize(brickCount(grid));
 
     const std::size_t bricks = brickCount(grid), levels = std::size_t(grid.levels);
-    // Of the last time nothing is wanted but how far it moved.
+    // For the last time only its change is needed.
     const bool isLast = std::size_t(time + impl_->step()) >= info.times.size();
     const bool keeps = impl_->keepsFrames && (before || !isLast);
     SeenFrame seen{time, frame.keepsAbsent, keeps ? *samples.whole() : volume::Field(), {}, {}};
@@ -286,7 +286,7 @@ void ArchiveWriter::addFrame(int parameter, int component, int time, const Frame
         }
         return true;
     });
-    // Nobody will look into the tables where there are no bands.
+    // Tables are not needed if there are no bands.
     if (frame.model < 0) impl_->writeModel(model, allWhole, ofTime, frame);
     GrowingFile& file = impl_->file;
     frame.offset = file.position();

@@ -22,7 +22,7 @@ constexpr int kMostTables = 24;
 Histogram sampleTokens(const volume::BrickGrid& grid, const FrameSamples& samples, const FrameRecord& frame,
                        std::size_t most, Contexts contexts, double maxError = 0, Taken* taken = nullptr) {
     const std::size_t bricks = brickCount(grid), count = std::min(bricks, most);
-    // Of many samples a part is enough; a step that goes through every place of a row in turn.
+    // For many samples a part is enough; the step visits every position of a row in turn.
     constexpr std::size_t kMany = 2 << 20;
     const int every = samples.count() / bricks * count < kMany ? 1 : 5;
     Histogram sum(grid.levels, contexts);
@@ -50,7 +50,7 @@ Histogram sampleTokens(const volume::BrickGrid& grid, const FrameSamples& sample
     return sum;
 }
 
-/// The same of the middles of some bricks, which is enough to compare filters.
+/// The same for the central parts of some bricks, which is enough to compare filters.
 Histogram sampleMiddles(const volume::BrickGrid& grid, const FrameSamples& samples, const FrameRecord& frame,
                         std::size_t most) {
     constexpr int kMiddle = 32, kMiddleLevels = 3, kEvery = 3;
@@ -80,7 +80,7 @@ Histogram sampleMiddles(const volume::BrickGrid& grid, const FrameSamples& sampl
     return sum;
 }
 
-/// A shift that brings the typical detail of full resolution to some tens, where the contexts tell sizes apart.
+/// A shift that scales the typical detail of full resolution to some tens, where contexts distinguish sizes.
 int shiftFor(const Histogram& histogram) {
     double count = 0, octaves = 0;
     for (std::size_t c = 0; c < std::size_t(kClasses) && c < histogram.counts.size(); ++c)
@@ -92,13 +92,13 @@ int shiftFor(const Histogram& histogram) {
     return count == 0 ? 0 : std::max(0, int(std::lround(octaves / count - kWanted)));
 }
 
-/// Bits of floats have no bands that are unlike: the low ones are noise in all of them.
+/// Floats coded bit by bit gain nothing from contexts by band: their low bits are noise in all bands.
 bool prefersByBand(const FrameRecord& frame) {
     return frame.numbers.kind != NumberKind::Float;
 }
 
-/// The filter by trial on some bricks: first how far it predicts, then how it updates. Predictions alone alias in
-/// coarse levels: they have to be clearly better.
+/// Chooses the filter by trial on some bricks: first its prediction, then its update. Filters without update alias in
+/// coarse levels, so they are chosen only if clearly better.
 Wavelet waveletFor(const volume::BrickGrid& grid, const FrameSamples& samples, FrameRecord frame) {
     constexpr double kPredictionHandicap = 1.015;
     if (frame.numbers.kind == NumberKind::Float) return Wavelet::W22; // only predicted anyway
@@ -121,7 +121,7 @@ Wavelet waveletFor(const volume::BrickGrid& grid, const FrameSamples& samples, F
     return chosen;
 }
 
-/// Whether one grid of BCC predicted from the other comes out shorter, by trial on some bricks.
+/// Whether predicting one sublattice of BCC from the other is shorter, by trial on some bricks.
 bool prefersBodyCentred(const volume::BrickGrid& grid, const FrameSamples& samples, FrameRecord frame) {
     if (grid.lattice.kind != volume::LatticeKind::BCC || frame.numbers.kind == NumberKind::Float) return false;
     const auto bits = [&](bool bodyCentred) {

@@ -7,7 +7,7 @@ namespace {
 
 constexpr std::uint32_t kSlotMask = kProbabilityOne - 1;
 
-/// The compressed bytes of a run of bands and how far they are read.
+/// A reader of the compressed bytes of a run of bands.
 struct Stream {
     alignas(64) std::uint32_t states[kMostGroups][kLanes]{};
     const std::byte *next = nullptr, *end = nullptr; ///< words
@@ -19,8 +19,8 @@ struct Stream {
     Contexts contexts;
 };
 
-/// `bits` raw bits; the caller has checked that they are there. Words follow the raw bits, so that bytes beyond them
-/// may be loaded, as long as they are of the stream.
+/// Reads `bits` raw bits; the caller has checked that they are available. The coder's words follow the raw bits, so
+/// loading beyond them stays within the stream.
 std::uint32_t takeRaw(Stream& in, int bits) {
     std::uint64_t word = 0;
     const std::byte* at = in.raw + (in.rawAt >> 3);
@@ -125,14 +125,14 @@ TESSERA_AVX512 inline bool rawSymbols512(Stream& in, __mmask16 some, __m512i tok
     return true;
 }
 
-/// A constant that stays in its register: compilers make those they know anew each time.
+/// A constant that stays in a register: compilers recompute constants they know.
 TESSERA_AVX512 TESSERA_INLINE __m512i kept512(int value) {
     __m512i vector = _mm512_set1_epi32(value);
     asm("" : "+v"(vector));
     return vector;
 }
 
-/// The chunks of the rows of all bands at one place, in the order of coding.
+/// The chunks of the rows of all bands at one position, in coding order.
 struct Chunks512 {
     struct alignas(64) Sixteen {
         std::uint32_t lanes[kLanes];
@@ -146,7 +146,7 @@ struct Chunks512 {
     explicit Chunks512(std::size_t most) : tables(most), active(most), tokens(most * kLanes), raw(most + 1) {}
 };
 
-/// What the loop over chunks changes, in registers.
+/// State of the loop over chunks, in registers.
 struct Cursor512 {
     const std::byte* next;
     unsigned group;
@@ -248,7 +248,7 @@ TESSERA_AVX512 inline void directRow512(const std::uint8_t* tokens, int width, i
     }
 }
 
-/// Appends the chunks of a row: where their contexts look, and which lanes they have.
+/// Appends the chunks of a row: the addresses of their contexts, and their active lanes.
 template <bool kByBand>
 TESSERA_AVX512 TESSERA_INLINE void appendRow512(const Stream& in, const Neighbours& near, int kind,
                                                 const std::uint8_t* present, int width, Chunks512& chunks) {
@@ -267,8 +267,8 @@ TESSERA_AVX512 TESSERA_INLINE void appendRow512(const Stream& in, const Neighbou
     chunks.count = count;
 }
 
-/// First the contexts of all bands' rows at one place, then their tokens, then coefficients, those with raw bits last:
-/// the loop over tokens waits for nothing else.
+/// Decodes in passes: contexts of all bands' rows at one position, then their tokens, then coefficients, with those
+/// that need raw bits last, so that the token loop has no other dependencies.
 template <class Word, bool kByBand> TESSERA_AVX512 bool decodeRows512(Stream& in, std::span<const Band<Word>> bands) {
     std::vector<Magnitudes> magnitudes = magnitudesFor(bands);
     std::size_t most = 0;
@@ -366,7 +366,7 @@ DecodeStatus BandDecoder::decode(std::span<const std::byte> in, std::span<const 
 #endif
     if (!whole) return DecodeStatus::Truncated;
     if (stream.next != stream.end || (stream.rawAt + 7) / 8 != rawBytes) return DecodeStatus::Trailing;
-    // An encoder begins with the lowest state, so a decoder ends with it.
+    // The encoder starts with the lowest state, so the decoder must end with it.
     for (const auto& group : stream.states)
         for (const std::uint32_t state : group)
             if (state != kLowestState) return DecodeStatus::BadData;

@@ -7,7 +7,7 @@ namespace tessera::codec {
 
 namespace {
 
-/// Raw bits, lowest first.
+/// Writer of raw bits, LSB first.
 class RawBits {
 public:
     /// Bits are put at most `count` times.
@@ -33,7 +33,7 @@ private:
     int count_ = 0;
 };
 
-/// What the backward pass makes: states, words from the end of their buffer on, and where it had to escape.
+/// Result of the backward pass: states, words from the end of their buffer on, and positions of escapes.
 struct Coded {
     alignas(64) std::uint32_t states[kMostGroups * kLanes];
     std::size_t size = 0, at = 0;
@@ -46,8 +46,8 @@ struct Coded {
     }
 };
 
-/// Tokens to states and words, the last one first: a decoder undoes it. `tables`: number of the table << 8 of each
-/// class of each kind of bands.
+/// Codes tokens to states and words in reverse order, since decoding reverses it. `tables`: number of the table << 8
+/// for each class of each kind of bands.
 void codeTokens(const TokenRun& run, const std::uint32_t* tables, std::span<const BandEncoder::Entry> entries,
                 Coded& out) {
     const std::size_t groups = std::size_t(run.groups);
@@ -62,7 +62,7 @@ void codeTokens(const TokenRun& run, const std::uint32_t* tables, std::span<cons
         }
         std::uint32_t& state = out.states[i / kLanes % groups * kLanes + i % kLanes];
         std::uint32_t x = state;
-        // Written always, kept when the state is too large: half of the time is no branch to predict.
+        // Always written, kept only if the state is too large: branches would be mispredicted half of the time.
         out.words[out.at - 1] = static_cast<std::uint16_t>(x);
         const bool full = x >> 20 >= entry->frequency;
         out.at -= full ? 1 : 0;
@@ -108,7 +108,7 @@ TESSERA_AVX512 void codeTokens512(const TokenRun& run, const std::uint32_t* tabl
         _mm256_mask_storeu_epi16(words, static_cast<__mmask16>((1u << count) - 1u),
                                  _mm512_cvtepi32_epi16(_mm512_maskz_compress_epi32(full, state)));
         const __m512i x = _mm512_mask_srli_epi32(state, full, state, 16);
-        // The quotient in float, at most one off, then put right.
+        // The quotient in float, wrong by at most one, then corrected.
         const __m512 divisor = _mm512_cvtepu32_ps(frequency);
         const __m512 guess = _mm512_rcp14_ps(divisor);
         const __m512 reciprocal = _mm512_mul_ps(guess, _mm512_sub_ps(_mm512_set1_ps(2), _mm512_mul_ps(divisor, guess)));

@@ -7,7 +7,7 @@ namespace tessera::codec {
 
 namespace {
 
-/// One row: sixteen tokens a chunk to `tokens`, which points behind them then.
+/// Tokens of one row, sixteen per chunk, to `tokens`, which is advanced.
 template <class Word>
 void rowTokens(const Band<const Word>& band, std::ptrdiff_t at, const Neighbours& near, Contexts contexts,
                std::uint16_t* size, std::uint16_t*& tokens, TokenRun& run) {
@@ -130,7 +130,7 @@ void countTokens(const TokenRun& run, int level, Histogram& histogram, int every
     constexpr std::size_t kMany = 1024; // chunks
     const std::size_t chunks = run.tokens.size() / kLanes, step = chunks < kMany ? 1 : std::size_t(every);
     const std::size_t first = histogram.contexts.first(level);
-    // One kind: whatever the tokens say. (Kinds and classes are powers of two.)
+    // With one kind the kind bits of tokens are ignored. (Kinds and classes are powers of two.)
     const std::size_t contexts = std::size_t(histogram.contexts.kindsOf(level)) * kClasses - 1;
     auto* const counts = histogram.counts.data() + first;
     for (std::size_t chunk = 0; chunk < chunks; chunk += step)

@@ -16,10 +16,10 @@ using KindTables = std::array<std::uint8_t, kClasses>;
 
 constexpr std::uint32_t kByBand = 128; // beside the shift
 
-// Bits a table costs in the file: its place in the map and about this much for each token in use.
+// Cost of a table in the file, in bits: its place in the map, plus this much for each token in use.
 constexpr double kTableBits = 24, kTokenBits = 8;
 
-/// n log2 n, at hand for small n.
+/// n log2 n, tabulated for small n.
 double nLogN(std::uint32_t n) {
     static const std::array<double, 2048> kSmall = [] {
         std::array<double, 2048> all{};
@@ -39,7 +39,7 @@ double costOf(const Counts& counts) {
     return total == 0 ? 0 : total * std::log2(total) - own + kTableBits + used * kTokenBits;
 }
 
-/// Counts scaled to a sum of kProbabilityOne, nothing that occurs at 0, the escape always possible.
+/// Counts scaled to a sum of kProbabilityOne, with at least 1 for every token that occurs and for the escape.
 Frequencies normalised(const Counts& counts) {
     Frequencies out{};
     Counts wanted = counts;
@@ -54,7 +54,7 @@ Frequencies normalised(const Counts& counts) {
         out[at] = static_cast<std::uint16_t>(std::max(1.0, std::floor(share + 0.5)));
         sum += out[at];
     }
-    // Settle the rest where it costs or gains most per step.
+    // Distribute the remainder where it costs least or gains most per step.
     const int step = sum < int(kProbabilityOne) ? 1 : -1;
     const auto gainOf = [&](std::size_t t) {
         if (out[t] == 0 || (step < 0 && out[t] == 1)) return -1e300;
@@ -85,7 +85,7 @@ Model clustered(const Histogram& histogram, int mostTables) {
         }
         if (total > 0) all.push_back({histogram.counts[c], {c}, sum / total, costOf(histogram.counts[c])});
     }
-    // Similar contexts have similar means: only neighbours in that order are ever joined.
+    // Similar contexts have similar means, so only neighbours in the order of means are merged.
     std::vector<Group*> groups;
     for (Group& group : all) groups.push_back(&group);
     std::sort(groups.begin(), groups.end(), [](const Group* a, const Group* b) { return a->mean < b->mean; });
@@ -123,13 +123,13 @@ Model clustered(const Histogram& histogram, int mostTables) {
         for (const std::size_t c : groups[g]->contexts) model.tableOf[c] = static_cast<std::uint8_t>(g);
     }
     if (model.tables.empty()) model.tables.push_back(normalised(Counts{}));
-    // Contexts that were not seen take the table of the class below, which costs no bits in the map.
+    // Contexts without tokens take the table of the class below, which costs no bits in the map.
     std::uint8_t last = 0;
     for (std::size_t c = 0; c < model.tableOf.size(); ++c) {
         std::uint8_t& table = model.tableOf[c];
         const auto kind = model.tableOf.begin() + std::ptrdiff_t(c);
         if (model.contexts.byBand && c % kClasses == 0 && std::count(kind, kind + kClasses, kNone) == kClasses) {
-            // A kind of bands that was not seen takes those of the kind before.
+            // A kind of bands without tokens takes the tables of the kind before.
             if (c == 0)
                 std::fill_n(kind, kClasses, std::uint8_t(0));
             else
@@ -143,7 +143,7 @@ Model clustered(const Histogram& histogram, int mostTables) {
     return model;
 }
 
-/// The histogram in which all kinds of bands of a level are one.
+/// The histogram with all kinds of bands of a level merged.
 Histogram pooled(const Histogram& histogram) {
     Histogram pool(histogram.levels, {histogram.contexts.shift, false});
     for (int level = 0; level < histogram.levels; ++level)
@@ -155,7 +155,7 @@ Histogram pooled(const Histogram& histogram) {
     return pool;
 }
 
-/// The model of a pool, for contexts of which all kinds of bands of a level take the same tables.
+/// The model of a merged histogram, for contexts by band: all kinds of bands of a level use the same tables.
 Model spread(const Model& pool, Contexts contexts) {
     Model model{pool.levels, contexts, {}, pool.tables};
     for (int level = 0; level < pool.levels; ++level)
@@ -188,7 +188,7 @@ void Histogram::add(const Histogram& other) {
 Model makeModel(const Histogram& histogram, int mostTables) {
     Model model = clustered(histogram, mostTables);
     if (!histogram.contexts.byBand) return model;
-    // Of few samples the tables that bands of their own need are not worth their bytes.
+    // For few samples separate tables for bands cost more bytes than they save.
     constexpr double kFew = 1 << 20;
     double count = 0;
     for (const Counts& context : histogram.counts) count += std::accumulate(context.begin(), context.end(), 0.0);

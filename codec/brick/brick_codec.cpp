@@ -17,7 +17,7 @@ namespace {
 using volume::LatticeKind;
 using volume::ScalarType;
 
-/// Codes from the difference of each coarse sample from the one before.
+/// Undoes toDifferences: codes from differences to the previous coarse sample.
 template <class Word> void fromDifferences(std::span<const Band<Word>> bands) {
     std::uint32_t code = 0;
     forCoefficients(bands, [&](Word& word) {
@@ -93,11 +93,11 @@ DecodeStatus decodeLevels(const BrickFormat& format, std::span<const std::span<c
     return DecodeStatus::Ok;
 }
 
-/// A brick whose samples are one stream: coarse levels are made from all of them.
+/// Decodes a brick stored as one stream: coarse levels are computed from all samples.
 template <class Word>
 DecodeStatus decodeWhole(const BrickFormat& format, std::span<const std::byte> in, int level,
                          std::span<const std::uint8_t> present, DecodedBrick& out) {
-    // Every wavelet leaves a constant as it is.
+    // Wavelets preserve constants.
     if (const auto only = onlyCode(in); only && present.empty()) {
         const auto code = static_cast<Word>(static_cast<std::int32_t>(*only));
         for (int s = 0; s < format.sublattices(); ++s)
@@ -223,7 +223,7 @@ DecodeStatus decodeBrick(const BrickFormat& format, std::span<const std::span<co
     out.begin(format, level);
     out.present = maskAt(format, present, level);
     const bool narrow = out.narrow = fitsInt16(format, !present.empty());
-    // Where the extras come first, the mode of a brick of one level stands behind them.
+    // If the extra streams come first, the mode byte of a brick with one level follows them.
     std::span<const std::byte> first = segments[0];
     if (format.levels == 1) {
         if (const DecodeStatus status = decodeExtras(format, present, first, out); status != DecodeStatus::Ok)

@@ -12,7 +12,7 @@ namespace tessera::codec {
 
 namespace {
 
-// Below these bits a sample the matches that zstd finds are worth a glance at so many samples.
+// Below this many bits per sample a search for repetitions with zstd is tried on this many samples.
 constexpr double kTryWhole = 3.0;
 constexpr std::size_t kGlance = 1 << 14;
 constexpr double kGlanceAsShort = 1.5, kNearlyAsShort = 1.15, kPerhapsAsShort = 1.3; // the last before LZMA
@@ -61,7 +61,7 @@ Numbers numbersOf(const BrickFormat& format, std::span<const std::byte> samples,
     return numbers;
 }
 
-/// Each coarse sample as the difference from the one before.
+/// Replaces each coarse sample by its difference from the previous one.
 template <class Word> void toDifferences(std::span<const Band<Word>> bands) {
     std::uint32_t before = 0;
     forCoefficients(bands, [&](Word& word) {
@@ -77,7 +77,7 @@ template <class Word> std::vector<Band<const Word>> constBands(std::span<const B
     return out;
 }
 
-/// The tokens of a brick that has been taken apart.
+/// The tokens of a transformed brick.
 template <class Word>
 std::vector<TokenRun> levelTokens(const BrickFormat& format, Contexts contexts, BrickLevels<Word>& levels) {
     std::vector<TokenRun> runs;
@@ -90,8 +90,8 @@ std::vector<TokenRun> levelTokens(const BrickFormat& format, Contexts contexts, 
     return runs;
 }
 
-/// Whether most floats of a brick occur more than once, as in fields that mirror or repeat themselves. Looks at the
-/// values in one of sixteen classes of hashes, where it finds all that are equal.
+/// Whether most floats of a brick occur more than once, as in mirrored or repetitive fields. Examines the values in one
+/// of sixteen hash classes, which contains all values equal to each other.
 bool valuesRecur(std::span<const std::byte> samples, std::span<const std::uint8_t> present) {
     constexpr std::uint32_t kHash = 0x9E3779B1;
     constexpr std::size_t kFew = 256;
@@ -145,7 +145,7 @@ void tryWhole(const BrickFormat& format, std::span<const std::byte> samples, std
     codes.reserve(all.size());
     for (std::size_t i = 0; i < all.size(); ++i)
         if (present.empty() || present[i] != 0) codes.push_back(all[i]);
-    // Where a quick search for matches does about as well as bands, a longer one is worth its time.
+    // If a quick search for repetitions is about as short as bands, a thorough one is worth its time.
     if (!tryEffort(codes, kSomeEffort, compressor.triesLzma() ? kPerhapsAsShort : kNearlyAsShort)) return;
     (void)tryEffort(codes, effort, 1);
     if (double(whole.size()) >= (dense ? kWorthLevels : 1.0) * double(bytes)) return;

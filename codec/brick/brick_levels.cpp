@@ -19,7 +19,7 @@ template <class Word> void copyCorner(const Box<const Word>& from, const Box<Wor
         for (int y = 0; y < size.y; ++y) std::copy_n(from.row(y, z), size.x, to.row(y, z));
 }
 
-/// A box without gaps, for the transforms that know masks and floats.
+/// A box without padding, for the transforms that support masks and floats.
 struct Dense {
     std::vector<std::uint32_t> values;
     std::vector<std::uint8_t> present;
@@ -86,7 +86,7 @@ void split(const BrickFormat& format, const Number* numbers, std::span<const std
     const bool predicted = levels > 1 && format.predictsOdd(masked);
     out.resize(std::size_t((levels + 1) * step));
     for (int s = 0; s < step; ++s) {
-        // The last box, behind those of the levels, holds the samples that are taken apart next.
+        // The last box, after those of the levels, holds the samples of the next transform step.
         const auto box = [&](int level) -> LevelBox<Word>& { return out[std::size_t(level * step + s)]; };
         if (predicted && s == 1) break; // came with the other one
         LevelBox<Word>& whole = levels > 1 ? box(levels) : box(0);

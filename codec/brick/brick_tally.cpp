@@ -17,7 +17,7 @@ namespace {
 constexpr int kMostBins = 32;
 constexpr std::size_t kTurns = 4; ///< tables that are counted in by turns, as one would wait for the one before
 
-/// The numbers that are present and finite: those given, or `kept` with the others left out.
+/// The present, finite numbers: the input itself, or `kept` with the others removed.
 template <class T>
 std::span<const T> counting(std::span<const T> all, std::span<const std::uint8_t> present, std::vector<T>& kept) {
     const auto counts = [&](std::size_t i) {
@@ -35,11 +35,11 @@ std::span<const T> counting(std::span<const T> all, std::span<const std::uint8_t
     return kept;
 }
 
-/// What stored numbers stand for.
+/// Scale and offset of stored numbers.
 struct Meaning {
     double offset, scale;
 
-    /// As readers see it.
+    /// The decoded value.
     double valueOf(double number) const { return double(static_cast<float>(offset + scale * number)); }
     /// Whether every number of a type is its own value.
     template <class T> bool isPlain() const { return offset == 0 && scale == 1 && !std::same_as<T, std::int32_t>; }
@@ -63,7 +63,7 @@ template <class T> double sumOf(std::span<const T> numbers, const Meaning& meani
     return static_cast<double>(sum);
 }
 
-/// Which bin a stored number belongs in.
+/// Assigns stored numbers to bins.
 struct Binning {
     Meaning meaning;
     double min, extent;

@@ -41,7 +41,7 @@ bool reproduces(const FrameSamples& samples, const NumberCoding& coding, std::si
     return within && seen > 0 && failed * 256 <= seen;
 }
 
-/// k / 2^m: m from the lowest bit set in any finite sample, if the largest then stays below 2^29.
+/// k / 2^m, with m from the lowest bit set in any finite sample, if the largest k stays below 2^29.
 std::optional<NumberCoding> binaryFractions(const FrameSamples& samples) {
     int lowest = std::numeric_limits<int>::max(), highest = std::numeric_limits<int>::min();
     const bool fits = all(samples, 1, [&](float sample) {
@@ -56,7 +56,7 @@ std::optional<NumberCoding> binaryFractions(const FrameSamples& samples) {
     return NumberCoding{NumberKind::Scaled, 0, std::ldexp(1.0, -lowest)};
 }
 
-/// Of k / 10^d and k / 2^m the one with the smaller numbers k: any float has its decimals, if enough of them.
+/// Chooses k / 10^d or k / 2^m, whichever has smaller k: every float is a decimal, with enough digits.
 NumberCoding chooseLossless(const FrameSamples& samples) {
     const std::size_t stride = std::max<std::size_t>(1, samples.count() / 4096);
     std::optional<NumberCoding> best = binaryFractions(samples);

@@ -12,8 +12,8 @@ namespace {
 constexpr std::byte kWhole{5}, kPalette{6};
 constexpr std::size_t kMostColours = 256;
 
-/// The distinct codes in ascending order, as signed, and the place of each; none when there are too many for indices
-/// of one byte.
+/// The distinct codes in ascending order (signed), and the index of each; none if there are too many for one-byte
+/// indices.
 class Palette {
 public:
     explicit Palette(std::span<const std::uint32_t> codes) {
@@ -33,7 +33,7 @@ public:
         for (const std::uint32_t code : codes) places_[code - first_] = 1;
         const auto distinct = std::count(places_.begin(), places_.end(), std::uint8_t(1));
         if (distinct > std::ptrdiff_t(kMostColours)) return;
-        // With few gaps, a palette without any is shorter: all its steps are alike.
+        // With few gaps, a palette without gaps is shorter, since its steps are equal.
         const bool whole = distinct > 1 && range <= std::int64_t(kMostColours) && range - distinct <= kMostGaps;
         for (std::size_t i = 0; i < places_.size(); ++i) {
             if (places_[i] == 0 && !whole) continue;

@@ -14,7 +14,7 @@ namespace {
 
 enum Mode : std::uint8_t { kZero = 0, kConstant = 1, kPlanes = 2, kPlanesZstd = 3, kPlanesLzma = 7 };
 
-/// High bits of the byte before that LZMA may take as context: those worth a trial.
+/// Numbers of high bits of the previous byte that LZMA uses as context, in the order of trials.
 constexpr int kLiteralBits[] = {3, 0, 4};
 
 /// Plane p holds byte p of every symbol.
@@ -130,7 +130,7 @@ void encodeStream(std::span<const std::uint32_t> symbols, Compressor& compressor
     Mode mode = smaller ? kPlanesZstd : kPlanes;
     int literalBits = 0;
     for (const int tried : kLiteralBits) {
-        // Where one choice of context does not help, the others will not.
+        // If one context does not help, others will not either.
         if (!compressor.triesLzma() || (tried != kLiteralBits[0] && mode != kPlanesLzma)) break;
         Bytes lzma = encodeLzma(planes, tried);
         if (lzma.size() + 1 >= best.size()) continue;

@@ -8,7 +8,7 @@ namespace tessera::codec {
 
 namespace {
 
-/// What the pieces of most archives hold; part of the format.
+/// Dictionary of strings common in archives; part of the format.
 constexpr char kDictionary[] =
     "\0\0\0\0\xc2\x94\xd3\x38\x05\x80\x06\x2d" // an empty segment
     "\0\0\0\0\0\0\xf0\x3f"                     // 1.0

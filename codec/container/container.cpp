@@ -11,7 +11,7 @@ namespace tessera::codec {
 
 namespace {
 
-// Not text, and damaged by every well-meant conversion of line ends.
+// Not text; any conversion of line ends damages it.
 constexpr std::array<std::uint8_t, 8> kMagic{0x89, 'T', 'S', 'R', 0x0d, 0x0a, 0x1a, 0x0a};
 
 /// One copy of the header at the front of `bytes`; `at` is where it lies.

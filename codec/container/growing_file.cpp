@@ -14,7 +14,7 @@ namespace tessera::codec {
 
 namespace {
 
-/// Makes the names in the folder of a file last. Best effort: not every file system can.
+/// Flushes the directory of a file to disk. Best effort: not every file system supports it.
 void syncFolderOf(const std::string& path) {
     const std::filesystem::path folder = std::filesystem::path(path).parent_path();
     const int file = ::open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
@@ -49,7 +49,7 @@ GrowingFile::GrowingFile(const std::string& path, const Header& header)
         if (::ftruncate(::fileno(file_), static_cast<off_t>(header.fileSize)) != 0 ||
             std::fseek(file_, 0, SEEK_END) != 0)
             fail();
-        // A crash may have left one copy damaged. Writing bytes over the same bytes does no harm to the other.
+        // A crash may have damaged one copy. Rewriting the other one with the same bytes is safe.
         const Bytes bytes = serialise(header);
         for (int copy = 0; copy < 2; ++copy) {
             if (::pwrite(::fileno(file_), bytes.data(), bytes.size(), copy * off_t(kHeaderBytes)) !=
@@ -81,7 +81,7 @@ void GrowingFile::fail() const {
 void GrowingFile::lock() {
     if (::flock(::fileno(file_), LOCK_EX | LOCK_NB) == 0) return;
     if (errno == EWOULDBLOCK) throw Error("another program is writing this archive", path_);
-    // A file system without locks: go on without.
+    // A file system without locks: continue without one.
 }
 
 void GrowingFile::sync() {
@@ -93,7 +93,7 @@ void GrowingFile::append(std::span<const std::byte> bytes) {
     position_ += bytes.size();
 }
 
-/// The second copy first, as readers read the first one first: whenever they look, one of the two they see is whole.
+/// Writes the second copy first, since readers read the first one first: at any time one of the two is complete.
 void GrowingFile::writeHeaders(const Header& header) {
     sync();
     const Bytes bytes = serialise(header);

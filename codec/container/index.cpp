@@ -20,7 +20,7 @@ std::uint16_t to16(double part) {
     return static_cast<std::uint16_t>(std::lround(std::clamp(part, 0.0, 1.0) * kMost16));
 }
 
-/// The share of an RMS in a maximum, rounded up.
+/// RMS / maximum, rounded up.
 std::uint16_t shareOf(const volume::BrickChange& change) {
     if (!(change.max > 0)) return 0;
     if (!std::isfinite(change.max)) return std::uint16_t(kMost16);
@@ -54,8 +54,8 @@ public:
         const std::uint64_t times = grows ? in_.get<std::uint32_t>() : 0;
         const std::uint64_t masks = in_.get<std::uint32_t>(), frames = in_.get<std::uint32_t>();
         const std::uint64_t models = hasModels ? in_.get<std::uint32_t>() : 0, bricks = shape_.bricks;
-        // No number here exceeds what the bytes of the page can hold, so nothing below overflows, and what is allocated
-        // is some times those bytes. Decoded ones are more than the file has; mostPageBytes limits them.
+        // No number here exceeds the capacity of the page's bytes, so nothing below overflows, and allocations are a
+        // constant factor of those bytes. Decoded pages can be larger than the file; mostPageBytes limits them.
         require(bricks <= room, "the index is too short", file_);
         const std::uint64_t maskBytes = kMaskRecordBytes + bricks * kMaskBrickBytes;
         const std::uint64_t frameBytes = kFrameRecordBytes + (hasModels ? kFrameModelBytes : 0) +
@@ -169,7 +169,7 @@ private:
     const std::string& file_;
 };
 
-/// The pages from the last, which the header names, to the first; here the first comes first.
+/// Reads the pages from the last, which the header names, to the first; returned in order of the file.
 std::vector<IndexPage> readPages(std::span<const std::byte> bytes, const Header& header, const IndexShape& shape,
                                  const std::string& file, std::vector<Block>& places, std::uint64_t& pageBytes) {
     std::vector<IndexPage> pages;
@@ -222,7 +222,7 @@ void takeTallies(const Index& index, const IndexShape& shape, IndexPage& page, c
     require(in.atEnd(), "statistics of bricks do not fill the index", file);
 }
 
-/// A brick that repeats another has no bytes of its own, the other one has.
+/// Requires that a brick which repeats another has no bytes of its own, and that the other one has.
 void requireRepeats(const Index& index, const IndexShape& shape, const std::string& file) {
     for (std::size_t f = 0; f < index.frames.size(); ++f) {
         const FrameRecord& frame = index.frames[f];
@@ -238,7 +238,7 @@ void requireRepeats(const Index& index, const IndexShape& shape, const std::stri
     }
 }
 
-/// Chunks, pages and metadata, former ones too, touch each other from the first chunk to the end of the file.
+/// Requires that chunks, pages and all metadata fill the file from the first chunk to its end without gaps.
 void requireFilled(const Index& index, const Header& header, const std::string& file) {
     std::vector<std::pair<std::uint64_t, std::uint64_t>> parts;
     const auto add = [&](const auto& part) {

@@ -56,7 +56,7 @@ json quantityJson(const volume::Quantity& quantity) {
     return {{"name", quantity.name}, {"unit", quantity.unit}, {"values", std::move(values)}};
 }
 
-/// A place in the document, for messages, and typed access below it.
+/// A node of the document with typed access, and its path for messages.
 class Node {
 public:
     Node(const json& value, std::string path, const std::string& file)
@@ -106,7 +106,7 @@ private:
     const std::string& file_;
 };
 
-/// `alternating`: where to note that the frames form a D4* lattice; null: that is no lattice here.
+/// `alternating`: set if the frames form a D4* lattice; null: that is not allowed here.
 volume::Lattice readLattice(const Node& node, bool* alternating = nullptr) {
     volume::Lattice lattice;
     const std::string kind = node["kind"].text();

@@ -46,7 +46,7 @@ struct FromJson {
     }
 };
 
-/// What of `all` is not in `defaults`.
+/// The entries of `all` that differ from `defaults`.
 json difference(const json& all, const json& defaults) {
     json out = json::object();
     for (const auto& [key, value] : all.items()) {

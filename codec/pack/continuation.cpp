@@ -103,7 +103,7 @@ bool sameSamples(const volume::Field& a, const volume::Field& b) {
     return true;
 }
 
-/// The label, as packing would store it, is that of the archive at all times.
+/// Requires that the label, as packing would store it, equals that of the archive at all times.
 void requireSameLabel(const volume::Dataset& source, int label, const Archive& archive) {
     const Metadata& metadata = archive.metadata();
     const Parameter& added = source.info.parameters[std::size_t(label)];

@@ -14,7 +14,7 @@ namespace tessera::codec {
 
 namespace {
 
-/// Root of the mean of `squareOf(part, i)` over samples that it gives a number for.
+/// Square root of the mean of `squareOf(part, i)` over the samples for which it returns a number.
 template <class SquareOf> double rmsOf(const FrameSamples& samples, SquareOf&& squareOf) {
     double squares = 0, count = 0;
     samples.forSlabs([&](const volume::Field& part, Slab) {
@@ -48,7 +48,7 @@ struct NumberCounts {
     double most() const { return counts.empty() ? 0 : counts.back().first; }
 };
 
-/// Of 32 bits and many different numbers those of the first and of some others, which stand for all.
+/// For 32-bit types with many different numbers, counts a part of them, which represents all.
 NumberCounts countNumbers(const FrameSamples& samples) {
     constexpr std::size_t kMost = 1 << 20; // samples of 32 bits that are looked at
     const std::size_t stride = samples.type() == volume::ScalarType::I32 ? samples.count() / kMost + 1 : 1;
@@ -86,8 +86,8 @@ NumberCounts countNumbers(const FrameSamples& samples) {
     return out;
 }
 
-/// The largest step, of all small ones and of some of the others (0.14 dB apart), that keeps the root of the mean
-/// square error. Beyond four times that error none is looked for.
+/// The largest step, among all small ones and some of the others (0.14 dB apart), whose RMS error is at most `wanted`.
+/// Searches up to four times that error.
 std::int64_t largestStep(volume::ScalarType type, const NumberCounts& counts, double wanted) {
     constexpr std::int64_t kMost = 1 << 29, kEvery = 64;
     constexpr double kFar = 4;
@@ -106,9 +106,8 @@ FrameBound integerBoundForPsnr(const FrameSamples& samples, double wanted) {
     return {double(step / 2), step};
 }
 
-/// The coarsest bound on the error of floats that gives a root mean square error of at most `wanted`, by trial on the
-/// frame itself: where many samples lie on multiples of any step, as those of a background do, far more than an even
-/// spread would allow.
+/// The coarsest error bound for floats with an RMS error of at most `wanted`, by trial on the frame: where many samples
+/// are multiples of any step, as in a background, it is far larger than for uniformly distributed errors.
 double floatBoundForPsnr(const FrameSamples& samples, double wanted, double extent) {
     constexpr int kTrials = 40;
     constexpr double kClose = 0.97, kLargestStep = 16; // of the wanted error: 0.26 dB; of a bound from trial to trial

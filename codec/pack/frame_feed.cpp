@@ -107,7 +107,7 @@ void FrameFeed::readWhole(FeedStep& step, const volume::Parameter& parameter) {
     }
 }
 
-/// Reads the frame once for what has to be known of it as a whole, and again slab by slab.
+/// Reads the frame once for properties of the whole, and again slab by slab.
 void FrameFeed::readSlabs(FeedStep& step, const volume::Parameter& parameter) {
     const auto slicesOf = [&](int component, int first, int count) {
         if (stop_.stop_requested()) throw Cancelled();

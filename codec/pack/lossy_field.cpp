@@ -14,7 +14,7 @@ namespace tessera::codec {
 
 namespace {
 
-/// One sublattice of a brick taken apart.
+/// One transformed sublattice of a brick.
 struct Part {
     glm::ivec3 size{0};
     std::vector<std::uint32_t> codes;
@@ -40,7 +40,7 @@ Part takePart(const BrickFormat& format, std::span<const std::uint32_t> codes, s
     return part;
 }
 
-/// Calls `visit(place)` for every present detail of a part that was taken apart.
+/// Calls `visit(place)` for every present detail of a transformed sublattice.
 template <class Visit> void forDetails(const Part& part, glm::ivec3 low, Visit&& visit) {
     std::size_t i = 0;
     for (int z = 0; z < part.size.z; ++z)
@@ -60,7 +60,7 @@ template <class T> T heldWithin(const NumberCoding& numbers, std::uint32_t code)
     }
 }
 
-/// Gives up details of one brick, whose samples become those that are left; `value` in codes.
+/// Thresholds the details of one brick and updates its samples; `value` in codes.
 void thresholdBrick(const BrickFormat& format, Threshold kind, double value, BrickInput& input) {
     if (format.numbers.kind == NumberKind::Float || format.levels < 2 || !(value > 0)) return;
     volume::dispatch(format.type, [&]<class T>(T) {
@@ -68,7 +68,7 @@ void thresholdBrick(const BrickFormat& format, Threshold kind, double value, Bri
         std::memcpy(samples.data(), input.samples.data(), input.samples.size());
         std::vector<std::uint32_t> codes;
         for (const T sample : samples) codes.push_back(codeOf(format.numbers, sample));
-        // What has no code is stored beside them, exactly.
+        // Samples without a code are stored exactly.
         const auto coded = [&](std::size_t i) {
             if constexpr (std::same_as<T, float>)
                 return close(format.numbers, 0, samples[i], sampleOf<float>(format.numbers, codes[i]));
@@ -117,7 +117,7 @@ double largestError(volume::ScalarType type, const BrickInput& before, const Bri
     return largest;
 }
 
-/// The coding of a frame to threshold: finer than the bound, so that something of it is left for the details.
+/// The coding of a frame for thresholding: finer than the bound, to leave room for the details.
 NumberCoding codingFor(const FrameSamples& samples, double maxError) {
     if (samples.type() != volume::ScalarType::F32) return {};
     if (maxError > 0) return chooseCoding(samples, maxError / 2);

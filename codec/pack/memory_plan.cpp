@@ -26,14 +26,14 @@ bool isSpline(const volume::ResampleOptions& options) {
     return options.filter == volume::ResampleFilter::BSpline3 || options.filter == volume::ResampleFilter::BSpline5;
 }
 
-/// What resampling has beside source and result, for each sample of the source.
+/// Working memory of resampling in addition to source and result, in bytes per source sample.
 double workingBytes(const volume::ResampleOptions& options) {
     constexpr double kLines = 1.25; // lines being filtered, and what the allocator keeps of them
     return (isSpline(options) ? kLines * double(sizeof(double)) : 0) +
            (options.sharpen > 0 ? double(sizeof(float)) + 1 : 0);
 }
 
-/// Bytes that packing in slabs takes.
+/// Memory of packing in slabs, in bytes.
 class SlabCosts {
 public:
     SlabCosts(const Metadata& metadata, const volume::DatasetInfo& source, const PackOptions& options)
@@ -43,7 +43,7 @@ public:
           sourceSlice_(double(source.lattice.size.x) * source.lattice.size.y),
           slice_(double(metadata.info.lattice.size.x) * metadata.info.lattice.size.y) {}
 
-    /// Whatever the number of layers is; of one parameter.
+    /// For one parameter, independent of the number of layers.
     double always(const volume::Parameter& parameter) const {
         // Bricks under way: samples, flags, codes and coefficients on every thread, and the bytes of a batch.
         constexpr double kThreads = 16, kCodes = 12;
@@ -66,7 +66,7 @@ public:
                                   2 * volume::kMostOrder;
             const double coefficients = isSpline(options_.resample) ? sizeof(double) : 0,
                          edges = options_.resample.sharpen > 0 ? 2 * (d4_ ? sizeof(float) + 1 : bytes) : 0;
-            // Of D4* a sum of floats is resampled, of as many frames as the filter spans.
+            // On D4* a sum of floats is resampled, of as many frames as the filter spans.
             const double blended = d4_ ? sizeof(float) + 1 : bytes;
             const double read = d4_ ? volume::framesSpanned(options_.resample) * bytes + blended : bytes;
             made = sourceSlice_ * std::min(slices, double(source_.lattice.size.z)) *
@@ -75,7 +75,7 @@ public:
         }
         return std::max(made, (stored + around) * (bytes + kSmoothed));
     }
-    /// Of a slice while a frame is looked through for its ranges, or prefiltered.
+    /// For a slice while a frame is scanned for its ranges, or prefiltered.
     double ofSlice(const volume::Parameter& parameter) const {
         const double bytes = double(volume::byteSize(parameter.type)) + 1;
         return sourceSlice_ *
@@ -95,8 +95,8 @@ void refuse(double least, double limit) {
                 " MB, the limit of memory is " + std::to_string(std::lround(limit / kMega)) + " MB");
 }
 
-/// As many layers as fit, or `layers` where that is not 0, and slices that take no more. `whole`: what whole frames
-/// take.
+/// A plan with as many layers as fit (or `layers`, if not 0), and slices that need no more memory. `whole`: the memory
+/// for whole frames.
 MemoryPlan planSlabs(const Metadata& metadata, const volume::DatasetInfo& source, const PackOptions& options,
                      int layers, double whole, double limit) {
     const SlabCosts costs(metadata, source, options);

@@ -19,7 +19,7 @@ template <class Visit> void forBricksOf(const volume::MergedBrick& box, Visit&& 
             for (at.x = box.begin.x; at.x < box.end.x; ++at.x) visit(at);
 }
 
-/// Boxes of one frame on their way to be coded.
+/// Boxes of one frame to be coded.
 struct BoxesOfFrame {
     const volume::BrickGrid& grid;
     const volume::Field& field;
@@ -33,7 +33,7 @@ struct BoxesOfFrame {
         return format;
     }
 
-    /// The tables of the archive, or new ones where those come out shorter in spite of their own bytes.
+    /// The tables of the archive, or new ones if these are shorter including their own bytes.
     Model modelFor(std::span<const volume::MergedBrick> boxes, const std::vector<std::uint8_t>& wanted,
                    const Model& known, std::uint64_t& bytes) const {
         constexpr int kMostTables = 24;

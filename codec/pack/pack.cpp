@@ -36,8 +36,8 @@ int defaultLevels(const volume::Lattice& lattice, int brickSize) {
     return levels;
 }
 
-/// The edge of bricks, where options leave it to us: samples that repeat themselves, which only integers that were not
-/// resampled do, are found within a brick alone. What grows keeps its bricks.
+/// The automatic edge of bricks. Repetition, which only integers that were not resampled have, is found only within a
+/// brick, so these get one large brick. Archives that grow keep their brick size.
 int brickSizeFor(const volume::Lattice& lattice, const volume::DatasetInfo& info, const PackOptions& options,
                  const Archive* grown) {
     constexpr int kUsual = 64, kLargest = 128;
@@ -70,12 +70,13 @@ bool hasThreshold(const PackOptions& options) {
     return options.threshold.kind != ThresholdChoice::None && options.threshold.value > 0;
 }
 
-/// No sample that is kept changes.
+/// Whether the options keep all samples exactly, except in omitted bricks.
 bool isExact(const PackOptions& options) {
     return options.maxError == 0 && options.absError == 0 && options.psnr == 0 && !hasThreshold(options);
 }
 
-/// A bound relative to the range of all times needs a pass of its own; one time is read once.
+/// Whether the error bound is relative to the range of all times, which needs a pass of its own; a single time is read
+/// once.
 bool isRelative(const PackOptions& options) {
     return options.maxError > 0 || options.psnr > 0 || hasThreshold(options) || options.discard > 0;
 }
@@ -92,7 +93,7 @@ void check(const volume::DatasetInfo& source, const PackOptions& options) {
         throw Error("the data lies on BCC; it cannot be packed as CC");
 }
 
-/// The slabs of a plan; none where frames are read whole.
+/// The slabs of a plan; none if frames are read whole.
 SlabReading slabsOf(const MemoryPlan& plan, const SlabInput& slabs, const volume::SliceMaker& ofD4,
                     const std::string& path) {
     if (plan.slabLayers == 0) return {};
@@ -100,7 +101,7 @@ SlabReading slabsOf(const MemoryPlan& plan, const SlabInput& slabs, const volume
     return {ofD4 ? ofD4(plan.slabStep, folder) : slabs.slices, plan.slabStep, {plan.slabLayers, folder}};
 }
 
-/// Gives up details of a frame, of the least important bricks the most.
+/// Thresholds the details of a frame, most strongly in the least important bricks.
 Thresholded giveUp(FrameSamples& samples, const volume::BrickGrid& grid, const FrameOptions& frame,
                    const ThresholdOptions& options, double extent) {
     std::vector<float> strength(brickCount(grid), 1);
@@ -116,7 +117,7 @@ Thresholded giveUp(FrameSamples& samples, const volume::BrickGrid& grid, const F
     return giveUpDetails(grid, samples, frame.wavelet.value_or(Wavelet::W22), kind, value, strength, frame.maxError);
 }
 
-/// Makes every sample of the bricks that are left out absent.
+/// Makes every sample of the omitted bricks absent.
 void leaveOut(FrameSamples& samples, const volume::BrickGrid& grid, const std::vector<std::uint8_t>& discarded) {
     if (std::find(discarded.begin(), discarded.end(), std::uint8_t(1)) == discarded.end()) return;
     samples.change([&](Field& part, Slab slab) {
@@ -132,7 +133,7 @@ void leaveOut(FrameSamples& samples, const volume::BrickGrid& grid, const std::v
     });
 }
 
-/// Quantities at the times that D4* frames are made of: those of the source, before it those of the archive.
+/// Quantities at the source times of D4* frames: those of the source, preceded by those of the archive.
 std::vector<volume::Quantity> quantitiesOf(const volume::DatasetInfo& source, const std::vector<double>& times,
                                            const Archive* grown) {
     const std::size_t old = grown ? grown->metadata().sourceTimes.size() : 0;
@@ -145,7 +146,7 @@ std::vector<volume::Quantity> quantitiesOf(const volume::DatasetInfo& source, co
 /// One run of pack or append.
 class Packing {
 public:
-    /// Into a new archive, or behind what is in `grown`, whose options `options` are then.
+    /// Packs into a new archive, or appends to `grown`, whose options are then `options`.
     Packing(volume::Dataset& source, const SlabInput& slabs, const PackedAgain& before, const PackOptions& options,
             const std::string& path, const Archive* grown)
         : source_(source), dataset_(source), options_(options), path_(path), grown_(grown) {
@@ -190,7 +191,7 @@ public:
     }
 
     PackSummary run(const Progress& progress);
-    /// How large the archive would be at various bounds; the source knows its ranges then.
+    /// Estimated sizes of the archive at several bounds; sets the ranges of the source.
     std::vector<SizeAtBound> estimate(const Progress& progress);
 
 private:
@@ -219,7 +220,7 @@ private:
     PackSummary summary_;
 };
 
-/// What has to be known of all times before the first is coded.
+/// Gathers what must be known of all times before the first one is coded.
 void Packing::gather(const Progress& progress) {
     if (isRelative(options_) && (times() > 1 || grown_)) {
         gatherAllRanges(dataset_, reading_, summary_, progress);
@@ -229,7 +230,7 @@ void Packing::gather(const Progress& progress) {
         discarded_ = bricksToDiscard(dataset_, reading_, options_, summary_, progress.part(0.8, 1));
 }
 
-/// With the ranges known so far; a reader may come at any time.
+/// Metadata with the ranges known so far, since the archive is readable at any time.
 Metadata Packing::soFar(std::size_t wholeTimes) const {
     volume::DatasetInfo read = dataset_.info;
     settleRanges(read, ranges_);
@@ -258,7 +259,7 @@ void Packing::addFrame(ArchiveWriter& writer, FrameSamples& samples, int paramet
     frame.importance = options_.importance;
     if (options_.bccTransform != BccTransform::Auto)
         frame.bodyCentred = options_.bccTransform == BccTransform::BodyCentred;
-    // Bounds refer to the range of the whole archive, where that is known by now.
+    // Bounds refer to the range of the whole archive, if it is known.
     const volume::Parameter& whole =
         grown_ && isRelative(options_) ? metadata_.info.parameters[std::size_t(place_.parameterOf[p])] : about;
     const std::vector<Range>& known = whole.ranges.empty() ? ranges_[p] : whole.ranges;
@@ -276,7 +277,7 @@ void Packing::addFrame(ArchiveWriter& writer, FrameSamples& samples, int paramet
         frame.numbers = left.numbers;
         frame.maxError = std::max(frame.maxError, left.maxError);
         frame.spent = left.maxError;
-        // Bricks of floats may repeat earlier ones within what is left.
+        // Bricks of floats may repeat earlier ones within the remaining part of the bound.
         const bool mayRepeat = left.numbers.kind == NumberKind::Quantised && place_.firstTime + time > 0;
         error = (mayRepeat ? frame.maxError : left.maxError) * scale;
     } else if (frame.maxError > 0 && samples.type() != ScalarType::F32) {

@@ -8,7 +8,7 @@ namespace tessera::codec {
 
 namespace {
 
-/// Reads everything once, one parameter at a time of the data set after the other.
+/// Reads everything once, time by time and parameter by parameter.
 template <class Visit>
 void forSteps(volume::Dataset& dataset, const FeedOptions& reading, const char* what, const Progress& progress,
               Visit&& visit) {

@@ -19,7 +19,7 @@ namespace {
 
 constexpr double kLargestBound = 0.25;
 
-/// A file that disappears with the object.
+/// A temporary file that is removed by the destructor.
 struct Scratch {
     std::string path;
     explicit Scratch(std::string name) : path(std::move(name)) {}
@@ -67,7 +67,7 @@ double nextBound(const std::vector<SizeAtBound>& curve, const std::optional<Size
     return above ? std::max({guess, kLeastStep * trial.bound, kFinest}) : std::min(guess, trial.bound / kLeastStep);
 }
 
-/// Adds to each point about what a part of a frame takes, `times` times.
+/// Adds to each point the estimated bytes of a part of a frame, `times` times.
 void addEstimates(const volume::BrickGrid& grid, const volume::Field& part, const volume::Parameter& parameter,
                   const PackOptions& options, SizeControl control, std::size_t bricks, double times,
                   std::vector<SizeAtBound>& curve) {
@@ -89,7 +89,7 @@ void addEstimates(const volume::BrickGrid& grid, const volume::Field& part, cons
     }
 }
 
-/// The same of a frame; of one in a scratch file two layers of bricks stand for all.
+/// The same for a frame; for one in a scratch file, two brick layers represent all.
 void addEstimates(const volume::BrickGrid& grid, const FrameSamples& samples, const volume::Parameter& parameter,
                   const PackOptions& options, SizeControl control, double times, std::vector<SizeAtBound>& curve) {
     constexpr std::size_t kBricks = 8;
@@ -195,7 +195,8 @@ PackSummary packToSize(const PackOptions& asked, SizeControl control, const std:
         if (came.bound == 0 || came.bytes >= kFull * wanted) break;
         if (above && below && below->bound <= kSame * above->bound) break;
     }
-    // Sizes of integers do not fall steadily with the step: one or two finer than the last that was too large may fit.
+    // Sizes of integers do not fall monotonically with the step: one or two steps finer than the last that was too
+    // large may fit.
     const bool steps = control == SizeControl::Psnr && above && double(found.archiveBytes) < kFull * wanted;
     for (int n = 1; steps && n <= kNeighbours; ++n)
         if (attempt(above->bound / std::pow(kNextStep, n)).bytes <= wanted) break;

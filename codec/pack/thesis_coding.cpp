@@ -47,7 +47,7 @@ std::vector<std::int32_t> along(int axis, const Part& part, glm::ivec3 size, std
     return out;
 }
 
-/// Bytes of a band as runs: of its bytes, or where details are larger of planes of their three low bytes.
+/// Bytes of a band as run lengths: of its bytes, or, if details are larger, of planes of their three low bytes.
 std::size_t runBytes(std::span<const std::int32_t> details) {
     const bool wide = std::any_of(details.begin(), details.end(), [](std::int32_t d) { return d < -128 || d > 127; });
     std::size_t sum = 0;
@@ -81,7 +81,7 @@ ThesisResult thesisCode(const volume::Field& field, const ThesisCoding& coding) 
     const glm::ivec3 low = levelSize(size, coding.levels);
     result.bytes = std::size_t(low.x) * std::size_t(low.y) * std::size_t(low.z) * volume::byteSize(field.type);
     const std::vector<Part> bands = detailBands(size, coding.levels);
-    // A quantile is one of all details of the field.
+    // A quantile refers to all details of the field.
     std::vector<std::size_t> places;
     std::vector<std::int32_t> details;
     for (const Part& part : bands)

@@ -26,8 +26,8 @@ int channelOf(const volume::DatasetInfo& info, int parameter, int component) {
     throw Error("no such component");
 }
 
-/// A level of one sublattice as a field on a CC lattice of its own: coarse samples of a BCC lattice lie where fine ones
-/// of their sublattice lie, so the two sublattices of a level no longer form a BCC lattice.
+/// A level of one sublattice as a field on its own CC lattice: coarse samples of BCC coincide with fine ones of their
+/// sublattice, so the two sublattices of a level do not form a BCC lattice.
 Field levelField(const volume::BrickSource& source, int channel, int time, int level, int sublattice) {
     const volume::BrickGrid& grid = source.grid();
     const bool bcc = grid.lattice.kind == LatticeKind::BCC;
@@ -59,7 +59,8 @@ Field levelField(const volume::BrickSource& source, int channel, int time, int l
     return field;
 }
 
-/// The mean of two fields on one grid where both are present and of one part, else the first that is.
+/// The mean of two fields on the same grid where both are present and in the same part, else the value of the first one
+/// present.
 Field meanOf(const Field& a, const Field& b) {
     Field out = a;
     volume::Mask mask(a.count(), 1);
@@ -116,13 +117,13 @@ volume::Series storedSeries(std::shared_ptr<const Archive> archive, int paramete
 
 namespace {
 
-/// The times that D4* frames were made of, and what belongs to them.
+/// Sets the source times of D4* frames, and their quantities.
 void atSourceTimes(volume::DatasetInfo& info, const Archive& archive) {
     info.times = archive.metadata().sourceTimes;
     info.quantities = archive.metadata().sourceQuantities;
 }
 
-/// Level 0 of D4* frames at the times they came from.
+/// Level 0 of D4* frames at the source times.
 volume::Dataset steadyDataset(std::shared_ptr<const Archive> archive, const Lattice& target,
                               volume::TimeFilter filter) {
     volume::Dataset dataset;
