@@ -74,7 +74,7 @@ private:
         return {i + (up ? 0 : share), j + (up ? share : 0)};
     }
 
-    /// From an edge to the other end, or around; what is passed is not met again.
+    /// Follows a line from an edge to its other end, or around a ring, and marks the edges passed.
     ContourLine follow(int from) {
         ContourLine line{level_, {}};
         std::optional<int> edge = from;

@@ -19,7 +19,7 @@ namespace {
 enum class Kind { Mean, Min, Max, Deviation, Share, Volume, Integral };
 constexpr std::array<std::string_view, 7> kKinds = {"mean", "min", "max", "deviation", "share", "volume", "integral"};
 
-/// What a name of a formula stands for.
+/// The meaning of a name in a formula.
 struct Term {
     enum class What { Time, Quantity, Statistic } what = What::Time;
     int index = 0; ///< of the quantity, or of the channel
@@ -213,7 +213,7 @@ CellQuantities cellQuantities(const DatasetInfo& info) {
     std::vector<Quantity> known = info.quantities;
     known.push_back({info.timeName, info.timeUnit, info.times}); // a series by voltage
     CellQuantities cell;
-    // A stated unit says more than a name.
+    // A stated unit takes precedence over a name.
     for (const bool byUnit : {true, false})
         for (const Quantity& quantity : known) {
             const std::string name = lower(quantity.name);

@@ -11,13 +11,13 @@ namespace tessera::volume {
 
 namespace {
 
-/// A histogram that takes parts of samples.
+/// A histogram of fractional samples.
 class NotedBins {
 public:
     NotedBins(Range range, int bins)
         : range_(range), width_(range.hi > range.lo ? range.hi - range.lo : 1), mass_(std::size_t(bins), 0.0) {}
 
-    /// The samples of a brick: in each of its bins spread over the values that may occur there.
+    /// Adds the samples of a brick: in each of its bins spread over the values that can occur there.
     void add(const BrickDistribution& brick) {
         constexpr double kFewValues = 64; // in a bin; more are as good as a continuum
         const double lo = brick.range.lo, extent = brick.range.hi - lo, bins = double(brick.counts.size());
@@ -39,7 +39,7 @@ public:
         }
     }
 
-    /// Rounded so that what is left over goes to the next bin.
+    /// Rounds the bins; the remainder of each is carried to the next.
     Histogram histogram() const {
         Histogram out;
         out.range = range_;

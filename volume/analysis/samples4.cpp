@@ -12,7 +12,7 @@ namespace tessera::volume {
 
 namespace {
 
-/// Well-mixed 32 bits of a number (SplitMix64's finaliser).
+/// 32-bit hash of a number (SplitMix64's finaliser).
 std::uint32_t mixed(std::uint64_t x) {
     x = (x ^ x >> 30) * 0xbf58476d1ce4e5b9ull;
     x = (x ^ x >> 27) * 0x94d049bb133111ebull;

@@ -74,13 +74,13 @@ private:
         return set;
     }
 
-    /// Bins of values of which NaN is in none. Without branches: the compiler makes vector instructions of it.
+    /// Bins of values; NaN is in none. Without branches, so that the compiler vectorises it.
     void findBins(std::size_t channel, const std::vector<float>& values, std::vector<std::uint16_t>& bins) const {
         const double lo = ranges_[channel].lo, hi = ranges_[channel].hi, width = hi > lo ? hi - lo : 1;
         const double count = query_.bins, last = count - 1;
         for (std::size_t i = 0; i < values.size(); ++i) {
             const double value = double(values[i]);
-            // Multiplied first: a border between bins that is a whole number stays one.
+            // Multiply first, so that integer borders between bins stay integers.
             const double bin = std::min((std::min(std::max(value, lo), hi) - lo) * count / width, last);
             bins[i] = std::uint16_t(int(value >= lo && value <= hi ? bin : count));
         }
@@ -162,7 +162,7 @@ private:
                 if (columns[c].present[i] == 0) continue;
                 const double weight = query_.doi ? double(inside[i]) : 1.0;
                 sums.inside[c].add(columns[c].value[i], shifts_[c], cell[i], weight);
-                // What is just half in is in: one of both has the sample's value in its range.
+                // Values exactly half-way are inside.
                 sums.outside[c].add(columns[c].value[i], shifts_[c], cell[i],
                                     weight == 0.5 ? std::nextafter(0.5, 0.0) : 1 - weight);
             }
@@ -220,7 +220,7 @@ private:
         return means;
     }
 
-    /// Leaves out the bins that take what belongs in none; `rows` is 1 or the number of bins.
+    /// Removes the extra bins for values that belong in none; `rows` is 1 or the number of bins.
     void unpack(const Bins& bins, int rows, std::vector<std::uint64_t>& count, std::vector<double>& focus) const {
         for (int row = 0; row < rows; ++row)
             for (int bin = 0; bin < query_.bins; ++bin) {

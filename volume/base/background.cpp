@@ -22,7 +22,7 @@ void workInBackground() {
     constexpr int kNiceness = 10;
     const auto thread = id_t(gettid());
     if (getpriority(PRIO_PROCESS, thread) >= kNiceness) return; // as it began: not to be raised
-    // Where the system refuses, it works as before.
+    // If the system refuses, priorities stay as they are.
     [[maybe_unused]] const int refused = setpriority(PRIO_PROCESS, thread, kNiceness);
 }
 

@@ -62,7 +62,7 @@ struct Sums {
     }
     BrickImportance result() const {
         if (weight == 0) return {};
-        // What is below these is the rounding of floats.
+        // Smaller numbers are rounding errors of floats.
         constexpr double kLeastVariance = 1e-12, kLeastDetail = 1e-6;
         const double mean = value / weight, variance = square / weight - mean * mean;
         const double detail = axes > 0 ? std::sqrt(details / axes) : 0.0;
@@ -71,7 +71,7 @@ struct Sums {
     }
 };
 
-/// Sum of the squares of what is left of `count` samples when the means of those a step before and behind are taken.
+/// Sum of squared differences of `count` samples from the mean of the samples a step before and after.
 double squaresOfDetails(const float* row, std::ptrdiff_t step, int count) {
     constexpr int kTurns = 8; // as one sum would wait for the one before
     std::array<float, kTurns> sums{};
@@ -90,7 +90,7 @@ double squaresOfDetails(const float* row, std::ptrdiff_t step, int count) {
     return sum;
 }
 
-/// Adds a row of a brick of which everything is there; `border`: all of it lies on a face.
+/// Adds a row of a brick without absent samples; `border`: all of it lies on a face.
 void addRow(const Smoothed& from, int begin, int end, int y, int z, bool border, double borderWeight, Sums& sums) {
     const auto step = std::ptrdiff_t(from.size.x), slice = step * from.size.y;
     const float* row = from.values.data() + from.index({begin, y, z});
@@ -209,7 +209,7 @@ glm::ivec3 brickAt(glm::ivec3 count, std::size_t number) {
     return {int(number % nx), int(number / nx % ny), int(number / (nx * ny))};
 }
 
-/// Each brick gets a share of what its most important neighbour has more.
+/// Adds to each brick a share of the difference to its most important neighbour.
 std::vector<BrickImportance> withNeighbours(const std::vector<BrickImportance>& own, glm::ivec3 count, double share) {
     std::vector<BrickImportance> out = own;
     for (std::size_t i = 0; i < own.size(); ++i) {
@@ -229,7 +229,7 @@ std::vector<BrickImportance> withNeighbours(const std::vector<BrickImportance>& 
     return out;
 }
 
-/// Bricks on their own, without what they get of their neighbours.
+/// Importance of bricks without the share of their neighbours.
 struct OwnImportance {
     const BrickGrid& grid;
     SmoothedRange about;

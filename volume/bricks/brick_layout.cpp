@@ -31,7 +31,7 @@ struct Spread {
     double width() const { return double(hi) - double(lo); }
 };
 
-/// Bricks of a grid and which of them are still to be placed.
+/// The bricks of a grid, and which of them are not yet part of a box.
 struct OpenBricks {
     glm::ivec3 count;
     std::span<const float> importance;
@@ -88,7 +88,7 @@ std::vector<MergedBrick> swept(OpenBricks bricks, const MergeOptions& options, s
     return boxes;
 }
 
-/// Joins the two boxes that are most alike, and again.
+/// Repeatedly joins the two most similar boxes.
 class Joining {
 public:
     Joining(const OpenBricks& bricks, const MergeOptions& options)
@@ -125,7 +125,7 @@ private:
     struct Pair {
         double width;
         int bricks, a, b;
-        /// The most alike first, then the largest, then the first.
+        /// Order of pairs: the most similar first, then the largest, then the first.
         bool operator<(const Pair& other) const {
             return std::tuple(-width, bricks, -a, -b) < std::tuple(-other.width, other.bricks, -other.a, -other.b);
         }

@@ -66,7 +66,7 @@ BrickChange magnitudeChange(std::span<const BrickChange> components) {
         max += double(component.max) * double(component.max);
         rms += double(component.rms) * double(component.rms);
     }
-    // Magnitudes are rounded to float by themselves, and only where a component moves.
+    // A magnitude is rounded to float separately, but only if a component changes.
     constexpr double kRounding = 1 + 1e-6;
     return {roundedUp(std::sqrt(max) * kRounding), roundedUp(std::sqrt(rms) * kRounding)};
 }

@@ -18,7 +18,7 @@ constexpr double kRangeSamples = 3e6; // looked at to find a range, over all tim
 
 class DerivedSource final : public BrickSource {
 public:
-    /// `known`: its ranges; empty: they are looked for.
+    /// `known`: its ranges; empty: compute them.
     DerivedSource(std::shared_ptr<const BrickSource> source, DerivedParameter derived, const Progress& progress,
                   std::vector<Range> known = {})
         : below_(std::move(source)), bricks_(below_, derived.recipe), derived_(std::move(derived)),

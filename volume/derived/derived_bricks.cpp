@@ -40,7 +40,7 @@ void setAbsent(BrickSamples& samples, std::size_t i) {
     samples.present[i] = 0;
     samples.values[i] = 0;
 }
-/// No number: absent.
+/// Results that are not numbers are absent.
 void set(BrickSamples& samples, std::size_t i, double value) {
     const auto narrow = float(value);
     if (std::isfinite(narrow))
@@ -73,7 +73,7 @@ public:
         key.time = between_ ? 0 : times(key.time)->earlier;
         return (between_ ? between_ : source_)->read(key);
     }
-    /// Whether it is the same in a brick at both times, as is known without reading it.
+    /// Whether it is unchanged in a brick between both times, as far as known without reading.
     bool stays(BrickKey key, int toTime) const {
         const std::optional<TimePair> from = times(key.time), to = times(toTime);
         if (from == to) return true;
@@ -318,7 +318,7 @@ struct DerivedBricks::Impl {
         return out;
     }
 
-    /// Whether a channel is the same in the brick at both times, as is known without reading it.
+    /// Whether a channel is unchanged in a brick between both times, as far as known without reading.
     bool stays(int channel, BrickKey key, int toTime) const {
         key.channel = channel;
         const std::optional<BrickChange> change = source_->change(key, toTime);

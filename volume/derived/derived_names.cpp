@@ -41,7 +41,7 @@ const Parameter* findVector(const DatasetInfo& info, const std::string& name) {
     return nullptr;
 }
 
-/// What is wrong with a recipe; "" if nothing is.
+/// Error message for a recipe; "" if it is valid.
 struct Problem {
     const DatasetInfo& info;
     std::string channel(const std::string& name) const {

@@ -28,7 +28,7 @@ std::string variable(std::size_t input) {
     throw Error(reason, {}, "position " + std::to_string(position + 1));
 }
 
-/// What muParser found wrong, without its own words for our names.
+/// The error that muParser reports, without its replacements for our names.
 std::string reasonOf(const mu::Parser::exception_type& error) {
     switch (error.GetCode()) {
     case mu::ecUNEXPECTED_OPERATOR:

@@ -34,7 +34,7 @@ double lengthScale(const std::string& from, const std::string& to) {
     if (metres(from) == 0 || metres(to) == 0)
         throw Error("lengths in " + (from.empty() ? "no unit" : from) + " and in " + (to.empty() ? "no unit" : to) +
                     " cannot be compared");
-    // Of powers of ten one is exact, the other one not: divide by the one that is.
+    // Of two inverse powers of ten one is exact: divide or multiply by that one.
     const double ratio = metres(from) / metres(to);
     return ratio >= 1 ? std::round(ratio) : 1 / std::round(1 / ratio);
 }
@@ -97,7 +97,7 @@ BrickSamples SampledOnto::read(const BrickSource& at, const BrickKey& key) const
     SamplePositions position(grid_, key.index, key.level);
     for (std::size_t i = 0; i < out.values.size(); ++i, position.next()) {
         const glm::dvec3 wanted = position.at() * scale_, inside = glm::clamp(wanted, box.lo, box.hi);
-        // What lies on the border lies inside, however it is rounded.
+        // Positions on the border are inside, regardless of rounding.
         positions.push_back(glm::all(glm::lessThanEqual(glm::abs(wanted - inside), slack)) ? inside : wanted);
     }
     const std::vector<ProbeValue> values = probeAlong(at, key.channel, positions, key.time);
@@ -180,7 +180,7 @@ private:
             times_.push_back(there ? std::optional(sourceAt(onto_.source(), timesAround(all, time))) : std::nullopt);
         }
     }
-    /// Whether what the other knows of its bricks is true of this one.
+    /// Whether statistics of the other source's bricks are valid for this one.
     bool noted(const BrickKey& key) const {
         const auto& at = times_[std::size_t(key.time)];
         return at && onto_.sameGrid() && at->source == onto_.source();

@@ -62,8 +62,7 @@ double Neighbourhood::derivative(glm::ivec3 in, int axis) const {
 
 namespace {
 
-/// What lies in the middle of a brick with a border of `reach` samples, `own` of them, smoothed by weights along each
-/// axis.
+/// The interior of a brick with a border of `reach` samples, `own` of them, smoothed by weights along each axis.
 BrickSamples smoothedWithin(const BrickSamples& wide, glm::ivec3 own, int reach, int slices,
                             const std::vector<double>& weights) {
     // Value times weight, and weight, smoothed along one axis after the other; each pass drops its border.

@@ -11,7 +11,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// How absent samples of one component can be told by their stored numbers, which .raw keeps bit for bit.
+/// How absent samples of one component are marked by their stored numbers, which .raw keeps bit for bit.
 struct Marker {
     bool works = true;           ///< false: a present sample has the number, or there are several numbers
     std::optional<double> value; ///< none: nothing is absent, or NaN says it

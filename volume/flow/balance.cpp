@@ -66,7 +66,7 @@ private:
     std::vector<Neighbourhood> value_, label_;
 };
 
-/// Everything that leaves the cell of one sample.
+/// Fluxes out of the cell of one sample.
 void addSample(const Around& around, const SampleCells& cells, glm::ivec3 in, glm::ivec3 at, int own, Part& part) {
     const auto c = around.carried(in);
     if (!c) return;

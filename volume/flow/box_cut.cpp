@@ -48,7 +48,7 @@ double BoxCut::sum(double s, int power) const {
 double BoxCut::volume(double s) const {
     if (s <= first_) return 0;
     if (s >= last_) return whole_;
-    // The sum keeps its digits near its beginning; a box is alike from both ends.
+    // Compute from the nearer end, where the sum has the most digits; a box is symmetric.
     const bool near = s - first_ < last_ - s;
     const double part = std::clamp(sum(near ? s - first_ : last_ - s, axes_), 0.0, whole_);
     return near ? part : whole_ - part;

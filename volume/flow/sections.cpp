@@ -19,7 +19,7 @@ namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
-/// What a sample has in one plane.
+/// The contribution of a sample to one plane.
 struct Share {
     int plane;
     double area;   ///< of its cell in the plane

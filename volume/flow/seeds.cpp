@@ -48,7 +48,7 @@ std::vector<glm::dvec3> placeSeeds(const SeedSettings& settings, const std::func
         return out;
     }
     std::mt19937_64 random(settings.random);
-    // Distributions of the standard library differ from one to the next.
+    // Distributions of the standard library differ between implementations.
     const auto next = [&] { return double(random() >> 11) * 0x1p-53; };
     std::vector<glm::dvec3> out;
     for (long tries = long(settings.count) * kTriesPerSeed; tries > 0 && int(out.size()) < settings.count; --tries) {

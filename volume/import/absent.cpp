@@ -18,7 +18,7 @@ namespace tessera::volume {
 namespace {
 
 constexpr std::size_t kMostLabels = 256;
-// A rule is only suggested for a label of few values, and for values that are no accident of single samples.
+// Rules are suggested only for labels of few values, each with enough samples not to be a coincidence.
 constexpr std::size_t kMostSuggested = 32, kFewestSamples = 4;
 
 std::optional<double> parseNumber(std::string_view text) {
@@ -34,7 +34,7 @@ std::size_t findParameter(const DatasetInfo& info, const std::string& name, cons
     throw Error("there is no parameter \"" + name + "\"", {}, "--absent " + rule);
 }
 
-/// Masks seen before: an equal one is given instead of a new one. Holds none itself.
+/// Shares equal masks: returns one seen before instead of a new one. Keeps no mask alive.
 class MaskPool {
 public:
     std::shared_ptr<const Mask> share(Mask mask) {

@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Files of one group in time: what each holds is the same but for the samples.
+/// Files of one group, consecutive in time: they differ only in their samples.
 struct Group {
     std::vector<const OpenedFile*> files;
     struct Frame {
@@ -64,7 +64,7 @@ std::vector<Group> makeGroups(const std::vector<OpenedFile>& files) {
                                 group.files[byTime.at(time).file]->entry.path,
                             group.files[file]->entry.path);
         };
-        // Numbers of names count only where no file of the group says a time.
+        // Numbers in names are used only if no file of the group states a time.
         bool anyTime = false, allDistinct = true;
         std::set<double> seen;
         for (const OpenedFile* file : group.files) {
@@ -104,7 +104,8 @@ Field allAbsent(const Lattice& lattice, ScalarType type) {
     return field;
 }
 
-/// In a type that holds its numbers: integers become longer ones that are read as before, or floats in physical values.
+/// Converts to a type that holds its numbers: integers to longer ones with the same scaling, or to floats with physical
+/// values.
 Field inType(Field field, ScalarType type) {
     if (field.type == type) return field;
     Field out = makeField(field.lattice, type);
@@ -284,8 +285,8 @@ struct Assembly {
     }
 };
 
-/// What a group's files, and the list that names them, say of each time beyond the samples. Of what several say, the
-/// first counts.
+/// Times and quantities that the files of a group, and the list file that names them, state. The first statement is
+/// used.
 void addQuantities(DatasetInfo& info, const Group& group) {
     const auto note = [&info](const std::string& name, const std::string& unit, std::size_t time, double value) {
         auto known = std::ranges::find(info.quantities, name, &Quantity::name);
@@ -299,7 +300,7 @@ void addQuantities(DatasetInfo& info, const Group& group) {
         const OpenedFile& file = *group.files[group.frames[f].file];
         const auto local = std::size_t(group.frames[f].localTime);
         for (std::size_t t = 0; t < info.times.size(); ++t) {
-            // One frame beside a series is there at all times.
+            // A single frame beside a series is used at all times.
             if (group.times.size() > 1 && group.times[f] != info.times[t]) continue;
             for (const auto& [name, value] : file.entry.numbers) note(name, "", t, value);
             for (const Piece& piece : file.pieces) {
@@ -363,7 +364,7 @@ Assembled assemble(std::vector<OpenedFile> files, glm::ivec3 gridSize, bool read
     }
     info.times.assign(times.begin(), times.end());
     if (info.times.empty()) info.times = {0};
-    // Voxel files of scanners and archives of volumes leave units out; simulations write metres and seconds.
+    // Voxel files of scanners and volume archives omit units; simulations use metres and seconds.
     const std::string& format = all->groups.front().files.front()->pieces.front().format;
     const FileFormat* row = formatNamed(format);
     info.lengthUnit = row != nullptr ? row->lengthUnit : format == "raw" ? "" : "m";

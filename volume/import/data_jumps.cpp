@@ -32,13 +32,13 @@ template <class Visit> void forLines(glm::ivec3 size, int axis, const Visit& vis
                   steps[std::size_t(axis)], size[axis]);
 }
 
-/// Where samples of a frame lie apart.
+/// Separations between neighbouring samples of a frame.
 struct Cuts {
     std::vector<std::uint8_t> after; ///< of each sample, bit `axis`: apart from the next one along that axis
     std::vector<IndexPair> acrossGaps;
 };
 
-/// What one component says; `present` is of all of them.
+/// Separations by one component; `present` is of all components.
 class ComponentCuts {
 public:
     ComponentCuts(glm::ivec3 size, std::vector<double> values, const std::vector<bool>& present, Cuts& cuts)
@@ -80,7 +80,7 @@ private:
         }
     }
 
-    /// Half a jump beside a jump is one: where a region is one sample thick no side of it says how it goes on.
+    /// Next to a jump half its size is enough: in a region one sample thick neither side can be extrapolated.
     void besideJumps() {
         std::vector<float> beside = jump_;
         for (int axis = 0; axis < 3; ++axis)

@@ -20,14 +20,15 @@ constexpr double kJumpOfInside = 3, kJumpOfRange = 0.002, kThinJumpOfRange = 0.1
 constexpr std::size_t kMostValues = 32;         // of a label, to look for parts
 constexpr std::size_t kMostSamples = 4'000'000; // looked at along each axis
 
-/// What the samples on both sides of a border say, at one time: at pairs where neither side has a neighbour inside its
-/// region to continue from, where one has, and where both have.
+/// Evidence from the samples on both sides of a border at one time: for pairs where neither side, one side, or both
+/// sides have a neighbour inside their region to extrapolate from.
 struct Border {
     struct Pairs {
         std::vector<double> jump, inside;
     };
     std::array<Pairs, 3> by;
-    /// The pairs that know most. Where at most one side knows, a bend looks like a jump, so that must be larger.
+    /// The most reliable pairs. If at most one side can be extrapolated, curvature looks like a jump, so a larger
+    /// difference is needed.
     const Pairs& best() const { return !by[2].jump.empty() ? by[2] : !by[1].jump.empty() ? by[1] : by[0]; }
     double leastOfRange() const { return by[2].jump.empty() ? kThinJumpOfRange : kJumpOfRange; }
 };
@@ -107,7 +108,7 @@ bool jumpsAt(const Border& about, double range) {
     return double(jumps) >= kShareOfBorder * double(border.jump.size());
 }
 
-/// Regions joined where nothing jumps, then as few parts as no two that jump share.
+/// Joins regions where nothing jumps, then makes as few parts as possible without two that jump.
 class Grouping {
 public:
     explicit Grouping(const std::set<int>& regions) {

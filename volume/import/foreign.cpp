@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// The running tessera-import; one question at a time.
+/// The running tessera-import process; one request at a time.
 class Importer {
 public:
     Importer(const std::string& program, const std::vector<SeriesFile>& entries) : child_(arguments(program, entries)) {

@@ -73,7 +73,7 @@ SlicedDataset withParameters(SlicedDataset data, const std::vector<std::string>&
             throw Error("there is no parameter \"" + name + "\"", {}, "--parameters");
         kept.push_back(static_cast<int>(at - dataset.info.parameters.begin()));
     }
-    // Without their label nobody could tell the parts of a parameter.
+    // Parts need their label.
     for (std::size_t n = 0, stated = kept.size(); n < stated; ++n) {
         const std::string& label = dataset.info.parameters[std::size_t(kept[n])].parts.label;
         const bool known = std::any_of(kept.begin(), kept.end(), [&](int index) {
@@ -260,7 +260,7 @@ Opened open(const std::vector<std::string>& paths, const ImportOptions& options,
     dataset = std::move(assembled.dataset);
     opened.data.slices = std::move(assembled.slices);
     opened.notes = std::move(assembled.notes);
-    // A look at the header may read a little, if that is quick.
+    // Previews may read a little, if that is fast.
     constexpr double kQuickBytes = 64e6;
     const DatasetInfo& info = dataset.info;
     const double times = double(info.times.size());
@@ -274,7 +274,7 @@ Opened open(const std::vector<std::string>& paths, const ImportOptions& options,
     if (readSamples) findLabels(dataset);
     applyLabels(dataset.info, labels, readSamples);
     std::vector<AbsentRule> rules = stated;
-    // A label made from blocks says nothing new: outside its block a field is absent anyway.
+    // A label made from blocks adds nothing: outside its block a field is absent anyway.
     if (options.autoAbsent && readSamples && !assembled.madeLabel) {
         for (AbsentRule& rule : suggestAbsentRules(dataset, progress.part(0.7, 0.85))) {
             const bool ruled = std::any_of(stated.begin(), stated.end(), [&](const AbsentRule& own) {

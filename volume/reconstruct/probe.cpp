@@ -68,7 +68,7 @@ public:
         const Sample near = samples_(place);
         ProbeValue value;
         if (near.present) value.nearest = near.value;
-        // Half-way between two gases a point is in the one of the nearest sample, never in both.
+        // Half-way between two gases a point belongs to that of the nearest sample, never to both.
         if (near.present) value.interpolated = parameter().categorical ? value.nearest : between(position, place);
         return value;
     }

@@ -187,7 +187,7 @@ private:
             field.samples.size() != field.count() * byteSize(field.type))
             throw Error("a frame has another number of samples than the data set", info_.name,
                         parameter(key.parameter).name);
-        // What compares two frames takes them for numbers of one type.
+        // Comparing two frames requires numbers of the same type.
         if (field.type != parameter(key.parameter).type)
             throw Error("a frame holds " + std::string(name(field.type)) + ", the parameter is " +
                             std::string(name(parameter(key.parameter).type)),

@@ -73,7 +73,7 @@ std::shared_ptr<const Mask> makeMask(const CellGrid& g, bool fuel, bool air) {
     return mask;
 }
 
-/// Where a shown sample lies between two solved ones, along one axis.
+/// Position of a shown sample between two solved ones, along one axis.
 struct Between {
     int lo = 0, hi = 0;
     double weight = 0; ///< of `hi`
@@ -213,7 +213,7 @@ struct Widen {
     void operator()(double value) { range = {std::min(range.lo, value), std::max(range.hi, value)}; }
 };
 
-/// Throws where the equations found no state: mostly a cell that is fed less than it uses.
+/// Throws if the equations have no solution: mostly a cell that is fed less than it consumes.
 void checkRanges(const std::vector<Parameter>& parameters) {
     const auto within = [&](std::size_t index, double lo, double hi) {
         const Range range = parameters[index].ranges[0];

@@ -195,7 +195,7 @@ void FuelCellSolver::solveSpecies(int which, bool water, double rate, const std:
             if (z + 1 < g.nz) link(a.up, a.down, section, space.fluxZ[p], toZ[s]);
             if (z == (space.air ? 0 : g.nz - 1)) a.rhs[p] += space.inlet[s] * inletValue;
             if (z == (space.air ? g.nz - 1 : 0)) {
-                // Where more is used than fed the exhaust flows back; it brings water, but no reactant.
+                // If more is consumed than fed, exhaust flows back; it brings water, but no reactant.
                 a.diag[p] += std::max(space.outlet[s], 0.0);
                 if (water) a.rhs[p] += std::max(-space.outlet[s], 0.0) * inletValue;
             }

@@ -44,7 +44,7 @@ std::string lastLine(const std::string& text) {
 
 ChildProcess::ChildProcess(const std::vector<std::string>& arguments) {
     int in[2] = {-1, -1}, out[2] = {-1, -1}, err[2] = {-1, -1};
-    // A socket, so that writing to a child that is gone gives an error and no signal.
+    // A socket, so that writing to a child that has ended gives an error instead of a signal.
     const bool made = socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, in) == 0 && pipe2(out, O_CLOEXEC) == 0 &&
                       pipe2(err, O_CLOEXEC) == 0;
     int failed = made ? 0 : errno;

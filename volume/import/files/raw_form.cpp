@@ -325,7 +325,7 @@ std::string rawOptionOfName(const std::string& path) {
     const fs::path file(path);
     std::string name = file.stem().string();
     std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) { return char(std::tolower(c)); });
-    // Words between signs, each of which may say one thing; the last that says it counts.
+    // Words between separators, each with one meaning; the last one with a meaning is used.
     std::string dims, type, components, times;
     const auto countAfter = [](std::string_view word, char letter) {
         return word.size() > 1 && word.size() < 6 && word[0] == letter &&
