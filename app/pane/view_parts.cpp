@@ -248,8 +248,12 @@ vis::Scene themedScene(const ViewContext& context) {
     return scene;
 }
 
+ImTextureID textureId(std::uint32_t name) {
+    return (ImTextureID)(std::intptr_t)name;
+}
+
 void addPicture(ImDrawList& draw, std::uint32_t texture, ImVec2 min, ImVec2 max) {
-    draw.AddImage(reinterpret_cast<ImTextureID>(static_cast<std::intptr_t>(texture)), min, max, {0, 1}, {1, 0});
+    draw.AddImage(textureId(texture), min, max, {0, 1}, {1, 0});
 }
 
 } // namespace tessera::app

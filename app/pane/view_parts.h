@@ -83,6 +83,8 @@ std::vector<LegendEntry> sceneLegends(const Session& session, const volume::Data
 /// The scene of the session with the theme's colours, and its share of the limits of memory.
 vis::Scene themedScene(const ViewContext& context);
 
+/// A texture of GL as ImGui names it: by a pointer before 1.91.4, by a number after.
+ImTextureID textureId(std::uint32_t name);
 /// A picture of the renderer between two corners; its rows run upwards, as GL has them.
 void addPicture(ImDrawList& draw, std::uint32_t texture, ImVec2 min, ImVec2 max);
 

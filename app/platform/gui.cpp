@@ -76,7 +76,7 @@ Gui::Gui() {
     io.LogFilename = nullptr;
     io.ConfigFlags |= ImGuiConfigFlags_NavEnableKeyboard;
     io.ConfigWindowsMoveFromTitleBarOnly = true;
-    mapKeys(io);
+    setUpKeys(io);
     ImGui_ImplOpenGL3_Init("#version 450 core");
 }
 

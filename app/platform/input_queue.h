@@ -62,7 +62,8 @@ public:
                 // A key is pressed with the modifiers held at that moment: their release waits too.
                 if (changed[code] || pressed) break;
                 changed[code] = true;
-                const bool modifier = event.code >= 340 && event.code <= 347;
+                const bool modifier = event.code >= kFirstModifier && event.code < kFirstModifier + 8;
+                if (modifier) modifiers_[static_cast<std::size_t>(event.code - kFirstModifier)] = event.down;
                 pressed = event.down && !modifier;
                 key(event);
             }
@@ -72,10 +73,16 @@ public:
 
     bool empty() const { return events_.empty(); }
 
+    /// Whether either key of a modifier is down, by the events taken so far.
+    enum Modifier { kShift, kControl, kAlt, kSuper };
+    bool held(Modifier which) const { return modifiers_[which] || modifiers_[which + 4u]; }
+
     ImVec2 mouse{-FLT_MAX, -FLT_MAX};
     std::array<bool, 5> buttons{};
 
 private:
+    static constexpr int kFirstModifier = 340; ///< in GLFW: the left keys in the order of Modifier, then the right ones
+    std::array<bool, 8> modifiers_{};
     std::deque<Event> events_;
     ImVec2 last_{-FLT_MAX, -FLT_MAX};
 };

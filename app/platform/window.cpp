@@ -3,6 +3,7 @@
 #include "app/platform/gui.h"
 #include "app/platform/headless.h"
 #include "app/platform/input_queue.h"
+#include "app/ui/keys.h"
 #include "app/workbench/workbench.h"
 #include "vis/gl/requirements.h"
 #include "volume/base/error.h"
@@ -215,14 +216,10 @@ void runWindow(const OpenRequest& request, const std::string& screenshots) {
         ImGui_ImplOpenGL3_NewFrame();
         ImGui_ImplGlfw_NewFrame();
         ImGuiIO& io = ImGui::GetIO();
-        io.MousePos = window.input.mouse;
-        std::copy(window.input.buttons.begin(), window.input.buttons.end(), io.MouseDown);
+        feedMouse(io, window.input.mouse, window.input.buttons);
         // The back end asks GLFW for the modifiers of now; these belong to the keys of this frame.
-        const auto held = [&](int left, int right) { return io.KeysDown[left] || io.KeysDown[right]; };
-        io.KeyCtrl = held(GLFW_KEY_LEFT_CONTROL, GLFW_KEY_RIGHT_CONTROL);
-        io.KeyShift = held(GLFW_KEY_LEFT_SHIFT, GLFW_KEY_RIGHT_SHIFT);
-        io.KeyAlt = held(GLFW_KEY_LEFT_ALT, GLFW_KEY_RIGHT_ALT);
-        io.KeySuper = held(GLFW_KEY_LEFT_SUPER, GLFW_KEY_RIGHT_SUPER);
+        feedModifiers(io, window.input.held(InputQueue::kControl), window.input.held(InputQueue::kShift),
+                      window.input.held(InputQueue::kAlt), window.input.held(InputQueue::kSuper));
         ImGui::NewFrame();
         workbench.frame();
         ImGui::Render();

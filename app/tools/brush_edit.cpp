@@ -1,6 +1,7 @@
 #include "app/tools/brush_edit.h"
 
 #include "app/tools/brush_shape.h"
+#include "app/ui/keys.h"
 
 #include <algorithm>
 #include <cmath>
@@ -164,7 +165,7 @@ bool editBrushes(BrushDrag& drag, vis::Selection& selection, const PlotFrame& fr
         }
     }
     // Esc comes first: steering by keys, ImGui lets go of the item before anyone else hears of it.
-    if (drag.active && ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape))) {
+    if (drag.active && keyPressed(key::kEscape)) {
         selection = drag.original;
         drag = {};
     } else if (drag.active && !ImGui::IsMouseDown(ImGuiMouseButton_Left)) {

@@ -1,6 +1,8 @@
 #include "app/ui/keys.h"
 
+#include <algorithm>
 #include <imgui.h>
+#include <utility>
 
 namespace tessera::app {
 
@@ -47,15 +49,99 @@ bool pressed(const Shortcut& shortcut, bool repeat) {
            keyPressed(shortcut.key, repeat);
 }
 
-bool keyPressed(int code, bool repeat) {
-    return ImGui::IsKeyPressed(static_cast<ImGuiKey>(code), repeat); // an enumeration from ImGui 1.87 on
-}
-
 bool typing() {
     return ImGui::GetIO().WantTextInput;
 }
 
-void mapKeys(ImGuiIO& io) {
+#if IMGUI_VERSION_NUM >= 18900
+
+namespace {
+
+constexpr ImGuiKey after(ImGuiKey first, int count) {
+    return static_cast<ImGuiKey>(static_cast<int>(first) + count);
+}
+
+/// ImGuiKey_None for a code that is not used.
+ImGuiKey imguiKey(int code) {
+    if (code >= 'A' && code <= 'Z') return after(ImGuiKey_A, code - 'A');
+    if (code >= '0' && code <= '9') return after(ImGuiKey_0, code - '0');
+    if (code >= key::kF1 && code <= key::kF12) return after(ImGuiKey_F1, code - key::kF1);
+    switch (code) {
+    case '=':
+        return ImGuiKey_Equal;
+    case '-':
+        return ImGuiKey_Minus;
+    case key::kSpace:
+        return ImGuiKey_Space;
+    case key::kEscape:
+        return ImGuiKey_Escape;
+    case key::kEnter:
+        return ImGuiKey_Enter;
+    case key::kTab:
+        return ImGuiKey_Tab;
+    case key::kBackspace:
+        return ImGuiKey_Backspace;
+    case key::kInsert:
+        return ImGuiKey_Insert;
+    case key::kDelete:
+        return ImGuiKey_Delete;
+    case key::kRight:
+        return ImGuiKey_RightArrow;
+    case key::kLeft:
+        return ImGuiKey_LeftArrow;
+    case key::kDown:
+        return ImGuiKey_DownArrow;
+    case key::kUp:
+        return ImGuiKey_UpArrow;
+    case key::kPageUp:
+        return ImGuiKey_PageUp;
+    case key::kPageDown:
+        return ImGuiKey_PageDown;
+    case key::kHome:
+        return ImGuiKey_Home;
+    case key::kEnd:
+        return ImGuiKey_End;
+    case key::kKeypadEnter:
+        return ImGuiKey_KeypadEnter;
+    default:
+        return ImGuiKey_None;
+    }
+}
+
+} // namespace
+
+bool keyPressed(int code, bool repeat) {
+    const ImGuiKey known = imguiKey(code);
+    return known != ImGuiKey_None && ImGui::IsKeyPressed(known, repeat);
+}
+
+void setUpKeys(ImGuiIO& io) {
+    io.ConfigInputTrickleEventQueue = false; // InputQueue spreads events over frames
+}
+
+void feedKey(ImGuiIO& io, int code, bool down) {
+    if (const ImGuiKey known = imguiKey(code); known != ImGuiKey_None) io.AddKeyEvent(known, down);
+}
+
+void feedModifiers(ImGuiIO& io, bool ctrl, bool shift, bool alt, bool super) {
+    io.AddKeyEvent(ImGuiMod_Ctrl, ctrl);
+    io.AddKeyEvent(ImGuiMod_Shift, shift);
+    io.AddKeyEvent(ImGuiMod_Alt, alt);
+    io.AddKeyEvent(ImGuiMod_Super, super);
+}
+
+void feedMouse(ImGuiIO& io, ImVec2 at, std::span<const bool> buttons) {
+    io.AddMousePosEvent(at.x, at.y);
+    for (std::size_t i = 0; i < buttons.size(); ++i) io.AddMouseButtonEvent(static_cast<int>(i), buttons[i]);
+}
+
+#else
+
+bool keyPressed(int code, bool repeat) {
+    return ImGui::IsKeyPressed(code, repeat);
+}
+
+void setUpKeys(ImGuiIO& io) {
     io.KeyMap[ImGuiKey_Tab] = key::kTab;
     io.KeyMap[ImGuiKey_LeftArrow] = key::kLeft;
     io.KeyMap[ImGuiKey_RightArrow] = key::kRight;
@@ -71,11 +157,7 @@ void mapKeys(ImGuiIO& io) {
     io.KeyMap[ImGuiKey_Space] = key::kSpace;
     io.KeyMap[ImGuiKey_Enter] = key::kEnter;
     io.KeyMap[ImGuiKey_Escape] = key::kEscape;
-#if IMGUI_VERSION_NUM >= 18700
-    io.KeyMap[ImGuiKey_KeypadEnter] = key::kKeypadEnter;
-#else
     io.KeyMap[ImGuiKey_KeyPadEnter] = key::kKeypadEnter;
-#endif
     for (const auto& [imgui, letter] : {std::pair{ImGuiKey_A, 'A'},
                                         {ImGuiKey_C, 'C'},
                                         {ImGuiKey_V, 'V'},
@@ -84,5 +166,23 @@ void mapKeys(ImGuiIO& io) {
                                         {ImGuiKey_Z, 'Z'}})
         io.KeyMap[imgui] = letter;
 }
+
+void feedKey(ImGuiIO& io, int code, bool down) {
+    if (code >= 0 && code < IM_ARRAYSIZE(io.KeysDown)) io.KeysDown[code] = down;
+}
+
+void feedModifiers(ImGuiIO& io, bool ctrl, bool shift, bool alt, bool super) {
+    io.KeyCtrl = ctrl;
+    io.KeyShift = shift;
+    io.KeyAlt = alt;
+    io.KeySuper = super;
+}
+
+void feedMouse(ImGuiIO& io, ImVec2 at, std::span<const bool> buttons) {
+    io.MousePos = at;
+    std::copy(buttons.begin(), buttons.end(), io.MouseDown);
+}
+
+#endif
 
 } // namespace tessera::app

@@ -1,11 +1,14 @@
 #pragma once
 
+#include <span>
 #include <string>
 
 struct ImGuiIO;
+struct ImVec2;
 
-/// The keyboard, the only place that knows key codes: ImGui 1.86 has no names for most keys, so codes are those of
-/// GLFW, in the window and without one.
+/// The keyboard, the only place that knows key codes: they are those of GLFW, since ImGui 1.86 has no names for most
+/// keys. Here, too, is what differs between ImGui before 1.89, which reads states of keys, and after, which takes
+/// events.
 namespace tessera::app {
 
 namespace key {
@@ -33,7 +36,16 @@ bool keyPressed(int code, bool repeat = false);
 /// True while text is being typed somewhere: single keys are letters then.
 bool typing();
 
-/// Tells ImGui which codes its own keys have; done by the GLFW back end in the window, by this without one.
-void mapKeys(ImGuiIO& io);
+/// Makes a new context take keys as `feedKey` gives them, all that is fed in the next frame.
+void setUpKeys(ImGuiIO& io);
+
+/// A key goes down or up in the next frame. Codes that ImGui has no key for do nothing.
+void feedKey(ImGuiIO& io, int code, bool down);
+
+/// The modifiers of the next frame, whichever keys are down.
+void feedModifiers(ImGuiIO& io, bool ctrl, bool shift, bool alt, bool super = false);
+
+/// The mouse of the next frame in place of what a back end has told so far; `buttons`: at most five, left first.
+void feedMouse(ImGuiIO& io, ImVec2 at, std::span<const bool> buttons);
 
 } // namespace tessera::app

@@ -91,14 +91,11 @@ protected:
         ImGui::GetIO().MouseWheel = notches;
         frame();
     }
-    void hold(bool ctrl, bool shift) {
-        ImGui::GetIO().KeyCtrl = ctrl;
-        ImGui::GetIO().KeyShift = shift;
-    }
+    void hold(bool ctrl, bool shift) { feedModifiers(ImGui::GetIO(), ctrl, shift, false); }
     void key(int code, bool shift = false, bool ctrl = false) {
         hold(ctrl, shift);
         for (const bool down : {true, false}) {
-            ImGui::GetIO().KeysDown[code] = down;
+            feedKey(ImGui::GetIO(), code, down);
             frame();
         }
         hold(false, false);

@@ -172,10 +172,10 @@ protected:
     void pressShortcut(const Shortcut& shortcut) {
         for (const bool down : {true, false})
             frame([&](ImGuiIO& io) {
-                io.KeyCtrl = shortcut.ctrl, io.KeyShift = shortcut.shift, io.KeyAlt = shortcut.alt;
-                io.KeysDown[shortcut.key] = down;
+                feedModifiers(io, shortcut.ctrl, shortcut.shift, shortcut.alt);
+                feedKey(io, shortcut.key, down);
             });
-        frame([](ImGuiIO& io) { io.KeyCtrl = io.KeyShift = io.KeyAlt = false; });
+        frame([](ImGuiIO& io) { feedModifiers(io, false, false, false); });
     }
 };
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "app/ui/keys.h"
+
 #include <gtest/gtest.h>
 #include <imgui.h>
 #include <string>
@@ -14,7 +16,7 @@ protected:
         ImGuiIO& io = ImGui::GetIO();
         io.DisplaySize = display;
         io.IniFilename = nullptr;
-        io.KeyMap[ImGuiKey_Escape] = 256;
+        setUpKeys(io);
     }
     ~FedImGui() override { ImGui::DestroyContext(); }
 

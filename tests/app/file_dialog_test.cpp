@@ -14,7 +14,7 @@ namespace fs = std::filesystem;
 /// The dialog over an empty window, with a folder of its own.
 class FileDialogTest : public FedImGui {
 protected:
-    FileDialogTest() : FedImGui({1200, 800}) { mapKeys(ImGui::GetIO()); }
+    FileDialogTest() : FedImGui({1200, 800}) { setUpKeys(ImGui::GetIO()); }
     void SetUp() override { fs::create_directories(folder); }
     void TearDown() override { fs::remove_all(folder); }
 
@@ -33,9 +33,9 @@ protected:
         frames();
     }
     void press(int key) {
-        ImGui::GetIO().KeysDown[key] = true;
+        feedKey(ImGui::GetIO(), key, true);
         frames(1);
-        ImGui::GetIO().KeysDown[key] = false;
+        feedKey(ImGui::GetIO(), key, false);
         frames();
     }
     std::string answered() {

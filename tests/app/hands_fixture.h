@@ -49,7 +49,7 @@ protected:
             io.MousePos = mouse;
             for (int i = 0; i < 3; ++i) io.MouseDown[i] = down[i];
             io.MouseWheel = wheel;
-            io.KeyShift = shift, io.KeyCtrl = ctrl, io.KeyAlt = alt;
+            feedModifiers(io, ctrl, shift, alt);
         });
         wheel = 0;
     }
@@ -90,7 +90,7 @@ protected:
     }
     void press(int key) {
         for (const bool on : {true, false}) {
-            ImGui::GetIO().KeysDown[key] = on;
+            feedKey(ImGui::GetIO(), key, on);
             frame();
         }
     }

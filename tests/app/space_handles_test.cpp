@@ -1,4 +1,5 @@
 #include "app/tools/space_handles.h"
+#include "app/ui/keys.h"
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
@@ -14,7 +15,7 @@ protected:
         ImGuiIO& io = ImGui::GetIO();
         io.DisplaySize = {500, 400};
         io.IniFilename = nullptr;
-        io.KeyMap[ImGuiKey_Escape] = 256;
+        setUpKeys(io);
         unsigned char* pixels;
         int width, height;
         io.Fonts->GetTexDataAsRGBA32(&pixels, &width, &height);
@@ -59,10 +60,10 @@ protected:
         frame();
         moved = edited;
         if (escape) {
-            ImGui::GetIO().KeysDown[256] = true;
+            feedKey(ImGui::GetIO(), key::kEscape, true);
             frame();
             EXPECT_TRUE(edited) << "the picture is to be drawn anew";
-            ImGui::GetIO().KeysDown[256] = false;
+            feedKey(ImGui::GetIO(), key::kEscape, false);
         }
         ImGui::GetIO().MouseDown[0] = false;
         frame();

@@ -26,7 +26,7 @@ protected:
         ImGuiIO& io = ImGui::GetIO();
         io.IniFilename = nullptr;
         io.DisplaySize = {800, 600};
-        mapKeys(io);
+        setUpKeys(io);
         loadFonts(1);
         applyTheme(Theme::Dark, 1);
         unsigned char* pixels = nullptr;
@@ -182,9 +182,9 @@ TEST_F(DockTest, EscapeEndsADrag) {
     step();
     mouse = {700, 300};
     step(2);
-    ImGui::GetIO().KeysDown[key::kEscape] = true;
+    feedKey(ImGui::GetIO(), key::kEscape, true);
     step();
-    ImGui::GetIO().KeysDown[key::kEscape] = false;
+    feedKey(ImGui::GetIO(), key::kEscape, false);
     held = false;
     step(2);
     EXPECT_EQ(tree.root.kind, DockKind::Tabs);
@@ -299,11 +299,11 @@ TEST_F(UiTest, ShortcutsNeedExactlyTheirModifiers) {
          }}};
     ImGuiIO& io = ImGui::GetIO();
     const auto tap = [&](bool shift) {
-        io.KeyCtrl = true;
-        io.KeyShift = shift;
-        io.KeysDown['Z'] = true;
+        feedModifiers(io, true, shift, false);
+        feedKey(io, 'Z', true);
         frame([&] { runShortcuts(commands); });
-        io.KeysDown['Z'] = io.KeyCtrl = io.KeyShift = false;
+        feedKey(io, 'Z', false);
+        feedModifiers(io, false, false, false);
         frame([&] { runShortcuts(commands); });
     };
     tap(false);

@@ -106,19 +106,16 @@ TEST_F(BrushEdit, ANewBrushReplacesTheOldOneOfThePlotOnly) {
 
 TEST_F(BrushEdit, ShiftAddsAndCtrlSubtracts) {
     dragFromTo(1, 0.1, 3, 0.3);
-    ImGui::GetIO().KeyShift = true;
-    ImGui::GetIO().KeyMods = ImGuiKeyModFlags_Shift;
+    feedModifiers(ImGui::GetIO(), false, true, false);
     dragFromTo(6, 0.6, 9, 0.9);
-    ImGui::GetIO().KeyShift = false;
+    feedModifiers(ImGui::GetIO(), false, false, false);
     ASSERT_EQ(selection.brushes.size(), 2u);
     EXPECT_EQ(selection.brushes[1].combine, vis::BrushCombine::Or);
     EXPECT_NE(selection.brushes[0].color, selection.brushes[1].color);
     EXPECT_NE(selection.brushes[0].name, selection.brushes[1].name);
-    ImGui::GetIO().KeyCtrl = true;
-    ImGui::GetIO().KeyMods = ImGuiKeyModFlags_Ctrl;
+    feedModifiers(ImGui::GetIO(), true, false, false);
     dragFromTo(7, 0.7, 8, 0.8);
-    ImGui::GetIO().KeyCtrl = false;
-    ImGui::GetIO().KeyMods = 0;
+    feedModifiers(ImGui::GetIO(), false, false, false);
     ASSERT_EQ(selection.brushes.size(), 3u);
     EXPECT_EQ(selection.brushes[2].combine, vis::BrushCombine::Minus);
 }
@@ -130,10 +127,10 @@ TEST_F(BrushEdit, EscapeTakesTheDragBack) {
     button(0, true);
     moveTo(8, 0.9);
     EXPECT_FALSE(selection == before);
-    ImGui::GetIO().KeysDown[256] = true;
+    feedKey(ImGui::GetIO(), key::kEscape, true);
     frame();
     EXPECT_EQ(selection, before);
-    ImGui::GetIO().KeysDown[256] = false;
+    feedKey(ImGui::GetIO(), key::kEscape, false);
     button(0, false);
     EXPECT_EQ(selection, before);
 }

@@ -127,10 +127,10 @@ TEST_F(BrushedViews, BrushingHotAndOxygenPoorSelectsWhatBruteForceSelects) {
     EXPECT_NEAR(focus, static_cast<double>(expected), 1e-3);
 
     // Esc over the view clears it everywhere.
-    ImGui::GetIO().KeysDown[256] = true;
+    feedKey(ImGui::GetIO(), key::kEscape, true);
     frame(matrix);
     EXPECT_TRUE(session.selection.brushes.empty());
-    ImGui::GetIO().KeysDown[256] = false;
+    feedKey(ImGui::GetIO(), key::kEscape, false);
 }
 
 // A click enlarges a plot; a drag in the large one brushes by its own pixels, not by those of the small one.

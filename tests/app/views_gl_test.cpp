@@ -138,7 +138,7 @@ TEST_F(Views, ATesseractTurnsByHand) {
     const auto view = [&] { draw("tesseract", tesseractView, drawTesseractView, {700, 600}); };
     const auto drag = [&](int mouseButton, bool shift) {
         mouse = {300, 250};
-        ImGui::GetIO().KeyShift = shift;
+        feedModifiers(ImGui::GetIO(), false, shift, false);
         frame(view);
         ImGui::GetIO().MouseDown[mouseButton] = true;
         frame(view);
@@ -146,7 +146,7 @@ TEST_F(Views, ATesseractTurnsByHand) {
         frame(view);
         ImGui::GetIO().MouseDown[mouseButton] = false;
         frame(view);
-        ImGui::GetIO().KeyShift = false;
+        feedModifiers(ImGui::GetIO(), false, false, false);
     };
     frame(view);
     const TesseractView start = tesseractView;
@@ -165,9 +165,9 @@ TEST_F(Views, ATesseractTurnsByHand) {
     frame(view);
     EXPECT_TRUE(busy) << "a tour goes on";
     headless = true;
-    ImGui::GetIO().KeysDown['R'] = true;
+    feedKey(ImGui::GetIO(), 'R', true);
     frame(view);
-    ImGui::GetIO().KeysDown['R'] = false;
+    feedKey(ImGui::GetIO(), 'R', false);
     frame(view);
     EXPECT_EQ(tesseractView.turn, start.turn);
     EXPECT_EQ(tesseractView.turn4, start.turn4);

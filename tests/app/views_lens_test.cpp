@@ -53,12 +53,7 @@ protected:
         moveTo({from.x + by.x, from.y + by.y});
         button(which, false);
     }
-    void hold(bool alt, bool shift = false) {
-        ImGuiIO& io = ImGui::GetIO();
-        io.KeyAlt = alt;
-        io.KeyShift = shift;
-        io.KeyMods = (alt ? ImGuiKeyModFlags_Alt : 0) | (shift ? ImGuiKeyModFlags_Shift : 0);
-    }
+    void hold(bool alt, bool shift = false) { feedModifiers(ImGui::GetIO(), false, shift, alt); }
     const vis::Lens& lens() const { return session.lenses.back(); }
 
     Session session;
@@ -141,9 +136,9 @@ TEST_F(LensEdit, EscapeTakesTheDragBackAndFollowersTakeTheCursorAlong) {
     button(0, true);
     moveTo({mouse.x + 50, mouse.y});
     EXPECT_GT(lens().center.x, 1.1);
-    ImGui::GetIO().KeysDown[256] = true;
+    feedKey(ImGui::GetIO(), key::kEscape, true);
     frame();
-    ImGui::GetIO().KeysDown[256] = false;
+    feedKey(ImGui::GetIO(), key::kEscape, false);
     button(0, false);
     EXPECT_EQ(lens().center.x, 1);
     session.lenses[0].followsCursor = true;
@@ -240,9 +235,9 @@ TEST_F(LensEdit, FollowsThePointerUntilItIsPinned) {
     EXPECT_EQ(lens().center.z, 0.5);
     EXPECT_TRUE(followed);
     const auto key = [&] {
-        ImGui::GetIO().KeysDown['F'] = true;
+        feedKey(ImGui::GetIO(), 'F', true);
         frame();
-        ImGui::GetIO().KeysDown['F'] = false;
+        feedKey(ImGui::GetIO(), 'F', false);
         frame();
     };
     key();

@@ -34,7 +34,7 @@ struct WorkbenchData : DrawnWorkbench {
     void startPacking() {
         ASSERT_TRUE(run("Pack into an archive..."));
         for (int i = 0; i < 3; ++i) frame();
-        frame([](ImGuiIO& io) { io.KeysDown[key::kEnter] = true; });
+        frame([](ImGuiIO& io) { feedKey(io, key::kEnter, true); });
         ASSERT_TRUE(workbench.jobs().running("pack"));
     }
     std::string shownFile() const {

@@ -32,7 +32,7 @@ protected:
         for (int i = 0; i < 4; ++i) frame();
     }
     void press(int key) {
-        for (const bool down : {true, false}) frame([&](ImGuiIO& io) { io.KeysDown[key] = down; });
+        for (const bool down : {true, false}) frame([&](ImGuiIO& io) { feedKey(io, key, down); });
     }
     /// False where the command is not available.
     bool run(const std::string& name) {

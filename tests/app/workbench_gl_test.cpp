@@ -204,7 +204,7 @@ TEST(WorkbenchGl, WhatIsNotSavedIsNotGivenUpUnasked) {
     EXPECT_TRUE(workbench.session() == edited);
     // Esc is no answer: all stays, and the next time it is asked again.
     for (const bool down : {true, false})
-        frames.draw(workbench, 1, [&](ImGuiIO& io) { io.KeysDown[key::kEscape] = down; });
+        frames.draw(workbench, 1, [&](ImGuiIO& io) { feedKey(io, key::kEscape, down); });
     settle();
     EXPECT_TRUE(workbench.session() == edited);
     for (const Command& command : workbench.commands())

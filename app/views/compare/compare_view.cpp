@@ -101,8 +101,7 @@ void drawGrid(const Frame& frame, const std::vector<PictureBox>& boxes, bool dif
         draw.PushClipRect(box.min, box.max(), true);
         const bool shown = differences && i != frame.reference && cell.finished() && cell.shownImage == cell.image;
         if (shown)
-            draw.AddImage(reinterpret_cast<ImTextureID>(static_cast<std::intptr_t>(cell.differencePicture.name())),
-                          box.min, box.max());
+            draw.AddImage(textureId(cell.differencePicture.name()), box.min, box.max());
         else
             drawCell(frame, i, box);
         drawOver(frame, box, frame.context.session, nameOf(frame, i), i == frame.reference);

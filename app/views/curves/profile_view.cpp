@@ -135,8 +135,8 @@ void drawPicture(const Session& session, const std::string& title, const vis::Pl
         const double from = t > 0 ? (times[t - 1] + times[t]) / 2 : times.front();
         const double to = t + 1 < times.size() ? (times[t] + times[t + 1]) / 2 : times.back();
         const float v = 1 - (static_cast<float>(t) + 0.5f) / rows;
-        draw.AddImage(reinterpret_cast<ImTextureID>(static_cast<std::intptr_t>(picture.name())),
-                      {frame.min.x, frame.pixel(0, to).y}, {frame.max.x, frame.pixel(0, from).y}, {0, v}, {1, v});
+        draw.AddImage(textureId(picture.name()), {frame.min.x, frame.pixel(0, to).y},
+                      {frame.max.x, frame.pixel(0, from).y}, {0, v}, {1, v});
     }
     draw.PopClipRect();
     draw.PushClipRect(frame.min, frame.max, true);

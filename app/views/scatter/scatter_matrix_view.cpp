@@ -2,6 +2,7 @@
 #include "app/queries/readout.h"
 #include "app/queries/statistics_feed.h"
 #include "app/tools/brush_edit.h"
+#include "app/ui/keys.h"
 #include "app/ui/ticks.h"
 #include "app/views/scatter/scatter_cells.h"
 #include "app/views/scatter/scatter_toolbar.h"
@@ -191,8 +192,7 @@ bool drawPlot(ViewContext& context, ScatterCache& cache, ScatterMatrixView& view
         const volume::JointHistogram& counted = result->statistics.joint[static_cast<std::size_t>(joint)];
         const ImVec2 low = frame.pixel(counted.xRange.lo, counted.yRange.lo),
                      high = frame.pixel(counted.xRange.hi, counted.yRange.hi);
-        draw.AddImage(reinterpret_cast<ImTextureID>(static_cast<std::intptr_t>(texture->name())), {low.x, high.y},
-                      {high.x, low.y});
+        draw.AddImage(textureId(texture->name()), {low.x, high.y}, {high.x, low.y});
         if (view.outliers)
             drawOutliers(draw, frame, counted, [&](std::size_t bin) {
                 if (!counted.mean.empty())
@@ -279,8 +279,7 @@ void drawScatterMatrixView(ViewContext& context, const std::string& pane, Scatte
         bins = own.count;
     }
     // Esc clears, wherever in the view the mouse is; during a drag it belongs to the drag.
-    if (!cache.drag.active && ImGui::IsWindowHovered(ImGuiHoveredFlags_ChildWindows) &&
-        ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape), false))
+    if (!cache.drag.active && ImGui::IsWindowHovered(ImGuiHoveredFlags_ChildWindows) && keyPressed(key::kEscape))
         context.session.selection.brushes.clear();
     updateReadout(context, cache.readout);
     StatisticsWish wish =

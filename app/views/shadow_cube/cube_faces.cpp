@@ -1,5 +1,6 @@
 #include "app/views/shadow_cube/cube_faces.h"
 
+#include "app/pane/view_parts.h"
 #include "app/tools/brush_edit.h"
 #include "app/tools/brush_list.h"
 
@@ -34,7 +35,7 @@ void drawFace(ImDrawList& draw, const CubeFrame& frame, const CubeFace& face, st
     const bool dark = darkTheme();
     draw.AddQuadFilled(*a, *b, *c, *d, dark ? IM_COL32(36, 39, 45, 255) : IM_COL32(236, 237, 240, 255));
     const double s = frame.world.halfSize[face.right()], t = frame.world.halfSize[face.up()];
-    const auto id = reinterpret_cast<ImTextureID>(static_cast<std::intptr_t>(texture));
+    const auto id = textureId(texture);
     for (int j = 0; j < kPatches; ++j)
         for (int i = 0; i < kPatches; ++i) {
             const auto at = [](int k) { return float(k) / kPatches; };

@@ -92,7 +92,7 @@ void drawRegionPage(ViewContext& context, RegionPage& page, vis::TransferFunctio
         // Where its samples lie, though the plane may have changed since they were counted.
         const ImVec2 a = frame.pixel(result->histogram.range.lo, result->histogram.gradientTop),
                      b = frame.pixel(result->histogram.range.hi, 0);
-        draw.AddImage(reinterpret_cast<ImTextureID>(static_cast<std::intptr_t>(page.picture.name())), a, b);
+        draw.AddImage(textureId(page.picture.name()), a, b);
     }
     ImGui::SetCursorScreenPos(frame.min);
     ImGui::InvisibleButton("regions", {frame.width(), frame.height()},
