@@ -7,12 +7,8 @@ void ReachReader::resize(glm::ivec2 size) {
     Texture made = makeTexture2D(tiles, GL_R32F, GL_NEAREST, "ray ends");
     framebuffer_ = makeFramebuffer({made.name()}, "ray ends");
     tiles_ = std::move(made);
-    GLuint buffer = 0;
-    glCreateBuffers(1, &buffer);
-    read_ = Buffer(buffer);
-    glNamedBufferStorage(buffer, GLsizeiptr(sizeof(float)) * tiles.x * tiles.y, nullptr,
-                         GL_MAP_READ_BIT | GL_CLIENT_STORAGE_BIT);
-    glObjectLabel(GL_BUFFER, buffer, -1, "ray ends");
+    read_ = makeBuffer(GLsizeiptr(sizeof(float)) * tiles.x * tiles.y, nullptr, GL_MAP_READ_BIT | GL_CLIENT_STORAGE_BIT,
+                       "ray ends");
     fence_.reset();
 }
 

@@ -3,6 +3,10 @@
 #include "volume/base/error.h"
 
 #include <algorithm>
+#include <array>
+#include <cstdlib>
+#include <limits>
+#include <string_view>
 #include <vector>
 
 namespace tessera::vis {
@@ -43,6 +47,30 @@ int longestEdge(GLenum target) {
     return edge;
 }
 
+bool fillsWithNan() {
+    static const bool fills = [] {
+        const char* mode = std::getenv("TESSERA_DEBUG_GL");
+        return mode != nullptr && std::string_view(mode) == "nan";
+    }();
+    return fills;
+}
+
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+
+/// Texels that show wherever they are read before they are written.
+void fill(GLuint texture) {
+    GLint type = GL_NONE;
+    glGetTextureLevelParameteriv(texture, 0, GL_TEXTURE_RED_TYPE, &type);
+    if (type == GL_UNSIGNED_INT) {
+        constexpr std::array<GLuint, 4> kAll{~0u, ~0u, ~0u, ~0u};
+        glClearTexImage(texture, 0, GL_RGBA_INTEGER, GL_UNSIGNED_INT, kAll.data());
+    } else if (type != GL_NONE) { // depth has no NaN, and is always cleared
+        const float value = type == GL_FLOAT ? kNan : 1;
+        const std::array texel{value, value, value, value};
+        glClearTexImage(texture, 0, GL_RGBA, GL_FLOAT, texel.data());
+    }
+}
+
 /// A texture whose storage `allocate` makes.
 template <class Allocate>
 Texture checked(GLenum target, glm::ivec3 size, GLenum filter, const std::string& label, Allocate&& allocate) {
@@ -58,6 +86,7 @@ Texture checked(GLenum target, glm::ivec3 size, GLenum filter, const std::string
                                std::to_string(size.y) + " x " + std::to_string(size.z) + " texels",
                            {}, label);
     setUp(name, filter, label);
+    if (fillsWithNan()) fill(name);
     return texture;
 }
 
@@ -84,6 +113,11 @@ Texture makeUniform3D(glm::vec4 value, const std::string& label) {
     return texture;
 }
 
+Texture makeTexture2DArray(glm::ivec2 size, int layers, GLenum format, GLenum filter, const std::string& label) {
+    return checked(GL_TEXTURE_2D_ARRAY, {size, 1}, filter, label,
+                   [&](GLuint name) { glTextureStorage3D(name, 1, format, size.x, size.y, layers); });
+}
+
 Texture makeTextureCube(int edge, GLenum format, const std::string& label) {
     return checked(GL_TEXTURE_CUBE_MAP, {edge, edge, 6}, GL_LINEAR, label,
                    [&](GLuint name) { glTextureStorage2D(name, 1, format, edge, edge); });
@@ -103,6 +137,16 @@ Framebuffer makeFramebuffer(std::initializer_list<GLuint> colorTextures, const s
     if (glCheckNamedFramebufferStatus(name, GL_DRAW_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
         throw MachineError("the graphics driver refuses the framebuffer", {}, label);
     return framebuffer;
+}
+
+Buffer makeBuffer(GLsizeiptr bytes, const void* content, GLbitfield flags, const std::string& label) {
+    GLuint name = 0;
+    glCreateBuffers(1, &name);
+    Buffer buffer(name);
+    glNamedBufferStorage(name, bytes, content, flags);
+    glObjectLabel(GL_BUFFER, name, -1, label.c_str());
+    if (!content && fillsWithNan()) glClearNamedBufferData(name, GL_R32F, GL_RED, GL_FLOAT, &kNan);
+    return buffer;
 }
 
 VertexArray makeVertexArray(const std::string& label) {

@@ -41,17 +41,22 @@ using Query = Handle<ObjectKind::Query>;
 using ProgramObject = Handle<ObjectKind::Program>;
 
 // Textures of one level with immutable storage, clamped to their edges; `filter` is GL_NEAREST or GL_LINEAR. Each
-// throws MachineError when the driver refuses the size, or has no memory for it.
+// throws MachineError when the driver refuses the size, or has no memory for it. Nobody may count on what a new one
+// holds: with TESSERA_DEBUG_GL=nan in the environment it is NaN, or all bits set where the format has none.
 Texture makeTexture2D(glm::ivec2 size, GLenum format, GLenum filter, const std::string& label);
 /// Rows of texels, each filtered by itself.
 Texture makeTexture1DArray(int width, int rows, GLenum format, GLenum filter, const std::string& label);
 Texture makeTexture3D(glm::ivec3 size, GLenum format, GLenum filter, const std::string& label);
 /// A 3D texture of one texel.
 Texture makeUniform3D(glm::vec4 value, const std::string& label);
+Texture makeTexture2DArray(glm::ivec2 size, int layers, GLenum format, GLenum filter, const std::string& label);
 /// A cube map of one level, filtered linearly across its edges too (where GL_TEXTURE_CUBE_MAP_SEAMLESS is on).
 Texture makeTextureCube(int edge, GLenum format, const std::string& label);
 /// A framebuffer with the given colour attachments, all written to. Throws MachineError when it is incomplete.
 Framebuffer makeFramebuffer(std::initializer_list<GLuint> colorTextures, const std::string& label);
+/// A buffer of a fixed size and content. `content` null: to be written by GL, NaN before with TESSERA_DEBUG_GL=nan.
+/// `flags`: of glNamedBufferStorage.
+Buffer makeBuffer(GLsizeiptr bytes, const void* content, GLbitfield flags, const std::string& label);
 VertexArray makeVertexArray(const std::string& label);
 
 } // namespace tessera::vis

@@ -16,24 +16,8 @@ constexpr int kColors = 1024; ///< entries of a colour table's row
 /// Texture units that no plan of rays uses.
 constexpr int kTableUnit = 42, kFormerUnit = 43, kGrainUnit = 45, kFormerColorUnit = 46;
 
-Texture makeArray(glm::ivec2 size, int layers, GLenum format, const char* label) {
-    GLuint name = 0;
-    glCreateTextures(GL_TEXTURE_2D_ARRAY, 1, &name);
-    Texture texture(name);
-    glTextureStorage3D(name, 1, format, size.x, size.y, layers);
-    glTextureParameteri(name, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
-    glTextureParameteri(name, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
-    glObjectLabel(GL_TEXTURE, name, -1, label);
-    return texture;
-}
-
-template <class T> Buffer makeBuffer(const std::vector<T>& content, const char* label) {
-    GLuint name = 0;
-    glCreateBuffers(1, &name);
-    Buffer buffer(name);
-    glNamedBufferStorage(name, GLsizeiptr(content.size() * sizeof(T)), content.data(), 0);
-    glObjectLabel(GL_BUFFER, name, -1, label);
-    return buffer;
+template <class T> Buffer filledBuffer(const std::vector<T>& content, const char* label) {
+    return makeBuffer(GLsizeiptr(content.size() * sizeof(T)), content.data(), 0, label);
 }
 
 /// Attribute `index` of `count` floats, `first` floats into an element.
@@ -79,8 +63,8 @@ void GeometryBuffer::resize(glm::ivec2 wanted, int wantedPeels) {
     peels = wantedPeels;
     framebuffers.clear();
     shown.clear();
-    color = makeArray(size, peels, GL_RGBA16F, "geometry colours");
-    distance = makeArray(size, peels, GL_RG32F, "geometry distances");
+    color = makeTexture2DArray(size, peels, GL_RGBA16F, GL_NEAREST, "geometry colours");
+    distance = makeTexture2DArray(size, peels, GL_RG32F, GL_NEAREST, "geometry distances");
     depth = makeTexture2D(size, GL_DEPTH_COMPONENT32F, GL_NEAREST, "geometry depth");
     for (int layer = 0; layer < peels; ++layer) {
         GLuint name = 0;
@@ -105,8 +89,8 @@ const GeometryPass::Uploaded& GeometryPass::upload(const std::shared_ptr<const G
     up = {};
     up.of = geometry;
     if (!geometry->mesh.triangles.empty()) {
-        up.vertices = makeBuffer(interleaved(geometry->mesh), "mesh vertices");
-        up.indices = makeBuffer(geometry->mesh.triangles, "mesh triangles");
+        up.vertices = filledBuffer(interleaved(geometry->mesh), "mesh vertices");
+        up.indices = filledBuffer(geometry->mesh.triangles, "mesh triangles");
         up.indexCount = GLsizei(geometry->mesh.triangles.size() * 3);
         up.mesh = makeVertexArray("mesh");
         glVertexArrayVertexBuffer(up.mesh.name(), 0, up.vertices.name(), 0, 7 * sizeof(float));
@@ -116,7 +100,7 @@ const GeometryPass::Uploaded& GeometryPass::upload(const std::shared_ptr<const G
         attribute(up.mesh.name(), 2, 1, 6);
     }
     if (const std::vector<float> segments = segmentsOf(geometry->lines); !segments.empty()) {
-        up.segments = makeBuffer(segments, "line segments");
+        up.segments = filledBuffer(segments, "line segments");
         up.segmentCount = GLsizei(segments.size() / 8);
         up.lines = makeVertexArray("lines");
         glVertexArrayVertexBuffer(up.lines.name(), 0, up.segments.name(), 0, 8 * sizeof(float));

@@ -41,14 +41,10 @@ std::size_t PointCloud::count() const {
 void PointCloud::upload(std::span<const CloudPoint> points) {
     impl_->count = points.size();
     if (points.empty()) return;
-    GLuint name = 0;
-    glCreateBuffers(1, &name);
-    impl_->buffer = Buffer(name);
-    glNamedBufferStorage(name, GLsizeiptr(points.size_bytes()), points.data(), 0);
-    glObjectLabel(GL_BUFFER, name, -1, "points");
+    impl_->buffer = makeBuffer(GLsizeiptr(points.size_bytes()), points.data(), 0, "points");
     impl_->array = makeVertexArray("points");
     const GLuint array = impl_->array.name();
-    glVertexArrayVertexBuffer(array, 0, name, 0, sizeof(CloudPoint));
+    glVertexArrayVertexBuffer(array, 0, impl_->buffer.name(), 0, sizeof(CloudPoint));
     for (const GLuint attribute : {0u, 1u}) {
         glEnableVertexArrayAttrib(array, attribute);
         glVertexArrayAttribFormat(array, attribute, 4, GL_FLOAT, GL_FALSE, attribute * GLuint(sizeof(glm::vec4)));
