@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Installs the distribution's packages that Tessera is built and tested with, if any is missing. Debian 12 or later.
-# --tests: those of ./test.sh too; --fuzz: the compiler of the preset "fuzz".
+# --tests: those of ./test.sh too; --clang: the compiler of the presets "clang" and "fuzz", too.
 set -euo pipefail
 
 packages=(
@@ -13,9 +13,13 @@ packages=(
     libvtk9-dev libtiff-dev zlib1g-dev                               # tessera-import: readers of foreign formats
 )
 test_packages=(libgtest-dev libgmock-dev clang-format xvfb xdotool xauth x11-utils) # only ./test.sh needs these
-fuzz_packages=(clang-16 libclang-rt-16-dev libgtest-dev libgmock-dev) # clang 14 cannot compile <ranges> of gcc 12
+case $(. /etc/os-release && echo "${ID:-} ${VERSION_ID:-}") in
+    "debian 12") clang=16 ;; # its "clang" is 14, which cannot compile <ranges> of gcc 12
+    "ubuntu 24.04") clang=18 ;;
+    *) clang=19 ;;
+esac
 [ "${1:-}" = --tests ] && packages+=("${test_packages[@]}")
-[ "${1:-}" = --fuzz ] && packages+=("${fuzz_packages[@]}")
+[ "${1:-}" = --clang ] && packages+=("${test_packages[@]}" "clang-$clang" "libclang-rt-$clang-dev")
 
 missing=()
 for package in "${packages[@]}"; do

@@ -2,15 +2,17 @@
 # Installs what is missing, builds everything and passes every test.
 #   ./test.sh          the release build, all tests
 #   ./test.sh asan     the same with address and undefined sanitizers (tests that need no window)
+#   ./test.sh clang    by clang
 #   ./test.sh release --rerun-failed     what follows the preset goes to ctest
+# TESSERA_WERROR=ON in the environment makes warnings errors.
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 preset=${1:-release}
 [ $# -eq 0 ] || shift
 cd "$here"
 
-"$here/setup.sh" --tests
-cmake --preset "$preset" -DBUILD_TESTING=ON
+"$here/setup.sh" "$([ "$preset" = clang ] && echo --clang || echo --tests)"
+cmake --preset "$preset" -DBUILD_TESTING=ON -DTESSERA_WERROR="${TESSERA_WERROR:-OFF}"
 cmake --build --preset "$preset"
 
 # Tests write nothing outside the build folder.
