@@ -49,7 +49,6 @@ std::vector<fs::path> layoutFolders() {
         folders.push_back(program.parent_path() / "../share/tessera/layouts");
         folders.push_back(program.parent_path() / "layouts");
     }
-    folders.emplace_back(TESSERA_LAYOUT_DIR);
     return folders;
 }
 

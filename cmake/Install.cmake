@@ -1,0 +1,31 @@
+# cmake --install, and cpack, which makes a Debian package. Programs find their layouts and each other by where they are:
+# in the build folder a link to the layouts of the sources lies beside them.
+file(CREATE_LINK ${CMAKE_SOURCE_DIR}/layouts ${CMAKE_BINARY_DIR}/layouts SYMBOLIC)
+
+include(GNUInstallDirs)
+set(installed_programs tessera)
+if(TARGET tessera-import)
+  list(APPEND installed_programs tessera-import)
+endif()
+install(TARGETS ${installed_programs} RUNTIME)
+install(DIRECTORY layouts/ DESTINATION ${CMAKE_INSTALL_DATADIR}/tessera/layouts)
+install(FILES README.md LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} FILES_MATCHING PATTERN "*.md" PATTERN "*.png")
+install(FILES packaging/tessera.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
+install(FILES packaging/tessera.desktop DESTINATION ${CMAKE_INSTALL_DATADIR}/applications)
+install(FILES packaging/tessera.svg DESTINATION ${CMAKE_INSTALL_DATADIR}/icons/hicolor/scalable/apps)
+install(FILES packaging/tessera-mime.xml DESTINATION ${CMAKE_INSTALL_DATADIR}/mime/packages RENAME tessera.xml)
+
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_CONTACT "The Tessera authors <tessera@localhost>")
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "Workbench for simulations with many values per point")
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+# What is opened while the program runs: GL, and the fonts without which icons are words.
+set(CPACK_DEBIAN_PACKAGE_DEPENDS "libegl1, libgl1, libgl1-mesa-dri")
+set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "fonts-roboto-unhinted, fonts-font-awesome")
+set(CPACK_DEBIAN_PACKAGE_SUGGESTS "ffmpeg")
+include(CPack)

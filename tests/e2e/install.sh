@@ -1,0 +1,39 @@
+#!/bin/bash
+# What is installed works wherever it is moved to, and finds its own layouts and importer. Arguments TESSERA SOURCE_DIR.
+tessera=$1 source=$2
+source "$source/tests/e2e/common.bash"
+build=$(dirname "$tessera")
+has_importer() { [ -x "$build/tessera-import" ]; }
+programs=(tessera)
+if has_importer; then programs+=(tessera-import); fi
+
+cmake --install "$build" --prefix "$work/first" > log 2>&1 || { cat log; die "cmake --install"; }
+mv first moved
+moved=$work/moved
+for program in "${programs[@]}"; do [ -x "$moved/bin/$program" ] || die "no $program"; done
+
+# A layout that only the installed folder has is known, one that it lacks is not: nothing is read from the sources.
+mv "$moved/share/tessera/layouts/overview.json" "$moved/share/tessera/layouts/only-here.json"
+check "an installed layout" 0 "$moved/bin/tessera" render --layout only-here -o overview.png --size 480x300
+check "a layout of the sources" 2 "$moved/bin/tessera" render --layout overview -o none.png --size 480x300
+check "the same picture" 0 "$tessera" render --layout overview -o from-build.png --size 480x300
+cmp -s overview.png from-build.png || fail "the installed program draws another picture"
+
+if has_importer; then
+    "$tessera" generate fuel-cell -o cell.tsr --size 7x13x20 --times 1 > /dev/null || die "generate"
+    "$tessera" unpack cell.tsr -o cell.vti > /dev/null || die "unpack"
+    check "its own importer reads" 0 env -u TESSERA_IMPORT "$moved/bin/tessera" info cell.vti
+    mv "$moved/bin/tessera-import" elsewhere
+    check "no other importer is taken" 2 env -u TESSERA_IMPORT "$moved/bin/tessera" info cell.vti
+fi
+
+# What desktops and people read.
+for file in share/applications/tessera.desktop share/mime/packages/tessera.xml share/man/man1/tessera.1 \
+    share/icons/hicolor/scalable/apps/tessera.svg share/doc/tessera/README.md share/doc/tessera/LICENSE \
+    share/doc/tessera/docs/guide.md; do
+    [ -s "$moved/$file" ] || fail "no $file"
+done
+"$tessera" --help | sed -n '/^Subcommands:/,$ s/^  \([a-z]\+\) .*/\1/p' > commands
+[ "$(wc -l < commands)" -gt 10 ] || fail "tessera --help names few commands"
+while read -r command; do say "^\.B $command\$" "$moved/share/man/man1/tessera.1"; done < commands
+exit "$failures"
