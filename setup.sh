@@ -12,7 +12,7 @@ packages=(
     fonts-roboto-unhinted fonts-font-awesome                         # text and icons
     libvtk9-dev libtiff-dev zlib1g-dev                               # tessera-import: readers of foreign formats
 )
-test_packages=(libgtest-dev libgmock-dev clang-format xvfb xdotool xauth x11-utils) # only ./test.sh needs these
+test_packages=(libgtest-dev libgmock-dev clang-format glslang-tools xvfb xdotool xauth x11-utils) # only ./test.sh needs these
 case $(. /etc/os-release && echo "${ID:-} ${VERSION_ID:-}") in
     "debian 12") clang=16 ;; # its "clang" is 14, which cannot compile <ranges> of gcc 12
     "ubuntu 24.04") clang=18 ;;

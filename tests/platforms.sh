@@ -76,6 +76,7 @@ if [ -n "${CCACHE_DIR:-}" ]; then
     mkdir -p "$CCACHE_DIR"
     mount_at "$root" "$(realpath "$CCACHE_DIR")" /ccache
     variables+=(CCACHE_DIR=/ccache CMAKE_C_COMPILER_LAUNCHER=ccache CMAKE_CXX_COMPILER_LAUNCHER=ccache)
+    variables+=(CCACHE_SLOPPINESS=pch_defines,time_macros,include_file_mtime,include_file_ctime)
     packages+=(ccache)
 fi
 
