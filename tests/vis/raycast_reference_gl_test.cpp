@@ -317,6 +317,8 @@ TEST_P(RaycastReference, CoarseLevelsLieWhereTheFineOnesDo) {
         ASSERT_FALSE(status.complete);
         coarse.pixels.clear();
         for (const glm::vec4& pixel : renderer.readLinear(*target)) coarse.pixels.emplace_back(pixel);
+        ASSERT_TRUE(std::ranges::none_of(coarse.pixels, [](glm::dvec4 pixel) { return std::isnan(pixel.a); }))
+            << "before anything is drawn a picture is empty";
         if (std::ranges::any_of(coarse.pixels, [](glm::dvec4 pixel) { return pixel.a > 0.2; })) break;
         std::this_thread::sleep_for(std::chrono::milliseconds(2));
     }

@@ -105,11 +105,7 @@ void Renderer::Impl::blank(ViewTarget& target, const Scene& scene) {
 
 /// The background alone: nothing is loaded, or the program does not compile.
 void Renderer::Impl::nothing(ViewTarget& target, const Scene& scene) {
-    const float empty[] = {0, 0, 0, 0}, nowhere[] = {-1e9f, 0, 0, 0}, endless[] = {1e9f, 0, 0, 0};
-    glDisable(GL_SCISSOR_TEST);
-    glClearNamedFramebufferfv(target.full.framebuffer.name(), GL_COLOR, 0, empty);
-    glClearNamedFramebufferfv(target.full.framebuffer.name(), GL_COLOR, 1, nowhere);
-    glClearNamedFramebufferfv(target.full.framebuffer.name(), GL_COLOR, 2, endless);
+    target.full.clear();
     present(target, scene, false, target.everything());
     target.fullValid = target.stillDone = true;
 }

@@ -12,7 +12,16 @@ void RayBuffer::resize(glm::ivec2 wanted, bool exact, const char* label) {
     made.reach = makeTexture2D(wanted, GL_R32F, GL_NEAREST, label);
     made.framebuffer = makeFramebuffer({made.color.name(), made.pick.name(), made.reach.name()}, label);
     made.size = wanted;
+    made.clear(); // pictures and positions are read before every tile of the first one is drawn
     *this = std::move(made);
+}
+
+void RayBuffer::clear() const {
+    const float empty[] = {0, 0, 0, 0}, nowhere[] = {-1e9f, 0, 0, 0}, endless[] = {1e9f, 0, 0, 0};
+    glDisable(GL_SCISSOR_TEST);
+    glClearNamedFramebufferfv(framebuffer.name(), GL_COLOR, 0, empty);
+    glClearNamedFramebufferfv(framebuffer.name(), GL_COLOR, 1, nowhere);
+    glClearNamedFramebufferfv(framebuffer.name(), GL_COLOR, 2, endless);
 }
 
 void ViewTarget::resize(glm::ivec2 wanted, bool exact) {

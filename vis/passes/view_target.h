@@ -20,7 +20,10 @@ struct RayBuffer {
     Framebuffer framebuffer;
     glm::ivec2 size{0};
     glm::ivec2 first{0}; ///< texel of the picture's lower left pixel
+    /// Empty where the size is new.
     void resize(glm::ivec2 wanted, bool exact, const char* label);
+    /// Nothing in any pixel.
+    void clear() const;
 };
 
 class ViewTarget {
