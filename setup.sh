@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Installs the distribution's packages that Tessera is built and tested with, if any is missing. Debian 12 or later.
+# Installs the distribution's packages that Tessera is built and tested with, if any is missing: on Debian 12 or 13.
+# Ubuntu 24.04 has the same names (not tried). Ubuntu 22.04 is too old: CMake 3.22, nlohmann-json 3.10, liblzma 5.2.
 # --tests: those of ./test.sh too; --clang: the compiler of the presets "clang" and "fuzz", too.
 set -euo pipefail
 
@@ -21,16 +22,21 @@ esac
 [ "${1:-}" = --tests ] && packages+=("${test_packages[@]}")
 [ "${1:-}" = --clang ] && packages+=("${test_packages[@]}" "clang-$clang" "libclang-rt-$clang-dev")
 
+if ! command -v apt-get >/dev/null; then
+    echo "setup: no apt-get here. What the build needs has these names on Fedora (not tried):" >&2
+    echo "    gcc-c++ cmake ninja-build pkgconf glm-devel json-devel cli11-devel tbb-devel libzstd-devel xz-devel" >&2
+    echo "    xxhash-devel libpng-devel muParser-devel imgui-devel stb-devel freetype-devel glfw-devel libepoxy-devel" >&2
+    echo "    mesa-libEGL-devel mesa-dri-drivers google-roboto-fonts fontawesome4-fonts vtk-devel libtiff-devel" >&2
+    echo "    zlib-devel; for tests: gtest-devel gmock-devel clang-tools-extra xorg-x11-server-Xvfb xdotool" >&2
+    exit 0
+fi
+
 missing=()
 for package in "${packages[@]}"; do
     [ "$(dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null)" = installed ] || missing+=("$package")
 done
 [ ${#missing[@]} -eq 0 ] && exit 0
 
-if ! command -v apt-get >/dev/null; then
-    echo "setup: this system has no apt-get; please install the equivalents of: ${missing[*]}" >&2
-    exit 1
-fi
 as_root=()
 if [ "$(id -u)" -ne 0 ]; then
     command -v sudo >/dev/null || { echo "setup: run as root once, or install: ${missing[*]}" >&2; exit 1; }

@@ -88,8 +88,10 @@ Gui::~Gui() {
 }
 
 void Gui::uploadFonts() {
+#if IMGUI_VERSION_NUM < 19200 // from then on the back end sees by itself that there are others
     ImGui_ImplOpenGL3_DestroyFontsTexture();
     ImGui_ImplOpenGL3_CreateFontsTexture();
+#endif
 }
 
 void Gui::draw(glm::ivec2 framebuffer, Theme theme) {

@@ -1,0 +1,56 @@
+#!/usr/bin/env bash
+# What takes too long for every commit, one step after another; what failed is said at the end.
+#   tests/nightly.sh                  all of it
+#   tests/nightly.sh clang asan       some steps of: clang asan fuzz second-driver
+# FUZZ_SECONDS: how long each fuzz target searches (600).
+set -uo pipefail
+cd "$(dirname "$0")/.." || exit 1
+export TESSERA_WERROR=ON
+failed=()
+
+step() { # step NAME COMMAND...
+    echo "nightly: $1"
+    "${@:2}" || failed+=("$1")
+}
+
+clang() { ./test.sh clang -LE e2e; }
+
+asan() { ./test.sh asan; }
+
+# Each target searches on from the stored corpus; what it finds lies in build/fuzz/found.
+fuzz() {
+    ./setup.sh --clang && cmake --preset fuzz -DBUILD_TESTING=ON -DTESSERA_WERROR=ON && cmake --build --preset fuzz || return 1
+    mkdir -p build/fuzz/found
+    local target name good=0
+    for target in build/fuzz/fuzz_*; do
+        if [ ! -f "$target" ] || [ ! -x "$target" ]; then continue; fi
+        name=$(basename "$target")
+        mkdir -p "build/fuzz/corpus/$name"
+        "$target" -max_total_time="${FUZZ_SECONDS:-600}" -artifact_prefix=build/fuzz/found/ -print_final_stats=1 \
+            "build/fuzz/corpus/$name" "tests/fuzz/corpus/$name" > "build/fuzz/$name.log" 2>&1 ||
+            { tail -n 20 "build/fuzz/$name.log"; echo "FAILED: $name"; good=1; }
+    done
+    return "$good"
+}
+
+# The tests that draw, by Mesa's GL on Vulkan in software.
+second_driver() {
+    ls /usr/share/vulkan/icd.d/lvp_icd* > /dev/null 2>&1 || { echo "mesa-vulkan-drivers is not installed"; return 1; }
+    ./setup.sh --tests && cmake --preset release -DBUILD_TESTING=ON -DTESSERA_WERROR=ON && cmake --build --preset release || return 1
+    local home=$PWD/build/release/second-driver
+    rm -rf "$home"
+    mkdir "$home" && chmod 700 "$home"
+    LIBGL_ALWAYS_SOFTWARE=1 GALLIUM_DRIVER=zink XDG_RUNTIME_DIR=$home MESA_SHADER_CACHE_DIR=$home TMPDIR=$home \
+        build/release/vis_gl_tests --gtest_brief=1
+}
+
+[ $# -gt 0 ] || set -- clang asan fuzz second-driver
+for name in "$@"; do
+    case $name in
+    clang | asan | fuzz) step "$name" "$name" ;;
+    second-driver) step "$name" second_driver ;;
+    *) echo "nightly: there is no step \"$name\"" >&2; exit 2 ;;
+    esac
+done
+[ ${#failed[@]} -eq 0 ] || { echo "nightly: FAILED: ${failed[*]}"; exit 1; }
+echo "nightly: passed"
