@@ -9,8 +9,8 @@
 #include <limits>
 #include <optional>
 #include <stdexcept>
+#include <vtkDataArray.h>
 #include <vtkDoubleArray.h>
-#include <vtkFloatArray.h>
 #include <vtkImageData.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
@@ -94,8 +94,16 @@ bool stopsEarly(const std::vector<std::array<std::size_t, 3>>& nodes, const std:
     return false;
 }
 
+/// Name of the vector that begins with a column, "" where none does.
+std::string vectorAt(const std::vector<Heading>& headings, std::size_t c) {
+    if (c + 2 >= headings.size() || headings[c + 1].unit != headings[c].unit ||
+        headings[c + 2].unit != headings[c].unit)
+        return {};
+    return vectorName(headings[c].name, headings[c + 1].name, headings[c + 2].name);
+}
+
 PointTable inOrder(const PointTable& table, const std::vector<std::ptrdiff_t>& rowOf) {
-    PointTable out{table.headings, {}};
+    PointTable out{table.headings, {}, table.types};
     for (const std::vector<double>& column : table.columns) {
         std::vector<double> values(rowOf.size(), 0);
         for (std::size_t i = 0; i < rowOf.size(); ++i)
@@ -213,22 +221,26 @@ int axisOf(std::string_view name) {
     return -1;
 }
 
+std::size_t columnsTogether(const std::vector<Heading>& headings, std::size_t column) {
+    return vectorAt(headings, column).empty() ? 1 : 3;
+}
+
 void addColumns(const PointTable& table, vtkDataSetAttributes* to, Source& source) {
     for (std::size_t c = 0; c < table.columns.size(); ++c) {
         const Heading& heading = table.headings[c];
         if (axisOf(heading.name) >= 0) continue;
-        std::string vector;
-        if (c + 2 < table.columns.size() && table.headings[c + 1].unit == heading.unit &&
-            table.headings[c + 2].unit == heading.unit)
-            vector = vectorName(heading.name, table.headings[c + 1].name, table.headings[c + 2].name);
+        const std::string vector = vectorAt(table.headings, c);
         const int components = vector.empty() ? 1 : 3;
-        vtkNew<vtkFloatArray> array;
+        int type = table.types.empty() ? VTK_FLOAT : table.types[c];
+        for (std::size_t k = 1; type != VTK_FLOAT && k < std::size_t(components); ++k)
+            if (table.types[c + k] != type) type = VTK_FLOAT;
+        const auto array = vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(type));
         array->SetName((vector.empty() ? heading.name : vector).c_str());
         array->SetNumberOfComponents(components);
         array->SetNumberOfTuples(vtkIdType(table.rows()));
         for (int k = 0; k < components; ++k)
             for (std::size_t row = 0; row < table.rows(); ++row)
-                array->SetTypedComponent(vtkIdType(row), k, float(table.columns[c + std::size_t(k)][row]));
+                array->SetComponent(vtkIdType(row), k, table.columns[c + std::size_t(k)][row]);
         if (!heading.unit.empty()) source.units[array->GetName()] = heading.unit;
         to->AddArray(array);
         if (components == 3) c += 2;

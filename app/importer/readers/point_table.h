@@ -24,8 +24,12 @@ int axisOf(std::string_view name);
 struct PointTable {
     std::vector<Heading> headings;
     std::vector<std::vector<double>> columns; ///< all of one length
+    std::vector<int> types;                   ///< VTK's, by column; none: all are VTK_FLOAT
     std::size_t rows() const { return columns.empty() ? 0 : columns.front().size(); }
 };
+
+/// 3 where a vector begins with this column (see addColumns), else 1.
+std::size_t columnsTogether(const std::vector<Heading>& headings, std::size_t column);
 
 /// Columns other than coordinates, as arrays with their units noted in `source`. Three that follow each other and are
 /// named Ax Ay Az, A.x .., A:0 .. or u v w are one vector.

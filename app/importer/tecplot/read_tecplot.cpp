@@ -1,29 +1,17 @@
 // Tecplot ASCII: zones of points in order, structured or of finite elements, values of points or cells. Own reader,
 // because VTK's takes what a truncated file lacks as 0 and knows no times.
-#include "app/importer/readers/point_table.h"
 #include "app/importer/readers/read_files.h"
 #include "app/importer/readers/whole_file.h"
+#include "app/importer/tecplot/tecplot_zones.h"
 
 #include <algorithm>
 #include <cctype>
-#include <charconv>
 #include <cstdlib>
 #include <map>
 #include <memory>
 #include <set>
 #include <stdexcept>
 #include <string_view>
-#include <vtkCellData.h>
-#include <vtkCellType.h>
-#include <vtkCompositeDataSet.h>
-#include <vtkDoubleArray.h>
-#include <vtkInformation.h>
-#include <vtkMultiBlockDataSet.h>
-#include <vtkNew.h>
-#include <vtkPointData.h>
-#include <vtkPoints.h>
-#include <vtkStructuredGrid.h>
-#include <vtkUnstructuredGrid.h>
 
 namespace tessera::importer {
 
@@ -39,7 +27,7 @@ struct Zone {
     std::map<std::string, std::string> words; ///< by keyword in capitals
     std::set<std::size_t> ofCells;            ///< variables, from 0
     std::vector<std::vector<double>> values;
-    std::vector<std::int64_t> corners; ///< of finite elements, from 0
+    std::vector<vtkIdType> corners; ///< of finite elements, from 0
     bool has(const char* key) const { return words.contains(key); }
     std::string word(const char* key, const char* otherwise = "") const {
         const auto at = words.find(key);
@@ -169,37 +157,27 @@ std::set<std::size_t> cellVariables(std::string text, std::size_t variables) {
     return out;
 }
 
-struct Shape {
-    std::size_t i, j, k, points, cells, corners;
-    int cellType;
-};
-
-Shape shapeOf(const Zone& zone) {
+/// Type of cells, and numbers of points and cells.
+TecplotZone shapeOf(const Zone& zone) {
     const std::string type = upper(zone.word("ZONETYPE", zone.has("ET") ? zone.word("ET").c_str() : "ORDERED"));
-    Shape shape{zone.size("I", 1), zone.size("J", 1), zone.size("K", 1), 0, 0, 0, 0};
+    TecplotZone shape;
     if (type == "ORDERED") {
-        shape.points = shape.i * shape.j * shape.k;
-        const auto less = [](std::size_t n) { return std::max<std::size_t>(n, 2) - 1; };
-        shape.cells = less(shape.i) * less(shape.j) * less(shape.k);
+        shape.size = {zone.size("I", 1), zone.size("J", 1), zone.size("K", 1)};
+        countOrdered(shape);
         return shape;
     }
     shape.points = zone.size("NODES", zone.size("N", 0));
     shape.cells = zone.size("ELEMENTS", zone.size("E", 0));
-    if (type.find("BRICK") != std::string::npos) {
-        shape.corners = 8;
+    if (type.find("BRICK") != std::string::npos)
         shape.cellType = VTK_HEXAHEDRON;
-    } else if (type.find("TETRA") != std::string::npos) {
-        shape.corners = 4;
+    else if (type.find("TETRA") != std::string::npos)
         shape.cellType = VTK_TETRA;
-    } else if (type.find("QUAD") != std::string::npos) {
-        shape.corners = 4;
+    else if (type.find("QUAD") != std::string::npos)
         shape.cellType = VTK_QUAD;
-    } else if (type.find("TRIANGLE") != std::string::npos) {
-        shape.corners = 3;
+    else if (type.find("TRIANGLE") != std::string::npos)
         shape.cellType = VTK_TRIANGLE;
-    } else {
+    else
         throw std::runtime_error("has a zone of kind " + type + ", which is not read: write it as FEBRICK or FETETRA");
-    }
     return shape;
 }
 
@@ -218,7 +196,7 @@ Zone readZone(Words& words, std::size_t variables) {
         throw std::runtime_error(
             "has a zone that shares variables of another, which is not read: write each zone whole");
     zone.ofCells = cellVariables(zone.word("VARLOCATION"), variables);
-    const Shape shape = shapeOf(zone);
+    const TecplotZone shape = shapeOf(zone);
     std::string packing = upper(zone.word("DATAPACKING", zone.word("F", "POINT").c_str()));
     if (packing.starts_with("FE")) packing = packing.substr(2);
     zone.values.resize(variables);
@@ -233,80 +211,44 @@ Zone readZone(Words& words, std::size_t variables) {
             for (std::size_t n = 0; n < count; ++n) zone.values[v].push_back(words.number());
         }
     }
-    for (std::size_t n = 0; n < shape.cells * shape.corners; ++n) {
+    for (std::size_t n = 0; n < shape.cells * cornersOf(shape.cellType); ++n) {
         const double corner = words.number();
         if (!(corner >= 1 && corner <= double(shape.points))) throw std::runtime_error("has a cell with a bad corner");
-        zone.corners.push_back(std::int64_t(corner) - 1);
+        zone.corners.push_back(vtkIdType(corner) - 1);
     }
     words.endOfList();
     return zone;
 }
 
-vtkSmartPointer<vtkPoints> pointsOf(const PointTable& table, std::size_t count, Source& source) {
-    vtkNew<vtkPoints> points;
-    points->SetDataTypeToDouble();
-    points->SetNumberOfPoints(vtkIdType(count));
-    bool any[3] = {false, false, false};
-    std::vector<double> places[3];
-    for (std::size_t c = 0; c < table.columns.size(); ++c)
-        if (const int axis = axisOf(table.headings[c].name); axis >= 0 && !any[axis]) {
-            any[axis] = true;
-            places[axis] = table.columns[c];
-            if (!table.headings[c].unit.empty()) source.lengthUnit = table.headings[c].unit;
-        }
-    if (!any[0] || !any[1]) throw std::runtime_error("has no variables X and Y with places");
-    for (std::size_t n = 0; n < count; ++n)
-        points->SetPoint(vtkIdType(n), places[0][n], places[1][n], any[2] ? places[2][n] : 0);
-    return points;
-}
-
-vtkSmartPointer<vtkDataSet> dataOf(const Zone& zone, const std::vector<Heading>& headings, Source& source) {
-    const Shape shape = shapeOf(zone);
-    PointTable ofPoints, ofCells;
-    for (std::size_t v = 0; v < headings.size(); ++v) {
-        PointTable& table = zone.ofCells.contains(v) ? ofCells : ofPoints;
-        table.headings.push_back(headings[v]);
-        table.columns.push_back(zone.values[v]);
-    }
-    if (shape.corners == 0 && shape.j == 1 && shape.k == 1) return gridOfPoints(ofPoints, source);
-    const auto fill = [&](vtkPointSet* mesh) {
-        mesh->SetPoints(pointsOf(ofPoints, shape.points, source));
-        addColumns(ofPoints, mesh->GetPointData(), source);
-        addColumns(ofCells, mesh->GetCellData(), source);
-    };
-    if (shape.corners == 0) {
-        vtkNew<vtkStructuredGrid> grid;
-        grid->SetDimensions(int(shape.i), int(shape.j), int(shape.k));
-        fill(grid);
-        return grid;
-    }
-    vtkNew<vtkUnstructuredGrid> mesh;
-    mesh->Allocate(vtkIdType(shape.cells));
-    for (std::size_t c = 0; c < shape.cells; ++c) {
-        std::vector<vtkIdType> corners(zone.corners.begin() + std::ptrdiff_t(c * shape.corners),
-                                       zone.corners.begin() + std::ptrdiff_t((c + 1) * shape.corners));
-        mesh->InsertNextCell(shape.cellType, vtkIdType(corners.size()), corners.data());
-    }
-    fill(mesh);
-    return mesh;
+TecplotZone described(std::shared_ptr<const Zone> zone, std::size_t variables) {
+    TecplotZone out = shapeOf(*zone);
+    out.name = zone->word("T");
+    if (zone->has("SOLUTIONTIME")) out.time = std::strtod(zone->word("SOLUTIONTIME").c_str(), nullptr);
+    if (zone->has("STRANDID")) out.strand = std::atoi(zone->word("STRANDID").c_str());
+    out.types.assign(variables, VTK_FLOAT);
+    for (std::size_t v = 0; v < variables; ++v) out.ofCells.push_back(zone->ofCells.contains(v));
+    out.values = [zone](std::size_t variable) { return zone->values[variable]; };
+    out.corners = [zone] { return zone->corners; };
+    return out;
 }
 
 } // namespace
 
 void openTecplot(Source& source) {
     const std::string head = readPart(source.path, 0, 512);
-    if (head.starts_with("#!TD"))
-        throw std::runtime_error(
-            "is binary Tecplot, which is not read: write it as Tecplot ASCII (.dat), or as CGNS or "
-            "EnSight Gold from the program that made it");
+    if (head.starts_with("#!TDV")) {
+        openBinaryTecplot(source);
+        return;
+    }
+    if (head.starts_with("#!SZPLT"))
+        throw std::runtime_error("has subzones (.szplt), which are not read: write it as binary Tecplot (.plt)");
     if (head.find("(0 \"") != std::string::npos || head.starts_with("("))
         throw std::runtime_error("holds the values of a Fluent case: open the .cas file of the same name");
     const std::string text = readWhole(source.path);
     checkLastLine(text);
     Words words(text);
     std::vector<Heading> headings;
-    std::map<double, std::vector<Zone>> zones; // by time
-    bool times = true;
+    std::vector<TecplotZone> zones;
     while (!words.atEnd()) {
         const std::string key = upper(words.next());
         if (key == "TITLE" || key == "FILETYPE" || key == "DATASETAUXDATA" || key == "VARAUXDATA") {
@@ -321,35 +263,12 @@ void openTecplot(Source& source) {
                 headings.push_back(parseHeading(words.next()));
         } else if (key == "ZONE") {
             if (headings.empty()) throw std::runtime_error("has a zone before its VARIABLES: is it Tecplot ASCII?");
-            Zone zone = readZone(words, headings.size());
-            times = times && zone.has("SOLUTIONTIME");
-            const double time = std::strtod(zone.word("SOLUTIONTIME", "0").c_str(), nullptr);
-            zones[time].push_back(std::move(zone));
+            zones.push_back(described(std::make_shared<const Zone>(readZone(words, headings.size())), headings.size()));
         } else {
             throw std::runtime_error("has \"" + key.substr(0, 40) + "\" where ZONE belongs: is it Tecplot ASCII?");
         }
     }
-    if (zones.empty()) throw std::runtime_error("holds no zone");
-    if (!times) // zones that state no time are there at all times
-        for (auto at = std::next(zones.begin()); at != zones.end(); at = zones.erase(at))
-            for (Zone& zone : at->second) zones.begin()->second.push_back(std::move(zone));
-    if (times)
-        for (const auto& [time, list] : zones) source.times.push_back(time);
-    const auto kept = std::make_shared<const std::map<double, std::vector<Zone>>>(std::move(zones));
-    Source units = source;
-    for (const Zone& zone : kept->begin()->second) dataOf(zone, headings, source);
-    source.read = [kept, headings, units](std::size_t time) -> vtkSmartPointer<vtkDataObject> {
-        Source scratch = units;
-        const std::vector<Zone>& list = std::next(kept->begin(), std::ptrdiff_t(time))->second;
-        vtkNew<vtkMultiBlockDataSet> blocks;
-        for (unsigned z = 0; z < list.size(); ++z) {
-            blocks->SetBlock(z, dataOf(list[z], headings, scratch));
-            blocks->GetMetaData(z)->Set(vtkCompositeDataSet::NAME(),
-                                        list.size() > 1 ? list[z].word("T", ("zone " + std::to_string(z + 1)).c_str())
-                                                        : std::string());
-        }
-        return blocks;
-    };
+    giveZones(std::move(headings), std::move(zones), source);
 }
 
 } // namespace tessera::importer

@@ -1,0 +1,103 @@
+#pragma once
+
+#include "app/importer/readers/whole_file.h"
+
+#include <algorithm>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <fstream>
+#include <stdexcept>
+#include <string>
+
+/// The words that binary Tecplot files are made of.
+namespace tessera::importer {
+
+/// A number of the file's byte order.
+template <class T> T numberAt(const char* bytes, bool swap) {
+    char raw[sizeof(T)];
+    std::memcpy(raw, bytes, sizeof raw);
+    if (swap) std::reverse(raw, raw + sizeof raw);
+    return std::bit_cast<T>(raw);
+}
+
+/// Goes through a file from its beginning; `place` is what a file that ends too early is said to end within.
+class Bytes {
+public:
+    explicit Bytes(const std::string& path) : in_(path, std::ios::binary), size_(bytesIn(path)) {}
+
+    std::string place = "its header";
+    bool swap = false;
+
+    std::uint64_t at() const { return at_; }
+    std::uint64_t left() const { return size_ - at_; }
+    void skip(std::uint64_t count) {
+        need(count);
+        at_ += count;
+        in_.seekg(static_cast<std::streamoff>(at_));
+    }
+    template <class T> T next() {
+        need(sizeof(T));
+        char raw[sizeof(T)] = {};
+        in_.read(raw, sizeof raw);
+        at_ += sizeof raw;
+        return numberAt<T>(raw, swap);
+    }
+    std::int32_t integer() { return next<std::int32_t>(); }
+    std::size_t count(const char* what) {
+        const std::int32_t value = integer();
+        if (value < 0) throw std::runtime_error("has a bad number of " + std::string(what) + " in " + place);
+        return static_cast<std::size_t>(value);
+    }
+    /// Whether a list follows, or a choice of two.
+    bool flag() {
+        const std::int32_t value = integer();
+        if (value != 0 && value != 1) throw std::runtime_error("is damaged in " + place);
+        return value == 1;
+    }
+    /// A word whose characters are integers, the last of them 0: bytes of UTF-8, or of Latin-1 in old files.
+    std::string text() {
+        std::string out;
+        bool eight = false;
+        while (const std::int32_t code = integer()) {
+            if (code < -128 || code > 255) throw std::runtime_error("has a bad name in " + place);
+            out += code > 0 && code < ' ' ? ' ' : static_cast<char>(code);
+            eight = eight || out.back() < 0;
+        }
+        return eight && !isUtf8(out) ? fromLatin(out) : out;
+    }
+
+private:
+    void need(std::uint64_t count) const {
+        if (count > left())
+            throw std::runtime_error("ends within " + place + ": truncated at byte " + std::to_string(size_));
+    }
+    static bool isUtf8(const std::string& text) {
+        for (std::size_t i = 0; i < text.size(); ++i) {
+            const auto lead = static_cast<unsigned char>(text[i]);
+            const int more = lead < 0x80 ? 0 : lead >> 5 == 6 ? 1 : lead >> 4 == 14 ? 2 : lead >> 3 == 30 ? 3 : -1;
+            if (more < 0 || i + std::size_t(more) >= text.size()) return false;
+            for (int k = 0; k < more; ++k)
+                if ((static_cast<unsigned char>(text[++i]) & 0xC0) != 0x80) return false;
+        }
+        return true;
+    }
+    static std::string fromLatin(const std::string& text) {
+        std::string out;
+        for (const char c : text) {
+            const auto code = static_cast<unsigned char>(c);
+            if (code < 0x80) {
+                out += c;
+                continue;
+            }
+            out += static_cast<char>(0xC0 | code >> 6);
+            out += static_cast<char>(0x80 | (code & 0x3F));
+        }
+        return out;
+    }
+    std::ifstream in_;
+    std::uint64_t size_, at_ = 0;
+};
+
+} // namespace tessera::importer

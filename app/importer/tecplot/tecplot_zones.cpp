@@ -1,0 +1,270 @@
+#include "app/importer/tecplot/tecplot_zones.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <set>
+#include <span>
+#include <stdexcept>
+#include <vtkCellData.h>
+#include <vtkCompositeDataSet.h>
+#include <vtkInformation.h>
+#include <vtkMultiBlockDataSet.h>
+#include <vtkNew.h>
+#include <vtkPointData.h>
+#include <vtkPoints.h>
+#include <vtkStructuredGrid.h>
+#include <vtkUnstructuredGrid.h>
+
+namespace tessera::importer {
+
+namespace {
+
+constexpr double kMostPoints = 1e12; // in a zone
+
+/// A zone and the type that each variable gets, so that it is the same at all times.
+struct Part {
+    const TecplotZone& zone;
+    const std::vector<int>& types;
+    const std::vector<Heading>& headings;
+
+    /// Those with values, in order.
+    std::vector<std::size_t> variables(bool ofCells) const {
+        std::vector<std::size_t> out;
+        for (std::size_t v = 0; v < headings.size(); ++v)
+            if (types[v] != VTK_VOID && zone.ofCells[v] == ofCells) out.push_back(v);
+        return out;
+    }
+    std::vector<double> values(std::size_t variable) const {
+        if (zone.types[variable] != VTK_VOID) return zone.values(variable);
+        return std::vector<double>(zone.ofCells[variable] ? zone.cells : zone.points,
+                                   std::numeric_limits<double>::quiet_NaN());
+    }
+    PointTable table(std::span<const std::size_t> wanted, bool read = true) const {
+        PointTable out;
+        for (const std::size_t v : wanted) {
+            out.headings.push_back(headings[v]);
+            out.types.push_back(types[v]);
+            out.columns.push_back(read ? values(v) : std::vector<double>());
+        }
+        return out;
+    }
+    /// Throws where there are no places; they also tell that the zone's numbers of points and cells are true.
+    void needPlaces() const {
+        bool found[3] = {};
+        for (const std::size_t v : variables(false))
+            if (const int axis = axisOf(headings[v].name); axis >= 0 && zone.types[v] != VTK_VOID) found[axis] = true;
+        if (!found[0] || !found[1]) throw std::runtime_error("has no variables X and Y with places");
+    }
+    bool isRow() const { return zone.cellType == VTK_EMPTY_CELL && zone.size[1] == 1 && zone.size[2] == 1; }
+};
+
+/// Adds the arrays one after the other, so that the numbers of one are in memory twice, not those of all. Without
+/// `read` only their units are noted.
+void addArrays(const Part& part, bool ofCells, bool read, vtkDataSetAttributes* to, Source& source) {
+    const std::vector<std::size_t> variables = part.variables(ofCells);
+    const std::vector<Heading> names = part.table(variables, false).headings;
+    for (std::size_t c = 0; c < variables.size();) {
+        const std::size_t together = columnsTogether(names, c);
+        if (axisOf(names[c].name) < 0)
+            addColumns(part.table(std::span(variables).subspan(c, together), read), to, source);
+        c += together;
+    }
+}
+
+vtkSmartPointer<vtkPoints> pointsOf(const Part& part) {
+    std::vector<double> places[3];
+    for (const std::size_t v : part.variables(false))
+        if (const int axis = axisOf(part.headings[v].name);
+            axis >= 0 && places[axis].empty() && part.zone.types[v] != VTK_VOID) {
+            places[axis] = part.values(v);
+            if (std::any_of(places[axis].begin(), places[axis].end(), [](double x) { return !std::isfinite(x); }))
+                throw std::runtime_error("has a place that is no number");
+        }
+    vtkNew<vtkPoints> points;
+    points->SetDataTypeToDouble();
+    points->SetNumberOfPoints(vtkIdType(part.zone.points));
+    for (std::size_t n = 0; n < part.zone.points; ++n)
+        points->SetPoint(vtkIdType(n), places[0][n], places[1][n], places[2].empty() ? 0 : places[2][n]);
+    return points;
+}
+
+/// Tecplot writes wedges, pyramids and tetrahedra as bricks with corners that coincide.
+void insertBrick(vtkUnstructuredGrid& mesh, const vtkIdType* corners) {
+    for (int turn = 0; turn < 8; ++turn) { // about the axis, the latter half upside down
+        vtkIdType low[4], high[4];
+        for (int n = 0; n < 4; ++n) {
+            low[n] = corners[(n + turn) % 4 + (turn < 4 ? 0 : 4)];
+            high[n] = corners[(n + turn) % 4 + (turn < 4 ? 4 : 0)];
+        }
+        std::vector<vtkIdType> base;
+        for (int n = 0; n < 4; ++n)
+            if (low[n] != low[(n + 1) % 4]) base.push_back(low[n]);
+        if (base.size() < 3) continue;
+        if (std::count(high, high + 4, high[0]) == 4) {
+            base.push_back(high[0]);
+            mesh.InsertNextCell(base.size() == 5 ? VTK_PYRAMID : VTK_TETRA, vtkIdType(base.size()), base.data());
+            return;
+        }
+        if (low[2] == low[3] && high[2] == high[3]) {
+            const vtkIdType wedge[6] = {low[0], low[1], low[2], high[0], high[1], high[2]};
+            mesh.InsertNextCell(VTK_WEDGE, 6, wedge);
+            return;
+        }
+    }
+    mesh.InsertNextCell(VTK_HEXAHEDRON, 8, corners);
+}
+
+vtkSmartPointer<vtkPointSet> gridOf(const TecplotZone& zone) {
+    if (zone.cellType == VTK_EMPTY_CELL) {
+        vtkNew<vtkStructuredGrid> grid;
+        grid->SetDimensions(int(zone.size[0]), int(zone.size[1]), int(zone.size[2]));
+        return grid;
+    }
+    const std::vector<vtkIdType> corners = zone.corners();
+    if (std::any_of(corners.begin(), corners.end(),
+                    [&](vtkIdType corner) { return corner < 0 || corner >= vtkIdType(zone.points); }))
+        throw std::runtime_error("has a cell with a bad corner");
+    vtkNew<vtkUnstructuredGrid> mesh;
+    mesh->Allocate(vtkIdType(zone.cells));
+    const std::size_t each = cornersOf(zone.cellType);
+    for (std::size_t c = 0; c < zone.cells; ++c)
+        if (zone.cellType == VTK_HEXAHEDRON)
+            insertBrick(*mesh, corners.data() + c * each);
+        else
+            mesh->InsertNextCell(zone.cellType, vtkIdType(each), corners.data() + c * each);
+    return mesh;
+}
+
+vtkSmartPointer<vtkDataSet> dataOf(const Part& part, Source& source) {
+    part.needPlaces();
+    if (part.isRow()) {
+        if (!part.variables(true).empty()) throw std::runtime_error("has values of cells in a zone of points");
+        return gridOfPoints(part.table(part.variables(false)), source);
+    }
+    vtkSmartPointer<vtkPointSet> grid = gridOf(part.zone);
+    grid->SetPoints(pointsOf(part));
+    addArrays(part, false, true, grid->GetPointData(), source);
+    addArrays(part, true, true, grid->GetCellData(), source);
+    return grid;
+}
+
+/// Units without reading more than zones of points, which tell how they become a grid.
+void noteUnits(const Part& part, Source& source) {
+    for (const Heading& heading : part.headings)
+        if (axisOf(heading.name) >= 0 && !heading.unit.empty()) source.lengthUnit = heading.unit;
+    if (part.isRow()) {
+        dataOf(part, source);
+        return;
+    }
+    vtkNew<vtkPointData> none;
+    addArrays(part, false, false, none, source);
+    addArrays(part, true, false, none, source);
+}
+
+/// The zones by time, each with its name and the types of its variables.
+struct Frames {
+    struct Block {
+        std::size_t zone;
+        std::string name;
+        std::vector<int> types;
+    };
+    std::vector<Heading> headings;
+    std::vector<TecplotZone> zones;
+    std::vector<std::vector<Block>> blocks; ///< by time
+
+    Part part(const Block& block) const { return {zones[block.zone], block.types, headings}; }
+};
+
+/// A name that changes over time, or a variable without values at some time, is that of one block all the same.
+void sameOverTime(Frames& frames) {
+    std::vector<Frames::Block>& first = frames.blocks.front();
+    const auto strandOf = [&](const Frames::Block& block) { return frames.zones[block.zone].strand; };
+    std::set<int> strands;
+    bool known = true; // each block by its strand, or by being there at all times
+    for (const Frames::Block& block : first)
+        known = known && (strandOf(block) ? strands.insert(*strandOf(block)).second
+                                          : !frames.zones[block.zone].time.has_value());
+    for (std::vector<Frames::Block>& blocks : frames.blocks) {
+        if (blocks.size() != first.size()) return; // said where that time is read
+        if (known && std::ranges::equal(blocks, first, {}, strandOf, strandOf))
+            for (std::size_t b = 0; b < first.size(); ++b) blocks[b].name = first[b].name;
+    }
+    for (std::size_t b = 0; b < first.size(); ++b)
+        for (std::size_t v = 0; v < frames.headings.size(); ++v) {
+            std::set<int> types;
+            for (const std::vector<Frames::Block>& blocks : frames.blocks) types.insert(blocks[b].types[v]);
+            if (types.size() < 2) continue;
+            for (std::vector<Frames::Block>& blocks : frames.blocks) blocks[b].types[v] = VTK_FLOAT;
+        }
+}
+
+} // namespace
+
+std::size_t cornersOf(int cellType) {
+    switch (cellType) {
+    case VTK_HEXAHEDRON:
+        return 8;
+    case VTK_TETRA:
+    case VTK_QUAD:
+        return 4;
+    case VTK_TRIANGLE:
+        return 3;
+    default:
+        return 0;
+    }
+}
+
+void countOrdered(TecplotZone& zone) {
+    double points = 1;
+    zone.points = zone.cells = 1;
+    for (const std::size_t n : zone.size) {
+        points *= double(n);
+        if (n > std::size_t(std::numeric_limits<int>::max()) || points > kMostPoints)
+            throw std::runtime_error("has a zone with too many points");
+        zone.points *= n;
+        zone.cells *= std::max<std::size_t>(n, 2) - 1;
+    }
+}
+
+void giveZones(std::vector<Heading> headings, std::vector<TecplotZone> zones, Source& source) {
+    if (zones.empty()) throw std::runtime_error("holds no zone");
+    std::set<double> times;
+    for (const TecplotZone& zone : zones) {
+        if (zone.time && !std::isfinite(*zone.time)) throw std::runtime_error("has a zone with a bad time");
+        if (zone.time) times.insert(*zone.time);
+    }
+    source.times.assign(times.begin(), times.end());
+    Frames frames{std::move(headings), std::move(zones), {}};
+    for (std::size_t t = 0; t < std::max<std::size_t>(1, times.size()); ++t) {
+        std::vector<Frames::Block>& blocks = frames.blocks.emplace_back();
+        for (std::size_t z = 0; z < frames.zones.size(); ++z) {
+            const TecplotZone& zone = frames.zones[z];
+            if (!zone.time || *zone.time == source.times[t]) blocks.push_back({z, zone.name, zone.types});
+        }
+        std::stable_sort(blocks.begin(), blocks.end(), [&](const Frames::Block& a, const Frames::Block& b) {
+            return frames.zones[a.zone].strand < frames.zones[b.zone].strand;
+        });
+        for (std::size_t b = 0; b < blocks.size(); ++b)
+            if (blocks.size() == 1)
+                blocks[b].name.clear();
+            else if (blocks[b].name.empty())
+                blocks[b].name = "zone " + std::to_string(b + 1);
+    }
+    sameOverTime(frames);
+    for (const Frames::Block& block : frames.blocks.front()) noteUnits(frames.part(block), source);
+    const auto kept = std::make_shared<const Frames>(std::move(frames));
+    source.read = [kept, units = source](std::size_t time) -> vtkSmartPointer<vtkDataObject> {
+        Source scratch = units;
+        vtkNew<vtkMultiBlockDataSet> out;
+        for (const Frames::Block& block : kept->blocks.at(time)) {
+            const unsigned b = out->GetNumberOfBlocks();
+            out->SetBlock(b, dataOf(kept->part(block), scratch));
+            out->GetMetaData(b)->Set(vtkCompositeDataSet::NAME(), block.name);
+        }
+        return out;
+    };
+}
+
+} // namespace tessera::importer
