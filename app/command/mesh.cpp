@@ -2,7 +2,7 @@
 #include "app/data/import_options.h"
 #include "app/data/open.h"
 #include "app/described/describe_cli.h"
-#include "app/queries/surface_feed.h"
+#include "app/queries/surface_query.h"
 #include "volume/base/error.h"
 #include "volume/mesh/mesh_file.h"
 

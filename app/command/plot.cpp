@@ -63,7 +63,7 @@ void run(const PlotRequest& request) {
     if (!csv && !svg) return drawPicture(request, data, sources);
     Session session;
     const volume::Curves curves =
-        readCurves(*sources.numbers, curvesWish(request.view, session, info), progress.part(0.4, 1));
+        readCurves(*sources.numbers, plotCurvesQuery(request.view, session, info), progress.part(0.4, 1));
     AtomicFile file(request.output);
     file.write(csv ? originLine(sources.origin, info) + curvesCsv(curves) : curvesSvg(curves, request.time));
     file.commit();

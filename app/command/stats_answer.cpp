@@ -17,23 +17,23 @@ namespace tessera::app {
 
 namespace {
 
-SectionWish sectionWish(const StatsRequest& request, const Question& question, double time) {
-    SectionWish wish;
-    wish.channels = question.channels;
-    if (!request.options.along.empty()) wish.axis = volume::SpaceAxis(request.options.along[0] - 'x');
-    wish.line = question.line;
-    wish.planes = request.options.planes;
-    wish.weight = request.options.weight;
-    wish.velocity = request.options.velocity;
-    wish.label = question.label;
-    wish.time = question.at(time);
-    wish.regions = question.regions;
-    return wish;
+SectionCurvesQuery sectionCurvesQuery(const StatsRequest& request, const Question& question, double time) {
+    SectionCurvesQuery query;
+    query.channels = question.channels;
+    if (!request.options.along.empty()) query.axis = volume::SpaceAxis(request.options.along[0] - 'x');
+    query.line = question.line;
+    query.planes = request.options.planes;
+    query.weight = request.options.weight;
+    query.velocity = request.options.velocity;
+    query.label = question.label;
+    query.time = question.at(time);
+    query.regions = question.regions;
+    return query;
 }
 
 std::vector<RegionRow> regionRowsAt(const Question& question, double time, const Progress& progress) {
-    const RegionWish wish{question.channels, question.label, question.at(time)};
-    std::vector<RegionRow> rows = regionRows(question.info(), wish, readRegions(question.source, wish, progress));
+    const RegionQuery query{question.channels, question.label, question.at(time)};
+    std::vector<RegionRow> rows = regionRows(question.info(), query, readRegions(question.source, query, progress));
     std::erase_if(rows, [&](const RegionRow& row) {
         return !question.regions.empty() && std::ranges::none_of(question.regions, [&](int value) {
             return row.region == volume::labelName(volume::parameterOf(question.info(), question.label), value);
@@ -50,29 +50,29 @@ void addSections(Answer& answer, const StatsRequest& request, const Question& qu
                  const Progress& progress) {
     const volume::DatasetInfo& info = question.info();
     const SectionMeasure show = request.options.show;
-    const SectionCurves curves = readSections(question.source, sectionWish(request, question, time), progress);
+    const SectionCurves curves = readSections(question.source, sectionCurvesQuery(request, question, time), progress);
     answer.csv += sectionCsv(info, curves, answer.csv.empty());
     answer.notes = sectionNotes(info, curves);
     answer.panels = sectionPanels(info, curves, show);
-    const std::vector<CurveLook> looks = curveLooks(info, curves.wish);
+    const std::vector<CurveLook> looks = curveLooks(info, curves.query);
     const std::vector<volume::Channel> channels = info.channels();
     const auto& places = curves.sections.place;
     const LengthUnit length =
         suitableLength(info.lengthUnit, places.empty() ? 0 : std::abs(places.back() - places.front()));
-    std::vector<std::string> heads{titleWithUnit(placeTitle(curves.wish), length.name)};
+    std::vector<std::string> heads{titleWithUnit(placeTitle(curves.query), length.name)};
     std::vector<std::vector<std::string>> rows(places.size());
     for (std::size_t p = 0; p < places.size(); ++p) rows[p] = {numberText(places[p] * length.perUnit)};
-    for (std::size_t c = 0; c < curves.wish.channels.size(); ++c)
+    for (std::size_t c = 0; c < curves.query.channels.size(); ++c)
         for (std::size_t r = 0; r < looks.size(); ++r) {
             const auto& values = curves.sections.values[r][c];
             if (std::ranges::none_of(values, [](const auto& value) { return value.area > 0; })) continue;
-            const volume::ComposedUnit unit = measureUnit(info, curves.wish.channels[c], curves.velocity, show);
-            const std::string& name = channels[static_cast<std::size_t>(curves.wish.channels[c])].name;
+            const volume::ComposedUnit unit = measureUnit(info, curves.query.channels[c], curves.velocity, show);
+            const std::string& name = channels[static_cast<std::size_t>(curves.query.channels[c])].name;
             heads.push_back(titleWithUnit(name + (looks.size() > 1 ? " " + looks[r].name : ""), unit.unit));
             Json entry{{"time", time}, {"parameter", name}, {"region", looks[r].name}, {"place", places}};
             for (std::size_t m = 0; m < std::size(kSectionMeasureNames); ++m) {
                 const volume::ComposedUnit own =
-                    measureUnit(info, curves.wish.channels[c], curves.velocity, SectionMeasure(m));
+                    measureUnit(info, curves.query.channels[c], curves.velocity, SectionMeasure(m));
                 Json list = Json::array();
                 for (const auto& value : values)
                     list.push_back(numberOrNull(measured(value, SectionMeasure(m), own.factor)));
@@ -88,8 +88,8 @@ void addSections(Answer& answer, const StatsRequest& request, const Question& qu
 }
 
 BalanceTable balanceAt(const StatsRequest& request, const Question& question, double time, const Progress& progress) {
-    const BalanceWish wish{question.balance, request.options.velocity, question.label, question.at(time)};
-    return balanceTable(question.info(), readBalance(question.source, wish, progress));
+    const RegionBalanceQuery query{question.balance, request.options.velocity, question.label, question.at(time)};
+    return balanceTable(question.info(), readBalance(question.source, query, progress));
 }
 
 void addBalance(Answer& answer, const StatsRequest& request, const Question& question, double time,

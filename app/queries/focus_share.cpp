@@ -14,7 +14,7 @@ FocusShare focusShare(const StatisticsResult& result, const volume::DatasetInfo&
     const glm::dvec3 size(grid.levelSamples(std::min(result.statistics.level, grid.levels - 1)));
     share.all = size.x * size.y * size.z;
     std::set<int> brushed;
-    for (const vis::Brush& brush : result.wish.selection.brushes)
+    for (const vis::Brush& brush : result.query.selection.brushes)
         for (const std::string& name : vis::regionChannels(brush.region))
             if (const auto channel = info.findChannel(name); channel && brush.enabled) brushed.insert(*channel);
     const std::vector<volume::Channel> channels = info.channels();
@@ -23,7 +23,7 @@ FocusShare focusShare(const StatisticsResult& result, const volume::DatasetInfo&
     for (std::size_t i = 0; i < counted.size(); ++i) {
         const volume::ChannelStatistics& own = counted[i];
         share.focus = std::max(share.focus, own.inside.samples);
-        const int channel = result.wish.channels[i];
+        const int channel = result.query.channels[i];
         if (!brushed.empty() && !brushed.contains(channel)) continue;
         if (brushed.empty() && volume::parameterOf(info, channel).categorical) continue;
         // Of what is brushed that which exists at the fewest points, else what exists at the most.

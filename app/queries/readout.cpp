@@ -3,11 +3,8 @@
 #include "app/pane/axis_label.h"
 #include "app/pane/figure.h"
 #include "app/pane/view_parts.h"
-#include "app/queries/pending_wish.h"
 #include "app/ui/ticks.h"
 #include "app/ui/time_text.h"
-#include "volume/base/background.h"
-#include "volume/base/error.h"
 #include "volume/field/quantities.h"
 #include "volume/flow/flow_channels.h"
 
@@ -34,8 +31,8 @@ std::string regionText(const volume::DatasetInfo& info, const Readout& readout, 
     std::optional<int> label;
     if (own.parts.count() > 1) label = volume::labelChannel(info, own.parts.label);
     if (!label) label = volume::labelChannel(info);
-    if (!label || static_cast<std::size_t>(*label) >= readout.state->values.size()) return {};
-    const auto& value = readout.state->values[static_cast<std::size_t>(*label)].nearest;
+    if (!label || static_cast<std::size_t>(*label) >= readout.values.size()) return {};
+    const auto& value = readout.values[static_cast<std::size_t>(*label)].nearest;
     return value ? volume::labelName(volume::parameterOf(info, *label), static_cast<int>(std::lround(*value))) : "";
 }
 
@@ -51,50 +48,35 @@ std::string valueText(const volume::DatasetInfo& info, const volume::Channel& ch
 } // namespace
 
 std::optional<double> Readout::value(const std::string& channel) const {
-    for (std::size_t i = 0; i < channels.size() && i < state->values.size(); ++i)
-        if (channels[i].name == channel) return state->values[i].interpolated;
+    for (std::size_t i = 0; i < channels.size() && i < values.size(); ++i)
+        if (channels[i].name == channel) return values[i].interpolated;
     return std::nullopt;
 }
 
-void updateReadout(ViewContext& context, Readout& readout) {
-    Readout::State& state = *readout.state;
-    if (state.source != context.numbers) {
-        readout.state = std::make_shared<Readout::State>();
-        readout.state->source = context.numbers;
-        readout.state->cache = std::make_shared<volume::BrickCache>(context.numbers, kCacheBytes);
+void updateReadout(ViewContext& context, const std::string& pane, Readout& readout) {
+    if (readout.source != context.numbers) {
+        readout.source = context.numbers;
+        readout.cache = std::make_shared<volume::BrickCache>(context.numbers, kCacheBytes);
         readout.channels = context.numbers->info().channels();
-        updateReadout(context, readout);
-        return;
     }
-    const glm::dvec3 position = context.session.cursor;
-    const volume::TimePair time = volume::timesAround(context.numbers->info().times, context.session.time);
-    if (state.time == time && state.position == position) return;
-    if (context.headless) {
-        state.values = volume::probe(*state.cache, position, time);
-        state.position = position;
-        state.time = time;
-        return;
-    }
-    context.busy = true;
-    if (state.running) return;
-    state.running = true;
-    context.jobs.start(
-        "", "Values at the cursor",
-        [weak = std::weak_ptr(readout.state), cache = state.cache, position, time](const Progress&) -> Jobs::Finish {
-            workInBackground();
-            std::string failure;
-            auto values = attempt(failure, [&] { return volume::probe(*cache, position, time); });
-            return [weak, values = std::move(values), failure, position, time] {
-                const auto owner = weak.lock();
-                if (!owner) return;
-                owner->running = false;
-                owner->values = values;
-                owner->position = position;
-                owner->time = time;
-                if (!failure.empty()) throw Error(failure);
-            };
+    const auto values = readout.answers.get(
+        context, context.numbers,
+        {.key = "cursor " + pane,
+         .title = "Values at the cursor",
+         .quiet = true,
+         .lowPriority = true,
+         .duringEdits = true},
+        {context.session.cursor, volume::timesAround(context.numbers->info().times, context.session.time)},
+        [cache = readout.cache](const auto&, const Readout::Query& query, int, const Progress&) {
+            return volume::probe(*cache, query.position, query.time);
         },
-        true);
+        [](const Readout::Query&, const Readout::Query&) { return true; });
+    const std::string failure = readout.answers.failure();
+    if (context.headless && !failure.empty()) throw Error(failure);
+    if (values && failure.empty())
+        readout.values = *values;
+    else
+        readout.values.clear();
 }
 
 namespace {
@@ -141,9 +123,9 @@ void drawReadout(ViewContext& context, const Readout& readout, bool compact) {
     const auto copy = [&] { return originLine(context.origin, info) + readoutCsv(context.session, info, readout); };
     if (compact) {
         std::vector<std::string> values;
-        for (std::size_t i = 0; i < readout.channels.size() && i < readout.state->values.size(); ++i) {
+        for (std::size_t i = 0; i < readout.channels.size() && i < readout.values.size(); ++i) {
             const volume::Channel& channel = readout.channels[i];
-            const std::optional<double>& value = readout.state->values[i].interpolated;
+            const std::optional<double>& value = readout.values[i].interpolated;
             // Components say little beside the magnitude.
             const bool component = channel.name.find('.') != std::string::npos;
             if (value && !component)
@@ -176,7 +158,7 @@ void drawReadout(ViewContext& context, const Readout& readout, bool compact) {
         tableHeader({"Parameter", "Value", "Nearest"});
     const std::vector<std::vector<std::string>> rows = readoutRows(info, readout);
     for (std::size_t i = 0; i < rows.size(); ++i) {
-        const volume::ProbeValue& value = readout.state->values[i];
+        const volume::ProbeValue& value = readout.values[i];
         ImGui::TableNextRow();
         ImGui::TableNextColumn();
         ImGui::TextUnformatted(rows[i][0].c_str());
@@ -201,9 +183,9 @@ std::vector<std::string> readoutHeads(const volume::DatasetInfo& info) {
 std::vector<std::vector<std::string>> readoutRows(const volume::DatasetInfo& info, const Readout& readout) {
     const bool regions = volume::labelChannel(info).has_value();
     std::vector<std::vector<std::string>> rows;
-    for (std::size_t i = 0; i < readout.channels.size() && i < readout.state->values.size(); ++i) {
+    for (std::size_t i = 0; i < readout.channels.size() && i < readout.values.size(); ++i) {
         const volume::Channel& channel = readout.channels[i];
-        const volume::ProbeValue& value = readout.state->values[i];
+        const volume::ProbeValue& value = readout.values[i];
         rows.push_back({titleWithUnit(channel.name, channel.unit), valueText(info, channel, value.interpolated),
                         valueText(info, channel, value.nearest)});
         if (regions) rows.back().push_back(regionText(info, readout, channel.parameter));
@@ -232,8 +214,8 @@ std::string readoutCsv(const Session& session, const volume::DatasetInfo& info, 
     for (const volume::Quantity& quantity : info.quantities)
         csv += csvField(quantity.name) + "," + csvField(quantity.unit) + "," +
                number(volume::valueAt(info.times, quantity.values, session.time)) + "," + end;
-    for (std::size_t i = 0; i < readout.channels.size() && i < readout.state->values.size(); ++i) {
-        const volume::ProbeValue& value = readout.state->values[i];
+    for (std::size_t i = 0; i < readout.channels.size() && i < readout.values.size(); ++i) {
+        const volume::ProbeValue& value = readout.values[i];
         csv += readout.channels[i].name + "," + readout.channels[i].unit + "," + number(value.interpolated) + "," +
                number(value.nearest) +
                (regions ? "," + csvField(regionText(info, readout, readout.channels[i].parameter)) : "") + "\n";

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "app/pane/view_context.h"
+#include "app/queries/async_query.h"
 #include "volume/bricks/brick_cache.h"
 #include "volume/field/time_pair.h"
 #include "volume/reconstruct/probe.h"
@@ -15,23 +15,23 @@ namespace tessera::app {
 /// Values of every parameter at the linked cross-hair, read in the background when cross-hair or time change; until
 /// then the previous values are shown.
 struct Readout {
-    struct State {
-        std::vector<volume::ProbeValue> values; ///< by channel
-        glm::dvec3 position{0};                 ///< where and when they were read
-        std::optional<volume::TimePair> time;
-        bool running = false;
-        std::shared_ptr<const volume::BrickSource> source;
-        std::shared_ptr<volume::BrickCache> cache; ///< bricks around the cursor, so that dragging it decodes few
+    struct Query {
+        glm::dvec3 position{0};
+        volume::TimePair time;
+        bool operator==(const Query&) const = default;
     };
-    std::shared_ptr<State> state = std::make_shared<State>();
     std::vector<volume::Channel> channels;
+    std::vector<volume::ProbeValue> values; ///< by channel; empty until they are read
+    AsyncQuery<Query, std::vector<volume::ProbeValue>> answers;
+    std::shared_ptr<volume::BrickCache> cache;         ///< bricks around the cursor, so that dragging it decodes few
+    std::shared_ptr<const volume::BrickSource> source; ///< of the cache
 
     /// Interpolated value of a channel at the cursor; nothing where it is absent or not yet read.
     std::optional<double> value(const std::string& channel) const;
 };
 
-/// Starts reading if the cursor or time is new. Headless, reads at once.
-void updateReadout(ViewContext& context, Readout& readout);
+/// Starts reading if the cursor or time is new. Headless, reads at once; throws Error.
+void updateReadout(ViewContext& context, const std::string& pane, Readout& readout);
 
 /// Table of position, index and values, with a button that copies it; without room for a table (compact) the values in
 /// running lines.

@@ -53,17 +53,17 @@ void drawStatistics(ViewContext& context, const std::string& pane, LensStatistic
     const volume::DatasetInfo& info = context.numbers->info();
     const std::vector<int> shown = chosenChannels(info, {}, 12);
     if (shown.empty() || !lens.enabled) return;
-    StatisticsWish wish;
-    wish.channels = shown;
+    BrushedQuery query;
+    query.channels = shown;
     const std::vector<volume::Channel> channels = info.channels();
     for (const int channel : shown)
-        wish.ranges.push_back(paddedRange(info.channelRange(channels[static_cast<std::size_t>(channel)])));
-    wish.time = volume::timesAround(info.times, context.session.time);
-    wish.bins = 1;
-    wish.selection.brushes = {{.name = "", .color = {}, .region = vis::LensRegion{lens.name}}};
-    wish.lenses = lensSpace(context.session, info);
-    std::erase_if(wish.lenses.lenses, [&](const vis::PlacedLens& other) { return other.name != lens.name; });
-    const auto result = statistics.feeds[lens.name].get(context, pane + " lens " + lens.name, wish);
+        query.ranges.push_back(paddedRange(info.channelRange(channels[static_cast<std::size_t>(channel)])));
+    query.time = volume::timesAround(info.times, context.session.time);
+    query.bins = 1;
+    query.selection.brushes = {{.name = "", .color = {}, .region = vis::LensRegion{lens.name}}};
+    query.lenses = lensSpace(context.session, info);
+    std::erase_if(query.lenses.lenses, [&](const vis::PlacedLens& other) { return other.name != lens.name; });
+    const auto result = statistics.byLens[lens.name].get(context, pane + " lens " + lens.name, query);
     if (!result) {
         ImGui::TextDisabled("Counting...");
         return;

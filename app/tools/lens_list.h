@@ -1,7 +1,7 @@
 #pragma once
 
 #include "app/pane/view_context.h"
-#include "app/queries/statistics_feed.h"
+#include "app/queries/statistics_query.h"
 
 #include <map>
 
@@ -10,7 +10,7 @@ namespace tessera::app {
 
 /// Statistics of the lenses that are unfolded.
 struct LensStatistics {
-    std::map<std::string, StatisticsFeed> feeds; ///< by lens
+    std::map<std::string, AsyncStatistics> byLens;
 };
 
 /// Every lens with its switches, settings, layers and numbers, and a button that adds one at the cursor.

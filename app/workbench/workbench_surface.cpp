@@ -1,5 +1,5 @@
 #include "app/pane/view_parts.h"
-#include "app/queries/surface_feed.h"
+#include "app/queries/surface_query.h"
 #include "app/workbench/workbench.h"
 #include "volume/base/error.h"
 #include "volume/mesh/mesh_file.h"

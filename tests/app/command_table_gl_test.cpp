@@ -20,7 +20,7 @@ const std::set<std::string> kElsewhere = {
     "Pack into an archive...",      // WorkbenchData.WhatIsEditedWhilePackingStays
     "Compare with another file...", // WorkbenchData.AnotherFileStandsBeside
     "Save picture...",              // tests/e2e/window.sh
-    "Export surface...",            // Feeds, tests/e2e/mesh.sh
+    "Export surface...",            // AsyncQueries, tests/e2e/mesh.sh
     "Copy session",                 // CommandTable.ASessionGoesThroughTheClipboard
     "Paste session",                // the same
     "Quit",                         // WorkbenchGl.WhatIsNotSavedIsNotGivenUpUnasked

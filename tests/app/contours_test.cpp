@@ -44,8 +44,8 @@ struct Page {
     Page() {
         levels = contourLevels({300, 477.5}, 12);
         const volume::Box& box = source->info().bounds;
-        const ContourWish wish{1, {}, box.center().z, {}, levels.values};
-        for (const volume::ContourLine& line : readContours(*source, wish).lines) {
+        const ContourQuery query{1, {}, box.center().z, {}, levels.values};
+        for (const volume::ContourLine& line : readContours(*source, query).lines) {
             lines.push_back({contourText(line.level, levels.step), {}});
             for (const glm::dvec2& point : line.points) lines.back().points.push_back(onPage(point));
         }
@@ -151,8 +151,8 @@ TEST(Contours, StayInTheirRegion) {
     data.info.parameters[0].ranges = {{-2, 70}};
     const auto source = volume::makeMemorySource(std::move(data), {});
     // 30 lies in neither region, only between them.
-    const ContourWish wish{0, {0, 2, 1}, 9.5, {}, {4, 5, 30, 57}};
-    const Contours contours = readContours(*source, wish);
+    const ContourQuery query{0, {0, 2, 1}, 9.5, {}, {4, 5, 30, 57}};
+    const Contours contours = readContours(*source, query);
     std::size_t air = 0, fuel = 0;
     for (const volume::ContourLine& line : contours.lines) {
         const int region = line.level < 10 ? 1 : 3;

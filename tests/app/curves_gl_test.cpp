@@ -78,10 +78,10 @@ TEST_F(CurvesViewTest, ABadFormulaOrRegionIsTold) {
     curvesView.y = {"mean(T)"};
     curvesView.region = "nowhere";
     drawFrame();
-    EXPECT_THROW(curvesWish(curvesView, session, source->info()), Error);
+    EXPECT_THROW(plotCurvesQuery(curvesView, session, source->info()), Error);
     curvesView.region.clear();
     drawFrame();
-    EXPECT_NO_THROW(curvesWish(curvesView, session, source->info()));
+    EXPECT_NO_THROW(plotCurvesQuery(curvesView, session, source->info()));
 }
 
 TEST_F(CurvesViewTest, StatisticsOfABrushAreThoseOfTheStatisticsView) {
@@ -95,11 +95,11 @@ TEST_F(CurvesViewTest, StatisticsOfABrushAreThoseOfTheStatisticsView) {
     session.selection.brushes = {brush};
     curvesView.y = {"mean(T)", "share(T)", "volume(T)"};
     curvesView.brushed = true;
-    const volume::Curves curves = readCurves(*source, curvesWish(curvesView, session, source->info()));
+    const volume::Curves curves = readCurves(*source, plotCurvesQuery(curvesView, session, source->info()));
     for (std::size_t t = 0; t < curves.times.size(); ++t) {
         session.time = curves.times[t];
-        StatisticsWish wish = makeWish(session, source->info(), {*channel}, {range}, 8, false);
-        const volume::ChannelStatistics own = answer(source, wish, 0).channels[0];
+        BrushedQuery query = brushedQuery(session, source->info(), {*channel}, {range}, 8, false);
+        const volume::ChannelStatistics own = readStatistics(source, query, 0).channels[0];
         ASSERT_GT(own.inside.samples, 0);
         EXPECT_NEAR(curves.y[0].values[t], own.inside.mean, 1e-9 * range.hi);
         EXPECT_NEAR(curves.y[1].values[t], own.inside.samples / own.all.samples, 1e-12);
@@ -110,7 +110,7 @@ TEST_F(CurvesViewTest, StatisticsOfABrushAreThoseOfTheStatisticsView) {
 TEST_F(CurvesViewTest, TablesAndFiguresHoldTheCurves) {
     curvesView.x = "current_density";
     curvesView.y = {"voltage", "voltage*current_density"};
-    const volume::Curves curves = readCurves(*source, curvesWish(curvesView, session, source->info()));
+    const volume::Curves curves = readCurves(*source, plotCurvesQuery(curvesView, session, source->info()));
     const std::string csv = curvesCsv(curves);
     EXPECT_EQ(csv.substr(0, csv.find('\n')),
               "time [s],current_density [A/m2],voltage [V],voltage*current_density [W/m2]");

@@ -108,7 +108,7 @@ TEST(NumberOrigin, StandsInVectorGraphics) {
 StatisticsResult counted(const volume::DatasetInfo& info, double t, double o2) {
     StatisticsResult result;
     result.brushed = true;
-    result.wish.channels = {info.findChannel("T").value(), info.findChannel("O2").value()};
+    result.query.channels = {info.findChannel("T").value(), info.findChannel("O2").value()};
     result.statistics.channels.resize(2);
     result.statistics.channels[0].all.samples = 1000;
     result.statistics.channels[0].inside.samples = t;
@@ -123,16 +123,16 @@ TEST(FocusShare, SaysOfWhat) {
     volume::BrickGrid grid;
     grid.lattice = info.lattice;
     StatisticsResult result = counted(info, 40, 40);
-    result.wish.selection.brushes.resize(1);
-    result.wish.selection.brushes[0].region = vis::RangeRegion{{{.channel = "O2", .lo = 0, .hi = 1}}};
+    result.query.selection.brushes.resize(1);
+    result.query.selection.brushes[0].region = vis::RangeRegion{{{.channel = "O2", .lo = 0, .hi = 1}}};
     FocusShare share = focusShare(result, info, grid);
     EXPECT_EQ(shareText(share), "4.0 % of all samples, 13 % of where O2 exists");
     EXPECT_EQ(share.ofThere(), 40.0 / 300);
     EXPECT_EQ(shareTexts(share).back(), "4.0%");
     // A brush in what exists everywhere, or in space: of all samples.
-    result.wish.selection.brushes[0].region = vis::RangeRegion{{{.channel = "T", .lo = 0, .hi = 1}}};
+    result.query.selection.brushes[0].region = vis::RangeRegion{{{.channel = "T", .lo = 0, .hi = 1}}};
     EXPECT_EQ(shareText(focusShare(result, info, grid)), "4.0 % of all samples");
-    result.wish.selection.brushes[0].region = vis::SphereRegion{};
+    result.query.selection.brushes[0].region = vis::SphereRegion{};
     EXPECT_EQ(shareText(focusShare(result, info, grid)), "4.0 % of all samples");
     // Nothing exists in a part of the grid: of what exists at most points.
     result.statistics.channels[0].all.samples = 800;

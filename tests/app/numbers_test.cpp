@@ -1,6 +1,6 @@
 #include "app/data/open.h"
 #include "app/queries/focus_share.h"
-#include "app/queries/statistics_feed.h"
+#include "app/queries/statistics_query.h"
 #include "app/views/curves/profile_data.h"
 #include "codec/pack/pack.h"
 #include "volume/reconstruct/probe.h"
@@ -98,20 +98,20 @@ Numbers read(const volume::BrickSource& source, std::shared_ptr<const volume::Br
     const std::vector<int> channels = channelsOf(info, ending);
     for (const int channel : channels) out.ranges.push_back(info.channelRange(info.channels()[std::size_t(channel)]));
     StatisticsResult result;
-    result.wish = makeWish(brushed(info), info, channels, out.ranges, kBins, true);
+    result.query = brushedQuery(brushed(info), info, channels, out.ranges, kBins, true);
     result.brushed = true;
-    result.statistics = answer(shared, result.wish, 0);
+    result.statistics = readStatistics(shared, result.query, 0);
     out.statistics = result.statistics;
     out.share = shareText(focusShare(result, info, source.grid()));
     const glm::dvec3 at = info.bounds.lo + info.bounds.size() * glm::dvec3(0.31, 0.57, 0.43);
     const auto values = volume::probe(source, at, volume::timesAround(info.times, info.times[kTime]));
     for (const int channel : channels) out.readout.push_back(values[std::size_t(channel)]);
-    ProfileWish wish;
-    wish.channels = channels;
-    wish.corners = {info.bounds.lo, info.bounds.hi};
-    wish.samples = 41;
-    wish.time = volume::timesAround(info.times, 0.4 * info.times.back());
-    out.profile = readProfile(source, wish);
+    ProfileQuery query;
+    query.channels = channels;
+    query.corners = {info.bounds.lo, info.bounds.hi};
+    query.samples = 41;
+    query.time = volume::timesAround(info.times, 0.4 * info.times.back());
+    out.profile = readProfile(source, query);
     return out;
 }
 
@@ -181,15 +181,15 @@ TEST(Numbers, AreTheSameOnEveryLattice) {
 TEST(Numbers, OfOriginalsBesideWhatWasPacked) {
     const Sources plain = opened(smallCell());
     const auto count = [](const Sources& sources, const std::vector<std::string>& names, Range range) {
-        StatisticsWish wish;
+        BrushedQuery query;
         for (const std::string& name : names) {
-            wish.channels.push_back(sources.numbers->info().findChannel(name).value());
-            wish.ranges.push_back(range);
+            query.channels.push_back(sources.numbers->info().findChannel(name).value());
+            query.ranges.push_back(range);
         }
-        if (names.size() == 2) wish.pairs = {{0, 1}};
-        wish.bins = kBins;
-        wish.time = {kTime, kTime, 0};
-        return answer(sources.numbers, wish, 0);
+        if (names.size() == 2) query.pairs = {{0, 1}};
+        query.bins = kBins;
+        query.time = {kTime, kTime, 0};
+        return readStatistics(sources.numbers, query, 0);
     };
     for (const auto lattice : {StoredLattice::CC, StoredLattice::BCC}) {
         const Sources sources = opened(with([&](DataRef& of) {

@@ -40,9 +40,9 @@ volume::Dataset cell() {
 TEST(RegionData, RowsSayOfWhatTheirSharesAre) {
     const auto source = cellSource(cell());
     const volume::DatasetInfo& info = source->info();
-    const RegionWish wish{{0, 2}, 1, {}};
-    const volume::RegionStatistics statistics = readRegions(source, wish);
-    const std::vector<RegionRow> rows = regionRows(info, wish, statistics);
+    const RegionQuery query{{0, 2}, 1, {}};
+    const volume::RegionStatistics statistics = readRegions(source, query);
+    const std::vector<RegionRow> rows = regionRows(info, query, statistics);
     ASSERT_EQ(rows.size(), 8u); // three regions and the whole, of both parameters
     EXPECT_EQ(rows[1].region, "air");
     EXPECT_EQ(rows[1].parameter, "O2");
@@ -69,12 +69,12 @@ TEST(RegionData, RowsSayOfWhatTheirSharesAre) {
 TEST(RegionData, SectionsHaveUnitsAndCurvesARegionEach) {
     const auto source = cellSource(cell());
     const volume::DatasetInfo& info = source->info();
-    SectionWish wish;
-    wish.channels = {0, 2};
-    wish.label = 1;
-    const SectionCurves curves = readSections(source, wish);
+    SectionCurvesQuery query;
+    query.channels = {0, 2};
+    query.label = 1;
+    const SectionCurves curves = readSections(source, query);
     EXPECT_EQ(curves.velocity, "U");
-    EXPECT_EQ(curves.wish.regions, (std::vector<int>{0, 1, 3}));
+    EXPECT_EQ(curves.query.regions, (std::vector<int>{0, 1, 3}));
     EXPECT_EQ(measureUnit(info, 0, "U", SectionMeasure::Mean).unit, "mol/m3");
     EXPECT_EQ(measureUnit(info, 0, "U", SectionMeasure::Integral).unit, "mol/m");
     EXPECT_EQ(measureUnit(info, 0, "U", SectionMeasure::Flux).unit, "mol/s");
@@ -111,28 +111,28 @@ TEST(RegionData, WithoutAVelocityThereIsNoFlux) {
     data.info.parameters[3].name = "gradient";
     data.info.parameters[3].unit = "K/m";
     const auto source = cellSource(data);
-    SectionWish wish;
-    wish.channels = {0};
-    const SectionCurves curves = readSections(source, wish);
+    SectionCurvesQuery query;
+    query.channels = {0};
+    const SectionCurves curves = readSections(source, query);
     EXPECT_EQ(curves.velocity, "");
     EXPECT_THROW(sectionPanels(source->info(), curves, SectionMeasure::Flux), Error);
     EXPECT_EQ(rowsOf(sectionCsv(source->info(), curves))[1][11], ""); // no number rather than 0
-    wish.weight = volume::SectionWeight::MassFlow;
-    EXPECT_THROW(readSections(source, wish), Error);
+    query.weight = volume::SectionWeight::MassFlow;
+    EXPECT_THROW(readSections(source, query), Error);
     EXPECT_THROW(readBalance(source, {}), Error);
 }
 
 TEST(RegionData, SectionsCountWhatIsBrushed) {
     const auto source = cellSource(cell());
-    SectionWish wish;
-    wish.channels = {0};
-    wish.selection.brushes = {vis::rangeBrush({{"region", 0.75, 1.25, 0}})};
-    const SectionCurves brushed = readSections(source, wish);
-    EXPECT_EQ(curveLooks(source->info(), wish)[0].name, "selection");
-    wish.selection = {};
-    wish.label = 1;
-    wish.regions = {1};
-    const SectionCurves region = readSections(source, wish);
+    SectionCurvesQuery query;
+    query.channels = {0};
+    query.selection.brushes = {vis::rangeBrush({{"region", 0.75, 1.25, 0}})};
+    const SectionCurves brushed = readSections(source, query);
+    EXPECT_EQ(curveLooks(source->info(), query)[0].name, "selection");
+    query.selection = {};
+    query.label = 1;
+    query.regions = {1};
+    const SectionCurves region = readSections(source, query);
     for (std::size_t p = 0; p < region.sections.place.size(); ++p)
         EXPECT_DOUBLE_EQ(brushed.sections.values[0][0][p].mean, region.sections.values[0][0][p].mean);
 }
@@ -223,10 +223,10 @@ TEST(RegionData, OxygenOfTheSharedCellFallsAlongItsChannel) {
     std::vector<std::string> messages;
     const Sources sources = openSources(data, messages); // pictures are on BCC
     const volume::DatasetInfo& info = sources.numbers->info();
-    SectionWish wish;
-    wish.channels = {*info.findChannel("O2"), *info.findChannel("H2")};
-    wish.label = *volume::labelChannel(info);
-    const SectionCurves curves = readSections(sources.numbers, wish);
+    SectionCurvesQuery query;
+    query.channels = {*info.findChannel("O2"), *info.findChannel("H2")};
+    query.label = *volume::labelChannel(info);
+    const SectionCurves curves = readSections(sources.numbers, query);
     const auto panels = sectionPanels(info, curves, SectionMeasure::Mean);
     ASSERT_EQ(panels[0].series.size(), 1u);
     EXPECT_EQ(panels[0].title, "cathode");
@@ -238,7 +238,7 @@ TEST(RegionData, OxygenOfTheSharedCellFallsAlongItsChannel) {
     EXPECT_NEAR(panels[1].series[0].points.front().y, 21.80, 0.01);
     EXPECT_NEAR(panels[1].series[0].points.back().y, 20.78, 0.01);
     const BalanceTable balance =
-        balanceTable(info, readBalance(sources.numbers, {wish.channels[0], "", wish.label, {}}));
+        balanceTable(info, readBalance(sources.numbers, {query.channels[0], "", query.label, {}}));
     for (const BalanceRow& row : balance.rows)
         if (row.total && row.region == "cathode") {
             EXPECT_LT(row.relative, -0.2); // much of the oxygen is used up

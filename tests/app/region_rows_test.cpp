@@ -36,7 +36,7 @@ using Rows = std::vector<std::vector<std::string>>;
 Readout readAt(const volume::BrickSource& source, glm::dvec3 position) {
     Readout readout;
     readout.channels = source.info().channels();
-    readout.state->values = volume::probe(source, position, 0);
+    readout.values = volume::probe(source, position, 0);
     return readout;
 }
 
@@ -71,8 +71,8 @@ TEST(RegionRows, SelectionSaysHowMuchOfItLiesWhere) {
     const auto source = twoSides();
     Session session;
     const auto rowsOf = [&] {
-        StatisticsResult result{selectionWish(session, source->info()), {}, session.selection.active()};
-        result.statistics = answer(source, result.wish, 0);
+        StatisticsResult result{selectionQuery(session, source->info()), {}, session.selection.active()};
+        result.statistics = readStatistics(source, result.query, 0);
         return selectionRows(source->info(), result);
     };
     // 10 x 4 x 4 samples, half of them on either side.

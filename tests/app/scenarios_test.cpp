@@ -1,5 +1,5 @@
 #include "app/data/open.h"
-#include "app/queries/statistics_feed.h"
+#include "app/queries/statistics_query.h"
 #include "app/tools/profile_line.h"
 #include "app/views/curves/profile_data.h"
 #include "app/views/shadow_cube/wall_projection.h"
@@ -88,8 +88,8 @@ void forEach(const volume::BrickSource& source, const std::vector<int>& channels
 }
 
 volume::Summary selected(const Recorded& of, const Session& session, const std::string& parameter) {
-    StatisticsWish wish = makeWish(session, of.info(), {of.channel(parameter)}, {of.range(parameter)}, 8, false);
-    return answer(of.source, wish, 0).channels.front().inside;
+    BrushedQuery query = brushedQuery(session, of.info(), {of.channel(parameter)}, {of.range(parameter)}, 8, false);
+    return readStatistics(of.source, query, 0).channels.front().inside;
 }
 
 double correlation(const std::vector<double>& a, const std::vector<double>& b) {
@@ -198,12 +198,12 @@ TEST(Scenarios, OxygenFallsAlongTheChannelWhileWaterRises) {
     const auto view = std::find_if(session.views.begin(), session.views.end(),
                                    [](const auto& entry) { return std::holds_alternative<ProfileView>(entry.second); });
     ASSERT_NE(view, session.views.end());
-    ProfileWish wish{.over = ProfileOver::Line,
-                     .channels = {task.channel("O2"), task.channel("H2O"), task.channel("T")},
-                     .corners = profileCorners(std::get<ProfileView>(view->second), session, task.info().bounds),
-                     .samples = 200,
-                     .time = volume::timesAround(task.info().times, session.time)};
-    const Profile profile = readProfile(*task.source, wish);
+    ProfileQuery query{.over = ProfileOver::Line,
+                       .channels = {task.channel("O2"), task.channel("H2O"), task.channel("T")},
+                       .corners = profileCorners(std::get<ProfileView>(view->second), session, task.info().bounds),
+                       .samples = 200,
+                       .time = volume::timesAround(task.info().times, session.time)};
+    const Profile profile = readProfile(*task.source, query);
     EXPECT_LT(correlation(profile.values[0], profile.values[1]), -0.8);
     EXPECT_LT(correlation(profile.distance, profile.values[0]), -0.3);
     EXPECT_GT(correlation(profile.distance, profile.values[1]), 0.1);
@@ -218,9 +218,9 @@ TEST(Scenarios, OxygenFallsAlongTheChannelWhileWaterRises) {
         if (glm::distance(profile.positions[i], session.cursor) <
             glm::distance(profile.positions[nearest], session.cursor))
             nearest = i;
-    const auto read = volume::probe(*task.source, profile.positions[nearest], wish.time);
-    for (std::size_t c = 0; c < wish.channels.size(); ++c)
-        EXPECT_EQ(profile.values[c][nearest], read[std::size_t(wish.channels[c])].interpolated.value());
+    const auto read = volume::probe(*task.source, profile.positions[nearest], query.time);
+    for (std::size_t c = 0; c < query.channels.size(); ++c)
+        EXPECT_EQ(profile.values[c][nearest], read[std::size_t(query.channels[c])].interpolated.value());
 }
 
 // A lens is dragged and enlarged; its statistics are those of the samples within.
@@ -244,14 +244,14 @@ TEST(Scenarios, ALensCountsWhatItHolds) {
                 most = std::max(most, values[0]);
             });
     ASSERT_GT(surely, 50);
-    StatisticsWish wish;
-    wish.channels = {task.channel("T")};
-    wish.ranges = {task.range("T")};
-    wish.time = volume::timesAround(task.info().times, task.last().time);
-    wish.bins = 1;
-    wish.selection.brushes = {{.name = "", .color = {}, .region = vis::LensRegion{after.name}}};
-    wish.lenses = lensSpace(task.last(), task.info());
-    const volume::Summary inside = answer(task.source, wish, 0).channels.front().inside;
+    BrushedQuery query;
+    query.channels = {task.channel("T")};
+    query.ranges = {task.range("T")};
+    query.time = volume::timesAround(task.info().times, task.last().time);
+    query.bins = 1;
+    query.selection.brushes = {{.name = "", .color = {}, .region = vis::LensRegion{after.name}}};
+    query.lenses = lensSpace(task.last(), task.info());
+    const volume::Summary inside = readStatistics(task.source, query, 0).channels.front().inside;
     EXPECT_GT(inside.samples, surely);
     EXPECT_LT(inside.samples, perhaps);
     EXPECT_LE(inside.min, least);

@@ -147,11 +147,11 @@ TEST_F(TimeAlong, ProfilesAlongTimeAreInItsUnit) {
     const volume::DatasetInfo& info = source->info();
     const glm::dvec3 middle = info.bounds.center();
     const auto alongAxis = [&](int axis) {
-        ProfileWish wish{
+        ProfileQuery query{
             .over = ProfileOver::Line, .channels = {0}, .corners = {middle, middle}, .samples = 5, .time = {}};
-        wish.corners[0][axis] = info.bounds.lo[axis];
-        wish.corners[1][axis] = info.bounds.hi[axis];
-        return readProfile(*source, wish);
+        query.corners[0][axis] = info.bounds.lo[axis];
+        query.corners[1][axis] = info.bounds.hi[axis];
+        return readProfile(*source, query);
     };
     const std::vector<double>& times = space->info().times;
     const Profile profile = alongAxis(2);

@@ -1,5 +1,5 @@
 #include "app/pane/view_parts.h"
-#include "app/queries/derivative_feed.h"
+#include "app/queries/derivative_query.h"
 #include "app/ui/theme.h"
 #include "app/views/transfer/color_edit.h"
 #include "app/views/transfer/transfer_pages.h"
@@ -151,12 +151,11 @@ TEST_F(TransferPages, ADragMakesARegionAndARightClickRemovesIt) {
 TEST_F(TransferPages, TheCurveFollowsTheEmphasisOfBoundaries) {
     BoundaryPage page;
     page.apply = true;
-    DerivativeFeed feed;
     const volume::DatasetInfo& info = source->info();
     const int index = *info.findChannel(channel);
     const Range range = info.channelRange(info.channels()[std::size_t(index)]);
     vis::TransferFunction& function = session.transfer[channel];
-    std::shared_ptr<const DerivativeResult> result;
+    const auto result = std::make_shared<const DerivativeResult>(readDerivatives(source, {{.channel = index}, {}}));
     const auto draw = [&] {
         ImGui::NewFrame();
         ViewContext context{session, source, renderer, jobs, caches};
@@ -164,13 +163,11 @@ TEST_F(TransferPages, TheCurveFollowsTheEmphasisOfBoundaries) {
         ImGui::SetNextWindowPos({0, 0});
         ImGui::SetNextWindowSize({900, 500});
         ImGui::Begin("boundary", nullptr, ImGuiWindowFlags_NoDecoration);
-        result = feed.get(context, "gradients", {.channel = index}, {});
         drawBoundaryPage(context, page, function, info, index, result);
         ImGui::End();
         ImGui::Render();
     };
     draw();
-    ASSERT_NE(result, nullptr);
     EXPECT_EQ(function.opacity, vis::boundaryOpacity(result->curves, function, range));
     function.emphasis = {{0, 0.2f}, {1, 0.9f}};
     draw();

@@ -1,4 +1,4 @@
-#include "app/queries/statistics_feed.h"
+#include "app/queries/statistics_query.h"
 #include "app/views/scatter/scatter_layout.h"
 #include "tests/app/views_fixture.h"
 
@@ -114,9 +114,9 @@ TEST_F(BrushedViews, BrushingHotAndOxygenPoorSelectsWhatBruteForceSelects) {
     EXPECT_LT(expected, total);
     ViewContext context{session, source, renderer, jobs, caches};
     context.headless = true;
-    StatisticsFeed feed;
+    AsyncStatistics answers;
     const auto result =
-        feed.get(context, "test", makeWish(session, source->info(), {o2, t}, {plot.x, plot.y}, 32, true));
+        answers.get(context, "test", brushedQuery(session, source->info(), {o2, t}, {plot.x, plot.y}, 32, true));
     ASSERT_NE(result, nullptr);
     EXPECT_TRUE(result->brushed);
     EXPECT_EQ(result->statistics.channels[0].inside.samples, static_cast<double>(expected));
@@ -175,8 +175,8 @@ TEST_F(BrushedViews, AClickEnlargesAPlotThatCanBeBrushed) {
     EXPECT_TRUE(scatterView.enlarged.empty()) << "another click puts it away";
 }
 
-// A selection with a channel that is not shown, soft edges and an inverted brush: the feed's compiled function of the
-// values agrees with the definition.
+// A selection with a channel that is not shown, soft edges and an inverted brush: the answers's compiled function of
+// the values agrees with the definition.
 TEST_F(BrushedViews, FeedCountsWhatTheSelectionDefines) {
     show(fuelCell(volume::LatticeKind::CC));
     const volume::DatasetInfo& info = source->info();
@@ -195,8 +195,9 @@ TEST_F(BrushedViews, FeedCountsWhatTheSelectionDefines) {
         session.selection.brushes[1].combine = combine;
         ViewContext context{session, source, renderer, jobs, caches};
         context.headless = true;
-        StatisticsFeed feed;
-        const auto result = feed.get(context, "test", makeWish(session, info, {channelOf("p")}, {{0, 2e5}}, 8, false));
+        AsyncStatistics answers;
+        const auto result =
+            answers.get(context, "test", brushedQuery(session, info, {channelOf("p")}, {{0, 2e5}}, 8, false));
         ASSERT_NE(result, nullptr);
         double expected = 0;
         std::vector<std::pair<float, float>> values;

@@ -1,4 +1,4 @@
-#include "app/queries/flow_feed.h"
+#include "app/queries/flow_query.h"
 #include "tests/app/views_fixture.h"
 #include "volume/base/error.h"
 
@@ -104,7 +104,7 @@ TEST_F(Views, FlowComesAtOnceOrFromTheBackground) {
     session.layers = {{"flow", true, flow}};
     ViewContext context{session, source, renderer, jobs, caches};
     context.headless = true;
-    FlowFeed atOnce, later;
+    AsyncFlow atOnce, later;
     const std::vector<vis::GeometryLayer> whole = atOnce.get(context, "a");
     ASSERT_EQ(whole.size(), 1u);
     EXPECT_FALSE(whole[0].geometry->mesh.triangles.empty());

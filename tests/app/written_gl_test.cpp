@@ -1,4 +1,4 @@
-#include "app/queries/derivative_feed.h"
+#include "app/queries/derivative_query.h"
 #include "app/views/curves/curves_data.h"
 #include "app/views/transfer/transfer_pages.h"
 #include "tests/app/drawn_text.h"

@@ -1,6 +1,6 @@
 #include "app/bench/data/enlarged_cell.h"
 #include "app/bench/pictures/timed_workbench.h"
-#include "app/queries/statistics_feed.h"
+#include "app/queries/statistics_query.h"
 #include "volume/sources/memory_source.h"
 
 #include <chrono>
@@ -83,14 +83,15 @@ private:
     std::vector<std::vector<float>> bricks_; ///< by channel and kind
 };
 
-/// Milliseconds until a feed answers a wish, first at any level, then in full.
-std::pair<double, double> answered(StatisticsFeed& feed, ViewContext& context, const StatisticsWish& wish, bool whole) {
+/// Milliseconds until a query is answered, first at any level, then in full.
+std::pair<double, double> answered(AsyncStatistics& answers, ViewContext& context, const BrushedQuery& query,
+                                   bool whole) {
     const Clock::time_point begin = Clock::now();
     double first = -1;
     for (;;) {
         context.jobs.collect();
-        const auto result = feed.get(context, "bench", wish);
-        if (result && result->wish == wish) {
+        const auto result = answers.get(context, "bench", query);
+        if (result && result->query == query) {
             if (first < 0) first = milliseconds(begin);
             if (!whole || result->statistics.level == 0) return {first, milliseconds(begin)};
         }
@@ -138,9 +139,9 @@ BenchTable benchScatter() {
     ViewContext context{session, source, renderer, jobs, caches};
     const std::vector<int> channels{0, 1, 2, 3, 4, 5, 6};
     const std::vector<Range> ranges(channels.size(), Range{-1.2, 1.2});
-    StatisticsFeed feed;
-    const auto wish = [&] { return makeWish(session, source->info(), channels, ranges, 96, true); };
-    const auto [first, whole] = answered(feed, context, wish(), true);
+    AsyncStatistics answers;
+    const auto query = [&] { return brushedQuery(session, source->info(), channels, ranges, 96, true); };
+    const auto [first, whole] = answered(answers, context, query(), true);
     table.rows.push_back({"first picture", decimals(first, 0)});
     table.rows.push_back({"complete", decimals(whole, 0)});
     std::vector<double> moved;
@@ -148,11 +149,11 @@ BenchTable benchScatter() {
     for (int step = 0; step < kSteps; ++step) {
         session.selection.brushes = {
             vis::rangeBrush({{"a", 0.1 + 0.05 * step, 1.2, 0.05}, {"b", -0.5, 0.5, 0.05}}, "")};
-        moved.push_back(answered(feed, context, wish(), false).first);
+        moved.push_back(answered(answers, context, query(), false).first);
     }
     table.rows.push_back({"brush dragged", decimals(median(moved), 0)});
     context.interacting = false;
-    table.rows.push_back({"brush let go, complete", decimals(answered(feed, context, wish(), true).second, 0)});
+    table.rows.push_back({"brush let go, complete", decimals(answered(answers, context, query(), true).second, 0)});
     return table;
 }
 

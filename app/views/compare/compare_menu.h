@@ -1,6 +1,6 @@
 #pragma once
 
-#include "app/views/compare/compare_feed.h"
+#include "app/views/compare/compare_pictures.h"
 
 /// Editing of a comparison: which variants there are and what each changes.
 namespace tessera::app {

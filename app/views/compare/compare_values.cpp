@@ -1,9 +1,7 @@
 #include "app/views/compare/compare_values.h"
 
-#include "app/queries/pending_wish.h"
-#include "app/views/compare/compare_feed.h"
+#include "app/views/compare/compare_pictures.h"
 #include "vis/transfer/transfer_function.h"
-#include "volume/base/error.h"
 #include "volume/derived/other_source.h"
 
 #include <algorithm>
@@ -39,64 +37,41 @@ vis::Scene planes(const Session& session, double time, double top) {
 
 } // namespace
 
+CompareQuery compareQuery(const CompareSide& own, const CompareSide& reference) {
+    return {own.source,       reference.source,      firstChannel(own.session), firstChannel(reference.session),
+            own.session.time, reference.session.time};
+}
+
 void CompareValues::find(ViewContext& context, const std::string& jobKey, const CompareSide& own,
                          const CompareSide& reference) {
-    const Query query{
-        own.source,       reference.source,      firstChannel(own.session), firstChannel(reference.session),
-        own.session.time, reference.session.time};
-    if (state_->answered == query || state_->wanted == query) {
-        const bool running = !context.headless && context.jobs.running(jobKey);
-        if (!(state_->answered == query) && !running) {
-            state_->answered = query;
-            state_->difference = nullptr;
-            state_->failure = "cancelled";
-        }
-        context.busy = context.busy || !(state_->answered == query);
-        return;
-    }
-    state_->wanted = query;
-    const auto compute = [query](State& into, const Progress& progress) {
-        into.difference = nullptr;
-        into.failure.clear();
-        const auto a = query.own->info().findChannel(query.channel),
-                   b = query.reference->info().findChannel(query.referenceChannel);
-        if (!a || !b) {
-            into.failure = "One of them has no such parameter";
-        } else if (query.own == query.reference && *a == *b && query.time == query.referenceTime) {
-            into.failure = "The same values: the pictures differ only in how they are drawn";
-        } else {
-            into.difference = attempt(into.failure, [&] {
+    found_ = query_.answer(
+        context, std::shared_ptr<const void>(),
+        {.key = jobKey, .title = "Difference of a variant", .quiet = true, .duringEdits = true},
+        compareQuery(own, reference),
+        [](const auto&, const CompareQuery& query, int, const Progress& progress) -> Found {
+            const auto a = query.own->info().findChannel(query.channel),
+                       b = query.reference->info().findChannel(query.referenceChannel);
+            if (!a || !b) return {nullptr, "One of them has no such parameter"};
+            if (query.own == query.reference && *a == *b && query.time == query.referenceTime)
+                return {nullptr, "The same values: the pictures differ only in how they are drawn"};
+            Found found;
+            found.difference = attempt(found.failure, [&] {
                 return volume::differenceSource(
                     {query.own, *a, volume::timesAround(query.own->info().times, query.time)},
                     {query.reference, *b, volume::timesAround(query.reference->info().times, query.referenceTime)},
                     progress);
             });
-        }
-        into.answered = query;
-    };
-    if (context.headless) return compute(*state_, {});
-    context.busy = true;
-    context.jobs.start(
-        jobKey, "Difference of a variant",
-        [compute, query, weak = std::weak_ptr(state_)](const Progress& progress) -> Jobs::Finish {
-            const auto made = std::make_shared<State>();
-            compute(*made, progress);
-            return [weak, made, query] {
-                const auto to = weak.lock();
-                if (!to || !(to->wanted == query)) return;
-                to->difference = made->difference;
-                to->failure = made->failure;
-                to->answered = query;
-            };
+            return found;
         },
-        true);
+        [](const CompareQuery&, const CompareQuery&) { return true; });
+    if (!query_.failure().empty()) found_ = nullptr;
 }
 
 bool CompareValues::draw(ViewContext& context, const Session& session, double top, glm::ivec2 size, bool moving) {
-    if (!state_->difference) return false;
+    if (!difference()) return false;
     if (!renderer_) renderer_ = std::make_unique<vis::Renderer>();
-    if (drawnOf_ != state_->difference) {
-        drawnOf_ = state_->difference;
+    if (drawnOf_ != found_->result.difference) {
+        drawnOf_ = found_->result.difference;
         renderer_->setSource(drawnOf_);
     }
     if (!target_) target_ = renderer_->makeTarget();
@@ -113,20 +88,20 @@ bool CompareValues::draw(ViewContext& context, const Session& session, double to
 }
 
 std::string CompareValues::name() const {
-    return state_->answered && state_->difference ? state_->answered->channel : std::string();
+    return difference() ? found_->query.channel : std::string();
 }
 
 std::string CompareValues::unit() const {
-    return state_->difference ? state_->difference->info().parameters.front().unit : std::string();
+    return difference() ? difference()->info().parameters.front().unit : std::string();
 }
 
 double CompareValues::largest() const {
-    if (!state_->difference) return 0;
-    const Range range = state_->difference->info().parameters.front().ranges.front();
+    if (!difference()) return 0;
+    const Range range = difference()->info().parameters.front().ranges.front();
     return std::max(std::abs(range.lo), std::abs(range.hi));
 }
 
-double CompareFeed::findValues(ViewContext& context, const std::string& pane, std::size_t reference) {
+double ComparePictures::findValues(ViewContext& context, const std::string& pane, std::size_t reference) {
     double top = 0;
     const CompareCell& against = *cells_[reference];
     for (std::size_t i = 0; i < cells_.size(); ++i) {

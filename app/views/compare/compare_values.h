@@ -1,6 +1,6 @@
 #pragma once
 
-#include "app/pane/view_context.h"
+#include "app/queries/async_query.h"
 #include "vis/passes/renderer.h"
 
 #include <memory>
@@ -11,11 +11,22 @@
 /// reference, in their unit, at the same position, drawn on the three planes through the cross-hair.
 namespace tessera::app {
 
-/// One of the two: a session and the data it shows.
+/// The first layers' parameters of a variant and of the reference.
+struct CompareQuery {
+    std::shared_ptr<const volume::BrickSource> own, reference;
+    std::string channel, referenceChannel;
+    double time = 0, referenceTime = 0;
+    bool operator==(const CompareQuery&) const = default;
+    bool sameData(const CompareQuery& other) const { return own == other.own && reference == other.reference; }
+};
+
+/// A session and the data it shows.
 struct CompareSide {
     const Session& session;
     std::shared_ptr<const volume::BrickSource> source;
 };
+
+CompareQuery compareQuery(const CompareSide& own, const CompareSide& reference);
 
 class CompareValues {
 public:
@@ -31,24 +42,19 @@ public:
     /// The largest difference either way, 0 while not known.
     double largest() const;
     /// Why there is none: not the same unit, or nothing that differs.
-    const std::string& failure() const { return state_->failure; }
+    std::string failure() const { return found_ ? found_->result.failure : query_.failure(); }
     std::uint32_t texture() const { return status_.texture; }
     bool hasRenderer() const { return renderer_ != nullptr; }
 
 private:
-    /// What is subtracted from what.
-    struct Query {
-        std::shared_ptr<const volume::BrickSource> own, reference;
-        std::string channel, referenceChannel;
-        double time = 0, referenceTime = 0;
-        bool operator==(const Query&) const = default;
-    };
-    struct State {
-        std::optional<Query> wanted, answered;
-        std::shared_ptr<const volume::BrickSource> difference;
+    struct Found {
+        std::shared_ptr<const volume::BrickSource> difference; ///< null: see failure
         std::string failure;
     };
-    std::shared_ptr<State> state_ = std::make_shared<State>();
+    const volume::BrickSource* difference() const { return found_ ? found_->result.difference.get() : nullptr; }
+
+    AsyncQuery<CompareQuery, Found> query_{{.answers = 1}};
+    std::shared_ptr<const AsyncQuery<CompareQuery, Found>::Answer> found_;
     std::shared_ptr<const volume::BrickSource> drawnOf_;
     std::unique_ptr<vis::Renderer> renderer_;
     vis::ViewTargetPtr target_;

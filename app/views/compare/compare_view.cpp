@@ -18,8 +18,8 @@ namespace tessera::app {
 namespace {
 
 struct CompareCache : ViewCache {
-    int renderers() const override { return feed.renderers(); }
-    CompareFeed feed;
+    int renderers() const override { return pictures.renderers(); }
+    ComparePictures pictures;
     std::vector<CameraHand> hands;
     CompareMenuState menu;
     std::vector<CompareRow> rows;
@@ -66,7 +66,7 @@ bool picture(const Frame& frame, std::size_t index, const PictureBox& box, bool 
     CameraHand& hand = cache.hands[index];
     hand.blocked = blocked;
     vis::ViewTarget* target = nullptr;
-    const auto& cells = cache.feed.cells();
+    const auto& cells = cache.pictures.cells();
     // Only the window's own renderer can be asked what lies there.
     if (index < cells.size() && cells[index] && !cells[index]->data) target = cells[index]->target.get();
     const bool moving = handleMouse(frame.context, hand, target, box, world, "variant");
@@ -79,7 +79,7 @@ bool picture(const Frame& frame, std::size_t index, const PictureBox& box, bool 
 
 /// A cell's picture, or why there is none.
 void drawCell(const Frame& frame, std::size_t index, const PictureBox& box) {
-    const CompareCell& cell = *frame.cache.feed.cells()[index];
+    const CompareCell& cell = *frame.cache.pictures.cells()[index];
     ImDrawList& draw = *ImGui::GetWindowDrawList();
     if (cell.drawn) return addPicture(draw, cell.status.texture, box.min, box.max());
     const std::string text = cell.failure.empty() ? "The data are being opened" : cell.failure;
@@ -94,12 +94,12 @@ std::string nameOf(const Frame& frame, std::size_t index) {
 void drawGrid(const Frame& frame, const std::vector<PictureBox>& boxes, bool differences) {
     ImDrawList& draw = *ImGui::GetWindowDrawList();
     const double top =
-        differences ? frame.cache.feed.showDifferences(double(frame.view.differenceTop), frame.reference) : 0;
+        differences ? frame.cache.pictures.showDifferences(double(frame.view.differenceTop), frame.reference) : 0;
     for (std::size_t i = 0; i < boxes.size(); ++i) {
         const PictureBox& box = boxes[i];
-        const CompareCell& cell = *frame.cache.feed.cells()[i];
+        const CompareCell& cell = *frame.cache.pictures.cells()[i];
         draw.PushClipRect(box.min, box.max(), true);
-        const bool shown = differences && i != frame.reference && cell.finished() && cell.shownImage == cell.image;
+        const bool shown = differences && i != frame.reference && cell.finished() && cell.showsDifference();
         if (shown)
             draw.AddImage(textureId(cell.differencePicture.name()), box.min, box.max());
         else
@@ -130,12 +130,12 @@ std::vector<std::string> valuesText(const CompareCell& cell) {
 /// The reference as it is, the others as the differences of their values.
 void drawValues(const Frame& frame, const std::string& pane, const std::vector<PictureBox>& boxes, bool moving) {
     ImDrawList& draw = *ImGui::GetWindowDrawList();
-    CompareFeed& feed = frame.cache.feed;
-    const double top = feed.findValues(frame.context, pane, frame.reference);
+    ComparePictures& pictures = frame.cache.pictures;
+    const double top = pictures.findValues(frame.context, pane, frame.reference);
     bool legend = false;
     for (std::size_t i = 0; i < boxes.size(); ++i) {
         const PictureBox& box = boxes[i];
-        CompareCell& cell = *feed.cells()[i];
+        CompareCell& cell = *pictures.cells()[i];
         draw.PushClipRect(box.min, box.max(), true);
         const auto note = [&](const std::string& text, int line) {
             const float y = box.min.y + em() * (1.7f + 1.3f * static_cast<float>(line));
@@ -275,8 +275,8 @@ void drawCompareView(ViewContext& context, const std::string& pane, CompareView&
         const std::size_t which = view.mode == CompareMode::Swipe ? frame.other : cache.blinkShown % count;
         moving = picture(frame, which, boxes[0], blocked);
     }
-    cache.feed.draw(context, pane, frame.variants, frame.reference, {size.x, size.y},
-                    moving || context.interacting || context.session.animation.playing);
+    cache.pictures.draw(context, pane, frame.variants, frame.reference, {size.x, size.y},
+                        moving || context.interacting || context.session.animation.playing);
     if (view.mode == CompareMode::Difference && view.differenceOf == DifferenceOf::Values)
         drawValues(frame, pane, boxes, moving || context.interacting || context.session.animation.playing);
     else if (grid)
@@ -285,7 +285,7 @@ void drawCompareView(ViewContext& context, const std::string& pane, CompareView&
         drawSwipe(frame, boxes[0]);
     else
         drawBlink(frame, boxes[0]);
-    cache.rows = cache.feed.rows(context, frame.reference);
+    cache.rows = cache.pictures.rows(context, frame.reference);
     if (table > 0) {
         ImGui::SetCursorScreenPos({at.x, at.y + area.y});
         drawCompareTable(view, cache.rows);

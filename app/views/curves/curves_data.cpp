@@ -23,15 +23,15 @@ constexpr std::array<glm::vec3, 6> kInks{{{0.1f, 0.36f, 0.62f},
                                           {0.5f, 0.4f, 0.1f},
                                           {0, 0, 0}}};
 
-volume::CurvesQuery queryOf(const CurvesWish& wish, const volume::DatasetInfo& info) {
+volume::CurvesQuery queryOf(const PlotCurvesQuery& asked, const volume::DatasetInfo& info) {
     volume::CurvesQuery query;
-    query.x = wish.x;
-    query.y = wish.y;
-    query.label = wish.label;
-    query.regions = wish.regions;
-    if (wish.brushes.selection.active()) {
-        query.doi = brushQuery(wish.brushes, info, 0).doi;
-        query.doiChannels = wish.brushes.channels;
+    query.x = asked.x;
+    query.y = asked.y;
+    query.label = asked.label;
+    query.regions = asked.regions;
+    if (asked.brushes.selection.active()) {
+        query.doi = samplesQuery(asked.brushes, info, 0).doi;
+        query.doiChannels = asked.brushes.channels;
     }
     return query;
 }
@@ -104,23 +104,23 @@ CurvesView resolvedCurves(const CurvesView& view, const volume::DatasetInfo& inf
     return out;
 }
 
-CurvesWish curvesWish(const CurvesView& view, const Session& session, const volume::DatasetInfo& info) {
+PlotCurvesQuery plotCurvesQuery(const CurvesView& view, const Session& session, const volume::DatasetInfo& info) {
     const CurvesView resolved = resolvedCurves(view, info);
-    CurvesWish wish{resolved.x, resolved.y, -1, {}, {}};
+    PlotCurvesQuery query{resolved.x, resolved.y, -1, {}, {}};
     if (!view.region.empty()) {
         const LabelRegion region = findRegion(info, view.region);
-        wish.label = region.label;
-        wish.regions = {region.value};
+        query.label = region.label;
+        query.regions = {region.value};
     }
     if (view.brushed) {
-        wish.brushes = makeWish(session, info, {}, {}, 1, false);
-        wish.brushes.time = {};
+        query.brushes = brushedQuery(session, info, {}, {}, 1, false);
+        query.brushes.time = {};
     }
-    return wish;
+    return query;
 }
 
-volume::Curves readCurves(const volume::BrickSource& source, const CurvesWish& wish, const Progress& progress) {
-    return volume::computeCurves(source, queryOf(wish, source.info()), progress);
+volume::Curves readCurves(const volume::BrickSource& source, const PlotCurvesQuery& asked, const Progress& progress) {
+    return volume::computeCurves(source, queryOf(asked, source.info()), progress);
 }
 
 std::vector<std::vector<std::size_t>> curveGroups(const volume::Curves& curves) {

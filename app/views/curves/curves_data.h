@@ -1,7 +1,7 @@
 #pragma once
 
 #include "app/pane/figure.h"
-#include "app/queries/statistics_feed.h"
+#include "app/queries/statistics_query.h"
 #include "volume/analysis/curves.h"
 
 #include <optional>
@@ -11,14 +11,14 @@
 /// Data of the curves over time, as numbers, tables and vector graphics.
 namespace tessera::app {
 
-/// What is asked for; equal wishes have equal answers.
-struct CurvesWish {
+/// What is asked for; equal queries have equal answers.
+struct PlotCurvesQuery {
     std::string x;
     std::vector<std::string> y;
     int label = -1; ///< channel
     std::vector<int> regions;
-    StatisticsWish brushes; ///< its channels and selection
-    bool operator==(const CurvesWish&) const = default;
+    BrushedQuery brushes; ///< its channels and selection
+    bool operator==(const PlotCurvesQuery&) const = default;
 };
 
 /// A value of a label: its channel and the value.
@@ -35,9 +35,10 @@ LabelRegion findRegion(const volume::DatasetInfo& info, const std::string& text)
 /// The view with what it leaves open chosen for the data.
 CurvesView resolvedCurves(const CurvesView& view, const volume::DatasetInfo& info);
 /// What a view wants. Throws Error for a region that is not there.
-CurvesWish curvesWish(const CurvesView& view, const Session& session, const volume::DatasetInfo& info);
+PlotCurvesQuery plotCurvesQuery(const CurvesView& view, const Session& session, const volume::DatasetInfo& info);
 /// Reads the values. Throws Error, Cancelled.
-volume::Curves readCurves(const volume::BrickSource& source, const CurvesWish& wish, const Progress& progress = {});
+volume::Curves readCurves(const volume::BrickSource& source, const PlotCurvesQuery& query,
+                          const Progress& progress = {});
 
 /// A range with the finite values of a curve in it.
 Range rangeOf(const std::vector<double>& values, Range range);

@@ -1,5 +1,5 @@
 #include "app/pane/view_parts.h"
-#include "app/queries/latest_feed.h"
+#include "app/queries/async_query.h"
 #include "app/ui/ticks.h"
 #include "app/ui/time_text.h"
 #include "app/views/curves/curves_data.h"
@@ -15,7 +15,7 @@ namespace tessera::app {
 namespace {
 
 struct CurvesCache : ViewCache {
-    LatestFeed<CurvesWish, volume::Curves> feed;
+    AsyncQuery<PlotCurvesQuery, volume::Curves> answers;
     std::string draft; ///< formula being typed
 };
 
@@ -276,24 +276,24 @@ void drawCurvesView(ViewContext& context, const std::string& pane, CurvesView& v
     }
     const volume::DatasetInfo& info = context.numbers->info();
     CurvesCache& cache = cacheOf<CurvesCache>(context, pane);
-    CurvesWish wish;
+    PlotCurvesQuery query;
     std::string failure;
     try {
-        wish = curvesWish(view, context.session, info);
+        query = plotCurvesQuery(view, context.session, info);
     } catch (const Error& error) {
         failure = error.what();
     }
     std::shared_ptr<const volume::Curves> curves;
-    if (failure.empty() && info.times.size() > 1 && !wish.y.empty())
-        curves = cache.feed.get(
-            context, "curves " + pane, "Curves", wish,
-            [](const auto& source, const CurvesWish& asked, const Progress& progress) {
+    if (failure.empty() && info.times.size() > 1 && !query.y.empty())
+        curves = cache.answers.get(
+            context, context.numbers, {.key = "curves " + pane, .title = "Curves", .quiet = true}, query,
+            [](const auto& source, const PlotCurvesQuery& asked, int, const Progress& progress) {
                 return readCurves(*source, asked, progress);
             },
-            [&](const CurvesWish& answered) { return answered.x == wish.x && answered.y == wish.y; }, true);
+            [](const PlotCurvesQuery& a, const PlotCurvesQuery& b) { return a.x == b.x && a.y == b.y; });
     if (!context.figure && info.times.size() > 1) drawToolbar(context, cache, curves, view);
     if (info.times.size() < 2) return drawHint("One time", "Curves run over several times: open a series.");
-    if (failure.empty()) failure = cache.feed.failure();
+    if (failure.empty()) failure = cache.answers.failure();
     if (!curves && !failure.empty()) return drawHint("No values", failure.c_str());
     if (!curves) return ImGui::TextDisabled("Reading...");
     drawPlots(context, *curves);

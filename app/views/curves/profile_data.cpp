@@ -13,25 +13,26 @@
 
 namespace tessera::app {
 
-Profile readProfile(const volume::BrickSource& source, const ProfileWish& wish, const Progress& progress) {
-    const bool line = wish.over == ProfileOver::Line;
-    Profile out{.wish = wish,
+Profile readProfile(const volume::BrickSource& source, const ProfileQuery& query, const Progress& progress) {
+    const bool line = query.over == ProfileOver::Line;
+    Profile out{.query = query,
                 .distance = {},
-                .positions = volume::alongPolyline(wish.corners, wish.samples),
+                .positions = volume::alongPolyline(query.corners, query.samples),
                 .times = line ? std::vector<double>{} : source.info().times,
                 .values = {}};
     double length = 0;
-    for (std::size_t i = 1; i < wish.corners.size(); ++i) length += glm::distance(wish.corners[i - 1], wish.corners[i]);
+    for (std::size_t i = 1; i < query.corners.size(); ++i)
+        length += glm::distance(query.corners[i - 1], query.corners[i]);
     for (std::size_t i = 0; i < out.positions.size(); ++i)
-        out.distance.push_back(length * static_cast<double>(i) / std::max(1, wish.samples - 1));
+        out.distance.push_back(length * static_cast<double>(i) / std::max(1, query.samples - 1));
     const std::size_t rows = line ? 1 : out.times.size();
-    for (const int channel : wish.channels) {
+    for (const int channel : query.channels) {
         std::vector<double>& values = out.values.emplace_back();
         for (std::size_t row = 0; row < rows; ++row) {
             progress.advance((static_cast<double>(out.values.size() - 1) + static_cast<double>(row) / double(rows)) /
-                             static_cast<double>(wish.channels.size()));
+                             static_cast<double>(query.channels.size()));
             const int t = static_cast<int>(row);
-            const volume::TimePair time = line ? wish.time : volume::TimePair{t, t, 0};
+            const volume::TimePair time = line ? query.time : volume::TimePair{t, t, 0};
             for (const volume::ProbeValue& value : volume::probeAlong(source, channel, out.positions, time))
                 values.push_back(value.interpolated.value_or(std::nan("")));
         }
@@ -66,7 +67,7 @@ LineAxis lineAxis(const Session& session, const volume::DatasetInfo& info, const
 
 std::string profileCsv(const volume::DatasetInfo& info, const Session& session, const Profile& profile) {
     const std::vector<volume::Channel> channels = info.channels();
-    const bool timed = profile.wish.over != ProfileOver::Line;
+    const bool timed = profile.query.over != ProfileOver::Line;
     const LineAxis along = lineAxis(session, info, profile);
     std::string csv = timed ? csvField(titleWithUnit(info.timeName, info.timeUnit)) + "," : std::string();
     csv += along.distance ? "distance [" + info.lengthUnit + "]" : csvField(titleWithUnit(along.title, along.unit));
@@ -77,7 +78,7 @@ std::string profileCsv(const volume::DatasetInfo& info, const Session& session, 
         if (time) perUnit[axis] = label.unit.perUnit;
         csv += "," + (time ? csvField(titleWithUnit(label.name, label.unit.name)) : std::string(1, "xyz"[axis]));
     }
-    for (const int channel : profile.wish.channels) {
+    for (const int channel : profile.query.channels) {
         const volume::Channel& own = channels[static_cast<std::size_t>(channel)];
         csv += "," + csvField(titleWithUnit(own.name, own.unit));
     }
@@ -96,7 +97,7 @@ std::string profileCsv(const volume::DatasetInfo& info, const Session& session, 
 
 std::vector<std::uint8_t> profileImage(const volume::DatasetInfo& info, const Session& session, const Profile& profile,
                                        std::size_t channel) {
-    const volume::Channel own = info.channels()[static_cast<std::size_t>(profile.wish.channels[channel])];
+    const volume::Channel own = info.channels()[static_cast<std::size_t>(profile.query.channels[channel])];
     const vis::TransferFunction& function = transferOf(session, own.name);
     const Range range = vis::effectiveRange(function, info.channelRange(own));
     const std::size_t places = profile.positions.size();
@@ -140,18 +141,18 @@ FigureImage imageOverTime(const volume::DatasetInfo& info, const Session& sessio
 
 std::string profileSvg(const volume::DatasetInfo& info, const Session& session, const Profile& profile) {
     const std::vector<volume::Channel> channels = info.channels();
-    const bool overTime = profile.wish.over == ProfileOver::Time;
+    const bool overTime = profile.query.over == ProfileOver::Time;
     const LineAxis along = lineAxis(session, info, profile);
     const auto [least, most] = std::ranges::minmax(along.values);
     const FigureAxis distance{titleWithUnit(along.title, along.unit), {least, most}};
     const auto timeAxis = [&] { return FigureAxis{timeTitle(info), {info.times.front(), info.times.back()}}; };
     std::vector<FigurePanel> panels;
     for (std::size_t c = 0; c < profile.values.size(); ++c) {
-        const volume::Channel& own = channels[static_cast<std::size_t>(profile.wish.channels[c])];
+        const volume::Channel& own = channels[static_cast<std::size_t>(profile.query.channels[c])];
         const Range range = info.channelRange(own);
         FigurePanel panel;
         panel.x = overTime ? timeAxis() : distance;
-        if (profile.wish.over == ProfileOver::LineAndTime) {
+        if (profile.query.over == ProfileOver::LineAndTime) {
             panel.title = titleWithUnit(own.name, own.unit);
             panel.y = timeAxis();
             panel.image = imageOverTime(info, session, profile, c);

@@ -11,18 +11,18 @@
 /// Data of a line profile.
 namespace tessera::app {
 
-/// What is asked for; equal wishes have equal answers.
-struct ProfileWish {
+/// What is asked for; equal queries have equal answers.
+struct ProfileQuery {
     ProfileOver over = ProfileOver::Line;
     std::vector<int> channels;       ///< indices of DatasetInfo::channels()
     std::vector<glm::dvec3> corners; ///< of the line; over time: the one place
     int samples = 0;                 ///< places along the line
     volume::TimePair time;           ///< along the line alone
-    bool operator==(const ProfileWish&) const = default;
+    bool operator==(const ProfileQuery&) const = default;
 };
 
 struct Profile {
-    ProfileWish wish;
+    ProfileQuery query;
     std::vector<double> distance; ///< of the places along the line, in the data's length unit
     std::vector<glm::dvec3> positions;
     std::vector<double> times; ///< stored times, where it runs over time
@@ -30,11 +30,11 @@ struct Profile {
     std::vector<std::vector<double>> values;
 
     /// Along the line or over time, whichever the curves run over.
-    const std::vector<double>& across() const { return wish.over == ProfileOver::Time ? times : distance; }
+    const std::vector<double>& across() const { return query.over == ProfileOver::Time ? times : distance; }
 };
 
 /// Reads the values. Throws Error, Cancelled.
-Profile readProfile(const volume::BrickSource& source, const ProfileWish& wish, const Progress& progress = {});
+Profile readProfile(const volume::BrickSource& source, const ProfileQuery& query, const Progress& progress = {});
 
 /// What runs along the line: a distance; a time, where time takes the place of an axis and the line runs along that one
 /// alone; a share of the line where it runs through both.

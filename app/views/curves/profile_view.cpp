@@ -1,6 +1,6 @@
 #include "app/pane/figure.h"
 #include "app/pane/view_parts.h"
-#include "app/queries/latest_feed.h"
+#include "app/queries/async_query.h"
 #include "app/tools/brush_edit.h"
 #include "app/tools/profile_line.h"
 #include "app/ui/ticks.h"
@@ -20,7 +20,7 @@ namespace {
 constexpr std::size_t kMostProfiles = 8; ///< where the user has not chosen
 
 struct ProfileCache : ViewCache {
-    LatestFeed<ProfileWish, Profile> feed;
+    AsyncQuery<ProfileQuery, Profile> answers;
     std::shared_ptr<const Profile> pictured; ///< what the pictures show
     std::map<std::string, vis::TransferFunction> picturedWith;
     std::vector<vis::PlotTexture> pictures; ///< by channel
@@ -173,25 +173,24 @@ void drawProfileView(ViewContext& context, const std::string& pane, ProfileView&
     ProfileCache& cache = cacheOf<ProfileCache>(context, pane);
     const std::vector<int> shown = chosenChannels(info, view.channels, kMostProfiles);
     if (shown.empty()) return drawHint("No parameters", "This data set holds only labels.");
-    ProfileWish wish{.over = info.times.size() > 1 ? view.over : ProfileOver::Line,
-                     .channels = shown,
-                     .corners = profileCorners(view, session, info.bounds),
-                     .samples = std::clamp(view.samples, 2, 4096),
-                     .time = {}};
-    const bool overTime = wish.over == ProfileOver::Time, pictures = wish.over == ProfileOver::LineAndTime;
-    if (wish.over == ProfileOver::Line) wish.time = volume::timesAround(info.times, session.time);
-    if (overTime) wish.corners = {session.cursor}, wish.samples = 1;
-    const auto profile = cache.feed.get(
-        context, "profile " + pane, "Line profile", wish,
-        [](const auto& source, const ProfileWish& asked, const Progress& progress) {
+    ProfileQuery query{.over = info.times.size() > 1 ? view.over : ProfileOver::Line,
+                       .channels = shown,
+                       .corners = profileCorners(view, session, info.bounds),
+                       .samples = std::clamp(view.samples, 2, 4096),
+                       .time = {}};
+    const bool overTime = query.over == ProfileOver::Time, pictures = query.over == ProfileOver::LineAndTime;
+    if (query.over == ProfileOver::Line) query.time = volume::timesAround(info.times, session.time);
+    if (overTime) query.corners = {session.cursor}, query.samples = 1;
+    const auto profile = cache.answers.get(
+        context, context.numbers, {.key = "profile " + pane, .title = "Line profile", .quiet = true}, query,
+        [](const auto& source, const ProfileQuery& asked, int, const Progress& progress) {
             return readProfile(*source, asked, progress);
         },
-        [&](const ProfileWish& answered) { return answered.over == wish.over && answered.channels == wish.channels; },
-        true);
+        [](const ProfileQuery& a, const ProfileQuery& b) { return a.over == b.over && a.channels == b.channels; });
     const bool usable = profile && (overTime || (profile->distance.size() > 1 && profile->distance.back() > 0));
     if (!context.figure) drawToolbar(context, usable ? profile : nullptr, view, shown);
     if (!usable) {
-        if (const std::string failure = cache.feed.failure(); !failure.empty())
+        if (const std::string failure = cache.answers.failure(); !failure.empty())
             return drawHint("No values", failure.c_str());
         if (!profile) return ImGui::TextDisabled("Reading...");
         return drawHint("The line has no length", "Place a corner, move the cursor, and place another.");
@@ -206,7 +205,7 @@ void drawProfileView(ViewContext& context, const std::string& pane, ProfileView&
     const ImVec2 origin = ImGui::GetCursorScreenPos(), room = ImGui::GetContentRegionAvail();
     const std::vector<volume::Channel> channels = info.channels();
     const auto rangeOf = [&](std::size_t c) {
-        return info.channelRange(channels[static_cast<std::size_t>(profile->wish.channels[c])]);
+        return info.channelRange(channels[static_cast<std::size_t>(profile->query.channels[c])]);
     };
     float left = pictures ? axisRoom(AxisSide::Left, times, false) : 0;
     for (std::size_t c = 0; c < profile->values.size() && !pictures; ++c)
@@ -237,7 +236,7 @@ void drawProfileView(ViewContext& context, const std::string& pane, ProfileView&
         across.marked = placeAtCursor(*profile, session.cursor);
     }
     if (taken && across.marked) {
-        if (wish.over != ProfileOver::Line) session.animation.playing = false;
+        if (query.over != ProfileOver::Line) session.animation.playing = false;
         if (overTime)
             session.time = profile->times[*across.marked];
         else
@@ -246,7 +245,7 @@ void drawProfileView(ViewContext& context, const std::string& pane, ProfileView&
     }
     if (pictures) updatePictures(cache, session, info, profile);
     for (std::size_t c = 0; c < profile->values.size(); ++c) {
-        const volume::Channel& channel = channels[static_cast<std::size_t>(profile->wish.channels[c])];
+        const volume::Channel& channel = channels[static_cast<std::size_t>(profile->query.channels[c])];
         const float top = origin.y + em() * 0.2f + height * static_cast<float>(c);
         const PlotFrame frame{{x0, std::round(top)},
                               {x1, std::round(top + height - em() * 0.4f)},

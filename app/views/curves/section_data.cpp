@@ -19,9 +19,9 @@ constexpr SectionMeasure kMeasures[] = {SectionMeasure::Mean,     SectionMeasure
                                         SectionMeasure::Area};
 
 /// The degree of interest of a selection as a function of the channels it names.
-void setInterest(volume::SectionQuery& query, const SectionWish& wish, const volume::DatasetInfo& info) {
-    if (!wish.selection.active()) return;
-    const vis::DoiFunction doi(wish.selection, wish.lenses);
+void setInterest(volume::SectionQuery& query, const SectionCurvesQuery& asked, const volume::DatasetInfo& info) {
+    if (!asked.selection.active()) return;
+    const vis::DoiFunction doi(asked.selection, asked.lenses);
     std::vector<int> places; // in the values, -1: not there, absent everywhere
     for (const std::string& name : doi.channels()) {
         const auto channel = info.findChannel(name);
@@ -49,31 +49,31 @@ std::string velocityUnit(const volume::DatasetInfo& info, const std::string& vel
 
 } // namespace
 
-SectionCurves readSections(const std::shared_ptr<const volume::BrickSource>& source, const SectionWish& wish,
+SectionCurves readSections(const std::shared_ptr<const volume::BrickSource>& source, const SectionCurvesQuery& asked,
                            const Progress& progress) {
     const volume::DatasetInfo& info = source->info();
     volume::SectionQuery query;
-    query.channels = wish.channels;
-    query.axis = wish.axis;
-    query.weight = wish.weight;
-    if (wish.line.size() == 2) query.line = {wish.line[0], wish.line[1]};
-    query.planes = wish.planes;
-    SectionCurves out{wish, {}, {}};
-    const volume::SourceAtTime shown = volume::sourceAt(source, wish.time);
-    if (wish.label >= 0 && wish.regions.empty())
-        out.wish.regions = volume::labelValues(*shown.source, wish.label, shown.time, progress.part(0, 0.2));
-    query.label = wish.label;
-    query.regions = out.wish.regions;
-    if (const auto velocity = volume::velocityChannels(info, wish.velocity)) {
+    query.channels = asked.channels;
+    query.axis = asked.axis;
+    query.weight = asked.weight;
+    if (asked.line.size() == 2) query.line = {asked.line[0], asked.line[1]};
+    query.planes = asked.planes;
+    SectionCurves out{asked, {}, {}};
+    const volume::SourceAtTime shown = volume::sourceAt(source, asked.time);
+    if (asked.label >= 0 && asked.regions.empty())
+        out.query.regions = volume::labelValues(*shown.source, asked.label, shown.time, progress.part(0, 0.2));
+    query.label = asked.label;
+    query.regions = out.query.regions;
+    if (const auto velocity = volume::velocityChannels(info, asked.velocity)) {
         query.velocity = *velocity;
         out.velocity = volume::parameterOf(info, (*velocity)[0]).name;
-    } else if (!wish.velocity.empty()) {
-        throw Error("there is no vector \"" + wish.velocity + "\"");
-    } else if (wish.weight == volume::SectionWeight::MassFlow) {
+    } else if (!asked.velocity.empty()) {
+        throw Error("there is no vector \"" + asked.velocity + "\"");
+    } else if (asked.weight == volume::SectionWeight::MassFlow) {
         throw Error("a mean by mass flow wants a velocity, and no vector is named or measured as one");
     }
-    if (wish.weight == volume::SectionWeight::MassFlow) query.density = volume::densityChannel(info).value_or(-1);
-    setInterest(query, wish, info);
+    if (asked.weight == volume::SectionWeight::MassFlow) query.density = volume::densityChannel(info).value_or(-1);
+    setInterest(query, asked, info);
     query.time = shown.time;
     out.sections = volume::computeSections(*shown.source, query, progress.part(0.2, 1));
     return out;
@@ -125,25 +125,25 @@ double measured(const volume::SectionValues& values, SectionMeasure measure, dou
     return std::nan("");
 }
 
-std::vector<CurveLook> curveLooks(const volume::DatasetInfo& info, const SectionWish& wish) {
-    const bool selected = wish.selection.active();
-    if (wish.regions.empty() || wish.label < 0)
+std::vector<CurveLook> curveLooks(const volume::DatasetInfo& info, const SectionCurvesQuery& asked) {
+    const bool selected = asked.selection.active();
+    if (asked.regions.empty() || asked.label < 0)
         return {{selected ? "selection" : "all",
                  selected ? glm::vec3(0.90f, 0.45f, 0.05f) : glm::vec3(0.1f, 0.36f, 0.62f)}};
     std::vector<CurveLook> out;
-    const volume::Parameter& label = volume::parameterOf(info, wish.label);
-    for (const int value : wish.regions)
+    const volume::Parameter& label = volume::parameterOf(info, asked.label);
+    for (const int value : asked.regions)
         out.push_back({volume::labelName(label, value) + (selected ? ", selection" : ""), labelColor(label, value)});
     return out;
 }
 
-std::string placeTitle(const SectionWish& wish) {
-    return wish.line.size() == 2 ? "distance"
-                                 : std::string(volume::kSpaceAxisNames[static_cast<std::size_t>(wish.axis)]);
+std::string placeTitle(const SectionCurvesQuery& asked) {
+    return asked.line.size() == 2 ? "distance"
+                                  : std::string(volume::kSpaceAxisNames[static_cast<std::size_t>(asked.axis)]);
 }
 
 std::string sectionCsv(const volume::DatasetInfo& info, const SectionCurves& curves, bool head) {
-    const auto& [wish, sections, velocity] = curves;
+    const auto& [asked, sections, velocity] = curves;
     const bool several = info.times.size() > 1;
     std::string csv;
     if (head) {
@@ -151,24 +151,24 @@ std::string sectionCsv(const volume::DatasetInfo& info, const SectionCurves& cur
             csv +=
                 csvField(titleWithUnit(info.timeName, "") + (info.timeUnit.empty() ? "" : " [" + info.timeUnit + "]")) +
                 ",";
-        csv += csvField(placeTitle(wish) + (info.lengthUnit.empty() ? "" : " [" + info.lengthUnit + "]"));
+        csv += csvField(placeTitle(asked) + (info.lengthUnit.empty() ? "" : " [" + info.lengthUnit + "]"));
         csv += ",region,parameter,unit,weight,samples,mean,least,most,integral,integral unit,flux,flux unit,flow,flow "
                "unit,area,area unit\n";
     }
-    const double weight = wish.time.weight;
-    const double time = info.times[static_cast<std::size_t>(wish.time.earlier)] * (1 - weight) +
-                        info.times[static_cast<std::size_t>(wish.time.later)] * weight;
-    const std::vector<CurveLook> looks = curveLooks(info, wish);
+    const double weight = asked.time.weight;
+    const double time = info.times[static_cast<std::size_t>(asked.time.earlier)] * (1 - weight) +
+                        info.times[static_cast<std::size_t>(asked.time.later)] * weight;
+    const std::vector<CurveLook> looks = curveLooks(info, asked);
     for (std::size_t r = 0; r < looks.size(); ++r)
-        for (std::size_t c = 0; c < wish.channels.size(); ++c) {
-            const volume::Channel channel = channelOf(info, wish.channels[c]);
+        for (std::size_t c = 0; c < asked.channels.size(); ++c) {
+            const volume::Channel channel = channelOf(info, asked.channels[c]);
             if (std::ranges::none_of(sections.values[r][c], [](const auto& plane) { return plane.area > 0; })) continue;
             const std::string before =
                 "," + csvField(looks[r].name) + "," + csvField(channel.name) + "," + csvField(channel.unit) + "," +
-                std::string(volume::kSectionWeightNames[static_cast<std::size_t>(wish.weight)]) + ",";
+                std::string(volume::kSectionWeightNames[static_cast<std::size_t>(asked.weight)]) + ",";
             std::vector<volume::ComposedUnit> units;
             for (const SectionMeasure measure : kMeasures)
-                units.push_back(measureUnit(info, wish.channels[c], velocity, measure));
+                units.push_back(measureUnit(info, asked.channels[c], velocity, measure));
             for (std::size_t p = 0; p < sections.place.size(); ++p) {
                 const volume::SectionValues& values = sections.values[r][c][p];
                 if (several) csv += csvNumber(time) + ",";
@@ -188,16 +188,16 @@ std::string sectionCsv(const volume::DatasetInfo& info, const SectionCurves& cur
 
 std::vector<FigurePanel> sectionPanels(const volume::DatasetInfo& info, const SectionCurves& curves,
                                        SectionMeasure measure) {
-    const auto& [wish, sections, velocity] = curves;
+    const auto& [asked, sections, velocity] = curves;
     if (velocity.empty() && (measure == SectionMeasure::Flux || measure == SectionMeasure::Flow))
         throw Error("a flux wants a velocity, and no vector is named or measured as one");
     const LengthUnit length = suitableLength(
         info.lengthUnit, sections.place.empty() ? 0 : std::abs(sections.place.back() - sections.place.front()));
-    const std::vector<CurveLook> looks = curveLooks(info, wish);
+    const std::vector<CurveLook> looks = curveLooks(info, asked);
     std::vector<FigurePanel> panels;
-    for (std::size_t c = 0; c < wish.channels.size(); ++c) {
-        const volume::Channel channel = channelOf(info, wish.channels[c]);
-        const volume::ComposedUnit unit = measureUnit(info, wish.channels[c], velocity, measure);
+    for (std::size_t c = 0; c < asked.channels.size(); ++c) {
+        const volume::Channel channel = channelOf(info, asked.channels[c]);
+        const volume::ComposedUnit unit = measureUnit(info, asked.channels[c], velocity, measure);
         FigurePanel panel;
         Range range{HUGE_VAL, -HUGE_VAL};
         for (std::size_t r = 0; r < looks.size(); ++r) {
@@ -214,7 +214,7 @@ std::vector<FigurePanel> sectionPanels(const volume::DatasetInfo& info, const Se
             if (any) panel.series.push_back(std::move(series));
         }
         const std::string what = std::string(kSectionMeasureNames[static_cast<std::size_t>(measure)]);
-        panel.x = {titleWithUnit(placeTitle(wish), length.name),
+        panel.x = {titleWithUnit(placeTitle(asked), length.name),
                    sections.place.empty()
                        ? Range{}
                        : Range{sections.place.front() * length.perUnit, sections.place.back() * length.perUnit}};
@@ -230,12 +230,12 @@ std::vector<FigurePanel> sectionPanels(const volume::DatasetInfo& info, const Se
 }
 
 std::vector<std::string> sectionNotes(const volume::DatasetInfo& info, const SectionCurves& curves) {
-    const SectionWish& wish = curves.wish;
+    const SectionCurvesQuery& asked = curves.query;
     std::vector<std::string> notes;
-    notes.push_back(wish.line.size() == 2
+    notes.push_back(asked.line.size() == 2
                         ? "planes across the line: every sample stands for its own cell, which the planes cut exactly"
                         : "planes are those that samples lie in; every sample counts with the area of its cell there");
-    if (wish.weight == volume::SectionWeight::MassFlow) {
+    if (asked.weight == volume::SectionWeight::MassFlow) {
         const auto density = volume::densityChannel(info);
         notes.push_back("mean by mass flow: weighted by |" +
                         (density ? channelOf(info, *density).name + " " : std::string()) + curves.velocity +

@@ -15,8 +15,8 @@
 /// Averages over planes, as numbers, tables and figures.
 namespace tessera::app {
 
-/// What is asked for; equal wishes have equal answers.
-struct SectionWish {
+/// What is asked for; equal queries have equal answers.
+struct SectionCurvesQuery {
     std::vector<int> channels; ///< indices of DatasetInfo::channels()
     volume::SpaceAxis axis = volume::SpaceAxis::Z;
     std::vector<glm::dvec3> line; ///< start and end of a line instead of the axis
@@ -28,11 +28,11 @@ struct SectionWish {
     volume::TimePair time;
     vis::Selection selection; ///< samples count by their degree of interest where a brush is enabled
     vis::LensSpace lenses;
-    bool operator==(const SectionWish&) const = default;
+    bool operator==(const SectionCurvesQuery&) const = default;
 };
 
 struct SectionCurves {
-    SectionWish wish; ///< with the regions that have a curve
+    SectionCurvesQuery query; ///< with the regions that have a curve
     volume::Sections sections;
     std::string velocity; ///< the parameter that carries, "" where there is none
 };
@@ -47,7 +47,7 @@ inline constexpr const char* kSectionMeasureDocs[] = {
     "Area of the plane where the parameter exists"};
 
 /// Computes the curves. Throws Error (no velocity for mass flow or a flux), Cancelled.
-SectionCurves readSections(const std::shared_ptr<const volume::BrickSource>& source, const SectionWish& wish,
+SectionCurves readSections(const std::shared_ptr<const volume::BrickSource>& source, const SectionCurvesQuery& query,
                            const Progress& progress = {});
 
 /// Unit of a measure of a channel; values are multiplied by `factor` to be in it.
@@ -56,15 +56,15 @@ volume::ComposedUnit measureUnit(const volume::DatasetInfo& info, int channel, c
 /// One measure of a plane in that unit.
 double measured(const volume::SectionValues& values, SectionMeasure measure, double factor);
 
-/// Names and colours of the curves, by SectionWish::regions: "all", "selection" or the regions'.
+/// Names and colours of the curves, by SectionCurvesQuery::regions: "all", "selection" or the regions'.
 struct CurveLook {
     std::string name;
     glm::vec3 color{0};
 };
-std::vector<CurveLook> curveLooks(const volume::DatasetInfo& info, const SectionWish& wish);
+std::vector<CurveLook> curveLooks(const volume::DatasetInfo& info, const SectionCurvesQuery& query);
 
 /// The title of the places along the axis or line, without unit.
-std::string placeTitle(const SectionWish& wish);
+std::string placeTitle(const SectionCurvesQuery& query);
 
 /// One line per region, parameter (where the region has it) and plane, with every measure; `head` false leaves the
 /// first line out, as of further times.

@@ -3,8 +3,8 @@
 #include "app/pane/figure.h"
 #include "app/pane/plot.h"
 #include "app/pane/view_parts.h"
-#include "app/queries/latest_feed.h"
-#include "app/queries/statistics_feed.h"
+#include "app/queries/async_query.h"
+#include "app/queries/statistics_query.h"
 #include "app/tools/profile_line.h"
 #include "app/ui/ticks.h"
 #include "app/views/curves/section_data.h"
@@ -21,7 +21,7 @@ constexpr std::size_t kMostSections = 6; ///< where the user has not chosen
 constexpr int kLinePlanes = 200;         ///< across a line
 
 struct SectionCache : ViewCache {
-    LatestFeed<SectionWish, SectionCurves> feed;
+    AsyncQuery<SectionCurvesQuery, SectionCurves> answers;
 };
 
 /// A list of names for an enumeration; true where another one was chosen.
@@ -71,28 +71,28 @@ void chooseRegions(const volume::DatasetInfo& info, int label, SectionSettings& 
     if (ImGui::IsItemHovered()) tooltip("Regions that have a curve");
 }
 
-SectionWish wishOf(const ViewContext& context, const ProfileView& view, const std::vector<int>& channels) {
+SectionCurvesQuery queryOf(const ViewContext& context, const ProfileView& view, const std::vector<int>& channels) {
     const volume::DatasetInfo& info = context.numbers->info();
     const SectionSettings& settings = view.sections;
-    SectionWish wish;
-    wish.channels = channels;
-    wish.weight = settings.weight;
+    SectionCurvesQuery query;
+    query.channels = channels;
+    query.weight = settings.weight;
     if (settings.across == SectionAcross::Line) {
         const std::vector<glm::dvec3> corners = profileCorners(view, context.session, info.bounds);
-        wish.line = {corners.front(), corners.back()};
-        wish.planes = kLinePlanes;
+        query.line = {corners.front(), corners.back()};
+        query.planes = kLinePlanes;
     } else {
-        wish.axis = volume::SpaceAxis(settings.across);
+        query.axis = volume::SpaceAxis(settings.across);
     }
     if (settings.byRegion) {
-        wish.label = volume::labelChannel(info).value_or(-1);
-        if (wish.label >= 0) wish.regions = settings.regions;
+        query.label = volume::labelChannel(info).value_or(-1);
+        if (query.label >= 0) query.regions = settings.regions;
     }
-    const StatisticsWish brushed = makeWish(context.session, info, {}, {}, 1, false);
-    wish.time = brushed.time;
-    wish.selection = brushed.selection;
-    wish.lenses = brushed.lenses;
-    return wish;
+    const BrushedQuery brushed = brushedQuery(context.session, info, {}, {}, 1, false);
+    query.time = brushed.time;
+    query.selection = brushed.selection;
+    query.lenses = brushed.lenses;
+    return query;
 }
 
 void drawToolbar(ViewContext& context, ProfileView& view, const std::vector<int>& shown,
@@ -211,19 +211,18 @@ void drawSections(ViewContext& context, const std::string& pane, ProfileView& vi
     const std::vector<int> shown = chosenChannels(info, view.channels, kMostSections);
     if (shown.empty()) return drawHint("No parameters", "This data set holds only labels.");
     SectionCache& cache = cacheOf<SectionCache>(context, pane);
-    const SectionWish wish = wishOf(context, view, shown);
-    const auto curves = cache.feed.get(
-        context, "sections " + pane, "Averages over planes", wish,
-        [](const auto& source, const SectionWish& asked, const Progress& progress) {
+    const SectionCurvesQuery query = queryOf(context, view, shown);
+    const auto curves = cache.answers.get(
+        context, context.numbers, {.key = "sections " + pane, .title = "Averages over planes", .quiet = true}, query,
+        [](const auto& source, const SectionCurvesQuery& asked, int, const Progress& progress) {
             return readSections(source, asked, progress);
         },
-        [&](const SectionWish& answered) {
-            return answered.channels == wish.channels && answered.axis == wish.axis && answered.line == wish.line;
-        },
-        true);
+        [](const SectionCurvesQuery& a, const SectionCurvesQuery& b) {
+            return a.channels == b.channels && a.axis == b.axis && a.line == b.line;
+        });
     if (!context.figure) drawToolbar(context, view, shown, curves);
     if (!curves) {
-        if (const std::string failure = cache.feed.failure(); !failure.empty())
+        if (const std::string failure = cache.answers.failure(); !failure.empty())
             return drawHint("No averages", failure.c_str());
         return ImGui::TextDisabled("Averaging...");
     }
@@ -245,8 +244,8 @@ void drawSections(ViewContext& context, const std::string& pane, ProfileView& vi
     const bool taken = ImGui::IsItemActive();
     const double share = std::clamp(double((ImGui::GetIO().MousePos.x - x0) / (x1 - x0)), 0.0, 1.0);
     // What is under the mouse is read; a click or drag takes the cursor to that plane.
-    const bool line = !curves->wish.line.empty();
-    const int axis = static_cast<int>(curves->wish.axis);
+    const bool line = !curves->query.line.empty();
+    const int axis = static_cast<int>(curves->query.axis);
     const auto& places = curves->sections.place;
     const double perUnit =
         places.back() != places.front() ? (across.hi - across.lo) / (places.back() - places.front()) : 1;

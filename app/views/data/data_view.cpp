@@ -2,7 +2,7 @@
 #include "app/edits/label_names.h"
 #include "app/pane/view_parts.h"
 #include "app/queries/focus_share.h"
-#include "app/queries/statistics_feed.h"
+#include "app/queries/statistics_query.h"
 #include "app/session/label_colors.h"
 #include "app/ui/ticks.h"
 #include "app/ui/time_text.h"
@@ -21,7 +21,7 @@ namespace tessera::app {
 namespace {
 
 struct DataCache : ViewCache {
-    StatisticsFeed feed;
+    AsyncStatistics answers;
     DerivedDraft derived;
 };
 
@@ -220,7 +220,7 @@ void drawSelection(ViewContext& context, const StatisticsResult* result) {
         ImGui::TextDisabled("%s%s", formatVolume(volume, info.lengthUnit).c_str(),
                             whole > 0 ? (", " + formatShare(volume / whole) + " of the whole box").c_str() : "");
     }
-    ImGui::TextDisabled("%s", originText(context, result->wish.channels).c_str());
+    ImGui::TextDisabled("%s", originText(context, result->query.channels).c_str());
     ImGui::PopTextWrapPos();
     constexpr ImGuiTableFlags kFlags =
         ImGuiTableFlags_RowBg | ImGuiTableFlags_SizingStretchProp | ImGuiTableFlags_PadOuterX;
@@ -260,9 +260,9 @@ void drawDataView(ViewContext& context, const std::string& pane, DataView&) {
     }
     DataCache& cache = cacheOf<DataCache>(context, pane);
     const volume::DatasetInfo& info = context.numbers->info();
-    const StatisticsWish wish = selectionWish(context.session, info);
+    const BrushedQuery query = selectionQuery(context.session, info);
     std::shared_ptr<const StatisticsResult> result;
-    if (!wish.channels.empty()) result = cache.feed.get(context, "summary " + pane, wish);
+    if (!query.channels.empty()) result = cache.answers.get(context, "summary " + pane, query);
     ImGui::BeginChild("data");
     if (ImGui::CollapsingHeader("Data set", ImGuiTreeNodeFlags_DefaultOpen)) drawSummary(context);
     // Above what is computed from them, which comes and goes while a formula is edited.
@@ -271,7 +271,7 @@ void drawDataView(ViewContext& context, const std::string& pane, DataView&) {
     if (ImGui::CollapsingHeader("Selection", ImGuiTreeNodeFlags_DefaultOpen)) drawSelection(context, result.get());
     if (ImGui::CollapsingHeader("Parameters over all times", ImGuiTreeNodeFlags_DefaultOpen))
         drawParameters(context.session, info);
-    if (!cache.feed.failure().empty()) ImGui::TextWrapped("%s", cache.feed.failure().c_str());
+    if (!cache.answers.failure().empty()) ImGui::TextWrapped("%s", cache.answers.failure().c_str());
     ImGui::EndChild();
 }
 

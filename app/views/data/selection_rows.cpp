@@ -43,7 +43,7 @@ SelectionCell ofRegion(double samples, double all) {
 
 } // namespace
 
-StatisticsWish selectionWish(const Session& session, const volume::DatasetInfo& info) {
+BrushedQuery selectionQuery(const Session& session, const volume::DatasetInfo& info) {
     std::vector<int> channels = comparedChannels(info);
     std::vector<Range> ranges;
     const std::vector<volume::Channel> all = info.channels();
@@ -54,7 +54,7 @@ StatisticsWish selectionWish(const Session& session, const volume::DatasetInfo& 
         channels.push_back(regions->label);
         ranges.push_back(regions->range);
     }
-    return makeWish(session, info, channels, ranges, regions ? regions->count : kBins, false);
+    return brushedQuery(session, info, channels, ranges, regions ? regions->count : kBins, false);
 }
 
 std::vector<SelectionRow> selectionRows(const volume::DatasetInfo& info, const StatisticsResult& result) {
@@ -62,7 +62,7 @@ std::vector<SelectionRow> selectionRows(const volume::DatasetInfo& info, const S
     const std::vector<volume::Channel> channels = info.channels();
     const auto label = regionBins(info);
     for (std::size_t i = 0; i < result.statistics.channels.size(); ++i) {
-        const int index = result.wish.channels[i];
+        const int index = result.query.channels[i];
         const volume::Channel& channel = channels[static_cast<std::size_t>(index)];
         const volume::ChannelStatistics& own = result.statistics.channels[i];
         const volume::Parameter& parameter = volume::parameterOf(info, index);

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "app/queries/statistics_feed.h"
+#include "app/queries/statistics_query.h"
 
 #include <array>
 #include <string>
@@ -11,7 +11,7 @@ namespace tessera::app {
 
 /// What is counted of the data under the session's time and brushes: every parameter, and the samples of each region
 /// where a label says them.
-StatisticsWish selectionWish(const Session& session, const volume::DatasetInfo& info);
+BrushedQuery selectionQuery(const Session& session, const volume::DatasetInfo& info);
 
 /// Two texts of samples: of a parameter mean and range, of a region its share and its number of samples; "-" and "" of
 /// none.

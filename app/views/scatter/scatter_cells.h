@@ -1,6 +1,6 @@
 #pragma once
 
-#include "app/queries/statistics_feed.h"
+#include "app/queries/statistics_query.h"
 #include "app/views/scatter/scatter_layout.h"
 
 #include <functional>

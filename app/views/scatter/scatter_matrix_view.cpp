@@ -1,6 +1,6 @@
 #include "app/pane/view_parts.h"
 #include "app/queries/readout.h"
-#include "app/queries/statistics_feed.h"
+#include "app/queries/statistics_query.h"
 #include "app/tools/brush_edit.h"
 #include "app/ui/keys.h"
 #include "app/ui/ticks.h"
@@ -25,7 +25,7 @@ struct MeanColors {
 };
 
 struct ScatterCache : ScatterLayoutCache {
-    StatisticsFeed feed;
+    AsyncStatistics answers;
     BrushDrag drag;
     Readout readout;
     std::vector<vis::PlotTexture> textures; ///< by pair
@@ -39,15 +39,15 @@ struct ScatterCache : ScatterLayoutCache {
     MeanColors shownColors;
 };
 
-/// Position of the channel that colours the plots among the wish's channels, added where it is not shown; -1: none.
-int meanChannel(StatisticsWish& wish, const volume::DatasetInfo& info, const std::string& name) {
+/// Position of the channel that colours the plots among the query's channels, added where it is not shown; -1: none.
+int meanChannel(BrushedQuery& query, const volume::DatasetInfo& info, const std::string& name) {
     const auto channel = info.findChannel(name);
     if (name.empty() || !channel) return -1;
-    const auto found = std::find(wish.channels.begin(), wish.channels.end(), *channel);
-    if (found != wish.channels.end()) return static_cast<int>(found - wish.channels.begin());
-    wish.channels.push_back(*channel);
-    wish.ranges.push_back(info.channelRange(info.channels()[static_cast<std::size_t>(*channel)]));
-    return static_cast<int>(wish.channels.size()) - 1;
+    const auto found = std::find(query.channels.begin(), query.channels.end(), *channel);
+    if (found != query.channels.end()) return static_cast<int>(found - query.channels.begin());
+    query.channels.push_back(*channel);
+    query.ranges.push_back(info.channelRange(info.channels()[static_cast<std::size_t>(*channel)]));
+    return static_cast<int>(query.channels.size()) - 1;
 }
 
 MeanColors meanColors(const Session& session, const volume::DatasetInfo& info, const std::string& name) {
@@ -62,7 +62,7 @@ void updateTextures(ScatterCache& cache, const std::shared_ptr<const StatisticsR
                     float cell, int large, ImU32 focus, const MeanColors& colors) {
     const bool dark = darkTheme();
     const int merge =
-        std::max(1, static_cast<int>(std::lround(static_cast<float>(result->wish.bins) / std::max(8.0f, cell))));
+        std::max(1, static_cast<int>(std::lround(static_cast<float>(result->query.bins) / std::max(8.0f, cell))));
     if (cache.shown == result && cache.shownLog == logDensity && cache.shownDark == dark && cache.shownMerge == merge &&
         cache.shownLarge == large && cache.shownFocus == focus && cache.shownColors == colors)
         return;
@@ -281,11 +281,11 @@ void drawScatterMatrixView(ViewContext& context, const std::string& pane, Scatte
     // Esc clears, wherever in the view the mouse is; during a drag it belongs to the drag.
     if (!cache.drag.active && ImGui::IsWindowHovered(ImGuiHoveredFlags_ChildWindows) && keyPressed(key::kEscape))
         context.session.selection.brushes.clear();
-    updateReadout(context, cache.readout);
-    StatisticsWish wish =
-        makeWish(context.session, info, matrix.channels, matrix.ranges, bins, matrix.channels.size() > 1);
-    wish.meanOf = meanChannel(wish, info, view.colorBy);
-    const std::shared_ptr<const StatisticsResult> result = cache.feed.get(context, "statistics " + pane, wish);
+    updateReadout(context, pane, cache.readout);
+    BrushedQuery query =
+        brushedQuery(context.session, info, matrix.channels, matrix.ranges, bins, matrix.channels.size() > 1);
+    query.meanOf = meanChannel(query, info, view.colorBy);
+    const std::shared_ptr<const StatisticsResult> result = cache.answers.get(context, "statistics " + pane, query);
 
     if (!context.figure) drawScatterToolbar(context, view, matrix.channels, result);
     const ImVec2 origin = ImGui::GetCursorScreenPos(), room = ImGui::GetContentRegionAvail();
@@ -332,8 +332,8 @@ void drawScatterMatrixView(ViewContext& context, const std::string& pane, Scatte
 
     ImDrawList& draw = *ImGui::GetWindowDrawList();
     drawMatrixAxes(draw, matrix, titles);
-    if (!cache.feed.failure().empty() && !result)
-        draw.AddText({matrix.min.x, matrix.min.y}, plotColors().text, cache.feed.failure().c_str());
+    if (!cache.answers.failure().empty() && !result)
+        draw.AddText({matrix.min.x, matrix.min.y}, plotColors().text, cache.answers.failure().c_str());
 }
 
 } // namespace tessera::app

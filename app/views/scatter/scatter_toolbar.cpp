@@ -59,7 +59,7 @@ std::string matrixCsv(const volume::DatasetInfo& info, const StatisticsResult& r
     const std::vector<volume::Channel> channels = info.channels();
     const auto nameOf = [&](int position) {
         const volume::Channel& own =
-            channels[static_cast<std::size_t>(result.wish.channels[static_cast<std::size_t>(position)])];
+            channels[static_cast<std::size_t>(result.query.channels[static_cast<std::size_t>(position)])];
         return csvField(titleWithUnit(own.name, own.unit));
     };
     std::string csv = "x parameter,y parameter,x,y,samples,in focus\n";
@@ -84,7 +84,7 @@ std::string matrixSvg(const volume::DatasetInfo& info, const StatisticsResult& r
     for (const volume::JointHistogram& joint : result.statistics.joint) {
         const auto titleOf = [&](int position) {
             const volume::Channel& own =
-                channels[static_cast<std::size_t>(result.wish.channels[static_cast<std::size_t>(position)])];
+                channels[static_cast<std::size_t>(result.query.channels[static_cast<std::size_t>(position)])];
             return titleWithUnit(own.name, own.unit);
         };
         FigurePanel panel;

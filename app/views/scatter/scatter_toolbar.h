@@ -1,6 +1,6 @@
 #pragma once
 
-#include "app/queries/statistics_feed.h"
+#include "app/queries/statistics_query.h"
 
 namespace tessera::app {
 

@@ -1,7 +1,7 @@
 #include "app/pane/axes3d.h"
 #include "app/pane/view_parts.h"
-#include "app/queries/flow_feed.h"
-#include "app/queries/surface_feed.h"
+#include "app/queries/flow_query.h"
+#include "app/queries/surface_query.h"
 #include "app/tools/brush_edit.h"
 #include "app/tools/brush_list.h"
 #include "app/ui/keys.h"
@@ -30,8 +30,8 @@ enum class CubeDrag { None, Object, Cube, Both, Pan, Zoom, Brush };
 struct ShadowCubeCache : ViewCache {
     vis::ViewTargetPtr target;
     std::array<vis::ViewTargetPtr, 6> walls;
-    SurfaceFeed surfaces;
-    FlowFeed flows;
+    AsyncSurfaces surfaces;
+    AsyncFlow flows;
     CubeDrag drag = CubeDrag::None;
     ImVec2 last{0, 0}, pressed{0, 0};
     std::size_t face = 0;    ///< where a brush began

@@ -41,16 +41,16 @@ std::string contourText(double level, double step) {
     return std::abs(level) < step * 1e-6 ? "0" : formatNumber(level, step);
 }
 
-Contours readContours(const volume::BrickSource& source, const ContourWish& wish, const Progress& progress) {
+Contours readContours(const volume::BrickSource& source, const ContourQuery& query, const Progress& progress) {
     const volume::DatasetInfo& info = source.info();
-    const auto& [right, up, normal] = wish.axes;
+    const auto& [right, up, normal] = query.axes;
     const int most = std::max(nodesAlong(info, right, 1), nodesAlong(info, up, 1));
     const int finer = std::clamp((kFewNodes + most - 1) / most, 1, 4);
     volume::PlaneValues plane;
     plane.size = {nodesAlong(info, right, finer), nodesAlong(info, up, finer)};
     const glm::dvec3 size = info.bounds.size();
     const glm::dvec2 node(size[right] / (plane.size.x - 1), size[up] / (plane.size.y - 1));
-    const volume::Channel channel = info.channels().at(static_cast<std::size_t>(wish.channel));
+    const volume::Channel channel = info.channels().at(static_cast<std::size_t>(query.channel));
     const volume::Parameter& parameter = info.parameters[static_cast<std::size_t>(channel.parameter)];
     const std::optional<int> label = volume::labelChannel(info, parameter);
     for (int first = 0; first < plane.size.y; first += kBand) {
@@ -59,20 +59,20 @@ Contours readContours(const volume::BrickSource& source, const ContourWish& wish
         for (int j = first; j < std::min(first + kBand, plane.size.y); ++j)
             for (int i = 0; i < plane.size.x; ++i) {
                 glm::dvec3 at(0);
-                at[normal] = wish.position;
+                at[normal] = query.position;
                 at[right] = std::min(info.bounds.lo[right] + node.x * i, info.bounds.hi[right]);
                 at[up] = std::min(info.bounds.lo[up] + node.y * j, info.bounds.hi[up]);
                 places.push_back(at);
             }
-        for (const volume::ProbeValue& value : volume::probeAlong(source, wish.channel, places, wish.time))
+        for (const volume::ProbeValue& value : volume::probeAlong(source, query.channel, places, query.time))
             plane.values.push_back(value.interpolated.value_or(std::nan("")));
         if (!label) continue;
-        for (const volume::ProbeValue& value : volume::probeAlong(source, *label, places, wish.time))
+        for (const volume::ProbeValue& value : volume::probeAlong(source, *label, places, query.time))
             plane.parts.push_back(
                 value.nearest ? static_cast<int>(parameter.parts.partOf(static_cast<int>(std::lround(*value.nearest))))
                               : 0);
     }
-    Contours out{volume::contourLines(plane, wish.levels)};
+    Contours out{volume::contourLines(plane, query.levels)};
     const glm::dvec2 corner(info.bounds.lo[right], info.bounds.lo[up]);
     for (volume::ContourLine& line : out.lines)
         for (glm::dvec2& point : line.points) point = corner + point * node;

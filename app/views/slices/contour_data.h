@@ -30,14 +30,14 @@ ContourLevels contourLevels(Range range, int count);
 /// A level as it is written on its line.
 std::string contourText(double level, double step);
 
-/// What is asked for; equal wishes have equal answers.
-struct ContourWish {
+/// What is asked for; equal queries have equal answers.
+struct ContourQuery {
     int channel = 0; ///< index of DatasetInfo::channels()
     SliceAxes axes;
     double position = 0; ///< along axes.normal
     volume::TimePair time;
     std::vector<double> levels;
-    bool operator==(const ContourWish&) const = default;
+    bool operator==(const ContourQuery&) const = default;
 };
 
 struct Contours {
@@ -46,7 +46,7 @@ struct Contours {
 
 /// Traces the lines on a grid as fine as the samples or finer. Where regions are kept apart (volume/field/parts.h) each
 /// has lines of its own. Throws Error, Cancelled.
-Contours readContours(const volume::BrickSource& source, const ContourWish& wish, const Progress& progress = {});
+Contours readContours(const volume::BrickSource& source, const ContourQuery& query, const Progress& progress = {});
 
 /// The parameter that has the lines of a view: its own where SlicesView::contourOf is "", else that one. Nothing where
 /// the data lack it, it is a label, or no lines are wanted.

@@ -36,14 +36,14 @@ void layOut(ContourCache& cache, const Contours& contours, double step, const Pl
 
 } // namespace
 
-void drawContours(ViewContext& context, ContourCache& cache, const std::string& jobKey, const ContourWish& wish,
+void drawContours(ViewContext& context, ContourCache& cache, const std::string& jobKey, const ContourQuery& query,
                   double step, bool values, const PlotFrame& frame, glm::dvec2 perUnit) {
-    const auto contours = cache.feed.get(
-        context, jobKey, "Contour lines", wish,
-        [](const auto& source, const ContourWish& asked, const Progress& progress) {
+    const auto contours = cache.answers.get(
+        context, context.numbers, {.key = jobKey, .title = "Contour lines", .quiet = true}, query,
+        [](const auto& source, const ContourQuery& asked, int, const Progress& progress) {
             return readContours(*source, asked, progress);
         },
-        [&](const ContourWish& answered) { return answered == wish; }, true);
+        std::equal_to<>());
     if (!contours) return;
     const std::array<double, 5> page{frame.min.x, frame.min.y, frame.max.x, frame.max.y, em()};
     if (cache.drawn != contours || cache.page != page || cache.values != values) {

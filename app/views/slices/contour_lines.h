@@ -1,7 +1,7 @@
 #pragma once
 
 #include "app/pane/plot.h"
-#include "app/queries/latest_feed.h"
+#include "app/queries/async_query.h"
 #include "app/views/slices/contour_data.h"
 #include "app/views/slices/contour_labels.h"
 
@@ -14,7 +14,7 @@ namespace tessera::app {
 
 /// What a slice keeps of its lines between frames: one per slice, in the cache of its view.
 struct ContourCache {
-    LatestFeed<ContourWish, Contours> feed;
+    AsyncQuery<ContourQuery, Contours> answers;
     std::shared_ptr<const Contours> drawn; ///< that `pieces` and `labels` are of, on this page
     std::array<double, 5> page{};
     bool values = false;
@@ -22,9 +22,9 @@ struct ContourCache {
     std::vector<LineLabel> labels;
 };
 
-/// Lines as wished with, if wanted, their values on them. While other lines are being read there are none: those of
+/// The lines of a query with, if wanted, their values on them. While other lines are read there are none: those of
 /// another place or time would lie where the value is another. `perUnit`: of the frame's axes, by length of the data.
-void drawContours(ViewContext& context, ContourCache& cache, const std::string& jobKey, const ContourWish& wish,
+void drawContours(ViewContext& context, ContourCache& cache, const std::string& jobKey, const ContourQuery& query,
                   double step, bool values, const PlotFrame& frame, glm::dvec2 perUnit);
 
 } // namespace tessera::app

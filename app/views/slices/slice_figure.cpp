@@ -96,12 +96,12 @@ std::string slicesSvg(const volume::BrickSource& source, const Session& session,
         FigurePanel& panel =
             panels.emplace_back(slicePanel(source, session, channel, axes, session.cursor[axes.normal]));
         if (!lined) continue;
-        const ContourWish wish{*lined, axes, session.cursor[axes.normal], volume::timesAround(info.times, session.time),
-                               levels.values};
+        const ContourQuery query{*lined, axes, session.cursor[axes.normal],
+                                 volume::timesAround(info.times, session.time), levels.values};
         const glm::dvec2 perUnit(labels[static_cast<std::size_t>(axes.right)].unit.perUnit,
                                  labels[static_cast<std::size_t>(axes.up)].unit.perUnit);
         panel.note = contourTitle(info.channels()[static_cast<std::size_t>(*lined)], levels);
-        addContours(panel, readContours(source, wish, progress.part(done, done + 1.0 / std::size(kSlicePlanes))),
+        addContours(panel, readContours(source, query, progress.part(done, done + 1.0 / std::size(kSlicePlanes))),
                     levels.step, view.contourValues, perUnit);
     }
     return figureSvg(panels, 2);

@@ -284,7 +284,7 @@ void drawSlicesView(ViewContext& context, const std::string& pane, SlicesView& v
     ImGui::SetCursorScreenPos({x + gap * 2, y + gap});
     ImGui::BeginChild("readout", {max.x - x - gap * 2, max.y - y - gap}, false);
     LegendEntry legend = legendOf(context.session, info, *channel);
-    updateReadout(context, cache.readout);
+    updateReadout(context, pane, cache.readout);
     if (const auto value = cache.readout.value(name)) legend.marker = *value;
     // Where the table does not fit below the legend, the values come first and in running lines.
     const std::string note = contourNote(info, view, lines);

@@ -1,7 +1,7 @@
 #include "app/pane/figure.h"
 #include "app/pane/view_parts.h"
 #include "app/queries/readout.h"
-#include "app/queries/statistics_feed.h"
+#include "app/queries/statistics_query.h"
 #include "app/tools/brush_edit.h"
 #include "app/ui/ticks.h"
 #include "app/ui/widgets.h"
@@ -13,7 +13,7 @@ namespace tessera::app {
 namespace {
 
 struct HistogramCache : ViewCache {
-    StatisticsFeed feed;
+    AsyncStatistics answers;
     BrushDrag drag;
     Readout readout;
 };
@@ -137,7 +137,7 @@ void drawToolbar(ViewContext& context, HistogramView& view, const volume::Channe
                 return histogramCsv(channel, result->statistics.channels.front().histogram, result->brushed);
             });
     }
-    if (result) drawOrigin(context, {result->wish.channels.front()});
+    if (result) drawOrigin(context, {result->query.channels.front()});
     if (context.session.selection.brushes.empty()) {
         continueLine(ImGui::CalcTextSize("drag to brush").x);
         ImGui::TextDisabled("drag to brush");
@@ -160,12 +160,12 @@ void drawHistogramView(ViewContext& context, const std::string& pane, HistogramV
     HistogramCache& cache = cacheOf<HistogramCache>(context, pane);
     const volume::Channel channel = info.channels()[static_cast<std::size_t>(*index)];
     const HistogramBins bins = histogramBins(info, *index, paddedRange(info.channelRange(channel), 0.02), view.bins);
-    const auto result = cache.feed.get(context, "histogram " + pane,
-                                       makeWish(context.session, info, {*index}, {bins.range}, bins.count, false));
-    updateReadout(context, cache.readout);
+    const auto result = cache.answers.get(
+        context, "histogram " + pane, brushedQuery(context.session, info, {*index}, {bins.range}, bins.count, false));
+    updateReadout(context, pane, cache.readout);
     if (!context.figure) drawToolbar(context, view, channel, result);
     drawPlot(context, cache, view, channel, bins.range, result.get());
-    if (!cache.feed.failure().empty() && !result) ImGui::TextWrapped("%s", cache.feed.failure().c_str());
+    if (!cache.answers.failure().empty() && !result) ImGui::TextWrapped("%s", cache.answers.failure().c_str());
 }
 
 } // namespace tessera::app

@@ -30,24 +30,24 @@ std::string scientific(double value) {
 
 } // namespace
 
-volume::RegionStatistics readRegions(const std::shared_ptr<const volume::BrickSource>& source, const RegionWish& wish,
+volume::RegionStatistics readRegions(const std::shared_ptr<const volume::BrickSource>& source, const RegionQuery& asked,
                                      const Progress& progress) {
-    const volume::SourceAtTime shown = volume::sourceAt(source, wish.time);
+    const volume::SourceAtTime shown = volume::sourceAt(source, asked.time);
     volume::RegionStatisticsQuery query;
-    query.channels = wish.channels;
-    query.label = wish.label;
+    query.channels = asked.channels;
+    query.label = asked.label;
     query.time = shown.time;
-    if (wish.label >= 0)
-        query.regions = volume::labelValues(*shown.source, wish.label, shown.time, progress.part(0, 0.2));
+    if (asked.label >= 0)
+        query.regions = volume::labelValues(*shown.source, asked.label, shown.time, progress.part(0, 0.2));
     return volume::computeRegionStatistics(*shown.source, query, progress.part(0.2, 1));
 }
 
-std::vector<RegionRow> regionRows(const volume::DatasetInfo& info, const RegionWish& wish,
+std::vector<RegionRow> regionRows(const volume::DatasetInfo& info, const RegionQuery& asked,
                                   const volume::RegionStatistics& statistics) {
     std::vector<RegionRow> rows;
     const std::vector<volume::Channel> channels = info.channels();
-    for (std::size_t c = 0; c < wish.channels.size(); ++c) {
-        const volume::Channel& channel = channels.at(static_cast<std::size_t>(wish.channels[c]));
+    for (std::size_t c = 0; c < asked.channels.size(); ++c) {
+        const volume::Channel& channel = channels.at(static_cast<std::size_t>(asked.channels[c]));
         const double existing = statistics.all[c].samples;
         const auto add = [&](const std::string& region, int value, glm::vec3 color, bool all,
                              const volume::Summary& summary) {
@@ -56,7 +56,7 @@ std::vector<RegionRow> regionRows(const volume::DatasetInfo& info, const RegionW
                             summary, info.channelRange(channel)});
         };
         for (std::size_t r = 0; r < statistics.regions.size(); ++r) {
-            const volume::Parameter& label = volume::parameterOf(info, wish.label);
+            const volume::Parameter& label = volume::parameterOf(info, asked.label);
             const int value = statistics.regions[r];
             if (statistics.summary[r][c].samples > 0)
                 add(volume::labelName(label, value), value, labelColor(label, value), false, statistics.summary[r][c]);
@@ -105,27 +105,27 @@ std::string regionCsv(const std::vector<RegionRow>& rows, const std::string& len
     return csv;
 }
 
-Balance readBalance(const std::shared_ptr<const volume::BrickSource>& source, const BalanceWish& wish,
+Balance readBalance(const std::shared_ptr<const volume::BrickSource>& source, const RegionBalanceQuery& asked,
                     const Progress& progress) {
-    const auto velocity = volume::velocityChannels(source->info(), wish.velocity);
-    if (!velocity && !wish.velocity.empty()) throw Error("there is no vector \"" + wish.velocity + "\"");
+    const auto velocity = volume::velocityChannels(source->info(), asked.velocity);
+    if (!velocity && !asked.velocity.empty()) throw Error("there is no vector \"" + asked.velocity + "\"");
     if (!velocity) throw Error("a balance wants a velocity, and no vector is named or measured as one");
-    const volume::SourceAtTime shown = volume::sourceAt(source, wish.time);
+    const volume::SourceAtTime shown = volume::sourceAt(source, asked.time);
     volume::BalanceQuery query;
-    query.channel = wish.channel;
+    query.channel = asked.channel;
     query.velocity = *velocity;
-    query.label = wish.label;
+    query.label = asked.label;
     query.time = shown.time;
-    if (wish.label >= 0)
-        query.regions = volume::labelValues(*shown.source, wish.label, shown.time, progress.part(0, 0.1));
-    return {wish, volume::parameterOf(source->info(), (*velocity)[0]).name,
+    if (asked.label >= 0)
+        query.regions = volume::labelValues(*shown.source, asked.label, shown.time, progress.part(0, 0.1));
+    return {asked, volume::parameterOf(source->info(), (*velocity)[0]).name,
             volume::computeBalance(*shown.source, query, progress.part(0.1, 1))};
 }
 
 BalanceTable balanceTable(const volume::DatasetInfo& info, const Balance& balance) {
     static constexpr const char* kFaces[] = {"x from below", "x from above", "y from below",
                                              "y from above", "z from below", "z from above"};
-    const volume::Channel channel = info.channels().at(static_cast<std::size_t>(balance.wish.channel));
+    const volume::Channel channel = info.channels().at(static_cast<std::size_t>(balance.query.channel));
     std::string speed;
     for (const volume::Parameter& parameter : info.parameters)
         if (parameter.name == balance.velocity) speed = parameter.unit;
@@ -156,7 +156,7 @@ BalanceTable balanceTable(const volume::DatasetInfo& info, const Balance& balanc
     for (const volume::RegionBalance& region : balance.regions) {
         if (!(region.volume > 0)) continue;
         const volume::Parameter* label =
-            balance.wish.label >= 0 ? &volume::parameterOf(info, balance.wish.label) : nullptr;
+            balance.query.label >= 0 ? &volume::parameterOf(info, balance.query.label) : nullptr;
         const std::string name = label ? volume::labelName(*label, region.region) : "all";
         const auto add = [&](const std::string& surface, const volume::Crossing& crossing, bool total) {
             if (!(crossing.area > 0) && !total) return;

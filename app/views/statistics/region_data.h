@@ -12,16 +12,16 @@
 /// Statistics and balances of regions as rows that tables, CSV files and the command line show.
 namespace tessera::app {
 
-/// A wish for the numbers of every region; equal wishes have equal answers.
-struct RegionWish {
+/// For the numbers of every region; equal queries have equal answers.
+struct RegionQuery {
     std::vector<int> channels;
     int label = -1;
     volume::TimePair time;
-    bool operator==(const RegionWish&) const = default;
+    bool operator==(const RegionQuery&) const = default;
 };
 
 /// Counts; the regions are the values that the label has at that time. Throws Error, Cancelled.
-volume::RegionStatistics readRegions(const std::shared_ptr<const volume::BrickSource>& source, const RegionWish& wish,
+volume::RegionStatistics readRegions(const std::shared_ptr<const volume::BrickSource>& source, const RegionQuery& query,
                                      const Progress& progress = {});
 
 /// One row of the table: a parameter in a region.
@@ -37,7 +37,7 @@ struct RegionRow {
 };
 
 /// By parameter, then regions in their order, then the whole. Regions where a parameter has no sample are left out.
-std::vector<RegionRow> regionRows(const volume::DatasetInfo& info, const RegionWish& wish,
+std::vector<RegionRow> regionRows(const volume::DatasetInfo& info, const RegionQuery& query,
                                   const volume::RegionStatistics& statistics);
 
 /// Heads of the columns of regionCells(): parameter, region, samples, share, volume, mean, spread, least, most.
@@ -48,22 +48,22 @@ std::vector<std::string> regionCells(const RegionRow& row, const std::string& le
 std::string regionCsv(const std::vector<RegionRow>& rows, const std::string& lengthUnit, const std::string& timeTitle,
                       const std::string& time, bool head = true);
 
-struct BalanceWish {
+struct RegionBalanceQuery {
     int channel = 0;
     std::string velocity; ///< "" = found by name and unit
     int label = -1;
     volume::TimePair time;
-    bool operator==(const BalanceWish&) const = default;
+    bool operator==(const RegionBalanceQuery&) const = default;
 };
 
 struct Balance {
-    BalanceWish wish;
+    RegionBalanceQuery query;
     std::string velocity; ///< the parameter that carries
     std::vector<volume::RegionBalance> regions;
 };
 
 /// Computes the balance of every region. Throws Error where there is no velocity, Cancelled.
-Balance readBalance(const std::shared_ptr<const volume::BrickSource>& source, const BalanceWish& wish,
+Balance readBalance(const std::shared_ptr<const volume::BrickSource>& source, const RegionBalanceQuery& query,
                     const Progress& progress = {});
 
 /// A surface of a region, or a sum over all of its surfaces.

@@ -1,8 +1,8 @@
 #include "app/edits/label_names.h"
 #include "app/pane/figure.h"
 #include "app/pane/view_parts.h"
-#include "app/queries/latest_feed.h"
-#include "app/queries/statistics_feed.h"
+#include "app/queries/async_query.h"
+#include "app/queries/statistics_query.h"
 #include "app/ui/ticks.h"
 #include "app/ui/widgets.h"
 #include "app/views/statistics/region_data.h"
@@ -16,9 +16,9 @@ namespace tessera::app {
 namespace {
 
 struct StatisticsCache : ViewCache {
-    StatisticsFeed feed;
-    LatestFeed<RegionWish, volume::RegionStatistics> regions;
-    LatestFeed<BalanceWish, Balance> balance;
+    AsyncStatistics answers;
+    AsyncQuery<RegionQuery, volume::RegionStatistics> regions;
+    AsyncQuery<RegionBalanceQuery, Balance> balance;
 };
 
 /// Count and volume are of samples weighted by their degree of interest, like everything else.
@@ -48,15 +48,15 @@ const volume::JointHistogram* jointOf(const volume::Statistics& statistics, std:
 }
 
 /// Everything at full resolution: summaries and all correlations.
-std::string statisticsCsv(const std::shared_ptr<const volume::BrickSource>& source, StatisticsWish wish,
+std::string statisticsCsv(const std::shared_ptr<const volume::BrickSource>& source, BrushedQuery query,
                           std::size_t shown, const Progress& progress) {
     const volume::DatasetInfo& info = source->info();
-    const bool brushed = wish.selection.active();
-    wish.pairs = volume::allPairs(static_cast<int>(shown));
-    wish.bins = 1;
-    const volume::Statistics statistics = answer(source, wish, 0, progress);
+    const bool brushed = query.selection.active();
+    query.pairs = volume::allPairs(static_cast<int>(shown));
+    query.bins = 1;
+    const volume::Statistics statistics = readStatistics(source, query, 0, progress);
     const std::vector<volume::Channel> channels = info.channels();
-    const auto nameOf = [&](std::size_t i) { return channels[static_cast<std::size_t>(wish.channels[i])].name; };
+    const auto nameOf = [&](std::size_t i) { return channels[static_cast<std::size_t>(query.channels[i])].name; };
     std::string csv = "parameter,unit,part,samples,volume [" + info.lengthUnit + "3],mean,deviation,min,max";
     for (std::size_t i = 0; i < shown; ++i) csv += "," + csvField("correlation with " + nameOf(i));
     csv += "\n";
@@ -64,7 +64,7 @@ std::string statisticsCsv(const std::shared_ptr<const volume::BrickSource>& sour
         std::vector<Part> parts = partsOf(statistics.channels[i], brushed);
         if (brushed) parts.insert(parts.begin(), {"all", statistics.channels[i].all});
         for (const Part& part : parts) {
-            csv += csvField(nameOf(i)) + "," + csvField(channels[static_cast<std::size_t>(wish.channels[i])].unit) +
+            csv += csvField(nameOf(i)) + "," + csvField(channels[static_cast<std::size_t>(query.channels[i])].unit) +
                    "," + part.name;
             const volume::Summary& of = part.summary;
             for (const double value : {of.samples, of.volume, of.mean, of.deviation, of.min, of.max})
@@ -111,7 +111,7 @@ std::vector<std::vector<std::string>> statisticsRows(const volume::DatasetInfo& 
     const std::vector<volume::Channel> channels = info.channels();
     std::vector<std::vector<std::string>> rows;
     for (std::size_t i = 0; i < shown; ++i) {
-        const volume::Channel& channel = channels[static_cast<std::size_t>(result.wish.channels[i])];
+        const volume::Channel& channel = channels[static_cast<std::size_t>(result.query.channels[i])];
         const Range range = info.channelRange(channel);
         const double digits = (range.hi - range.lo) / 10000;
         for (const Part& part : partsOf(result.statistics.channels[i], result.brushed)) {
@@ -134,7 +134,7 @@ std::vector<std::vector<std::string>> statisticsRows(const volume::DatasetInfo& 
 }
 
 void drawTable(const volume::DatasetInfo& info, const StatisticsResult& result, std::size_t shown, std::size_t with) {
-    const std::string other = "r with " + info.channels()[static_cast<std::size_t>(result.wish.channels[with])].name;
+    const std::string other = "r with " + info.channels()[static_cast<std::size_t>(result.query.channels[with])].name;
     const std::vector<std::vector<std::string>> rows = statisticsRows(info, result, shown, with);
     if (!beginTable("statistics",
                     {"Parameter", "Part", "Samples", "Volume", "Mean", "Std. deviation", "Least", "Most", other}, rows,
@@ -247,13 +247,13 @@ void chooseBalance(const volume::DatasetInfo& info, StatisticsView& view) {
 
 void drawBalance(ViewContext& context, const std::string& pane, int channel, int label, StatisticsCache& cache) {
     const volume::DatasetInfo& info = context.numbers->info();
-    const BalanceWish wish{channel, "", label, volume::timesAround(info.times, context.session.time)};
+    const RegionBalanceQuery query{channel, "", label, volume::timesAround(info.times, context.session.time)};
     const auto balance = cache.balance.get(
-        context, "balance " + pane, "Balance of every region", wish,
-        [](const auto& source, const BalanceWish& asked, const Progress& progress) {
+        context, context.numbers, {.key = "balance " + pane, .title = "Balance of every region", .quiet = true}, query,
+        [](const auto& source, const RegionBalanceQuery& asked, int, const Progress& progress) {
             return readBalance(source, asked, progress);
         },
-        [&](const BalanceWish& answered) { return answered.channel == wish.channel; }, true);
+        [](const RegionBalanceQuery& a, const RegionBalanceQuery& b) { return a.channel == b.channel; });
     if (!balance) {
         const std::string failure = cache.balance.failure();
         return failure.empty() ? ImGui::TextDisabled("Adding up...") : drawHint("No balance", failure.c_str());
@@ -282,18 +282,18 @@ bool drawRegions(ViewContext& context, const std::string& pane, StatisticsView& 
     }
     continueLine(em() * 8);
     chooseChannels(info, view.channels, shown);
-    const RegionWish wish{shown, *label, volume::timesAround(info.times, context.session.time)};
+    const RegionQuery query{shown, *label, volume::timesAround(info.times, context.session.time)};
     const auto numbers = cache.regions.get(
-        context, "regions " + pane, "Statistics by region", wish,
-        [](const auto& source, const RegionWish& asked, const Progress& progress) {
+        context, context.numbers, {.key = "regions " + pane, .title = "Statistics by region", .quiet = true}, query,
+        [](const auto& source, const RegionQuery& asked, int, const Progress& progress) {
             return readRegions(source, asked, progress);
         },
-        [&](const RegionWish& answered) { return answered.channels == wish.channels; }, true);
+        [](const RegionQuery& a, const RegionQuery& b) { return a.channels == b.channels; });
     if (!numbers) {
         ImGui::TextDisabled("%s", cache.regions.failure().empty() ? "Counting..." : cache.regions.failure().c_str());
         return true;
     }
-    const auto rows = std::make_shared<std::vector<RegionRow>>(regionRows(info, wish, *numbers));
+    const auto rows = std::make_shared<std::vector<RegionRow>>(regionRows(info, query, *numbers));
     continueLine(buttonWidth("Export"));
     exportMenu(context, "regions", {},
                [rows, unit = info.lengthUnit](const Progress&) { return regionCsv(*rows, unit, "", ""); });
@@ -322,10 +322,10 @@ void drawStatisticsView(ViewContext& context, const std::string& pane, Statistic
         ranges.push_back(paddedRange(info.channelRange(channel)));
         if (channel.name == view.correlateWith) with = i;
     }
-    StatisticsWish wish = makeWish(context.session, info, shown, ranges, 1, false);
+    BrushedQuery query = brushedQuery(context.session, info, shown, ranges, 1, false);
     for (std::size_t i = 0; i < shown.size(); ++i)
-        if (i != with) wish.pairs.push_back({static_cast<int>(with), static_cast<int>(i)});
-    const auto result = cache.feed.get(context, "statistics " + pane, wish);
+        if (i != with) query.pairs.push_back({static_cast<int>(with), static_cast<int>(i)});
+    const auto result = cache.answers.get(context, "statistics " + pane, query);
 
     if (volume::labelChannel(info)) continueLine(em() * 8);
     chooseChannels(info, view.channels, shown);
@@ -342,11 +342,11 @@ void drawStatisticsView(ViewContext& context, const std::string& pane, Statistic
     if (ImGui::IsItemHovered()) tooltip("Parameter that every other one is correlated with (Pearson's r)");
     continueLine(buttonWidth("Export"));
     exportMenu(context, "statistics", {},
-               [source = context.numbers, wish, count = shown.size()](const Progress& progress) {
-                   return statisticsCsv(source, wish, count, progress);
+               [source = context.numbers, query, count = shown.size()](const Progress& progress) {
+                   return statisticsCsv(source, query, count, progress);
                });
     if (!result) {
-        ImGui::TextDisabled("%s", cache.feed.failure().empty() ? "Counting..." : cache.feed.failure().c_str());
+        ImGui::TextDisabled("%s", cache.answers.failure().empty() ? "Counting..." : cache.answers.failure().c_str());
         return;
     }
     const std::string state =
@@ -356,7 +356,7 @@ void drawStatisticsView(ViewContext& context, const std::string& pane, Statistic
     ImGui::TextDisabled("%s", state.c_str());
     drawOrigin(context, shown);
     drawTable(info, *result, std::min(shown.size(), result->statistics.channels.size()),
-              std::min(with, result->wish.channels.size() - 1));
+              std::min(with, result->query.channels.size() - 1));
 }
 
 } // namespace tessera::app

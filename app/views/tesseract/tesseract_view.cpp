@@ -3,7 +3,7 @@
 #include "app/ui/ticks.h"
 #include "app/ui/time_text.h"
 #include "app/ui/widgets.h"
-#include "app/views/tesseract/tesseract_feed.h"
+#include "app/views/tesseract/tesseract_query.h"
 #include "app/views/tesseract/tesseract_wire.h"
 #include "vis/passes/point_cloud.h"
 
@@ -21,7 +21,7 @@ constexpr std::size_t kMovingPoints = 30000; ///< drawn while something moves
 enum class Drag { None, Turn, Turn4, Roll };
 
 struct TesseractCache : ViewCache {
-    TesseractFeed feed;
+    AsyncSamples answers;
     vis::PointCloud cloud;
     std::shared_ptr<const volume::Samples4> samples; ///< of the cloud
     std::vector<vis::CloudPoint> points;             ///< of the cloud
@@ -226,7 +226,7 @@ bool updateCloud(ViewContext& context, const std::string& pane, TesseractCache& 
     style.selection = session.selection;
     style.density = static_cast<double>(view.density);
 
-    const auto samples = cache.feed.get(context, "tesseract " + pane, query, now);
+    const auto samples = cache.answers.get(context, "tesseract " + pane, {query, now});
     if (!samples) return false;
     const bool fits = samples->channels == static_cast<int>(query.channels.size());
     if (!fits) return cache.style.has_value(); // of other parameters: what is drawn stays until the new ones come
@@ -346,7 +346,7 @@ void drawTesseractView(ViewContext& context, const std::string& pane, TesseractV
     }
     ImDrawList& draw = *ImGui::GetWindowDrawList();
     if (!updateCloud(context, pane, cache, view, *channel)) {
-        const std::string failure = cache.feed.failure();
+        const std::string failure = cache.answers.failure();
         addTextWithBackdrop(draw, {(min.x + max.x) / 2, (min.y + max.y) / 2}, {0.5f, 0.5f}, plotColors().faint,
                             failure.empty() ? "reading samples..." : failure.c_str());
     }

@@ -1,7 +1,9 @@
 #include "app/pane/view_parts.h"
+#include "app/queries/async_query.h"
+#include "app/queries/derivative_query.h"
 #include "app/queries/readout.h"
-#include "app/queries/statistics_feed.h"
-#include "app/queries/visibility_feed.h"
+#include "app/queries/statistics_query.h"
+#include "app/queries/visibility_query.h"
 #include "app/tools/brush_edit.h"
 #include "app/ui/ticks.h"
 #include "app/ui/widgets.h"
@@ -17,12 +19,12 @@ namespace tessera::app {
 namespace {
 
 struct TransferCache : ViewCache {
-    StatisticsFeed feed;
+    AsyncStatistics answers;
     Readout readout;
     OpacityDrag drag;
     ColorDrag colors;
-    DerivativeFeed derivatives;
-    VisibilityFeed visibility;
+    AsyncQuery<DerivativesAtTime, DerivativeResult> derivatives;
+    AsyncVisibility visibility;
     RegionPage regions;
     BoundaryPage boundaries;
     std::string shown;                                 ///< function that the pages were last drawn for
@@ -117,8 +119,8 @@ void drawPlot(ViewContext& context, TransferCache& cache, const TransferView& vi
                                    paddedRange({std::min(data.lo, range.lo), std::max(data.hi, range.hi)}, 0.03), 192);
     const HistogramBins bins = cache.bins;
     const Range span = bins.range;
-    const StatisticsWish wish = makeWish(context.session, info, {index}, {span}, bins.count, false);
-    const auto result = cache.feed.get(context, "histogram " + pane, wish);
+    const BrushedQuery query = brushedQuery(context.session, info, {index}, {span}, bins.count, false);
+    const auto result = cache.answers.get(context, "histogram " + pane, query);
 
     const ImVec2 origin = ImGui::GetCursorScreenPos(), room = ImGui::GetContentRegionAvail();
     const float left = axisRoom(AxisSide::Left, {0, 1}, room.y > em() * 10),
@@ -212,7 +214,7 @@ void drawTransferView(ViewContext& context, const std::string& pane, TransferVie
         return;
     }
     TransferCache& cache = cacheOf<TransferCache>(context, pane);
-    updateReadout(context, cache.readout);
+    updateReadout(context, pane, cache.readout);
     drawTransferControls(context, view, cache.boundaries, info,
                          info.channels()[static_cast<std::size_t>(*channel)].name);
     const int now = channelNow().value_or(*channel);
@@ -240,8 +242,13 @@ void drawTransferView(ViewContext& context, const std::string& pane, TransferVie
     }
     volume::DerivativeQuery query{.channel = now};
     query.gradientTop = double(function.gradientTop) * (range.hi - range.lo);
-    const auto result = cache.derivatives.get(context, "gradients " + pane, query,
-                                              volume::timesAround(info.times, context.session.time));
+    const auto result = cache.derivatives.get(
+        context, context.numbers, {.key = "gradients " + pane, .title = "Gradients"},
+        {query, volume::timesAround(info.times, context.session.time)},
+        [](const auto& source, const DerivativesAtTime& asked, int, const Progress& progress) {
+            return readDerivatives(source, asked, progress);
+        },
+        [](const DerivativesAtTime& a, const DerivativesAtTime& b) { return a.query.channel == b.query.channel; });
     if (const std::string failure = cache.derivatives.failure(); !failure.empty() && !result)
         drawHint("No gradients", failure.c_str());
     else if (regions)

@@ -1,7 +1,7 @@
 #include "app/pane/axes3d.h"
 #include "app/pane/scale_bar.h"
 #include "app/pane/view_parts.h"
-#include "app/queries/scene_feed.h"
+#include "app/queries/scene_query.h"
 #include "app/tools/brush_list.h"
 #include "app/tools/camera_hand.h"
 #include "app/tools/lens_edit.h"
@@ -23,7 +23,7 @@ namespace {
 
 struct VolumeCache : ViewCache {
     vis::ViewTargetPtr target;
-    SceneFeed scene;
+    AsyncScene scene;
     CameraHand hand;
     LensDrag lens;
     HandleDrag handles;

@@ -1,4 +1,4 @@
-#include "app/queries/derivative_feed.h"
+#include "app/queries/derivative_query.h"
 
 #include "volume/bricks/source_at_time.h"
 
@@ -18,21 +18,15 @@ std::uint8_t greyOf(double lightness) {
 
 } // namespace
 
-std::shared_ptr<const DerivativeResult> DerivativeFeed::get(ViewContext& context, const std::string& jobKey,
-                                                            const volume::DerivativeQuery& query,
-                                                            const volume::TimePair& time) {
-    return feed_.get(
-        context, jobKey, "Gradients", Wish{query, time},
-        [](const std::shared_ptr<const volume::BrickSource>& source, const Wish& wish, const Progress& progress) {
-            const volume::SourceAtTime shown = volume::sourceAt(source, wish.time);
-            volume::DerivativeQuery asked = wish.query;
-            asked.time = shown.time;
-            DerivativeResult result;
-            result.histogram = volume::derivativeHistogram(*shown.source, asked, progress);
-            result.curves = volume::boundaryCurves(result.histogram);
-            return result;
-        },
-        [&](const Wish& answered) { return answered.query.channel == query.channel; });
+DerivativeResult readDerivatives(const std::shared_ptr<const volume::BrickSource>& source,
+                                 const DerivativesAtTime& query, const Progress& progress) {
+    const volume::SourceAtTime shown = volume::sourceAt(source, query.time);
+    volume::DerivativeQuery asked = query.query;
+    asked.time = shown.time;
+    DerivativeResult result;
+    result.histogram = volume::derivativeHistogram(*shown.source, asked, progress);
+    result.curves = volume::boundaryCurves(result.histogram);
+    return result;
 }
 
 std::vector<std::uint8_t> derivativeImage(const volume::DerivativeHistogram& histogram, bool dark) {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "app/pane/view_context.h"
+#include "app/queries/async_query.h"
 #include "volume/field/time_pair.h"
 
 #include <memory>
@@ -11,17 +11,25 @@
 /// it is done. Kept for a while, so that going back in time costs nothing.
 namespace tessera::app {
 
-class SurfaceFeed {
+/// What decides a surface; layers of equal queries share one.
+struct SurfaceQuery {
+    int channel = 0, colorBy = -1; ///< colorBy: of the values at the vertices, -1 for none
+    volume::TimePair time;
+    double value = 0;
+    bool operator==(const SurfaceQuery&) const = default;
+};
+
+class AsyncSurfaces {
 public:
-    SurfaceFeed();
     /// The session's visible polygonal iso-layers as far as they are extracted; while one is not, its last shape. Sets
     /// context.busy while better ones are on their way; headless, extracts to the end. `moving`: take coarse shapes
     /// that draw fast. A failure is reported once and leaves the layer out.
     std::vector<vis::GeometryLayer> get(ViewContext& context, const std::string& pane, bool moving);
 
 private:
-    struct State;
-    std::shared_ptr<State> state_;
+    using Query = AsyncQuery<SurfaceQuery, vis::Geometry>;
+    static Query::Keep keep();
+    Query query_{keep()};
 };
 
 /// The surface of an iso-layer at a level of detail, with the values of its colouring parameter at the vertices.

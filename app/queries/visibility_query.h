@@ -1,8 +1,9 @@
 #pragma once
 
-#include "app/queries/latest_feed.h"
+#include "app/queries/async_query.h"
 #include "vis/optics/visibility.h"
 #include "volume/field/time_pair.h"
+#include "volume/reconstruct/sample_grid.h"
 
 #include <string>
 #include <vector>
@@ -10,26 +11,26 @@
 namespace tessera::app {
 
 /// Visibility histograms of one view, from a coarse level of the data so that they follow a dragged curve.
-class VisibilityFeed {
+class AsyncVisibility {
 public:
     /// Of the first visible composite layer of the channel seen by the session's camera; else null. `range`: of the
-    /// bins. As LatestFeed::get.
+    /// bins. As AsyncQuery::get.
     std::shared_ptr<const std::vector<double>> get(ViewContext& context, const std::string& jobKey, int channel,
                                                    Range range, int bins);
 
 private:
-    struct GridWish {
+    struct GridQuery {
         int channel = 0, level = 0;
         volume::TimePair time;
-        bool operator==(const GridWish&) const = default;
+        bool operator==(const GridQuery&) const = default;
     };
-    struct Wish {
-        GridWish grid;
+    struct Query {
+        GridQuery grid;
         vis::VisibilityQuery query;
-        bool operator==(const Wish&) const = default;
+        bool operator==(const Query&) const = default;
     };
-    LatestFeed<GridWish, volume::SampleGrid> grids_;
-    LatestFeed<Wish, std::vector<double>> histograms_;
+    AsyncQuery<GridQuery, volume::SampleGrid> grids_;
+    AsyncQuery<Query, std::vector<double>> histograms_;
 };
 
 } // namespace tessera::app

@@ -1,4 +1,4 @@
-#include "app/queries/statistics_feed.h"
+#include "app/queries/statistics_query.h"
 
 #include "app/tools/brush_edit.h"
 #include "tests/app/fed_imgui.h"
@@ -45,31 +45,31 @@ vis::Brush brush(const char* channel, glm::vec3 color) {
 }
 
 // What a lens marks is selected in plots and tables while nothing is brushed; brushes have the word.
-TEST(StatisticsWish, BrushesHaveTheWordOverLensesThatMark) {
+TEST(BrushedQuery, BrushesHaveTheWordOverLensesThatMark) {
     const volume::DatasetInfo info = bytesAndFloats();
     Session session;
-    const auto wish = [&] { return makeWish(session, info, {0}, {{0, 255}}, 8, false); };
-    EXPECT_TRUE(wish().selection.brushes.empty());
+    const auto query = [&] { return brushedQuery(session, info, {0}, {{0, 255}}, 8, false); };
+    EXPECT_TRUE(query().selection.brushes.empty());
 
     session.lenses.resize(1);
     session.lenses[0].marks = false;
-    EXPECT_TRUE(wish().selection.brushes.empty());
+    EXPECT_TRUE(query().selection.brushes.empty());
     session.lenses[0].marks = true;
-    ASSERT_EQ(wish().selection.brushes.size(), 1u);
-    EXPECT_TRUE(std::holds_alternative<vis::LensRegion>(wish().selection.brushes[0].region));
-    EXPECT_EQ(wish().lenses.lenses.size(), 1u);
+    ASSERT_EQ(query().selection.brushes.size(), 1u);
+    EXPECT_TRUE(std::holds_alternative<vis::LensRegion>(query().selection.brushes[0].region));
+    EXPECT_EQ(query().lenses.lenses.size(), 1u);
     session.lenses[0].enabled = false;
-    EXPECT_TRUE(wish().selection.brushes.empty());
+    EXPECT_TRUE(query().selection.brushes.empty());
     session.lenses[0].enabled = true;
 
     session.selection.brushes = {brush("w", {1, 0, 0})};
-    ASSERT_EQ(wish().selection.brushes.size(), 1u);
-    EXPECT_TRUE(std::holds_alternative<vis::RangeRegion>(wish().selection.brushes[0].region));
-    EXPECT_TRUE(wish().lenses.lenses.empty());
-    EXPECT_EQ(wish().channels, (std::vector<int>{0, 1})) << "what a brush names is read as well";
+    ASSERT_EQ(query().selection.brushes.size(), 1u);
+    EXPECT_TRUE(std::holds_alternative<vis::RangeRegion>(query().selection.brushes[0].region));
+    EXPECT_TRUE(query().lenses.lenses.empty());
+    EXPECT_EQ(query().channels, (std::vector<int>{0, 1})) << "what a brush names is read as well";
     session.selection.brushes[0].enabled = false;
-    ASSERT_EQ(wish().selection.brushes.size(), 1u);
-    EXPECT_TRUE(std::holds_alternative<vis::LensRegion>(wish().selection.brushes[0].region));
+    ASSERT_EQ(query().selection.brushes.size(), 1u);
+    EXPECT_TRUE(std::holds_alternative<vis::LensRegion>(query().selection.brushes[0].region));
 }
 
 class FocusColor : public FedImGui {

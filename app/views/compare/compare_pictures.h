@@ -1,7 +1,8 @@
 #pragma once
 
 #include "app/edits/compare.h"
-#include "app/queries/scene_feed.h"
+#include "app/queries/async_query.h"
+#include "app/queries/scene_query.h"
 #include "app/views/compare/compare_values.h"
 #include "vis/gl/plot_texture.h"
 #include "vis/image/image_metrics.h"
@@ -16,7 +17,13 @@ namespace tessera::app {
 
 /// Data of variants that are not those of the session.
 struct CompareData {
+    struct Opened {
+        std::shared_ptr<const volume::BrickSource> source;
+        std::string failure;
+        std::vector<std::string> messages;
+    };
     DataRef data;
+    AsyncQuery<DataRef, Opened> opening;
     std::shared_ptr<const volume::BrickSource> source; ///< null while it opens
     std::unique_ptr<vis::Renderer> renderer;
     std::string failure;
@@ -24,12 +31,22 @@ struct CompareData {
     bool used = false;
 };
 
+/// A picture and that of the reference, of one size.
+struct PicturePair {
+    std::shared_ptr<const vis::Image> image, reference;
+    bool operator==(const PicturePair&) const = default;
+};
+struct PictureDifference {
+    vis::ImageDifference of;
+    std::vector<std::uint8_t> map; ///< differenceMap
+};
+
 struct CompareCell {
     CompareVariant variant;
     Session of, session;               ///< the session it was made from, and with the changes
     std::string failure;               ///< why there is no picture
     std::shared_ptr<CompareData> data; ///< null: the session's
-    SceneFeed feed;
+    AsyncScene shapes;
     vis::ViewTargetPtr target;
     vis::FrameStatus status;
     bool drawn = false;
@@ -42,31 +59,31 @@ struct CompareCell {
     vis::Scene imageOf;
     std::shared_ptr<const volume::BrickSource> imageSource;
     std::shared_ptr<const vis::Image> image;
-    std::shared_ptr<const vis::Image> measuredImage, measuredAgainst;
-    vis::ImageDifference measured;
-    /// Samples of the first layer beside those of the reference: of what, and what came of it.
-    struct Samples {
-        std::shared_ptr<const volume::BrickSource> own, reference;
-        std::string channel, referenceChannel;
-        double time = 0, referenceTime = 0;
-        bool operator==(const Samples&) const = default;
-    } samplesOf;
+    using Measuring = AsyncQuery<PicturePair, PictureDifference>;
+    Measuring measuring{{.answers = 1}};
+    std::shared_ptr<const Measuring::Answer> measured; ///< of its picture and the reference's
+
+    // Samples of the first layer beside those of the reference: of what, and what came of it.
+    AsyncQuery<CompareQuery, std::optional<volume::SourceDifference>> counting{{.answers = 1}};
+    CompareQuery samplesOf;
     std::optional<volume::SourceDifference> samples;
-    std::vector<std::uint8_t> differences; ///< differenceMap
+
     vis::PlotTexture differencePicture;
-    std::shared_ptr<const vis::Image> shownImage, shownAgainst; ///< of differencePicture
+    std::shared_ptr<const Measuring::Answer> shownOf; ///< what differencePicture shows
     double shownTop = -1;
     CompareValues values; ///< how far the first layer's values are from the reference's
 
     const std::shared_ptr<const volume::BrickSource>& source(const ViewContext& context) const {
         return data ? data->source : context.source;
     }
+    bool isMeasured() const { return measured && measured->query.image == image; }
+    bool showsDifference() const { return shownOf && shownOf->query.image == image; }
     /// Nothing is left to draw.
     bool final() const { return !failure.empty() || (drawn && status.complete); }
     bool finished() const { return drawn && status.complete && image; }
 };
 
-class CompareFeed {
+class ComparePictures {
 public:
     /// Draws every variant at one size; index 0 is the first. Sets context.busy while something is not final.
     void draw(ViewContext& context, const std::string& pane, const std::vector<CompareVariant>& variants,

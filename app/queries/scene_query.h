@@ -1,20 +1,20 @@
 #pragma once
 
-#include "app/queries/flow_feed.h"
-#include "app/queries/surface_feed.h"
+#include "app/queries/flow_query.h"
+#include "app/queries/surface_query.h"
 
 /// The scene that a 3D view draws, including everything computed outside the renderer.
 namespace tessera::app {
 
-class SceneFeed {
+class AsyncScene {
 public:
     /// The session's scene with the theme's colours and the geometry of its layers, as far as it is made. Sets
     /// context.busy while better shapes are on their way. `moving`: take what draws fast.
     vis::Scene get(ViewContext& context, const std::string& pane, bool moving);
 
 private:
-    SurfaceFeed surfaces_;
-    FlowFeed flows_;
+    AsyncSurfaces surfaces_;
+    AsyncFlow flow_;
 };
 
 } // namespace tessera::app

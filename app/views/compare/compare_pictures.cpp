@@ -1,7 +1,6 @@
-#include "app/views/compare/compare_feed.h"
+#include "app/views/compare/compare_pictures.h"
 
 #include "app/data/open.h"
-#include "app/queries/pending_wish.h"
 #include "codec/archive/archive.h"
 #include "vis/transfer/transfer_function.h"
 #include "volume/base/error.h"
@@ -48,42 +47,33 @@ bool sameScene(const Session& a, const Session& b) {
 
 } // namespace
 
-std::shared_ptr<CompareData> CompareFeed::dataFor(ViewContext& context, const std::string& pane, const DataRef& data) {
-    const auto key = [&] { return pane + ":data" + toJson(data).dump(); };
-    for (const auto& known : data_)
-        if (known->data == data) {
-            known->used = true;
-            if (!known->source && known->failure.empty() && !context.jobs.running(key())) known->failure = "cancelled";
-            return known;
-        }
-    auto made = data_.emplace_back(std::make_shared<CompareData>());
-    made->data = data;
-    made->used = true;
-    const auto open = [data, session = context.session.data](CompareData& into, const Progress& progress) {
-        into.source =
-            attempt(into.failure, [&] { return openSource(located(data, session), into.messages, progress); });
-    };
-    if (context.headless) {
-        open(*made, {});
-        return made;
-    }
-    context.jobs.start(key(), "Data to compare",
-                       [weak = std::weak_ptr(made), open](const Progress& progress) -> Jobs::Finish {
-                           const auto opened = std::make_shared<CompareData>();
-                           open(*opened, progress);
-                           return [weak, opened] {
-                               const auto to = weak.lock();
-                               if (!to) return;
-                               to->source = opened->source;
-                               to->failure = opened->failure;
-                               to->messages = opened->messages;
-                           };
-                       });
-    return made;
+std::shared_ptr<CompareData> ComparePictures::dataFor(ViewContext& context, const std::string& pane,
+                                                      const DataRef& data) {
+    const auto known = std::ranges::find_if(data_, [&](const auto& one) { return one->data == data; });
+    const auto found = known != data_.end() ? *known : data_.emplace_back(std::make_shared<CompareData>());
+    found->data = data;
+    found->used = true;
+    if (found->source || !found->failure.empty()) return found;
+    const auto opened = found->opening.get(
+        context, std::shared_ptr<const void>(),
+        {.key = pane + ":data" + toJson(data).dump(), .title = "Data to compare", .duringEdits = true}, data,
+        [session = context.session.data](const auto&, const DataRef& asked, int, const Progress& progress) {
+            CompareData::Opened out;
+            out.source =
+                attempt(out.failure, [&] { return openSource(located(asked, session), out.messages, progress); });
+            return out;
+        },
+        std::equal_to<>());
+    found->failure = found->opening.failure();
+    if (!opened) return found;
+    found->source = opened->source;
+    found->failure = opened->failure;
+    found->messages = opened->messages;
+    return found;
 }
 
-void CompareFeed::drawCell(ViewContext& context, const std::string& pane, std::size_t index, glm::ivec2 size,
-                           bool moving) {
+void ComparePictures::drawCell(ViewContext& context, const std::string& pane, std::size_t index, glm::ivec2 size,
+                               bool moving) {
     CompareCell& cell = *cells_[index];
     cell.drawn = false;
     if (!cell.failure.empty()) return;
@@ -125,7 +115,7 @@ void CompareFeed::drawCell(ViewContext& context, const std::string& pane, std::s
     request.size = size;
     request.moving = moving && !context.headless;
     request.wait = context.headless;
-    const vis::Scene scene = cell.feed.get(own, pane + "/" + std::to_string(index), request.moving);
+    const vis::Scene scene = cell.shapes.get(own, pane + "/" + std::to_string(index), request.moving);
     const bool first = !cell.shows || request.moving || !(scene == cell.sceneShown);
     const double share = double(scene.render.limits.frameTime) / double(std::max<std::size_t>(cells_.size(), 1));
     request.budgetMs = first ? share : double(scene.render.limits.frameTime);
@@ -157,98 +147,64 @@ void CompareFeed::drawCell(ViewContext& context, const std::string& pane, std::s
     cell.imageSource = own.source;
 }
 
-void CompareFeed::measure(ViewContext& context, const std::string& pane, std::size_t index, std::size_t reference) {
+void ComparePictures::measure(ViewContext& context, const std::string& pane, std::size_t index, std::size_t reference) {
     CompareCell& cell = *cells_[index];
     const CompareCell& against = *cells_[reference];
     if (index == reference || !cell.finished() || !against.finished()) return;
-    if (cell.measuredImage == cell.image && cell.measuredAgainst == against.image) return;
     if (cell.image->size != against.image->size) return;
-    struct Result {
-        vis::ImageDifference of;
-        std::vector<std::uint8_t> map;
-    };
-    const auto compute = [image = cell.image, wanted = against.image] {
-        return Result{vis::difference(*image, *wanted), vis::differenceMap(*image, *wanted)};
-    };
-    const auto take = [image = cell.image, wanted = against.image](CompareCell& to, Result result) {
-        to.measured = result.of;
-        to.differences = std::move(result.map);
-        to.measuredImage = image;
-        to.measuredAgainst = wanted;
-    };
-    if (context.headless) {
-        take(cell, compute());
-        return;
-    }
-    context.busy = true;
-    const std::string key = pane + ":measure" + std::to_string(index);
-    if (context.jobs.running(key)) return;
-    context.jobs.start(
-        key, "Error of a variant",
-        [compute, take, weak = std::weak_ptr(cells_[index])](const Progress&) -> Jobs::Finish {
-            return [take, weak, result = compute()] {
-                if (const auto to = weak.lock()) take(*to, result);
-            };
+    cell.measured = cell.measuring.answer(
+        context, std::shared_ptr<const void>(),
+        {.key = pane + ":measure" + std::to_string(index), .title = "Error of a variant", .quiet = true},
+        {cell.image, against.image},
+        [](const auto&, const PicturePair& pair, int, const Progress&) {
+            return PictureDifference{vis::difference(*pair.image, *pair.reference),
+                                     vis::differenceMap(*pair.image, *pair.reference)};
         },
-        true);
+        std::equal_to<>());
 }
 
-void CompareFeed::measureSamples(ViewContext& context, const std::string& pane, std::size_t index,
-                                 std::size_t reference) {
+void ComparePictures::measureSamples(ViewContext& context, const std::string& pane, std::size_t index,
+                                     std::size_t reference) {
     CompareCell& cell = *cells_[index];
     const CompareCell& against = *cells_[reference];
     const auto source = cell.source(context), wanted = against.source(context);
     if (index == reference || !cell.failure.empty() || !source || !wanted) return;
-    const auto first = [](const Session& session) {
-        if (session.layers.empty()) return std::string();
-        return std::visit([](const auto& own) { return own.channel; }, session.layers.front().technique);
-    };
-    const CompareCell::Samples of{
-        source, wanted, first(cell.session), first(against.session), cell.session.time, against.session.time};
-    if (cell.samplesOf == of) return;
-    if (source == wanted && of.channel == of.referenceChannel && of.time == of.referenceTime) {
-        cell.samplesOf = of;
+    const CompareQuery query = compareQuery({cell.session, source}, {against.session, wanted});
+    if (source == wanted && query.channel == query.referenceChannel && query.time == query.referenceTime) {
+        cell.samplesOf = query;
         cell.samples.reset();
         return;
     }
-    const auto compute = [source, wanted, of](const Progress& progress) -> std::optional<volume::SourceDifference> {
-        const auto a = source->info().findChannel(of.channel), b = wanted->info().findChannel(of.referenceChannel);
-        if (!a || !b) return std::nullopt;
-        const auto unit = [](const volume::BrickSource& data, int channel) {
-            return data.info().channels()[std::size_t(channel)].unit;
-        };
-        if (unit(*source, *a) != unit(*wanted, *b)) return std::nullopt;
-        try {
-            const auto one = volume::sourceAt(source, volume::timesAround(source->info().times, of.time)),
-                       other = volume::sourceAt(wanted, volume::timesAround(wanted->info().times, of.referenceTime));
-            return volume::sourceDifference({*one.source, *a, one.time}, {*other.source, *b, other.time}, progress);
-        } catch (const Error&) {
-            return std::nullopt; // damaged data: the picture says so
-        }
-    };
-    if (context.headless) {
-        cell.samplesOf = of;
-        cell.samples = compute({});
-        return;
-    }
-    const std::string key = pane + ":samples" + std::to_string(index);
-    context.busy = true;
-    if (context.jobs.running(key)) return;
-    context.jobs.start(
-        key, "Samples of a variant",
-        [compute, of, weak = std::weak_ptr(cells_[index])](const Progress& progress) -> Jobs::Finish {
-            return [of, weak, result = compute(progress)] {
-                const auto to = weak.lock();
-                if (!to) return;
-                to->samplesOf = of;
-                to->samples = result;
-            };
+    const auto found = cell.counting.answer(
+        context, std::shared_ptr<const void>(),
+        {.key = pane + ":samples" + std::to_string(index),
+         .title = "Samples of a variant",
+         .quiet = true,
+         .duringEdits = true},
+        query,
+        [](const auto&, const CompareQuery& of, int,
+           const Progress& progress) -> std::optional<volume::SourceDifference> {
+            const volume::DatasetInfo &ownInfo = of.own->info(), &wantedInfo = of.reference->info();
+            const auto a = ownInfo.findChannel(of.channel), b = wantedInfo.findChannel(of.referenceChannel);
+            if (!a || !b) return std::nullopt;
+            if (ownInfo.channels()[std::size_t(*a)].unit != wantedInfo.channels()[std::size_t(*b)].unit)
+                return std::nullopt;
+            try {
+                const auto one = volume::sourceAt(of.own, volume::timesAround(ownInfo.times, of.time)),
+                           other =
+                               volume::sourceAt(of.reference, volume::timesAround(wantedInfo.times, of.referenceTime));
+                return volume::sourceDifference({*one.source, *a, one.time}, {*other.source, *b, other.time}, progress);
+            } catch (const Error&) {
+                return std::nullopt; // damaged data: the picture says so
+            }
         },
-        true);
+        [](const CompareQuery& a, const CompareQuery& b) { return a.sameData(b); });
+    cell.samplesOf = found ? found->query : CompareQuery{};
+    cell.samples = found ? found->result : std::nullopt;
 }
 
-void CompareFeed::draw(ViewContext& context, const std::string& pane, const std::vector<CompareVariant>& variants,
-                       std::size_t reference, glm::ivec2 size, bool moving) {
+void ComparePictures::draw(ViewContext& context, const std::string& pane, const std::vector<CompareVariant>& variants,
+                           std::size_t reference, glm::ivec2 size, bool moving) {
     for (const auto& data : data_) data->used = false;
     cells_.resize(variants.size());
     refined_ %= std::max<std::size_t>(cells_.size(), 1);
@@ -283,16 +239,16 @@ void CompareFeed::draw(ViewContext& context, const std::string& pane, const std:
     }
 }
 
-int CompareFeed::renderers() const {
+int ComparePictures::renderers() const {
     return int(std::count_if(data_.begin(), data_.end(), [](const auto& data) { return data->renderer != nullptr; }) +
                std::count_if(cells_.begin(), cells_.end(),
                              [](const auto& cell) { return cell && cell->values.hasRenderer(); }));
 }
 
-double CompareFeed::showDifferences(double top, std::size_t reference) {
+double ComparePictures::showDifferences(double top, std::size_t reference) {
     if (top <= 0)
         for (const auto& cell : cells_)
-            if (cell->measuredImage && cell->measuredImage == cell->image) top = std::max(top, cell->measured.maximum);
+            if (cell->isMeasured()) top = std::max(top, cell->measured->result.of.maximum);
     if (top <= 0) top = 1;
     static const vis::TransferFunction scale = [] {
         vis::TransferFunction made;
@@ -301,29 +257,28 @@ double CompareFeed::showDifferences(double top, std::size_t reference) {
     }();
     for (std::size_t i = 0; i < cells_.size(); ++i) {
         CompareCell& cell = *cells_[i];
-        if (i == reference || !cell.measuredImage || cell.measuredImage != cell.image) continue;
-        if (cell.shownImage == cell.measuredImage && cell.shownAgainst == cell.measuredAgainst && cell.shownTop == top)
-            continue;
+        if (i == reference || !cell.isMeasured()) continue;
+        if (cell.shownOf == cell.measured && cell.shownTop == top) continue;
+        const std::vector<std::uint8_t>& map = cell.measured->result.map;
         std::vector<std::uint8_t> rgba;
-        rgba.reserve(cell.differences.size() * 4);
+        rgba.reserve(map.size() * 4);
         std::array<std::array<std::uint8_t, 3>, 256> colors;
         for (std::size_t value = 0; value < 256; ++value) {
             const glm::dvec4 color = vis::evaluate(scale, {0, 1}, std::min(1.0, double(value) / top));
             for (int c = 0; c < 3; ++c) colors[value][std::size_t(c)] = std::uint8_t(color[c] * 255 + 0.5);
         }
-        for (const std::uint8_t value : cell.differences) {
+        for (const std::uint8_t value : map) {
             rgba.insert(rgba.end(), colors[value].begin(), colors[value].end());
             rgba.push_back(255);
         }
-        cell.differencePicture.upload(cell.measuredImage->size, rgba);
-        cell.shownImage = cell.measuredImage;
-        cell.shownAgainst = cell.measuredAgainst;
+        cell.differencePicture.upload(cell.image->size, rgba);
+        cell.shownOf = cell.measured;
         cell.shownTop = top;
     }
     return top;
 }
 
-std::vector<CompareRow> CompareFeed::rows(const ViewContext& context, std::size_t reference) const {
+std::vector<CompareRow> ComparePictures::rows(const ViewContext& context, std::size_t reference) const {
     std::vector<CompareRow> out;
     for (std::size_t i = 0; i < cells_.size(); ++i) {
         const CompareCell& cell = *cells_[i];
@@ -337,14 +292,15 @@ std::vector<CompareRow> CompareFeed::rows(const ViewContext& context, std::size_
         row.bytes = double(cell.status.bytes);
         if (const auto* archive = dynamic_cast<const codec::Archive*>(cell.source(context).get()))
             row.storedBytes = double(archive->fileBytes());
-        const bool known = cell.measuredImage && cell.measuredImage == cell.image && reference < cells_.size() &&
-                           cell.measuredAgainst == cells_[reference]->image;
+        const bool known = cell.isMeasured() && reference < cells_.size() &&
+                           cell.measured->query.reference == cells_[reference]->image;
         row.measured = known && i != reference && cell.failure.empty();
         if (row.measured) {
-            row.maximum = cell.measured.maximum;
-            row.rmse = cell.measured.rmse;
-            row.psnr = cell.measured.psnr;
-            row.ssim = cell.measured.ssim;
+            const vis::ImageDifference& of = cell.measured->result.of;
+            row.maximum = of.maximum;
+            row.rmse = of.rmse;
+            row.psnr = of.psnr;
+            row.ssim = of.ssim;
         }
         if (i != reference && reference < cells_.size()) {
             const auto& wanted = cells_[reference]->source(context);

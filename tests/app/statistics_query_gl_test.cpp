@@ -1,4 +1,4 @@
-#include "app/queries/statistics_feed.h"
+#include "app/queries/statistics_query.h"
 
 #include "codec/archive/archive.h"
 #include "codec/pack/pack.h"
@@ -65,7 +65,7 @@ std::shared_ptr<const CountedArchive> packedWave() {
 
 // The first answer about a whole archive comes before a sample is read, the last one is exact. With brushes, or pairs
 // of parameters, samples have to be looked at from the first.
-TEST(StatisticsFeedGl, BeginsWithWhatTheArchiveNotes) {
+TEST(StatisticsQueryGl, BeginsWithWhatTheArchiveNotes) {
     const vis::HeadlessContext gl;
     vis::Renderer renderer{vis::RendererOptions{}};
     Jobs jobs;
@@ -74,11 +74,11 @@ TEST(StatisticsFeedGl, BeginsWithWhatTheArchiveNotes) {
     const auto source = packedWave();
     ViewContext context{session, source, renderer, jobs, caches};
     const int noted = source->grid().levels;
-    const auto levelsSeen = [&](const StatisticsWish& wish) {
-        StatisticsFeed feed;
+    const auto levelsSeen = [&](const BrushedQuery& query) {
+        AsyncStatistics answers;
         std::vector<int> levels;
         for (int frame = 0; frame < 100 && (levels.empty() || levels.back() != 0); ++frame) {
-            const auto result = feed.get(context, "feed", wish);
+            const auto result = answers.get(context, "feed", query);
             if (result && (levels.empty() || levels.back() != result->statistics.level)) {
                 levels.push_back(result->statistics.level);
                 if (levels.back() == noted) {
@@ -88,17 +88,17 @@ TEST(StatisticsFeedGl, BeginsWithWhatTheArchiveNotes) {
             jobs.wait();
             (void)jobs.collect();
         }
-        EXPECT_EQ(feed.failure(), "");
+        EXPECT_EQ(answers.failure(), "");
         return levels;
     };
-    const auto wish = [&](bool pairs) {
-        return makeWish(session, source->info(), {0, 1}, {{0, 2000}, {0, 2000}}, 32, pairs);
+    const auto query = [&](bool pairs) {
+        return brushedQuery(session, source->info(), {0, 1}, {{0, 2000}, {0, 2000}}, 32, pairs);
     };
-    EXPECT_EQ(levelsSeen(wish(false)), (std::vector<int>{noted, 0}));
+    EXPECT_EQ(levelsSeen(query(false)), (std::vector<int>{noted, 0}));
     EXPECT_GT(source->reads, 0);
-    for (const int level : levelsSeen(wish(true))) EXPECT_LT(level, noted);
+    for (const int level : levelsSeen(query(true))) EXPECT_LT(level, noted);
     session.selection.brushes = {vis::rangeBrush({{"T", 500, 900, 0}}, "some")};
-    for (const int level : levelsSeen(wish(false))) EXPECT_LT(level, noted);
+    for (const int level : levelsSeen(query(false))) EXPECT_LT(level, noted);
 }
 
 } // namespace

@@ -1,4 +1,4 @@
-#include "app/queries/visibility_feed.h"
+#include "app/queries/visibility_query.h"
 
 #include "app/pane/view_parts.h"
 #include "volume/bricks/source_at_time.h"
@@ -21,8 +21,8 @@ int coarseLevel(const volume::BrickGrid& grid) {
 
 } // namespace
 
-std::shared_ptr<const std::vector<double>> VisibilityFeed::get(ViewContext& context, const std::string& jobKey,
-                                                               int channel, Range range, int bins) {
+std::shared_ptr<const std::vector<double>> AsyncVisibility::get(ViewContext& context, const std::string& jobKey,
+                                                                int channel, Range range, int bins) {
     const Session& session = context.session;
     const volume::DatasetInfo& info = context.numbers->info();
     const std::string name = info.channels()[std::size_t(channel)].name;
@@ -32,14 +32,15 @@ std::shared_ptr<const std::vector<double>> VisibilityFeed::get(ViewContext& cont
             if (!layer && entry.visible && volume->style == vis::VolumeStyle::Composite && volume->channel == name)
                 layer = volume;
     if (!layer || !(range.hi > range.lo)) return nullptr;
-    const GridWish wish{channel, coarseLevel(context.numbers->grid()), volume::timesAround(info.times, session.time)};
-    const auto grid = grids_.get(
-        context, jobKey + ":samples", "Samples for visibility", wish,
-        [](const std::shared_ptr<const volume::BrickSource>& source, const GridWish& w, const Progress& progress) {
-            const volume::SourceAtTime shown = volume::sourceAt(source, w.time);
-            return volume::readSamples(*shown.source, w.channel, shown.time, w.level, progress);
+    using Source = std::shared_ptr<const volume::BrickSource>;
+    const auto grid = grids_.answer(
+        context, context.numbers, {.key = jobKey + ":samples", .title = "Samples for visibility", .quiet = true},
+        {channel, coarseLevel(context.numbers->grid()), volume::timesAround(info.times, session.time)},
+        [](const Source& source, const GridQuery& asked, int, const Progress& progress) {
+            const volume::SourceAtTime shown = volume::sourceAt(source, asked.time);
+            return volume::readSamples(*shown.source, asked.channel, shown.time, asked.level, progress);
         },
-        [&](const GridWish& answered) { return answered.channel == channel; }, true);
+        [](const GridQuery& previous, const GridQuery& asked) { return previous.channel == asked.channel; });
     if (!grid) return nullptr;
     vis::VisibilityQuery query;
     query.camera = session.camera;
@@ -50,11 +51,13 @@ std::shared_ptr<const std::vector<double>> VisibilityFeed::get(ViewContext& cont
     query.density = double(layer->density);
     query.bins = bins;
     return histograms_.get(
-        context, jobKey, "Visibility", Wish{wish, query},
-        [grid](const std::shared_ptr<const volume::BrickSource>& source, const Wish& w, const Progress& progress) {
-            return vis::visibilityHistogram(*grid, source->info().bounds, w.query, progress);
+        context, context.numbers, {.key = jobKey, .title = "Visibility", .quiet = true}, {grid->query, query},
+        [grid](const Source& source, const Query& asked, int, const Progress& progress) {
+            return vis::visibilityHistogram(grid->result, source->info().bounds, asked.query, progress);
         },
-        [&](const Wish& answered) { return answered.grid.channel == channel && answered.query.bins == bins; }, true);
+        [](const Query& previous, const Query& asked) {
+            return previous.grid.channel == asked.grid.channel && previous.query.bins == asked.query.bins;
+        });
 }
 
 } // namespace tessera::app
