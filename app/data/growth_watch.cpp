@@ -19,7 +19,7 @@ GrowthWatch::GrowthWatch(std::string path, std::function<void()> wake, std::chro
 /// The header that holds; none where the file is gone or no archive. A commit writes two copies one after the other:
 /// which of them a reader sees makes no difference, so it counts once.
 GrowthWatch::State GrowthWatch::state() const {
-    std::array<char, codec::firstChunk(codec::kFormatVersion)> bytes{};
+    std::array<char, codec::kFirstChunk> bytes{};
     std::ifstream file(path_, std::ios::binary);
     file.read(bytes.data(), std::streamsize(bytes.size()));
     std::error_code gone;

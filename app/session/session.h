@@ -18,7 +18,8 @@
 /// The session: everything that decides what is on screen, as one value, and its JSON file (*.tessera.json).
 namespace tessera::app {
 
-inline constexpr int kSessionSchema = 3;
+/// The schema that is written, and the oldest that is read.
+inline constexpr int kSessionSchema = 3, kOldestSchema = 2;
 
 /// A data file of a session, identified by path (relative to the session file), size and hash.
 struct DataFile {

@@ -27,38 +27,6 @@ void restoreUnknown(Json& document, const std::vector<JsonIssue>& unknown) {
     }
 }
 
-/// Until schema 1 the ray caster's settings held one Phong light.
-constexpr std::pair<const char*, const char*> kMovedLight[] = {
-    {"/render/ambient", "/lighting/ambient"},          {"/render/diffuse", "/lighting/diffuse"},
-    {"/render/specular", "/lighting/specular"},        {"/render/shininess", "/lighting/shininess"},
-    {"/render/azimuth", "/lighting/lights/0/azimuth"}, {"/render/elevation", "/lighting/lights/0/elevation"}};
-
-void moveLight(Json& document) {
-    Json light = Json::object();
-    for (const auto& [from, to] : kMovedLight) {
-        const Json::json_pointer old(from), now(to);
-        if (!document.contains(old)) continue;
-        if (now.back() == "azimuth" || now.back() == "elevation") {
-            if (!light.contains("lights")) light["lights"] = Json::array({Json::object()});
-            light["lights"][0][now.back()] = document[old];
-        } else {
-            light[now.back()] = document[old];
-        }
-        document["render"].erase(old.back());
-    }
-    if (!light.empty()) document["lighting"] = std::move(light);
-    const auto history = document.find("history");
-    if (history == document.end() || !history->is_object() || !history->contains("steps")) return;
-    for (Json& step : (*history)["steps"])
-        for (const char* direction : {"forward", "inverse"}) {
-            if (!step.is_object() || !step.contains(direction) || !step[direction].is_array()) continue;
-            for (Json& operation : step[direction])
-                for (const auto& [from, to] : kMovedLight)
-                    if (operation.is_object() && operation.contains("path") && operation["path"] == from)
-                        operation["path"] = to;
-        }
-}
-
 } // namespace
 
 std::string readText(const std::string& path) {
@@ -109,39 +77,6 @@ bool looksLikeSession(std::string_view text) {
 
 namespace {
 
-/// Up to schema 1 every brush was a rectangle, and one word said how all of them met.
-void migrateBrushes(Json& document) {
-    // Steps back to such brushes would not fit the new ones.
-    if (const auto history = document.find("history");
-        history != document.end() && history->dump().find("/selection/") != std::string::npos)
-        document.erase("history");
-    const auto selection = document.find("selection");
-    if (selection == document.end() || !selection->is_object()) return;
-    const bool any = selection->value("combine", Json()) == "any";
-    selection->erase("combine");
-    const auto brushes = selection->find("brushes");
-    if (brushes == selection->end() || !brushes->is_array()) return;
-    for (Json& brush : *brushes) {
-        if (!brush.is_object() || !brush.contains("intervals")) continue;
-        brush["region"] = {{"type", "range"}, {"intervals", brush["intervals"]}};
-        brush.erase("intervals");
-        if (any) brush["combine"] = "or";
-    }
-}
-
-/// Up to schema 1 the style "xray" was the mean along the ray.
-void renameAverage(Json& json) {
-    if (json.is_object()) {
-        if (const auto style = json.find("style"); style != json.end() && *style == "xray") *style = "average";
-        if (const auto path = json.find("path"), value = json.find("value");
-            path != json.end() && path->is_string() && path->get_ref<const std::string&>().ends_with("/style") &&
-            value != json.end() && *value == "xray")
-            *value = "average";
-    }
-    if (json.is_structured())
-        for (Json& part : json) renameAverage(part);
-}
-
 /// Up to schema 2 the lattice of pictures was "bcc": true or false, in the data and in changes of variants.
 void renameLattice(Json& json) {
     static const auto named = [](bool bcc) { return std::string(kPictureLatticeNames[bcc ? 1 : 0]); };
@@ -185,17 +120,10 @@ void migrate(Json& document, const std::string& file) {
         throw Error("made by a newer version of Tessera (schema " + std::to_string(schema) + ", this one reads up to " +
                         std::to_string(kSessionSchema) + ")",
                     file, "/schema");
-    if (schema < 0) throw Error("no such schema", file, "/schema");
-    // Schema 0 was used before the first release: the stretch was one number along z.
-    if (schema == 0) {
-        if (const auto stretch = document.find("stretch"); stretch != document.end() && stretch->is_number())
-            *stretch = Json::array({1, 1, stretch->get<double>()});
-    }
-    if (schema < 2) {
-        migrateBrushes(document);
-        moveLight(document);
-        renameAverage(document);
-    }
+    if (schema < kOldestSchema)
+        throw Error("written by an early version of Tessera (schema " + std::to_string(schema) +
+                        "), which is no longer read",
+                    file, "/schema");
     if (schema < 3) migrateLattice(document);
     document["schema"] = kSessionSchema;
 }

@@ -35,7 +35,7 @@ std::string printSession(const SessionDocument& document, const std::string& pat
 /// Writes a session atomically (temporary file, then rename). Throws MachineError when it cannot.
 void saveSession(const SessionDocument& document, const std::string& path);
 
-/// Brings a document of an older schema up to date. Throws Error for a newer one.
+/// Brings a document of an older schema up to date. Throws Error for a newer one and for those before kOldestSchema.
 void migrate(Json& document, const std::string& file);
 
 /// A path from the root, without "." and "..".

@@ -84,13 +84,12 @@ Archive::Archive(const std::string& path) {
     const Header& header = impl.header.header;
     const auto block = checkedPart(bytes, header.metadata.offset, header.metadata.length, header.metadata.checksum,
                                    path, "the metadata");
-    impl.metadata = parseMetadata(block, header.version, header.features, path);
+    impl.metadata = parseMetadata(block, header.features, path);
     impl.channels = impl.metadata.info.channels();
     impl.components = componentCount(impl.metadata.info);
     const std::uint64_t bricks = checkedBrickCount(impl.metadata.grid, path);
-    impl.index =
-        readIndex(bytes, header, {impl.components, bricks, impl.metadata.grid, impl.metadata.info.times.size()}, path);
-    if (header.version >= kGrowingVersion) impl.metadata.info.times = impl.index.times;
+    impl.index = readIndex(bytes, header, {impl.components, bricks, impl.metadata.grid}, path);
+    impl.metadata.info.times = impl.index.times;
     // Metadata and index can differ in the number of times while an archive is written or has grown.
     const auto fit = [](std::vector<volume::Quantity>& quantities, std::size_t times) {
         for (volume::Quantity& quantity : quantities)
@@ -113,7 +112,7 @@ Archive::Archive(const std::string& path) {
         const bool isFloat = impl.metadata.info.parameters[number].type == volume::ScalarType::F32;
         if (isFloat == (frame.numbers.kind == NumberKind::Integer) || (frame.mask < 0 && frame.keepsAbsent))
             throw Error("a frame is coded in a way its type does not allow", path, "index");
-        if (!isFloat && frame.model >= 0 && frame.codeBits != codeBitsOf(impl.metadata.info.parameters[number].type))
+        if (!isFloat && frame.codeBits != codeBitsOf(impl.metadata.info.parameters[number].type))
             throw Error("a frame states another width than its type has", path, "index");
     }
 }

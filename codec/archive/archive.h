@@ -35,7 +35,7 @@ struct VerifyReport {
 /// It shows the contents of the file when it was opened, even while the file grows; open it again to see more.
 class Archive final : public volume::BrickSource {
 public:
-    /// Throws Error with file, place and reason when it is not an archive, of a newer version, truncated or damaged.
+    /// Throws Error with file, place and reason when it is not an archive, of another version, truncated or damaged.
     explicit Archive(const std::string& path);
     ~Archive() override;
 
@@ -57,7 +57,7 @@ public:
     std::uint32_t version() const;
     /// Bytes of the archive; the file can be longer, by an append that is in progress or incomplete.
     std::uint64_t fileBytes() const;
-    /// Number of commits; always 1 in versions 1 and 2.
+    /// Number of commits.
     int commits() const;
     /// True when the file has been appended to, or replaced, since it was opened.
     bool outdated() const;

@@ -1,5 +1,4 @@
 #include "codec/archive/archive_impl.h"
-#include "codec/brick/brick_codec_v1.h"
 #include "volume/base/parallel.h"
 #include "volume/bricks/parts_bricks.h"
 #include "volume/field/part_masks.h"
@@ -106,9 +105,7 @@ void Archive::Impl::decode(const FrameRecord& frame, const BrickFormat& format, 
     std::vector<std::span<const std::byte>> segments;
     for (int s = 0; s < format.levels - level; ++s)
         segments.push_back(segment(frame.segments[std::size_t(s) * bricks + brick]));
-    const DecodeStatus status = frame.model < 0
-                                    ? decodeBrickV1(format, segments, level, present, out)
-                                    : decodeBrick(format, segments, level, present, *decoder(frame.model), out);
+    const DecodeStatus status = decodeBrick(format, segments, level, present, *decoder(frame.model), out);
     if (status != DecodeStatus::Ok)
         damaged(path, frame.segments[(segments.size() - 1) * bricks + brick].offset, reason(status));
 }

@@ -36,7 +36,7 @@ struct Verifier {
         const std::size_t repeats = std::size_t(record.bricks[brick].notes.repeats);
         if (repeats > 0) return badBricks[(number - repeats * impl.components) * impl.bricks + brick] != 0;
         if (record.mask >= 0 && badMasks[std::size_t(record.mask) * impl.bricks + brick] != 0) return true;
-        return record.model >= 0 && badModels[std::size_t(record.model)] != 0;
+        return badModels[std::size_t(record.model)] != 0;
     }
 
     /// Decodes a brick at every level. Returns the bytes of its segments; throws Error.

@@ -167,9 +167,6 @@ ArchiveWriter::ArchiveWriter(const std::string& path, const Metadata& metadata, 
 }
 
 ArchiveWriter::ArchiveWriter(const Archive& archive, const Metadata& metadata, bool keepsFrames) {
-    if (archive.version() < kGrowingVersion)
-        throw Error("an archive of version " + std::to_string(archive.version()) + " does not grow; pack it again",
-                    archive.path());
     const bool laterTimes = metadata.info.times.size() > archive.info().times.size();
     ArchiveState state = stateOf(archive, keepsFrames && laterTimes);
     impl_ = std::make_unique<Impl>(archive.path(), state.header);
@@ -310,7 +307,7 @@ void ArchiveWriter::addFrame(int parameter, int component, int time, const Frame
 void ArchiveWriter::Impl::commit(const Metadata& now, std::size_t wholeTimes, bool always) {
     constexpr std::size_t kWorthwhile = 64, kPage = 256; // times the bytes a commit costs, those of a page included
     Bytes text = serialise(now, header.features);
-    const std::uint64_t last = std::max(header.fileSize, firstChunk(kFormatVersion));
+    const std::uint64_t last = std::max(header.fileSize, kFirstChunk);
     if (!always && file.position() - last < kWorthwhile * (text.size() + kPage)) return;
     if (page.frames.empty() && text == block) return;
     const std::vector<double>& all = now.info.times;

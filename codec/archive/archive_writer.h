@@ -49,8 +49,8 @@ public:
     /// cannot be made.
     ArchiveWriter(const std::string& path, const Metadata& metadata, bool keepsFrames = true);
     /// Appends to an archive: `metadata` is that of the archive with times after its last or parameters after its last.
-    /// Throws Error when the archive has an older version, has changed since it was opened, or another program is
-    /// writing it. Bytes of an incomplete append are cut off.
+    /// Throws Error when the archive has changed since it was opened, or another program is writing it. Bytes of an
+    /// incomplete append are cut off.
     ArchiveWriter(const Archive& archive, const Metadata& metadata, bool keepsFrames = true);
     ~ArchiveWriter();
     ArchiveWriter(const ArchiveWriter&) = delete;

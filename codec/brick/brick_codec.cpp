@@ -17,6 +17,28 @@ namespace {
 using volume::LatticeKind;
 using volume::ScalarType;
 
+/// The streams of absent and exact samples of full resolution, from the front of `in`.
+DecodeStatus decodeExtras(const BrickFormat& format, std::span<const std::uint8_t> present,
+                          std::span<const std::byte>& in, DecodedBrick& out) {
+    if (format.keepsAbsent) {
+        out.absent.resize(std::size_t(std::count(present.begin(), present.end(), std::uint8_t(0))));
+        if (const DecodeStatus status = decodeStream(in, out.absent); status != DecodeStatus::Ok) return status;
+    }
+    if (!format.canHaveExact()) return DecodeStatus::Ok;
+    if (in.size() < 4) return DecodeStatus::Truncated;
+    const std::size_t exact = readU32(in.data());
+    in = in.subspan(4);
+    if (exact > countOf(format.size)) return DecodeStatus::BadLength;
+    std::vector<std::uint32_t> index(exact), bits(exact);
+    if (const DecodeStatus status = decodeStream(in, index); status != DecodeStatus::Ok) return status;
+    if (const DecodeStatus status = decodeStream(in, bits); status != DecodeStatus::Ok) return status;
+    for (std::size_t k = 0; k < exact; ++k) {
+        if (index[k] >= countOf(format.size)) return DecodeStatus::BadLength;
+        out.exact.push_back({index[k], bits[k]});
+    }
+    return DecodeStatus::Ok;
+}
+
 /// Undoes toDifferences: codes from differences to the previous coarse sample.
 template <class Word> void fromDifferences(std::span<const Band<Word>> bands) {
     std::uint32_t code = 0;
@@ -193,27 +215,6 @@ std::vector<std::uint32_t> DecodedBrick::codes() const {
             all[first + i] = static_cast<std::uint32_t>(static_cast<std::int32_t>(row[i]));
     });
     return all;
-}
-
-DecodeStatus decodeExtras(const BrickFormat& format, std::span<const std::uint8_t> present,
-                          std::span<const std::byte>& in, DecodedBrick& out) {
-    if (format.keepsAbsent) {
-        out.absent.resize(std::size_t(std::count(present.begin(), present.end(), std::uint8_t(0))));
-        if (const DecodeStatus status = decodeStream(in, out.absent); status != DecodeStatus::Ok) return status;
-    }
-    if (!format.canHaveExact()) return DecodeStatus::Ok;
-    if (in.size() < 4) return DecodeStatus::Truncated;
-    const std::size_t exact = readU32(in.data());
-    in = in.subspan(4);
-    if (exact > countOf(format.size)) return DecodeStatus::BadLength;
-    std::vector<std::uint32_t> index(exact), bits(exact);
-    if (const DecodeStatus status = decodeStream(in, index); status != DecodeStatus::Ok) return status;
-    if (const DecodeStatus status = decodeStream(in, bits); status != DecodeStatus::Ok) return status;
-    for (std::size_t k = 0; k < exact; ++k) {
-        if (index[k] >= countOf(format.size)) return DecodeStatus::BadLength;
-        out.exact.push_back({index[k], bits[k]});
-    }
-    return DecodeStatus::Ok;
 }
 
 DecodeStatus decodeBrick(const BrickFormat& format, std::span<const std::span<const std::byte>> segments, int level,

@@ -133,8 +133,4 @@ struct DecodedBrick {
 DecodeStatus decodeBrick(const BrickFormat& format, std::span<const std::span<const std::byte>> segments, int level,
                          std::span<const std::uint8_t> present, const BandDecoder& bands, DecodedBrick& out);
 
-/// The streams of absent and exact samples of full resolution, from the front of `in`.
-DecodeStatus decodeExtras(const BrickFormat& format, std::span<const std::uint8_t> present,
-                          std::span<const std::byte>& in, DecodedBrick& out);
-
 } // namespace tessera::codec

@@ -29,25 +29,28 @@ Header parseHeader(std::span<const std::byte> bytes, std::size_t at, std::uint64
     header.index = in.get<Block>();
     if (in.get<std::uint64_t>() != checksum(bytes.first(kHeaderBytes - 8)))
         throw Error("the header is damaged (checksum)", file, place(0));
-    if (header.version < kOldestVersion || header.version > kFormatVersion)
-        throw Error("archive version " + std::to_string(header.version) + ", this program reads versions up to " +
-                        std::to_string(kFormatVersion),
+    const std::string version = "archive version " + std::to_string(header.version);
+    if (header.version > kFormatVersion)
+        throw Error("written by a newer version of Tessera (" + version + ", this one reads version " +
+                        std::to_string(kFormatVersion) + ")",
                     file, place(8));
-    if ((header.features & ~kKnownFeatures) != 0 || (header.features != 0 && header.version < kGrowingVersion))
+    if (header.version < kFormatVersion)
+        throw Error("written by an early version of Tessera (" + version +
+                        "), which is no longer read: pack the data again",
+                    file, place(8));
+    if ((header.features & ~kKnownFeatures) != 0)
         throw Error("the archive needs features this program does not know", file, place(12));
-    const bool grows = header.version >= kGrowingVersion;
-    if (grows ? header.fileSize > fileBytes : header.fileSize != fileBytes)
+    if (header.fileSize > fileBytes)
         throw Error("the file has " + std::to_string(fileBytes) + " bytes, its header says " +
                         std::to_string(header.fileSize),
                     file, place(16));
-    const std::uint64_t end = header.fileSize, first = firstChunk(header.version);
+    const std::uint64_t end = header.fileSize;
     const auto inside = [&](const Block& block) {
-        return block.offset >= first && block.offset <= end && block.length <= end - block.offset;
+        return block.offset >= kFirstChunk && block.offset <= end && block.length <= end - block.offset;
     };
     const bool whole = inside(header.metadata) && inside(header.index) &&
                        header.index.offset + header.index.length == end &&
-                       (grows ? header.metadata.offset + header.metadata.length <= header.index.offset
-                              : header.metadata.offset + header.metadata.length == header.index.offset);
+                       header.metadata.offset + header.metadata.length <= header.index.offset;
     if (!whole) throw Error("the parts of the archive do not fill the file", file, place(24));
     return header;
 }
@@ -78,10 +81,8 @@ HeaderState parseHeaders(std::span<const std::byte> bytes, std::uint64_t fileByt
     } catch (const Error& error) {
         problem = error;
     }
-    if (first && first->version < kGrowingVersion) return {*first, false};
     if (bytes.size() >= 2 * kHeaderBytes) try {
             second = parseHeader(bytes.subspan(kHeaderBytes), kHeaderBytes, fileBytes, file);
-            if (second->version < kGrowingVersion) second.reset();
         } catch (const Error&) { // the first has to do
         }
     if (!first && !second) throw *problem;

@@ -17,9 +17,10 @@
 /// one of them describes a complete archive.
 namespace tessera::codec {
 
-/// Version 1 had neither models nor bands, version 2 could not grow; both are read, never written.
-inline constexpr std::uint32_t kFormatVersion = 3, kOldestVersion = 1, kGrowingVersion = 3;
+inline constexpr std::uint32_t kFormatVersion = 3;
 inline constexpr std::size_t kHeaderBytes = 80;
+/// Where the chunks begin: behind the two headers.
+inline constexpr std::uint64_t kFirstChunk = 2 * kHeaderBytes;
 /// Feature: the index has importance, change and repeats of bricks; frames can be coded body-centred, and integers in
 /// steps.
 inline constexpr std::uint32_t kBrickNotes = 1;
@@ -30,11 +31,6 @@ inline constexpr std::uint32_t kBandContexts = 4;
 /// Feature: the index has mean and histogram of each brick.
 inline constexpr std::uint32_t kBrickTallies = 8,
                                kKnownFeatures = kBrickNotes | kCompact | kBandContexts | kBrickTallies;
-
-/// Where the chunks of a version begin.
-constexpr std::uint64_t firstChunk(std::uint32_t version) {
-    return version >= kGrowingVersion ? 2 * kHeaderBytes : kHeaderBytes;
-}
 
 /// xxh3, 64 bits, seed 0.
 std::uint64_t checksum(std::span<const std::byte> bytes);
@@ -49,7 +45,7 @@ struct Header {
     std::uint32_t version = kFormatVersion;
     std::uint32_t features = kKnownFeatures; ///< bits a reader must know
     std::uint64_t fileSize = 0;              ///< bytes behind belong to an append that was not finished
-    Block metadata, index;                   ///< index: the last page of it (versions 1, 2: all of it)
+    Block metadata, index;                   ///< index: the last page of it
     bool operator==(const Header&) const = default;
 };
 

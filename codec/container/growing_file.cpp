@@ -32,7 +32,7 @@ GrowingFile::GrowingFile(const std::string& path)
     if (!file_) fail();
     temporary_ = temporary;
     lock();
-    append(Bytes(firstChunk(kFormatVersion)));
+    append(Bytes(kFirstChunk));
 }
 
 GrowingFile::GrowingFile(const std::string& path, const Header& header)
@@ -41,7 +41,7 @@ GrowingFile::GrowingFile(const std::string& path, const Header& header)
     if (!file_) fail();
     try {
         lock();
-        Bytes head(firstChunk(kFormatVersion));
+        Bytes head(kFirstChunk);
         const bool read = std::fread(head.data(), 1, head.size(), file_) == head.size();
         const std::uint64_t size = std::filesystem::file_size(path);
         if (!read || parseHeaders(head, size, path).header != header)

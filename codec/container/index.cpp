@@ -11,9 +11,8 @@ namespace tessera::codec {
 
 namespace {
 
-constexpr std::uint64_t kMaskRecordBytes = 16, kMaskBrickBytes = 16, kModelBytes = 24, kFrameRecordBytes = 56,
-                        kFrameModelBytes = 4, kFrameKeyBytes = 8, kFrameBrickBytes = 8, kNotesBytes = 12,
-                        kSegmentBytes = 12;
+constexpr std::uint64_t kPageHeadBytes = 64, kMaskRecordBytes = 16, kMaskBrickBytes = 16, kModelBytes = 24,
+                        kFrameRecordBytes = 68, kFrameBrickBytes = 8, kNotesBytes = 12, kSegmentBytes = 12;
 constexpr double kMost16 = 65535;
 
 std::uint16_t to16(double part) {
@@ -36,37 +35,35 @@ void require(bool condition, const char* what, const std::string& file) {
     if (!condition) throw Error(what, file, "index");
 }
 
-/// Reads the records of a page, or of the index of an older version.
+/// Reads the records of a page.
 class RecordReader {
 public:
     RecordReader(std::span<const std::byte> bytes, const Header& header, const IndexShape& shape,
                  const std::string& file)
-        : in_(bytes), version_(header.version), notes_((header.features & kBrickNotes) != 0),
-          tallies_((header.features & kBrickTallies) != 0), begin_(firstChunk(header.version)),
+        : in_(bytes), notes_((header.features & kBrickNotes) != 0), tallies_((header.features & kBrickTallies) != 0),
           end_(header.index.offset), shape_(shape), file_(file) {}
 
     IndexPage page() {
         IndexPage page;
-        const bool grows = version_ >= kGrowingVersion, hasModels = version_ > 1;
-        const std::uint64_t room = in_.left(), headBytes = grows ? 64 : hasModels ? 12 : 8;
-        require(room >= headBytes, "the index is truncated", file_);
-        if (grows) page.previousPage = in_.get<Block>(), page.previousMetadata = in_.get<Block>();
-        const std::uint64_t times = grows ? in_.get<std::uint32_t>() : 0;
-        const std::uint64_t masks = in_.get<std::uint32_t>(), frames = in_.get<std::uint32_t>();
-        const std::uint64_t models = hasModels ? in_.get<std::uint32_t>() : 0, bricks = shape_.bricks;
+        const std::uint64_t room = in_.left();
+        require(room >= kPageHeadBytes, "the index is truncated", file_);
+        page.previousPage = in_.get<Block>();
+        page.previousMetadata = in_.get<Block>();
+        const std::uint64_t times = in_.get<std::uint32_t>(), masks = in_.get<std::uint32_t>(),
+                            frames = in_.get<std::uint32_t>(), models = in_.get<std::uint32_t>();
+        const std::uint64_t bricks = shape_.bricks;
         // No number here exceeds the capacity of the page's bytes, so nothing below overflows, and allocations are a
         // constant factor of those bytes. Decoded pages can be larger than the file; mostPageBytes limits them.
         require(bricks <= room, "the index is too short", file_);
         const std::uint64_t maskBytes = kMaskRecordBytes + bricks * kMaskBrickBytes;
-        const std::uint64_t frameBytes = kFrameRecordBytes + (hasModels ? kFrameModelBytes : 0) +
-                                         (grows ? kFrameKeyBytes : 0) +
-                                         bricks * (kFrameBrickBytes + (notes_ ? kNotesBytes : 0) +
-                                                   static_cast<std::uint64_t>(shape_.grid.levels) * kSegmentBytes);
+        const std::uint64_t frameBytes =
+            kFrameRecordBytes + bricks * (kFrameBrickBytes + (notes_ ? kNotesBytes : 0) +
+                                          static_cast<std::uint64_t>(shape_.grid.levels) * kSegmentBytes);
         require(times <= room / 8 && masks <= room / maskBytes && frames <= room / frameBytes &&
                     models <= room / kModelBytes,
                 "the index has the wrong length", file_);
         const std::uint64_t records =
-            headBytes + 8 * times + models * kModelBytes + masks * maskBytes + frames * frameBytes;
+            kPageHeadBytes + 8 * times + models * kModelBytes + masks * maskBytes + frames * frameBytes;
         require(tallies_ ? records <= room : records == room, "the index has the wrong length", file_);
         for (std::uint64_t t = 0; t < times; ++t) page.times.push_back(in_.get<double>());
         for (std::uint64_t m = 0; m < models; ++m) {
@@ -81,7 +78,8 @@ public:
 
 private:
     void requireInside(std::uint64_t offset, std::uint64_t length) const {
-        require(offset >= begin_ && offset <= end_ && length <= end_ - offset, "a chunk lies outside the file", file_);
+        require(offset >= kFirstChunk && offset <= end_ && length <= end_ - offset, "a chunk lies outside the file",
+                file_);
     }
     void place(Segment& segment, std::uint64_t& at, std::uint64_t end) const {
         require(segment.length <= end - at, "a brick does not fit its chunk", file_);
@@ -120,26 +118,25 @@ private:
     }
 
     FrameRecord frame() {
-        const bool grows = version_ >= kGrowingVersion, hasModels = version_ > 1;
         FrameRecord frame;
-        if (grows) frame.time = in_.get<std::uint32_t>(), frame.component = in_.get<std::uint32_t>();
+        frame.time = in_.get<std::uint32_t>();
+        frame.component = in_.get<std::uint32_t>();
         frame.offset = in_.get<std::uint64_t>();
         frame.length = in_.get<std::uint64_t>();
         requireInside(frame.offset, frame.length);
         const auto kind = in_.get<std::uint8_t>(), wavelet = in_.get<std::uint8_t>(), keeps = in_.get<std::uint8_t>();
         const auto codeBits = in_.get<std::uint8_t>();
-        constexpr std::size_t kWaveletsOfVersion1 = 8;
         require(kind <= static_cast<std::uint8_t>(NumberKind::Quantised), "an unknown coding of numbers", file_);
-        require(wavelet < (hasModels ? std::size(kWaveletNames) : kWaveletsOfVersion1), "an unknown wavelet", file_);
+        require(wavelet < std::size(kWaveletNames), "an unknown wavelet", file_);
         require(keeps <= (notes_ ? 3 : 1), "an unknown flag of a frame", file_);
-        require(hasModels ? codeBits >= 1 && codeBits <= 32 : codeBits == 0, "an impossible width of codes", file_);
+        require(codeBits >= 1 && codeBits <= 32, "an impossible width of codes", file_);
         frame.numbers.kind = static_cast<NumberKind>(kind);
         frame.wavelet = static_cast<Wavelet>(wavelet);
         frame.keepsAbsent = (keeps & 1) != 0;
         frame.bodyCentred = (keeps & 2) != 0;
-        frame.codeBits = hasModels ? codeBits : 32;
+        frame.codeBits = codeBits;
         frame.mask = in_.get<std::int32_t>();
-        if (hasModels) frame.model = in_.get<std::int32_t>();
+        frame.model = in_.get<std::int32_t>();
         frame.numbers.origin = in_.get<double>();
         frame.numbers.step = in_.get<double>();
         frame.valueOffset = in_.get<double>();
@@ -162,9 +159,8 @@ private:
     }
 
     ByteReader in_;
-    std::uint32_t version_;
     bool notes_, tallies_;
-    std::uint64_t begin_, end_; ///< where chunks may lie
+    std::uint64_t end_; ///< of the part of the file where chunks may lie
     const IndexShape& shape_;
     const std::string& file_;
 };
@@ -190,8 +186,7 @@ std::vector<IndexPage> readPages(std::span<const std::byte> bytes, const Header&
         places.push_back(at);
         const Block before = pages.back().previousPage;
         if (before == Block{}) break;
-        require(header.version >= kGrowingVersion && before.offset >= firstChunk(header.version) &&
-                    before.offset < at.offset && before.length <= at.offset - before.offset,
+        require(before.offset >= kFirstChunk && before.offset < at.offset && before.length <= at.offset - before.offset,
                 "a page of the index lies outside the file", file);
         at = before;
     }
@@ -252,7 +247,7 @@ void requireFilled(const Index& index, const Header& header, const std::string& 
     for (const FrameRecord& frame : index.frames) add(frame);
     add(header.metadata);
     std::sort(parts.begin(), parts.end());
-    std::uint64_t at = firstChunk(header.version);
+    std::uint64_t at = kFirstChunk;
     for (const auto& [begin, end] : parts) {
         require(begin == at, "the chunks do not fill the file", file);
         at = end;
@@ -332,7 +327,6 @@ Bytes serialise(const IndexPage& page, std::uint32_t features) {
 Index readIndex(std::span<const std::byte> bytes, const Header& header, const IndexShape& shape,
                 const std::string& file) {
     Index index;
-    const bool grows = header.version >= kGrowingVersion;
     std::vector<FrameRecord> frames;
     for (IndexPage& page : readPages(bytes, header, shape, file, index.pages, index.pageBytes)) {
         index.times.insert(index.times.end(), page.times.begin(), page.times.end());
@@ -341,22 +335,15 @@ Index readIndex(std::span<const std::byte> bytes, const Header& header, const In
         if (page.previousMetadata != Block{}) index.retired.push_back(page.previousMetadata);
         for (FrameRecord& frame : page.frames) {
             require(frame.mask >= -1 && frame.mask < std::ssize(index.masks), "a mask is missing", file);
-            require(header.version == 1 || (frame.model >= 0 && frame.model < std::ssize(index.models)),
-                    "a model is missing", file);
+            require(frame.model >= 0 && frame.model < std::ssize(index.models), "a model is missing", file);
         }
         if ((header.features & kBrickTallies) != 0) takeTallies(index, shape, page, file);
-        for (FrameRecord& frame : page.frames) {
-            if (!grows) {
-                frame.time = static_cast<std::uint32_t>(frames.size() / shape.components);
-                frame.component = static_cast<std::uint32_t>(frames.size() % shape.components);
-            }
-            frames.push_back(std::move(frame));
-        }
+        std::move(page.frames.begin(), page.frames.end(), std::back_inserter(frames));
     }
     for (std::size_t t = 0; t < index.times.size(); ++t)
         require(std::isfinite(index.times[t]) && (t == 0 || index.times[t] > index.times[t - 1]),
                 "times do not increase", file);
-    const std::uint64_t times = grows ? index.times.size() : shape.times;
+    const std::uint64_t times = index.times.size();
     require(times > 0, "no times", file);
     require(frames.size() / shape.components == times && frames.size() % shape.components == 0,
             "the index and the metadata disagree on the number of frames", file);

@@ -54,7 +54,7 @@ struct FrameRecord {
     bool keepsAbsent = false;
     bool bodyCentred = false; ///< only with kBrickNotes
     std::int32_t mask = -1;   ///< index of a MaskRecord, -1: all present
-    std::int32_t model = -1;  ///< index of a model, the tables of the coefficient coder; -1 in version 1
+    std::int32_t model = -1;  ///< index of a model, the tables of the coefficient coder; -1: none yet
     int codeBits = 32;        ///< every |code| is below 2^codeBits
     double valueOffset = 0, valueScale = 1;
     std::vector<FrameBrick> bricks;
@@ -72,7 +72,7 @@ struct IndexPage {
 };
 
 struct Index {
-    std::vector<double> times; ///< not in versions 1 and 2, whose metadata has them
+    std::vector<double> times;
     std::vector<Block> models;
     std::vector<MaskRecord> masks;
     std::vector<FrameRecord> frames; ///< [time * components + component]
@@ -85,7 +85,6 @@ struct Index {
 struct IndexShape {
     std::uint64_t components = 0, bricks = 0;
     volume::BrickGrid grid;
-    std::uint64_t times = 0; ///< versions 1 and 2 only
 };
 
 /// Largest decoded size of all pages of a compact archive, so that a small file cannot request much memory.

@@ -226,7 +226,7 @@ std::string toJson(const Metadata& metadata) {
     return document.dump(-1, ' ', false, json::error_handler_t::replace);
 }
 
-Metadata metadataFromJson(std::string_view text, bool hasTimes, const std::string& file) {
+Metadata metadataFromJson(std::string_view text, const std::string& file) {
     const json document = json::parse(text, nullptr, false);
     if (document.is_discarded()) throw Error("not JSON", file, "metadata");
     const Node root(document, "", file);
@@ -245,7 +245,6 @@ Metadata metadataFromJson(std::string_view text, bool hasTimes, const std::strin
     for (const Node& parameter : data["parameters"].items(4096)) info.parameters.push_back(readParameter(parameter));
     if (info.parameters.empty()) data["parameters"].fail("no parameters");
     info.times.clear();
-    if (hasTimes) info.times = readTimes(data["times"]);
     if (root.has("resampled")) metadata.resampled = readResampled(root["resampled"], info.parameters.size());
     if (metadata.alternating) metadata.sourceTimes = readTimes(root["sourceTimes"]);
     info.timeUnit = data["timeUnit"].text();
@@ -283,28 +282,26 @@ Bytes serialise(const Metadata& metadata, std::uint32_t features) {
     return out;
 }
 
-Metadata parseMetadata(std::span<const std::byte> block, std::uint32_t version, std::uint32_t features,
-                       const std::string& file) {
+Metadata parseMetadata(std::span<const std::byte> block, std::uint32_t features, const std::string& file) {
     const auto textOf = [](std::span<const std::byte> bytes) {
         return std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size());
     };
-    if (version < kGrowingVersion) return metadataFromJson(textOf(block), true, file);
     if ((features & kCompact) != 0) {
         Bytes text;
         if (decodePiece(block, text) != DecodeStatus::Ok)
             throw Error("the metadata cannot be decoded", file, "metadata");
-        return metadataFromJson(textOf(text), false, file);
+        return metadataFromJson(textOf(text), file);
     }
     constexpr std::size_t kMost = std::size_t(1) << 26, kLeastRatio = 4096; // no text shrinks more than that
     if (block.size() < 4) throw Error("the metadata is truncated", file, "metadata");
     const std::size_t length = readU32(block.data());
     const auto body = block.subspan(4);
-    if (length == body.size()) return metadataFromJson(textOf(body), false, file);
+    if (length == body.size()) return metadataFromJson(textOf(body), file);
     if (length > kMost || length / kLeastRatio > body.size())
         throw Error("the metadata has an impossible length", file, "metadata");
     Bytes text(length);
     if (decompress(body, text) != DecodeStatus::Ok) throw Error("the metadata cannot be decoded", file, "metadata");
-    return metadataFromJson(textOf(text), false, file);
+    return metadataFromJson(textOf(text), file);
 }
 
 } // namespace tessera::codec

@@ -33,9 +33,8 @@ struct Metadata {
 
 /// The metadata block of the file: JSON without the times, compressed as far as the features of the header allow.
 Bytes serialise(const Metadata& metadata, std::uint32_t features);
-/// Parses it; in versions 1 and 2 plain JSON including times. Throws Error naming `file` and the JSON path when a key
-/// is missing or has the wrong type or an invalid value.
-Metadata parseMetadata(std::span<const std::byte> block, std::uint32_t version, std::uint32_t features,
-                       const std::string& file);
+/// Parses it. Throws Error naming `file` and the JSON path when a key is missing or has the wrong type or an invalid
+/// value.
+Metadata parseMetadata(std::span<const std::byte> block, std::uint32_t features, const std::string& file);
 
 } // namespace tessera::codec

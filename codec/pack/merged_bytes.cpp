@@ -69,7 +69,6 @@ std::vector<MergedBytes> bytesOfMerged(const Archive& archive, std::span<const v
     for (std::size_t f = 0; !boxes.empty() && f < impl.index.frames.size(); ++f) {
         progress.advance(double(f) / double(impl.index.frames.size()), "merging");
         const FrameRecord& frame = impl.index.frames[f];
-        if (frame.model < 0) throw Error("of version 1, which has no tables to merge bricks with", archive.path());
         std::size_t component = f % impl.components, parameter = 0;
         while (component >= std::size_t(impl.metadata.info.parameters[parameter].components))
             component -= std::size_t(impl.metadata.info.parameters[parameter++].components);

@@ -18,7 +18,7 @@ struct MergedBytes {
 
 /// Bytes that merged bricks would take: each box is coded with the filter and tables of its frame, or with new tables
 /// if they pay; these count towards the first box. If all bricks of a box repeat an earlier time, it takes no bytes
-/// either way. Throws Error for archives of version 1 and damaged ones, Cancelled.
+/// either way. Throws Error for damaged archives, Cancelled.
 std::vector<MergedBytes> bytesOfMerged(const Archive& archive, std::span<const volume::MergedBrick> boxes,
                                        const Progress& progress = {});
 

@@ -292,7 +292,7 @@ TEST_F(OpenTest, ShippedLayoutsAreValid) {
 TEST_F(OpenTest, BadFilesAreErrors) {
     OpenRequest request;
     for (const auto& [name, text] : {std::pair{"a.tessera.json", "{"},
-                                     {"b.tessera.json", "{\"schema\": 1, \"time\": []}"},
+                                     {"b.tessera.json", "{\"schema\": 3, \"time\": []}"},
                                      {"c.png", "not a picture"},
                                      {"d.tsr", "not an archive"},
                                      {"e.json", "{}"}}) {

@@ -149,28 +149,16 @@ TEST_F(SessionFileTest, RefusesNewerAndForeignDocuments) {
     EXPECT_TRUE(looksLikeSession(printSession(edited(), "x")));
 }
 
-TEST_F(SessionFileTest, MigratesSchemaZero) {
-    const SessionDocument document = parseSession("{\"schema\": 0, \"stretch\": 4}", "x");
-    EXPECT_EQ(document.session.stretch, glm::dvec3(1, 1, 4));
-    EXPECT_EQ(document.session.schema, kSessionSchema);
-}
-
-TEST_F(SessionFileTest, TheOneLightOfSchemaOneBecomesTheFirst) {
-    const SessionDocument document = parseSession(
-        R"({"schema": 1, "render": {"azimuth": 12, "ambient": 0.5, "step": 0.25}, "history": {"position": 1, "steps": [
-            {"name": "x", "forward": [{"op": "replace", "path": "/render/azimuth", "value": 12}],
-             "inverse": [{"op": "replace", "path": "/render/azimuth", "value": 50}]}]}})",
-        "x");
-    EXPECT_TRUE(document.messages.empty()) << document.messages.front();
-    EXPECT_EQ(document.session.render.stepVoxels, 0.25f);
-    ASSERT_EQ(document.session.lighting.lights.size(), 1u);
-    EXPECT_EQ(document.session.lighting.lights[0].azimuth, 12);
-    EXPECT_EQ(document.session.lighting.lights[0].elevation, 40);
-    EXPECT_EQ(document.session.lighting.ambient, 0.5f);
-    History history = document.history;
-    EXPECT_EQ(history.undo().lighting.lights[0].azimuth, 50);
-    EXPECT_NO_THROW(parseSession(R"({"schema": 1, "render": {"azimuth": 1}, "lighting": {"lights": [5]}})", "x"));
-    EXPECT_THROW(parseSession(R"({"schema": 1, "render": 3})", "x"), Error);
+TEST_F(SessionFileTest, EarlySchemasAreRefusedByName) {
+    for (const int schema : {0, 1}) try {
+            parseSession("{\"schema\": " + std::to_string(schema) + ", \"stretch\": [1, 1, 4]}", "x");
+            FAIL() << "schema " << schema << " was read";
+        } catch (const Error& error) {
+            EXPECT_NE(error.reason().find("early version of Tessera (schema " + std::to_string(schema) + ")"),
+                      std::string::npos)
+                << error.reason();
+        }
+    EXPECT_EQ(parseSession("{\"schema\": 2}", "x").session.schema, kSessionSchema);
 }
 
 TEST_F(SessionFileTest, LayersOfALensThatIsMissingAreHidden) {
@@ -385,26 +373,6 @@ TEST(HistoryTest, AStepMayHaveAName) {
     EXPECT_EQ(history.steps()[2].name, "several changes");
 }
 
-TEST(Session, TheFormerXrayIsAnAverage) {
-    const auto migrated = [](int schema) {
-        Json document = Json::parse(
-            R"({"layers": [{"name": "a", "technique": {"type": "volume", "channel": "T", "style": "xray"}}],
-                "history": {"position": 1, "steps": [{"label": "s",
-                    "forward": [{"op": "replace", "path": "/layers/0/technique/style", "value": "xray"}],
-                    "inverse": [{"op": "replace", "path": "/layers/0/technique/style", "value": "composite"}]}]}})");
-        document["schema"] = schema;
-        migrate(document, "x");
-        return document;
-    };
-    const auto at = [](const Json& document, const char* path) { return document.at(Json::json_pointer(path)); };
-    const Json old = migrated(1), now = migrated(2);
-    EXPECT_EQ(at(old, "/layers/0/technique/style"), "average");
-    EXPECT_EQ(at(old, "/history/steps/0/forward/0/value"), "average");
-    EXPECT_EQ(at(old, "/history/steps/0/inverse/0/value"), "composite");
-    EXPECT_EQ(at(now, "/layers/0/technique/style"), "xray");
-    EXPECT_EQ(at(now, "/history/steps/0/forward/0/value"), "xray");
-}
-
 TEST(SessionTest, TheLatticeWasOnceABool) {
     const SessionDocument old = parseSession(
         R"({"schema": 2, "data": {"model": "fuel-cell", "bcc": false},
@@ -424,21 +392,6 @@ TEST(SessionTest, TheLatticeWasOnceABool) {
     EXPECT_EQ(step["history"][0]["value"], "bodyCentred");
     EXPECT_EQ(parseSession(R"({"schema": 2, "data": {"bcc": true}})", "x").session.data.lattice,
               PictureLattice::BodyCentred);
-}
-
-TEST(SessionTest, BrushesOfTheFirstSchemaBecomeRegions) {
-    const SessionDocument old = parseSession(R"({"schema": 1, "selection": {"combine": "any", "contextOpacity": 0.5,
-        "brushes": [{"name": "hot", "inverted": true, "intervals": [{"channel": "T", "lo": 3, "hi": 4, "soft": 0.5}]},
-                    {"enabled": false, "intervals": []}]}})",
-                                             "old");
-    EXPECT_TRUE(old.messages.empty());
-    const vis::Selection& selection = old.session.selection;
-    ASSERT_EQ(selection.brushes.size(), 2u);
-    EXPECT_TRUE(selection.brushes[0].inverted);
-    EXPECT_EQ(selection.brushes[0].combine, vis::BrushCombine::Or);
-    const std::vector<vis::BrushInterval> wanted{{"T", 3, 4, 0.5}};
-    EXPECT_EQ(std::get<vis::RangeRegion>(selection.brushes[0].region).intervals, wanted);
-    EXPECT_EQ(selection.contextOpacity, 0.5f);
 }
 
 TEST(SessionTest, FitReplacesWhatIsNotThere) {

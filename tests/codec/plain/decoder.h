@@ -86,7 +86,6 @@ private:
     Size size_{}, bricks_{};
     int brickSize_ = 0, levels_ = 0;
     std::vector<std::string> types_; ///< of the component of each frame within a time
-    std::uint32_t version_ = 0;
     bool hasNotes_ = false, compact_ = false, knowsBands_ = false, hasStatistics_ = false;
     std::size_t end_ = 0; ///< of the archive in the file
     std::vector<Piece> models_;
