@@ -1,93 +1,31 @@
-#include "app/command/bench.h"
-
 #include "app/command/command.h"
 
-#include <algorithm>
-#include <cstdio>
-#include <nlohmann/json.hpp>
+#include "volume/base/error.h"
+#include "volume/system/own_path.h"
+
+#include <cerrno>
+#include <cstring>
+#include <string>
+#include <unistd.h>
+#include <vector>
 
 namespace tessera::app {
 
-namespace {
-
-struct NamedBench {
-    const char* name;
-    BenchTable (*measure)() = nullptr;
-    BenchTable (*measureVolumes)(const std::string& volume) = nullptr;
-};
-constexpr NamedBench kBenches[] = {{"lattice", benchLattice},        {"lattice", benchResample},
-                                   {"lattice", benchBccTransforms},  {"lattice", benchLatticeBytes},
-                                   {"lattice", benchSignalBytes},    {"codec", benchCodec},
-                                   {"codec", benchLevels},           {"codec", benchPeers},
-                                   {"thesis", benchThesisSizes},     {"thesis", benchBricks},
-                                   {"thesis", benchThesisCoding},    {"thesis", benchThesisFrames},
-                                   {"render", nullptr, benchRender}, {"render", nullptr, benchModes},
-                                   {"styles", benchStyles},          {"link", benchLink},
-                                   {"link", benchScatter},           {"large", benchLarge}};
-
-/// Columns of texts to the left, of numbers to the right.
-void print(const BenchTable& table) {
-    std::vector<std::size_t> widths;
-    std::vector<bool> numeric;
-    for (std::size_t c = 0; c < table.columns.size(); ++c) {
-        widths.push_back(table.columns[c].size());
-        numeric.push_back(true);
-        for (const std::vector<std::string>& row : table.rows) {
-            widths[c] = std::max(widths[c], row[c].size());
-            numeric[c] =
-                numeric[c] && (row[c].empty() || std::string("-+.0123456789").find(row[c][0]) != std::string::npos);
-        }
-    }
-    const auto line = [&](const std::vector<std::string>& cells) {
-        std::string text;
-        for (std::size_t c = 0; c < cells.size(); ++c) {
-            const std::string pad(widths[c] - cells[c].size(), ' ');
-            text += (c > 0 ? "  " : "") + (numeric[c] ? pad + cells[c] : cells[c] + pad);
-        }
-        text.erase(text.find_last_not_of(' ') + 1);
-        std::printf("%s\n", text.c_str());
-    };
-    std::printf("%s\n", table.name.c_str());
-    line(table.columns);
-    for (const std::vector<std::string>& row : table.rows) line(row);
-    std::printf("\n");
-    std::fflush(stdout);
-}
-
-} // namespace
-
-std::string decimals(double value, int digits) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.*f", digits, value);
-    return text;
-}
-
 void addBenchCommand(CLI::App& app) {
-    struct Options {
-        std::vector<std::string> names;
-        std::string volume;
-        bool json = false;
-    };
-    const auto options = std::make_shared<Options>();
     CLI::App* command = app.add_subcommand("bench", "Measure on this machine the tables of the documentation");
-    std::vector<std::string> known;
-    for (const NamedBench& bench : kBenches)
-        if (known.empty() || known.back() != bench.name) known.emplace_back(bench.name);
-    command->add_option("name", options->names, "Which tables (all of them)")->check(CLI::IsMember(known));
-    command->add_option("--volume", options->volume, "Of render: only volumes whose name contains this");
-    command->add_flag("--json", options->json, "Print JSON with stable keys");
-    command->callback([options] {
-        nlohmann::json tables = nlohmann::json::array();
-        for (const NamedBench& bench : kBenches) {
-            if (!options->names.empty() && std::ranges::find(options->names, bench.name) == options->names.end())
-                continue;
-            const BenchTable table = bench.measure ? bench.measure() : bench.measureVolumes(options->volume);
-            if (options->json)
-                tables.push_back({{"name", table.name}, {"columns", table.columns}, {"rows", table.rows}});
-            else
-                print(table);
-        }
-        if (options->json) std::printf("%s\n", nlohmann::json{{"tables", tables}}.dump(2).c_str());
+    command->set_help_flag(); // tessera-bench knows its options
+    command->prefix_command();
+    command->callback([command] {
+        std::string program = programBeside("tessera-bench");
+        if (program.empty())
+            throw Error("the measurements are a program of their own, tessera-bench, which does not lie beside this "
+                        "one: cmake --build --preset release --target tessera-bench");
+        std::vector<std::string> words = command->remaining();
+        std::vector<char*> arguments{program.data()};
+        for (std::string& word : words) arguments.push_back(word.data());
+        arguments.push_back(nullptr);
+        execv(program.c_str(), arguments.data());
+        throw MachineError(std::strerror(errno), program);
     });
 }
 

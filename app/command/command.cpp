@@ -56,6 +56,33 @@ Progress terminalProgress(const std::string& title) {
     return progress;
 }
 
+int parseAndRun(CLI::App& app, int argc, const char* const* argv, const std::function<void()>& before) {
+    const std::string named = app.get_name();
+    const char* const name = named.c_str();
+    try {
+        if (before) before();
+        app.parse(argc, argv);
+        return 0;
+    } catch (const CLI::ParseError& error) {
+        return app.exit(error) == 0 ? 0 : 1;
+    } catch (const Cancelled&) {
+        std::fprintf(stderr, "%s: cancelled\n", name);
+        return 130;
+    } catch (const MachineError& error) {
+        std::fprintf(stderr, "%s: %s\n", name, error.what());
+        return 3;
+    } catch (const Error& error) {
+        std::fprintf(stderr, "%s: %s\n", name, error.what());
+        return 2;
+    } catch (const std::system_error& error) { // a folder that may not be looked into, no more threads
+        std::fprintf(stderr, "%s: %s\n", name, error.what());
+        return 3;
+    } catch (const std::bad_alloc&) {
+        std::fprintf(stderr, "%s: not enough memory\n", name);
+        return 3;
+    }
+}
+
 int runCommandLine(int argc, const char* const* argv) {
     CLI::App app{"Tessera: a workbench for simulations with many values per point", "tessera"};
     app.set_version_flag("--version", std::string("tessera ") + TESSERA_VERSION);
@@ -75,30 +102,11 @@ int runCommandLine(int argc, const char* const* argv) {
     addStatsCommand(app);
     addUnpackCommand(app);
     addVerifyCommand(app);
-    try {
+    return parseAndRun(app, argc, argv, [&] {
         // A mistyped command would be taken for a file, and what is said of its options instead of it.
         const auto isFirst = [&](const CLI::App* command) { return command->check_name(argv[1]); };
         if (argc > 1 && argv[1][0] != '-' && app.get_subcommands(isFirst).empty()) requireFile(argv[1]);
-        app.parse(argc, argv);
-        return 0;
-    } catch (const CLI::ParseError& error) {
-        return app.exit(error) == 0 ? 0 : 1;
-    } catch (const Cancelled&) {
-        std::fprintf(stderr, "tessera: cancelled\n");
-        return 130;
-    } catch (const MachineError& error) {
-        std::fprintf(stderr, "tessera: %s\n", error.what());
-        return 3;
-    } catch (const Error& error) {
-        std::fprintf(stderr, "tessera: %s\n", error.what());
-        return 2;
-    } catch (const std::system_error& error) { // a folder that may not be looked into, no more threads
-        std::fprintf(stderr, "tessera: %s\n", error.what());
-        return 3;
-    } catch (const std::bad_alloc&) {
-        std::fprintf(stderr, "tessera: not enough memory\n");
-        return 3;
-    }
+    });
 }
 
 } // namespace tessera::app

@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <chrono>
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -30,7 +31,10 @@ void addWorkbench(CLI::App& app);
 /// Throws Error for a word of the command line that is no file; for one without dot and slash it speaks of commands.
 void requireFile(const std::string& word);
 
-/// Parses the arguments and runs what they ask for; returns the exit status.
+/// Calls `before`, parses the arguments of a program and runs its callbacks; returns the exit status. What goes wrong
+/// is said on stderr.
+int parseAndRun(CLI::App& app, int argc, const char* const* argv, const std::function<void()>& before = {});
+/// Parses the arguments of tessera and runs what they ask for; returns the exit status.
 int runCommandLine(int argc, const char* const* argv);
 
 /// How long a job will still take, if it goes on as it went so far.

@@ -8,6 +8,7 @@
 #include "volume/field/quantities.h"
 #include "volume/import/import.h"
 #include "volume/synthetic/models.h"
+#include "volume/system/own_path.h"
 
 #include <algorithm>
 #include <cctype>
@@ -43,11 +44,9 @@ Kind kindOf(const std::string& path) {
 
 std::vector<fs::path> layoutFolders() {
     std::vector<fs::path> folders;
-    std::error_code problem;
-    const fs::path program = fs::read_symlink("/proc/self/exe", problem);
-    if (!problem) {
-        folders.push_back(program.parent_path() / "../share/tessera/layouts");
-        folders.push_back(program.parent_path() / "layouts");
+    if (const fs::path program = programFolder(); !program.empty()) {
+        folders.push_back(program / "../share/tessera/layouts");
+        folders.push_back(program / "layouts");
     }
     return folders;
 }

@@ -3,6 +3,7 @@
 #include "volume/base/error.h"
 #include "volume/import/files/series.h"
 #include "volume/import/files/stream.h"
+#include "volume/system/own_path.h"
 #include "volume/system/process.h"
 
 #include <algorithm>
@@ -139,10 +140,7 @@ std::vector<Kept> withoutPresence(std::vector<Array>& arrays) {
 
 std::string findImporter() {
     if (const char* named = std::getenv("TESSERA_IMPORT"); named != nullptr && *named != '\0') return named;
-    std::error_code failed;
-    const fs::path self = fs::read_symlink("/proc/self/exe", failed);
-    const fs::path beside = self.parent_path() / "tessera-import";
-    return !failed && fs::exists(beside, failed) ? beside.string() : std::string();
+    return programBeside("tessera-import");
 }
 
 std::vector<std::vector<Piece>> openForeign(const std::vector<SeriesFile>& entries, const Progress& progress) {

@@ -1,5 +1,5 @@
+#include "app/bench/bench.h"
 #include "app/bench/data/bench_archives.h"
-#include "app/command/bench.h"
 
 #include "codec/archive/archive.h"
 #include "codec/bytes/entropy.h"

@@ -1,4 +1,4 @@
-#include "app/command/bench.h"
+#include "app/bench/bench.h"
 
 #include "volume/analysis/lattice_error.h"
 #include "volume/synthetic/marschner_lobb.h"

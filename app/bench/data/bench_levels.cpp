@@ -1,4 +1,4 @@
-#include "app/command/bench.h"
+#include "app/bench/bench.h"
 
 #include "codec/archive/archive.h"
 #include "codec/pack/pack.h"

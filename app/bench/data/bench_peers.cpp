@@ -1,9 +1,8 @@
-#include "app/command/bench.h"
+#include "app/bench/bench.h"
+#include "volume/system/own_path.h"
 
 #include <cstdio>
 #include <cstdlib>
-#include <filesystem>
-#include <unistd.h>
 
 namespace tessera::app {
 
@@ -25,16 +24,14 @@ BenchTable benchPeers() {
     BenchTable table;
     table.name = "codec: lossless and within bounds beside other coders, one thread";
     table.columns = {"data", "coder", "ratio", "encode MB/CPU s", "decode MB/CPU s", "over zstd -3", "error of range"};
-    std::error_code failed;
-    const std::filesystem::path program =
-        std::filesystem::read_symlink("/proc/self/exe", failed).parent_path() / "tessera-codec-peers";
+    const std::string program = programBeside("tessera-codec-peers");
     const char* data = std::getenv("TESSERA_DATA");
-    if (data == nullptr || access(program.c_str(), X_OK) != 0) {
+    if (data == nullptr || program.empty()) {
         std::fprintf(stderr, "bench codec: other coders need tessera-codec-peers beside this program, and volumes in "
                              "$TESSERA_DATA/volumes\n");
         return table;
     }
-    const std::string command = "'" + program.string() + "' '" + data + "/volumes'";
+    const std::string command = "'" + program + "' '" + data + "/volumes'";
     FILE* pipe = popen(command.c_str(), "r");
     if (pipe == nullptr) return table;
     char line[512];

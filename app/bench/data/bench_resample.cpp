@@ -1,4 +1,4 @@
-#include "app/command/bench.h"
+#include "app/bench/bench.h"
 
 #include "volume/resample/series.h"
 #include "volume/synthetic/marschner_lobb.h"

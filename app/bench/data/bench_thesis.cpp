@@ -1,9 +1,9 @@
+#include "app/bench/bench.h"
 #include "app/bench/data/bench_archives.h"
-#include "app/command/bench.h"
 
+#include "app/bench/data/thesis_coding.h"
 #include "codec/archive/archive.h"
 #include "codec/pack/pack.h"
-#include "codec/pack/thesis_coding.h"
 #include "volume/synthetic/models.h"
 
 #include <algorithm>
@@ -114,10 +114,10 @@ BenchTable benchThesisCoding() {
         const codec::PackSummary summary = codec::pack(dataset, options, file.path);
         for (const Wavelet wavelet : {Wavelet::W11, Wavelet::W22, Wavelet::W42})
             for (const double value : {0.0, 1.5, 5.5}) {
-                codec::ThesisCoding coding{wavelet, 3, codec::Threshold::Soft, value, false};
-                const codec::ThesisResult one = codec::thesisCode(field, coding);
+                ThesisCoding coding{wavelet, 3, codec::Threshold::Soft, value, false};
+                const ThesisResult one = thesisCode(field, coding);
                 coding.threeDirections = true;
-                const codec::ThesisResult three = codec::thesisCode(field, coding);
+                const ThesisResult three = thesisCode(field, coding);
                 table.rows.push_back({name, std::string(codec::kWaveletNames[std::size_t(wavelet)]), decimals(value, 1),
                                       decimals(double(field.samples.size()) / 1e3, 1),
                                       decimals(double(one.bytes) / 1e3, 1), decimals(double(three.bytes) / 1e3, 1),

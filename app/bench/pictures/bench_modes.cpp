@@ -1,7 +1,7 @@
+#include "app/bench/bench.h"
 #include "app/bench/pictures/bench_frames.h"
 #include "app/bench/pictures/bench_volumes.h"
 #include "app/bench/pictures/vtk_peer.h"
-#include "app/command/bench.h"
 #include "vis/gl/headless.h"
 #include "volume/sources/memory_source.h"
 

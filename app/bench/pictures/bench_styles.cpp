@@ -1,5 +1,5 @@
+#include "app/bench/bench.h"
 #include "app/bench/pictures/bench_frames.h"
-#include "app/command/bench.h"
 #include "vis/gl/headless.h"
 #include "vis/passes/renderer.h"
 #include "volume/sources/memory_source.h"

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "app/command/bench.h"
+#include "app/bench/bench.h"
 #include "app/platform/gui.h"
 #include "app/workbench/workbench.h"
 #include "vis/gl/headless.h"

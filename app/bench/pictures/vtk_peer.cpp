@@ -2,6 +2,7 @@
 
 #include "vis/optics/ray_setup.h"
 #include "vis/optics/surface_light.h"
+#include "volume/system/own_path.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -19,9 +20,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-fs::path peerProgram() {
-    std::error_code failed;
-    return fs::read_symlink("/proc/self/exe", failed).parent_path() / "tessera-vtk-peer";
+std::string peerProgram() {
+    return programBeside("tessera-vtk-peer");
 }
 
 bool displayAtHand() {
@@ -104,7 +104,7 @@ std::optional<vis::reference::Image> readPicture(const fs::path& path, int size)
 } // namespace
 
 bool vtkPeerAtHand() {
-    if (access(peerProgram().c_str(), X_OK) != 0) return false;
+    if (peerProgram().empty()) return false;
     return displayAtHand() || std::system("command -v xvfb-run >/dev/null 2>&1") == 0;
 }
 
@@ -128,7 +128,7 @@ PeerResults runVtkPeer(std::span<const std::uint8_t> bytes, glm::ivec3 size, con
     std::ofstream(job.string() + ".raw", std::ios::binary)
         .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
     const std::string command =
-        (displayAtHand() ? "" : "xvfb-run -a ") + quoted(peerProgram()) + " " + quoted(job) + " 2>/dev/null";
+        (displayAtHand() ? "" : "xvfb-run -a ") + quoted(fs::path(peerProgram())) + " " + quoted(job) + " 2>/dev/null";
     PeerResults results;
     if (FILE* pipe = popen(command.c_str(), "r")) {
         char name[16];

@@ -7,12 +7,12 @@
 #include <cstddef>
 
 /// Compression as in the thesis: integer wavelet, thresholds, run lengths. A baseline for benchmarks.
-namespace tessera::codec {
+namespace tessera::app {
 
 struct ThesisCoding {
-    Wavelet wavelet = Wavelet::W22;
+    codec::Wavelet wavelet = codec::Wavelet::W22;
     int levels = 3;
-    Threshold threshold = Threshold::Soft;
+    codec::Threshold threshold = codec::Threshold::Soft;
     double value = 0;
     bool threeDirections = false; ///< runs along x, y or z, whichever is shortest in each band; two bits say which
 };
@@ -25,4 +25,4 @@ struct ThesisResult {
 /// Codes a whole field of 8-bit or 16-bit integers on CC. Throws Error for others, and where samples are absent.
 ThesisResult thesisCode(const volume::Field& field, const ThesisCoding& coding);
 
-} // namespace tessera::codec
+} // namespace tessera::app

@@ -1,13 +1,13 @@
-#include "codec/pack/thesis_coding.h"
+#include "app/bench/data/thesis_coding.h"
 
-#include "codec/bytes/run_length.h"
+#include "app/bench/data/run_length.h"
 #include "volume/base/error.h"
 
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
-namespace tessera::codec {
+namespace tessera::app {
 
 namespace {
 
@@ -21,7 +21,7 @@ struct Part {
 std::vector<Part> detailBands(glm::ivec3 size, int levels) {
     std::vector<Part> bands;
     for (int level = 0; level < levels; ++level) {
-        const glm::ivec3 whole = levelSize(size, level), low = levelSize(size, level + 1);
+        const glm::ivec3 whole = codec::levelSize(size, level), low = codec::levelSize(size, level + 1);
         for (int band = 1; band < 8; ++band) {
             Part part{{0, 0, 0}, low};
             for (int axis = 0; axis < 3; ++axis)
@@ -52,7 +52,7 @@ std::size_t runBytes(std::span<const std::int32_t> details) {
     const bool wide = std::any_of(details.begin(), details.end(), [](std::int32_t d) { return d < -128 || d > 127; });
     std::size_t sum = 0;
     for (int plane = 0; plane < (wide ? 3 : 1); ++plane) {
-        Bytes bytes;
+        codec::Bytes bytes;
         for (const std::int32_t detail : details)
             bytes.push_back(static_cast<std::byte>(static_cast<std::uint32_t>(detail) >> (8 * plane)));
         sum += encodeRuns(bytes).size();
@@ -75,10 +75,10 @@ ThesisResult thesisCode(const volume::Field& field, const ThesisCoding& coding) 
                        [](T sample) { return static_cast<std::uint32_t>(static_cast<std::int32_t>(sample)); });
     });
     const std::vector<std::uint32_t> original = values;
-    forward(values, {}, size, coding.levels, coding.wavelet, Arithmetic::Wide);
+    codec::forward(values, {}, size, coding.levels, coding.wavelet, codec::Arithmetic::Wide);
 
     ThesisResult result;
-    const glm::ivec3 low = levelSize(size, coding.levels);
+    const glm::ivec3 low = codec::levelSize(size, coding.levels);
     result.bytes = std::size_t(low.x) * std::size_t(low.y) * std::size_t(low.z) * volume::byteSize(field.type);
     const std::vector<Part> bands = detailBands(size, coding.levels);
     // A quantile refers to all details of the field.
@@ -92,7 +92,7 @@ ThesisResult thesisCode(const volume::Field& field, const ThesisCoding& coding) 
                                      std::size_t(x));
                     details.push_back(static_cast<std::int32_t>(values[places.back()]));
                 }
-    applyThreshold(details, coding.threshold, coding.value);
+    codec::applyThreshold(details, coding.threshold, coding.value);
     for (std::size_t i = 0; i < places.size(); ++i) values[places[i]] = static_cast<std::uint32_t>(details[i]);
     for (const Part& part : bands) {
         std::size_t best = runBytes(along(0, part, size, values));
@@ -102,7 +102,7 @@ ThesisResult thesisCode(const volume::Field& field, const ThesisCoding& coding) 
     }
     if (coding.threeDirections) result.bytes += (2 * bands.size() + 7) / 8;
 
-    inverse(values, {}, size, coding.levels, coding.wavelet, Arithmetic::Wide);
+    codec::inverse(values, {}, size, coding.levels, coding.wavelet, codec::Arithmetic::Wide);
     double squares = 0;
     for (std::size_t i = 0; i < values.size(); ++i)
         squares +=
@@ -111,4 +111,4 @@ ThesisResult thesisCode(const volume::Field& field, const ThesisCoding& coding) 
     return result;
 }
 
-} // namespace tessera::codec
+} // namespace tessera::app

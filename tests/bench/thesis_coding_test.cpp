@@ -1,16 +1,17 @@
-#include "codec/pack/thesis_coding.h"
+#include "app/bench/data/thesis_coding.h"
 
-#include "codec/bytes/run_length.h"
+#include "app/bench/data/run_length.h"
 #include "tests/codec/make_dataset.h"
 #include "volume/base/error.h"
 
 #include <gtest/gtest.h>
 #include <numeric>
 
-namespace tessera::codec {
+namespace tessera::app {
 namespace {
 
-using namespace testing;
+using namespace codec;
+using namespace codec::testing;
 using volume::ScalarType;
 
 TEST(Runs, GiveBackWhatWasCoded) {
@@ -83,4 +84,4 @@ TEST(ThesisCoding, LosesNothingWithoutThresholdAndLessBytesMeanMoreError) {
 }
 
 } // namespace
-} // namespace tessera::codec
+} // namespace tessera::app

@@ -1,8 +1,8 @@
-#include "codec/bytes/run_length.h"
+#include "app/bench/data/run_length.h"
 
 #include <algorithm>
 
-namespace tessera::codec {
+namespace tessera::app {
 
 namespace {
 
@@ -16,9 +16,9 @@ std::size_t runAt(std::span<const std::byte> bytes, std::size_t at) {
 
 } // namespace
 
-Bytes encodeRuns(std::span<const std::byte> bytes) {
+codec::Bytes encodeRuns(std::span<const std::byte> bytes) {
     constexpr std::size_t kWorthwhile = 3; // a run of two between literals gains nothing
-    Bytes out;
+    codec::Bytes out;
     for (std::size_t at = 0; at < bytes.size();) {
         const std::size_t run = runAt(bytes, at);
         if (run >= kWorthwhile || at + run == bytes.size()) {
@@ -36,25 +36,25 @@ Bytes encodeRuns(std::span<const std::byte> bytes) {
     return out;
 }
 
-DecodeStatus decodeRuns(std::span<const std::byte> in, std::span<std::byte> out) noexcept {
+codec::DecodeStatus decodeRuns(std::span<const std::byte> in, std::span<std::byte> out) noexcept {
     std::size_t at = 0;
     while (at < out.size()) {
-        if (in.size() < 2) return DecodeStatus::Truncated;
+        if (in.size() < 2) return codec::DecodeStatus::Truncated;
         const auto head = static_cast<std::size_t>(in[0]);
         const bool isRun = head <= kMost;
         const std::size_t count = isRun ? head : 256 - head;
-        if (count == 0 || count > kMost || count > out.size() - at) return DecodeStatus::BadLength;
+        if (count == 0 || count > kMost || count > out.size() - at) return codec::DecodeStatus::BadLength;
         if (isRun) {
             std::fill_n(out.begin() + std::ptrdiff_t(at), count, in[1]);
             in = in.subspan(2);
         } else {
-            if (in.size() < 1 + count) return DecodeStatus::Truncated;
+            if (in.size() < 1 + count) return codec::DecodeStatus::Truncated;
             std::copy_n(in.begin() + 1, count, out.begin() + std::ptrdiff_t(at));
             in = in.subspan(1 + count);
         }
         at += count;
     }
-    return in.empty() ? DecodeStatus::Ok : DecodeStatus::Trailing;
+    return in.empty() ? codec::DecodeStatus::Ok : codec::DecodeStatus::Trailing;
 }
 
-} // namespace tessera::codec
+} // namespace tessera::app

@@ -1,0 +1,90 @@
+#include "app/bench/bench.h"
+#include "app/command/command.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+namespace tessera::app {
+
+namespace {
+
+struct NamedBench {
+    const char* name;
+    BenchTable (*measure)() = nullptr;
+    BenchTable (*measureVolumes)(const std::string& volume) = nullptr;
+};
+constexpr NamedBench kBenches[] = {{"lattice", benchLattice},        {"lattice", benchResample},
+                                   {"lattice", benchBccTransforms},  {"lattice", benchLatticeBytes},
+                                   {"lattice", benchSignalBytes},    {"codec", benchCodec},
+                                   {"codec", benchLevels},           {"codec", benchPeers},
+                                   {"thesis", benchThesisSizes},     {"thesis", benchBricks},
+                                   {"thesis", benchThesisCoding},    {"thesis", benchThesisFrames},
+                                   {"render", nullptr, benchRender}, {"render", nullptr, benchModes},
+                                   {"styles", benchStyles},          {"link", benchLink},
+                                   {"link", benchScatter},           {"large", benchLarge}};
+
+/// Columns of texts to the left, of numbers to the right.
+void print(const BenchTable& table) {
+    std::vector<std::size_t> widths;
+    std::vector<bool> numeric;
+    for (std::size_t c = 0; c < table.columns.size(); ++c) {
+        widths.push_back(table.columns[c].size());
+        numeric.push_back(true);
+        for (const std::vector<std::string>& row : table.rows) {
+            widths[c] = std::max(widths[c], row[c].size());
+            numeric[c] =
+                numeric[c] && (row[c].empty() || std::string("-+.0123456789").find(row[c][0]) != std::string::npos);
+        }
+    }
+    const auto line = [&](const std::vector<std::string>& cells) {
+        std::string text;
+        for (std::size_t c = 0; c < cells.size(); ++c) {
+            const std::string pad(widths[c] - cells[c].size(), ' ');
+            text += (c > 0 ? "  " : "") + (numeric[c] ? pad + cells[c] : cells[c] + pad);
+        }
+        text.erase(text.find_last_not_of(' ') + 1);
+        std::printf("%s\n", text.c_str());
+    };
+    std::printf("%s\n", table.name.c_str());
+    line(table.columns);
+    for (const std::vector<std::string>& row : table.rows) line(row);
+    std::printf("\n");
+    std::fflush(stdout);
+}
+
+struct Options {
+    std::vector<std::string> names;
+    std::string volume;
+    bool json = false;
+};
+
+void measure(const Options& options) {
+    nlohmann::json tables = nlohmann::json::array();
+    for (const NamedBench& bench : kBenches) {
+        if (!options.names.empty() && std::ranges::find(options.names, bench.name) == options.names.end()) continue;
+        const BenchTable table = bench.measure ? bench.measure() : bench.measureVolumes(options.volume);
+        if (options.json)
+            tables.push_back({{"name", table.name}, {"columns", table.columns}, {"rows", table.rows}});
+        else
+            print(table);
+    }
+    if (options.json) std::printf("%s\n", nlohmann::json{{"tables", tables}}.dump(2).c_str());
+}
+
+} // namespace
+} // namespace tessera::app
+
+int main(int argc, char** argv) {
+    using namespace tessera::app;
+    CLI::App app{"Measure on this machine the tables of the documentation", "tessera bench"};
+    Options options;
+    std::vector<std::string> known;
+    for (const NamedBench& bench : kBenches)
+        if (known.empty() || known.back() != bench.name) known.emplace_back(bench.name);
+    app.add_option("name", options.names, "Which tables (all of them)")->check(CLI::IsMember(known));
+    app.add_option("--volume", options.volume, "Of render: only volumes whose name contains this");
+    app.add_flag("--json", options.json, "Print JSON with stable keys");
+    app.callback([&] { measure(options); });
+    return parseAndRun(app, argc, argv);
+}
