@@ -37,7 +37,7 @@ struct DiffRow {
 
     void add(const volume::BrickSamples& a, const volume::BrickSamples& b, const volume::UnitConversion& convert) {
         for (std::size_t i = 0; i < a.values.size(); ++i) {
-            const bool inA = volume::presentAt(a, i), inB = volume::presentAt(b, i);
+            const bool inA = a.isPresent(i), inB = b.isPresent(i);
             if (inA != inB) ++alone;
             if (!inA || !inB) continue;
             const double apart = double(a.values[i]) - convert(double(b.values[i]));
@@ -101,19 +101,19 @@ std::vector<int> comparable(const volume::DatasetInfo& info, const DiffRequest& 
 std::vector<DiffRow> compare(const volume::BrickSource& source, const std::vector<int>& channels,
                              const Progress& progress) {
     const volume::DatasetInfo& info = source.info();
-    const glm::ivec3 count = source.grid().count();
-    const int bricks = count.x * count.y * count.z, times = int(info.times.size());
+    const std::size_t bricks = source.grid().brickCount();
+    const int times = int(info.times.size());
     std::vector<DiffRow> rows;
-    const double total = double(channels.size()) * times * bricks;
+    const double total = double(channels.size()) * times * double(bricks);
     double done = 0;
     for (const int channel : channels) {
         const volume::UnitConversion convert = volume::otherConversion(info, channel).value();
         for (int time = 0; time < times; ++time) {
             DiffRow& row = rows.emplace_back();
-            row.channel = info.channels()[std::size_t(channel)];
+            row.channel = info.channel(channel);
             row.time = info.times[std::size_t(time)];
-            for (int n = 0; n < bricks; ++n) {
-                const glm::ivec3 at(n % count.x, n / count.x % count.y, n / (count.x * count.y));
+            for (std::size_t n = 0; n < bricks; ++n) {
+                const glm::ivec3 at = source.grid().indexOf(n);
                 row.add(source.read({channel, time, 0, at}),
                         source.read({*volume::otherChannel(info, channel), time, 0, at}), convert);
                 progress.advance(++done / total);
@@ -194,7 +194,7 @@ void run(const DiffRequest& request) {
     const std::vector<DiffRow> rows = compare(*source, channels, progress.part(0.3, 0.6));
     print(rows, request, originText(sources.origin, source->info()));
     for (const int channel : channels) {
-        const volume::Channel of = source->info().channels()[std::size_t(channel)];
+        const volume::Channel of = source->info().channel(channel);
         data.derived.push_back(
             {of.name + " minus other", of.unit, volume::DifferenceRecipe{of.name, volume::OtherTime::Other}});
     }

@@ -189,11 +189,11 @@ void printSession(const std::string& path, bool asJson) {
 /// Calls `visit(channel, time, brick)` for every stored component of every brick.
 template <class Visit> void forBricks(const codec::Archive& archive, Visit&& visit) {
     const auto channels = archive.info().channels();
-    const glm::ivec3 count = archive.grid().count();
+    const volume::BrickGrid& grid = archive.grid();
     for (std::size_t time = 0; time < archive.info().times.size(); ++time)
         for (std::size_t channel = 0; channel < channels.size(); ++channel)
-            for (int n = 0; !channels[channel].magnitude && n < count.x * count.y * count.z; ++n)
-                visit(int(channel), int(time), glm::ivec3(n % count.x, n / count.x % count.y, n / (count.x * count.y)));
+            for (std::size_t n = 0; !channels[channel].magnitude && n < grid.brickCount(); ++n)
+                visit(int(channel), int(time), grid.indexOf(n));
 }
 
 /// Of a brick from the frame before, if there is one and it is known.

@@ -72,7 +72,7 @@ void run(const MeshRequest& request) {
     const volume::TimePair time = volume::timesAround(info.times, request.mesh.time.value_or(info.times.front()));
     const auto geometry = extractLayer(source, layer, time, request.mesh.level, progress.part(0.3, 0.8));
     if (geometry->mesh.triangles.empty()) {
-        const Range range = info.channelRange(info.channels()[std::size_t(*info.findChannel(layer.channel))]);
+        const Range range = info.channelRange(info.channel(*info.findChannel(layer.channel)));
         throw Error("the surface is empty: values run from " + std::to_string(range.lo) + " to " +
                         std::to_string(range.hi),
                     "--iso", std::to_string(layer.value));

@@ -30,7 +30,7 @@ volume::ExportSelection select(const UnpackRequest& request, const volume::Datas
     for (const std::string& wanted : request.parameters) {
         const auto found = info.findChannel(wanted);
         if (!found) throw Error("there is no parameter \"" + wanted + "\"", request.input);
-        const int parameter = info.channels()[std::size_t(*found)].parameter;
+        const int parameter = info.channel(*found).parameter;
         if (std::find(selection.parameters.begin(), selection.parameters.end(), parameter) ==
             selection.parameters.end())
             selection.parameters.push_back(parameter);

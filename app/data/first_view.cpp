@@ -11,16 +11,7 @@ namespace tessera::app {
 
 namespace {
 
-/// Coarse enough to be read at once.
-int quickLevel(const volume::BrickGrid& grid) {
-    constexpr std::int64_t kSamples = 4'000'000;
-    int level = 0;
-    for (; level + 1 < grid.levels; ++level) {
-        const glm::i64vec3 size(grid.levelSamples(level));
-        if (size.x * size.y * size.z <= kSamples) break;
-    }
-    return level;
-}
+constexpr double kQuickSamples = 4e6; ///< read at once
 
 /// Calls use(level index, value) for the present samples of every brick that `wanted` accepts.
 template <class Wanted, class Use>
@@ -38,8 +29,7 @@ void forSamples(const volume::BrickSource& source, int channel, int time, int le
                 for (int k = 0; k < samples.size.z; ++k)
                     for (int j = 0; j < samples.size.y; ++j)
                         for (int i = 0; i < samples.size.x; ++i, ++at)
-                            if (samples.present.empty() || samples.present[at])
-                                use(begin + glm::ivec3(i, j, k), samples.values[at]);
+                            if (samples.isPresent(at)) use(begin + glm::ivec3(i, j, k), samples.values[at]);
             }
 }
 
@@ -47,7 +37,7 @@ void forSamples(const volume::BrickSource& source, int channel, int time, int le
 std::optional<glm::dvec3> middleOfSamples(const volume::BrickSource& source, int channel, int time) {
     const volume::BrickGrid& grid = source.grid();
     const bool bcc = grid.lattice.kind == volume::LatticeKind::BCC;
-    const int level = quickLevel(grid);
+    const int level = grid.levelWithin(kQuickSamples);
     const auto place = [&](glm::ivec3 at) {
         const int z = bcc ? 2 * ((at.z / 2) << level) + at.z % 2 : at.z << level;
         return grid.lattice.position({at.x << level, at.y << level, z});
@@ -76,13 +66,13 @@ std::optional<glm::dvec3> middleOfSamples(const volume::BrickSource& source, int
 
 std::optional<double> backgroundShare(const volume::BrickSource& source, int channel, int time) {
     const volume::DatasetInfo& info = source.info();
-    const volume::Channel what = info.channels()[static_cast<std::size_t>(channel)];
+    const volume::Channel what = info.channel(channel);
     const volume::Parameter& parameter = info.parameters[static_cast<std::size_t>(what.parameter)];
     const Range range = info.channelRange(what);
     const bool integer = parameter.type != volume::ScalarType::F32 && !parameter.categorical;
     if (!integer || !(range.hi > range.lo)) return std::nullopt;
     const volume::BrickGrid& grid = source.grid();
-    const int level = quickLevel(grid);
+    const int level = grid.levelWithin(kQuickSamples);
     const glm::ivec3 last = grid.levelSamples(level) - 1;
     std::vector<std::uint64_t> histogram(256, 0);
     std::uint64_t total = 0;

@@ -25,7 +25,7 @@ double hullValue(const Session& session, const volume::DatasetInfo& info, const 
     if (!channel) return 0;
     const auto found = session.transfer.find(name);
     const vis::TransferFunction function = found == session.transfer.end() ? vis::TransferFunction{} : found->second;
-    const Range range = vis::effectiveRange(function, info.channelRange(info.channels()[std::size_t(*channel)]));
+    const Range range = vis::effectiveRange(function, info.channelRange(info.channel(*channel)));
     constexpr int kSteps = 200;
     double most = 0;
     const auto opacity = [&](int i) { return vis::evaluate(function, {0, 1}, double(i) / kSteps).a; };

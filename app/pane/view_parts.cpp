@@ -188,7 +188,7 @@ vis::TransferFunction& transferOf(Session& session, const std::string& channel) 
 
 LegendEntry legendOf(const Session& session, const volume::DatasetInfo& info, int channel,
                      const std::string& function) {
-    const volume::Channel c = info.channels()[static_cast<std::size_t>(channel)];
+    const volume::Channel c = info.channel(channel);
     LegendEntry entry;
     entry.title = c.name;
     entry.unit = c.unit;

@@ -45,15 +45,8 @@ constexpr std::size_t kCoarseBytes = std::size_t(64) << 20;
 
 /// The level to begin with: coarse enough to answer within a few milliseconds.
 int coarseLevel(const volume::BrickGrid& grid, std::size_t channels) {
-    const double most = 3e5;
-    int level = 0;
-    for (; level + 1 < grid.levels; ++level) {
-        const glm::ivec3 size = grid.levelSamples(level);
-        if (static_cast<double>(size.x) * size.y * size.z * static_cast<double>(std::max<std::size_t>(1, channels)) <=
-            most)
-            break;
-    }
-    return level;
+    constexpr double kSamples = 3e5;
+    return grid.levelWithin(kSamples / static_cast<double>(std::max<std::size_t>(1, channels)));
 }
 
 /// Before coarse levels comes what the source knows without reading a sample; grid().levels stands for that.
@@ -91,7 +84,7 @@ bool samePlots(const BrushedQuery& previous, const BrushedQuery& query) {
 } // namespace
 
 HistogramBins histogramBins(const volume::DatasetInfo& info, int channel, Range range, int count) {
-    const volume::Channel of = info.channels()[static_cast<std::size_t>(channel)];
+    const volume::Channel of = info.channel(channel);
     const volume::Parameter& parameter = info.parameters[static_cast<std::size_t>(of.parameter)];
     const bool integer = parameter.type != volume::ScalarType::F32;
     const auto whole = [](Range r) { return std::floor(r.lo) == r.lo && std::floor(r.hi) == r.hi; };
@@ -119,7 +112,7 @@ BrushedQuery brushedQuery(const Session& session, const volume::DatasetInfo& inf
             if (!channel || std::find(query.channels.begin(), query.channels.end(), *channel) != query.channels.end())
                 continue;
             query.channels.push_back(*channel);
-            query.ranges.push_back(info.channelRange(info.channels()[static_cast<std::size_t>(*channel)]));
+            query.ranges.push_back(info.channelRange(info.channel(*channel)));
         }
         query.selection.brushes.push_back(std::move(brush));
     }

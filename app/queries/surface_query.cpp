@@ -14,15 +14,6 @@ namespace {
 constexpr std::size_t kMovingTriangles = 400'000; ///< more are slow on software GL
 constexpr double kCoarseSamples = 5e5;            ///< extracted within a few milliseconds
 
-int firstLevel(const volume::BrickGrid& grid) {
-    int level = 0;
-    for (; level + 1 < grid.levels; ++level) {
-        const glm::ivec3 size = grid.levelSamples(level);
-        if (double(size.x) * size.y * size.z <= kCoarseSamples) break;
-    }
-    return level;
-}
-
 /// Nothing where the data has no such parameter.
 std::optional<SurfaceQuery> surfaceQuery(const vis::IsoLayer& layer, const volume::DatasetInfo& info,
                                          const volume::TimePair& time) {
@@ -68,7 +59,7 @@ AsyncSurfaces::Query::Keep AsyncSurfaces::keep() {
 std::vector<vis::GeometryLayer> AsyncSurfaces::get(ViewContext& context, const std::string& pane, bool moving) {
     const volume::DatasetInfo& info = context.source->info();
     const volume::TimePair time = volume::timesAround(info.times, context.session.time);
-    const int first = firstLevel(context.source->grid());
+    const int first = context.source->grid().levelWithin(kCoarseSamples);
     std::vector<vis::GeometryLayer> out;
     for (std::size_t i = 0; i < context.session.layers.size(); ++i) {
         const vis::Layer& layer = context.session.layers[i];

@@ -10,22 +10,13 @@ namespace {
 constexpr double kMostSamples = 5e5; ///< of the level that is looked through
 constexpr double kAspect = 1.5;      ///< of the picture that is judged; views have many
 
-int coarseLevel(const volume::BrickGrid& grid) {
-    int level = 0;
-    for (; level + 1 < grid.levels; ++level) {
-        const glm::ivec3 size = grid.levelSamples(level);
-        if (double(size.x) * size.y * size.z <= kMostSamples) break;
-    }
-    return level;
-}
-
 } // namespace
 
 std::shared_ptr<const std::vector<double>> AsyncVisibility::get(ViewContext& context, const std::string& jobKey,
                                                                 int channel, Range range, int bins) {
     const Session& session = context.session;
     const volume::DatasetInfo& info = context.numbers->info();
-    const std::string name = info.channels()[std::size_t(channel)].name;
+    const std::string name = info.channel(channel).name;
     const vis::VolumeLayer* layer = nullptr;
     for (const vis::Layer& entry : session.layers)
         if (const auto* volume = std::get_if<vis::VolumeLayer>(&entry.technique))
@@ -35,7 +26,7 @@ std::shared_ptr<const std::vector<double>> AsyncVisibility::get(ViewContext& con
     using Source = std::shared_ptr<const volume::BrickSource>;
     const auto grid = grids_.answer(
         context, context.numbers, {.key = jobKey + ":samples", .title = "Samples for visibility", .quiet = true},
-        {channel, coarseLevel(context.numbers->grid()), volume::timesAround(info.times, session.time)},
+        {channel, context.numbers->grid().levelWithin(kMostSamples), volume::timesAround(info.times, session.time)},
         [](const Source& source, const GridQuery& asked, int, const Progress& progress) {
             const volume::SourceAtTime shown = volume::sourceAt(source, asked.time);
             return volume::readSamples(*shown.source, asked.channel, shown.time, asked.level, progress);

@@ -29,7 +29,7 @@ std::string regionText(const volume::DatasetInfo& info, const vis::Region& regio
                 text += interval.channel + " (missing)";
                 continue;
             }
-            const volume::Channel own = info.channels()[static_cast<std::size_t>(*channel)];
+            const volume::Channel own = info.channel(*channel);
             const Range all = info.channelRange(own);
             const double digits = (all.hi - all.lo) / 1000;
             text += interval.channel + "  " + formatNumber(interval.lo, digits) + " .. " +

@@ -33,15 +33,15 @@ bool drawParameter(Session& session, const std::string& path, const WidgetContex
     std::optional<Range> scale;
     std::string unit;
     if (context.info)
-        visitParameter(
-            session, path.substr(0, path.rfind('/')) + "/channel", [&]<class T>(const T& name, const FieldInfo&) {
-                if constexpr (std::is_same_v<T, std::string>)
-                    if (const auto index = context.info->findChannel(name)) {
-                        const volume::Channel channel = context.info->channels()[static_cast<std::size_t>(*index)];
-                        scale = context.info->channelRange(channel);
-                        unit = channel.unit;
-                    }
-            });
+        visitParameter(session, path.substr(0, path.rfind('/')) + "/channel",
+                       [&]<class T>(const T& name, const FieldInfo&) {
+                           if constexpr (std::is_same_v<T, std::string>)
+                               if (const auto index = context.info->findChannel(name)) {
+                                   const volume::Channel channel = context.info->channel(*index);
+                                   scale = context.info->channelRange(channel);
+                                   unit = channel.unit;
+                               }
+                       });
     bool changed = false;
     ImGui::PushID(path.c_str());
     visitParameter(session, path, detail::MemberToWidget{context, changed, scale, unit});

@@ -126,7 +126,7 @@ struct MemberToWidget {
             changed |= drawText(context, info, value);
             if (info.refersTo == "channel" && context.info) {
                 if (const auto index = context.info->findChannel(value)) {
-                    const volume::Channel channel = context.info->channels()[static_cast<std::size_t>(*index)];
+                    const volume::Channel channel = context.info->channel(*index);
                     scale = context.info->channelRange(channel);
                     unit = channel.unit;
                 }

@@ -237,7 +237,7 @@ void Workbench::addDifferenceCommands() {
                      const volume::DatasetInfo& info = source_->info();
                      const auto channel = resolveChannel(info, session_, "");
                      if (!channel) return;
-                     const std::string of = info.channels()[static_cast<std::size_t>(*channel)].name;
+                     const std::string of = info.channel(*channel).name;
                      message("New parameter: " + addDerived(session_, newDifference(info, of, {which, session_.time})));
                  },
              .enabled = [this] { return source_ && source_->info().times.size() > 1; }});

@@ -80,8 +80,8 @@ void Workbench::compareWith(const std::vector<std::string>& paths) {
                         const volume::DatasetInfo& info = source_->info();
                         const auto channel = session_.data.other ? resolveChannel(info, session_, "") : std::nullopt;
                         if (!channel) return;
-                        const volume::DerivedParameter difference = newDifference(
-                            info, info.channels()[static_cast<std::size_t>(*channel)].name, {volume::OtherTime::Other});
+                        const volume::DerivedParameter difference =
+                            newDifference(info, info.channel(*channel).name, {volume::OtherTime::Other});
                         if (const std::string problem = volume::derivedProblem(difference, info); problem.empty())
                             message("New parameter: " + addDerived(session_, difference));
                         else

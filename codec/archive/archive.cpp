@@ -40,7 +40,7 @@ std::uint64_t checkedBrickCount(const volume::BrickGrid& grid, const std::string
 
 volume::BrickStats Archive::Impl::statsOf(int number, int component, const volume::BrickKey& key) const {
     const FrameRecord& record = frame(number, component, key.time);
-    const std::size_t brick = brickNumber(metadata.grid, key.index);
+    const std::size_t brick = metadata.grid.numberOf(key.index);
     volume::BrickStats stats{record.bricks[brick].min, record.bricks[brick].max, 1};
     if (record.mask >= 0) {
         const glm::vec3 size(metadata.grid.brickSamples(key.index, 0));
@@ -57,7 +57,7 @@ std::optional<volume::BrickChange> Archive::Impl::changeOf(int number, int compo
     const int first = std::min(key.time, toTime), last = std::max(key.time, toTime);
     if (first == last) return volume::BrickChange{};
     if (!hasNotes() || (last - first) % step != 0) return std::nullopt;
-    const std::size_t brick = brickNumber(metadata.grid, key.index);
+    const std::size_t brick = metadata.grid.numberOf(key.index);
     volume::BrickChange sum;
     for (int time = first + step; time <= last; time += step) {
         const volume::BrickChange& change = frame(number, component, time).bricks[brick].notes.change;
@@ -178,7 +178,7 @@ volume::BrickStats Archive::stats(const volume::BrickKey& key) const {
 std::optional<volume::BrickDistribution> Archive::distribution(const volume::BrickKey& key) const {
     const volume::Channel& channel = impl_->channelOf(key);
     if (!impl_->hasTallies() || channel.magnitude) return std::nullopt;
-    const std::size_t brick = brickNumber(impl_->metadata.grid, key.index);
+    const std::size_t brick = impl_->metadata.grid.numberOf(key.index);
     const FrameRecord& frame = impl_->holding(impl_->frame(channel.parameter, channel.component, key.time), brick);
     const bool isFloat = frame.numbers.kind != NumberKind::Integer;
     const FrameBrick& about = frame.bricks[brick];
@@ -188,7 +188,7 @@ std::optional<volume::BrickDistribution> Archive::distribution(const volume::Bri
 std::optional<volume::BrickImportance> Archive::importance(const volume::BrickKey& key) const {
     const volume::Channel& channel = impl_->channelOf(key);
     if (!impl_->hasNotes()) return std::nullopt;
-    const std::size_t brick = brickNumber(impl_->metadata.grid, key.index);
+    const std::size_t brick = impl_->metadata.grid.numberOf(key.index);
     const auto of = [&](int component) {
         return impl_->frame(channel.parameter, component, key.time).bricks[brick].notes.importance;
     };
@@ -223,11 +223,11 @@ Archive::Repeats Archive::repeats() const {
 }
 
 int Archive::repeats(const volume::BrickKey& key) const {
-    return impl_->storedFrame(key).bricks[brickNumber(impl_->metadata.grid, key.index)].notes.repeats;
+    return impl_->storedFrame(key).bricks[impl_->metadata.grid.numberOf(key.index)].notes.repeats;
 }
 
 std::uint64_t Archive::brickBytes(const volume::BrickKey& key) const {
-    return impl_->bytesOf(impl_->storedFrame(key), brickNumber(impl_->metadata.grid, key.index));
+    return impl_->bytesOf(impl_->storedFrame(key), impl_->metadata.grid.numberOf(key.index));
 }
 
 std::shared_ptr<const volume::BrickSource> openArchive(const std::string& path) {

@@ -48,7 +48,7 @@ std::span<const std::byte> Archive::Impl::segment(const Segment& segment) const 
 std::vector<std::uint8_t> Archive::Impl::flags(const FrameRecord& frame, std::size_t brick) const {
     if (frame.mask < 0) return {};
     const MaskBrick& record = index.masks[std::size_t(frame.mask)].bricks[brick];
-    const glm::ivec3 size = metadata.grid.brickSamples(brickIndex(metadata.grid, brick), 0);
+    const glm::ivec3 size = metadata.grid.brickSamples(metadata.grid.indexOf(brick), 0);
     const std::size_t count = std::size_t(size.x) * std::size_t(size.y) * std::size_t(size.z);
     const std::uint64_t offset = record.segment.offset;
     if (record.present > count) damaged(path, offset, "a mask counts more samples than its brick has");
@@ -122,7 +122,7 @@ Bytes Archive::Impl::numbersOf(const FrameRecord& frame, volume::ScalarType type
 }
 
 volume::BrickSamples Archive::Impl::readComponent(int number, int component, const volume::BrickKey& key) const {
-    const std::size_t brick = brickNumber(metadata.grid, key.index);
+    const std::size_t brick = metadata.grid.numberOf(key.index);
     const FrameRecord& record = holding(frame(number, component, key.time), brick);
     const BrickFormat format = brickFormat(metadata.grid, key.index, parameter(number).type, record);
     const std::vector<std::uint8_t> fine = flags(record, brick);
@@ -192,8 +192,7 @@ volume::Field readLayers(const Archive& archive, int parameter, int component, i
     const volume::BrickGrid& grid = impl.metadata.grid;
     const FrameRecord& shown = impl.frame(parameter, component, time);
     const int first = grid.begin({0, 0, layer}).z, last = grid.end({0, 0, end - 1}).z;
-    const std::size_t firstBrick = brickNumber(grid, {0, 0, layer}),
-                      bricks = brickNumber(grid, {0, 0, end}) - firstBrick;
+    const std::size_t firstBrick = grid.numberOf({0, 0, layer}), bricks = grid.numberOf({0, 0, end}) - firstBrick;
     volume::Field field =
         volume::makeField(volume::slicesOf(grid.lattice, first, last - first), impl.parameter(parameter).type);
     const volume::BrickGrid own{field.lattice, grid.brickSize, grid.levels, grid.phase}; // of those layers
@@ -204,7 +203,7 @@ volume::Field readLayers(const Archive& archive, int parameter, int component, i
     parallelFor(bricks, [&](std::size_t number) {
         const std::size_t brick = firstBrick + number;
         const FrameRecord& frame = impl.holding(shown, brick);
-        const glm::ivec3 index = brickIndex(own, number);
+        const glm::ivec3 index = own.indexOf(number);
         const BrickFormat format = brickFormat(own, index, field.type, frame);
         const std::vector<std::uint8_t> fine = impl.flags(frame, brick);
         const Lent decoded(impl);

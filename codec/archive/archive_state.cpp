@@ -14,12 +14,12 @@ volume::Mask flagsOfLayer(const auto& impl, const FrameRecord& frame, int layer)
     const volume::BrickGrid& grid = impl.metadata.grid;
     const glm::ivec3 count = grid.count(), last(count.x - 1, count.y - 1, layer);
     const std::size_t begin = grid.lattice.index({0, 0, grid.begin({0, 0, layer}).z}),
-                      end = grid.lattice.index({0, 0, grid.end(last).z}), first = brickNumber(grid, {0, 0, layer});
+                      end = grid.lattice.index({0, 0, grid.end(last).z}), first = grid.numberOf({0, 0, layer});
     volume::Mask mask(end - begin, 1);
     parallelFor(std::size_t(count.x) * std::size_t(count.y), [&](std::size_t i) {
         const std::vector<std::uint8_t> fine = impl.flags(frame, first + i);
         if (fine.empty()) return;
-        forBrickRows(grid, brickIndex(grid, first + i), [&](std::size_t to, std::size_t from, std::size_t n) {
+        forBrickRows(grid, grid.indexOf(first + i), [&](std::size_t to, std::size_t from, std::size_t n) {
             std::copy_n(fine.begin() + std::ptrdiff_t(from), n, mask.begin() + std::ptrdiff_t(to - begin));
         });
     });

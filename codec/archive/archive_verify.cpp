@@ -41,7 +41,7 @@ struct Verifier {
 
     /// Decodes a brick at every level. Returns the bytes of its segments; throws Error.
     std::uint64_t brick(const FrameRecord& record, const volume::Parameter& parameter, std::size_t brick) {
-        const glm::ivec3 at = brickIndex(impl.metadata.grid, brick);
+        const glm::ivec3 at = impl.metadata.grid.indexOf(brick);
         const BrickFormat format = brickFormat(impl.metadata.grid, at, parameter.type, record);
         const std::vector<std::uint8_t> fine = impl.flags(record, brick);
         const Lent decoded(impl);
@@ -69,7 +69,7 @@ struct Verifier {
             component -= std::size_t(parameters[parameter++].components);
         std::atomic<std::uint64_t> bytes = 0, samples = 0, bad = 0;
         parallelFor(impl.bricks, [&](std::size_t brick) {
-            const glm::ivec3 at = brickIndex(impl.metadata.grid, brick);
+            const glm::ivec3 at = impl.metadata.grid.indexOf(brick);
             const std::string where = parameters[parameter].name + " component " + std::to_string(component) +
                                       " time " + std::to_string(time) + " brick " + std::to_string(at.x) + "," +
                                       std::to_string(at.y) + "," + std::to_string(at.z);

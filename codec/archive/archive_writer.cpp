@@ -90,13 +90,13 @@ int ArchiveWriter::Impl::maskFor(const FrameSamples& samples, int zstdLevel) {
     record.offset = file.position();
     samples.forSlabs([&](const volume::Field& part, Slab slab) {
         const volume::BrickGrid own = slab.grid(metadata.grid);
-        std::vector<CodedMaskBrick> coded(brickCount(own));
+        std::vector<CodedMaskBrick> coded(own.brickCount());
         parallelRanges(coded.size(), [&](std::size_t begin, std::size_t end) {
             Compressor compressor(zstdLevel);
             std::vector<std::uint8_t> flags;
             for (std::size_t b = begin; b < end; ++b) {
                 flags.clear();
-                forBrickRows(own, brickIndex(own, b), [&](std::size_t from, std::size_t, std::size_t n) {
+                forBrickRows(own, own.indexOf(b), [&](std::size_t from, std::size_t, std::size_t n) {
                     for (std::size_t i = from; i < from + n; ++i) flags.push_back(part.present(i) ? 1 : 0);
                 });
                 coded[b] = encodeMask(flags, compressor);
@@ -137,13 +137,13 @@ std::vector<std::uint8_t> ArchiveWriter::Impl::repeated(const SeenFrame* before,
                                                         const FrameRecord& frame, const FrameOptions& options) const {
     constexpr int kFurthest = 65535;
     const double maxError = boundOf(frame, options);
-    std::vector<std::uint8_t> flags(brickCount(metadata.grid), 0);
+    std::vector<std::uint8_t> flags(metadata.grid.brickCount(), 0);
     if (!before || (header.features & kBrickNotes) == 0) return flags;
     parallelRanges(flags.size(), [&](std::size_t begin, std::size_t end) {
         BrickInput was, is, coded;
         for (std::size_t b = begin; b < end; ++b) {
             if (before->bricks[b].notes.repeats + step() > kFurthest) continue;
-            const glm::ivec3 brick = brickIndex(metadata.grid, b);
+            const glm::ivec3 brick = metadata.grid.indexOf(b);
             was.take(metadata.grid, brick, before->field, before->field.mask != nullptr);
             is.take(metadata.grid, brick, samples, frame.mask >= 0);
             const bool absentToo = frame.keepsAbsent && !is.present.empty();
@@ -218,9 +218,9 @@ void ArchiveWriter::addFrame(int parameter, int component, int time, const Frame
     const Model model = chooseModel(grid, samples, lastModel, byBand, frame, options, taken);
     const BandEncoder encoder(model);
     if (!taken.serves(frame, model)) taken.bricks.clear();
-    taken.bricks.resize(brickCount(grid));
+    taken.bricks.resize(grid.brickCount());
 
-    const std::size_t bricks = brickCount(grid), levels = std::size_t(grid.levels);
+    const std::size_t bricks = grid.brickCount(), levels = std::size_t(grid.levels);
     // For the last time only its change is needed.
     const bool isLast = std::size_t(time + impl_->step()) >= info.times.size();
     const bool keeps = impl_->keepsFrames && (before || !isLast);
@@ -245,7 +245,7 @@ void ArchiveWriter::addFrame(int parameter, int component, int time, const Frame
                 BrickInput input;
                 SplitMemory memory;
                 for (std::size_t b = first + begin; b < first + end; ++b) {
-                    const glm::ivec3 brick = brickIndex(grid, b);
+                    const glm::ivec3 brick = grid.indexOf(b);
                     std::vector<Bytes>& segments = batch[b - first];
                     FrameBrick& about = frame.bricks[b];
                     if (repeated[b] != 0) {
@@ -257,7 +257,7 @@ void ArchiveWriter::addFrame(int parameter, int component, int time, const Frame
                         input.take(grid, brick, before->field, false);
                     } else {
                         const BrickFormat format = brickFormat(grid, brick, part.type, frame);
-                        input.take(own, brickIndex(own, b - firstBrick), part, frame.mask >= 0);
+                        input.take(own, own.indexOf(b - firstBrick), part, frame.mask >= 0);
                         if (!taken.bricks[b])
                             taken.bricks[b] =
                                 prepareBrick(format, input.samples, input.present, maxError, model.contexts, memory);

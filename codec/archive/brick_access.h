@@ -10,22 +10,6 @@
 /// Helpers shared by the writer and the reader of an archive.
 namespace tessera::codec {
 
-/// Number of bricks; their order in the file is x fastest.
-inline std::size_t brickCount(const volume::BrickGrid& grid) {
-    const glm::ivec3 count = grid.count();
-    return std::size_t(count.x) * std::size_t(count.y) * std::size_t(count.z);
-}
-inline std::size_t brickNumber(const volume::BrickGrid& grid, glm::ivec3 brick) {
-    const glm::ivec3 count = grid.count();
-    return (std::size_t(brick.z) * std::size_t(count.y) + std::size_t(brick.y)) * std::size_t(count.x) +
-           std::size_t(brick.x);
-}
-inline glm::ivec3 brickIndex(const volume::BrickGrid& grid, std::size_t number) {
-    const glm::ivec3 count = grid.count();
-    const std::size_t nx = std::size_t(count.x), ny = std::size_t(count.y);
-    return {int(number % nx), int(number / nx % ny), int(number / (nx * ny))};
-}
-
 /// Bytes of the samples of a whole brick.
 inline std::size_t brickBytes(const volume::BrickGrid& grid, volume::ScalarType type) {
     const std::size_t edge = std::size_t(grid.brickSize),

@@ -59,7 +59,7 @@ void putSamples(const volume::BrickGrid& grid, glm::ivec3 brick, std::span<const
 void roundAsDecoded(const BrickFormat& format, double maxError, BrickInput& input) {
     if (format.numbers.kind != NumberKind::Quantised) return;
     for (std::size_t i = 0; i < input.samples.size() / sizeof(float); ++i) {
-        if (!input.present.empty() && input.present[i] == 0) continue;
+        if (!volume::isPresent(input.present, i)) continue;
         const auto sample = sampleAt<float>(input.samples, i);
         const float decoded = sampleOf<float>(format.numbers, codeOf(format.numbers, sample));
         if (close(format.numbers, maxError, sample, decoded))
@@ -81,7 +81,7 @@ bool mayStandFor(volume::ScalarType type, const BrickInput& decoded, const Brick
     return volume::dispatch(type, [&]<class T>(T) {
         const std::size_t count = input.samples.size() / sizeof(T);
         for (std::size_t i = 0; i < count; ++i) {
-            const bool there = input.present.empty() || input.present[i] != 0;
+            const bool there = volume::isPresent(input.present, i);
             if (!there && !absentToo) continue;
             const T was = sampleAt<T>(decoded.samples, i), is = sampleAt<T>(input.samples, i);
             if constexpr (std::same_as<T, float>) {
@@ -100,7 +100,7 @@ double squaredError(volume::ScalarType type, const BrickInput& decoded, const Br
     double sum = 0;
     volume::dispatch(type, [&]<class T>(T) {
         for (std::size_t i = 0; i < input.samples.size() / sizeof(T); ++i) {
-            if (!input.present.empty() && input.present[i] == 0) continue;
+            if (!volume::isPresent(input.present, i)) continue;
             const double apart = double(sampleAt<T>(decoded.samples, i)) - double(sampleAt<T>(input.samples, i));
             if (std::isfinite(apart)) sum += apart * apart;
         }

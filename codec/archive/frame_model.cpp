@@ -21,7 +21,7 @@ constexpr int kMostTables = 24;
 /// Tokens of some bricks of a frame, spread over it; kept in `taken`, if there is one.
 Histogram sampleTokens(const volume::BrickGrid& grid, const FrameSamples& samples, const FrameRecord& frame,
                        std::size_t most, Contexts contexts, double maxError = 0, Taken* taken = nullptr) {
-    const std::size_t bricks = brickCount(grid), count = std::min(bricks, most);
+    const std::size_t bricks = grid.brickCount(), count = std::min(bricks, most);
     // For many samples a part is enough; the step visits every position of a row in turn.
     constexpr std::size_t kMany = 2 << 20;
     const int every = samples.count() / bricks * count < kMany ? 1 : 5;
@@ -37,7 +37,7 @@ Histogram sampleTokens(const volume::BrickGrid& grid, const FrameSamples& sample
         Histogram part(grid.levels, contexts);
         for (std::size_t i = begin; i < end; ++i) {
             const std::size_t number = i * bricks / count;
-            const glm::ivec3 brick = brickIndex(grid, number);
+            const glm::ivec3 brick = grid.indexOf(number);
             input.take(grid, brick, samples, frame.mask >= 0);
             PreparedBrick prepared = prepareBrick(brickFormat(grid, brick, samples.type(), frame), input.samples,
                                                   input.present, maxError, contexts, memory);
@@ -54,7 +54,7 @@ Histogram sampleTokens(const volume::BrickGrid& grid, const FrameSamples& sample
 Histogram sampleMiddles(const volume::BrickGrid& grid, const FrameSamples& samples, const FrameRecord& frame,
                         std::size_t most) {
     constexpr int kMiddle = 32, kMiddleLevels = 3, kEvery = 3;
-    const std::size_t bricks = brickCount(grid), count = std::min(bricks, most);
+    const std::size_t bricks = grid.brickCount(), count = std::min(bricks, most);
     const int levels = std::min(grid.levels, kMiddleLevels);
     Histogram sum(levels, {});
     std::mutex mutex;
@@ -63,7 +63,7 @@ Histogram sampleMiddles(const volume::BrickGrid& grid, const FrameSamples& sampl
         SplitMemory memory;
         Histogram part(levels, {});
         for (std::size_t i = begin; i < end; ++i) {
-            const glm::ivec3 brick = brickIndex(grid, i * bricks / count);
+            const glm::ivec3 brick = grid.indexOf(i * bricks / count);
             BrickFormat format = brickFormat(grid, brick, samples.type(), frame);
             const int depth = kMiddle * format.sublattices();
             const glm::ivec3 whole = format.size, size = glm::min(whole, glm::ivec3(kMiddle, kMiddle, depth));
@@ -187,7 +187,7 @@ double estimateFrameBytes(const volume::BrickGrid& grid, const FrameSamples& sam
     frame.wavelet = options.wavelet.value_or(Wavelet::W22);
     frame.codeBits = codeBitsOf(samples, frame.numbers);
     const int shift = frame.codeBits > 16 ? shiftFor(sampleTokens(grid, samples, frame, bricks, {})) : 0;
-    const double all = double(brickCount(grid));
+    const double all = double(grid.brickCount());
     return sampleTokens(grid, samples, frame, bricks, {shift, prefersByBand(frame)}).bits() / 8 * all /
            std::min(all, double(bricks));
 }

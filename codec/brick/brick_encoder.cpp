@@ -40,7 +40,7 @@ Numbers numbersOf(const BrickFormat& format, std::span<const std::byte> samples,
         for (std::size_t i = 0; i < numbers.codes.size(); ++i) {
             T sample;
             std::memcpy(&sample, samples.data() + i * sizeof(T), sizeof(T));
-            const bool absent = !present.empty() && present[i] == 0;
+            const bool absent = !volume::isPresent(present, i);
             if constexpr (std::same_as<T, float>) {
                 if (absent) {
                     numbers.absentBits.push_back(std::bit_cast<std::uint32_t>(sample));
@@ -99,7 +99,7 @@ bool valuesRecur(std::span<const std::byte> samples, std::span<const std::uint8_
     for (std::size_t i = 0; i + sizeof(std::uint32_t) <= samples.size(); i += sizeof(std::uint32_t)) {
         std::uint32_t bits = 0;
         std::memcpy(&bits, &samples[i], sizeof bits);
-        if ((bits * kHash) >> 28 == 0 && (present.empty() || present[i / sizeof bits] != 0)) seen.push_back(bits);
+        if ((bits * kHash) >> 28 == 0 && volume::isPresent(present, i / sizeof bits)) seen.push_back(bits);
     }
     const std::size_t count = seen.size();
     std::ranges::sort(seen);
@@ -144,7 +144,7 @@ void tryWhole(const BrickFormat& format, std::span<const std::byte> samples, std
     std::vector<std::uint32_t> codes;
     codes.reserve(all.size());
     for (std::size_t i = 0; i < all.size(); ++i)
-        if (present.empty() || present[i] != 0) codes.push_back(all[i]);
+        if (volume::isPresent(present, i)) codes.push_back(all[i]);
     // If a quick search for repetitions is about as short as bands, a thorough one is worth its time.
     if (!tryEffort(codes, kSomeEffort, compressor.triesLzma() ? kPerhapsAsShort : kNearlyAsShort)) return;
     (void)tryEffort(codes, effort, 1);

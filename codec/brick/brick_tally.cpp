@@ -21,7 +21,7 @@ constexpr std::size_t kTurns = 4; ///< tables that are counted in by turns, as o
 template <class T>
 std::span<const T> counting(std::span<const T> all, std::span<const std::uint8_t> present, std::vector<T>& kept) {
     const auto counts = [&](std::size_t i) {
-        bool is = present.empty() || present[i] != 0;
+        bool is = volume::isPresent(present, i);
         if constexpr (std::same_as<T, float>) is = is && std::isfinite(all[i]);
         return is;
     };

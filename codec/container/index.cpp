@@ -198,14 +198,11 @@ std::vector<IndexPage> readPages(std::span<const std::byte> bytes, const Header&
 /// Reads the tallies of a page, whose masks and those of older pages are in the index.
 void takeTallies(const Index& index, const IndexShape& shape, IndexPage& page, const std::string& file) {
     BitReader in(page.tallies);
-    const glm::ivec3 count = shape.grid.count();
     for (FrameRecord& frame : page.frames)
         for (std::size_t b = 0; b < frame.bricks.size(); ++b) {
             FrameBrick& brick = frame.bricks[b];
             if (brick.notes.repeats > 0) continue;
-            const std::size_t nx = std::size_t(count.x), ny = std::size_t(count.y);
-            const glm::ivec3 at(int(b % nx), int(b / nx % ny), int(b / (nx * ny)));
-            const glm::u64vec3 size(shape.grid.brickSamples(at, 0));
+            const glm::u64vec3 size(shape.grid.brickSamples(shape.grid.indexOf(b), 0));
             const std::uint64_t samples = size.x * size.y * size.z,
                                 present =
                                     frame.mask < 0 ? samples : index.masks[std::size_t(frame.mask)].bricks[b].present;

@@ -46,8 +46,7 @@ template <class Visit> void forDetails(const Part& part, glm::ivec3 low, Visit&&
     for (int z = 0; z < part.size.z; ++z)
         for (int y = 0; y < part.size.y; ++y)
             for (int x = 0; x < part.size.x; ++x, ++i)
-                if ((x >= low.x || y >= low.y || z >= low.z) && (part.present.empty() || part.present[i] != 0))
-                    visit(i);
+                if ((x >= low.x || y >= low.y || z >= low.z) && volume::isPresent(part.present, i)) visit(i);
 }
 
 template <class T> T heldWithin(const NumberCoding& numbers, std::uint32_t code) {
@@ -93,7 +92,7 @@ void thresholdBrick(const BrickFormat& format, Threshold kind, double value, Bri
             inverse(part.codes, part.present, part.size, format.levels - 1, format.wavelet, Arithmetic::Wide);
             for (std::size_t k = 0; k < part.from.size(); ++k) {
                 const std::size_t i = part.from[k];
-                const bool there = input.present.empty() || input.present[i] != 0;
+                const bool there = volume::isPresent(input.present, i);
                 if (there && coded(i)) samples[i] = heldWithin<T>(format.numbers, part.codes[k]);
             }
         }
@@ -106,7 +105,7 @@ double largestError(volume::ScalarType type, const BrickInput& before, const Bri
     double largest = 0;
     volume::dispatch(type, [&]<class T>(T) {
         for (std::size_t i = 0; i < before.samples.size() / sizeof(T); ++i) {
-            if (!before.present.empty() && before.present[i] == 0) continue;
+            if (!volume::isPresent(before.present, i)) continue;
             T was, is;
             std::memcpy(&was, before.samples.data() + i * sizeof(T), sizeof(T));
             std::memcpy(&is, after.samples.data() + i * sizeof(T), sizeof(T));
@@ -201,10 +200,10 @@ Thresholded giveUpDetails(const volume::BrickGrid& grid, FrameSamples& samples, 
     samples.change([&](volume::Field& part, Slab slab) {
         const volume::BrickGrid own = slab.grid(grid);
         const std::size_t firstBrick = slab.bricks(grid).first;
-        parallelRanges(brickCount(own), [&](std::size_t begin, std::size_t end) {
+        parallelRanges(own.brickCount(), [&](std::size_t begin, std::size_t end) {
             BrickInput original, left;
             for (std::size_t b = begin; b < end; ++b) {
-                const glm::ivec3 brick = brickIndex(own, b);
+                const glm::ivec3 brick = own.indexOf(b);
                 const BrickFormat format = brickFormat(own, brick, part.type, frame);
                 original.take(own, brick, part, part.mask != nullptr);
                 BrickInput rounded = original;

@@ -76,7 +76,7 @@ std::vector<MergedBytes> bytesOfMerged(const Archive& archive, std::span<const v
         std::vector<std::uint8_t> wanted(boxes.size(), 0);
         for (std::size_t b = 0; b < boxes.size(); ++b)
             forBricksOf(boxes[b], [&](glm::ivec3 at) {
-                const std::size_t brick = brickNumber(grid, at);
+                const std::size_t brick = grid.numberOf(at);
                 if (frame.bricks[brick].notes.repeats > 0) return;
                 sums[b].apart += impl.bytesOf(frame, brick);
                 wanted[b] = 1;

@@ -104,7 +104,7 @@ SlabReading slabsOf(const MemoryPlan& plan, const SlabInput& slabs, const volume
 /// Thresholds the details of a frame, most strongly in the least important bricks.
 Thresholded giveUp(FrameSamples& samples, const volume::BrickGrid& grid, const FrameOptions& frame,
                    const ThresholdOptions& options, double extent) {
-    std::vector<float> strength(brickCount(grid), 1);
+    std::vector<float> strength(grid.brickCount(), 1);
     if (options.byImportance) {
         const auto importance = importanceOfBricks(grid, samples, frame.range, frame.categorical, frame.importance);
         float most = 0;
@@ -126,7 +126,7 @@ void leaveOut(FrameSamples& samples, const volume::BrickGrid& grid, const std::v
         volume::Mask mask = part.mask ? *part.mask : volume::Mask(part.count(), 1);
         for (std::size_t b = first; b < end; ++b)
             if (discarded[b] != 0)
-                forBrickRows(own, brickIndex(own, b - first), [&](std::size_t from, std::size_t, std::size_t n) {
+                forBrickRows(own, own.indexOf(b - first), [&](std::size_t from, std::size_t, std::size_t n) {
                     std::fill_n(mask.begin() + std::ptrdiff_t(from), n, std::uint8_t(0));
                 });
         part.mask = std::make_shared<const volume::Mask>(std::move(mask));
@@ -331,7 +331,7 @@ PackSummary Packing::run(const Progress& progress) {
         const double begin = passes ? 0.3 : 0;
         gather(progress.part(0, begin));
         const Progress work = progress.part(begin, 1);
-        summary_.bricks = brickCount(metadata_.grid);
+        summary_.bricks = metadata_.grid.brickCount();
         const auto writer = grown_ ? std::make_unique<ArchiveWriter>(*grown_, metadata_, memory_.keepFrames)
                                    : std::make_unique<ArchiveWriter>(path_, metadata_, memory_.keepFrames);
         reading_.measures = reading_.toBcc; // not in the passes before

@@ -50,7 +50,7 @@ void gatherAllRanges(volume::Dataset& dataset, const FeedOptions& reading, PackS
 
 std::vector<std::uint8_t> bricksToDiscard(volume::Dataset& dataset, const FeedOptions& reading,
                                           const PackOptions& options, PackSummary& summary, const Progress& progress) {
-    std::vector<float> most(brickCount(reading.grid), 0);
+    std::vector<float> most(reading.grid.brickCount(), 0);
     forSteps(dataset, reading, "importance", progress, [&](const FeedStep& fed) {
         const volume::Parameter& parameter = dataset.info.parameters[std::size_t(fed.parameter)];
         const std::vector<Range>& known = parameter.ranges.empty() ? fed.ranges : parameter.ranges;

@@ -40,8 +40,8 @@ Field levelField(const volume::BrickSource& source, int channel, int time, int l
     Field field = volume::makeField(lattice, ScalarType::F32);
     volume::Mask mask(field.count(), 1);
     const auto values = field.as<float>();
-    parallelFor(brickCount(grid), [&](std::size_t number) {
-        const glm::ivec3 brick = brickIndex(grid, number);
+    parallelFor(grid.brickCount(), [&](std::size_t number) {
+        const glm::ivec3 brick = grid.indexOf(number);
         const volume::BrickSamples samples = source.read({channel, time, level, brick});
         const glm::ivec3 begin = grid.levelBegin(brick, level);
         for (int z = sublattice; z < samples.size.z; z += step)

@@ -88,7 +88,7 @@ TEST_F(CurvesViewTest, StatisticsOfABrushAreThoseOfTheStatisticsView) {
     vis::Brush brush;
     const auto channel = source->info().findChannel("T");
     ASSERT_TRUE(channel);
-    const Range range = source->info().channelRange(source->info().channels()[std::size_t(*channel)]);
+    const Range range = source->info().channelRange(source->info().channel(*channel));
     vis::RangeRegion region;
     region.intervals = {{.channel = "T", .lo = (range.lo + range.hi) / 2, .hi = range.hi}};
     brush.region = region;

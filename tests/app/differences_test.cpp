@@ -39,7 +39,7 @@ std::vector<double> samplesOf(const volume::BrickSource& source, const std::stri
         const volume::BrickSamples samples =
             source.read({*channel, time, 0, {n % count.x, n / count.x % count.y, n / (count.x * count.y)}});
         for (std::size_t i = 0; i < samples.values.size(); ++i)
-            out.push_back(volume::presentAt(samples, i) ? double(samples.values[i]) : std::nan(""));
+            out.push_back(samples.isPresent(i) ? double(samples.values[i]) : std::nan(""));
     }
     return out;
 }
@@ -76,8 +76,7 @@ TEST(Differences, FromTheFirstTimeHaveTheirNameUnitAndColours) {
     const Session session = defaultSession(sources.pictures->info(), data);
     const vis::TransferFunction& colours = session.transfer.at("O2 minus first");
     const volume::DatasetInfo& now = sources.pictures->info();
-    const Range range =
-        vis::effectiveRange(colours, now.channelRange(now.channels()[std::size_t(*now.findChannel("O2 minus first"))]));
+    const Range range = vis::effectiveRange(colours, now.channelRange(now.channel(*now.findChannel("O2 minus first"))));
     EXPECT_EQ(range.lo, -range.hi);
     EXPECT_GT(range.hi, 0);
     // White in the middle: red and blue alike, and the two ends as light.
@@ -156,7 +155,7 @@ TEST(Differences, OptionsOfTheCommandLineAreFormulas) {
     const volume::Dataset plain = volume::makeModel("fuel-cell", cell().settings);
     const volume::Dataset more = withDerived(plain, {one, parseDerived("twice = 2 * T")}, {});
     ASSERT_EQ(more.info.parameters.size(), plain.info.parameters.size() + 2);
-    const int t = plain.info.channels()[std::size_t(*plain.info.findChannel("T"))].parameter;
+    const int t = plain.info.channel(*plain.info.findChannel("T")).parameter;
     const volume::Field twice = more.load(int(more.info.parameters.size()) - 1, 0, 1), own = plain.load(t, 0, 1);
     for (std::size_t i = 0; i < own.count(); i += 7) EXPECT_NEAR(twice.value(i), 2 * own.value(i), 1e-3);
     EXPECT_THROW(withDerived(plain, {parseDerived("x = nothing")}, {}), Error);

@@ -291,7 +291,7 @@ TEST_F(GrowthGl, TheOtherDataGrowToo) {
         volume::BrickKey otherKey = key;
         otherKey.channel = *source->info().findChannel("rho (other)");
         const volume::BrickSamples own = source->read(key), other = source->read(otherKey);
-        const bool there = volume::presentAt(other, 0);
+        const bool there = other.isPresent(0);
         if (there) {
             EXPECT_EQ(other.values, own.values) << time;
         }

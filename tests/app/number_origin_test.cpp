@@ -70,7 +70,7 @@ TEST(NumberOrigin, BoundsAreInTheUnitOfTheParameterAndNeverTooSmall) {
     EXPECT_EQ(originText(cc, info), "stored on CC, error at most 1 % of each range");
     const NumberOrigin bcc = storedOn(volume::LatticeKind::BCC, 0.01034);
     EXPECT_EQ(originText(bcc, info, channel(info, "T")), "resampled to BCC, stored with an error at most 0.42 K");
-    EXPECT_GE(0.42, errorBound(bcc, info, info.channels()[0]));
+    EXPECT_GE(0.42, errorBound(bcc, info, info.channel(0)));
     const NumberOrigin absolute = storedOn(volume::LatticeKind::CC, 0.5, 0.25);
     EXPECT_EQ(originText(absolute, info, channel(info, "T")), "stored on CC, error at most 0.25 K");
     EXPECT_EQ(originText(absolute, info, channel(info, "p")), "stored on CC, error at most 0.25 Pa");

@@ -17,7 +17,7 @@ vis::Image drawn(PictureMaker& maker, const char* layout, const char* pane, Pict
     request.data->derived = {{"ratio", "", volume::ExpressionRecipe{"O2 / (O2 + H2O)"}}};
     Opened opened = open(request);
     const volume::DatasetInfo& info = opened.numbers->info();
-    const Range o2 = info.channelRange(info.channels()[std::size_t(info.findChannel("O2").value())]);
+    const Range o2 = info.channelRange(info.channel(info.findChannel("O2").value()));
     opened.document.session.selection.brushes = {
         vis::rangeBrush({{.channel = "O2", .lo = o2.lo, .hi = 0.5 * (o2.lo + o2.hi)}}, "poor")};
     return maker.render(opened.document, opened.sources(), {.pane = pane, .size = {640, 420}, .scale = 1});

@@ -74,7 +74,7 @@ Session brushed(const volume::DatasetInfo& info) {
     Session session;
     session.time = info.times[kTime];
     const auto range = [&](const char* name) {
-        return info.channelRange(info.channels()[std::size_t(info.findChannel(name).value())]);
+        return info.channelRange(info.channel(info.findChannel(name).value()));
     };
     const Range o2 = range("O2"), t = range("T");
     vis::Brush values, space;
@@ -96,7 +96,7 @@ Numbers read(const volume::BrickSource& source, std::shared_ptr<const volume::Br
     const volume::DatasetInfo& info = source.info();
     Numbers out;
     const std::vector<int> channels = channelsOf(info, ending);
-    for (const int channel : channels) out.ranges.push_back(info.channelRange(info.channels()[std::size_t(channel)]));
+    for (const int channel : channels) out.ranges.push_back(info.channelRange(info.channel(channel)));
     StatisticsResult result;
     result.query = brushedQuery(brushed(info), info, channels, out.ranges, kBins, true);
     result.brushed = true;
@@ -200,7 +200,7 @@ TEST(Numbers, OfOriginalsBesideWhatWasPacked) {
         EXPECT_EQ(sources.numbers->info().lattice, plain.numbers->info().lattice);
         for (const std::string name : {"O2", "H2O", "T"}) {
             const volume::DatasetInfo& info = plain.numbers->info();
-            const Range range = info.channelRange(info.channels()[std::size_t(info.findChannel(name).value())]);
+            const Range range = info.channelRange(info.channel(info.findChannel(name).value()));
             const volume::ChannelStatistics wanted = count(plain, {name}, range).channels[0];
             const volume::Statistics found = count(sources, {name + " as computed", name}, range);
             expectSame(found.channels[0].all, wanted.all, name);

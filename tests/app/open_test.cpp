@@ -191,7 +191,7 @@ TEST_F(OpenTest, ALayoutFitsAnyData) {
         request.layout = name;
         const Opened opened = open(request);
         ASSERT_TRUE(opened.source) << name;
-        const std::string only = opened.source->info().channels()[0].name;
+        const std::string only = opened.source->info().channel(0).name;
         ASSERT_FALSE(opened.document.session.layers.empty()) << name;
         for (const vis::Layer& layer : opened.document.session.layers)
             std::visit([&](const auto& technique) { EXPECT_EQ(technique.channel, only) << name; }, layer.technique);

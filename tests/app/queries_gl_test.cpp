@@ -200,8 +200,8 @@ TEST_F(AsyncQueries, TheNewestAnswerOfTheSamePlotsIsShownMeanwhile) {
 
 TEST_F(AsyncQueries, ASurfaceInTwoPartsTellsItsProgressInOne) {
     for (const char* colorBy : {"", "H2"}) {
-        const Range range = source->info().channelRange(
-            source->info().channels()[std::size_t(source->info().findChannel("T").value())]);
+        const Range range =
+            source->info().channelRange(source->info().channel(source->info().findChannel("T").value()));
         const vis::IsoLayer layer{.channel = "T", .value = 0.5 * (range.lo + range.hi), .colorBy = colorBy};
         std::vector<double> told;
         Progress progress;
@@ -216,8 +216,7 @@ TEST_F(AsyncQueries, ASurfaceInTwoPartsTellsItsProgressInOne) {
 TEST_F(AsyncQueries, CancelledSurfaceWaitsForAnotherQuery) {
     AsyncSurfaces answers;
     vis::IsoLayer layer{.channel = "T"};
-    const Range range =
-        source->info().channelRange(source->info().channels()[std::size_t(*source->info().findChannel("T"))]);
+    const Range range = source->info().channelRange(source->info().channel(*source->info().findChannel("T")));
     layer.value = 0.5 * (range.lo + range.hi);
     layer.method = vis::SurfaceMethod::Polygons;
     session.layers = {{"surface", true, layer}};

@@ -32,9 +32,7 @@ struct Recorded {
     const Session& last() const { return steps.back(); }
     const volume::DatasetInfo& info() const { return source->info(); }
     int channel(const std::string& name) const { return info().findChannel(name).value(); }
-    Range range(const std::string& name) const {
-        return info().channelRange(info().channels()[std::size_t(channel(name))]);
-    }
+    Range range(const std::string& name) const { return info().channelRange(info().channel(channel(name))); }
 };
 
 std::string pathOf(const std::string& name) {

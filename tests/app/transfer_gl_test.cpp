@@ -88,7 +88,7 @@ protected:
         source = volume::makeMemorySource(std::move(model), {});
         renderer.setSource(source);
         session = defaultSession(source->info(), {});
-        channel = source->info().channels()[std::size_t(resolveChannel(source->info(), session, "").value())].name;
+        channel = source->info().channel(resolveChannel(source->info(), session, "").value()).name;
     }
     void frame(ImVec2 size = {900, 500}) {
         ImGui::GetIO().DisplaySize = size;
@@ -153,7 +153,7 @@ TEST_F(TransferPages, TheCurveFollowsTheEmphasisOfBoundaries) {
     page.apply = true;
     const volume::DatasetInfo& info = source->info();
     const int index = *info.findChannel(channel);
-    const Range range = info.channelRange(info.channels()[std::size_t(index)]);
+    const Range range = info.channelRange(info.channel(index));
     vis::TransferFunction& function = session.transfer[channel];
     const auto result = std::make_shared<const DerivativeResult>(readDerivatives(source, {{.channel = index}, {}}));
     const auto draw = [&] {

@@ -181,8 +181,8 @@ TEST_F(BrushedViews, FeedCountsWhatTheSelectionDefines) {
     show(fuelCell(volume::LatticeKind::CC));
     const volume::DatasetInfo& info = source->info();
     const auto channelOf = [&](const char* name) { return *info.findChannel(name); };
-    const Range heat = info.channelRange(info.channels()[static_cast<std::size_t>(channelOf("T"))]);
-    const Range water = info.channelRange(info.channels()[static_cast<std::size_t>(channelOf("H2O"))]);
+    const Range heat = info.channelRange(info.channel(channelOf("T")));
+    const Range water = info.channelRange(info.channel(channelOf("H2O")));
     const double width = water.hi - water.lo;
     session.selection.brushes = {
         vis::rangeBrush({{"H2O", water.lo, water.lo + width * 0.4, width * 0.2}}, "water"),

@@ -216,7 +216,7 @@ TEST_F(WorkbenchData, AnotherFileStandsBeside) {
     request.import->rename = {{"value", "slope"}};
     workbench.install(open(request));
     settle();
-    const std::string shown = workbench.source()->info().channels()[0].name;
+    const std::string shown = workbench.source()->info().channel(0).name;
     ASSERT_EQ(shown, "slope");
     workbench.compareWith({(folder / "other.raw").string()});
     settle(); // the other file is read, then

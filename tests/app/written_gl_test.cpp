@@ -69,7 +69,7 @@ TEST_F(WrittenViews, TheMapOfBoundariesHasRoomForItsTitlesAndEmphasisOnBothSides
     BoundaryPage page;
     const auto result = std::make_shared<DerivativeResult>();
     result->curves.thickness = 3;
-    result->curves.range = info.channelRange(info.channels()[std::size_t(index)]);
+    result->curves.range = info.channelRange(info.channel(index));
     result->curves.distance.assign(16, 0.5);
     result->curves.first.assign(16, 1);
     for (int i = 0; i < 2; ++i)

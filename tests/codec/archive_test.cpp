@@ -89,7 +89,7 @@ TEST(Archive, BccBricksAreTheResampledFieldAtEveryPlace) {
                             for (int h = 0; h < brick.size.x; ++h, ++i) {
                                 const std::size_t at = expected.lattice.index(begin + glm::ivec3(h, j, k));
                                 ++seen;
-                                const bool isPresent = brick.present.empty() || brick.present[i] != 0;
+                                const bool isPresent = brick.isPresent(i);
                                 ASSERT_EQ(isPresent, expected.present(at));
                                 if (!isPresent) continue;
                                 ++present;
@@ -195,7 +195,7 @@ TEST(Archive, CategoricalLevelsHoldOnlyLabels) {
     for (int level = 0; level < archive.grid().levels; ++level) {
         const volume::BrickSamples brick = archive.read({0, 0, level, {0, 0, 0}});
         for (std::size_t i = 0; i < brick.values.size(); ++i)
-            if (brick.present.empty() || brick.present[i] != 0) {
+            if (brick.isPresent(i)) {
                 ASSERT_TRUE(brick.values[i] == 3.0f || brick.values[i] == 200.0f) << brick.values[i];
             }
     }

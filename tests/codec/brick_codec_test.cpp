@@ -101,7 +101,7 @@ TEST(BrickCodec, DecodesWhatItEncodes) {
                     std::memcpy(&original, made.samples.data() + i * sizeof(T), sizeof(T));
                     std::uint32_t bits = 0;
                     T value = sampleOf<T>(made.format.numbers, codes[i]);
-                    if (!made.present.empty() && made.present[i] == 0) {
+                    if (!volume::isPresent(made.present, i)) {
                         if (!made.format.keepsAbsent) continue;
                         bits = decoded.absent[absent++];
                         std::memcpy(&value, &bits, sizeof(T));

@@ -41,7 +41,7 @@ void expectTrueDistributions(const Archive& archive) {
         const volume::BrickSamples read = archive.read(key);
         std::vector<double> values;
         for (std::size_t i = 0; i < read.values.size(); ++i)
-            if (read.present.empty() || read.present[i] != 0) values.push_back(double(read.values[i]));
+            if (read.isPresent(i)) values.push_back(double(read.values[i]));
         ASSERT_TRUE(noted);
         ASSERT_EQ(noted->samples, values.size());
         if (values.empty()) return;

@@ -69,7 +69,7 @@ void expectTrueNotes(const Archive& archive) {
                     }
                     double largest = 0, squares = 0, samples = 0;
                     for (std::size_t i = 0; i < a.values.size(); ++i) {
-                        if (!a.present.empty() && a.present[i] == 0) continue;
+                        if (!a.isPresent(i)) continue;
                         const double moved = std::abs(double(a.values[i]) - double(b.values[i]));
                         if (!std::isfinite(moved)) continue; // the magnitude of what is nearly infinite
                         largest = std::max(largest, moved);

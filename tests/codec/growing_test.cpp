@@ -54,7 +54,7 @@ void expectSameArchives(const Archive& a, const Archive& b) {
                     const volume::BrickSamples left = a.read(key), right = b.read(key);
                     ASSERT_EQ(left.present, right.present);
                     for (std::size_t i = 0; i < left.values.size(); ++i)
-                        if (left.present.empty() || left.present[i] != 0) {
+                        if (left.isPresent(i)) {
                             ASSERT_EQ(left.values[i], right.values[i]);
                         }
                 }

@@ -59,7 +59,7 @@ TEST(PlainDecoder, AgreesOnEveryBrickAtEveryLevel) {
                     for (std::size_t i = 0; i < brick.values.size(); ++i) {
                         const auto value = float(brick.values[i]);
                         const bool present = brick.present[i] && std::isfinite(value);
-                        ASSERT_EQ(present, expected.present.empty() || expected.present[i] != 0);
+                        ASSERT_EQ(present, expected.isPresent(i));
                         if (!present) continue;
                         const float held =
                             level > 0 && stats.min <= stats.max ? std::clamp(value, stats.min, stats.max) : value;

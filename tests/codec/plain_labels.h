@@ -10,7 +10,7 @@ namespace tessera::codec::testing {
 /// of what it reads there.
 inline plain::Brick plainBrick(const plain::Decoder& decoder, const Archive& archive, const volume::BrickKey& key,
                                std::size_t frame, int number) {
-    const volume::Channel channel = archive.info().channels()[std::size_t(key.channel)];
+    const volume::Channel channel = archive.info().channel(key.channel);
     if (key.level == 0 || !archive.info().parameters[std::size_t(channel.parameter)].categorical)
         return decoder.brick(frame, number, key.level);
     const plain::Brick fine = decoder.brick(frame, number, 0);
@@ -25,7 +25,7 @@ inline plain::Brick plainBrick(const plain::Decoder& decoder, const Archive& arc
     out.size = {coarse.size.x, coarse.size.y, coarse.size.z};
     for (std::size_t i = 0; i < coarse.values.size(); ++i) {
         out.values.push_back(double(coarse.values[i]));
-        out.present.push_back(coarse.present.empty() || coarse.present[i] != 0);
+        out.present.push_back(coarse.isPresent(i));
     }
     return out;
 }

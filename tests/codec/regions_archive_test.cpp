@@ -33,7 +33,7 @@ void expectPure(const volume::BrickSource& source, int time) {
             const BrickSamples values = source.read({value, time, level, at}),
                                labels = source.read({label, time, level, at});
             for (std::size_t i = 0; i < values.values.size(); ++i) {
-                if (!values.present.empty() && values.present[i] == 0) continue;
+                if (!values.isPresent(i)) continue;
                 const int own = int(labels.values[i]);
                 ++seen[own];
                 ASSERT_NEAR(values.values[i], volume::test::constantIn(own, {}), 1e-5) << "level " << level;

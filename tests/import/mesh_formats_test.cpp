@@ -34,7 +34,7 @@ template <class T> std::vector<T> overGrid(auto&& of) {
 void expectLinear(const Dataset& dataset, const char* name) {
     const auto channel = dataset.info.findChannel(name);
     ASSERT_TRUE(channel) << name;
-    const Field field = dataset.load(dataset.info.channels()[std::size_t(*channel)].parameter, 0, 0);
+    const Field field = dataset.load(dataset.info.channel(*channel).parameter, 0, 0);
     const Lattice& lattice = dataset.info.lattice;
     int present = 0;
     for (int k = 0; k < lattice.size.z; ++k)

@@ -45,7 +45,7 @@ void expectTheGrid(const Dataset& dataset, int time = 0, double more = 0) {
     ASSERT_EQ(dataset.info.lattice.size, kSize);
     const auto t = dataset.info.findChannel("T");
     ASSERT_TRUE(t);
-    const Field field = dataset.load(dataset.info.channels()[std::size_t(*t)].parameter, 0, time);
+    const Field field = dataset.load(dataset.info.channel(*t).parameter, 0, time);
     for (int k = 0; k < kSize.z; ++k)
         for (int j = 0; j < kSize.y; ++j)
             for (int i = 0; i < kSize.x; ++i) {
@@ -225,18 +225,17 @@ TEST_F(TextFormats, OfTheFuelCell) {
     ASSERT_EQ(std::system(("tar xJf '" + archive + "' -C '" + folder_.string() + "'").c_str()), 0);
     const std::string formats = (folder_ / "formats").string() + "/";
     const Dataset vtk = openFiles({formats + "open_small_last_legacy_binary.vtk"}, {});
-    const int wanted = vtk.info.channels()[std::size_t(*vtk.info.findChannel("T"))].parameter;
+    const int wanted = vtk.info.channel(*vtk.info.findChannel("T")).parameter;
     const Field truth = vtk.load(wanted, 0, 0);
     for (const char* name : {"open_small_last.csv", "open_small_last.dat", "open_small.h5"}) {
         const Dataset dataset = openFiles({formats + name}, {});
         ASSERT_EQ(dataset.info.lattice.size, glm::ivec3(11, 13, 101)) << name;
-        const int t = dataset.info.channels()[std::size_t(*dataset.info.findChannel("T"))].parameter;
+        const int t = dataset.info.channel(*dataset.info.findChannel("T")).parameter;
         const Field field = dataset.load(t, 0, int(dataset.info.times.size()) - 1);
         for (std::size_t i = 0; i < field.count(); ++i) ASSERT_NEAR(field.value(i), truth.value(i), 1e-3) << name << i;
         const auto o2 = dataset.info.findChannel("O2");
         ASSERT_TRUE(o2);
-        EXPECT_EQ(dataset.info.channels()[std::size_t(*o2)].unit,
-                  name == std::string("open_small_last.dat") ? "" : "mol/m^3");
+        EXPECT_EQ(dataset.info.channel(*o2).unit, name == std::string("open_small_last.dat") ? "" : "mol/m^3");
     }
 }
 

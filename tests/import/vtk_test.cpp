@@ -115,7 +115,7 @@ TEST_F(ImportVtk, NrrdComesBack) {
         EXPECT_EQ(back.info.times, std::vector<double>{0.7});
         EXPECT_EQ(back.info.lattice.size, dataset.info.lattice.size);
         EXPECT_NEAR(back.info.lattice.spacing.z, dataset.info.lattice.spacing.z, 1e-9);
-        const Channel from = dataset.info.channels()[std::size_t(*selection.channel)];
+        const Channel from = dataset.info.channel(*selection.channel);
         const Field f = dataset.load(from.parameter, from.component, 1), g = back.load(0, 0, 0);
         for (std::size_t i = 0; i < f.count(); ++i) {
             ASSERT_EQ(f.present(i), g.present(i)) << channel;
@@ -286,13 +286,13 @@ TEST_F(ImportVtk, FuelCellGridsHaveTheRangesStated) {
         for (const Wanted& wanted : all) {
             const auto index = dataset.info.findChannel(wanted.name);
             ASSERT_TRUE(index) << wanted.name;
-            const Range range = dataset.info.channelRange(dataset.info.channels()[std::size_t(*index)]);
+            const Range range = dataset.info.channelRange(dataset.info.channel(*index));
             EXPECT_NEAR(range.lo, wanted.lo, wanted.tolerance) << list << wanted.name;
             EXPECT_NEAR(range.hi, wanted.hi, wanted.tolerance) << list << wanted.name;
         }
         // No gas where there is none: O2 on the air side, H2 on the fuel side, water and flow on both.
         const auto find = [&](const char* name) {
-            return dataset.info.channels()[std::size_t(*dataset.info.findChannel(name))].parameter;
+            return dataset.info.channel(*dataset.info.findChannel(name)).parameter;
         };
         const Field region = dataset.load(find("region"), 0, 25);
         for (const auto& [name, sides] :
@@ -376,8 +376,7 @@ TEST_F(ImportVtk, OtherFormatsOfTheFuelCell) {
         Dataset dataset = openFiles({formats + name}, {});
         EXPECT_EQ(dataset.info.lattice.size, glm::ivec3(11, 13, 101)) << name;
         scanRanges(dataset);
-        const Range oxygen =
-            dataset.info.channelRange(dataset.info.channels()[std::size_t(dataset.info.findChannel("O2").value())]);
+        const Range oxygen = dataset.info.channelRange(dataset.info.channel(dataset.info.findChannel("O2").value()));
         EXPECT_NEAR(oxygen.lo, 2.46681, 1e-4) << name;
         EXPECT_NEAR(oxygen.hi, 5.54863, 1e-4) << name;
     }

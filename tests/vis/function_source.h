@@ -58,7 +58,7 @@ public:
         volume::BrickStats stats{std::numeric_limits<float>::infinity(), -std::numeric_limits<float>::infinity(), 0};
         std::size_t present = 0;
         for (std::size_t i = 0; i < samples.values.size(); ++i) {
-            if (!samples.present.empty() && samples.present[i] == 0) continue;
+            if (!samples.isPresent(i)) continue;
             stats.min = std::min(stats.min, samples.values[i]);
             stats.max = std::max(stats.max, samples.values[i]);
             ++present;

@@ -58,7 +58,7 @@ Sums sumsOf(const Dataset& dataset, int parameter, int time, const std::function
 }
 
 int numberOfParameter(const DatasetInfo& info, const std::string& name) {
-    return info.channels()[std::size_t(*info.findChannel(name))].parameter;
+    return info.channel(*info.findChannel(name)).parameter;
 }
 
 /// Compares every statistic with the sums, everywhere and in one region; integrals with `inUnit` times theirs.

@@ -63,7 +63,7 @@ template <class Body> void forSamples(const BrickSource& source, int channel, in
         const BrickSamples samples = source.read(key);
         SamplePositions position(source.grid(), key.index, level);
         for (std::size_t i = 0; i < samples.values.size(); ++i, position.next()) {
-            const bool present = samples.present.empty() || samples.present[i] != 0;
+            const bool present = samples.isPresent(i);
             body(position.at(), present ? std::optional<double>(double(samples.values[i])) : std::nullopt);
         }
     }

@@ -69,7 +69,7 @@ TEST(Gather, BordersAreTheNeighboursSamples) {
                             for (int y = 0; y < brick.size.y; ++y)
                                 for (int x = 0; x < brick.size.x; ++x, ++i) {
                                     const Sample sample = expected(first + glm::ivec3(x, y, z));
-                                    const bool present = brick.present.empty() || brick.present[i] != 0;
+                                    const bool present = brick.isPresent(i);
                                     ASSERT_EQ(present, sample.present);
                                     if (present) {
                                         ASSERT_EQ(double(brick.values[i]), sample.value);

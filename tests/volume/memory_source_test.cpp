@@ -67,7 +67,7 @@ TEST(MemorySource, FineBricksAreTheField) {
                         for (int y = 0; y < brick.size.y; ++y)
                             for (int x = 0; x < brick.size.x; ++x, ++n) {
                                 const std::size_t at = whole.lattice.index(begin + glm::ivec3(x, y, z));
-                                const bool exists = brick.present.empty() || brick.present[n] != 0;
+                                const bool exists = brick.isPresent(n);
                                 ASSERT_EQ(exists, whole.present(at));
                                 if (!exists) continue;
                                 ++present;
@@ -163,7 +163,7 @@ TEST(MemorySource, MagnitudesComeFromTheComponents) {
         const BrickStats stats = source->stats({3, 0, 0, index});
         EXPECT_EQ(whole.present, parts[0].present);
         for (std::size_t i = 0; i < whole.values.size(); ++i) {
-            if (!whole.present.empty() && whole.present[i] == 0) continue;
+            if (!whole.isPresent(i)) continue;
             double square = 0;
             for (const BrickSamples& part : parts) square += double(part.values[i]) * double(part.values[i]);
             EXPECT_NEAR(whole.values[i], std::sqrt(square), 1e-6);

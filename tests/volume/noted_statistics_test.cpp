@@ -24,7 +24,7 @@ public:
         const BrickSamples brick = source_->read({key.channel, key.time, 0, key.index});
         std::vector<double> values;
         for (std::size_t i = 0; i < brick.values.size(); ++i)
-            if (brick.present.empty() || brick.present[i] != 0) values.push_back(double(brick.values[i]));
+            if (brick.isPresent(i)) values.push_back(double(brick.values[i]));
         BrickDistribution out;
         out.samples = values.size();
         out.step = step_;

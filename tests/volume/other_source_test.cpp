@@ -80,7 +80,7 @@ template <class Body> void forSamples(const BrickSource& source, int channel, co
             const BrickSamples samples = source.read(key);
             SamplePositions position(source.grid(), key.index, 0);
             for (std::size_t i = 0; i < samples.values.size(); ++i, position.next()) {
-                const bool present = samples.present.empty() || samples.present[i] != 0;
+                const bool present = samples.isPresent(i);
                 body(position.at(), source.info().times[std::size_t(time)],
                      present ? std::optional(double(samples.values[i])) : std::nullopt);
             }

@@ -91,7 +91,7 @@ void expectEverywhere(const BrickSource& source, const Value& wanted, const std:
                 const BrickSamples samples = source.read(key);
                 SamplePositions position(grid, key.index, level);
                 for (std::size_t i = 0; i < samples.values.size(); ++i, position.next()) {
-                    const bool present = samples.present.empty() || samples.present[i] != 0;
+                    const bool present = samples.isPresent(i);
                     const auto expected = wanted(position.at(), source.info().times[std::size_t(time)]);
                     ASSERT_EQ(present, expected.has_value()) << what << " at time " << time << ", level " << level;
                     if (!expected) continue;
@@ -246,7 +246,7 @@ TEST(OtherTime, TheFuelCellDiffersFromItsFirstTimeAsItsFilesDo) {
         std::size_t there = 0;
         double most = 0;
         for (std::size_t i = 0; i < d.values.size(); ++i) {
-            const bool present = d.present.empty() || d.present[i] != 0;
+            const bool present = d.isPresent(i);
             EXPECT_EQ(present, a.present(i) && b.present(i));
             if (!present) continue;
             ++there;

@@ -196,7 +196,7 @@ TEST(Prefilter, OfABrickEqualsThatOfTheLattice) {
                         for (int y = 0; y < brick.size.y; ++y)
                             for (int x = 0; x < brick.size.x; ++x, ++i) {
                                 const Sample expected = whole(first + glm::ivec3(x, y, z));
-                                ASSERT_EQ(brick.present.empty() || brick.present[i] != 0, expected.present);
+                                ASSERT_EQ(brick.isPresent(i), expected.present);
                                 ASSERT_FLOAT_EQ(brick.values[i], float(expected.value));
                             }
                 }

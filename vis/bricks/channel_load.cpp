@@ -50,7 +50,7 @@ public:
 
 private:
     static const volume::Parameter& parameterOf(const volume::DatasetInfo& info, int channel) {
-        return info.parameters[std::size_t(info.channels()[std::size_t(channel)].parameter)];
+        return info.parameters[std::size_t(info.channel(channel).parameter)];
     }
     const volume::BrickSource& source_;
     ChannelKey key_;
@@ -86,7 +86,7 @@ ChannelSummary summarize(const volume::BrickSource& source, const ChannelKey& of
 void load(LoadExchange& exchange, const LoadRequest& request, LoadedTexels& out, std::stop_token stop) {
     const volume::BrickSource& source = *exchange.source;
     const volume::BrickGrid& grid = source.grid();
-    const volume::Channel channel = source.info().channels()[std::size_t(request.key.channel)];
+    const volume::Channel channel = source.info().channel(request.key.channel);
     const bool categorical = source.info().parameters[std::size_t(channel.parameter)].categorical;
     std::optional<OnePart> part;
     if (request.key.part >= 0) part.emplace(source, request.key);
@@ -148,8 +148,7 @@ void loadTexels(LoadExchange& exchange, const LoadRequest& request, std::stop_to
     } catch (const Cancelled&) {
         return;
     } catch (const std::exception& error) {
-        exchange.say(exchange.source->info().channels()[std::size_t(request.key.channel)].name +
-                     " cannot be shown: " + error.what());
+        exchange.say(exchange.source->info().channel(request.key.channel).name + " cannot be shown: " + error.what());
         out.failed = true;
     }
     const std::lock_guard lock(exchange.mutex);

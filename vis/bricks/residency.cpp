@@ -339,7 +339,7 @@ bool Residency::refused(const LoadedTexels& item) {
     Entry& entry = entries_.at(item.key);
     if (item.level + 1 >= exchange_->source->grid().levels) return false;
     exchange_->say("the graphics driver has no memory for full resolution; " +
-                   exchange_->source->info().channels()[std::size_t(item.key.channel)].name + " is shown coarser");
+                   exchange_->source->info().channel(item.key.channel).name + " is shown coarser");
     entry.finest = item.level + 1;
     entry.summary = item.summary;
     entry.loading = false;

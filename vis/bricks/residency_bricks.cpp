@@ -91,7 +91,7 @@ void Residency::takeBrick(LoadedTexels& brick, Entry& entry) {
 /// Whether no brick of [first, last) moves more between two times than is allowed; `exactly`: at all.
 bool Residency::still(const ChannelKey& key, int madeOf, glm::ivec3 first, glm::ivec3 last, bool exactly) const {
     const volume::BrickSource& source = *exchange_->source;
-    const volume::Channel channel = source.info().channels()[std::size_t(key.channel)];
+    const volume::Channel channel = source.info().channel(key.channel);
     const Range range = source.info().channelRange(channel);
     const bool labels = source.info().parameters[std::size_t(channel.parameter)].categorical;
     const double most = exactly || labels ? 0 : keptChange_ * (range.hi - range.lo);

@@ -9,7 +9,7 @@ namespace tessera::vis {
 bool Residency::samePart(const LoadExchange& former, const ChannelKey& key, SameSamples same) const {
     if (key.part < 0) return true;
     const auto parameterIn = [&](const volume::DatasetInfo& info) {
-        return info.parameters[std::size_t(info.channels()[std::size_t(key.channel)].parameter)];
+        return info.parameters[std::size_t(info.channel(key.channel).parameter)];
     };
     const volume::DatasetInfo &then = former.source->info(), &now = exchange_->source->info();
     const std::optional<int> label = volume::labelChannel(now, parameterIn(now));

@@ -22,7 +22,7 @@ bool adapts(const Layer& layer, const Scene& scene, const volume::DatasetInfo& i
     if (!volume) return true;
     const std::optional<int> channel = info.findChannel(volume->channel);
     if (!channel) return true;
-    const std::string name = layer.transfer.empty() ? info.channels()[std::size_t(*channel)].name : layer.transfer;
+    const std::string name = layer.transfer.empty() ? info.channel(*channel).name : layer.transfer;
     return volume->style == VolumeStyle::Composite && volume->colorBy.empty() && volume->quantity == Quantity::Value &&
            volume->classification != Classification::PreIntegrated &&
            transferFor(scene, name).kind == TransferKind::Curve &&

@@ -46,7 +46,7 @@ MeshCasters meshCasters(const Scene& scene, const volume::DatasetInfo& info) {
         caster.scalars = channel && !layer.geometry->mesh.scalars.empty();
         if (caster.scalars) {
             caster.function = transferFor(scene, layer.transfer.empty() ? layer.channel : layer.transfer);
-            caster.range = effectiveRange(caster.function, info.channelRange(info.channels()[std::size_t(*channel)]));
+            caster.range = effectiveRange(caster.function, info.channelRange(info.channel(*channel)));
         }
         out.casters.push_back(std::move(caster));
     }

@@ -123,7 +123,7 @@ void GeometryPass::table(const Scene& scene, const volume::DatasetInfo& info) {
             colors.insert(colors.end(), kColors, glm::vec4(own, 1));
             continue;
         }
-        const volume::Channel known = info.channels()[std::size_t(*channel)];
+        const volume::Channel known = info.channel(*channel);
         const TransferFunction& function = transferFor(scene, layer.transfer.empty() ? known.name : layer.transfer);
         const Range range = effectiveRange(function, info.channelRange(known));
         const double width = range.hi - range.lo;

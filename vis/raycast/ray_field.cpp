@@ -3,7 +3,7 @@
 namespace tessera::vis {
 
 ChannelTransfer transferOf(const Scene& scene, const volume::DatasetInfo& info, const BoundField& field) {
-    const volume::Channel known = info.channels()[std::size_t(field.channel)];
+    const volume::Channel known = info.channel(field.channel);
     const TransferFunction& function = transferFor(scene, field.transfer.empty() ? known.name : field.transfer);
     return {function, effectiveRange(function, info.channelRange(known))};
 }

@@ -29,7 +29,7 @@ int fieldOf(RayPlan& plan, const volume::DatasetInfo& info, int channel, bool ra
     field.raw = raw;
     field.transfer = layer.transfer;
     field.timeShift = layer.timeShift;
-    const volume::Channel known = info.channels()[std::size_t(channel)];
+    const volume::Channel known = info.channel(channel);
     field.categorical = field.nearest = info.parameters[std::size_t(known.parameter)].categorical;
     plan.fields.push_back(field);
     return int(plan.fields.size()) - 1;
@@ -67,7 +67,7 @@ void drawNearest(RayPlan& plan, int field, const std::string& name) {
 void addParts(RayPlan& plan, const volume::DatasetInfo& info, int mostFields) {
     plan.channels = int(plan.fields.size());
     for (int i = 0; i < plan.channels; ++i) {
-        const volume::Channel channel = info.channels()[std::size_t(plan.fields[std::size_t(i)].channel)];
+        const volume::Channel channel = info.channel(plan.fields[std::size_t(i)].channel);
         const volume::Parameter& parameter = info.parameters[std::size_t(channel.parameter)];
         if (!volume::labelChannel(info, parameter)) continue;
         const int parts = int(parameter.parts.count());
@@ -99,7 +99,7 @@ const std::string& channelOf(const Layer& layer) {
 /// A volume layer of a plan; its field and the page of its table are added.
 RayLayer volumeUse(RayPlan& plan, int layer, const VolumeLayer& volume, int channel, const Scene& scene,
                    const volume::DatasetInfo& info) {
-    const volume::Channel known = info.channels()[std::size_t(channel)];
+    const volume::Channel known = info.channel(channel);
     const Layer& own = scene.layers[std::size_t(layer)];
     RayLayer use;
     use.layer = layer;

@@ -65,7 +65,7 @@ Prepared::Prepared(const Scene& drawn, const volume::BrickSource& source, glm::i
         one.samples = seen ? load(name, false, layer.timeShift) : nullptr;
         if (one.samples == nullptr) continue;
         if (layer.lens.empty()) one.lens = -1;
-        const volume::Channel channel = info.channels()[std::size_t(*info.findChannel(name))];
+        const volume::Channel channel = info.channel(*info.findChannel(name));
         const auto functionOf = [&](const volume::Channel& of, bool own) -> const TransferFunction& {
             return transferFor(scene, own && !layer.transfer.empty() ? layer.transfer : of.name);
         };
@@ -73,7 +73,7 @@ Prepared::Prepared(const Scene& drawn, const volume::BrickSource& source, glm::i
         const bool surface = std::holds_alternative<IsoLayer>(layer.technique);
         one.colors = colorBy.empty() ? nullptr : load(colorBy, false, layer.timeShift);
         if (one.colors) {
-            const volume::Channel other = info.channels()[std::size_t(*info.findChannel(colorBy))];
+            const volume::Channel other = info.channel(*info.findChannel(colorBy));
             one.colorFunction = &functionOf(other, surface);
             one.colorRange = effectiveRange(*one.colorFunction, info.channelRange(other));
         }

@@ -48,7 +48,7 @@ struct Whole {
     }
     volume::Sample operator()(glm::ivec3 at) const {
         const std::size_t i = lattice.index(volume::clampToLattice(lattice.kind, lattice.size, at));
-        return {double(values[i]), present.empty() || present[i] != 0};
+        return {double(values[i]), volume::isPresent(present, i)};
     }
 };
 
@@ -78,7 +78,7 @@ Samples::Samples(const volume::BrickSource& source, int channel, volume::TimePai
     : geometry_(volume::levelGeometry(source.grid(), 0)), filter_(filter), flaws_(flaws),
       brickSize_(source.grid().brickSize) {
     const volume::DatasetInfo& info = source.info();
-    const volume::Parameter& parameter = info.parameters[std::size_t(info.channels()[std::size_t(channel)].parameter)];
+    const volume::Parameter& parameter = info.parameters[std::size_t(info.channel(channel).parameter)];
     categorical_ = parameter.categorical;
     const std::optional<int> label = volume::labelChannel(info, parameter);
     if (label && !only && !flaws.mixedParts) {

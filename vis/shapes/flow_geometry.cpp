@@ -163,7 +163,7 @@ Weight whereItFlows(const volume::VectorField& field, double slowest) {
 
 /// A channel's share of its range, 0 where it is absent.
 Weight byChannel(const volume::BrickSource& source, int channel, int time, int level, const Progress& progress) {
-    const Range range = source.info().channelRange(source.info().channels()[std::size_t(channel)]);
+    const Range range = source.info().channelRange(source.info().channel(channel));
     const auto samples =
         std::make_shared<const volume::SampleGrid>(volume::readSamples(source, channel, time, level, progress));
     return [samples, range](glm::dvec3 place) {
@@ -212,7 +212,7 @@ std::optional<FlowData> readFlow(const volume::BrickSource& source, const FlowLa
     data.level = flowLevel(source.grid(), layer.kind == FlowKind::Pathlines ? int(info.times.size()) : 1);
     data.grid = volume::readVector(source, data.parameter, time, data.level, progress);
     const auto magnitude = info.findChannel(layer.vector);
-    const double fastest = magnitude ? info.channelRange(info.channels()[std::size_t(*magnitude)]).hi : 0;
+    const double fastest = magnitude ? info.channelRange(info.channel(*magnitude)).hi : 0;
     data.slowest = fastest * double(layer.minimumSpeed);
     return data;
 }
@@ -322,12 +322,7 @@ volume::SurfaceMesh cones(std::span<const Glyph> glyphs, glm::dvec3 stretch) {
 }
 
 int flowLevel(const volume::BrickGrid& grid, int times) {
-    int level = 0;
-    for (; level + 1 < grid.levels; ++level) {
-        const glm::ivec3 size = grid.levelSamples(level);
-        if (double(size.x) * size.y * size.z * times <= kMostSamples) break;
-    }
-    return level;
+    return grid.levelWithin(kMostSamples / times);
 }
 
 std::vector<glm::dvec3> flowSeeds(const volume::BrickSource& source, const FlowLayer& layer, int time,

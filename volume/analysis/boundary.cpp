@@ -26,9 +26,7 @@ DerivativeHistogram emptyHistogram(const BrickSource& source, const DerivativeQu
     out.valueBins = query.valueBins;
     out.gradientBins = query.gradientBins;
     const DatasetInfo& info = source.info();
-    out.range = query.range.hi != query.range.lo
-                    ? query.range
-                    : info.channelRange(info.channels()[static_cast<std::size_t>(query.channel)]);
+    out.range = query.range.hi != query.range.lo ? query.range : info.channelRange(info.channel(query.channel));
     out.gradientTop = query.gradientTop > 0 ? query.gradientTop : std::abs(out.range.hi - out.range.lo) / 4;
     const auto values = static_cast<std::size_t>(query.valueBins);
     out.count.resize(values * static_cast<std::size_t>(query.gradientBins));

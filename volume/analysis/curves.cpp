@@ -51,7 +51,7 @@ Terms termsOf(const DatasetInfo& info) {
 
 /// Of a parameter's values times volumes: mol/m3 in a cell measured in mm are 1e-9 mol.
 ComposedUnit integralUnit(const DatasetInfo& info, int channel) {
-    const std::array<UnitPower, 2> factors{{{info.channels()[std::size_t(channel)].unit, 1}, {info.lengthUnit, 3}}};
+    const std::array<UnitPower, 2> factors{{{info.channel(channel).unit, 1}, {info.lengthUnit, 3}}};
     return composedUnit(factors);
 }
 
@@ -61,7 +61,7 @@ std::string unitOf(const DatasetInfo& info, const Term& term) {
     if (term.kind == Kind::Share) return {};
     if (term.kind == Kind::Volume) return info.lengthUnit.empty() ? std::string() : info.lengthUnit + "3";
     if (term.kind == Kind::Integral) return integralUnit(info, term.index).unit;
-    return info.channels()[std::size_t(term.index)].unit;
+    return info.channel(term.index).unit;
 }
 
 std::string withoutBlanks(const std::string& text) {

@@ -26,9 +26,7 @@ double samplesAt(const BrickGrid& grid, int level) {
 
 int chooseLevel(const BrickGrid& grid, double times, double budget) {
     constexpr double kMost = 8; // samples read for one that is kept
-    int level = 0;
-    while (level + 1 < grid.levels && samplesAt(grid, level) * times > kMost * budget) ++level;
-    return level;
+    return grid.levelWithin(kMost * budget / times);
 }
 
 } // namespace
@@ -62,15 +60,14 @@ Samples4 gatherSamples(const BrickSource& source, const SamplesQuery& query, boo
             const std::size_t count = read.empty() ? 0 : read.front().values.size();
             for (std::size_t i = 0; i < count; ++i, positions.next()) {
                 const std::uint32_t hash = mixed(++number * 0x9e3779b97f4a7c15ull);
-                const bool present = read.front().present.empty() || read.front().present[i] != 0;
+                const bool present = read.front().isPresent(i);
                 if (!present || hash > threshold || std::isnan(read.front().values[i])) continue;
                 order.push_back(hash);
                 all.positions.emplace_back(positions.at());
                 all.times.push_back(time);
                 for (const BrickSamples& channel : read)
-                    all.values.push_back(channel.present.empty() || channel.present[i] != 0
-                                             ? channel.values[i]
-                                             : std::numeric_limits<float>::quiet_NaN());
+                    all.values.push_back(channel.isPresent(i) ? channel.values[i]
+                                                              : std::numeric_limits<float>::quiet_NaN());
             }
         }
     // By hash: neighbours in the data lie far apart in the list.

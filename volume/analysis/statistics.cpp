@@ -40,8 +40,7 @@ public:
     }
 
     Statistics run(const Progress& progress) {
-        const glm::ivec3 count = grid_.count();
-        const auto bricks = std::size_t(count.x) * std::size_t(count.y) * std::size_t(count.z);
+        const std::size_t bricks = grid_.brickCount();
         std::vector<BrickSums> sums(bricks);
         tbb::enumerable_thread_specific<BinSet> bins([this] { return emptyBins(); });
         std::atomic<std::size_t> done = 0;
@@ -49,8 +48,7 @@ public:
         progress.advance(0, "statistics");
         parallelFor(bricks, [&](std::size_t i) {
             if (progress.stop.stop_requested()) throw Cancelled();
-            const int n = int(i);
-            sums[i] = brick({n % count.x, n / count.x % count.y, n / (count.x * count.y)}, bins.local());
+            sums[i] = brick(grid_.indexOf(i), bins.local());
             const std::size_t finished = ++done;
             if (const std::unique_lock lock(reporting, std::try_to_lock); lock)
                 progress.advance(double(finished) / double(bricks), "statistics");

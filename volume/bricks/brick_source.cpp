@@ -30,6 +30,23 @@ glm::ivec3 BrickGrid::begin(glm::ivec3 brick) const {
     return brick * brickSize * glm::ivec3(1, 1, lattice.kind == LatticeKind::BCC ? 2 : 1);
 }
 
+std::size_t BrickGrid::brickCount() const {
+    const glm::ivec3 bricks = count();
+    return std::size_t(bricks.x) * std::size_t(bricks.y) * std::size_t(bricks.z);
+}
+
+std::size_t BrickGrid::numberOf(glm::ivec3 brick) const {
+    const glm::ivec3 bricks = count();
+    return (std::size_t(brick.z) * std::size_t(bricks.y) + std::size_t(brick.y)) * std::size_t(bricks.x) +
+           std::size_t(brick.x);
+}
+
+glm::ivec3 BrickGrid::indexOf(std::size_t number) const {
+    const glm::ivec3 bricks = count();
+    const std::size_t nx = std::size_t(bricks.x), ny = std::size_t(bricks.y);
+    return {int(number % nx), int(number / nx % ny), int(number / (nx * ny))};
+}
+
 glm::ivec3 BrickGrid::end(glm::ivec3 brick) const {
     return glm::min(begin(brick + 1), lattice.size);
 }
@@ -40,6 +57,15 @@ glm::ivec3 BrickGrid::brickSamples(glm::ivec3 brick, int level) const {
 
 glm::ivec3 BrickGrid::levelSamples(int level) const {
     return atLevel(lattice.kind, lattice.size, level);
+}
+
+int BrickGrid::levelWithin(double samples) const {
+    int level = 0;
+    for (; level + 1 < levels; ++level) {
+        const glm::dvec3 size(levelSamples(level));
+        if (size.x * size.y * size.z <= samples) break;
+    }
+    return level;
 }
 
 glm::ivec3 BrickGrid::levelBegin(glm::ivec3 brick, int level) const {

@@ -29,6 +29,10 @@ struct BrickGrid {
 
     /// Bricks per axis.
     glm::ivec3 count() const;
+    std::size_t brickCount() const;
+    /// Bricks are numbered x fastest.
+    std::size_t numberOf(glm::ivec3 brick) const;
+    glm::ivec3 indexOf(std::size_t number) const;
     /// Fine storage samples of a brick: [begin, end). BCC: z counts slices and `begin.z` is even.
     glm::ivec3 begin(glm::ivec3 brick) const;
     glm::ivec3 end(glm::ivec3 brick) const;
@@ -36,6 +40,8 @@ struct BrickGrid {
     glm::ivec3 brickSamples(glm::ivec3 brick, int level) const;
     /// Storage samples of the whole lattice at a level.
     glm::ivec3 levelSamples(int level) const;
+    /// The finest level with at most so many samples, else the coarsest.
+    int levelWithin(double samples) const;
     /// Storage index, at that level, of the first sample of a brick.
     glm::ivec3 levelBegin(glm::ivec3 brick, int level) const;
     /// Shift in fine cells: sublattice sample i of level l lies at fine cell i * 2^l + levelPhase(l) (+ 1/2 on odd
@@ -108,6 +114,8 @@ struct BrickSamples {
     glm::ivec3 size{0};
     std::vector<float> values;
     std::vector<std::uint8_t> present; ///< empty: all present; else one byte per sample, 0 = absent (value undefined)
+
+    bool isPresent(std::size_t index) const { return volume::isPresent(present, index); }
 };
 
 /// A data set as bricks; implemented by in-memory data sets and by archives. All functions may be called from any

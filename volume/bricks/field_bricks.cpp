@@ -129,7 +129,7 @@ BrickSamples coarseBrick(const Field& field, const BrickGrid& grid, const BrickK
                             const std::size_t at = (std::size_t(k) * std::size_t(fine.size.y) + std::size_t(j)) *
                                                        std::size_t(fine.size.x) +
                                                    std::size_t(i);
-                            block.add(double(fine.values[at]), fine.present.empty() || fine.present[at] != 0);
+                            block.add(double(fine.values[at]), fine.isPresent(at));
                         }
                 if (block.exists()) out.values[to] = float(block.value());
                 if (!out.present.empty()) out.present[to] = block.exists() ? 1 : 0;

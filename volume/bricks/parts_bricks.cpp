@@ -23,7 +23,7 @@ std::vector<std::uint8_t> partsOfSamples(const BrickSamples& labels, const Parts
     std::uint8_t part = 0;
     bool known = false;
     for (std::size_t i = 0; i < out.size(); ++i) {
-        if (!labels.present.empty() && labels.present[i] == 0) continue;
+        if (!labels.isPresent(i)) continue;
         const float value = labels.values[i];
         if (!known || value != last) {
             last = value;
@@ -84,9 +84,7 @@ BrickSamples coarserOfParts(const BrickGrid& grid, int level, const BrickSamples
         for (int y = 0; y < out.size.y; ++y)
             for (int x = 0; x < out.size.x; ++x, ++to) {
                 const int first = (z / slices) * step * slices + z % slices;
-                const auto isOwn = [&](std::size_t at) {
-                    return own[at] == wanted[to] && (fine.present.empty() || fine.present[at] != 0);
-                };
+                const auto isOwn = [&](std::size_t at) { return own[at] == wanted[to] && fine.isPresent(at); };
                 const std::size_t corner = indexOf(x * step, y * step, first);
                 if (grid.phase == 0 && isOwn(corner)) {
                     out.values[to] = fine.values[corner];
@@ -99,7 +97,7 @@ BrickSamples coarserOfParts(const BrickGrid& grid, int level, const BrickSamples
                         for (int i = x * step; i < std::min((x + 1) * step, fine.size.x); ++i) {
                             const std::size_t at = indexOf(i, j, k);
                             ++total;
-                            present += fine.present.empty() || fine.present[at] != 0 ? 1 : 0;
+                            present += fine.isPresent(at) ? 1 : 0;
                             if (!isOwn(at)) continue;
                             sum += double(fine.values[at]);
                             ++count;

@@ -47,8 +47,8 @@ public:
             farParts = partsOfSamples(source_->read(at(label, later ? time_.earlier : time_.later)), parts);
         }
         for (std::size_t i = 0; i < near.values.size(); ++i) {
-            if (!near.present.empty() && near.present[i] == 0) continue;
-            if (!far.present.empty() && far.present[i] == 0) continue;
+            if (!near.isPresent(i)) continue;
+            if (!far.isPresent(i)) continue;
             if (!nearParts.empty() && nearParts[i] != farParts[i]) continue;
             near.values[i] = float((1 - weight) * double(near.values[i]) + weight * double(far.values[i]));
         }

@@ -49,7 +49,7 @@ public:
         BrickStats stats{std::numeric_limits<float>::infinity(), -std::numeric_limits<float>::infinity(), 0};
         std::size_t present = 0;
         for (std::size_t i = 0; i < samples.values.size(); ++i) {
-            if (!samples.present.empty() && samples.present[i] == 0) continue;
+            if (!samples.isPresent(i)) continue;
             ++present;
             stats.min = std::min(stats.min, samples.values[i]);
             stats.max = std::max(stats.max, samples.values[i]);
@@ -85,29 +85,19 @@ private:
     std::vector<Range> scan(int channels, const Progress& progress) const {
         if (std::holds_alternative<TimeRecipe>(derived_.recipe)) return {{info_.times.front(), info_.times.back()}};
         const BrickGrid& bricks = grid();
-        int level = 0;
-        const auto samples = [&] {
-            const glm::dvec3 size(bricks.levelSamples(level));
-            return size.x * size.y * size.z * double(info_.times.size());
-        };
-        while (level + 1 < bricks.levels && samples() > kRangeSamples) ++level;
+        const int level = bricks.levelWithin(kRangeSamples / double(info_.times.size()));
         std::vector<Range> ranges(std::size_t(channels),
                                   {std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()});
-        const glm::ivec3 count = bricks.count();
-        const int total = count.x * count.y * count.z * int(info_.times.size());
-        for (int n = 0; n < total; ++n) {
-            progress.advance(double(n) / total, derived_.name);
-            const int brick = n % (count.x * count.y * count.z);
-            BrickKey key{0,
-                         n / (count.x * count.y * count.z),
-                         level,
-                         {brick % count.x, brick / count.x % count.y, brick / (count.x * count.y)}};
+        const std::size_t count = bricks.brickCount(), total = count * info_.times.size();
+        for (std::size_t n = 0; n < total; ++n) {
+            progress.advance(double(n) / double(total), derived_.name);
+            BrickKey key{0, int(n / count), level, bricks.indexOf(n % count)};
             for (int c = 0; c < channels; ++c) {
                 key.channel = first_ + c;
                 const BrickSamples read = this->read(key);
                 Range& range = ranges[std::size_t(c)];
                 for (std::size_t i = 0; i < read.values.size(); ++i)
-                    if (presentAt(read, i)) {
+                    if (read.isPresent(i)) {
                         range.lo = std::min(range.lo, double(read.values[i]));
                         range.hi = std::max(range.hi, double(read.values[i]));
                     }

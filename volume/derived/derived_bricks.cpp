@@ -167,7 +167,7 @@ struct DerivedBricks::Impl {
         expression_->evaluate(values, results);
         for (std::size_t i = 0; i < count; ++i) {
             const bool present =
-                std::all_of(samples.begin(), samples.end(), [&](const BrickSamples& of) { return presentAt(of, i); });
+                std::all_of(samples.begin(), samples.end(), [&](const BrickSamples& of) { return of.isPresent(i); });
             if (present)
                 set(out, i, results[i]);
             else
@@ -253,7 +253,7 @@ struct DerivedBricks::Impl {
             own.channel = channel;
             const BrickSamples samples = source_->read(own);
             for (std::size_t i = 0; i < count; ++i) {
-                if (!presentAt(samples, i)) continue;
+                if (!samples.isPresent(i)) continue;
                 // Welford: close values keep their digits.
                 const double value = double(samples.values[i]), before = value - mean[i];
                 n[i] += 1;
@@ -274,7 +274,7 @@ struct DerivedBricks::Impl {
         const auto both = means_.get(overTime);
         BrickSamples out = input(channelOf(recipe.channel), key);
         for (std::size_t i = 0; i < out.values.size(); ++i) {
-            if (!presentAt(out, i)) continue;
+            if (!out.isPresent(i)) continue;
             if (recipe.measure == TimeMeasure::FromMean)
                 set(out, i, double(out.values[i]) - double((*both)[0].values[i]));
             else
@@ -296,7 +296,7 @@ struct DerivedBricks::Impl {
         BrickSamples out = input(channel, key);
         const BrickSamples other = input(times_.front(), key);
         for (std::size_t i = 0; i < out.values.size(); ++i) {
-            if (presentAt(out, i) && presentAt(other, i))
+            if (out.isPresent(i) && other.isPresent(i))
                 set(out, i, double(out.values[i]) - toOwnUnit_(double(other.values[i])));
             else
                 setAbsent(out, i);

@@ -33,8 +33,4 @@ private:
     std::unique_ptr<Impl> impl_;
 };
 
-inline bool presentAt(const BrickSamples& samples, std::size_t i) {
-    return samples.present.empty() || samples.present[i] != 0;
-}
-
 } // namespace tessera::volume

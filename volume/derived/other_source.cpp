@@ -62,7 +62,7 @@ BrickStats statsOfSamples(const BrickSamples& samples) {
     BrickStats stats{std::numeric_limits<float>::infinity(), -std::numeric_limits<float>::infinity(), 0};
     std::size_t present = 0;
     for (std::size_t i = 0; i < samples.values.size(); ++i) {
-        if (!presentAt(samples, i)) continue;
+        if (!samples.isPresent(i)) continue;
         ++present;
         stats.min = std::min(stats.min, samples.values[i]);
         stats.max = std::max(stats.max, samples.values[i]);
@@ -205,7 +205,7 @@ public:
           of_(sourceAt(onto_.source(), of.time)), minus_(sourceAt(minus.source, minus.time)), ofChannel_(of.channel),
           minusChannel_(minus.channel) {
         const DatasetInfo &left = of.source->info(), &right = minus.source->info();
-        const Channel a = left.channels()[std::size_t(of.channel)], b = right.channels()[std::size_t(minus.channel)];
+        const Channel a = left.channel(of.channel), b = right.channel(minus.channel);
         const auto toUnit = unitConversion(b.unit, a.unit);
         if (!toUnit)
             throw Error(a.name + " in " + (a.unit.empty() ? "no unit" : a.unit) + " and " + b.name + " in " +
@@ -234,7 +234,7 @@ public:
         BrickSamples out = onto_.read(*of_.source, {ofChannel_, of_.time, key.level, key.index});
         const BrickSamples other = minus_.source->read({minusChannel_, minus_.time, key.level, key.index});
         for (std::size_t i = 0; i < out.values.size(); ++i) {
-            const bool there = presentAt(out, i) && presentAt(other, i);
+            const bool there = out.isPresent(i) && other.isPresent(i);
             out.values[i] = there ? float(double(out.values[i]) - toUnit_(double(other.values[i]))) : 0;
             if (there) continue;
             if (out.present.empty()) out.present.assign(out.values.size(), 1);
@@ -245,19 +245,12 @@ public:
 
 private:
     Range scan(const Progress& progress) const {
-        int level = 0;
-        const auto samples = [&] {
-            const glm::dvec3 size(grid().levelSamples(level));
-            return size.x * size.y * size.z;
-        };
-        while (level + 1 < grid().levels && samples() > kOtherRangeSamples) ++level;
+        const int level = grid().levelWithin(kOtherRangeSamples);
         Range range{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
-        const glm::ivec3 count = grid().count();
-        const int total = count.x * count.y * count.z;
-        for (int n = 0; n < total; ++n) {
-            progress.advance(double(n) / total);
-            const BrickStats stats =
-                statsOfSamples(read({0, 0, level, {n % count.x, n / count.x % count.y, n / (count.x * count.y)}}));
+        const std::size_t bricks = grid().brickCount();
+        for (std::size_t n = 0; n < bricks; ++n) {
+            progress.advance(double(n) / double(bricks));
+            const BrickStats stats = statsOfSamples(read({0, 0, level, grid().indexOf(n)}));
             range.lo = std::min(range.lo, double(stats.min));
             range.hi = std::max(range.hi, double(stats.max));
         }

@@ -53,7 +53,7 @@ std::string otherProblem(const DatasetInfo& info, int channel) {
     if (otherChannel(info, channel)) return {};
     const bool any = std::any_of(info.parameters.begin(), info.parameters.end(),
                                  [](const Parameter& own) { return own.name.ends_with(kOtherSuffix); });
-    const std::string name = info.channels()[std::size_t(channel)].name;
+    const std::string name = info.channel(channel).name;
     return any ? "the other data have no parameter \"" + name + "\"" : "no other data are shown beside these";
 }
 

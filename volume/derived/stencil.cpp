@@ -23,7 +23,7 @@ std::vector<std::uint8_t> partsAround(const BrickGrid& grid, BrickKey key, int r
 } // namespace
 
 std::optional<PartLabel> partLabel(const DatasetInfo& info, int channel) {
-    const Parameter& parameter = info.parameters[std::size_t(info.channels()[std::size_t(channel)].parameter)];
+    const Parameter& parameter = info.parameters[std::size_t(info.channel(channel).parameter)];
     const std::optional<int> label = labelChannel(info, parameter);
     if (!label) return std::nullopt;
     return PartLabel{*label, parameter.parts};
@@ -46,7 +46,7 @@ std::optional<double> Neighbourhood::at(glm::ivec3 in, int axis, int steps) cons
     if (global < 0 || global >= whole_[axis]) return std::nullopt;
     const std::size_t index = indexIn(samples_.size, in + border);
     if (!parts_.empty() && parts_[index] != parts_[centre]) return std::nullopt;
-    if (!samples_.present.empty() && samples_.present[index] == 0) return std::nullopt;
+    if (!samples_.isPresent(index)) return std::nullopt;
     return double(samples_.values[index]);
 }
 
@@ -69,7 +69,7 @@ BrickSamples smoothedWithin(const BrickSamples& wide, glm::ivec3 own, int reach,
     glm::ivec3 size = wide.size;
     std::vector<double> sum(wide.values.size()), coverage(wide.values.size());
     for (std::size_t i = 0; i < sum.size(); ++i) {
-        const bool present = wide.present.empty() || wide.present[i] != 0;
+        const bool present = wide.isPresent(i);
         coverage[i] = present ? 1 : 0;
         sum[i] = present ? double(wide.values[i]) : 0;
     }
@@ -104,8 +104,7 @@ BrickSamples smoothedWithin(const BrickSamples& wide, glm::ivec3 own, int reach,
     for (int z = 0; z < own.z; ++z)
         for (int y = 0; y < own.y; ++y)
             for (int x = 0; x < own.x; ++x, ++i) {
-                const bool present = wide.present.empty() ||
-                                     wide.present[indexIn(wide.size, {x + reach, y + reach, z + reach * slices})] != 0;
+                const bool present = wide.isPresent(indexIn(wide.size, {x + reach, y + reach, z + reach * slices}));
                 if (!present) out.present[i] = 0;
                 out.values[i] = present ? float(sum[i] / coverage[i]) : 0;
             }

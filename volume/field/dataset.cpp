@@ -12,22 +12,38 @@ double extentOf(const Parameter& parameter) {
     return extent;
 }
 
+namespace {
+
+/// Components, and for vectors the magnitude behind them.
+int channelCount(const Parameter& parameter) {
+    return parameter.components == 1 ? 1 : parameter.components + 1;
+}
+
+Channel channelOf(const Parameter& parameter, int index, int component) {
+    if (parameter.components == 1) return {index, 0, parameter.name, parameter.unit, false};
+    if (component == parameter.components) return {index, component, "|" + parameter.name + "|", parameter.unit, true};
+    const std::string suffix = component < 3 ? std::string(1, "xyz"[component]) : std::to_string(component);
+    return {index, component, parameter.name + "." + suffix, parameter.unit, false};
+}
+
+} // namespace
+
 std::vector<Channel> DatasetInfo::channels() const {
     std::vector<Channel> all;
-    for (std::size_t p = 0; p < parameters.size(); ++p) {
-        const Parameter& parameter = parameters[p];
-        const int index = static_cast<int>(p);
-        if (parameter.components == 1) {
-            all.push_back({index, 0, parameter.name, parameter.unit, false});
-            continue;
-        }
-        for (int c = 0; c < parameter.components; ++c) {
-            const std::string suffix = c < 3 ? std::string(1, "xyz"[c]) : std::to_string(c);
-            all.push_back({index, c, parameter.name + "." + suffix, parameter.unit, false});
-        }
-        all.push_back({index, parameter.components, "|" + parameter.name + "|", parameter.unit, true});
-    }
+    for (std::size_t p = 0; p < parameters.size(); ++p)
+        for (int c = 0; c < channelCount(parameters[p]); ++c)
+            all.push_back(channelOf(parameters[p], static_cast<int>(p), c));
     return all;
+}
+
+Channel DatasetInfo::channel(int index) const {
+    int component = index;
+    for (std::size_t p = 0; component >= 0 && p < parameters.size(); ++p) {
+        const int count = channelCount(parameters[p]);
+        if (component < count) return channelOf(parameters[p], static_cast<int>(p), component);
+        component -= count;
+    }
+    throw std::out_of_range("no channel " + std::to_string(index));
 }
 
 std::optional<int> DatasetInfo::findChannel(std::string_view wanted) const {

@@ -72,6 +72,8 @@ struct DatasetInfo {
 
     /// Every channel: parameters in order, for vectors the components, then the magnitude.
     std::vector<Channel> channels() const;
+    /// One of them, 0 .. channels().size() - 1; throws std::out_of_range.
+    Channel channel(int index) const;
     /// Index into channels() of a channel name; a vector's plain name means its magnitude.
     std::optional<int> findChannel(std::string_view wanted) const;
     /// Physical range of a channel, {0, 1} while not known.

@@ -15,6 +15,11 @@ namespace tessera::volume {
 /// shared.
 using Mask = std::vector<std::uint8_t>;
 
+/// Whether a sample is present by flags that are empty where all are.
+inline bool isPresent(std::span<const std::uint8_t> flags, std::size_t index) {
+    return flags.empty() || flags[index] != 0;
+}
+
 /// One component of one parameter at one time on one lattice: the samples as stored, x fastest, and how to read them.
 /// physical value = offset + scale * stored value.
 struct Field {

@@ -89,7 +89,7 @@ std::optional<double> valueAt(const SampleGrid& grid, glm::dvec3 position) {
     const Lattice& lattice = grid.lattice;
     const auto sample = [&](glm::ivec3 place) -> Sample {
         const std::size_t index = lattice.index(clampToLattice(lattice.kind, lattice.size, place));
-        const bool present = grid.present.empty() || grid.present[index] != 0;
+        const bool present = grid.isPresent(index);
         return {present ? double(grid.values[index]) : 0.0, present};
     };
     const LevelGeometry geometry{lattice.kind, 1, 0};

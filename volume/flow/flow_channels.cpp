@@ -63,7 +63,7 @@ std::optional<int> labelChannel(const DatasetInfo& info, const std::string& name
 }
 
 const Parameter& parameterOf(const DatasetInfo& info, int channel) {
-    return info.parameters.at(std::size_t(info.channels().at(std::size_t(channel)).parameter));
+    return info.parameters.at(std::size_t(info.channel(channel).parameter));
 }
 
 std::string labelName(const Parameter& label, int value) {

@@ -42,7 +42,7 @@ struct Neighbour {
 Neighbour neighbour(const SampleGrid& grid, glm::ivec3 at) {
     if (!inGrid(grid.lattice, at)) return {};
     const std::size_t index = grid.lattice.index(at);
-    if (!grid.present.empty() && grid.present[index] == 0) return {};
+    if (!grid.isPresent(index)) return {};
     return {true, grid.values[index]};
 }
 

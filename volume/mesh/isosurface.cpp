@@ -107,11 +107,11 @@ void sampleAtVertices(SurfaceMesh& mesh, const BrickSource& source, int channel,
                       const Progress& progress) {
     const SampleGrid grid = readSamples(source, channel, time, level, progress.part(0, 0.5));
     const Lattice& lattice = grid.lattice;
-    const Channel known = source.info().channels()[std::size_t(channel)];
+    const Channel known = source.info().channel(channel);
     const bool categorical = source.info().parameters[std::size_t(known.parameter)].categorical;
     const auto labelAt = [&](glm::dvec3 position) -> std::optional<double> {
         const std::size_t index = lattice.index(lattice.nearest(position));
-        if (!grid.present.empty() && grid.present[index] == 0) return std::nullopt;
+        if (!grid.isPresent(index)) return std::nullopt;
         return double(grid.values[index]);
     };
     mesh.scalars.resize(mesh.positions.size());

@@ -30,7 +30,7 @@ public:
         const std::size_t n =
             (std::size_t(in.z) * std::size_t(samples.size.y) + std::size_t(in.y)) * std::size_t(samples.size.x) +
             std::size_t(in.x);
-        const bool present = samples.present.empty() || samples.present[n] != 0;
+        const bool present = samples.isPresent(n);
         return {present ? double(samples.values[n]) : 0.0, present};
     }
 
@@ -56,7 +56,7 @@ private:
 class ChannelProbe {
 public:
     ChannelProbe(const BrickSource& source, int channel, int time)
-        : source_(source), channel_(source.info().channels()[std::size_t(channel)]), samples_(source, channel, time) {
+        : source_(source), channel_(source.info().channel(channel)), samples_(source, channel, time) {
         if (const std::optional<int> label = labelChannel(source.info(), parameter()))
             labels_.emplace(source, *label, time);
     }
@@ -156,7 +156,7 @@ std::vector<ProbeValue> probe(const BrickSource& source, glm::dvec3 position, co
 std::vector<ProbeValue> probeAlong(const BrickSource& source, int channel, std::span<const glm::dvec3> positions,
                                    const TimePair& time) {
     const DatasetInfo& info = source.info();
-    const Channel known = info.channels()[std::size_t(channel)];
+    const Channel known = info.channel(channel);
     if (!time.between() || info.parameters[std::size_t(known.parameter)].categorical)
         return probeAlong(source, channel, positions, time.nearest());
     return mixed(source, channel, positions, time);

@@ -59,7 +59,7 @@ struct BrickView {
         const std::size_t index =
             (std::size_t(in.z) * std::size_t(brick.size.y) + std::size_t(in.y)) * std::size_t(brick.size.x) +
             std::size_t(in.x);
-        const bool present = brick.present.empty() || brick.present[index] != 0;
+        const bool present = brick.isPresent(index);
         return {present ? double(brick.values[index]) : 0.0, present};
     }
 };

@@ -25,8 +25,8 @@ SampleGrid pairMeans(const BrickGrid& bricks, int level, const SampleGrid& fine,
     const std::size_t slice = std::size_t(stored.x) * std::size_t(stored.y);
     for (std::size_t i = 0; i < out.values.size(); ++i) {
         const std::size_t even = i / slice * 2 * slice + i % slice, odd = even + slice;
-        const bool hasEven = fine.present.empty() || fine.present[even] != 0;
-        const bool hasOdd = odd < fine.values.size() && (fine.present.empty() || fine.present[odd] != 0);
+        const bool hasEven = fine.isPresent(even);
+        const bool hasOdd = odd < fine.values.size() && fine.isPresent(odd);
         const float a = fine.values[even], b = hasOdd ? fine.values[odd] : a;
         const bool alike = !isLabel && (fine.parts.empty() || (hasOdd && fine.parts[even] == fine.parts[odd]));
         out.values[i] = hasEven && hasOdd && alike ? 0.5f * (a + b) : hasEven ? a : b;
@@ -80,7 +80,7 @@ SampleGrid readStored(const BrickSource& source, int channel, int time, int leve
 } // namespace
 
 SampleGrid readSamples(const BrickSource& source, int channel, int time, int level, const Progress& progress) {
-    const Channel known = source.info().channels()[std::size_t(channel)];
+    const Channel known = source.info().channel(channel);
     const Parameter& parameter = source.info().parameters[std::size_t(known.parameter)];
     const std::optional<int> label = labelChannel(source.info(), parameter);
     SampleGrid out = readStored(source, channel, time, level, label ? progress.part(0, 0.5) : progress);

@@ -14,6 +14,8 @@ struct SampleGrid {
     std::vector<float> values;
     std::vector<std::uint8_t> present;    ///< empty: all; else one byte per sample, 0 = absent (value undefined)
     std::vector<std::uint8_t> parts = {}; ///< the part of each sample (volume/field/parts.h); empty: all are of one
+
+    bool isPresent(std::size_t index) const { return volume::isPresent(present, index); }
 };
 
 /// Reads every brick of a channel at a level, and of its label where that says parts. Coarse levels of BCC are no BCC

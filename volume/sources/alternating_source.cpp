@@ -54,14 +54,11 @@ BrickSamples blendBricks(const std::vector<std::shared_ptr<const BrickSamples>>&
     const auto isWhole = [](const auto& brick) { return brick->present.empty(); };
     if (std::all_of(bricks.begin(), bricks.end(), isWhole)) return out;
     std::vector<std::uint8_t> present(out.values.size(), 1);
-    const auto has = [](const BrickSamples& brick, std::size_t i) {
-        return brick.present.empty() || brick.present[i] != 0;
-    };
     for (std::size_t i = 0; i < out.values.size(); ++i) {
-        if (std::all_of(bricks.begin(), bricks.end(), [&](const auto& brick) { return has(*brick, i); })) continue;
+        if (std::all_of(bricks.begin(), bricks.end(), [&](const auto& brick) { return brick->isPresent(i); })) continue;
         Blend blend;
         for (std::size_t b = 0; b < bricks.size(); ++b)
-            blend.add(times[b].linear, {double(bricks[b]->values[i]), has(*bricks[b], i)});
+            blend.add(times[b].linear, {double(bricks[b]->values[i]), bricks[b]->isPresent(i)});
         const std::optional<double> value = blend.value();
         present[i] = value ? 1 : 0;
         out.values[i] = value ? float(*value) : 0.0f;

@@ -110,20 +110,21 @@ public:
 
     BrickStats stats(const BrickKey& key) const override {
         const Channel& channel = channelOf(key);
-        if (!channel.magnitude) return frameStats({channel.parameter, channel.component, key.time})[brickIndex(key)];
+        if (!channel.magnitude)
+            return frameStats({channel.parameter, channel.component, key.time})[grid_.numberOf(key.index)];
         std::vector<BrickStats> components;
         for (int c = 0; c < channel.component; ++c)
-            components.push_back(frameStats({channel.parameter, c, key.time})[brickIndex(key)]);
+            components.push_back(frameStats({channel.parameter, c, key.time})[grid_.numberOf(key.index)]);
         return magnitudeStatsOf(components);
     }
 
     std::optional<BrickImportance> importance(const BrickKey& key) const override {
         const Channel& channel = channelOf(key);
         if (!channel.magnitude)
-            return frameImportance({channel.parameter, channel.component, key.time})[brickIndex(key)];
+            return frameImportance({channel.parameter, channel.component, key.time})[grid_.numberOf(key.index)];
         std::vector<BrickImportance> components;
         for (int c = 0; c < channel.component; ++c)
-            components.push_back(frameImportance({channel.parameter, c, key.time})[brickIndex(key)]);
+            components.push_back(frameImportance({channel.parameter, c, key.time})[grid_.numberOf(key.index)]);
         return magnitudeImportance(components);
     }
 
@@ -161,11 +162,6 @@ private:
             key.index.z >= count.z)
             throw Error("no such brick", info_.name);
         return channels_[std::size_t(key.channel)];
-    }
-
-    std::size_t brickIndex(const BrickKey& key) const {
-        const glm::ivec3 count = grid_.count();
-        return std::size_t((key.index.z * count.y + key.index.y) * count.x + key.index.x);
     }
 
     FramePtr loadFrame(const FrameKey& key) const {
@@ -219,11 +215,9 @@ private:
             if (const auto found = stats_.find(key); found != stats_.end()) return found->second;
         }
         const FramePtr frame = frames_.get(key);
-        const glm::ivec3 count = grid_.count();
-        std::vector<BrickStats> all(std::size_t(count.x * count.y * count.z));
+        std::vector<BrickStats> all(grid_.brickCount());
         parallelFor(all.size(), [&](std::size_t i) {
-            const int n = int(i);
-            const glm::ivec3 brick(n % count.x, n / count.x % count.y, n / (count.x * count.y));
+            const glm::ivec3 brick = grid_.indexOf(i);
             all[i] = brickStats(*frame, grid_.begin(brick), grid_.end(brick));
         });
         const std::lock_guard lock(statsMutex_);

@@ -48,15 +48,14 @@ std::optional<SourceDifference> sourceDifference(const SourcePart& a, const Sour
         sum.add(one.values, one.present, other.values, other.present);
         return sum.result();
     }
-    const glm::ivec3 count = left.count();
-    const int bricks = count.x * count.y * count.z;
-    for (int i = 0; i < bricks; ++i) {
+    const std::size_t bricks = left.brickCount();
+    for (std::size_t i = 0; i < bricks; ++i) {
         if (progress.stop.stop_requested()) throw Cancelled();
-        const glm::ivec3 at(i % count.x, i / count.x % count.y, i / count.x / count.y);
+        const glm::ivec3 at = left.indexOf(i);
         const BrickSamples one = a.source.read({a.channel, a.time, 0, at}),
                            other = b.source.read({b.channel, b.time, 0, at});
         sum.add(one.values, one.present, other.values, other.present);
-        progress.advance(double(i + 1) / bricks);
+        progress.advance(double(i + 1) / double(bricks));
     }
     return sum.result();
 }

@@ -108,7 +108,7 @@ BenchTable benchLink() {
     const volume::Box box = timed.workbench().source()->info().bounds;
     const Range heat = [&] {
         const volume::DatasetInfo& info = timed.workbench().source()->info();
-        return info.channelRange(info.channels()[std::size_t(info.findChannel("T").value())]);
+        return info.channelRange(info.channel(info.findChannel("T").value()));
     }();
     const auto at = [](Range range, double share) { return range.lo + share * (range.hi - range.lo); };
 

@@ -187,8 +187,7 @@ void ComparePictures::measureSamples(ViewContext& context, const std::string& pa
             const volume::DatasetInfo &ownInfo = of.own->info(), &wantedInfo = of.reference->info();
             const auto a = ownInfo.findChannel(of.channel), b = wantedInfo.findChannel(of.referenceChannel);
             if (!a || !b) return std::nullopt;
-            if (ownInfo.channels()[std::size_t(*a)].unit != wantedInfo.channels()[std::size_t(*b)].unit)
-                return std::nullopt;
+            if (ownInfo.channel(*a).unit != wantedInfo.channel(*b).unit) return std::nullopt;
             try {
                 const auto one = volume::sourceAt(of.own, volume::timesAround(ownInfo.times, of.time)),
                            other =

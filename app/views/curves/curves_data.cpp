@@ -96,7 +96,7 @@ CurvesView resolvedCurves(const CurvesView& view, const volume::DatasetInfo& inf
                 out.y.push_back(quantity.name);
         if (out.y.empty())
             for (const int channel : comparedChannels(info)) {
-                out.y = {"mean(" + info.channels()[std::size_t(channel)].name + ")"};
+                out.y = {"mean(" + info.channel(channel).name + ")"};
                 break;
             }
     }

@@ -42,7 +42,7 @@ void chooseStatistic(const volume::DatasetInfo& info, std::vector<std::string>& 
     for (const auto& [word, title] : kKinds) {
         if (!ImGui::BeginMenu(title)) continue;
         for (const int channel : comparedChannels(info)) {
-            const std::string& name = info.channels()[std::size_t(channel)].name;
+            const std::string& name = info.channel(channel).name;
             const std::string term = std::string(word) + "(" + name + ")";
             if (ImGui::MenuItem(name.c_str(), nullptr, std::ranges::find(y, term) != y.end())) toggle(y, term);
         }
@@ -123,7 +123,7 @@ void chooseRegion(const volume::DatasetInfo& info, CurvesView& view) {
     if (ImGui::BeginCombo("##region", view.region.empty() ? "everywhere" : view.region.c_str())) {
         if (ImGui::Selectable("everywhere", view.region.empty())) view.region.clear();
         for (const LabelRegion& region : regions) {
-            const volume::Channel channel = info.channels()[std::size_t(region.label)];
+            const volume::Channel channel = info.channel(region.label);
             if (ImGui::Selectable(region.name.c_str())) view.region = channel.name + "=" + std::to_string(region.value);
         }
         ImGui::EndCombo();

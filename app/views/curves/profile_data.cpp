@@ -97,7 +97,7 @@ std::string profileCsv(const volume::DatasetInfo& info, const Session& session, 
 
 std::vector<std::uint8_t> profileImage(const volume::DatasetInfo& info, const Session& session, const Profile& profile,
                                        std::size_t channel) {
-    const volume::Channel own = info.channels()[static_cast<std::size_t>(profile.query.channels[channel])];
+    const volume::Channel own = info.channel(profile.query.channels[channel]);
     const vis::TransferFunction& function = transferOf(session, own.name);
     const Range range = vis::effectiveRange(function, info.channelRange(own));
     const std::size_t places = profile.positions.size();

@@ -38,7 +38,7 @@ void setInterest(volume::SectionQuery& query, const SectionCurvesQuery& asked, c
 }
 
 volume::Channel channelOf(const volume::DatasetInfo& info, int channel) {
-    return info.channels().at(static_cast<std::size_t>(channel));
+    return info.channel(channel);
 }
 
 std::string velocityUnit(const volume::DatasetInfo& info, const std::string& velocity) {

@@ -45,7 +45,7 @@ bool plainName(const std::string& name) {
 
 std::string unitOf(const volume::DatasetInfo& info, const std::string& channel) {
     const auto found = info.findChannel(channel);
-    return found ? info.channels()[static_cast<std::size_t>(*found)].unit : "";
+    return found ? info.channel(*found).unit : "";
 }
 
 std::string differenceName(const volume::DatasetInfo& info, const volume::DifferenceRecipe& recipe) {
@@ -203,7 +203,7 @@ void drawDerivedList(ViewContext& context, DerivedDraft& draft) {
     if (ImGui::IsItemHovered()) tooltip("A parameter computed from the others; it is used like any other");
     const volume::DatasetInfo& info = context.source->info();
     const auto channel = resolveChannel(info, context.session, "");
-    const std::string name = channel ? info.channels()[static_cast<std::size_t>(*channel)].name : "";
+    const std::string name = channel ? info.channel(*channel).name : "";
     if (channel && (info.times.size() > 1 || hasOther(info, name))) {
         ImGui::SameLine();
         drawDifferences(context, draft, name);

@@ -39,12 +39,12 @@ std::string channelOf(const vis::Technique& technique) {
 vis::Layer newLayer(const Session& session, const volume::DatasetInfo& info, std::size_t kind) {
     vis::Layer layer;
     const auto channel = resolveChannel(info, session, "");
-    const std::string name = channel ? info.channels()[static_cast<std::size_t>(*channel)].name : "";
+    const std::string name = channel ? info.channel(*channel).name : "";
     if (kind == 0) layer.technique = vis::VolumeLayer{.channel = name};
     if (kind == 1) {
         vis::IsoLayer iso{.channel = name};
         if (channel) {
-            const Range range = info.channelRange(info.channels()[static_cast<std::size_t>(*channel)]);
+            const Range range = info.channelRange(info.channel(*channel));
             iso.value = (range.lo + range.hi) / 2;
         }
         layer.technique = iso;

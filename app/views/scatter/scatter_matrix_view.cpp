@@ -46,7 +46,7 @@ int meanChannel(BrushedQuery& query, const volume::DatasetInfo& info, const std:
     const auto found = std::find(query.channels.begin(), query.channels.end(), *channel);
     if (found != query.channels.end()) return static_cast<int>(found - query.channels.begin());
     query.channels.push_back(*channel);
-    query.ranges.push_back(info.channelRange(info.channels()[static_cast<std::size_t>(*channel)]));
+    query.ranges.push_back(info.channelRange(info.channel(*channel)));
     return static_cast<int>(query.channels.size()) - 1;
 }
 
@@ -54,8 +54,7 @@ MeanColors meanColors(const Session& session, const volume::DatasetInfo& info, c
     const auto channel = info.findChannel(name);
     if (name.empty() || !channel) return {};
     const vis::TransferFunction& function = transferOf(session, name);
-    return {function,
-            vis::effectiveRange(function, info.channelRange(info.channels()[static_cast<std::size_t>(*channel)]))};
+    return {function, vis::effectiveRange(function, info.channelRange(info.channel(*channel)))};
 }
 
 void updateTextures(ScatterCache& cache, const std::shared_ptr<const StatisticsResult>& result, bool logDensity,

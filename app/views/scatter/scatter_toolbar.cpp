@@ -42,7 +42,7 @@ void addAxis(ViewContext& context, ScatterMatrixView& view, const std::vector<in
     else
         wanted = *same;
     if (view.channels.empty())
-        for (const int each : shown) view.channels.push_back(info.channels()[static_cast<std::size_t>(each)].name);
+        for (const int each : shown) view.channels.push_back(info.channel(each).name);
     const auto show = [&](const std::string& name) {
         if (std::find(view.channels.begin(), view.channels.end(), name) == view.channels.end())
             view.channels.push_back(name);
@@ -114,7 +114,7 @@ void drawMore(ViewContext& context, ScatterMatrixView& view, const std::vector<i
         ImGui::Separator();
         if (ImGui::BeginMenu("Add gradient magnitude of")) {
             for (const int channel : comparedChannels(info)) {
-                const std::string name = info.channels()[static_cast<std::size_t>(channel)].name;
+                const std::string name = info.channel(channel).name;
                 if (ImGui::MenuItem(name.c_str())) addAxis(context, view, shown, 2, name);
             }
             ImGui::EndMenu();

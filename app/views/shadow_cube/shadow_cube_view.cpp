@@ -63,7 +63,7 @@ void drawReading(ViewContext& context, const CubeFrame& frame, ShadowCubeCache& 
             volume::sourceAt(cache.bricks, volume::timesAround(frame.info.times, context.session.time));
         const auto value = readWall(*shown.source, context.session, *channel, wall.kind, kCubeFaces[hit.face],
                                     frame.physical(hit), shown.time);
-        const volume::Channel known = frame.info.channels()[static_cast<std::size_t>(*channel)];
+        const volume::Channel known = frame.info.channel(*channel);
         const bool share = wall.kind == WallKind::XRay || wall.kind == WallKind::Shadow;
         const Range range = frame.info.channelRange(known);
         text = (wall.kind == WallKind::Shadow ? "selected" : kindName(wall.kind) + " " + known.name) + ": " +
@@ -222,7 +222,7 @@ std::set<int> drawWalls(ViewContext& context, const CubeFrame& frame, ShadowCube
         const Wall& wall = wallOf(view, i);
         const auto channel = resolveChannel(frame.info, context.session, wall.channel);
         if (!channel || !facesViewer(face, frame.half, frame.camera)) continue;
-        const std::string name = frame.info.channels()[static_cast<std::size_t>(*channel)].name;
+        const std::string name = frame.info.channel(*channel).name;
         const double width = std::max(frame.world.halfSize[face.right()], 1e-3),
                      height = std::max(frame.world.halfSize[face.up()], 1e-3), longer = std::max(width, height);
         vis::FrameRequest request;

@@ -137,7 +137,7 @@ std::optional<double> readWall(const volume::BrickSource& source, const Session&
     }
     const std::vector<glm::dvec3> places = placesBehind(info, face, position);
     if (kind == WallKind::Shadow) return greatestInterest(source, session, places, time);
-    const volume::Channel known = info.channels()[std::size_t(channel)];
+    const volume::Channel known = info.channel(channel);
     const vis::Scene scene = sceneOf(session);
     const vis::TransferFunction& function = vis::transferFor(scene, known.name);
     const Range range = vis::effectiveRange(function, info.channelRange(known));

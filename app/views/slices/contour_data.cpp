@@ -50,7 +50,7 @@ Contours readContours(const volume::BrickSource& source, const ContourQuery& que
     plane.size = {nodesAlong(info, right, finer), nodesAlong(info, up, finer)};
     const glm::dvec3 size = info.bounds.size();
     const glm::dvec2 node(size[right] / (plane.size.x - 1), size[up] / (plane.size.y - 1));
-    const volume::Channel channel = info.channels().at(static_cast<std::size_t>(query.channel));
+    const volume::Channel channel = info.channel(query.channel);
     const volume::Parameter& parameter = info.parameters[static_cast<std::size_t>(channel.parameter)];
     const std::optional<int> label = volume::labelChannel(info, parameter);
     for (int first = 0; first < plane.size.y; first += kBand) {
@@ -83,12 +83,12 @@ std::optional<int> contourChannel(const volume::DatasetInfo& info, const SlicesV
     if (view.contours < 1) return std::nullopt;
     const auto channel = view.contourOf.empty() ? std::optional(shown) : info.findChannel(view.contourOf);
     if (!channel) return std::nullopt;
-    const int parameter = info.channels()[static_cast<std::size_t>(*channel)].parameter;
+    const int parameter = info.channel(*channel).parameter;
     return info.parameters[static_cast<std::size_t>(parameter)].categorical ? std::nullopt : channel;
 }
 
 ContourLevels contourLevels(const Session& session, const volume::DatasetInfo& info, int channel, int count) {
-    const volume::Channel own = info.channels().at(static_cast<std::size_t>(channel));
+    const volume::Channel own = info.channel(channel);
     return contourLevels(vis::effectiveRange(transferOf(session, own.name), info.channelRange(own)), count);
 }
 

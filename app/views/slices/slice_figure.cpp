@@ -49,7 +49,7 @@ FigurePanel slicePanel(const volume::BrickSource& source, const Session& session
     const auto& [nameY, unitY] = labels[static_cast<std::size_t>(axes.up)];
     const auto& [name, unit] = labels[static_cast<std::size_t>(axes.normal)];
     const double depth = info.bounds.size()[axes.normal] * unit.perUnit;
-    const volume::Channel own = info.channels().at(static_cast<std::size_t>(channel));
+    const volume::Channel own = info.channel(channel);
     const vis::TransferFunction& function = transferOf(session, own.name);
     const Range range = vis::effectiveRange(function, info.channelRange(own));
     const double digits = (range.hi - range.lo) / 100;
@@ -100,7 +100,7 @@ std::string slicesSvg(const volume::BrickSource& source, const Session& session,
                                  volume::timesAround(info.times, session.time), levels.values};
         const glm::dvec2 perUnit(labels[static_cast<std::size_t>(axes.right)].unit.perUnit,
                                  labels[static_cast<std::size_t>(axes.up)].unit.perUnit);
-        panel.note = contourTitle(info.channels()[static_cast<std::size_t>(*lined)], levels);
+        panel.note = contourTitle(info.channel(*lined), levels);
         addContours(panel, readContours(source, query, progress.part(done, done + 1.0 / std::size(kSlicePlanes))),
                     levels.step, view.contourValues, perUnit);
     }

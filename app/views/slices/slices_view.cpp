@@ -221,7 +221,7 @@ void chooseContours(const volume::DatasetInfo& info, SlicesView& view) {
 /// The line below the legend that says what the contour lines are.
 std::string contourNote(const volume::DatasetInfo& info, const SlicesView& view, const DrawnContours& lines) {
     if (view.contours == 0 || (view.contourOf.empty() && !view.contourValues)) return {};
-    if (lines.channel) return contourTitle(info.channels()[static_cast<std::size_t>(*lines.channel)], lines.levels);
+    if (lines.channel) return contourTitle(info.channel(*lines.channel), lines.levels);
     return "no lines: " + (info.findChannel(view.contourOf) ? "a label has none" : "there is no " + view.contourOf);
 }
 
@@ -239,7 +239,7 @@ void drawSlicesView(ViewContext& context, const std::string& pane, SlicesView& v
         return;
     }
     SlicesCache& cache = cacheOf<SlicesCache>(context, pane);
-    std::string name = info.channels()[static_cast<std::size_t>(*channel)].name;
+    std::string name = info.channel(*channel).name;
     if (!context.figure) {
         ImGui::SetNextItemWidth(std::min(em() * 11, ImGui::GetContentRegionAvail().x * 0.4f));
         if (chooseChannel("##channel", &info, name)) view.channel = name;

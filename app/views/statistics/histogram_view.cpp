@@ -158,7 +158,7 @@ void drawHistogramView(ViewContext& context, const std::string& pane, HistogramV
         return;
     }
     HistogramCache& cache = cacheOf<HistogramCache>(context, pane);
-    const volume::Channel channel = info.channels()[static_cast<std::size_t>(*index)];
+    const volume::Channel channel = info.channel(*index);
     const HistogramBins bins = histogramBins(info, *index, paddedRange(info.channelRange(channel), 0.02), view.bins);
     const auto result = cache.answers.get(
         context, "histogram " + pane, brushedQuery(context.session, info, {*index}, {bins.range}, bins.count, false));

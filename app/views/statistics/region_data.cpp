@@ -125,7 +125,7 @@ Balance readBalance(const std::shared_ptr<const volume::BrickSource>& source, co
 BalanceTable balanceTable(const volume::DatasetInfo& info, const Balance& balance) {
     static constexpr const char* kFaces[] = {"x from below", "x from above", "y from below",
                                              "y from above", "z from below", "z from above"};
-    const volume::Channel channel = info.channels().at(static_cast<std::size_t>(balance.query.channel));
+    const volume::Channel channel = info.channel(balance.query.channel);
     std::string speed;
     for (const volume::Parameter& parameter : info.parameters)
         if (parameter.name == balance.velocity) speed = parameter.unit;

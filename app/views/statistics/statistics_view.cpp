@@ -134,7 +134,7 @@ std::vector<std::vector<std::string>> statisticsRows(const volume::DatasetInfo& 
 }
 
 void drawTable(const volume::DatasetInfo& info, const StatisticsResult& result, std::size_t shown, std::size_t with) {
-    const std::string other = "r with " + info.channels()[static_cast<std::size_t>(result.query.channels[with])].name;
+    const std::string other = "r with " + info.channel(result.query.channels[with]).name;
     const std::vector<std::vector<std::string>> rows = statisticsRows(info, result, shown, with);
     if (!beginTable("statistics",
                     {"Parameter", "Part", "Samples", "Volume", "Mean", "Std. deviation", "Least", "Most", other}, rows,

@@ -256,7 +256,7 @@ void drawReading(ViewContext& context, const TesseractView& view, const Tesserac
     const volume::DatasetInfo& info = context.source->info();
     const glm::dvec3 place(samples.positions[sample]);
     const double time = static_cast<double>(samples.times[sample]);
-    const volume::Channel known = info.channels()[static_cast<std::size_t>(channel)];
+    const volume::Channel known = info.channel(channel);
     const Range range = info.channelRange(known);
     const double value = static_cast<double>(samples.values[sample * static_cast<std::size_t>(samples.channels)]);
     const LengthUnit unit = suitableLength(info.lengthUnit, glm::length(info.bounds.size()));
@@ -324,7 +324,7 @@ void drawTesseractView(ViewContext& context, const std::string& pane, TesseractV
     const std::optional<int> channel = resolveChannel(info, context.session, view.channel);
     if (!channel) return drawHint("No parameters", "This data set holds nothing to show.");
     TesseractCache& cache = cacheOf<TesseractCache>(context, pane);
-    if (!context.figure) drawToolbar(context, cache, view, info.channels()[static_cast<std::size_t>(*channel)].name);
+    if (!context.figure) drawToolbar(context, cache, view, info.channel(*channel).name);
     const ImVec2 room = ImGui::GetContentRegionAvail();
     const float below = view.showControls && !context.figure && room.y > em() * 14 && room.x > em() * 12
                             ? slidersHeight(room.x) + ImGui::GetStyle().ItemSpacing.y

@@ -174,7 +174,7 @@ void drawTransferControls(ViewContext& context, TransferView& view, BoundaryPage
     ImGui::SameLine(0, em() * 0.2f);
     drawOwnColors(context, function, functionName(context.session, view, channel));
 
-    const Range data = info.channelRange(info.channels()[static_cast<std::size_t>(*info.findChannel(channel))]);
+    const Range data = info.channelRange(info.channel(*info.findChannel(channel)));
     const bool wide = room > em() * 48;
     if (wide) ImGui::SameLine(0, em());
     drawRange(function, data, std::min(em() * 16, room));

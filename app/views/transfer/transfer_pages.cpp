@@ -71,7 +71,7 @@ void drawRegionSettings(ViewContext& context, RegionDrag& drag, vis::TransferFun
 
 void drawRegionPage(ViewContext& context, RegionPage& page, vis::TransferFunction& function,
                     const volume::DatasetInfo& info, int index, const std::shared_ptr<const DerivativeResult>& result) {
-    const volume::Channel channel = info.channels()[static_cast<std::size_t>(index)];
+    const volume::Channel channel = info.channel(index);
     const Range data = info.channelRange(channel), range = vis::effectiveRange(function, data);
     const ImVec2 min = ImGui::GetCursorScreenPos(), room = ImGui::GetContentRegionAvail();
     const float side = room.x > em() * 34 ? em() * 17 : 0;
@@ -116,7 +116,7 @@ void drawRegionPage(ViewContext& context, RegionPage& page, vis::TransferFunctio
 void drawBoundaryPage(ViewContext& context, BoundaryPage& page, vis::TransferFunction& function,
                       const volume::DatasetInfo& info, int index,
                       const std::shared_ptr<const DerivativeResult>& result) {
-    const volume::Channel channel = info.channels()[static_cast<std::size_t>(index)];
+    const volume::Channel channel = info.channel(index);
     const Range data = info.channelRange(channel), range = vis::effectiveRange(function, data);
     const PlotColors colors = plotColors();
     const ImVec2 min = ImGui::GetCursorScreenPos(), room = ImGui::GetContentRegionAvail();

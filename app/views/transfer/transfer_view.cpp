@@ -110,7 +110,7 @@ void drawVisibility(ViewContext& context, TransferCache& cache, int channel, Ran
 
 void drawPlot(ViewContext& context, TransferCache& cache, const TransferView& view, const volume::DatasetInfo& info,
               int index, const std::string& pane) {
-    const volume::Channel channel = info.channels()[static_cast<std::size_t>(index)];
+    const volume::Channel channel = info.channel(index);
     vis::TransferFunction& function = transferOf(context.session, functionName(context.session, view, channel.name));
     const Range data = info.channelRange(channel), range = vis::effectiveRange(function, data);
     // An axis that grew with the range it shows would carry the end away from the mouse that holds it.
@@ -215,10 +215,9 @@ void drawTransferView(ViewContext& context, const std::string& pane, TransferVie
     }
     TransferCache& cache = cacheOf<TransferCache>(context, pane);
     updateReadout(context, pane, cache.readout);
-    drawTransferControls(context, view, cache.boundaries, info,
-                         info.channels()[static_cast<std::size_t>(*channel)].name);
+    drawTransferControls(context, view, cache.boundaries, info, info.channel(*channel).name);
     const int now = channelNow().value_or(*channel);
-    const volume::Channel shown = info.channels()[static_cast<std::size_t>(now)];
+    const volume::Channel shown = info.channel(now);
     const std::string name = functionName(context.session, view, shown.name);
     vis::TransferFunction& function = transferOf(context.session, name);
     const bool regions = function.kind == vis::TransferKind::Regions;
