@@ -238,13 +238,10 @@ std::vector<LegendEntry> sceneLegends(const Session& session, const volume::Data
     return entries;
 }
 
-vis::Scene themedScene(const ViewContext& context) {
+vis::Scene sceneWithLimits(const ViewContext& context) {
     vis::Scene scene = sceneOf(context.session);
     for (int* limit : {&scene.render.limits.textureMemory, &scene.render.limits.brickMemory})
         *limit = std::max(1, *limit / std::max(1, context.renderers));
-    const bool dark = context.session.appearance.theme == Theme::Dark;
-    scene.background = dark ? glm::vec3(0.085f, 0.092f, 0.107f) : glm::vec3(0.965f, 0.968f, 0.975f);
-    scene.boxColor = dark ? glm::vec3(0.42f) : glm::vec3(0.55f);
     return scene;
 }
 

@@ -80,8 +80,8 @@ LegendEntry legendOf(const Session& session, const volume::DatasetInfo& info, in
 /// Legends of the visible layers, each channel once; of a layer that is coloured by another parameter both.
 std::vector<LegendEntry> sceneLegends(const Session& session, const volume::DatasetInfo& info);
 
-/// The scene of the session with the theme's colours, and its share of the limits of memory.
-vis::Scene themedScene(const ViewContext& context);
+/// The scene of the session, with its share of the limits of memory.
+vis::Scene sceneWithLimits(const ViewContext& context);
 
 /// A texture of GL as ImGui names it: by a pointer before 1.91.4, by a number after.
 ImTextureID textureId(std::uint32_t name);

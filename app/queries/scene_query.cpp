@@ -5,7 +5,7 @@
 namespace tessera::app {
 
 vis::Scene AsyncScene::get(ViewContext& context, const std::string& pane, bool moving) {
-    vis::Scene scene = themedScene(context);
+    vis::Scene scene = sceneWithLimits(context);
     scene.geometry = surfaces_.get(context, pane, moving);
     for (vis::GeometryLayer& flow : flow_.get(context, pane)) scene.geometry.push_back(std::move(flow));
     return scene;

@@ -82,13 +82,9 @@ vis::Scene sceneOf(const Session& session) {
     scene.stretch = session.stretch;
     scene.cursor = session.cursor;
     scene.time = session.time;
-    if (session.appearance.theme == Theme::Light) {
-        scene.background = glm::vec3(0.975f, 0.975f, 0.98f);
-        scene.boxColor = glm::vec3(0.45f);
-    } else {
-        scene.background = glm::vec3(0.085f, 0.09f, 0.102f);
-        scene.boxColor = glm::vec3(0.5f);
-    }
+    const bool dark = session.appearance.theme == Theme::Dark;
+    scene.background = dark ? glm::vec3(0.085f, 0.092f, 0.107f) : glm::vec3(0.965f, 0.968f, 0.975f);
+    scene.boxColor = dark ? glm::vec3(0.42f) : glm::vec3(0.55f);
     return scene;
 }
 

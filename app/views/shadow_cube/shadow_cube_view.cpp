@@ -215,7 +215,7 @@ void drawToolbar(ViewContext& context, const volume::DatasetInfo& info, ShadowCu
 std::set<int> drawWalls(ViewContext& context, const CubeFrame& frame, ShadowCubeCache& cache,
                         const ShadowCubeView& view, bool moving) {
     ImDrawList& draw = *ImGui::GetWindowDrawList();
-    const vis::Scene scene = themedScene(context);
+    const vis::Scene scene = sceneWithLimits(context);
     std::set<int> legends;
     for (std::size_t i = 0; i < kCubeFaces.size(); ++i) {
         const CubeFace& face = kCubeFaces[i];
@@ -285,7 +285,7 @@ void drawShadowCubeView(ViewContext& context, const std::string& pane, ShadowCub
     const bool moving = (moved || context.interacting || session.animation.playing) && !context.headless;
     const std::set<int> walls = drawWalls(context, frame, cache, view, moving);
 
-    vis::Scene scene = themedScene(context);
+    vis::Scene scene = sceneWithLimits(context);
     scene.showGround = false;
     scene.paper.reset();
     if (!cache.target) cache.target = context.renderer.makeTarget();

@@ -35,7 +35,7 @@ double planePosition(const volume::Box& bounds, int axis, int index, int count) 
 void drawSlice(ViewContext& context, vis::ViewTargetPtr& target, const std::string& channel, const SliceAxes& axes,
                double position, ImVec2 min, glm::ivec2 pixels, double budget) {
     const volume::DatasetInfo& info = context.source->info();
-    vis::Scene scene = themedScene(context);
+    vis::Scene scene = sceneWithLimits(context);
     scene.paper.reset();
     scene.camera = vis::planeCamera(axes.right, axes.up, vis::worldFrame(info.bounds, context.session.stretch));
     scene.showBox = false;

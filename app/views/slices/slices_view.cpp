@@ -156,7 +156,7 @@ void drawPlane(ViewContext& context, SlicesCache& cache, const std::string& pane
         if (io.MouseWheel != 0) stepCursor(session, info, plane.normal, io.MouseWheel * (io.KeyShift ? 10.0f : 1.0f));
     }
 
-    vis::Scene scene = themedScene(context);
+    vis::Scene scene = sceneWithLimits(context);
     scene.paper.reset();
     scene.camera = vis::planeCamera(plane.right, plane.up, world);
     scene.showBox = false;
