@@ -3,6 +3,7 @@
 #include "app/queries/readout.h"
 #include "app/queries/statistics_query.h"
 #include "app/queries/surface_query.h"
+#include "app/queries/visibility_query.h"
 #include "app/views/compare/compare_pictures.h"
 #include "app/views/tesseract/tesseract_query.h"
 #include "codec/pack/pack.h"
@@ -125,6 +126,97 @@ TEST_F(AsyncQueries, AnAnswerOnItsWayIsNotAskedForAgain) {
         EXPECT_EQ(*answer, query);
         EXPECT_EQ(asked, query);
     }
+}
+
+// Places that ask the same share answers, also former ones; what stands in meanwhile is of the own place.
+TEST_F(AsyncQueries, PlacesShareAnswersThatAreKept) {
+    AsyncQuery<int, int> answers({.answers = 3});
+    std::atomic<int> computed = 0;
+    const auto get = [&](const char* place, int query) {
+        ViewContext now = context();
+        const auto answer = answers.answer(
+            now, source, {.key = place, .title = "Twice"}, query,
+            [&](const auto&, int of, int, const Progress&) { return ++computed, 2 * of; },
+            [](int, int) { return true; });
+        jobs.wait();
+        jobs.collect();
+        return answer ? answer->result : -1;
+    };
+    EXPECT_EQ(get("a", 1), -1);
+    EXPECT_EQ(get("a", 1), 2);
+    EXPECT_EQ(get("b", 3), -1) << "not that of another place";
+    EXPECT_EQ(get("b", 3), 6);
+    EXPECT_EQ(get("b", 1), 2);
+    EXPECT_EQ(get("a", 3), 6);
+    EXPECT_EQ(computed, 2);
+    for (const int query : {4, 5}) get("a", query);
+    EXPECT_EQ(get("b", 1), 2) << "what a place shows is not forgotten";
+    EXPECT_EQ(computed, 4);
+    EXPECT_EQ(get("a", 1), 10) << "dropped as the oldest, and computed again";
+    EXPECT_EQ(get("a", 1), 2);
+    EXPECT_EQ(computed, 5);
+}
+
+// Coarse first, then finer until exact; a query that follows begins anew with the coarsest.
+TEST_F(AsyncQueries, LevelsComeFromCoarseToExact) {
+    AsyncQuery<int, int> answers;
+    std::vector<std::array<int, 2>> computed; // query, level
+    int query = 7;
+    bool dragging = false;
+    const auto get = [&](ViewContext& now) {
+        now.interacting = dragging;
+        const auto answer = answers.answer(
+            now, source,
+            {.key = "levels",
+             .title = "Levels",
+             .duringEdits = true,
+             .firstLevel = 4,
+             .nextLevel = [](int level) { return level / 2; }},
+            query,
+            [&](const auto&, int of, int level, const Progress&) {
+                computed.push_back({of, level});
+                return of;
+            },
+            [](int, int) { return true; });
+        return answer;
+    };
+    finish(get);
+    EXPECT_EQ(computed, (std::vector<std::array<int, 2>>{{7, 4}, {7, 2}, {7, 1}, {7, 0}}));
+    computed.clear();
+    dragging = true;
+    query = 8;
+    for (int i = 0; i < 4; ++i) {
+        ViewContext now = context();
+        EXPECT_EQ(get(now)->query, i == 0 ? 7 : 8);
+        EXPECT_EQ(now.behind, i == 0);
+        jobs.wait();
+        jobs.collect();
+    }
+    EXPECT_EQ(computed, (std::vector<std::array<int, 2>>{{8, 4}})) << "finer ones when the drag has ended";
+    ViewContext whole = context();
+    whole.headless = true;
+    EXPECT_EQ(get(whole)->level, 0);
+    EXPECT_EQ(computed.back(), (std::array<int, 2>{8, 0}));
+}
+
+// While the samples of another time are read those of the former time stand in; their histogram must not be taken for
+// that of the new time.
+TEST_F(AsyncQueries, VisibilityIsOfTheTimeThatIsShown) {
+    const int t = source->info().findChannel("T").value();
+    const Range range = source->info().channelRange(source->info().channel(t));
+    session.layers = {{"t", true, vis::VolumeLayer{.channel = "T"}}};
+    AsyncVisibility answers, fresh;
+    const auto get = [&](ViewContext& now) { return answers.get(now, "visibility", t, range, 16); };
+    session.time = source->info().times.front();
+    finish(get);
+    session.time = source->info().times.back();
+    finish(get);
+    ViewContext now = context();
+    const auto shown = get(now);
+    now.headless = true;
+    const auto wanted = fresh.get(now, "fresh", t, range, 16);
+    ASSERT_TRUE(shown && wanted);
+    EXPECT_EQ(*shown, *wanted);
 }
 
 // What the user cancels is not started again in the next frame, but when something else is wanted.
