@@ -76,8 +76,8 @@ volume::Dataset withDerived(volume::Dataset dataset, const std::vector<volume::D
     made.info = dataset.info;
     const std::vector<volume::Parameter>& all = source->info().parameters;
     made.info.parameters.insert(made.info.parameters.end(), all.begin() + own, all.end());
-    made.load = [load = dataset.load, source, own](int parameter, int component, int time) {
-        return parameter < own ? load(parameter, component, time) : fieldOf(*source, parameter, component, time);
+    made.read = [read = dataset.read, source, own](int parameter, int component, int time) {
+        return parameter < own ? read(parameter, component, time) : fieldOf(*source, parameter, component, time);
     };
     return made;
 }

@@ -7,7 +7,6 @@
 #include "codec/pack/pack.h"
 #include "vis/image/image_io.h"
 #include "volume/base/error.h"
-#include "volume/derived/derived_bricks.h"
 #include "volume/derived/other_source.h"
 #include "volume/export/export.h"
 #include "volume/system/atomic_file.h"
@@ -159,7 +158,7 @@ volume::Dataset differences(const std::shared_ptr<const volume::BrickSource>& so
     made.info = all->info();
     const std::size_t before = source->info().parameters.size();
     made.info.parameters.erase(made.info.parameters.begin(), made.info.parameters.begin() + std::ptrdiff_t(before));
-    made.load = [all, before](int parameter, int component, int time) {
+    made.read = [all, before](int parameter, int component, int time) {
         return fieldOf(*all, int(before) + parameter, component, time);
     };
     return made;

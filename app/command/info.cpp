@@ -6,6 +6,7 @@
 #include "app/session/session_file.h"
 #include "app/user_files/import_memory.h"
 #include "codec/archive/archive.h"
+#include "codec/container/exactness.h"
 #include "codec/pack/error_bound.h"
 #include "vis/image/image_io.h"
 #include "volume/import/find_parts.h"

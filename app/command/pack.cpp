@@ -4,8 +4,8 @@
 #include "app/data/import_options.h"
 #include "app/described/describe_cli.h"
 #include "app/user_files/import_memory.h"
+#include "codec/container/exactness.h"
 #include "codec/pack/unpack.h"
-#include "volume/import/sliced.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -58,8 +58,8 @@ codec::StoredLattice latticeOf(const PackRequest& request) {
 }
 
 struct PackInput {
-    volume::SlicedDataset data;
-    codec::PackedAgain before;
+    volume::Dataset data;
+    codec::PackedBefore before;
 };
 
 PackInput open(const PackRequest& request, const Progress& progress) {
@@ -68,9 +68,8 @@ PackInput open(const PackRequest& request, const Progress& progress) {
         const bool asGrid = latticeOf(request) != codec::StoredLattice::BCC || archive->metadata().alternating;
         const bool asStored =
             !asGrid || (archive->info().lattice.kind == volume::LatticeKind::CC && !archive->metadata().alternating);
-        const codec::PackedAgain before = codec::packedBefore(*archive);
-        if (asStored) return {{codec::storedDataset(archive), codec::storedSlices(archive)}, before};
-        return {{codec::gridDataset(archive, 0), {}}, before};
+        const codec::PackedBefore before = codec::packedBefore(*archive);
+        return {asStored ? codec::storedDataset(archive) : codec::gridDataset(archive, 0), before};
     }
     const volume::ImportOptions options = recallOptions(request.inputs, request.import, progress);
     for (const std::string& rule : options.absent)
@@ -79,8 +78,8 @@ PackInput open(const PackRequest& request, const Progress& progress) {
     for (const auto& [from, to] : options.rename)
         if (!request.import.rename.contains(from))
             std::fprintf(stderr, "tessera: remembered: --rename %s=%s\n", from.c_str(), to.c_str());
-    volume::SlicedDataset data = volume::openSliced(request.inputs, options, progress);
-    rememberStated(request.import, data.dataset.info.name);
+    volume::Dataset data = volume::openFiles(request.inputs, options, progress, false);
+    rememberStated(request.import, data.info.name);
     return {std::move(data), {}};
 }
 
@@ -153,11 +152,10 @@ void run(PackRequest request) {
     const Progress terminal = terminalProgress("pack");
     const Progress progress = request.progressJson ? jsonProgress(terminal) : terminal;
     auto [data, before] = open(request, progress.part(0, 0.02));
-    const codec::SlabInput slabs{data.slices, 0};
     const Progress rest = progress.part(0.02, 1);
-    const codec::PackSummary summary =
-        request.append ? codec::append(data.dataset, request.output, request.options.memoryMb, rest, slabs, before)
-                       : codec::pack(data.dataset, request.options, request.output, rest, slabs, before);
+    const codec::PackSummary summary = request.append
+                                           ? codec::append(data, request.output, request.options.memoryMb, rest, before)
+                                           : codec::pack(data, request.options, request.output, rest, before);
     if (request.json || request.progressJson) {
         std::printf("%s\n", toJson(summary, request.output).dump(request.progressJson ? -1 : 1).c_str());
         return;

@@ -77,7 +77,7 @@ volume::Dataset planeDataset(const std::shared_ptr<const codec::Archive>& archiv
     if (shape.solved != 3) dataset.info.lengthUnit = units;
     dataset.info.provenance += (dataset.info.provenance.empty() ? "axes: " : "; axes: ") + axes;
     for (volume::Parameter& parameter : dataset.info.parameters) parameter.type = volume::ScalarType::F32;
-    dataset.load = [slice, lattice = dataset.info.lattice](int parameter, int component, int) {
+    dataset.read = [slice, lattice = dataset.info.lattice](int parameter, int component, int) {
         volume::Field field = slice(parameter, component).field;
         field.lattice = lattice;
         return field;

@@ -13,8 +13,8 @@
 #include <utility>
 #include <vector>
 
-/// Implementation of Archive: archive.cpp has its metadata, archive_read.cpp its samples, archive_state.cpp the state
-/// from which a writer continues, archive_verify.cpp the check of all bytes.
+/// Implementation of Archive: archive_info.cpp has its metadata, archive_read.cpp its samples, archive_state.cpp the
+/// state from which a writer continues, archive_verify.cpp the check of all bytes.
 namespace tessera::codec {
 
 struct Archive::Impl {

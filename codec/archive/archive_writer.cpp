@@ -42,6 +42,61 @@ CodedMaskBrick encodeMask(std::span<const std::uint8_t> flags, Compressor& compr
     return coded;
 }
 
+/// A frame on its way: what its bricks are coded with, and what is noted of them.
+struct FrameCoding {
+    const volume::BrickGrid& grid;
+    FrameRecord frame;
+    double maxError = 0;                ///< of its samples
+    const SeenFrame* before = nullptr;  ///< that bricks may repeat
+    std::vector<std::uint8_t> repeated; ///< flags of bricks
+    std::vector<volume::BrickImportance> importance;
+    Taken taken;
+    Model model;
+    int step = 1;         ///< times since `before`
+    bool tallies = false; ///< are noted
+    bool keeps = false;   ///< samples and bytes for the frames to come
+    SeenFrame seen;
+
+    explicit FrameCoding(const volume::BrickGrid& of) : grid(of) {}
+
+    /// The segments of a brick, which lies in `part` of the frame and is number `ownNumber` of its grid `own`.
+    std::vector<Bytes> code(std::size_t brick, const volume::Field& part, const volume::BrickGrid& own,
+                            std::size_t ownNumber, const BandEncoder& encoder, Compressor& compressor,
+                            BrickInput& input, SplitMemory& memory);
+};
+
+std::vector<Bytes> FrameCoding::code(std::size_t b, const volume::Field& part, const volume::BrickGrid& own,
+                                     std::size_t ownNumber, const BandEncoder& encoder, Compressor& compressor,
+                                     BrickInput& input, SplitMemory& memory) {
+    const glm::ivec3 brick = grid.indexOf(b);
+    std::vector<Bytes> segments;
+    FrameBrick& about = frame.bricks[b];
+    if (repeated[b] != 0) {
+        about = before->bricks[b];
+        about.notes.repeats += step;
+        about.tally = {};
+        segments.resize(std::size_t(grid.levels));
+        seen.bytes[b] = before->bytes[b];
+        input.take(grid, brick, before->field, false);
+    } else {
+        const BrickFormat format = brickFormat(grid, brick, part.type, frame);
+        input.take(own, own.indexOf(ownNumber), part, frame.mask >= 0);
+        if (!taken.bricks[b])
+            taken.bricks[b] = prepareBrick(format, input.samples, input.present, maxError, model.contexts, memory);
+        segments = encodeBrick(format, *taken.bricks[b], input.samples, input.present, compressor, encoder);
+        for (const Bytes& segment : segments) seen.bytes[b] += segment.size();
+        roundAsDecoded(format, maxError, input);
+        about = tallyOf(part, input, tallies);
+    }
+    taken.bricks[b].reset();
+    about.notes.importance = importance[b];
+    if (keeps) {
+        putSamples(grid, brick, input.samples, seen.field);
+        if (before) about.notes.change = volume::changeOfBrick(grid, brick, before->field, seen.field);
+    }
+    return segments;
+}
+
 } // namespace
 
 struct ArchiveWriter::Impl {
@@ -70,6 +125,11 @@ struct ArchiveWriter::Impl {
     const SeenFrame* frameBefore(const FrameRecord& frame, const FrameSamples& samples) const;
     std::vector<std::uint8_t> repeated(const SeenFrame* before, const FrameSamples& samples, const FrameRecord& frame,
                                        const FrameOptions& options) const;
+    /// All that is found out about a frame before it is coded.
+    FrameCoding prepare(int time, std::size_t component, const FrameSamples& samples, const FrameOptions& options);
+    /// Codes every brick; true if no token was coded with the model.
+    bool codeBricks(FrameCoding& coding, const FrameSamples& samples, int effort, CodedBricks& coded,
+                    const Progress& progress);
     void commit(const Metadata& now, std::size_t wholeTimes, bool always);
 };
 
@@ -186,6 +246,75 @@ ArchiveWriter::ArchiveWriter(const Archive& archive, const Metadata& metadata, b
 
 ArchiveWriter::~ArchiveWriter() = default;
 
+FrameCoding ArchiveWriter::Impl::prepare(int time, std::size_t component, const FrameSamples& samples,
+                                         const FrameOptions& options) {
+    const volume::BrickGrid& grid = metadata.grid;
+    FrameCoding coding(grid);
+    FrameRecord& frame = coding.frame;
+    frame.time = static_cast<std::uint32_t>(time);
+    frame.component = static_cast<std::uint32_t>(component);
+    frame.mask = maskFor(samples, options.zstdLevel);
+    const auto found = lastModel.find(component);
+    const KnownModel* const last = found == lastModel.end() ? nullptr : &found->second;
+    frame.numbers = options.numbers ? *options.numbers : chooseNumbers(grid, samples, last, options);
+    frame.wavelet = options.wavelet.value_or(Wavelet::W22);
+    frame.keepsAbsent = options.keepsAbsent && frame.mask >= 0;
+    frame.valueOffset = samples.offset();
+    frame.valueScale = samples.scale();
+    frame.codeBits = codeBitsOf(samples, frame.numbers);
+    coding.maxError = boundOf(frame, options);
+    coding.before = frameBefore(frame, samples);
+    coding.repeated = repeated(coding.before, samples, frame, options);
+    coding.importance = importanceOfBricks(grid, samples, options.range, options.categorical, options.importance);
+    const bool byBand = (header.features & kBandContexts) != 0;
+    coding.model = chooseModel(grid, samples, last, byBand, frame, options, coding.taken);
+    if (!coding.taken.serves(frame, coding.model)) coding.taken.bricks.clear();
+    coding.step = step();
+    coding.tallies = (header.features & kBrickTallies) != 0;
+    // For the last time only its change is needed.
+    const bool isLast = std::size_t(time + step()) >= metadata.info.times.size();
+    coding.keeps = keepsFrames && (coding.before || !isLast);
+    coding.seen = {time, frame.keepsAbsent, coding.keeps ? *samples.whole() : volume::Field(), {}, {}};
+    const std::size_t bricks = grid.brickCount();
+    coding.taken.bricks.resize(bricks);
+    coding.seen.bytes.resize(bricks);
+    frame.bricks.resize(bricks);
+    frame.segments.resize(bricks * std::size_t(grid.levels));
+    return coding;
+}
+
+bool ArchiveWriter::Impl::codeBricks(FrameCoding& coding, const FrameSamples& samples, int effort, CodedBricks& coded,
+                                     const Progress& progress) {
+    const volume::BrickGrid& grid = metadata.grid;
+    const BandEncoder encoder(coding.model);
+    bool allWhole = grid.levels > 1;
+    const std::size_t perBatch = batchOf(brickBytes(grid, samples.type()));
+    samples.forSlabs([&](const volume::Field& part, Slab slab) {
+        const volume::BrickGrid own = slab.grid(grid);
+        const std::size_t firstBrick = slab.bricks(grid).first, endBrick = slab.bricks(grid).second;
+        // In batches, so that a cancel is noticed and the output does not depend on the number of cores.
+        for (std::size_t first = firstBrick; first < endBrick; first += perBatch) {
+            const std::size_t count = std::min(perBatch, endBrick - first);
+            std::vector<std::vector<Bytes>> batch(count);
+            parallelRanges(count, [&](std::size_t begin, std::size_t end) {
+                Compressor compressor(effort, (header.features & kCompact) != 0);
+                BrickInput input;
+                SplitMemory memory;
+                for (std::size_t b = first + begin; b < first + end; ++b)
+                    batch[b - first] = coding.code(b, part, own, b - firstBrick, encoder, compressor, input, memory);
+            });
+            for (std::size_t b = first; b < first + count; ++b) {
+                std::vector<Bytes>& segments = batch[b - first];
+                allWhole = allWhole && (coding.repeated[b] != 0 || (!segments[0].empty() && isWhole(segments[0][0])));
+                coded.put(b, std::move(segments));
+            }
+            progress.advance(double(first + count) / double(grid.brickCount()));
+        }
+        return true;
+    });
+    return allWhole;
+}
+
 void ArchiveWriter::addFrame(int parameter, int component, int time, const FrameSamples& samples,
                              const FrameOptions& options, const Progress& progress) {
     const volume::BrickGrid& grid = impl_->metadata.grid;
@@ -196,95 +325,13 @@ void ArchiveWriter::addFrame(int parameter, int component, int time, const Frame
     assert(samples.whole() || !impl_->keepsFrames);
     progress.advance(0);
 
-    FrameRecord frame;
-    frame.time = static_cast<std::uint32_t>(time);
-    frame.component = static_cast<std::uint32_t>(ofTime);
-    frame.mask = impl_->maskFor(samples, options.zstdLevel);
-    const auto found = impl_->lastModel.find(ofTime);
-    const KnownModel* const lastModel = found == impl_->lastModel.end() ? nullptr : &found->second;
-    frame.numbers = options.numbers ? *options.numbers : chooseNumbers(grid, samples, lastModel, options);
-    frame.wavelet = options.wavelet.value_or(Wavelet::W22);
-    frame.keepsAbsent = options.keepsAbsent && frame.mask >= 0;
-    frame.valueOffset = samples.offset();
-    frame.valueScale = samples.scale();
-    frame.codeBits = codeBitsOf(samples, frame.numbers);
-    const double maxError = boundOf(frame, options);
-    const SeenFrame* const before = impl_->frameBefore(frame, samples);
-    const std::vector<std::uint8_t> repeated = impl_->repeated(before, samples, frame, options);
-    const std::vector<volume::BrickImportance> importance =
-        importanceOfBricks(grid, samples, options.range, options.categorical, options.importance);
-    Taken taken;
-    const bool byBand = (impl_->header.features & kBandContexts) != 0;
-    const Model model = chooseModel(grid, samples, lastModel, byBand, frame, options, taken);
-    const BandEncoder encoder(model);
-    if (!taken.serves(frame, model)) taken.bricks.clear();
-    taken.bricks.resize(grid.brickCount());
-
+    FrameCoding coding = impl_->prepare(time, ofTime, samples, options);
+    FrameRecord& frame = coding.frame;
     const std::size_t bricks = grid.brickCount(), levels = std::size_t(grid.levels);
-    // For the last time only its change is needed.
-    const bool isLast = std::size_t(time + impl_->step()) >= info.times.size();
-    const bool keeps = impl_->keepsFrames && (before || !isLast);
-    SeenFrame seen{time, frame.keepsAbsent, keeps ? *samples.whole() : volume::Field(), {}, {}};
-    seen.bytes.resize(bricks);
-    frame.bricks.resize(bricks);
-    frame.segments.resize(bricks * levels);
     CodedBricks coded(bricks, levels, samples.store() ? &samples.store()->folder : nullptr);
-    bool allWhole = levels > 1;
-    const bool tallies = (impl_->header.features & kBrickTallies) != 0;
-    const int effort = effortFor(samples, options.zstdLevel);
-    const std::size_t perBatch = batchOf(brickBytes(grid, samples.type()));
-    samples.forSlabs([&](const volume::Field& part, Slab slab) {
-        const volume::BrickGrid own = slab.grid(grid);
-        const std::size_t firstBrick = slab.bricks(grid).first, endBrick = slab.bricks(grid).second;
-        // In batches, so that a cancel is noticed and the output does not depend on the number of cores.
-        for (std::size_t first = firstBrick; first < endBrick; first += perBatch) {
-            const std::size_t count = std::min(perBatch, endBrick - first);
-            std::vector<std::vector<Bytes>> batch(count);
-            parallelRanges(count, [&](std::size_t begin, std::size_t end) {
-                Compressor compressor(effort, (impl_->header.features & kCompact) != 0);
-                BrickInput input;
-                SplitMemory memory;
-                for (std::size_t b = first + begin; b < first + end; ++b) {
-                    const glm::ivec3 brick = grid.indexOf(b);
-                    std::vector<Bytes>& segments = batch[b - first];
-                    FrameBrick& about = frame.bricks[b];
-                    if (repeated[b] != 0) {
-                        about = before->bricks[b];
-                        about.notes.repeats += impl_->step();
-                        about.tally = {};
-                        segments.resize(levels);
-                        seen.bytes[b] = before->bytes[b];
-                        input.take(grid, brick, before->field, false);
-                    } else {
-                        const BrickFormat format = brickFormat(grid, brick, part.type, frame);
-                        input.take(own, own.indexOf(b - firstBrick), part, frame.mask >= 0);
-                        if (!taken.bricks[b])
-                            taken.bricks[b] =
-                                prepareBrick(format, input.samples, input.present, maxError, model.contexts, memory);
-                        segments =
-                            encodeBrick(format, *taken.bricks[b], input.samples, input.present, compressor, encoder);
-                        for (const Bytes& segment : segments) seen.bytes[b] += segment.size();
-                        roundAsDecoded(format, maxError, input);
-                        about = tallyOf(part, input, tallies);
-                    }
-                    taken.bricks[b].reset();
-                    about.notes.importance = importance[b];
-                    if (!keeps) continue;
-                    putSamples(grid, brick, input.samples, seen.field);
-                    if (before) about.notes.change = volume::changeOfBrick(grid, brick, before->field, seen.field);
-                }
-            });
-            for (std::size_t b = first; b < first + count; ++b) {
-                std::vector<Bytes>& segments = batch[b - first];
-                allWhole = allWhole && (repeated[b] != 0 || (!segments[0].empty() && isWhole(segments[0][0])));
-                coded.put(b, std::move(segments));
-            }
-            progress.advance(double(first + count) / double(bricks));
-        }
-        return true;
-    });
+    const bool allWhole = impl_->codeBricks(coding, samples, effortFor(samples, options.zstdLevel), coded, progress);
     // Tables are not needed if there are no bands.
-    if (frame.model < 0) impl_->writeModel(model, allWhole, ofTime, frame);
+    if (frame.model < 0) impl_->writeModel(coding.model, allWhole, ofTime, frame);
     GrowingFile& file = impl_->file;
     frame.offset = file.position();
     for (std::size_t s = 0; s < levels; ++s)
@@ -296,10 +343,11 @@ void ArchiveWriter::addFrame(int parameter, int component, int time, const Frame
         }
     frame.length = file.position() - frame.offset;
     for (std::size_t b = 0; b < bricks; ++b)
-        if (repeated[b] != 0) impl_->repeats.bricks += 1, impl_->repeats.bytes += seen.bytes[b];
-    if (keeps && !isLast) {
-        seen.bricks = frame.bricks;
-        impl_->lastFrames[{ofTime, time % impl_->step()}] = std::move(seen);
+        if (coding.repeated[b] != 0) impl_->repeats.bricks += 1, impl_->repeats.bytes += coding.seen.bytes[b];
+    const bool isLast = std::size_t(time + impl_->step()) >= info.times.size();
+    if (coding.keeps && !isLast) {
+        coding.seen.bricks = frame.bricks;
+        impl_->lastFrames[{ofTime, time % impl_->step()}] = std::move(coding.seen);
     }
     impl_->page.frames.push_back(std::move(frame));
 }

@@ -1,8 +1,9 @@
 #pragma once
 
 #include "codec/archive/archive_state.h"
-#include "codec/archive/archive_writer.h"
+#include "codec/archive/frame_options.h"
 #include "codec/brick/brick_codec.h"
+#include "codec/brick/frame_samples.h"
 
 #include <optional>
 #include <vector>
@@ -42,5 +43,9 @@ double boundOf(const FrameRecord& frame, const FrameOptions& options);
 /// not fit at all. Sets wavelet, bodyCentred and model of the frame. `byBand`: the archive supports contexts by band.
 Model chooseModel(const volume::BrickGrid& grid, const FrameSamples& samples, const KnownModel* last, bool byBand,
                   FrameRecord& frame, const FrameOptions& options, Taken& taken);
+
+/// Estimated bytes of a coded frame, from the tokens of at most `bricks` of its bricks.
+double estimateFrameBytes(const volume::BrickGrid& grid, const FrameSamples& samples, const FrameOptions& options,
+                          std::size_t bricks);
 
 } // namespace tessera::codec

@@ -1,6 +1,7 @@
 #pragma once
 
-#include "codec/bands/band_tokens.h"
+#include "codec/bands/band.h"
+#include "codec/bands/rans_model.h"
 
 #include <algorithm>
 #include <bit>

@@ -1,6 +1,7 @@
 #pragma once
 
-#include "codec/brick/brick_codec.h"
+#include "codec/bands/band.h"
+#include "codec/brick/brick_format.h"
 #include "codec/wavelet/level_box.h"
 
 /// The levels of a transformed brick: for each sublattice and level a box, whose low corner is replaced by the next

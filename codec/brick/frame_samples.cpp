@@ -1,5 +1,7 @@
 #include "codec/brick/frame_samples.h"
 
+#include "volume/field/part_masks.h"
+
 #include <algorithm>
 
 namespace tessera::codec {
@@ -45,15 +47,19 @@ void FrameSamples::Stored::put(const Field& part, int first) {
     scale = part.scale;
 }
 
-FrameSamples::FrameSamples(const volume::SlicedFrame& frame, const volume::BrickGrid& grid, const SlabStore& store,
-                           const Progress& progress)
-    : stored_(std::make_unique<Stored>(store)) {
+FrameSamples::FrameSamples(volume::SlicedFrame frame, const volume::BrickGrid& grid, const SlabStore& store,
+                           const Progress& progress) {
+    if (frame.whole) {
+        own_ = volume::withoutParts(std::move(*frame.whole));
+        return;
+    }
+    stored_ = std::make_unique<Stored>(store);
     stored_->lattice = frame.lattice;
     stored_->slices = store.layers * slicesOfLayer(grid);
     const int size = frame.lattice.size.z;
     for (int first = 0; first < size; first += stored_->slices) {
         progress.advance(double(first) / size);
-        const Field part = frame.read(first, std::min(stored_->slices, size - first));
+        const Field part = volume::withoutParts(frame.read(first, std::min(stored_->slices, size - first)));
         stored_->type = part.type;
         stored_->put(part, first);
     }

@@ -39,8 +39,9 @@ public:
     /// The field is referred to, not copied: it must outlive this.
     FrameSamples(const volume::Field& field) : lent_(&field) {}
     FrameSamples(volume::Field&& field) : own_(std::move(field)) {}
-    /// Puts a frame into a scratch file, slab by slab. Throws MachineError, Cancelled and what reading throws.
-    FrameSamples(const volume::SlicedFrame& frame, const volume::BrickGrid& grid, const SlabStore& store,
+    /// Takes a frame that is in memory; puts others into a scratch file, slab by slab. Masks become zeros and ones.
+    /// Throws MachineError, Cancelled and what reading throws.
+    FrameSamples(volume::SlicedFrame frame, const volume::BrickGrid& grid, const SlabStore& store,
                  const Progress& progress);
 
     /// Null for one in a scratch file.

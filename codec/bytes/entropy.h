@@ -1,5 +1,6 @@
 #pragma once
 
+#include "codec/bytes/bytes.h"
 #include "codec/bytes/decode_status.h"
 
 #include <cstddef>
@@ -10,8 +11,6 @@
 
 /// Numbers to bytes: zstd or LZMA over byte planes.
 namespace tessera::codec {
-
-using Bytes = std::vector<std::byte>;
 
 /// The highest useful effort of zstd.
 inline constexpr int kMostEffort = 19;
@@ -54,13 +53,5 @@ void encodeStream(std::span<const std::uint32_t> symbols, Compressor& compressor
 
 /// Reads a stream of symbols.size() symbols from the front of `in`, which then starts behind it.
 DecodeStatus decodeStream(std::span<const std::byte>& in, std::span<std::uint32_t> symbols) noexcept;
-
-/// Little-endian numbers.
-void appendU32(Bytes& out, std::uint32_t value);
-std::uint32_t readU32(const std::byte* at);
-/// Lengths: 7 bits a byte, lowest first, bit 7 set on all but the last; at most 5 bytes.
-void appendLength(Bytes& out, std::uint32_t length);
-/// Reads one from the front of `in`, which then starts behind it.
-DecodeStatus takeLength(std::span<const std::byte>& in, std::uint64_t& length) noexcept;
 
 } // namespace tessera::codec

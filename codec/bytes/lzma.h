@@ -1,7 +1,7 @@
 #pragma once
 
+#include "codec/bytes/bytes.h"
 #include "codec/bytes/decode_status.h"
-#include "codec/bytes/entropy.h"
 
 /// LZMA: slow, and much smaller than zstd for few bytes. Raw streams, as in .lzma files after the 13-byte header,
 /// without an end marker. (FORMAT.md "Streams", "Pieces".)

@@ -4,14 +4,11 @@
 #include "volume/field/slices.h"
 
 #include <optional>
-#include <string>
 #include <vector>
 
 /// The error of resampling to BCC: the stored lattice is interpolated back to the samples of the source, as unpacking
 /// does.
 namespace tessera::codec {
-
-struct Metadata;
 
 /// Error of one parameter over all components and times, in its unit. For labels a sample counts 1 if its label
 /// differs. Samples absent on either side are skipped.
@@ -36,15 +33,5 @@ ResampleError joined(const std::optional<ResampleError>& before, const ResampleE
 ResampleError resampleError(const volume::Field& source, const volume::Field& stored, bool categorical);
 ResampleError resampleError(const volume::Lattice& source, const volume::SliceReader& readSource,
                             const volume::Lattice& stored, const volume::SliceReader& readStored, bool categorical);
-
-/// Whether the stored samples were resampled from those of the source.
-bool isResampled(const Metadata& metadata);
-
-/// Text on the relation of stored samples to those of the source: "every sample is exact"; "every sample of the BCC
-/// grid is exact; the source was resampled (PSNR 38.9 dB)".
-std::string exactnessText(const Metadata& metadata);
-/// The same for one parameter: "resampled: PSNR 38.9 dB, error at most 2734 HU"; "" if it was not resampled or the
-/// error is unknown.
-std::string resampledText(const Metadata& metadata, std::size_t parameter);
 
 } // namespace tessera::codec

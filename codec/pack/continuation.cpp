@@ -117,7 +117,7 @@ void requireSameLabel(const volume::Dataset& source, int label, const Archive& a
                     archive.path());
     const bool toBcc = !metadata.alternating && metadata.info.lattice.kind == volume::LatticeKind::BCC;
     for (int time = 0; time < int(stored.info.times.size()); ++time) {
-        volume::Field field = stored.load(label, 0, time);
+        volume::Field field = stored.read(label, 0, time);
         if (toBcc) field = volume::toBcc(field, true);
         if (!sameSamples(field, readField(archive, int(old - metadata.info.parameters.data()), 0, time)))
             throw Error("the archive has another label " + added.name, archive.path());
@@ -126,25 +126,20 @@ void requireSameLabel(const volume::Dataset& source, int label, const Archive& a
 
 } // namespace
 
-std::optional<FurtherParameters> withoutKnownLabels(const volume::Dataset& source, const volume::SliceLoad& slices,
-                                                    const Archive& archive) {
+std::optional<volume::Dataset> withoutKnownLabels(const volume::Dataset& source, const Archive& archive) {
     std::vector<int> known, further;
     for (std::size_t p = 0; p < source.info.parameters.size(); ++p)
         (find(archive.info(), source.info.parameters[p].name) != nullptr ? known : further).push_back(int(p));
     const auto isLabel = [&](int p) { return source.info.parameters[std::size_t(p)].categorical; };
     if (known.empty() || further.empty() || !std::ranges::all_of(known, isLabel)) return std::nullopt;
     for (const int label : known) requireSameLabel(source, label, archive);
-    FurtherParameters out{volume::withParts(source), volume::withParts(source.info, slices)};
-    out.dataset.info.parameters.clear();
-    for (const int p : further) out.dataset.info.parameters.push_back(source.info.parameters[std::size_t(p)]);
-    out.dataset.load = [inner = std::move(out.dataset.load), further](int parameter, int component, int time) {
-        return inner(further[std::size_t(parameter)], component, time);
-    };
-    if (out.slices)
-        out.slices = [inner = std::move(out.slices), further](int parameter, int component, int time, int first,
-                                                              int count) {
-            return inner(further[std::size_t(parameter)], component, time, first, count);
-        };
+    volume::Dataset out = volume::withParts(source);
+    out.info.parameters.clear();
+    for (const int p : further) out.info.parameters.push_back(source.info.parameters[std::size_t(p)]);
+    out.read = out.read.through(
+        [further](const volume::FrameReader& read, int parameter, int component, int time, volume::SliceRange slices) {
+            return read(further[std::size_t(parameter)], component, time, slices);
+        });
     return out;
 }
 

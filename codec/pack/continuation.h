@@ -2,7 +2,6 @@
 
 #include "codec/archive/archive.h"
 #include "volume/field/dataset.h"
-#include "volume/field/slices.h"
 
 #include <optional>
 #include <vector>
@@ -30,15 +29,10 @@ struct Continuation {
 /// True if a data set has later times of parameters of the archive, instead of further parameters.
 bool bringsTimes(const Archive& archive, const volume::DatasetInfo& added);
 
-/// Further parameters for an archive, without labels that it holds already.
-struct FurtherParameters {
-    volume::Dataset dataset; ///< its frames say the parts of their samples (volume/field/part_masks.h)
-    volume::SliceLoad slices;
-};
-/// Empty if the data set has no label that the archive has, or other parameters of the archive. `slices` may be null.
-/// Throws Error if the archive's label differs from that of the data.
-std::optional<FurtherParameters> withoutKnownLabels(const volume::Dataset& source, const volume::SliceLoad& slices,
-                                                    const Archive& archive);
+/// The parameters of a data set that an archive lacks, if all others are labels that it already has; with the parts of
+/// samples in their masks (volume/field/part_masks.h). Empty if the data set has no label that the archive has, or
+/// other parameters of the archive. Throws Error if the archive's label differs from that of the data.
+std::optional<volume::Dataset> withoutKnownLabels(const volume::Dataset& source, const Archive& archive);
 
 /// How a data set continues an archive. `metadata` describes the data set as if for an archive of its own, and becomes
 /// that of both together. Throws Error when lattice, bricks, parameters or times do not fit.

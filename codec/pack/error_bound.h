@@ -1,7 +1,8 @@
 #pragma once
 
 #include "codec/brick/frame_samples.h"
-#include "codec/pack/pack.h"
+#include "codec/container/pack_options.h"
+#include "volume/field/dataset.h"
 
 #include <cstdint>
 

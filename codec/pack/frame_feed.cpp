@@ -3,7 +3,6 @@
 #include "codec/bytes/stopwatch.h"
 #include "volume/base/number_extent.h"
 #include "volume/field/part_masks.h"
-#include "volume/resample/resample.h"
 
 #include <algorithm>
 #include <cmath>
@@ -76,91 +75,72 @@ void widenRanges(std::vector<Range>& ranges, const std::vector<Range>& more) {
     }
 }
 
-FrameFeed::FrameFeed(volume::Dataset& dataset, FeedOptions options, std::stop_token stop)
-    : dataset_(dataset), info_(dataset.info), options_(std::move(options)), stop_(std::move(stop)),
-      load_(options_.toBcc ? volume::withParts(dataset).load : dataset.load),
-      steps_(info_.times.size() * info_.parameters.size()) {
-    if (options_.toBcc) options_.slabs.load = volume::withParts(info_, std::move(options_.slabs.load));
-}
+FrameFeed::FrameFeed(const volume::Dataset& dataset, FeedOptions options, std::stop_token stop)
+    : dataset_(options.toBcc ? volume::withParts(dataset) : dataset), options_(std::move(options)),
+      stop_(std::move(stop)), steps_(dataset_.info.times.size() * dataset_.info.parameters.size()) {}
 
 FrameFeed::~FrameFeed() {
     if (coming_.valid()) coming_.wait();
 }
 
-void FrameFeed::readWhole(FeedStep& step, const volume::Parameter& parameter) {
-    std::vector<Field> fields;
-    {
-        Stopwatch load(step.loadSeconds);
-        for (int c = 0; c < parameter.components; ++c)
-            fields.push_back(
-                checked(load_(step.parameter, c, int(step.time)), parameter, info_.lattice.size, step.time));
-        if (parameter.ranges.empty()) step.ranges = rangesOf(fields);
-    }
-    Stopwatch resample(step.resampleSeconds);
-    for (Field& field : fields) {
-        if (options_.toBcc) {
-            Field stored = volume::toBcc(field, parameter.categorical, options_.resample, Progress{{}, stop_});
-            if (options_.measures) step.resampled.add(resampleError(field, stored, parameter.categorical));
-            field = std::move(stored);
-        }
-        step.frames.emplace_back(volume::withoutParts(std::move(field)));
-    }
-}
-
-/// Reads the frame once for properties of the whole, and again slab by slab.
-void FrameFeed::readSlabs(FeedStep& step, const volume::Parameter& parameter) {
-    const auto slicesOf = [&](int component, int first, int count) {
-        if (stop_.stop_requested()) throw Cancelled();
-        glm::ivec3 size = info_.lattice.size;
-        size.z = count;
-        return checked(options_.slabs.load(step.parameter, component, int(step.time), first, count), parameter, size,
-                       step.time);
-    };
-    const int slices = info_.lattice.size.z;
-    std::vector<volume::StoredExtent> extents(std::size_t(parameter.components));
-    if (parameter.ranges.empty() || options_.toBcc) {
-        Stopwatch load(step.loadSeconds);
-        for (int first = 0; first < slices; first += options_.slabs.step) {
-            std::vector<Field> parts;
-            for (int c = 0; c < parameter.components; ++c) {
-                parts.push_back(slicesOf(c, first, std::min(options_.slabs.step, slices - first)));
-                extents[std::size_t(c)].add(parts.back());
-            }
-            if (parameter.ranges.empty()) widenRanges(step.ranges, rangesOf(parts));
-        }
-    }
-    if (options_.rangesOnly) return;
-    const Progress progress{{}, stop_};
-    Stopwatch rest(options_.toBcc ? step.resampleSeconds : step.loadSeconds);
+std::vector<volume::SlicedFrame> FrameFeed::source(FeedStep& step, const volume::Parameter& parameter) const {
+    const volume::Lattice& lattice = dataset_.info.lattice;
+    std::vector<volume::SlicedFrame> frames;
     for (int c = 0; c < parameter.components; ++c) {
-        volume::SlicedFrame frame{info_.lattice, [&, c](int first, int count) { return slicesOf(c, first, count); },
-                                  extents[std::size_t(c)]};
-        if (options_.toBcc)
-            frame = volume::resampled(frame, options_.grid.lattice,
-                                      volume::optionsFor(parameter.categorical, options_.resample), options_.slabs.step,
-                                      options_.slabs.store.folder, progress);
-        const volume::SliceReader inParts = frame.read;
-        frame.read = [inParts](int first, int count) { return volume::withoutParts(inParts(first, count)); };
-        step.frames.emplace_back(frame, options_.grid, options_.slabs.store, progress);
-        if (!options_.toBcc || !options_.measures) continue;
-        step.resampled.add(resampleError(
-            info_.lattice, [&, c](int first, int count) { return slicesOf(c, first, count); }, frame.lattice, inParts,
-            parameter.categorical));
+        const auto read = [this, &parameter, number = step.parameter, c, time = step.time](int first, int count) {
+            if (stop_.stop_requested()) throw Cancelled();
+            const glm::ivec3 all = dataset_.info.lattice.size;
+            return checked(dataset_.read(number, c, int(time), {first, count}), parameter, {all.x, all.y, count}, time);
+        };
+        frames.push_back({lattice, read, {}});
     }
+    const bool fits = options_.slices.step == 0, isRanged = !parameter.ranges.empty();
+    if (!fits && isRanged && !options_.toBcc) return frames; // nothing has to be known
+    const int run = fits ? lattice.size.z : options_.slices.step;
+    for (int first = 0; first < lattice.size.z; first += run) {
+        std::vector<Field> parts;
+        for (const volume::SlicedFrame& frame : frames)
+            parts.push_back(frame.read(first, std::min(run, lattice.size.z - first)));
+        if (!isRanged) widenRanges(step.ranges, rangesOf(parts));
+        for (std::size_t c = 0; c < frames.size(); ++c) {
+            if (fits)
+                frames[c] = volume::inMemory(std::move(parts[c]));
+            else
+                frames[c].extent.add(parts[c]);
+        }
+    }
+    return frames;
 }
 
-FeedStep FrameFeed::read(std::size_t number) {
+FeedStep FrameFeed::read(std::size_t number) const {
     if (stop_.stop_requested()) throw Cancelled();
     FeedStep step;
-    step.parameter = int(number % info_.parameters.size());
-    step.time = number / info_.parameters.size();
-    const volume::Parameter& parameter = info_.parameters[std::size_t(step.parameter)];
-    step.sourceSamples = info_.lattice.count() * std::uint64_t(parameter.components);
+    step.parameter = int(number % dataset_.info.parameters.size());
+    step.time = number / dataset_.info.parameters.size();
+    const volume::Parameter& parameter = dataset_.info.parameters[std::size_t(step.parameter)];
+    step.sourceSamples = dataset_.info.lattice.count() * std::uint64_t(parameter.components);
     step.sourceBytes = step.sourceSamples * volume::byteSize(parameter.type);
-    if (options_.slabs.load)
-        readSlabs(step, parameter);
-    else
-        readWhole(step, parameter);
+    std::vector<volume::SlicedFrame> frames;
+    {
+        Stopwatch load(step.loadSeconds);
+        frames = source(step, parameter);
+    }
+    if (options_.rangesOnly) return step;
+    const Progress progress{{}, stop_};
+    const SlabStore store{options_.slabLayers, options_.slices.folder};
+    Stopwatch rest(options_.toBcc ? step.resampleSeconds : step.loadSeconds);
+    for (volume::SlicedFrame& frame : frames) {
+        volume::SlicedFrame stored = frame;
+        if (options_.toBcc)
+            stored = volume::resampled(frame, options_.grid.lattice,
+                                       volume::optionsFor(parameter.categorical, options_.resample), options_.slices,
+                                       progress);
+        if (options_.toBcc && options_.measures)
+            step.resampled.add(
+                resampleError(frame.lattice, frame.read, stored.lattice, stored.read, parameter.categorical));
+        frame = {};
+        step.frames.emplace_back(std::move(stored), options_.grid, store, progress);
+    }
     return step;
 }
 

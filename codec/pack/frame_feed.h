@@ -4,9 +4,8 @@
 #include "codec/container/resample_error.h"
 #include "volume/base/progress.h"
 #include "volume/field/dataset.h"
-#include "volume/resample/resample.h"
+#include "volume/resample/resample_slices.h"
 
-#include <functional>
 #include <future>
 #include <optional>
 #include <vector>
@@ -27,22 +26,16 @@ struct FeedStep {
 /// Widens ranges by those of one more time; empty ranges begin with them.
 void widenRanges(std::vector<Range>& ranges, const std::vector<Range>& more);
 
-/// How frames larger than memory are read, in slabs.
-struct SlabReading {
-    volume::SliceLoad load; ///< null: frames are read whole
-    int step = 0;           ///< slices of all components of the source in memory at a time
-    SlabStore store;
-};
-
 /// Options of reading and resampling.
 struct FeedOptions {
     bool toBcc = false; ///< frames are resampled to the lattice of the grid
     volume::ResampleOptions resample;
     volume::BrickGrid grid;
-    SlabReading slabs;
-    bool ahead = false;      ///< the next step is read while the last one is in use, for memory of two
-    bool rangesOnly = false; ///< of slabs: no frames are made
-    bool measures = false;   ///< what resampling costs
+    volume::SliceMemory slices; ///< of frames larger than memory, which are never read whole; of others no step
+    int slabLayers = 0;         ///< of bricks of these in memory at a time
+    bool ahead = false;         ///< the next step is read while the last one is in use, for memory of two
+    bool rangesOnly = false;    ///< no frames are made
+    bool measures = false;      ///< what resampling costs
 };
 
 /// Reads and resamples a data set time by time, and within each time parameter by parameter, one step ahead of the
@@ -50,7 +43,7 @@ struct FeedOptions {
 class FrameFeed {
 public:
     /// A stop request takes effect at the next step or slab.
-    FrameFeed(volume::Dataset& dataset, FeedOptions options, std::stop_token stop);
+    FrameFeed(const volume::Dataset& dataset, FeedOptions options, std::stop_token stop);
     ~FrameFeed();
     FrameFeed(const FrameFeed&) = delete;
     FrameFeed& operator=(const FrameFeed&) = delete;
@@ -59,16 +52,14 @@ public:
     FeedStep next();
 
 private:
-    FeedStep read(std::size_t number);
-    void readWhole(FeedStep& step, const volume::Parameter& parameter);
-    void readSlabs(FeedStep& step, const volume::Parameter& parameter);
+    FeedStep read(std::size_t number) const;
+    /// The components of a step as they are read: frames that fit are in memory then; of others what has to be known of
+    /// them as a whole has been looked up. Sets the ranges of the step.
+    std::vector<volume::SlicedFrame> source(FeedStep& step, const volume::Parameter& parameter) const;
 
-    volume::Dataset& dataset_;
-    volume::DatasetInfo info_; ///< as it was at first
+    volume::Dataset dataset_; ///< as it was at first, with parts where frames are resampled
     FeedOptions options_;
     std::stop_token stop_;
-    std::function<volume::Field(int parameter, int component, int time)>
-        load_; ///< with parts where frames are resampled
     std::size_t steps_, taken_ = 0;
     std::future<FeedStep> coming_;
 };

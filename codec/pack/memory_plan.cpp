@@ -126,8 +126,9 @@ MemoryPlan planSlabs(const Metadata& metadata, const volume::DatasetInfo& source
 
 } // namespace
 
-MemoryPlan planMemory(const Metadata& metadata, const volume::DatasetInfo& source, const PackOptions& options,
-                      const SlabInput& slabs) {
+MemoryPlan planMemory(const Metadata& metadata, const volume::Dataset& dataset, const PackOptions& options,
+                      int slabLayers) {
+    const volume::DatasetInfo& source = dataset.info;
     const double samples = double(source.lattice.count()),
                  stored = std::max(samples, double(metadata.info.lattice.count()));
     const bool resampled = options.lattice != StoredLattice::CC && source.lattice.kind == volume::LatticeKind::CC;
@@ -145,8 +146,8 @@ MemoryPlan planMemory(const Metadata& metadata, const volume::DatasetInfo& sourc
     const double kept = d4 ? kTimesOfD4 * all : 0;
     const double least = kOwn + kept + std::max(step, coding);
     const double limit = options.memoryMb > 0 ? options.memoryMb * kMega : quarterOfRam();
-    if (slabs.slices && (slabs.layers > 0 || least > limit))
-        return planSlabs(metadata, source, options, slabs.layers, least, limit);
+    if (dataset.read.inParts() && (slabLayers > 0 || least > limit))
+        return planSlabs(metadata, source, options, slabLayers, least, limit);
     if (options.memoryMb > 0 && least > limit) refuse(least, limit);
     MemoryPlan plan;
     const double frames = source.times.size() > 1 ? (d4 ? 2 : 1) * last : 0;

@@ -1,7 +1,8 @@
 #pragma once
 
 #include "codec/container/metadata.h"
-#include "codec/pack/pack.h"
+#include "codec/container/pack_options.h"
+#include "volume/field/dataset.h"
 
 namespace tessera::codec {
 
@@ -19,8 +20,9 @@ struct MemoryPlan {
 /// their bytes; with D4* also six times of every parameter. If that is too much and frames can be read in slices, they
 /// are processed in slabs of as many brick layers as fit, at least one: the source slices of a slab for one component
 /// (on D4* for every time that the filter spans), the slab twice, and some bricks with their bytes. Files read through
-/// another program take that program's memory. Throws Error when a stated limit is below the minimum.
-MemoryPlan planMemory(const Metadata& metadata, const volume::DatasetInfo& source, const PackOptions& options,
-                      const SlabInput& slabs);
+/// another program take that program's memory. `slabLayers`: number of brick layers even if whole frames fit; 0: as
+/// many as fit. Throws Error when a stated limit is below the minimum.
+MemoryPlan planMemory(const Metadata& metadata, const volume::Dataset& source, const PackOptions& options,
+                      int slabLayers);
 
 } // namespace tessera::codec

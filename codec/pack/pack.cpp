@@ -8,7 +8,6 @@
 #include "codec/pack/frame_feed.h"
 #include "codec/pack/lossy_field.h"
 #include "codec/pack/memory_plan.h"
-#include "codec/pack/pack_again.h"
 #include "codec/pack/pack_passes.h"
 #include "codec/pack/pack_size.h"
 #include "volume/field/quantities.h"
@@ -93,14 +92,6 @@ void check(const volume::DatasetInfo& source, const PackOptions& options) {
         throw Error("the data lies on BCC; it cannot be packed as CC");
 }
 
-/// The slabs of a plan; none if frames are read whole.
-SlabReading slabsOf(const MemoryPlan& plan, const SlabInput& slabs, const volume::SliceMaker& ofD4,
-                    const std::string& path) {
-    if (plan.slabLayers == 0) return {};
-    const std::string folder = std::filesystem::path(path).parent_path().string();
-    return {ofD4 ? ofD4(plan.slabStep, folder) : slabs.slices, plan.slabStep, {plan.slabLayers, folder}};
-}
-
 /// Thresholds the details of a frame, most strongly in the least important bricks.
 Thresholded giveUp(FrameSamples& samples, const volume::BrickGrid& grid, const FrameOptions& frame,
                    const ThresholdOptions& options, double extent) {
@@ -147,23 +138,24 @@ std::vector<volume::Quantity> quantitiesOf(const volume::DatasetInfo& source, co
 class Packing {
 public:
     /// Packs into a new archive, or appends to `grown`, whose options are then `options`.
-    Packing(volume::Dataset& source, const SlabInput& slabs, const PackedAgain& before, const PackOptions& options,
+    Packing(volume::Dataset& source, int slabLayers, const PackedBefore& before, const PackOptions& options,
             const std::string& path, const Archive* grown)
         : source_(source), dataset_(source), options_(options), path_(path), grown_(grown) {
         check(source.info, options);
         metadata_.source =
             before.grid && source.info.lattice.kind == LatticeKind::BCC ? *before.grid : source.info.lattice;
         metadata_.alternating = options.lattice == StoredLattice::D4;
-        volume::SliceMaker slicesOfD4;
+        const auto framesOfD4 = [&](const volume::SliceMemory& memory) {
+            return grown && bringsTimes(*grown, source.info)
+                       ? volume::continueD4(source, grown->metadata().sourceTimes, grown->info().times,
+                                            options.resample, memory)
+                       : volume::framesOfD4(source, options.resample, memory);
+        };
         if (metadata_.alternating) {
-            volume::D4Frames made = grown && bringsTimes(*grown, source.info)
-                                        ? volume::continueD4(source, grown->metadata().sourceTimes, grown->info().times,
-                                                             options.resample, slabs.slices)
-                                        : volume::framesOfD4(source, options.resample, slabs.slices);
+            volume::D4Frames made = framesOfD4({});
             metadata_.sourceTimes = std::move(made.times);
             metadata_.sourceQuantities = quantitiesOf(source.info, metadata_.sourceTimes, grown);
             dataset_ = std::move(made.frames);
-            slicesOfD4 = std::move(made.slices);
         }
         const volume::DatasetInfo& info = dataset_.info;
         const bool toBcc = options.lattice == StoredLattice::BCC && info.lattice.kind == LatticeKind::CC;
@@ -179,14 +171,16 @@ public:
         errors_.assign(info.parameters.size(), 0);
         for (const volume::Parameter& parameter : info.parameters)
             errorsBefore_.push_back(parameter.categorical ? 0 : before.maxError * extentOf(parameter));
-        memory_ = planMemory(metadata_, source.info, options, slabs);
+        memory_ = planMemory(metadata_, source, options, slabLayers);
         reading_ = {.toBcc = toBcc,
                     .resample = options.resample,
                     .grid = metadata_.grid,
-                    .slabs = slabsOf(memory_, slabs, slicesOfD4, path),
+                    .slices = {memory_.slabStep, std::filesystem::path(path).parent_path().string()},
+                    .slabLayers = memory_.slabLayers,
                     .ahead = memory_.readAhead,
                     .rangesOnly = false,
                     .measures = false};
+        if (metadata_.alternating && memory_.slabLayers > 0) dataset_.read = framesOfD4(reading_.slices).frames.read;
         resampledBefore_ = before.resampled;
     }
 
@@ -373,30 +367,32 @@ PackSummary Packing::run(const Progress& progress) {
 } // namespace
 
 PackSummary pack(volume::Dataset& source, const PackOptions& options, const std::string& path, const Progress& progress,
-                 const SlabInput& slabs, const PackedAgain& before) {
-    if (options.sizeMb == 0) return Packing(source, slabs, before, options, path, nullptr).run(progress);
+                 const PackedBefore& before, int slabLayers) {
+    const auto packing = [&](const PackOptions& with, const std::string& to) {
+        return Packing(source, slabLayers, before, with, to, nullptr);
+    };
+    if (options.sizeMb == 0) return packing(options, path).run(progress);
     const auto trial = [&](const PackOptions& with, const std::string& to, const Progress& part) {
-        return Packing(source, slabs, before, with, to, nullptr).run(part);
+        return packing(with, to).run(part);
     };
     const auto bytesAt = [&](const Progress& part) {
         PackOptions plain = options;
         plain.lossless = true;
-        return Packing(source, slabs, before, plain, path, nullptr).estimate(part);
+        return packing(plain, path).estimate(part);
     };
     return packToSize(options, sizeControlFor(source.info), path, bytesAt, trial, progress);
 }
 
 PackSummary append(volume::Dataset& source, const std::string& path, double memoryMb, const Progress& progress,
-                   const SlabInput& slabs, const PackedAgain& before) {
+                   const PackedBefore& before, int slabLayers) {
     const Archive grown(path);
     PackOptions options = grown.metadata().options;
     options.memoryMb = memoryMb;
-    std::optional<FurtherParameters> further = withoutKnownLabels(source, slabs.slices, grown);
-    if (!further) return Packing(source, slabs, before, options, path, &grown).run(progress);
-    const SlabInput own{further->slices, slabs.layers};
-    const PackSummary summary = Packing(further->dataset, own, before, options, path, &grown).run(progress);
+    std::optional<volume::Dataset> further = withoutKnownLabels(source, grown);
+    if (!further) return Packing(source, slabLayers, before, options, path, &grown).run(progress);
+    const PackSummary summary = Packing(*further, slabLayers, before, options, path, &grown).run(progress);
     for (volume::Parameter& parameter : source.info.parameters)
-        for (const volume::Parameter& made : further->dataset.info.parameters)
+        for (const volume::Parameter& made : further->info.parameters)
             if (made.name == parameter.name) parameter.ranges = made.ranges;
     return summary;
 }

@@ -1,6 +1,6 @@
 #include "codec/pack/pack_size.h"
 
-#include "codec/archive/archive_writer.h"
+#include "codec/archive/frame_model.h"
 #include "codec/pack/error_bound.h"
 #include "codec/pack/lossy_field.h"
 #include "volume/base/error.h"
@@ -134,11 +134,10 @@ std::vector<SizeAtBound> estimateSizes(const volume::Dataset& dataset, FeedOptio
     volume::Dataset some = dataset;
     some.info.times.resize(times);
     some.info.quantities.clear();
-    some.load = [load = dataset.load, timeOf](int p, int c, int t) { return load(p, c, timeOf(t)); };
-    if (reading.slabs.load)
-        reading.slabs.load = [load = reading.slabs.load, timeOf](int p, int c, int t, int first, int count) {
-            return load(p, c, timeOf(t), first, count);
-        };
+    some.read = dataset.read.through(
+        [timeOf](const volume::FrameReader& read, int parameter, int component, int time, volume::SliceRange slices) {
+            return read(parameter, component, timeOf(time), slices);
+        });
     reading.ahead = false;
     FrameFeed feed(some, reading, progress.stop);
     const std::size_t steps = times * some.info.parameters.size();

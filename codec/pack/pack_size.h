@@ -1,7 +1,8 @@
 #pragma once
 
+#include "codec/container/pack_options.h"
 #include "codec/pack/frame_feed.h"
-#include "codec/pack/pack.h"
+#include "codec/pack/pack_summary.h"
 
 #include <cstdint>
 #include <functional>

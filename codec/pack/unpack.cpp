@@ -1,6 +1,7 @@
 #include "codec/pack/unpack.h"
 
 #include "codec/archive/brick_access.h"
+#include "codec/container/exactness.h"
 #include "volume/base/parallel.h"
 #include "volume/field/part_masks.h"
 #include "volume/resample/resample.h"
@@ -86,27 +87,23 @@ Field meanOf(const Field& a, const Field& b) {
 volume::Dataset storedDataset(std::shared_ptr<const Archive> archive) {
     volume::Dataset dataset;
     dataset.info = archive->info();
-    dataset.load = [archive](int parameter, int component, int time) {
-        return readField(*archive, parameter, component, time);
+    dataset.read = [archive](int parameter, int component, int time, volume::SliceRange slices) {
+        const volume::BrickGrid& grid = archive->grid();
+        if (slices.isAllOf(grid.lattice)) return readField(*archive, parameter, component, time);
+        const auto [first, count] = slices.of(grid.lattice);
+        const int perLayer = grid.end(glm::ivec3(0)).z; // slices of a layer of bricks
+        const int layer = first / perLayer, end = (first + count + perLayer - 1) / perLayer;
+        const Field layers = readLayers(*archive, parameter, component, time, layer, end);
+        return volume::slicesOf(layers, first - grid.begin({0, 0, layer}).z, count);
     };
     return dataset;
 }
 
-PackedAgain packedBefore(const Archive& archive) {
+PackedBefore packedBefore(const Archive& archive) {
     const Metadata& metadata = archive.metadata();
-    PackedAgain before{{metadata.source, metadata.lossless, metadata.maxError}, metadata.resampled};
+    PackedBefore before{metadata.source, metadata.lossless, metadata.maxError, metadata.resampled};
     if (isResampled(metadata)) before.resampled.resize(metadata.info.parameters.size());
     return before;
-}
-
-volume::SliceLoad storedSlices(std::shared_ptr<const Archive> archive) {
-    return [archive](int parameter, int component, int time, int first, int count) {
-        const volume::BrickGrid& grid = archive->grid();
-        const int slices = grid.end(glm::ivec3(0)).z; // of a layer of bricks
-        const int layer = first / slices, end = (first + count + slices - 1) / slices;
-        const Field layers = readLayers(*archive, parameter, component, time, layer, end);
-        return volume::slicesOf(layers, first - grid.begin({0, 0, layer}).z, count);
-    };
 }
 
 volume::Series storedSeries(std::shared_ptr<const Archive> archive, int parameter, int component) {
@@ -136,7 +133,7 @@ volume::Dataset steadyDataset(std::shared_ptr<const Archive> archive, const Latt
     for (int p = 0; p < int(dataset.info.parameters.size()); ++p)
         for (int c = 0; c < dataset.info.parameters[std::size_t(p)].components; ++c)
             (*series)[{p, c}] = volume::remembering(volume::d4SeriesOf(stored, p, c), kFrames);
-    dataset.load = [archive, series, target, filter](int parameter, int component, int time) {
+    dataset.read = [archive, series, target, filter](int parameter, int component, int time) {
         const Metadata& metadata = archive->metadata();
         const double frame = volume::frameAt(metadata.info.times, metadata.sourceTimes[std::size_t(time)]);
         const volume::Parameter& about = metadata.info.parameters[std::size_t(parameter)];
@@ -173,7 +170,7 @@ volume::Dataset gridDataset(std::shared_ptr<const Archive> archive, int level, v
     if (level > 0)
         for (volume::Parameter& parameter : dataset.info.parameters)
             if (!parameter.categorical) parameter.type = ScalarType::F32;
-    dataset.load = [archive, source, stored = volume::withParts(storedDataset(archive)), target, level,
+    dataset.read = [archive, source, stored = volume::withParts(storedDataset(archive)), target, level,
                     bcc](int parameter, int component, int wanted) {
         const volume::DatasetInfo& info = archive->info();
         // Coarse levels of D4* show the frame nearest in time.
@@ -183,7 +180,7 @@ volume::Dataset gridDataset(std::shared_ptr<const Archive> archive, int level, v
         const bool categorical = info.parameters[std::size_t(parameter)].categorical;
         const auto cubic = categorical ? volume::ResampleFilter::Nearest : volume::ResampleFilter::Cubic;
         if (level == 0)
-            return volume::withoutParts(volume::resample(stored.load(parameter, component, time), target, cubic));
+            return volume::withoutParts(volume::resample(stored.read(parameter, component, time), target, cubic));
         const auto linear = categorical ? volume::ResampleFilter::Nearest : volume::ResampleFilter::Linear;
         const int channel = channelOf(info, parameter, component);
         const int label = volume::labelOf(info, info.parameters[std::size_t(parameter)]);

@@ -1,21 +1,19 @@
 #pragma once
 
 #include "codec/archive/archive.h"
-#include "codec/pack/pack_again.h"
+#include "codec/pack/pack.h"
 #include "volume/field/dataset.h"
-#include "volume/field/slices.h"
 #include "volume/resample/series.h"
 
 #include <memory>
 
 namespace tessera::codec {
 
-/// An archive as a data set of frames: on the lattice it is stored on, samples in their type.
+/// An archive as a data set of frames: on the lattice it is stored on, samples in their type. Of slices the layers of
+/// bricks that hold them are decoded.
 volume::Dataset storedDataset(std::shared_ptr<const Archive> archive);
 /// What pack needs to know about such a data set: its errors so far.
-PackedAgain packedBefore(const Archive& archive);
-/// Reads slices of its frames by decoding the brick layers that contain them.
-volume::SliceLoad storedSlices(std::shared_ptr<const Archive> archive);
+PackedBefore packedBefore(const Archive& archive);
 
 /// An archive as a data set on a CC grid, for other programs. Level 0 of a CC archive: the stored samples. Of a BCC
 /// archive: resampled to the grid it came from (labels nearest). Of a D4* archive: the same at the times it came from,

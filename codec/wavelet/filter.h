@@ -1,6 +1,6 @@
 #pragma once
 
-#include "codec/wavelet/lifting.h"
+#include "codec/wavelet/wavelet.h"
 
 #include <array>
 

@@ -1,10 +1,10 @@
 #pragma once
 
+#include "codec/wavelet/wavelet.h"
+
 #include <cstdint>
 #include <glm/vec3.hpp>
-#include <optional>
 #include <span>
-#include <string_view>
 
 /// Integer wavelets by lifting, in place, aware of absent samples.
 ///
@@ -22,11 +22,6 @@
 /// So nothing bleeds over the border of a region, at any level, and the decoder, which knows the mask first, undoes
 /// all.
 namespace tessera::codec {
-
-enum class Wavelet : std::uint8_t { N1, N2, W11, W13, W15, W22, W24, W26, N4, W42, W44, W46 };
-/// "N,N~"; N~ = 0 only predicts, so coarse samples are samples of the field.
-inline constexpr std::string_view kWaveletNames[] = {"1,0", "2,0", "1,1", "1,3", "1,5", "2,2",
-                                                     "2,4", "2,6", "4,0", "4,2", "4,4", "4,6"};
 
 /// How sums are formed; part of the format, as encoder and decoder must agree.
 enum class Arithmetic : std::uint8_t {

@@ -49,7 +49,7 @@ inline volume::Dataset makeBeacon() {
         volume::Parameter& made = info.parameters.emplace_back();
         made.name = name, made.unit = "V", made.ranges = {range};
     }
-    data.load = [lattice = info.lattice](int parameter, int, int time) {
+    data.read = [lattice = info.lattice](int parameter, int, int time) {
         volume::Field field = volume::makeField(lattice, volume::ScalarType::F32);
         std::size_t i = 0;
         for (int z = 0; z < kSize.z; ++z)

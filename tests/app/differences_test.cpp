@@ -156,7 +156,7 @@ TEST(Differences, OptionsOfTheCommandLineAreFormulas) {
     const volume::Dataset more = withDerived(plain, {one, parseDerived("twice = 2 * T")}, {});
     ASSERT_EQ(more.info.parameters.size(), plain.info.parameters.size() + 2);
     const int t = plain.info.channel(*plain.info.findChannel("T")).parameter;
-    const volume::Field twice = more.load(int(more.info.parameters.size()) - 1, 0, 1), own = plain.load(t, 0, 1);
+    const volume::Field twice = more.read(int(more.info.parameters.size()) - 1, 0, 1), own = plain.read(t, 0, 1);
     for (std::size_t i = 0; i < own.count(); i += 7) EXPECT_NEAR(twice.value(i), 2 * own.value(i), 1e-3);
     EXPECT_THROW(withDerived(plain, {parseDerived("x = nothing")}, {}), Error);
 }

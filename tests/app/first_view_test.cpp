@@ -24,7 +24,7 @@ std::shared_ptr<const volume::BrickSource> bodies() {
         parameter.type = volume::ScalarType::U8;
         parameter.ranges = {{0, 200}};
     }
-    data.load = [lattice = info.lattice](int parameter, int, int) {
+    data.read = [lattice = info.lattice](int parameter, int, int) {
         volume::Field field = volume::makeField(lattice, volume::ScalarType::U8);
         std::size_t i = 0;
         for (int z = 0; z < kSide; ++z)

@@ -143,7 +143,7 @@ inline volume::Dataset makeCell(const std::string& unit = "K") {
     volume::Parameter& label = add("region", "", {rangeOf("region")});
     label.type = volume::ScalarType::U8, label.categorical = true;
     label.labels = {{kWest, "west"}, {kEast, "east"}};
-    cell.load = [lattice = info.lattice](int parameter, int component, int time) {
+    cell.read = [lattice = info.lattice](int parameter, int component, int time) {
         static constexpr std::string_view kNames[] = {"T", "c", "U", "region"};
         static constexpr std::string_view kComponents[] = {"U.x", "U.y", "U.z"};
         const std::string_view name = parameter == 2 ? kComponents[component] : kNames[parameter];

@@ -37,7 +37,7 @@ volume::Dataset moving(int first, int count) {
     volume::Dataset some;
     some.info = whole.info;
     some.info.times.assign(whole.info.times.begin() + first, whole.info.times.begin() + first + count);
-    some.load = [load = whole.load, first](int p, int c, int t) { return load(p, c, first + t); };
+    some.read = [read = whole.read, first](int p, int c, int t) { return read(p, c, first + t); };
     return some;
 }
 

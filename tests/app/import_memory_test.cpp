@@ -87,7 +87,7 @@ std::string effectOf(const std::string& path, const volume::ImportOptions& optio
             for (const int value : part) out += " " + std::to_string(value);
         }
         out += " present ";
-        const volume::Field field = data.load(int(p), 0, 0);
+        const volume::Field field = data.read(int(p), 0, 0);
         for (std::size_t i = 0; i < field.count(); ++i) out += field.present(i) ? '1' : '0';
         out += "\n";
     }

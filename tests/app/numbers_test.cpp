@@ -215,7 +215,7 @@ TEST(Numbers, OfOriginalsBesideWhatWasPacked) {
 std::vector<double> samplesOf(const volume::Dataset& cell, const std::string& name) {
     for (std::size_t p = 0; p < cell.info.parameters.size(); ++p) {
         if (cell.info.parameters[p].name != name) continue;
-        const volume::Field field = cell.load(int(p), 0, kTime);
+        const volume::Field field = cell.read(int(p), 0, kTime);
         std::vector<double> values(field.count());
         for (std::size_t i = 0; i < values.size(); ++i) values[i] = field.present(i) ? field.value(i) : std::nan("");
         return values;

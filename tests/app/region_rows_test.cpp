@@ -25,8 +25,8 @@ std::shared_ptr<const volume::BrickSource> twoSides() {
     o2.ranges = {{0, 9}};
     volume::Field field = volume::test::sampled<float>(grid, [](glm::dvec3 p) { return p.x; });
     volume::test::removeWhere(field, [](glm::dvec3 p) { return p.x > 4.5; });
-    data.load = [load = data.load, field](int parameter, int component, int time) {
-        return parameter == 2 ? field : load(parameter, component, time);
+    data.read = [read = data.read, field](int parameter, int component, int time) {
+        return parameter == 2 ? field : read(parameter, component, time);
     };
     return volume::makeMemorySource(std::move(data), {});
 }

@@ -43,7 +43,7 @@ std::shared_ptr<const CountedArchive> packedWave() {
     made.info.times = {0};
     made.info.parameters = {{"T", "K", 1, volume::ScalarType::U16, false, {}, {}},
                             {"p", "Pa", 1, volume::ScalarType::F32, false, {}, {}}};
-    made.load = [lattice = made.info.lattice](int parameter, int, int) {
+    made.read = [lattice = made.info.lattice](int parameter, int, int) {
         volume::Field field =
             volume::makeField(lattice, parameter == 0 ? volume::ScalarType::U16 : volume::ScalarType::F32);
         for (std::size_t i = 0; i < field.count(); ++i) {

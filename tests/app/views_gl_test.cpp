@@ -23,7 +23,7 @@ std::shared_ptr<const BrickSource> scalar(glm::ivec3 size, const std::function<f
     data.info.parameters[0].name = "a";
     data.info.parameters[0].unit = "K";
     data.info.parameters[0].ranges = std::move(ranges);
-    data.load = [lattice = data.info.lattice, value](int, int, int) {
+    data.read = [lattice = data.info.lattice, value](int, int, int) {
         volume::Field field = volume::makeField(lattice, volume::ScalarType::F32);
         auto mask = std::make_shared<volume::Mask>(field.count(), std::uint8_t(1));
         for (std::size_t i = 0; i < field.count(); ++i) {
@@ -183,7 +183,7 @@ TEST_F(Views, DamagedDataIsTriedOnce) {
     for (volume::Parameter& parameter : data.info.parameters) parameter.ranges = {{0, 1}};
     data.info.parameters[0].name = "a";
     data.info.parameters[1].name = "b";
-    data.load = [](int, int, int) -> volume::Field { throw Error("damaged"); };
+    data.read = [](int, int, int) -> volume::Field { throw Error("damaged"); };
     show(volume::makeMemorySource(std::move(data), {}));
     int reported = 0, after = 0;
     for (int i = 0; i < 5000 && after < 30; ++i) {

@@ -71,7 +71,7 @@ TEST_F(SaidViews, TheTableOfTheSelectionHasItsHeads) {
     for (const char* head : {"Parameter", "In focus", "Outside"}) EXPECT_THAT(brushed, HasSubstr(head));
     // The means of the samples on either side, inside first.
     const volume::Dataset cell = volume::makeModel("fuel-cell", {{"nx", 7}, {"ny", 9}, {"nz", 21}, {"times", 2}});
-    const volume::Field field = cell.load(0, 0, 0);
+    const volume::Field field = cell.read(0, 0, 0);
     double sum[2] = {}, count[2] = {};
     for (std::size_t i = 0; i < field.count(); ++i) {
         if (field.mask && (*field.mask)[i] == 0) continue;

@@ -59,7 +59,7 @@ Loaded load(const fs::path& sidecar) {
     for (int t = 0; t < int(info.times.size()); ++t)
         for (int p = 0; p < int(info.parameters.size()); ++p)
             for (int c = 0; c < info.parameters[std::size_t(p)].components; ++c)
-                loaded.fields.push_back(loaded.dataset.load(p, c, t));
+                loaded.fields.push_back(loaded.dataset.read(p, c, t));
     for (const volume::Field& field : loaded.fields)
         loaded.bytes.insert(loaded.bytes.end(), field.samples.begin(), field.samples.end());
     loaded.samples = {loaded.bytes, info.lattice.size, loaded.fields[0].type};
@@ -70,7 +70,7 @@ Loaded load(const fs::path& sidecar) {
         first.push_back(components);
         components += std::size_t(parameter.components);
     }
-    loaded.dataset.load = [fields = loaded.fields, components, first](int p, int c, int t) {
+    loaded.dataset.read = [fields = loaded.fields, components, first](int p, int c, int t) {
         return fields[std::size_t(t) * components + first[std::size_t(p)] + std::size_t(c)];
     };
     return loaded;

@@ -64,7 +64,7 @@ TEST(ThesisCoding, LosesNothingWithoutThresholdAndLessBytesMeanMoreError) {
                                        1);
     for (int p = 0; p < 2; ++p)
         for (const Wavelet wavelet : {Wavelet::W11, Wavelet::W22, Wavelet::W42}) {
-            const volume::Field field = made.load(p, 0, 0);
+            const volume::Field field = made.read(p, 0, 0);
             const ThesisResult exact = thesisCode(field, {wavelet, 3, Threshold::Soft, 0, false});
             EXPECT_EQ(exact.rms, 0);
             const ThesisResult best = thesisCode(field, {wavelet, 3, Threshold::Soft, 0, true});
@@ -80,7 +80,7 @@ TEST(ThesisCoding, LosesNothingWithoutThresholdAndLessBytesMeanMoreError) {
             }
         }
     volume::Dataset floats = makeDataset({4, 4, 4}, {{"a", ScalarType::F32, 1, Texture::Smooth, false, false}}, 1);
-    EXPECT_THROW((void)thesisCode(floats.load(0, 0, 0), {}), Error);
+    EXPECT_THROW((void)thesisCode(floats.read(0, 0, 0), {}), Error);
 }
 
 } // namespace

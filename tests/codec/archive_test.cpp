@@ -35,7 +35,7 @@ TEST(Archive, GivesBackEverySampleBitForBit) {
                 for (int c = 0; c < made.info.parameters[std::size_t(p)].components; ++c)
                     for (int t = 0; t < 2; ++t) {
                         SCOPED_TRACE(made.info.parameters[std::size_t(p)].name);
-                        expectSame(made.load(p, c, t), readField(archive, p, c, t), true);
+                        expectSame(made.read(p, c, t), readField(archive, p, c, t), true);
                     }
             const VerifyReport report = verifyArchive(archive);
             EXPECT_EQ(report.damaged, 0u) << (report.damage.empty() ? "" : report.damage[0]);
@@ -52,10 +52,10 @@ TEST(Archive, KeepsWhatIsKnownOfTheData) {
     expected.lattice = volume::bccFor(made.info.lattice);
     EXPECT_EQ(archive.info(), expected);
     EXPECT_EQ(archive.metadata().source, made.info.lattice);
-    const Field field = made.load(0, 0, 0);
+    const Field field = made.read(0, 0, 0);
     double lo = 1e9, hi = -1e9;
     for (int t = 0; t < 3; ++t)
-        for (const double value : physicalValues(made.load(0, 0, t)))
+        for (const double value : physicalValues(made.read(0, 0, t)))
             lo = std::min(lo, value), hi = std::max(hi, value);
     EXPECT_EQ(archive.info().parameters[0].ranges, (std::vector<Range>{{lo, hi}}));
     EXPECT_EQ(archive.info().parameters[5].ranges.size(), 4u);
@@ -71,7 +71,7 @@ TEST(Archive, BccBricksAreTheResampledFieldAtEveryPlace) {
     pack(made, options, folder / "a.tsr");
     const Archive archive(folder / "a.tsr");
     for (int p = 0; p < 2; ++p) {
-        const Field expected = volume::toBcc(made.load(p, 0, 0), false);
+        const Field expected = volume::toBcc(made.read(p, 0, 0), false);
         expectSame(expected, readField(archive, p, 0, 0), false);
         const volume::BrickGrid& grid = archive.grid();
         std::size_t seen = 0;
@@ -159,7 +159,7 @@ TEST(Archive, ErrorBoundHoldsInFloatForEveryPresentSample) {
         for (int p = 0; p < int(parameters.size()); ++p)
             for (int c = 0; c < parameters[std::size_t(p)].components; ++c)
                 for (int t = 0; t < 2; ++t) {
-                    const Field original = made.load(p, c, t), decoded = readField(archive, p, c, t);
+                    const Field original = made.read(p, c, t), decoded = readField(archive, p, c, t);
                     double range = 0;
                     for (int k = 0; k < parameters[std::size_t(p)].components; ++k)
                         range =
@@ -185,8 +185,8 @@ TEST(Archive, CategoricalLevelsHoldOnlyLabels) {
     const TemporaryFolder folder;
     const std::vector<MadeParameter> parameters{{"region", ScalarType::U8, 1, Texture::Nasty, true, true}};
     volume::Dataset made = makeDataset({40, 40, 40}, parameters, 1);
-    made.load = [load = made.load](int p, int c, int t) {
-        Field field = load(p, c, t);
+    made.read = [read = made.read](int p, int c, int t) {
+        Field field = read(p, c, t);
         for (std::uint8_t& label : field.as<std::uint8_t>()) label = label % 2 == 0 ? 3 : 200;
         return field;
     };
@@ -257,9 +257,9 @@ TEST(Archive, NothingIsLeftBehindWhenPackingFails) {
                             source.get_token()};
     EXPECT_THROW(pack(made, {}, folder / "a.tsr", progress), Cancelled);
     EXPECT_EQ(folder.files(), 0u);
-    made.load = [load = made.load](int p, int c, int t) {
+    made.read = [read = made.read](int p, int c, int t) {
         if (t == 2) throw Error("truncated", "x.raw");
-        return load(p, c, t);
+        return read(p, c, t);
     };
     EXPECT_THROW(pack(made, {}, folder / "a.tsr"), Error);
     EXPECT_EQ(folder.files(), 0u);

@@ -116,7 +116,7 @@ TEST(BodyCentred, ArchivesAreExactAndTheSecondReaderAgrees) {
             const Archive archive(folder / "a.tsr");
             EXPECT_EQ(verifyArchive(archive).damaged, 0u);
             if (maxError == 0) {
-                const volume::Field expected = volume::toBcc(made.load(0, 0, 0), false);
+                const volume::Field expected = volume::toBcc(made.read(0, 0, 0), false);
                 EXPECT_EQ(readField(archive, 0, 0, 0).samples, expected.samples);
             }
             const plain::Decoder decoder(readFile(folder / "a.tsr"));
@@ -148,7 +148,7 @@ TEST(BodyCentred, IsShorterWhereSamplesAreLikeTheirNeighbours) {
     const TemporaryFolder folder;
     volume::Dataset made =
         makeDataset({48, 48, 48}, {{"a", volume::ScalarType::U16, 1, Texture::Smooth, false, false}}, 1);
-    made.load = [lattice = made.info.lattice](int, int, int) {
+    made.read = [lattice = made.info.lattice](int, int, int) {
         volume::Field field = volume::makeField(lattice, volume::ScalarType::U16);
         std::mt19937 random(6);
         std::size_t i = 0;

@@ -97,8 +97,8 @@ TEST(BrickDistribution, GrowingArchivesToo) {
         some.info.parameters.assign(all.info.parameters.begin() + std::ptrdiff_t(parameter),
                                     all.info.parameters.begin() + std::ptrdiff_t(parameter + parameters));
         // The last times are all the same.
-        some.load = [load = all.load, first, parameter](int p, int c, int t) {
-            return load(p + int(parameter), c, std::min(first + t, 2));
+        some.read = [read = all.read, first, parameter](int p, int c, int t) {
+            return read(p + int(parameter), c, std::min(first + t, 2));
         };
         return some;
     };

@@ -21,9 +21,9 @@ volume::Dataset movingSlabs(int times, bool masked = false) {
                                           {"n", ScalarType::U16, 1, Texture::Noise, false, false},
                                           {"region", ScalarType::U8, 1, Texture::Noise, masked, true}};
     volume::Dataset made = makeDataset({24, 10, 9}, parameters, times);
-    made.load = [load = made.load](int p, int c, int t) {
-        volume::Field still = load(p, c, 0);
-        const volume::Field slow = load(p, c, t / 2 * 2), fast = load(p, c, t);
+    made.read = [read = made.read](int p, int c, int t) {
+        volume::Field still = read(p, c, 0);
+        const volume::Field slow = read(p, c, t / 2 * 2), fast = read(p, c, t);
         const std::size_t bytes = volume::byteSize(still.type);
         for (std::size_t i = 0; i < still.count(); ++i) {
             const std::size_t x = i % std::size_t(still.lattice.size.x);
@@ -108,7 +108,7 @@ TEST(BrickNotes, WhatDoesNotMoveIsStoredOnce) {
     EXPECT_EQ(verifyArchive(archive).damaged, 0u);
     for (int p = 0; p < 4; ++p)
         for (int c = 0; c < archive.info().parameters[std::size_t(p)].components; ++c)
-            for (int t = 0; t < 6; ++t) EXPECT_EQ(readField(archive, p, c, t).samples, made.load(p, c, t).samples);
+            for (int t = 0; t < 6; ++t) EXPECT_EQ(readField(archive, p, c, t).samples, made.read(p, c, t).samples);
     EXPECT_EQ(archive.change({0, 0, 0, {0, 0, 0}}, 5), volume::BrickChange{});
     EXPECT_EQ(archive.change({0, 2, 0, {1, 0, 0}}, 3), volume::BrickChange{});
     EXPECT_GT(archive.change({0, 2, 0, {1, 0, 0}}, 4)->max, 0);
@@ -123,8 +123,8 @@ TEST(BrickNotes, SlowDriftStaysWithinTheBound) {
     const double bound = 1.0;
     const int times = 60;
     volume::Dataset made = makeDataset({16, 8, 8}, {{"T", ScalarType::F32, 1, Texture::Smooth, true, false}}, times);
-    made.load = [load = made.load](int p, int c, int t) {
-        volume::Field field = load(p, c, 0);
+    made.read = [read = made.read](int p, int c, int t) {
+        volume::Field field = read(p, c, 0);
         for (float& value : field.as<float>()) value += 0.002f * float(t);
         return field;
     };
@@ -133,7 +133,7 @@ TEST(BrickNotes, SlowDriftStaysWithinTheBound) {
     EXPECT_LT(summary.repeatedBricks, 2u * (times - 1));
     const Archive archive(folder / "a.tsr");
     for (int t = 0; t < times; ++t) {
-        const volume::Field stored = readField(archive, 0, 0, t), wanted = made.load(0, 0, t);
+        const volume::Field stored = readField(archive, 0, 0, t), wanted = made.read(0, 0, t);
         for (std::size_t i = 0; i < stored.count(); ++i)
             if (wanted.present(i)) {
                 ASSERT_LE(std::abs(stored.value(i) - wanted.value(i)), bound) << t;
@@ -152,7 +152,7 @@ TEST(BrickNotes, AppendingGoesOnAsIfItHadNotStopped) {
         for (int first = 0; first < 6; first += 2) {
             volume::Dataset part = made;
             part.info.times = {made.info.times[std::size_t(first)], made.info.times[std::size_t(first) + 1]};
-            part.load = [load = made.load, first](int p, int c, int t) { return load(p, c, t + first); };
+            part.read = [read = made.read, first](int p, int c, int t) { return read(p, c, t + first); };
             const PackSummary summary = first == 0
                                             ? pack(part, smallBricks(StoredLattice::CC, bound), folder / "grown.tsr")
                                             : append(part, folder / "grown.tsr");

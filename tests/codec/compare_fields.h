@@ -29,7 +29,7 @@ inline double largestError(const Archive& archive, const volume::Dataset& made, 
     double largest = 0;
     for (int c = 0; c < made.info.parameters[std::size_t(parameter)].components; ++c)
         for (int t = 0; t < int(made.info.times.size()); ++t) {
-            const volume::Field stored = readField(archive, parameter, c, t), wanted = made.load(parameter, c, t);
+            const volume::Field stored = readField(archive, parameter, c, t), wanted = made.read(parameter, c, t);
             for (std::size_t i = 0; i < wanted.count(); ++i) {
                 if (!wanted.present(i)) continue;
                 EXPECT_TRUE(stored.present(i));

@@ -32,7 +32,7 @@ TEST(Corpus, StoredArchivesStillDecode) {
         const Archive archive(corpus() + "fuzz_archive/cc-exact" + features + ".tsr");
         for (int p = 0; p < 3; ++p)
             for (int c = 0; c < made.info.parameters[std::size_t(p)].components; ++c) {
-                const volume::Field expected = made.load(p, c, 0), stored = readField(archive, p, c, 0);
+                const volume::Field expected = made.read(p, c, 0), stored = readField(archive, p, c, 0);
                 EXPECT_EQ(expected.samples, stored.samples);
                 EXPECT_EQ(expected.mask ? *expected.mask : volume::Mask(), stored.mask ? *stored.mask : volume::Mask());
             }
@@ -96,7 +96,7 @@ TEST(Corpus, DISABLED_WriteSeeds) {
                                masked != 0};
             if (format.type == ScalarType::F32) format.numbers = {NumberKind::Scaled, 1, 0.5};
             volume::Dataset made = makeDataset(format.size, {{"x", format.type, 1, Texture::Smooth, false, false}}, 1);
-            const volume::Field field = made.load(0, 0, 0);
+            const volume::Field field = made.read(0, 0, 0);
             std::vector<std::uint8_t> present;
             for (std::size_t i = 0; masked != 0 && i < field.count(); ++i)
                 present.push_back((0x5b >> (i * 7 % 8) & 1) != 0);

@@ -265,8 +265,8 @@ Crashes crashesOf(const Recorder& recorder, const std::string& path, const std::
 volume::Dataset crashNoise(int firstTime, int times, const char* name = "T") {
     volume::Dataset made = makeDataset({30, 30, 31}, {{name, ScalarType::F32, 1, Texture::Noise, false, false}}, times);
     for (double& time : made.info.times) time += 0.5 * firstTime;
-    made.load = [load = made.load, firstTime, name](int p, int c, int t) {
-        volume::Field field = load(p, c, t + firstTime);
+    made.read = [read = made.read, firstTime, name](int p, int c, int t) {
+        volume::Field field = read(p, c, t + firstTime);
         if (name[0] != 'T') field.as<float>()[0] += 1;
         return field;
     };
@@ -341,9 +341,9 @@ TEST_F(Crash, OfAppendingThatFailedKeepsTheTimesBefore) {
     pack(crashNoise(0, 1));
     const Recorder recorder(folder / "");
     volume::Dataset made = crashNoise(1, 3);
-    made.load = [load = made.load](int p, int c, int t) {
+    made.read = [read = made.read](int p, int c, int t) {
         if (t == 1) throw Error("truncated", "x.raw");
-        return load(p, c, t);
+        return read(p, c, t);
     };
     EXPECT_THROW(append(made), Error);
     const Shown all = shownBy(path);

@@ -33,8 +33,8 @@ volume::Dataset part(const volume::Dataset& whole, std::size_t firstTime, std::s
     const auto& all = whole.info.parameters;
     const int endParameter = std::min(firstParameter + parameters, int(all.size()));
     some.info.parameters.assign(all.begin() + firstParameter, all.begin() + endParameter);
-    some.load = [load = whole.load, firstTime, firstParameter](int p, int c, int t) {
-        return load(p + firstParameter, c, t + int(firstTime));
+    some.read = [read = whole.read, firstTime, firstParameter](int p, int c, int t) {
+        return read(p + firstParameter, c, t + int(firstTime));
     };
     return some;
 }
@@ -99,7 +99,7 @@ TEST(Growing, ParametersMayComeInAnotherOrder) {
     const volume::Dataset made = makeDataset({9, 9, 9}, several(), 2);
     volume::Dataset all = part(made, 0, 2), first = part(made, 0, 1), second = part(made, 1, 1);
     std::swap(second.info.parameters[0], second.info.parameters[2]);
-    second.load = [load = second.load](int p, int c, int t) { return load(p == 0 ? 2 : p == 2 ? 0 : p, c, t); };
+    second.read = [read = second.read](int p, int c, int t) { return read(p == 0 ? 2 : p == 2 ? 0 : p, c, t); };
     pack(all, {}, folder / "once.tsr");
     pack(first, {}, folder / "grown.tsr");
     append(second, folder / "grown.tsr");
@@ -109,8 +109,8 @@ TEST(Growing, ParametersMayComeInAnotherOrder) {
 TEST(Growing, RelativeBoundsHoldForTheRangeOfTheWhole) {
     const TemporaryFolder folder;
     volume::Dataset made = makeDataset({20, 16, 12}, {{"T", ScalarType::F32, 1, Texture::Smooth, false, false}}, 3);
-    made.load = [load = made.load](int p, int c, int t) {
-        volume::Field field = load(p, c, t);
+    made.read = [read = made.read](int p, int c, int t) {
+        volume::Field field = read(p, c, t);
         for (float& value : field.as<float>()) value *= float(1 + t); // every time has a wider range
         return field;
     };
@@ -209,7 +209,7 @@ TEST(Growing, ReadersSeeWholeTimesWhileItGrows) {
     EXPECT_TRUE(early->outdated());
     EXPECT_FALSE(Archive(path).outdated());
     EXPECT_EQ(early->info().times.size(), 1u);
-    EXPECT_EQ(readField(*early, 1, 0, 0).samples, made.load(1, 0, 0).samples);
+    EXPECT_EQ(readField(*early, 1, 0, 0).samples, made.read(1, 0, 0).samples);
     EXPECT_EQ(folder.files(), 1u);
 }
 
@@ -222,9 +222,9 @@ TEST(Growing, FailuresKeepWhatWasThere) {
     const std::vector<char> before = readFile(path);
     const auto failing = [&](std::size_t from, std::size_t at) {
         volume::Dataset rest = part(made, from, 6 - from);
-        rest.load = [load = rest.load, at](int p, int c, int t) {
+        rest.read = [read = rest.read, at](int p, int c, int t) {
             if (t == int(at)) throw Error("truncated", "x.raw");
-            return load(p, c, t);
+            return read(p, c, t);
         };
         return rest;
     };
@@ -342,7 +342,7 @@ TEST(Growing, ThePlainDecoderReadsGrownArchives) {
     for (int t = 0; t < 3; ++t)
         for (int p = 0; p < 4; ++p)
             for (int c = 0; c < made.info.parameters[std::size_t(p)].components; ++c, ++frame) {
-                const volume::Field field = made.load(p, c, t);
+                const volume::Field field = made.read(p, c, t);
                 const plain::Brick brick = decoder.brick(frame, 0, 0);
                 const auto size = made.info.lattice.size;
                 std::size_t i = 0;

@@ -101,7 +101,7 @@ volume::Dataset driftingSeries(int times, double driftOfRange) {
                                         {"b", ScalarType::U8, 1, Texture::Smooth, false, false},
                                         {"c", ScalarType::F32, 1, Texture::Smooth, true, false}},
                                        times);
-    made.load = [inner = made.load, driftOfRange, types = made.info.parameters](int p, int c, int t) {
+    made.read = [inner = made.read, driftOfRange, types = made.info.parameters](int p, int c, int t) {
         constexpr double kRange = 160;
         volume::Field field = inner(p, c, 0);
         std::mt19937 random(7);
@@ -168,7 +168,7 @@ TEST(Thresholds, BoundsAndReportedErrorsHoldInASeries) {
 TEST(Thresholds, LeaveWhatIsNotFinite) {
     const TemporaryFolder folder;
     volume::Dataset made = driftingSeries(2, 0.01);
-    made.load = [inner = made.load](int p, int c, int t) {
+    made.read = [inner = made.read](int p, int c, int t) {
         volume::Field field = inner(p, c, t);
         if (p == 0) field.as<float>()[5] = std::numeric_limits<float>::infinity();
         return field;
@@ -184,7 +184,7 @@ TEST(Thresholds, LeaveWhatIsNotFinite) {
 TEST(Thresholds, GiveUpMoreForMoreAndSpareTheImportant) {
     const TemporaryFolder folder;
     volume::Dataset made = makeDataset({64, 32, 32}, {{"a", ScalarType::U8, 1, Texture::Smooth, false, false}}, 1);
-    made.load = [lattice = made.info.lattice](int, int, int) {
+    made.read = [lattice = made.info.lattice](int, int, int) {
         volume::Field field = volume::makeField(lattice, ScalarType::U8);
         std::mt19937 random(8);
         std::size_t i = 0;
@@ -208,7 +208,7 @@ TEST(Thresholds, GiveUpMoreForMoreAndSpareTheImportant) {
     EXPECT_LT(much, little / 2);
     EXPECT_GT(packed(0.05, true), much);
     const Archive archive(folder / "a.tsr"); // by importance
-    const volume::Field stored = readField(archive, 0, 0, 0), wanted = made.load(0, 0, 0);
+    const volume::Field stored = readField(archive, 0, 0, 0), wanted = made.read(0, 0, 0);
     double inside = 0, outside = 0;
     for (std::size_t i = 0; i < stored.count(); ++i) {
         const double error = std::abs(stored.value(i) - wanted.value(i));
@@ -223,7 +223,7 @@ TEST(Discard, LeavesOutWhatShowsNothingInAnyParameter) {
                                        {{"a", ScalarType::F32, 1, Texture::Smooth, false, false},
                                         {"b", ScalarType::U8, 1, Texture::Smooth, false, false}},
                                        2);
-    made.load = [lattice = made.info.lattice](int p, int, int t) {
+    made.read = [lattice = made.info.lattice](int p, int, int t) {
         volume::Field field = volume::makeField(lattice, p == 0 ? ScalarType::F32 : ScalarType::U8);
         for (std::size_t i = 0; i < field.count(); ++i) {
             const int x = int(i % 48), wave = int(i / 48 % 16) * 12;
@@ -247,7 +247,7 @@ TEST(Discard, LeavesOutWhatShowsNothingInAnyParameter) {
     EXPECT_FALSE(archive.metadata().lossless);
     for (int p = 0; p < 2; ++p)
         for (int t = 0; t < 2; ++t) {
-            const volume::Field stored = readField(archive, p, 0, t), wanted = made.load(p, 0, t);
+            const volume::Field stored = readField(archive, p, 0, t), wanted = made.read(p, 0, t);
             std::size_t absent = 0;
             for (std::size_t i = 0; i < stored.count(); ++i) {
                 absent += stored.present(i) ? 0 : 1;

@@ -90,7 +90,7 @@ inline volume::Dataset makeDataset(glm::ivec3 size, const std::vector<MadeParame
         if (p.categorical) parameter.labels = {{0, "solid"}, {1, "air \"side\""}};
         made.info.parameters.push_back(parameter);
     }
-    made.load = [parameters, lattice = made.info.lattice](int p, int component, int time) {
+    made.read = [parameters, lattice = made.info.lattice](int p, int component, int time) {
         const MadeParameter& about = parameters[std::size_t(p)];
         volume::Field field = volume::makeField(lattice, about.type);
         std::mt19937 random(unsigned(p * 1000 + component * 100 + time));

@@ -59,7 +59,7 @@ TEST(MergedBytes, AreFewerWhereTheDataGoOn) {
     const TemporaryFolder folder;
     volume::Dataset made = makeDataset({32, 32, 32}, {{"a", ScalarType::F32, 1, Texture::Smooth, false, false}}, 1);
     made.info.times = {0, 1, 2};
-    made.load = [load = made.load](int p, int c, int) { return load(p, c, 0); };
+    made.read = [read = made.read](int p, int c, int) { return read(p, c, 0); };
     PackOptions options;
     options.lattice = StoredLattice::CC;
     options.brickSize = 8;

@@ -30,7 +30,7 @@ PackOptions within(StoredLattice lattice, double maxError) {
 void packAgain(const std::string& from, const PackOptions& options, const std::string& to) {
     const auto archive = std::make_shared<const Archive>(from);
     volume::Dataset stored = storedDataset(archive);
-    pack(stored, options, to, {}, {storedSlices(archive), 0}, packedBefore(*archive));
+    pack(stored, options, to, {}, packedBefore(*archive));
 }
 
 TEST(PackAgain, SamplesOnBccKeepTheGridTheyCameFrom) {
@@ -43,7 +43,7 @@ TEST(PackAgain, SamplesOnBccKeepTheGridTheyCameFrom) {
     EXPECT_EQ(b->metadata().source, made.info.lattice);
     const volume::Dataset before = gridDataset(a, 0), after = gridDataset(b, 0);
     EXPECT_EQ(after.info.lattice, made.info.lattice);
-    for (int p = 0; p < 3; ++p) expectSame(before.load(p, 0, 1), after.load(p, 0, 1), true);
+    for (int p = 0; p < 3; ++p) expectSame(before.read(p, 0, 1), after.read(p, 0, 1), true);
 
     volume::Dataset late = madeOf(2);
     for (double& time : late.info.times) time += 100;
@@ -82,8 +82,8 @@ TEST(PackAgain, ErrorsReferToTheRangeOfTheWhole) {
     const auto oneOf = [](double factor, double time) {
         volume::Dataset made = makeDataset({16, 16, 16}, {{"T", ScalarType::F32, 1, Texture::Smooth, false, false}}, 1);
         made.info.times = {time};
-        made.load = [load = made.load, factor](int p, int c, int t) {
-            volume::Field field = load(p, c, t);
+        made.read = [read = made.read, factor](int p, int c, int t) {
+            volume::Field field = read(p, c, t);
             for (float& value : field.as<float>()) value = float(factor * (value - 400));
             return field;
         };
@@ -94,7 +94,7 @@ TEST(PackAgain, ErrorsReferToTheRangeOfTheWhole) {
     pack(narrow, within(StoredLattice::BCC, 0.02), folder / "narrow.tsr");
     const auto archive = std::make_shared<const Archive>(folder / "narrow.tsr");
     volume::Dataset stored = storedDataset(archive);
-    append(stored, folder / "wide.tsr", 0, {}, {}, packedBefore(*archive));
+    append(stored, folder / "wide.tsr", 0, {}, packedBefore(*archive));
     const Archive grown(folder / "wide.tsr");
     EXPECT_FALSE(grown.metadata().lossless);
     EXPECT_NEAR(grown.metadata().maxError, 0.005, 1e-6);

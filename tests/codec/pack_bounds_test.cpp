@@ -21,7 +21,7 @@ struct Errors {
 
 /// Errors of one time of a parameter of one component; the peak is its range over all times.
 Errors errorsOf(volume::Dataset& made, const Archive& archive, int time) {
-    const volume::Field a = made.load(0, 0, time), b = readField(archive, 0, 0, time);
+    const volume::Field a = made.read(0, 0, time), b = readField(archive, 0, 0, time);
     const Range range = archive.info().parameters[0].ranges[0];
     Errors errors;
     double squares = 0;
@@ -84,7 +84,7 @@ TEST(PackBounds, SignalToNoiseIsReachedAtEveryTimeOfASeries) {
     const TemporaryFolder folder;
     for (const double drift : {0.0, 0.1, 1.6}) {
         volume::Dataset made = makeDataset({33, 20, 18}, {{"T", ScalarType::F32, 1, Texture::Smooth, false, false}}, 5);
-        made.load = [lattice = made.info.lattice, drift](int, int, int t) {
+        made.read = [lattice = made.info.lattice, drift](int, int, int t) {
             volume::Field field = volume::makeField(lattice, ScalarType::F32);
             const auto samples = field.as<float>();
             std::fill(samples.begin(), samples.end(), float(60 + drift * t));
@@ -105,7 +105,7 @@ TEST(PackBounds, SignalToNoiseIsReachedAtEveryTimeOfASeries) {
 /// A ball of noise in much background, of whole numbers up to `most`.
 volume::Dataset ball(ScalarType type, int most) {
     volume::Dataset made = makeDataset({40, 36, 30}, {{"n", type, 1, Texture::Smooth, false, false}}, 1);
-    made.load = [lattice = made.info.lattice, type, most](int, int, int) {
+    made.read = [lattice = made.info.lattice, type, most](int, int, int) {
         volume::Field field = volume::makeField(lattice, type);
         std::mt19937 random(5u);
         volume::dispatch(type, [&]<class T>(T) {
@@ -142,7 +142,7 @@ void expectClose(volume::Dataset& made, double wanted, const std::string& path) 
     const double reached = errorsOf(made, archive, 0).psnr;
     EXPECT_GE(reached, wanted);
     if (reached <= wanted + 0.5) return;
-    const volume::Field field = made.load(0, 0, 0);
+    const volume::Field field = made.read(0, 0, 0);
     const Range range = archive.info().parameters[0].ranges[0];
     const double end = made.info.parameters[0].type == ScalarType::U8 ? 255 : 1e9;
     for (int step = 1; step < 256; ++step) {
@@ -248,7 +248,7 @@ TEST(PackSeries, AFlatBeginningDoesNotSettleTheFilter) {
     const auto series = [](int flat) {
         volume::Dataset made =
             makeDataset({48, 48, 32}, {{"u", ScalarType::U8, 1, Texture::Smooth, false, false}}, 1 + flat);
-        made.load = [inner = made.load, flat](int p, int c, int t) {
+        made.read = [inner = made.read, flat](int p, int c, int t) {
             volume::Field field = inner(p, c, 0);
             if (t < flat) std::fill(field.samples.begin(), field.samples.end(), std::byte{7});
             return field;
@@ -273,7 +273,7 @@ TEST(PackSeries, AnEmptyVolumeIsAlmostNothing) {
     for (int level = 0; level < archive.grid().levels; ++level) bricks += archive.levelBytes(level);
     const std::uint64_t index = 64 * (8 + 12 + 12 * std::uint64_t(archive.grid().levels)) + 200;
     EXPECT_LE(summary.archiveBytes, bricks + index + 1000);
-    EXPECT_EQ(readField(archive, 0, 0, 0).samples, made.load(0, 0, 0).samples);
+    EXPECT_EQ(readField(archive, 0, 0, 0).samples, made.read(0, 0, 0).samples);
 }
 
 } // namespace

@@ -37,7 +37,7 @@ volume::Dataset smoothDataset() {
     label.type = volume::ScalarType::U8;
     label.categorical = true;
     dataset.info.parameters = {scalar, vector, label};
-    dataset.load = [lattice = dataset.info.lattice, times = dataset.info.times](int p, int c, int t) {
+    dataset.read = [lattice = dataset.info.lattice, times = dataset.info.times](int p, int c, int t) {
         Field field = volume::makeField(lattice, p == 2 ? volume::ScalarType::U8 : volume::ScalarType::F32);
         for (int k = 0; k < kSize.z; ++k)
             for (int j = 0; j < kSize.y; ++j)
@@ -84,7 +84,7 @@ TEST_F(PackD4, HalfTheSamplesAreStoredFrameByFrame) {
     const volume::Dataset wanted = volume::toD4(smoothDataset(), {});
     for (const int t : {0, 3, 11})
         for (int p = 0; p < 3; ++p) {
-            const Field stored = readField(*archive_, p, 0, t), made = wanted.load(p, 0, t);
+            const Field stored = readField(*archive_, p, 0, t), made = wanted.read(p, 0, t);
             EXPECT_EQ(stored.lattice, made.lattice);
             EXPECT_EQ(stored.samples, made.samples);
         }
@@ -128,7 +128,7 @@ TEST_F(PackD4, OpensAsBccFieldsOfBothParities) {
 double worstInside(const volume::Dataset& shown, const volume::Dataset& truth, int end) {
     double worst = 0;
     for (int t = 1; t < end; ++t) {
-        const Field back = shown.load(0, 0, t), wanted = truth.load(0, 0, t);
+        const Field back = shown.read(0, 0, t), wanted = truth.read(0, 0, t);
         for (int k = 3; k < kSize.z - 3; ++k)
             for (int j = 3; j < kSize.y - 3; ++j)
                 for (int i = 3; i < kSize.x - 3; ++i) {
@@ -147,9 +147,9 @@ TEST_F(PackD4, ComesBackAtTheTimesAndOnTheGridItCameFrom) {
         ASSERT_EQ(grid.info.lattice, made.info.lattice);
         EXPECT_LT(worstInside(grid, made, kTimes - 1),
                   filter == volume::TimeFilter::Cubic ? 0.05 : 0.12); // of a wave of one
-        EXPECT_EQ(grid.load(2, 0, 2).type, volume::ScalarType::U8);
+        EXPECT_EQ(grid.read(2, 0, 2).type, volume::ScalarType::U8);
     }
-    EXPECT_EQ(gridDataset(archive_, 1).load(0, 0, 2).lattice.size, glm::ivec3(11, 10, 9));
+    EXPECT_EQ(gridDataset(archive_, 1).read(0, 0, 2).lattice.size, glm::ivec3(11, 10, 9));
 }
 
 /// Times [first, end) of the smooth data.
@@ -157,7 +157,7 @@ volume::Dataset someTimes(std::size_t first, std::size_t end) {
     volume::Dataset some = smoothDataset();
     const std::vector<double> all = some.info.times;
     some.info.times.assign(all.begin() + std::ptrdiff_t(first), all.begin() + std::ptrdiff_t(end));
-    some.load = [load = some.load, first](int p, int c, int t) { return load(p, c, t + int(first)); };
+    some.read = [read = some.read, first](int p, int c, int t) { return read(p, c, t + int(first)); };
     return some;
 }
 
@@ -189,10 +189,10 @@ TEST_F(PackD4, GrowsByLaterTimesAndIsReadMeanwhile) {
     EXPECT_NEAR(double(archive->info().times.size()), double(archive_->info().times.size()), 1);
     const int known = int(had.info.times.size());
     for (const int p : {0, 1, 2}) { // what was there stays, what came is made of the data alone
-        EXPECT_EQ(now.load(p, 0, known - 1).samples, had.load(p, 0, known - 1).samples);
+        EXPECT_EQ(now.read(p, 0, known - 1).samples, had.read(p, 0, known - 1).samples);
         const auto wanted = volume::continueD4(someTimes(3, kTimes), early.info.times, had.info.times, {});
         for (int t = 0; t < int(wanted.frames.info.times.size()); ++t)
-            EXPECT_EQ(now.load(p, 0, known + t).samples, wanted.frames.load(p, 0, t).samples);
+            EXPECT_EQ(now.read(p, 0, known + t).samples, wanted.frames.read(p, 0, t).samples);
     }
     // As good as when packed at once, but for the last interval: there is one frame less behind it.
     const volume::Dataset grid = gridDataset(archive, 0, volume::TimeFilter::Cubic);

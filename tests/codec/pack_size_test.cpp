@@ -22,8 +22,8 @@ volume::Dataset waves(int times) {
                                        {{"T", ScalarType::F32, 1, Texture::Smooth, true, false},
                                         {"U", ScalarType::F32, 2, Texture::Smooth, false, false}},
                                        times);
-    made.load = [load = made.load](int p, int c, int t) {
-        volume::Field field = load(p, c, t);
+    made.read = [read = made.read](int p, int c, int t) {
+        volume::Field field = read(p, c, t);
         std::mt19937 random(unsigned(100 * p + 10 * c + t));
         for (float& value : field.as<float>()) value += float(random() % 1000) * 1e-4f;
         return field;
@@ -157,10 +157,10 @@ TEST(PackFeed, ReadsOneStepAheadOrNone) {
         volume::Dataset made = waves(3);
         std::atomic<int> inside = 0;
         std::set<std::thread::id> threads;
-        made.load = [&, load = made.load](int p, int c, int t) {
+        made.read = [&, read = made.read](int p, int c, int t) {
             EXPECT_EQ(++inside, 1);
             threads.insert(std::this_thread::get_id());
-            volume::Field field = load(p, c, t);
+            volume::Field field = read(p, c, t);
             --inside;
             return field;
         };

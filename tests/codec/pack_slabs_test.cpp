@@ -16,19 +16,19 @@ namespace {
 using namespace testing;
 using volume::ScalarType;
 
-/// Reads parts of a data set; counts the most slices asked for at once.
+/// A data set that is read in parts; counts the most slices asked for at once.
 struct PartReader {
     std::shared_ptr<int> most = std::make_shared<int>(0);
-    SlabInput input(const volume::Dataset& made, int layers) const {
+    volume::Dataset inParts(volume::Dataset made) const {
         using Frames = std::map<std::tuple<int, int, int>, volume::Field>; // that were made
-        return {[load = made.load, most = most, frames = std::make_shared<Frames>()](int p, int c, int t, int first,
-                                                                                     int count) {
-                    *most = std::max(*most, count);
-                    const auto [frame, isNew] = frames->try_emplace({p, c, t});
-                    if (isNew) frame->second = load(p, c, t);
-                    return volume::slicesOf(frame->second, first, count);
-                },
-                layers};
+        made.read = [read = made.read, most = most, frames = std::make_shared<Frames>()](int p, int c, int t,
+                                                                                         volume::SliceRange slices) {
+            const auto [frame, isNew] = frames->try_emplace({p, c, t});
+            if (isNew) frame->second = read(p, c, t);
+            *most = std::max(*most, slices.of(frame->second.lattice).count);
+            return volume::slicesOf(frame->second, slices);
+        };
+        return made;
     }
 };
 
@@ -73,10 +73,10 @@ TEST(PackSlabs, GiveTheArchiveThatWholeFramesGive) {
             });
         // Of D4* two frames, of which none has one before on its own grid.
         const int times = options.lattice == StoredLattice::D4 ? 2 : 1;
-        volume::Dataset whole = makeDataset({11, 9, 29}, kinds, times), parts = whole;
+        volume::Dataset whole = makeDataset({11, 9, 29}, kinds, times), parts = PartReader{}.inParts(whole);
         const PackSummary expected = pack(whole, options, folder / "whole.tsr");
         const int layers = 1 + number++ % 3;
-        const PackSummary summary = pack(parts, options, folder / "parts.tsr", {}, PartReader{}.input(parts, layers));
+        const PackSummary summary = pack(parts, options, folder / "parts.tsr", {}, {}, layers);
         EXPECT_TRUE(readFile(folder / "whole.tsr") == readFile(folder / "parts.tsr")) << number << " layers " << layers;
         EXPECT_EQ(summary.maxError, expected.maxError);
         EXPECT_EQ(summary.sourceBytes, expected.sourceBytes);
@@ -98,7 +98,8 @@ void expectSameFrames(const Archive& a, const Archive& b) {
 volume::Dataset timesFrom(const volume::Dataset& all, int first, int count) {
     volume::Dataset some = all;
     some.info.times.assign(all.info.times.begin() + first, all.info.times.begin() + first + count);
-    some.load = [load = all.load, first](int p, int c, int t) { return load(p, c, first + t); };
+    some.read = all.read.through([first](const volume::FrameReader& read, int p, int c, int t,
+                                         volume::SliceRange slices) { return read(p, c, first + t, slices); });
     return some;
 }
 
@@ -109,12 +110,14 @@ TEST(PackSlabs, AppendToo) {
                                            {"f", ScalarType::F32, 1, Texture::Smooth, false, false}};
     for (const StoredLattice lattice : {StoredLattice::CC, StoredLattice::BCC}) {
         const volume::Dataset all = makeDataset({18, 20, 37}, kinds, 3);
-        volume::Dataset whole = all, early = timesFrom(all, 0, 2), late = timesFrom(all, 2, 1);
+        const PartReader reader;
+        volume::Dataset whole = all, early = reader.inParts(timesFrom(all, 0, 2)),
+                        late = reader.inParts(timesFrom(all, 2, 1));
         PackOptions options = slabOptions(lattice);
         options.absError = 0.3;
         pack(whole, options, folder / "whole.tsr");
-        pack(early, options, folder / "parts.tsr", {}, PartReader{}.input(early, 1));
-        append(late, folder / "parts.tsr", 0, {}, PartReader{}.input(late, 2));
+        pack(early, options, folder / "parts.tsr", {}, {}, 1);
+        append(late, folder / "parts.tsr", 0, {}, {}, 2);
         const Archive archive(folder / "whole.tsr"), grown(folder / "parts.tsr");
         expectSameFrames(archive, grown);
         EXPECT_EQ(grown.maskCount(), archive.maskCount());
@@ -135,10 +138,11 @@ TEST(PackSlabs, AppendToSeriesOnD4) {
         options.resample.filter = filter;
         for (const bool slabs : {false, true}) {
             const std::string path = folder / (slabs ? "parts.tsr" : "whole.tsr");
-            volume::Dataset early = timesFrom(all, 0, 6), late = timesFrom(all, 3, 6);
             const PartReader reader;
-            pack(early, options, path, {}, slabs ? reader.input(early, 1) : SlabInput());
-            append(late, path, 0, {}, slabs ? reader.input(late, 2) : SlabInput());
+            const volume::Dataset source = slabs ? reader.inParts(all) : all;
+            volume::Dataset early = timesFrom(source, 0, 6), late = timesFrom(source, 3, 6);
+            pack(early, options, path, {}, {}, 1);
+            append(late, path, 0, {}, {}, 2);
             if (slabs) {
                 EXPECT_LT(*reader.most, 37);
             }
@@ -154,17 +158,15 @@ TEST(PackSlabs, AppendToSeriesOnD4) {
 TEST(PackSlabs, MeetASize) {
     const TemporaryFolder folder;
     for (const StoredLattice lattice : {StoredLattice::CC, StoredLattice::BCC, StoredLattice::D4}) {
-        volume::Dataset made = makeDataset({24, 20, 150},
-                                           {{"u", ScalarType::U16, 1, Texture::Noise, true, false},
-                                            {"f", ScalarType::F32, 2, Texture::Noise, false, false}},
-                                           2);
+        const PartReader reader;
+        volume::Dataset made = reader.inParts(makeDataset({24, 20, 150},
+                                                          {{"u", ScalarType::U16, 1, Texture::Noise, true, false},
+                                                           {"f", ScalarType::F32, 2, Texture::Noise, false, false}},
+                                                          2));
         PackOptions options = slabOptions(lattice);
         options.brickSize = 16;
         options.sizeMb = 0.1;
-        const PartReader reader;
-        const SlabInput input = reader.input(made, 1);
-        made.load = [](int, int, int) -> volume::Field { throw Error("a whole frame was read"); };
-        const PackSummary summary = pack(made, options, folder / "a.tsr", {}, input);
+        const PackSummary summary = pack(made, options, folder / "a.tsr", {}, {}, 1);
         EXPECT_LE(summary.archiveBytes, 100000u);
         EXPECT_GE(summary.archiveBytes, 80000u);
         EXPECT_LT(*reader.most, 110);
@@ -179,43 +181,40 @@ TEST(PackSlabs, AreTakenWhereFramesDoNotFit) {
     volume::Dataset made;
     made.info.lattice = {volume::LatticeKind::CC, {160, 160, 640}, {1, 1, 1}, {0, 0, 0}};
     made.info.parameters = {{"v", "", 1, ScalarType::U8, false, {}, {}}};
-    const auto slices = [lattice = made.info.lattice](int, int, int, int first, int count) {
-        volume::Field field = volume::makeField(volume::slicesOf(lattice, first, count), ScalarType::U8);
-        std::size_t i = std::size_t(first) * 160 * 160;
+    int wholes = 0, most = 0; // of parts
+    made.read = [&, lattice = made.info.lattice](int, int, int, volume::SliceRange slices) {
+        const int count = slices.of(lattice).count;
+        if (count == lattice.size.z)
+            ++wholes;
+        else
+            most = std::max(most, count);
+        volume::Field field = volume::makeField(volume::slicesOf(lattice, slices), ScalarType::U8);
+        std::size_t i = std::size_t(slices.first) * 160 * 160;
         for (std::uint8_t& sample : field.as<std::uint8_t>()) sample = std::uint8_t(i * i >> 16), ++i;
         return field;
     };
-    int wholes = 0, most = 0;
-    made.load = [&](int p, int c, int t) {
-        ++wholes;
-        return slices(p, c, t, 0, 640);
-    };
-    const SlabInput input{[&](int p, int c, int t, int first, int count) {
-                              most = std::max(most, count);
-                              return slices(p, c, t, first, count);
-                          },
-                          0};
     PackOptions options;
     options.brickSize = 16;
-    pack(made, options, folder / "whole.tsr", {}, input);
+    pack(made, options, folder / "whole.tsr");
     EXPECT_EQ(wholes, 1);
     EXPECT_EQ(most, 0);
     made.info.parameters[0].ranges.clear();
     options.memoryMb = 1;
     double least = 0;
     try {
-        pack(made, options, folder / "parts.tsr", {}, input);
+        pack(made, options, folder / "parts.tsr");
         FAIL() << "packed with 1 MB";
     } catch (const Error& error) {
         std::sscanf(error.what(), "packing frames of this size takes about %lf", &least);
     }
     options.memoryMb = least + 1;
-    pack(made, options, folder / "parts.tsr", {}, input);
+    pack(made, options, folder / "parts.tsr");
     EXPECT_EQ(wholes, 1);
     EXPECT_GT(most, 0);
     EXPECT_LT(most, 320);
     EXPECT_TRUE(readFile(folder / "whole.tsr") == readFile(folder / "parts.tsr"));
     made.info.parameters[0].ranges.clear();
+    made.read = [read = made.read](int p, int c, int t) { return read(p, c, t); };
     EXPECT_THROW(pack(made, options, folder / "parts.tsr"), Error); // whole frames need more
 }
 
@@ -226,13 +225,14 @@ TEST(PackSlabs, ArchivesAreReadInSlices) {
         volume::Dataset made = makeDataset({18, 11, 41}, everyKind(), 1);
         pack(made, slabOptions(lattice), folder / "a.tsr");
         const auto archive = std::make_shared<const Archive>(folder / "a.tsr");
-        const volume::SliceLoad slices = storedSlices(archive);
+        const volume::Dataset stored = storedDataset(archive);
+        EXPECT_TRUE(stored.read.inParts());
         const int size = archive->info().lattice.size.z;
         for (int p = 0; p < int(made.info.parameters.size()); ++p) {
             const volume::Field whole = readField(*archive, p, 0, 0);
             for (const auto& [first, count] :
                  std::vector<std::pair<int, int>>{{0, 1}, {2, 20}, {6, 9}, {size - 3, 3}, {0, size}}) {
-                const volume::Field part = slices(p, 0, 0, first - first % 2, count);
+                const volume::Field part = stored.read(p, 0, 0, {first - first % 2, count});
                 const volume::Field wanted = volume::slicesOf(whole, first - first % 2, count);
                 SCOPED_TRACE(std::to_string(p) + " from " + std::to_string(first));
                 expectSame(part, wanted, true);

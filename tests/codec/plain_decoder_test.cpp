@@ -76,7 +76,7 @@ TEST(PlainDecoder, AgreesWhereBandsHaveTablesOfTheirOwn) {
     // Details along x are 1 or -1, those along z 0 or 2: the neighbours look alike, the values do not.
     const glm::ivec3 size{40, 36, 32};
     volume::Dataset made = makeDataset(size, {{"a", ScalarType::U16, 1, Texture::Smooth, false, false}}, 1);
-    volume::Field field = made.load(0, 0, 0);
+    volume::Field field = made.read(0, 0, 0);
     std::mt19937 random(1);
     std::vector<std::uint16_t> samples(field.count());
     for (std::size_t i = 0; i < samples.size(); ++i) {
@@ -95,7 +95,7 @@ TEST(PlainDecoder, AgreesWhereBandsHaveTablesOfTheirOwn) {
                 if (z % 2 == 1) at(x, z) = std::uint16_t(at(x, z - 1) + (odd ? 0 : random() % 2 * 2));
             }
     std::memcpy(field.samples.data(), samples.data(), field.samples.size());
-    made.load = [field](int, int, int) { return field; };
+    made.read = [field](int, int, int) { return field; };
     const TemporaryFolder folder;
     PackOptions options;
     options.lattice = StoredLattice::CC;
@@ -132,7 +132,7 @@ TEST(PlainDecoder, GivesBackStoredNumbersOfAbsentSamplesToo) {
     options.lattice = StoredLattice::CC;
     options.brickSize = 16;
     pack(made, options, folder / "a.tsr");
-    const volume::Field field = made.load(0, 0, 0);
+    const volume::Field field = made.read(0, 0, 0);
     const plain::Brick brick = plain::Decoder(readFile(folder / "a.tsr")).brick(0, 0, 0);
     for (std::size_t i = 0; i < field.count(); ++i) {
         std::uint32_t bits = 0;

@@ -24,7 +24,7 @@ volume::Dataset series(int first, int count) {
         dataset.info.times.push_back(t);
         dataset.info.quantities[0].values.push_back(t == 2 ? std::nan("") : 0.9 - 0.1 * t * t);
     }
-    dataset.load = [lattice = dataset.info.lattice, first](int, int, int time) {
+    dataset.read = [lattice = dataset.info.lattice, first](int, int, int time) {
         volume::Field field = volume::makeField(lattice, volume::ScalarType::F32);
         for (std::size_t i = 0; i < field.count(); ++i) field.as<float>()[i] = float(first + time) + 0.1f * float(i);
         return field;

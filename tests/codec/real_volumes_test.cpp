@@ -44,13 +44,13 @@ TEST(RealVolumes, ComeBackBitForBitAndWithinTheBound) {
         pack(dataset, options, folder / "exact.tsr");
         const Archive exact(folder / "exact.tsr");
         forFrames(dataset.info, [&](int p, int c, int t) {
-            ASSERT_EQ(dataset.load(p, c, t).samples, readField(exact, p, c, t).samples);
+            ASSERT_EQ(dataset.read(p, c, t).samples, readField(exact, p, c, t).samples);
         });
         options.maxError = 1e-3;
         pack(dataset, options, folder / "bounded.tsr");
         const Archive bounded(folder / "bounded.tsr");
         forFrames(dataset.info, [&](int p, int c, int t) {
-            const volume::Field a = dataset.load(p, c, t), b = readField(bounded, p, c, t);
+            const volume::Field a = dataset.read(p, c, t), b = readField(bounded, p, c, t);
             const Range range = dataset.info.parameters[std::size_t(p)].ranges[0];
             double worst = 0;
             for (std::size_t i = 0; i < a.count(); ++i)

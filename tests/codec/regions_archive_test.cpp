@@ -45,12 +45,18 @@ void expectPure(const volume::BrickSource& source, int time) {
 
 void expectPure(const Dataset& dataset) {
     for (int t = 0; t < int(dataset.info.times.size()); ++t) {
-        const Field values = dataset.load(0, 0, t), labels = dataset.load(1, 0, t);
+        const Field values = dataset.read(0, 0, t), labels = dataset.read(1, 0, t);
         for (std::size_t i = 0; i < values.count(); ++i)
             if (values.present(i)) {
                 ASSERT_NEAR(values.value(i), volume::test::constantIn(int(labels.value(i)), {}), 1e-5) << t;
             }
     }
+}
+
+/// The data set as one that is read in parts.
+Dataset inParts(Dataset made) {
+    made.read = [read = made.read](int p, int c, int t, volume::SliceRange slices) { return read(p, c, t, slices); };
+    return made;
 }
 
 TEST(RegionsInArchives, StayApartOnEveryLatticeAndLevel) {
@@ -68,15 +74,9 @@ TEST(RegionsInArchives, StayApartOnEveryLatticeAndLevel) {
                     options.lattice = lattice;
                     options.wavelet = wavelet;
                     options.brickSize = brick;
-                    SlabInput input;
-                    if (slabs) {
-                        input.slices = [load = made.load](int p, int c, int t, int first, int count) {
-                            return volume::slicesOf(load(p, c, t), first, count);
-                        };
-                        input.layers = 1;
-                    }
+                    if (slabs) made = inParts(made);
                     const std::string path = folder / "regions.tsr";
-                    pack(made, options, path, {}, input);
+                    pack(made, options, path, {}, {}, 1);
                     const auto source = openArchive(path);
                     EXPECT_EQ(source->info().parameters[0].parts, made.info.parameters[0].parts);
                     for (int t = 0; t < int(source->info().times.size()); ++t) expectPure(*source, t);
@@ -94,11 +94,8 @@ TEST(RegionsInArchives, WholeFramesAndSlabsAreTheSame) {
         options.lattice = lattice;
         options.brickSize = 8;
         pack(made, options, folder / "whole.tsr");
-        const SlabInput input{[load = made.load](int p, int c, int t, int first, int count) {
-                                  return volume::slicesOf(load(p, c, t), first, count);
-                              },
-                              1};
-        pack(made, options, folder / "slabs.tsr", {}, input);
+        made = inParts(made);
+        pack(made, options, folder / "slabs.tsr", {}, {}, 1);
         const Archive whole(folder / "whole.tsr"), slabs(folder / "slabs.tsr");
         for (int t = 0; t < int(whole.info().times.size()); ++t)
             EXPECT_EQ(readField(whole, 0, 0, t).samples, readField(slabs, 0, 0, t).samples) << t;
@@ -112,14 +109,14 @@ TEST(RegionsInArchives, LosslessOnTheSourceGridStaysBitForBit) {
     options.lattice = StoredLattice::CC;
     pack(made, options, folder / "cc.tsr");
     const Archive archive(folder / "cc.tsr");
-    EXPECT_EQ(readField(archive, 0, 0, 0).samples, made.load(0, 0, 0).samples);
+    EXPECT_EQ(readField(archive, 0, 0, 0).samples, made.read(0, 0, 0).samples);
 }
 
 TEST(RegionsInArchives, AFurtherParameterFindsTheLabelInTheArchive) {
     const TemporaryFolder folder;
     const auto labelOf = [](Dataset data) {
         data.info.parameters.erase(data.info.parameters.begin());
-        data.load = [load = data.load](int, int c, int t) { return load(1, c, t); };
+        data.read = [read = data.read](int, int c, int t) { return read(1, c, t); };
         return data;
     };
     for (const StoredLattice lattice : {StoredLattice::CC, StoredLattice::BCC, StoredLattice::D4})
@@ -129,13 +126,8 @@ TEST(RegionsInArchives, AFurtherParameterFindsTheLabelInTheArchive) {
             options.lattice = lattice;
             options.brickSize = 8;
             pack(label, options, folder / "grown.tsr");
-            SlabInput slabs;
-            slabs.layers = layers;
-            if (layers > 0)
-                slabs.slices = [load = made.load](int p, int c, int t, int first, int count) {
-                    return volume::slicesOf(load(p, c, t), first, count);
-                };
-            append(made, folder / "grown.tsr", 0, {}, slabs);
+            if (layers > 0) made = inParts(made);
+            append(made, folder / "grown.tsr", 0, {}, {}, layers);
             const Archive archive(folder / "grown.tsr");
             ASSERT_EQ(archive.info().parameters.size(), 2u);
             EXPECT_EQ(archive.info().parameters[1].parts, made.info.parameters[0].parts);

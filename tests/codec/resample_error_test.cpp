@@ -1,3 +1,4 @@
+#include "codec/container/exactness.h"
 #include "codec/container/resample_error.h"
 
 #include "codec/archive/archive.h"
@@ -35,7 +36,7 @@ ResampleError unpackedError(const volume::Dataset& made, const volume::Dataset& 
     const volume::Parameter& about = made.info.parameters[std::size_t(parameter)];
     for (int t = 0; t < int(made.info.times.size()); ++t)
         for (int c = 0; c < about.components; ++c) {
-            const volume::Field a = made.load(parameter, c, t), b = unpacked.load(parameter, c, t);
+            const volume::Field a = made.read(parameter, c, t), b = unpacked.read(parameter, c, t);
             for (std::size_t i = 0; i < a.count(); ++i) {
                 if (!a.present(i) || !b.present(i)) continue;
                 double apart = std::abs(a.value(i) - b.value(i));
@@ -109,18 +110,18 @@ TEST(ResampleErrors, GoWithSamplesThatArePackedAgain) {
     pack(made, {}, folder / "a.tsr");
     const auto archive = std::make_shared<const Archive>(folder / "a.tsr");
     volume::Dataset stored = storedDataset(archive), grid = gridDataset(archive, 0);
-    pack(stored, {}, folder / "bcc.tsr", {}, {storedSlices(archive), 0}, packedBefore(*archive));
+    pack(stored, {}, folder / "bcc.tsr", {}, packedBefore(*archive));
     EXPECT_EQ(Archive(folder / "bcc.tsr").metadata().resampled, archive->metadata().resampled);
     PackOptions cc;
     cc.lattice = StoredLattice::CC;
-    pack(grid, cc, folder / "cc.tsr", {}, {}, packedBefore(*archive));
+    pack(grid, cc, folder / "cc.tsr", {}, packedBefore(*archive));
     const Archive back(folder / "cc.tsr");
     EXPECT_EQ(back.metadata().resampled, archive->metadata().resampled);
     EXPECT_THAT(exactnessText(back.metadata()), StartsWith("every sample of the CC grid is exact; the source was"));
     // Once more on BCC: no less than either, the largest at most their sum.
     const auto again = std::make_shared<const Archive>(folder / "cc.tsr");
     volume::Dataset twice = storedDataset(again);
-    pack(twice, {}, folder / "twice.tsr", {}, {}, packedBefore(*again));
+    pack(twice, {}, folder / "twice.tsr", {}, packedBefore(*again));
     const Archive end(folder / "twice.tsr");
     for (std::size_t p = 0; p < 3; ++p)
         EXPECT_GE(end.metadata().resampled[p]->largest, archive->metadata().resampled[p]->largest);
@@ -131,7 +132,7 @@ TEST(ResampleErrors, AreJoinedWhenAnArchiveGrows) {
     volume::Dataset made = madeOf(3), first = made, last = made;
     first.info.times.resize(2);
     last.info.times.erase(last.info.times.begin(), last.info.times.begin() + 2);
-    last.load = [load = made.load](int p, int c, int) { return load(p, c, 2); };
+    last.read = [read = made.read](int p, int c, int) { return read(p, c, 2); };
     pack(made, {}, folder / "whole.tsr");
     pack(first, {}, folder / "grown.tsr");
     append(last, folder / "grown.tsr");
@@ -144,7 +145,7 @@ TEST(ResampleErrors, AreJoinedWhenAnArchiveGrows) {
 
 TEST(ResampleErrors, OfLargeFramesAreThoseOfSomeSlices) {
     volume::Dataset made = makeDataset({112, 112, 350}, {{"n", ScalarType::U8, 1, Texture::Noise, false, false}}, 1);
-    const volume::Field source = made.load(0, 0, 0), stored = volume::toBcc(source, false);
+    const volume::Field source = made.read(0, 0, 0), stored = volume::toBcc(source, false);
     const ResampleError some = resampleError(source, stored, false);
     EXPECT_NEAR(some.share, 256.0 / 350, 1e-9);
     EXPECT_EQ(some.samples, 256.0 * 112 * 112);

@@ -25,8 +25,8 @@ struct Stored {
 /// One parameter; `readings` has one for every time.
 volume::Dataset storedAs(ScalarType type, Texture texture, const std::vector<Stored>& readings, bool masked = false) {
     volume::Dataset made = makeDataset({20, 17, 18}, {{"T", type, 1, texture, masked, false}}, int(readings.size()));
-    made.load = [load = made.load, readings](int p, int c, int t) {
-        volume::Field field = load(p, c, t);
+    made.read = [read = made.read, readings](int p, int c, int t) {
+        volume::Field field = read(p, c, t);
         field.scale = readings[std::size_t(t)].scale;
         field.offset = readings[std::size_t(t)].offset;
         return field;
@@ -38,7 +38,7 @@ volume::Dataset storedAs(ScalarType type, Texture texture, const std::vector<Sto
 volume::Dataset partOfTimes(const volume::Dataset& whole, int first, int count) {
     volume::Dataset some = whole;
     some.info.times.assign(whole.info.times.begin() + first, whole.info.times.begin() + first + count);
-    some.load = [load = whole.load, first](int p, int c, int t) { return load(p, c, t + first); };
+    some.read = [read = whole.read, first](int p, int c, int t) { return read(p, c, t + first); };
     return some;
 }
 
@@ -61,7 +61,7 @@ struct ScaledErrors {
 ScaledErrors scaledErrors(const Archive& archive, const volume::Dataset& made, const std::vector<Stored>& readings) {
     ScaledErrors errors;
     for (int t = 0; t < int(readings.size()); ++t) {
-        const volume::Field was = made.load(0, 0, t), is = readField(archive, 0, 0, t);
+        const volume::Field was = made.read(0, 0, t), is = readField(archive, 0, 0, t);
         const std::vector<double> numbers = numbersOf(was), kept = numbersOf(is);
         EXPECT_EQ(numbers.size(), kept.size());
         double squares = 0, count = 0;
@@ -227,8 +227,7 @@ TEST(StoredScales, ConvertedArchivesKeepBothBounds) {
             const auto archive = std::make_shared<const Archive>(folder / "first.tsr");
             volume::Dataset again = storedDataset(archive);
             options.absError = 8 * unit;
-            const SlabInput slabs{storedSlices(archive), 0};
-            const PackSummary summary = pack(again, options, folder / "second.tsr", {}, slabs, packedBefore(*archive));
+            const PackSummary summary = pack(again, options, folder / "second.tsr", {}, packedBefore(*archive));
             const Archive second(folder / "second.tsr");
             const std::vector<Stored> readings{reading, {2 * reading.scale, reading.offset}};
             const ScaledErrors errors = scaledErrors(second, made, readings);

@@ -20,7 +20,7 @@ VerifyReport verified(const TemporaryFolder& folder, const std::vector<char>& by
 /// An archive of 4 x 1 x 1 bricks; every time has the same samples and gaps if it is still.
 std::vector<char> rowOfBricks(const TemporaryFolder& folder, bool masked, int times, bool isStill) {
     volume::Dataset made = makeDataset({32, 8, 8}, {{"v", ScalarType::U16, 1, Texture::Noise, masked, false}}, times);
-    made.load = [inner = made.load, isStill](int p, int c, int t) { return inner(p, c, isStill ? 0 : t); };
+    made.read = [inner = made.read, isStill](int p, int c, int t) { return inner(p, c, isStill ? 0 : t); };
     PackOptions options;
     options.lattice = StoredLattice::CC;
     options.brickSize = 8;

@@ -43,7 +43,7 @@ TEST_F(BinaryFormats, NumPyArrays) {
     EXPECT_EQ(dataset.info.times.size(), 2u);
     EXPECT_EQ(dataset.info.lengthUnit, "");
     for (int t = 0; t < 2; ++t)
-        for (int i = 0; i < kCount; ++i) ASSERT_EQ(dataset.load(0, 0, t).value(std::size_t(i)), at(t, i, 0, 1));
+        for (int i = 0; i < kCount; ++i) ASSERT_EQ(dataset.read(0, 0, t).value(std::size_t(i)), at(t, i, 0, 1));
     expectCutsAreTold(path, path);
 
     const std::string big = write("U.npy", npy(">i2", "6, 4, 5, 3", bytesOf(numbers<std::int16_t>(1, 3), true)));
@@ -51,7 +51,7 @@ TEST_F(BinaryFormats, NumPyArrays) {
     EXPECT_EQ(vector.info.parameters[0].components, 3);
     EXPECT_EQ(vector.info.parameters[0].type, ScalarType::I16);
     for (int c = 0; c < 3; ++c)
-        for (int i = 0; i < kCount; ++i) ASSERT_EQ(vector.load(0, c, 0).value(std::size_t(i)), at(0, i, c, 3));
+        for (int i = 0; i < kCount; ++i) ASSERT_EQ(vector.read(0, c, 0).value(std::size_t(i)), at(0, i, c, 3));
 
     std::vector<float> turned(kCount); // the first index is the fastest
     for (int k = 0; k < 6; ++k)
@@ -59,7 +59,7 @@ TEST_F(BinaryFormats, NumPyArrays) {
             for (int i = 0; i < 5; ++i)
                 turned[std::size_t((i * 4 + j) * 6 + k)] = float(at(0, (k * 4 + j) * 5 + i, 0, 1));
     const Dataset fortran = openFiles({write("f.npy", npy("<f4", "6, 4, 5", bytesOf(turned), true))}, {});
-    for (int i = 0; i < kCount; ++i) ASSERT_EQ(fortran.load(0, 0, 0).value(std::size_t(i)), at(0, i, 0, 1));
+    for (int i = 0; i < kCount; ++i) ASSERT_EQ(fortran.read(0, 0, 0).value(std::size_t(i)), at(0, i, 0, 1));
     EXPECT_THAT(failure(write("c.npy", npy("<c8", "6, 4, 5", std::string(960, 'a')))), testing::HasSubstr("astype"));
 }
 
@@ -91,15 +91,15 @@ TEST_F(BinaryFormats, NumPyArchiveWithPlacesAndTimes) {
     EXPECT_EQ(dataset.info.lattice.origin, glm::dvec3(1, 0, 0));
     EXPECT_EQ(dataset.info.lattice.spacing, glm::dvec3(2, 1, 1));
     ASSERT_EQ(dataset.info.parameters.size(), 3u);
-    EXPECT_EQ(dataset.load(1, 2, 1).value(9), at(1, 9, 2, 3));
-    EXPECT_EQ(dataset.load(2, 0, 1).value(9), at(0, 9, 0, 1));
+    EXPECT_EQ(dataset.read(1, 2, 1).value(9), at(1, 9, 2, 3));
+    EXPECT_EQ(dataset.read(2, 0, 1).value(9), at(0, 9, 0, 1));
     expectCutsAreTold(path, path);
     const Dataset list =
         openFiles({write("b.npz", zipOf({{"h.npy", npy("<f4", "6, 4, 5", bytesOf(numbers<float>(1, 1)))},
                                          {"z.npy", npy("<f4", "6,", bytesOf(std::vector<float>{9, 8, 7, 6, 5, 4}))}}))},
                   {});
     EXPECT_EQ(list.info.lattice.origin.z, 4); // falling places are turned round
-    EXPECT_EQ(list.load(0, 0, 0).value(0), at(0, 5 * 20, 0, 1));
+    EXPECT_EQ(list.read(0, 0, 0).value(0), at(0, 5 * 20, 0, 1));
 }
 
 void putArray(hid_t file, const char* path, std::vector<hsize_t> dims, const void* data, hid_t type, const char* unit) {
@@ -141,9 +141,9 @@ TEST_F(BinaryFormats, Hdf5ByPath) {
     EXPECT_EQ(dataset.info.parameters[0].name, "fields/T");
     EXPECT_EQ(dataset.info.parameters[0].unit, "K");
     for (int i = 0; i < kCount; ++i) {
-        ASSERT_EQ(dataset.load(0, 0, 1).value(std::size_t(i)), at(1, i, 0, 1));
-        ASSERT_EQ(dataset.load(1, 1, 1).value(std::size_t(i)), at(1, i, 1, 3));
-        ASSERT_EQ(dataset.load(2, 0, 1).value(std::size_t(i)), at(0, i, 0, 1));
+        ASSERT_EQ(dataset.read(0, 0, 1).value(std::size_t(i)), at(1, i, 0, 1));
+        ASSERT_EQ(dataset.read(1, 1, 1).value(std::size_t(i)), at(1, i, 1, 3));
+        ASSERT_EQ(dataset.read(2, 0, 1).value(std::size_t(i)), at(0, i, 0, 1));
     }
     EXPECT_THAT(previewFiles({path}, {}).notes, testing::Contains(testing::HasSubstr("1 array of another size")));
     expectCutsAreTold(path, path);
@@ -178,7 +178,7 @@ TEST_F(BinaryFormats, VtkHdfImage) {
     const Dataset dataset = openFiles({path}, {});
     ASSERT_EQ(dataset.info.lattice.size, kSize);
     EXPECT_EQ(dataset.info.lattice.origin, glm::dvec3(1, 2, 3));
-    for (int i = 0; i < kCount; ++i) ASSERT_EQ(dataset.load(0, 0, 0).value(std::size_t(i)), at(0, i, 0, 1));
+    for (int i = 0; i < kCount; ++i) ASSERT_EQ(dataset.read(0, 0, 0).value(std::size_t(i)), at(0, i, 0, 1));
     expectCutsAreTold(path, path);
 }
 
@@ -209,7 +209,7 @@ TEST_F(BinaryFormats, TiffStack) {
         const Dataset dataset = openFiles({path}, {});
         ASSERT_EQ(dataset.info.lattice.size, kSize);
         EXPECT_EQ(dataset.info.parameters[0].type, ScalarType::U16);
-        for (int i = 0; i < kCount; ++i) ASSERT_EQ(dataset.load(0, 0, 0).value(std::size_t(i)), at(0, i, 0, 1));
+        for (int i = 0; i < kCount; ++i) ASSERT_EQ(dataset.read(0, 0, 0).value(std::size_t(i)), at(0, i, 0, 1));
         expectCutsAreTold(path, path);
     }
     const std::string imagej = (folder_ / "b.tif").string();
@@ -219,7 +219,7 @@ TEST_F(BinaryFormats, TiffStack) {
     EXPECT_EQ(dataset.info.lattice.spacing, glm::dvec3(0.25, 0.5, 3));
     EXPECT_EQ(dataset.info.lengthUnit, "um");
     EXPECT_EQ(dataset.info.times, (std::vector<double>{0, 5}));
-    EXPECT_EQ(dataset.load(0, 0, 1).value(7), at(0, 67, 0, 1));
+    EXPECT_EQ(dataset.read(0, 0, 1).value(7), at(0, 67, 0, 1));
 }
 
 TEST_F(BinaryFormats, TiffSlicesInFiles) {
@@ -229,7 +229,7 @@ TEST_F(BinaryFormats, TiffSlicesInFiles) {
         const Dataset dataset = openFiles({named}, {});
         ASSERT_EQ(dataset.info.lattice.size, kSize);
         EXPECT_EQ(dataset.info.times.size(), 1u);
-        for (int i = 0; i < kCount; ++i) ASSERT_EQ(dataset.load(0, 0, 0).value(std::size_t(i)), at(0, i, 0, 1));
+        for (int i = 0; i < kCount; ++i) ASSERT_EQ(dataset.read(0, 0, 0).value(std::size_t(i)), at(0, i, 0, 1));
     }
     EXPECT_EQ(filesNamedBy(folder_.string()).size(), 6u); // what a session's hash covers
     const std::string slice = (folder_ / "s_9.tif").string();
@@ -278,7 +278,7 @@ TEST_F(BinaryFormats, DicomFolder) {
         EXPECT_EQ(dataset.info.lattice.spacing, glm::dvec3(0.25, 0.5, 2.5));
         EXPECT_EQ(dataset.info.lengthUnit, "mm");
         EXPECT_EQ(dataset.info.parameters[0].unit, "HU");
-        for (int i = 0; i < kCount; ++i) ASSERT_EQ(dataset.load(0, 0, 0).value(std::size_t(i)), at(0, i, 0, 1) - 1000);
+        for (int i = 0; i < kCount; ++i) ASSERT_EQ(dataset.read(0, 0, 0).value(std::size_t(i)), at(0, i, 0, 1) - 1000);
         expectCutsAreTold(folder, folder + "/IM5", {}, 10);
         fs::remove(folder_ / "scan/IM3");
         EXPECT_THAT(failure(folder), testing::HasSubstr("missing"));

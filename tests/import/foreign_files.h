@@ -91,7 +91,7 @@ protected:
     static std::string failure(const std::string& path, const ImportOptions& options = {}) {
         try {
             const Dataset dataset = openFiles({path}, options);
-            dataset.load(0, 0, 0);
+            dataset.read(0, 0, 0);
             return "";
         } catch (const Error& error) {
             return error.what();
@@ -107,7 +107,7 @@ protected:
             out += info.parameters[p].name + "|" + info.parameters[p].unit + "|";
             for (int c = 0; c < info.parameters[p].components; ++c)
                 for (std::size_t t = 0; t < info.times.size(); ++t) {
-                    const Field field = dataset.load(int(p), c, int(t));
+                    const Field field = dataset.read(int(p), c, int(t));
                     for (std::size_t i = 0; i < field.count(); ++i)
                         out += field.present(i) ? bytesOf(field.value(i)) : "-";
                 }

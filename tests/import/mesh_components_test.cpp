@@ -131,7 +131,7 @@ void expectEveryComponent(const Dataset& dataset, bool tetrahedra) {
             ASSERT_EQ(found->components, alone ? made.components : 1) << name;
             ASSERT_EQ(found->type, made.integer ? ScalarType::I32 : ScalarType::F32) << name;
             for (int time = 0; time < 2; ++time) {
-                const Field field = dataset.load(int(found - info.parameters.begin()), alone ? component : 0, time);
+                const Field field = dataset.read(int(found - info.parameters.begin()), alone ? component : 0, time);
                 const Linear course = courseOf(made, component, time);
                 const double most = allowed(made, course, tetrahedra);
                 int inner = 0;

@@ -34,7 +34,7 @@ template <class T> std::vector<T> overGrid(auto&& of) {
 void expectLinear(const Dataset& dataset, const char* name) {
     const auto channel = dataset.info.findChannel(name);
     ASSERT_TRUE(channel) << name;
-    const Field field = dataset.load(dataset.info.channel(*channel).parameter, 0, 0);
+    const Field field = dataset.read(dataset.info.channel(*channel).parameter, 0, 0);
     const Lattice& lattice = dataset.info.lattice;
     int present = 0;
     for (int k = 0; k < lattice.size.z; ++k)
@@ -193,7 +193,7 @@ TEST_F(MeshFormats, Fluent) {
     ASSERT_EQ(dataset.info.parameters.size(), 2u);
     for (const Parameter& parameter : dataset.info.parameters) {
         const int p = int(&parameter - dataset.info.parameters.data());
-        const Field field = dataset.load(p, 0, 0);
+        const Field field = dataset.read(p, 0, 0);
         for (std::size_t i = 0; i < field.count(); ++i) {
             ASSERT_TRUE(field.present(i));
             EXPECT_GE(field.value(i), 300) << parameter.name;
@@ -215,9 +215,9 @@ TEST_F(MeshFormats, Fluent) {
         ASSERT_EQ(cut.info.parameters.size(), 1u);
         const auto same = std::ranges::find(dataset.info.parameters, cut.info.parameters[0].name, &Parameter::name);
         ASSERT_NE(same, dataset.info.parameters.end());
-        const Field some = cut.load(0, 0, 0);
+        const Field some = cut.read(0, 0, 0);
         write("a.dat", whole);
-        const Field all = openFiles({cas}, options).load(int(same - dataset.info.parameters.begin()), 0, 0);
+        const Field all = openFiles({cas}, options).read(int(same - dataset.info.parameters.begin()), 0, 0);
         for (std::size_t i = 0; i < some.count(); ++i) EXPECT_EQ(some.value(i), all.value(i));
     }
     write("a.dat", whole);

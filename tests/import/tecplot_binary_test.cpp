@@ -18,7 +18,7 @@ int parameterOf(const Dataset& dataset, const std::string& name) {
 /// Every present sample is what the formula says of its place; gives how many there are.
 int expectFormula(const Dataset& dataset, const std::string& name, const Formula& of, int time = 0, int component = 0,
                   double tolerance = 1e-3) {
-    const Field field = dataset.load(parameterOf(dataset, name), component, time);
+    const Field field = dataset.read(parameterOf(dataset, name), component, time);
     const Lattice& lattice = dataset.info.lattice;
     int present = 0;
     for (int k = 0; k < lattice.size.z; ++k)
@@ -92,7 +92,7 @@ TEST_F(TecplotBinary, ValuesOfCellsLieBetweenGhosts) {
     options.gridSize = {7, 5, 9};
     const Dataset both = openFiles({write("b.plt", file.bytes())}, options);
     EXPECT_GT(expectFormula(both, "T", linear), 100);
-    const Field p = both.load(parameterOf(both, "p"), 0, 0);
+    const Field p = both.read(parameterOf(both, "p"), 0, 0);
     for (std::size_t i = 0; i < p.count(); ++i)
         if (p.present(i)) {
             EXPECT_NEAR(p.value(i), -0.625, 0.3751) << "of some cell, no ghost";
@@ -119,11 +119,11 @@ TEST_F(TecplotBinary, PlanesAndRowsHaveNoGhostsBeyondTheirEnd) {
     file.zones = {plane(4, 3)};
     const Dataset dataset = openFiles({write("a.plt", file.bytes())}, {});
     ASSERT_EQ(dataset.info.lattice.size, glm::ivec3(3, 2, 1));
-    for (int n = 0; n < 6; ++n) EXPECT_EQ(dataset.load(0, 0, 0).value(std::size_t(n)), n % 3 + 10 * (n / 3));
+    for (int n = 0; n < 6; ++n) EXPECT_EQ(dataset.read(0, 0, 0).value(std::size_t(n)), n % 3 + 10 * (n / 3));
     file.zones = {plane(6, 1)};
     const Dataset row = openFiles({write("b.plt", file.bytes())}, {});
     ASSERT_EQ(row.info.lattice.size, glm::ivec3(6, 1, 1));
-    for (int n = 0; n < 6; ++n) EXPECT_EQ(row.load(0, 0, 0).value(std::size_t(n)), n);
+    for (int n = 0; n < 6; ++n) EXPECT_EQ(row.read(0, 0, 0).value(std::size_t(n)), n);
 }
 
 TEST_F(TecplotBinary, BricksAndTetrahedra) {
@@ -148,7 +148,7 @@ TEST_F(TecplotBinary, BricksAndTetrahedra) {
             const std::string path = write("a.plt", file.bytes());
             const Dataset dataset = openFiles({path}, options);
             EXPECT_EQ(expectFormula(dataset, "T", linear), 13 * 5 * 9);
-            const Field cells = dataset.load(parameterOf(dataset, "cell"), 0, 0);
+            const Field cells = dataset.read(parameterOf(dataset, "cell"), 0, 0);
             for (int k = 1; k < 9; k += 2) { // in the middle of cells
                 const double layer = std::min(std::floor(dataset.info.lattice.position({3, 1, k}).z / 0.5), 3.0);
                 const double perLayer = zone.cells / 4.0;
@@ -234,7 +234,7 @@ TEST_F(TecplotBinary, TimesStaticZonesAndSharedNumbers) {
     EXPECT_EQ(labels, (std::vector<Label>{{1, "solid"}, {2, "air t=0.5"}, {3, "fuel t=0.5"}}));
     const Lattice& lattice = dataset.info.lattice;
     for (int t = 0; t < 3; ++t) {
-        const Field field = dataset.load(parameterOf(dataset, "T"), 0, t);
+        const Field field = dataset.read(parameterOf(dataset, "T"), 0, t);
         for (int i = 0; i < 18; ++i) {
             const glm::dvec3 x = lattice.position({i, 2, 4});
             const std::size_t n = lattice.index({i, 2, 4});
@@ -272,7 +272,7 @@ TEST_F(TecplotBinary, TimesWithoutStrands) {
     file.zones[1].time = 1;
     const Dataset dataset = openFiles({write("a.plt", file.bytes())}, {});
     EXPECT_EQ(dataset.info.times, (std::vector<double>{1, 2}));
-    for (int t = 0; t < 2; ++t) EXPECT_EQ(dataset.load(0, 0, t).value(7), t + 1);
+    for (int t = 0; t < 2; ++t) EXPECT_EQ(dataset.read(0, 0, t).value(7), t + 1);
     file = {102, false, {"X", "Y", "Z", "T"}, {file.zones[0]}};
     file.zones[0].auxiliary = {{"Common.Note", "4"}, {"Common.Time", "3.5"}};
     EXPECT_EQ(openFiles({write("b.plt", file.bytes())}, {}).info.times, std::vector<double>{3.5});

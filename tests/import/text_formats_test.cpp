@@ -45,7 +45,7 @@ void expectTheGrid(const Dataset& dataset, int time = 0, double more = 0) {
     ASSERT_EQ(dataset.info.lattice.size, kSize);
     const auto t = dataset.info.findChannel("T");
     ASSERT_TRUE(t);
-    const Field field = dataset.load(dataset.info.channel(*t).parameter, 0, time);
+    const Field field = dataset.read(dataset.info.channel(*t).parameter, 0, time);
     for (int k = 0; k < kSize.z; ++k)
         for (int j = 0; j < kSize.y; ++j)
             for (int i = 0; i < kSize.x; ++i) {
@@ -67,7 +67,7 @@ TEST_F(TextFormats, CsvOnAGrid) {
     EXPECT_EQ(dataset.info.parameters[1].name, "U");
     EXPECT_EQ(dataset.info.parameters[1].unit, "m/s");
     EXPECT_EQ(dataset.info.parameters[1].components, 3);
-    EXPECT_NEAR(dataset.load(1, 2, 0).value(59), place(3, 2, 4).z + 1, 1e-6);
+    EXPECT_NEAR(dataset.read(1, 2, 0).value(59), place(3, 2, 4).z + 1, 1e-6);
     expectCutsAreTold(path, path, {}, 60);
 }
 
@@ -97,7 +97,7 @@ TEST_F(TextFormats, CsvWithPointsLeftOutHasNoneThere) {
     some.erase(some.begin() + 3);
     const Dataset dataset = openFiles({write("a.csv", "x,y,z,T,a,b,c\n" + join(some))}, {});
     ASSERT_EQ(dataset.info.lattice.size, kSize);
-    const Field field = dataset.load(0, 0, 0);
+    const Field field = dataset.read(0, 0, 0);
     for (std::size_t i = 0; i < field.count(); ++i) EXPECT_EQ(field.present(i), i != 3 && i != 17) << i;
 }
 
@@ -117,7 +117,7 @@ TEST_F(TextFormats, CsvOfScatteredPointsTakesTheNearest) {
     const Dataset dataset = openFiles({path}, {});
     const Lattice& lattice = dataset.info.lattice;
     EXPECT_NEAR(double(lattice.count()), 500, 250);
-    const Field field = dataset.load(0, 0, 0);
+    const Field field = dataset.read(0, 0, 0);
     int present = 0;
     for (int k = 0; k < lattice.size.z; ++k)
         for (int j = 0; j < lattice.size.y; ++j)
@@ -186,7 +186,7 @@ TEST_F(TextFormats, TecplotBlocksOfCellsAndRepeatedNumbers) {
     options.gridSize = {5, 2, 2};
     const Dataset dataset = openFiles({path}, options);
     ASSERT_EQ(dataset.info.parameters.size(), 2u);
-    const Field t = dataset.load(0, 0, 0), p = dataset.load(1, 0, 0);
+    const Field t = dataset.read(0, 0, 0), p = dataset.read(1, 0, 0);
     for (int i = 0; i < 5; ++i) {
         const double x = dataset.info.lattice.position({i, 0, 0}).x;
         EXPECT_NEAR(t.value(std::size_t(i)), x, 1e-4);
@@ -211,7 +211,7 @@ TEST_F(TextFormats, TecplotZonesAreRegions) {
     const Dataset dataset = openFiles(
         {write("a.tec", "VARIABLES = \"x\", \"y\", \"z\", \"T\"\n" + zone("air", 0) + zone("fuel", 1))}, options);
     ASSERT_EQ(dataset.info.parameters.size(), 2u);
-    const Field t = dataset.load(0, 0, 0), region = dataset.load(1, 0, 0);
+    const Field t = dataset.read(0, 0, 0), region = dataset.read(1, 0, 0);
     for (std::size_t i = 0; i < t.count(); ++i) {
         EXPECT_NEAR(t.value(i), i % 4 < 2 ? 7 : 8, 1e-6);
         EXPECT_EQ(region.value(i), i % 4 < 2 ? 1 : 2);
@@ -226,12 +226,12 @@ TEST_F(TextFormats, OfTheFuelCell) {
     const std::string formats = (folder_ / "formats").string() + "/";
     const Dataset vtk = openFiles({formats + "open_small_last_legacy_binary.vtk"}, {});
     const int wanted = vtk.info.channel(*vtk.info.findChannel("T")).parameter;
-    const Field truth = vtk.load(wanted, 0, 0);
+    const Field truth = vtk.read(wanted, 0, 0);
     for (const char* name : {"open_small_last.csv", "open_small_last.dat", "open_small.h5"}) {
         const Dataset dataset = openFiles({formats + name}, {});
         ASSERT_EQ(dataset.info.lattice.size, glm::ivec3(11, 13, 101)) << name;
         const int t = dataset.info.channel(*dataset.info.findChannel("T")).parameter;
-        const Field field = dataset.load(t, 0, int(dataset.info.times.size()) - 1);
+        const Field field = dataset.read(t, 0, int(dataset.info.times.size()) - 1);
         for (std::size_t i = 0; i < field.count(); ++i) ASSERT_NEAR(field.value(i), truth.value(i), 1e-3) << name << i;
         const auto o2 = dataset.info.findChannel("O2");
         ASSERT_TRUE(o2);

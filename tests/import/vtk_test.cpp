@@ -34,7 +34,7 @@ Dataset sample(glm::ivec3 size) {
                                {"a", "", 1, ScalarType::I16, false, {}, {}},
                                {"b", "", 1, ScalarType::U16, false, {}, {}},
                                {"c", "K", 1, ScalarType::I32, false, {}, {}}};
-    dataset.load = [lattice = dataset.info.lattice, parameters = dataset.info.parameters](int p, int c, int t) {
+    dataset.read = [lattice = dataset.info.lattice, parameters = dataset.info.parameters](int p, int c, int t) {
         std::mt19937 random(unsigned(p * 100 + c * 10 + t));
         Field field = makeField(lattice, parameters[std::size_t(p)].type);
         Mask mask(field.count(), 1);
@@ -73,7 +73,7 @@ void expectEqual(const Dataset& a, const Dataset& b) {
     for (std::size_t p = 0; p < a.info.parameters.size(); ++p)
         for (int c = 0; c < a.info.parameters[p].components; ++c)
             for (std::size_t t = 0; t < a.info.times.size(); ++t) {
-                const Field f = a.load(int(p), c, int(t)), g = b.load(int(p), c, int(t));
+                const Field f = a.read(int(p), c, int(t)), g = b.read(int(p), c, int(t));
                 for (std::size_t i = 0; i < f.count(); ++i) {
                     ASSERT_EQ(f.present(i), g.present(i)) << a.info.parameters[p].name << i;
                     if (f.present(i)) {
@@ -116,7 +116,7 @@ TEST_F(ImportVtk, NrrdComesBack) {
         EXPECT_EQ(back.info.lattice.size, dataset.info.lattice.size);
         EXPECT_NEAR(back.info.lattice.spacing.z, dataset.info.lattice.spacing.z, 1e-9);
         const Channel from = dataset.info.channel(*selection.channel);
-        const Field f = dataset.load(from.parameter, from.component, 1), g = back.load(0, 0, 0);
+        const Field f = dataset.read(from.parameter, from.component, 1), g = back.read(0, 0, 0);
         for (std::size_t i = 0; i < f.count(); ++i) {
             ASSERT_EQ(f.present(i), g.present(i)) << channel;
             if (f.present(i)) {
@@ -170,7 +170,7 @@ TEST_F(ImportVtk, MeshIsSampledExactlyWhereTheFieldIsLinear) {
     options.gridSize = {7, 5, 9};
     const Dataset dataset = openFiles({path}, options);
     ASSERT_EQ(dataset.info.lattice.size, options.gridSize);
-    const Field field = dataset.load(0, 0, 0);
+    const Field field = dataset.read(0, 0, 0);
     EXPECT_EQ(field.mask, nullptr); // the border belongs to the mesh
     for (int k = 0; k < 9; ++k)
         for (int j = 0; j < 5; ++j)
@@ -189,7 +189,7 @@ TEST_F(ImportVtk, RegionsAreMergedAndDoNotBleed) {
     const Parameter& region = dataset.info.parameters[1];
     EXPECT_TRUE(region.categorical);
     EXPECT_EQ(region.labels, (std::vector<Label>{{1, "air"}, {2, "fuel"}}));
-    const Field t = dataset.load(0, 0, 0), label = dataset.load(1, 0, 0);
+    const Field t = dataset.read(0, 0, 0), label = dataset.read(1, 0, 0);
     for (std::size_t i = 0; i < t.count(); ++i) {
         EXPECT_TRUE(t.present(i));
         EXPECT_EQ(t.value(i), i % 8 < 4 ? 7 : 8);
@@ -198,7 +198,7 @@ TEST_F(ImportVtk, RegionsAreMergedAndDoNotBleed) {
     write("other.vtu", boxMesh(1, 4, "O2.fuel", true));
     const Dataset two = openFiles({air, (folder_ / "other.vtu").string()}, {});
     ASSERT_EQ(two.info.parameters.size(), 3u);
-    const Field gas = two.load(1, 0, 0);
+    const Field gas = two.read(1, 0, 0);
     for (std::size_t i = 0; i < gas.count(); ++i) EXPECT_EQ(gas.present(i), i % 8 >= 4);
 }
 
@@ -209,7 +209,7 @@ TEST_F(ImportVtk, LegacyFileWithValidPointMask) {
                        "SCALARS vtkValidPointMask char 1\nLOOKUP_TABLE default\n1 0 1 1\n");
     const Dataset dataset = openFiles({path}, {});
     ASSERT_EQ(dataset.info.parameters.size(), 1u);
-    const Field field = dataset.load(0, 0, 0);
+    const Field field = dataset.read(0, 0, 0);
     EXPECT_EQ(field.value(3), 4);
     EXPECT_EQ(field.type, ScalarType::F32);
     EXPECT_TRUE(field.present(0));
@@ -225,7 +225,7 @@ TEST_F(ImportVtk, MetaImageAndItsBadForms) {
     const Dataset dataset = openFiles({path}, {});
     EXPECT_EQ(dataset.info.lattice.spacing, glm::dvec3(1, 2, 3));
     EXPECT_EQ(dataset.info.lattice.origin, glm::dvec3(4, 5, 6));
-    EXPECT_EQ(dataset.load(0, 0, 0).value(7), '8');
+    EXPECT_EQ(dataset.read(0, 0, 0).value(7), '8');
     EXPECT_NE(failure(write("cut.mha", head + "123")), "");
     EXPECT_NE(failure(write("not.mha", "hello")), "");
 }
@@ -294,10 +294,10 @@ TEST_F(ImportVtk, FuelCellGridsHaveTheRangesStated) {
         const auto find = [&](const char* name) {
             return dataset.info.channel(*dataset.info.findChannel(name)).parameter;
         };
-        const Field region = dataset.load(find("region"), 0, 25);
+        const Field region = dataset.read(find("region"), 0, 25);
         for (const auto& [name, sides] :
              {std::pair{"O2", "1"}, {"H2", "3"}, {"H2O", "13"}, {"p", "13"}, {"U.x", "13"}, {"T", "013"}}) {
-            const Field field = dataset.load(find(name), 0, 25);
+            const Field field = dataset.read(find(name), 0, 25);
             for (std::size_t i = 0; i < field.count(); ++i)
                 ASSERT_EQ(field.present(i),
                           std::string(sides).find(char('0' + int(region.value(i)))) != std::string::npos)
@@ -308,8 +308,8 @@ TEST_F(ImportVtk, FuelCellGridsHaveTheRangesStated) {
         stated.autoAbsent = false;
         stated.absent = {"O2=region:0,3"};
         const Dataset byRule = openFiles({path}, stated);
-        EXPECT_EQ(*byRule.load(find("O2"), 0, 3).mask, *dataset.load(find("O2"), 0, 3).mask);
-        EXPECT_EQ(byRule.load(find("H2"), 0, 3).mask, nullptr);
+        EXPECT_EQ(*byRule.read(find("O2"), 0, 3).mask, *dataset.read(find("O2"), 0, 3).mask);
+        EXPECT_EQ(byRule.read(find("H2"), 0, 3).mask, nullptr);
     }
 }
 
@@ -329,7 +329,7 @@ TEST_F(ImportVtk, NativeMeshesOfTheFuelCell) {
                 0.0005); // mass fraction at the inlet, from the file's own range
     EXPECT_GT(info.parameters[0].ranges[0].lo, 0.10);
     EXPECT_NEAR(info.parameters[2].ranges[0].lo, 99998, 1);
-    const Field air = dataset.load(0, 0, 1), fuel = dataset.load(1, 0, 1), p = dataset.load(2, 0, 1);
+    const Field air = dataset.read(0, 0, 1), fuel = dataset.read(1, 0, 1), p = dataset.read(2, 0, 1);
     for (std::size_t i = 0; i < air.count(); ++i) {
         ASSERT_FALSE(air.present(i) && fuel.present(i));
         ASSERT_EQ(p.present(i), air.present(i) || fuel.present(i));
@@ -354,7 +354,7 @@ TEST_F(ImportVtk, OpenFoamCaseOfSeveralRegions) {
         for (const Label& label : dataset.info.parameters[2].labels) names += label.name + ";";
         EXPECT_THAT(names, testing::AllOf(testing::HasSubstr("air"), testing::HasSubstr("fuel"),
                                           testing::HasSubstr("electrolyte"), testing::HasSubstr("interconnect")));
-        const Field oxygen = dataset.load(0, 0, 0), region = dataset.load(2, 0, 0);
+        const Field oxygen = dataset.read(0, 0, 0), region = dataset.read(2, 0, 0);
         for (std::size_t i = 0; i < oxygen.count(); ++i) {
             const int value = int(region.value(i));
             const auto& labels = dataset.info.parameters[2].labels;
@@ -385,7 +385,7 @@ TEST_F(ImportVtk, OtherFormatsOfTheFuelCell) {
     EXPECT_NEAR(ensight.info.times[1], 0.26, 1e-6);
     EXPECT_TRUE(ensight.info.findChannel("O2air"));
     EXPECT_TRUE(ensight.info.findChannel("|Uair|"));
-    const Field early = ensight.load(2, 0, 0), late = ensight.load(2, 0, 1);
+    const Field early = ensight.read(2, 0, 0), late = ensight.read(2, 0, 1);
     bool differs = false;
     for (std::size_t i = 0; i < early.count(); ++i)
         differs = differs || (early.present(i) && early.value(i) != late.value(i));

@@ -77,7 +77,7 @@ TEST_F(WholeFile, LegacyVtkCutBetweenItsSections) {
             std::string found;
             for (std::size_t p = 0; p < dataset.info.parameters.size(); ++p) {
                 found += (found.empty() ? "" : " ") + dataset.info.parameters[p].name;
-                const Field field = dataset.load(int(p), 0, 0), same = wanted.load(int(p), 0, 0);
+                const Field field = dataset.read(int(p), 0, 0), same = wanted.read(int(p), 0, 0);
                 for (std::size_t i = 0; i < field.count(); ++i) ASSERT_EQ(field.value(i), same.value(i));
             }
             EXPECT_EQ(found, arrays);
@@ -109,7 +109,7 @@ TEST_F(WholeFile, VtkXml) {
     dataset.info.lattice.size = {kX, kY, kZ};
     dataset.info.parameters = {{"T", "K", 1, ScalarType::F32, false, {}, {}},
                                {"U", "m/s", 3, ScalarType::F32, false, {}, {}}};
-    dataset.load = [](int p, int c, int) {
+    dataset.read = [](int p, int c, int) {
         Field field = makeField(Lattice{.size = {kX, kY, kZ}}, ScalarType::F32);
         std::ranges::copy(numbers<float>(p * 3 + c), field.as<float>().begin());
         return field;
@@ -165,14 +165,14 @@ TEST_F(WholeFile, NrrdAsTextHoldsItsNumbers) {
         const Dataset dataset = openFiles({path}, {});
         ASSERT_EQ(dataset.info.lattice.size, glm::ivec3(kX, kY, kZ));
         EXPECT_EQ(dataset.info.lattice.spacing, glm::dvec3(1, 2, 3));
-        const Field field = dataset.load(0, 0, 0);
+        const Field field = dataset.read(0, 0, 0);
         for (std::size_t i = 0; i < values.size(); ++i)
             ASSERT_EQ(field.value(i), double(values[i])) << path << " " << i;
     }
     const Dataset dataset = openFiles({write("e.nrrd", bytes + pairText + "\n")}, {});
     ASSERT_EQ(dataset.info.parameters.size(), 2u);
     for (int c = 0; c < 2; ++c) {
-        const Field field = dataset.load(c, 0, 0);
+        const Field field = dataset.read(c, 0, 0);
         for (std::size_t i = 0; i < field.count(); ++i) ASSERT_EQ(field.value(i), pairs[2 * i + std::size_t(c)]);
     }
     EXPECT_THAT(failure(write("g.nrrd", head + "\nx " + asText(values) + "\n")), testing::HasSubstr("\"x\" where"));
@@ -254,7 +254,7 @@ TEST_F(WholeFile, NetCdf) {
         const std::string path = write("a.nc", classicNetCdf(records));
         const Dataset dataset = openFiles({path}, {});
         EXPECT_EQ(dataset.info.times.size(), records ? 3u : 1u);
-        EXPECT_EQ(dataset.load(0, 0, 0).value(7), double(numbers<float>(0)[7]));
+        EXPECT_EQ(dataset.read(0, 0, 0).value(7), double(numbers<float>(0)[7]));
         expectCutsAreTold(path, path);
     }
 }
@@ -344,7 +344,7 @@ TEST_F(WholeFile, OpenFoam) {
                                        "2\n(\n300.5\n400.25\n)\n;\nboundaryField { walls { type zeroGradient; } }\n"));
     const std::string path = write("c/c.foam", "");
     const Dataset dataset = openFiles({path}, {});
-    EXPECT_GT(dataset.load(0, 0, 0).value(0), 300);
+    EXPECT_GT(dataset.read(0, 0, 0).value(0), 300);
     for (const std::string& file : files) expectCutsAreTold(path, file, {}, 16);
 }
 

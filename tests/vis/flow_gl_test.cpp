@@ -24,7 +24,7 @@ protected:
         data.info.parameters[0].ranges = {{1, 1}, {0, 0}, {0, 0}, {1, 1}};
         data.info.parameters[1].name = "f";
         data.info.parameters[1].ranges = {{0, 1}};
-        data.load = [lattice = data.info.lattice, wall](int parameter, int component, int) {
+        data.read = [lattice = data.info.lattice, wall](int parameter, int component, int) {
             volume::Field field = volume::makeField(lattice, volume::ScalarType::F32);
             auto mask = std::make_shared<volume::Mask>(field.count(), std::uint8_t(1));
             for (std::size_t i = 0; i < field.count(); ++i) {

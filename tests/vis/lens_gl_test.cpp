@@ -224,7 +224,7 @@ TEST_P(LensPictures, LayersMayShowAnotherTime) {
     parameter.name = "a";
     parameter.ranges = {{0, 4}};
     dataset.info.parameters = {parameter};
-    dataset.load = [lattice = dataset.info.lattice](int, int, int time) {
+    dataset.read = [lattice = dataset.info.lattice](int, int, int time) {
         volume::Field field = volume::makeField(lattice, volume::ScalarType::F32);
         for (std::size_t i = 0; i < field.count(); ++i) field.as<float>()[i] = float(time) + float(i % 12) / 12;
         return field;

@@ -287,7 +287,7 @@ TEST_P(RaycastReference, CoarseLevelsLieWhereTheFineOnesDo) {
     parameter.name = "a";
     parameter.ranges = {{0.05, 0.95}};
     dataset.info.parameters = {parameter};
-    dataset.load = [=, lattice = dataset.info.lattice](int, int, int) {
+    dataset.read = [=, lattice = dataset.info.lattice](int, int, int) {
         volume::Field field = volume::makeField(lattice, volume::ScalarType::F32);
         volume::Mask mask(field.count());
         for (std::size_t i = 0; i < field.count(); ++i) {

@@ -33,9 +33,9 @@ TEST(Balance, AgreesWithBruteForceOnEveryFaceAndBorder) {
     for (const Lattice& lattice : {kCc, bccFor(kCc)}) {
         const Dataset data = cellData(lattice, test::boxOf(kCc));
         const int step = lattice.kind == LatticeKind::BCC ? 2 : 1; // between slices of a sublattice
-        const Field c = data.load(test::kO2, 0, 0), label = data.load(test::kRegion, 0, 0);
+        const Field c = data.read(test::kO2, 0, 0), label = data.read(test::kRegion, 0, 0);
         std::vector<Field> u;
-        for (int axis = 0; axis < 3; ++axis) u.push_back(data.load(test::kU, axis, 0));
+        for (int axis = 0; axis < 3; ++axis) u.push_back(data.read(test::kU, axis, 0));
         struct Sum {
             double in = 0, out = 0, area = 0, flow = 0;
         };

@@ -25,7 +25,7 @@ TEST(Casting, MaterialsAreWhereThePartHasThem) {
 TEST(Casting, SamplesAreTheValuesWithinTheNoise) {
     const std::map<std::string, double> size{{"nx", 41}, {"ny", 33}, {"nz", 37}, {"noise", 3}};
     const Dataset made = makeModel("casting", size);
-    const Field field = made.load(0, 0, 0), again = makeModel("casting", size).load(0, 0, 0);
+    const Field field = made.read(0, 0, 0), again = makeModel("casting", size).read(0, 0, 0);
     ASSERT_EQ(field.count(), 41u * 33 * 37);
     EXPECT_EQ(field.samples, again.samples) << "the same in each run";
     const Casting scan{.edge = 0.6 * 2 / 32};

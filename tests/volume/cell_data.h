@@ -41,7 +41,7 @@ inline Dataset cellData(const Lattice& lattice, const Box& bounds, unsigned seed
     dataset.info.parameters[kRegion].categorical = true;
     dataset.info.parameters[kRegion].labels = {{0, "solid"}, {1, "air"}, {3, "fuel"}};
     auto shared = std::make_shared<const std::vector<Field>>(std::move(fields));
-    dataset.load = [shared](int of, int component, int) { return (*shared)[std::size_t(of + component)]; };
+    dataset.read = [shared](int of, int component, int) { return (*shared)[std::size_t(of + component)]; };
     return dataset;
 }
 

@@ -30,7 +30,7 @@ struct Sums {
 };
 
 Sums sumsOf(const Dataset& dataset, int parameter, int time, const std::function<bool(std::size_t)>& inside) {
-    const Field field = dataset.load(parameter, 0, time);
+    const Field field = dataset.read(parameter, 0, time);
     const Lattice& lattice = dataset.info.lattice;
     Sums sums;
     for (int z = 0; z < lattice.size.z; ++z)
@@ -77,7 +77,7 @@ void expectStatistics(const Dataset& dataset, const std::string& parameter, cons
         EXPECT_EQ(curves.times, dataset.info.times);
         EXPECT_EQ(curves.x.values, dataset.info.times);
         for (std::size_t t = 0; t < dataset.info.times.size(); ++t) {
-            const Field labels = dataset.load(numberOfParameter(dataset.info, label), 0, int(t));
+            const Field labels = dataset.read(numberOfParameter(dataset.info, label), 0, int(t));
             const Sums sums = sumsOf(dataset, numberOfParameter(dataset.info, parameter), int(t), [&](std::size_t i) {
                 return !region || (labels.present(i) && labels.value(i) == value);
             });
@@ -116,7 +116,7 @@ TEST(Curves, IntegralsAreInAUnitThatIsTheirs) {
     dataset.info.lengthUnit = "mm";
     dataset.info.parameters = {{"O2", "mol/m3", 1, ScalarType::F32, false, {}, {{0, 100}}},
                                {"region", "", 1, ScalarType::U8, true, {{0, "a"}, {1, "b"}}, {{0, 1}}}};
-    dataset.load = [lattice = dataset.info.lattice](int parameter, int, int time) {
+    dataset.read = [lattice = dataset.info.lattice](int parameter, int, int time) {
         Field field = makeField(lattice, parameter == 0 ? ScalarType::F32 : ScalarType::U8);
         for (std::size_t i = 0; i < field.count(); ++i) {
             if (parameter == 1)
@@ -150,7 +150,7 @@ Dataset small() {
     dataset.info.parameters = {{"T", "K", 1, ScalarType::F32, false, {}, {{0, 10}}}};
     dataset.info.quantities = {
         {"cell voltage", "V", {0.7, 0.5, 0.6}}, {"j", "A/m2", {1000, 5000, std::nan("")}}, {"falling", "", {9, 8, 2}}};
-    dataset.load = [lattice = dataset.info.lattice](int, int, int time) {
+    dataset.read = [lattice = dataset.info.lattice](int, int, int time) {
         Field field = makeField(lattice, ScalarType::F32);
         for (std::size_t i = 0; i < field.count(); ++i) field.as<float>()[i] = float(time + 1) * float(i);
         return field;
@@ -259,7 +259,7 @@ TEST(AxisBy, AQuantityThatRisesOrFallsTakesThePlaceOfTheTimes) {
     const Dataset dataset = onAxis(small(), *falling);
     for (int t = 0; t < 3; ++t) {
         EXPECT_EQ(source->read({0, t, 0, {0, 0, 0}}).values[1], float(3 - t));
-        EXPECT_EQ(dataset.load(0, 0, t).value(1), 3 - t);
+        EXPECT_EQ(dataset.read(0, 0, t).value(1), 3 - t);
         EXPECT_EQ(source->stats({0, t, 0, {0, 0, 0}}).max, float(7 * (3 - t)));
     }
     // And back again.

@@ -29,10 +29,10 @@ int mostOf(const std::vector<std::uint8_t>& regions) {
 }
 
 /// The data of tests/volume/regions.h without their label, and the rule.
-template <class Value> SlicedDataset withoutLabel(const Lattice& lattice, const Value& value, int times = 1) {
-    SlicedDataset data{test::twoRegions(lattice, value, {.speed = 1}, times), {}};
-    data.dataset.info.parameters.resize(1);
-    data.dataset.info.parameters[0].parts = {};
+template <class Value> Dataset withoutLabel(const Lattice& lattice, const Value& value, int times = 1) {
+    Dataset data = test::twoRegions(lattice, value, {.speed = 1}, times);
+    data.info.parameters.resize(1);
+    data.info.parameters[0].parts = {};
     std::vector<std::string> notes;
     data = withJumps(std::move(data), {parsePartsRule("v=jumps")}, notes);
     EXPECT_EQ(notes, (std::vector<std::string>{"v: 2 parts by jumps of the data: 1 | 2"}));
@@ -44,18 +44,18 @@ TEST(DataJumps, OfTwoRegionsNothingIsMixedWithoutALabel) {
     const test::TwoRegions regions{.speed = 1};
     const auto regionAt = [&](glm::dvec3 p, int time) { return regions.at(p, time); };
     for (const bool linear : {false, true}) {
-        const SlicedDataset data = linear ? withoutLabel(cc, test::linearIn, 3) : withoutLabel(cc, test::constantIn, 3);
-        const DatasetInfo& info = data.dataset.info;
+        const Dataset data = linear ? withoutLabel(cc, test::linearIn, 3) : withoutLabel(cc, test::constantIn, 3);
+        const DatasetInfo& info = data.info;
         ASSERT_EQ(info.parameters.size(), 2u);
         EXPECT_EQ(info.parameters[0].parts, (Parts{"v jumps", {{1}, {2}}}));
         EXPECT_TRUE(info.parameters[1].categorical);
-        const Dataset parted = withParts(data.dataset);
+        const Dataset parted = withParts(data);
         for (int time = 0; time < 3; ++time) {
-            const Field labels = data.dataset.load(1, 0, time);
+            const Field labels = data.read(1, 0, time);
             const Field truth = sampled<std::uint8_t>(cc, [&](glm::dvec3 p) { return regionAt(p, time); });
             for (std::size_t i = 0; i < cc.count(); ++i)
                 ASSERT_EQ(labels.value(i), truth.value(i) == 1 ? 1 : 2) << time;
-            const Field bcc = toBcc(parted.load(0, 0, time), false), owner = toBcc(truth, true);
+            const Field bcc = toBcc(parted.read(0, 0, time), false), owner = toBcc(truth, true);
             for (std::size_t i = 0; i < bcc.count(); ++i) {
                 const int own = int(owner.value(i));
                 if (!linear) {
@@ -137,9 +137,9 @@ TEST(DataJumps, RulesAreReadFromFilesAndRefused) {
     const ImportPreview preview = previewFiles({path.string()}, options);
     EXPECT_EQ(preview.info.parameters.at(0).parts.count(), 2u);
     EXPECT_EQ(partsText(preview.info.parameters[0]), "2 parts by jumps of the data: 1 | 2");
-    const SlicedDataset data = openSliced({path.string()}, options);
-    ASSERT_TRUE(data.slices);
-    const Field whole = data.dataset.load(1, 0, 0), part = data.slices(1, 0, 0, 3, 2);
+    const Dataset data = openFiles({path.string()}, options);
+    ASSERT_TRUE(data.read.inParts());
+    const Field whole = data.read(1, 0, 0), part = data.read(1, 0, 0, {3, 2});
     EXPECT_EQ(part.samples, slicesOf(whole, 3, 2).samples);
     EXPECT_EQ(whole.value(0), 1);
     EXPECT_EQ(whole.value(12 * 5), 2);

@@ -43,7 +43,7 @@ Dataset sample(glm::ivec3 size) {
                                {"U", "m/s", 3, ScalarType::F32, false, {}, {}},
                                {"region", "", 1, ScalarType::U8, true, {{0, "solid"}, {2, "air side"}}, {}},
                                {"counts", "", 1, ScalarType::I16, false, {}, {}}};
-    dataset.load = [lattice = dataset.info.lattice, parameters = dataset.info.parameters](int p, int c, int t) {
+    dataset.read = [lattice = dataset.info.lattice, parameters = dataset.info.parameters](int p, int c, int t) {
         std::mt19937 random(unsigned(p * 100 + c * 10 + t));
         Field field = makeField(lattice, parameters[std::size_t(p)].type);
         Mask mask(field.count());
@@ -70,7 +70,7 @@ void expectEqual(const Dataset& a, const Dataset& b) {
         EXPECT_EQ(x.labels, y.labels);
         for (int c = 0; c < x.components; ++c)
             for (std::size_t t = 0; t < a.info.times.size(); ++t) {
-                const Field f = a.load(int(p), c, int(t)), g = b.load(int(p), c, int(t));
+                const Field f = a.read(int(p), c, int(t)), g = b.read(int(p), c, int(t));
                 ASSERT_EQ(f.count(), g.count());
                 for (std::size_t i = 0; i < f.count(); ++i) {
                     ASSERT_EQ(f.present(i), g.present(i)) << x.name << i;
@@ -107,7 +107,7 @@ TEST_F(Export, SelectionsAreKept) {
     ASSERT_EQ(back.info.parameters.size(), 2u);
     EXPECT_EQ(back.info.parameters[0].name, "counts");
     EXPECT_EQ(back.info.times, std::vector<double>{0.3});
-    EXPECT_EQ(back.load(1, 2, 0).value(4), dataset.load(1, 2, 1).value(4));
+    EXPECT_EQ(back.read(1, 2, 0).value(4), dataset.read(1, 2, 1).value(4));
 }
 
 TEST_F(Export, NrrdHoldsOneChannel) {
@@ -122,7 +122,7 @@ TEST_F(Export, NrrdHoldsOneChannel) {
     const std::string bytes{std::istreambuf_iterator<char>(in), {}};
     EXPECT_THAT(bytes, testing::StartsWith("NRRD0004\n"));
     EXPECT_THAT(bytes, testing::HasSubstr("\ntype: int16\n"));
-    const Field field = dataset.load(3, 0, 1);
+    const Field field = dataset.read(3, 0, 1);
     EXPECT_EQ(bytes.substr(bytes.find("\n\n") + 2),
               std::string(reinterpret_cast<const char*>(field.samples.data()), field.samples.size()));
 }
@@ -134,7 +134,7 @@ Dataset integerVector(std::function<void(Field& field, int component, int time)>
     dataset.info.lattice.size = {5, 4, 3};
     dataset.info.times = {0, 1};
     dataset.info.parameters = {{"U", "m/s", 3, ScalarType::I16, false, {}, {}}};
-    dataset.load = [lattice = dataset.info.lattice, change = std::move(change)](int, int c, int t) {
+    dataset.read = [lattice = dataset.info.lattice, change = std::move(change)](int, int c, int t) {
         Field field = makeField(lattice, ScalarType::I16);
         for (std::size_t i = 0; i < field.count(); ++i)
             field.as<std::int16_t>()[i] = std::int16_t((int(i) - 30) * (c + 1) + t);
@@ -180,7 +180,7 @@ TEST_F(Export, IntegersWhoseScalingChangesInTimeBecomeFloats) {
     EXPECT_EQ(back.info.parameters[0].type, ScalarType::F32);
     for (int c = 0; c < 3; ++c)
         for (int t = 0; t < 2; ++t)
-            EXPECT_EQ(physicalValues(back.load(0, c, t)), physicalValues(dataset.load(0, c, t)));
+            EXPECT_EQ(physicalValues(back.read(0, c, t)), physicalValues(dataset.read(0, c, t)));
 }
 
 /// One parameter of one component: stored numbers, their type and scaling; the last sample is absent if `hole`.
@@ -189,7 +189,7 @@ Dataset codes(ScalarType type, const std::vector<int>& numbers, double scale, do
     dataset.info.name = "codes";
     dataset.info.lattice.size = {int(numbers.size()), 1, 1};
     dataset.info.parameters = {{"n", "", 1, type, false, {}, {}}};
-    dataset.load = [=, lattice = dataset.info.lattice](int, int, int) {
+    dataset.read = [=, lattice = dataset.info.lattice](int, int, int) {
         Field field = makeField(lattice, type);
         dispatch(type, [&]<class T>(T) {
             for (std::size_t i = 0; i < numbers.size(); ++i) field.as<T>()[i] = static_cast<T>(numbers[i]);
@@ -226,8 +226,8 @@ TEST_F(Export, ValuesInPlaceOfCodes) {
     exportDataset(codes(ScalarType::U8, {1, 25, 51}, 5, 0, true), values, path);
     EXPECT_THAT(numbersOf<std::uint8_t>(path), ElementsAre(5, 125, 0));
     const Dataset back = openFiles({path}, {});
-    EXPECT_EQ(back.load(0, 0, 0).value(1), 125);
-    EXPECT_FALSE(back.load(0, 0, 0).present(2));
+    EXPECT_EQ(back.read(0, 0, 0).value(1), 125);
+    EXPECT_FALSE(back.read(0, 0, 0).present(2));
     // Not asked for, they are written as they are stored.
     exportDataset(codes(ScalarType::U8, {0, 25, 51}, 5, 0, false), {}, path);
     EXPECT_THAT(numbersOf<std::uint8_t>(path), ElementsAre(0, 25, 51));
@@ -254,7 +254,7 @@ TEST_F(Export, ComponentsThatLackOtherSamplesBecomeFloats) {
     const std::size_t count = dataset.info.lattice.count();
     const std::vector<float> tuples = floatsOfVti(vti, 3 * count);
     for (int c = 0; c < 3; ++c) {
-        const Field field = dataset.load(0, c, 0), again = back.load(0, c, 0);
+        const Field field = dataset.read(0, c, 0), again = back.read(0, c, 0);
         for (std::size_t i = 0; i < count; ++i)
             for (const double value : {again.value(i), double(tuples[3 * i + std::size_t(c)])}) {
                 EXPECT_EQ(std::isnan(value), !field.present(i)) << c << " " << i;
@@ -275,14 +275,14 @@ TEST_F(Export, VtiHoldsPhysicalValuesWhereAnyComponentIsScaled) {
     const std::vector<float> tuples = floatsOfVti(path, 3 * count);
     for (int c = 0; c < 3; ++c)
         for (std::size_t i = 0; i < count; ++i)
-            EXPECT_EQ(tuples[3 * i + std::size_t(c)], dataset.load(0, c, 0).value(i)) << c << " " << i;
+            EXPECT_EQ(tuples[3 * i + std::size_t(c)], dataset.read(0, c, 0).value(i)) << c << " " << i;
 }
 
 /// Floats may be scaled too, by a sidecar.
 TEST_F(Export, AbsentNumbersOfScaledFloatsAreNotTakenForPhysicalOnes) {
     Dataset dataset = integerVector([](Field&, int, int) {});
     dataset.info.parameters[0].type = ScalarType::F32;
-    dataset.load = [inner = std::move(dataset.load)](int p, int c, int t) {
+    dataset.read = [inner = std::move(dataset.read)](int p, int c, int t) {
         const Field integers = inner(p, c, t);
         Field field = makeField(integers.lattice, ScalarType::F32);
         for (std::size_t i = 0; i < field.count(); ++i) field.as<float>()[i] = float(integers.value(i));
@@ -298,7 +298,7 @@ TEST_F(Export, AbsentNumbersOfScaledFloatsAreNotTakenForPhysicalOnes) {
     exportDataset(dataset, {}, path);
     const Dataset back = openFiles({path}, {});
     for (int c = 0; c < 3; ++c) {
-        const Field field = dataset.load(0, c, 0), again = back.load(0, c, 0);
+        const Field field = dataset.read(0, c, 0), again = back.read(0, c, 0);
         for (std::size_t i = 0; i < field.count(); ++i) {
             EXPECT_EQ(again.present(i) && !std::isnan(again.value(i)), field.present(i)) << c << " " << i;
             if (field.present(i)) {
@@ -310,7 +310,7 @@ TEST_F(Export, AbsentNumbersOfScaledFloatsAreNotTakenForPhysicalOnes) {
 
 TEST_F(Export, LeavesNothingHalfWritten) {
     Dataset dataset = sample({3, 2, 2});
-    dataset.load = [inner = dataset.load](int p, int c, int t) {
+    dataset.read = [inner = dataset.read](int p, int c, int t) {
         if (p == 1 && t == 1) throw Error("damaged");
         return inner(p, c, t);
     };

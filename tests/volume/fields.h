@@ -54,7 +54,7 @@ inline Dataset datasetOf(std::vector<Field> fields, std::size_t times = 1) {
         dataset.info.parameters.push_back(parameter);
     }
     auto shared = std::make_shared<const std::vector<Field>>(std::move(fields));
-    dataset.load = [shared, times](int parameter, int, int time) {
+    dataset.read = [shared, times](int parameter, int, int time) {
         return (*shared)[std::size_t(parameter) * times + std::size_t(time)];
     };
     return dataset;

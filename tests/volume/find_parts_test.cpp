@@ -77,8 +77,8 @@ TEST(FindParts, RegionsThatMeetNowhereShareAPart) {
         };
         Dataset dataset = labelled(
             lattice, [&](glm::dvec3 p) { return 10.0 * region(p); }, region);
-        dataset.load = [load = dataset.load, region](int parameter, int component, int time) {
-            Field field = load(parameter, component, time);
+        dataset.read = [read = dataset.read, region](int parameter, int component, int time) {
+            Field field = read(parameter, component, time);
             if (parameter == 0) test::removeWhere(field, [&](glm::dvec3 p) { return region(p) == 0; });
             return field;
         };

@@ -43,7 +43,7 @@ VectorGrid sampledVector(LatticeKind kind, const Function& vector, const Absent&
     dataset.info.parameters[0].name = "U";
     dataset.info.parameters[0].components = 3;
     auto shared = std::make_shared<const std::vector<Field>>(std::move(components));
-    dataset.load = [shared](int, int component, int) { return (*shared)[std::size_t(component)]; };
+    dataset.read = [shared](int, int component, int) { return (*shared)[std::size_t(component)]; };
     return readVector(*makeMemorySource(std::move(dataset), {.lattice = kind}), 0, 0, 0);
 }
 
@@ -162,7 +162,7 @@ TEST(Pathline, OfASeriesBlendsItsTimes) {
     dataset.info.times = {0, 2};
     dataset.info.parameters.resize(1);
     dataset.info.parameters[0].components = 3;
-    dataset.load = [lattice](int, int component, int time) {
+    dataset.read = [lattice](int, int component, int time) {
         return test::sampled<float>(lattice, [&](glm::dvec3) { return component > 0 ? 0.0 : time > 0 ? 3.0 : 1.0; });
     };
     for (const LatticeKind kind : {LatticeKind::CC, LatticeKind::BCC}) {

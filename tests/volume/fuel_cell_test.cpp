@@ -211,7 +211,7 @@ TEST(FuelCell, LoadStepRaisesTheCurrent) {
     const auto mean = [&](const char* name, int time) {
         int parameter = 0;
         while (data.info.parameters[std::size_t(parameter)].name != name) ++parameter;
-        const Field field = data.load(parameter, 0, time);
+        const Field field = data.read(parameter, 0, time);
         double sum = 0, count = 0;
         for (std::size_t i = 0; i < field.count(); ++i)
             if (field.present(i)) sum += field.value(i), ++count;
@@ -239,7 +239,7 @@ void expectMasks(int nx, int ny, int nz) {
     const Dataset data = makeFuelCell({{"nx", nx}, {"ny", ny}, {"nz", nz}, {"times", 2}});
     const DatasetInfo& info = data.info;
     EXPECT_EQ(info.lattice.size, glm::ivec3(nx, ny, nz));
-    const Field region = data.load(6, 0, 0);
+    const Field region = data.read(6, 0, 0);
     ASSERT_TRUE(info.parameters[6].categorical);
     std::array<int, 6> seen{};
     for (std::size_t i = 0; i < region.count(); ++i) ++seen[std::size_t(region.value(i))];
@@ -249,7 +249,7 @@ void expectMasks(int nx, int ny, int nz) {
         ASSERT_EQ(described.ranges.size(), described.components == 3 ? 4u : 1u);
         for (int part = 0; part < 2 * described.components; ++part) {
             const int component = part / 2;
-            const Field field = data.load(parameter, component, part % 2);
+            const Field field = data.read(parameter, component, part % 2);
             ASSERT_EQ(field.count(), region.count());
             const Range range = described.ranges[std::size_t(component)];
             int wrong = 0, outside = 0;
@@ -271,8 +271,8 @@ void expectMasks(int nx, int ny, int nz) {
         }
     }
     // Equal masks are one.
-    EXPECT_EQ(data.load(2, 0, 0).mask, data.load(5, 1, 1).mask);
-    EXPECT_EQ(data.load(4, 0, 0).mask, nullptr);
+    EXPECT_EQ(data.read(2, 0, 0).mask, data.read(5, 1, 1).mask);
+    EXPECT_EQ(data.read(4, 0, 0).mask, nullptr);
 }
 
 TEST(FuelCell, GasesAreAbsentWhereTheyCannotBe) {
@@ -287,7 +287,7 @@ TEST(FuelCell, RefinedFramesAgreeWithSolvedOnes) {
     const Dataset fine = makeFuelCell({{"nx", 88}, {"ny", 13}, {"nz", 6}, {"times", 1}});
     const Dataset coarse = makeFuelCell({{"nx", 44}, {"ny", 13}, {"nz", 6}, {"times", 1}});
     for (int parameter : {0, 1, 2, 4}) {
-        const Field a = fine.load(parameter, 0, 0), b = coarse.load(parameter, 0, 0);
+        const Field a = fine.read(parameter, 0, 0), b = coarse.read(parameter, 0, 0);
         const Range range = coarse.info.parameters[std::size_t(parameter)].ranges[0];
         for (int z = 0; z < 6; ++z)
             for (int y = 0; y < 13; ++y)
@@ -306,7 +306,7 @@ TEST(FuelCell, SameOnAnyNumberOfThreads) {
         const Dataset data = makeFuelCell({{"nx", 9}, {"ny", 13}, {"nz", 33}, {"times", 8}});
         std::vector<std::byte> bytes;
         for (int parameter = 0; parameter < 6; ++parameter) {
-            const Field field = data.load(parameter, 0, 7);
+            const Field field = data.read(parameter, 0, 7);
             bytes.insert(bytes.end(), field.samples.begin(), field.samples.end());
         }
         return bytes;

@@ -17,7 +17,7 @@ Dataset cell() {
                                {"U", "", 3, ScalarType::F32, false, {}, {}},
                                {"region", "", 1, ScalarType::U8, true, {{3, "fuel side"}}, {}},
                                {"N", "", 1, ScalarType::F32, false, {}, {}}};
-    dataset.load = [lattice = dataset.info.lattice, parameters = dataset.info.parameters](int p, int c, int t) {
+    dataset.read = [lattice = dataset.info.lattice, parameters = dataset.info.parameters](int p, int c, int t) {
         Field field = makeField(lattice, parameters[std::size_t(p)].type);
         for (std::size_t i = 0; i < 12; ++i) {
             const int region = i < 4 ? 0 : i < 8 ? 1 : 3;
@@ -58,7 +58,7 @@ TEST(Absent, ByLabelValueNameAndNaN) {
     const auto with = [](const std::vector<std::string>& texts, int parameter) {
         std::vector<AbsentRule> rules;
         for (const std::string& text : texts) rules.push_back(parseAbsentRule(text));
-        return presence(withAbsent(cell(), rules).load(parameter, 0, 0));
+        return presence(withAbsent(cell(), rules).read(parameter, 0, 0));
     };
     EXPECT_EQ(with({"O2=region:0,3"}, 0), "000011110000");
     EXPECT_EQ(with({"T=region:fuel side"}, 1), "111111110000");
@@ -75,10 +75,10 @@ TEST(Absent, ByLabelValueNameAndNaN) {
 
 TEST(Absent, EqualMasksAreOne) {
     const Dataset dataset = withAbsent(cell(), {parseAbsentRule("O2=region:0,3"), parseAbsentRule("T=region:0,3")});
-    const Field a = dataset.load(0, 0, 0), b = dataset.load(1, 0, 0), c = dataset.load(0, 0, 1);
+    const Field a = dataset.read(0, 0, 0), b = dataset.read(1, 0, 0), c = dataset.read(0, 0, 1);
     EXPECT_EQ(a.mask, b.mask);
     EXPECT_EQ(a.mask, c.mask);
-    EXPECT_EQ(withAbsent(cell(), {}).load(1, 0, 0).mask, nullptr);
+    EXPECT_EQ(withAbsent(cell(), {}).read(1, 0, 0).mask, nullptr);
 }
 
 TEST(Absent, ZerosOnWholeLabelsAreSuggested) {
@@ -86,7 +86,7 @@ TEST(Absent, ZerosOnWholeLabelsAreSuggested) {
     for (const AbsentRule& rule : suggestAbsentRules(cell())) texts.push_back(toText(rule));
     EXPECT_EQ(texts, (std::vector<std::string>{"O2=region:0,3", "U=region:0"}));
     Dataset zero = cell(); // a field that is 0 everywhere says nothing, nor one that is 0 only at some times
-    zero.load = [inner = zero.load](int p, int c, int t) {
+    zero.read = [inner = zero.read](int p, int c, int t) {
         Field field = inner(p, c, t);
         for (std::size_t i = 0; i < 12; ++i)
             if (p == 0 || (p == 2 && t == 0)) field.as<float>()[i] = p == 0 ? 0.0f : 1.0f;

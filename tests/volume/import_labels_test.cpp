@@ -58,7 +58,7 @@ TEST(ImportLabels, NameTheValuesOfTheData) {
     EXPECT_FALSE(openFiles({path}, {}).info.parameters[2].categorical);
     // Names count in other rules.
     options.absent = {"T=zone:fuel"};
-    const Field field = openFiles({path}, options).load(1, 0, 0);
+    const Field field = openFiles({path}, options).read(1, 0, 0);
     EXPECT_TRUE(field.present(1));
     EXPECT_FALSE(field.present(2));
     for (const char* wrong : {"T:300=cold", "nothing:1=a"}) {

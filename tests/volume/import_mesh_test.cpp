@@ -88,7 +88,7 @@ TEST_F(ImportMesh, CellsKeepTheirValuesAndTheMeshItsBox) {
     EXPECT_EQ(dataset.info.bounds, (Box{{0, -2, 10}, {4, 4, 16}}));
     EXPECT_TRUE(isResampled(dataset.info)) << dataset.info.provenance;
     ASSERT_EQ(dataset.info.lattice.size, mesh.cells());
-    const Field field = dataset.load(0, 0, 0);
+    const Field field = dataset.read(0, 0, 0);
     double sum = 0;
     for (std::size_t i = 0; i < values.size(); ++i) {
         EXPECT_EQ(field.value(i), values[i]) << i;
@@ -114,7 +114,7 @@ TEST_F(ImportMesh, CellsKeepALinearCourse) {
     ImportOptions options;
     options.gridSize = {25, 20, 15};
     const Dataset dataset = openFiles({path_}, options);
-    const Field field = dataset.load(0, 0, 0);
+    const Field field = dataset.read(0, 0, 0);
     int inner = 0;
     forEach(options.gridSize, [&](glm::ivec3 at) {
         const glm::dvec3 place = dataset.info.lattice.position(at);
@@ -145,7 +145,7 @@ TEST_F(ImportMesh, RangesAreThoseOfThePoints) {
         EXPECT_NEAR(dataset.info.parameters[0].ranges[i].hi, wanted[i].hi, 1e-12) << i;
     }
     double most = 0;
-    const Field field = dataset.load(0, 0, 0);
+    const Field field = dataset.read(0, 0, 0);
     for (std::size_t i = 0; i < field.count(); ++i) most = std::max(most, field.value(i));
     EXPECT_LT(most, 12.5) << "samples alone do not tell";
 }

@@ -79,7 +79,7 @@ template <class T> void roundTrip(const fs::path& folder, const std::string& wor
         ASSERT_EQ(dataset.info.times, (std::vector<double>{0.5, 1, 4}));
         for (std::size_t t = 0; t < kTimes; ++t)
             for (std::size_t c = 0; c < kComponents; ++c) {
-                const Field field = dataset.load(int(c), 0, int(t));
+                const Field field = dataset.read(int(c), 0, int(t));
                 EXPECT_EQ(field.mask, nullptr);
                 for (std::size_t i = 0; i < count; ++i)
                     ASSERT_EQ(field.value(i), double(values[(t * kComponents + c) * count + i])) << word << i;
@@ -117,10 +117,10 @@ TEST_F(ImportRaw, SidecarSaysEverything) {
     EXPECT_EQ(dataset.info.lattice.origin, glm::dvec3(1, 2, 3));
     EXPECT_EQ(dataset.info.lengthUnit, "mm");
     EXPECT_EQ(dataset.info.provenance, "made here");
-    const Field z = dataset.load(0, 2, 0);
+    const Field z = dataset.read(0, 2, 0);
     EXPECT_FALSE(z.present(0));
     EXPECT_TRUE(z.present(1));
-    EXPECT_EQ(dataset.load(1, 0, 0).value(1), 2);
+    EXPECT_EQ(dataset.read(1, 0, 0).value(1), 2);
 }
 
 TEST_F(ImportRaw, WhatIsNotFiniteIsAbsentAndWhatIsNotStatedHasNoUnit) {
@@ -129,7 +129,7 @@ TEST_F(ImportRaw, WhatIsNotFiniteIsAbsentAndWhatIsNotStatedHasNoUnit) {
     const Dataset dataset = openFiles({write("a.json", R"({"dims":[4,1,1],"dtype":"float32"})")}, {});
     EXPECT_EQ(dataset.info.lengthUnit, "");
     EXPECT_EQ(dataset.info.timeUnit, "");
-    const Field field = dataset.load(0, 0, 0);
+    const Field field = dataset.read(0, 0, 0);
     EXPECT_TRUE(field.present(0));
     for (std::size_t i = 1; i < 4; ++i) EXPECT_FALSE(field.present(i));
 }
@@ -141,7 +141,7 @@ TEST_F(ImportRaw, RawOptionTakesThePlaceOfASidecar) {
     const Dataset dataset = openFiles({path}, options);
     EXPECT_EQ(dataset.info.lattice.spacing, glm::dvec3(1, 1e-3, 2.5));
     EXPECT_EQ(dataset.info.lattice.origin, glm::dvec3(-1, 0, 1));
-    EXPECT_EQ(dataset.load(0, 0, 1).value(3), -800);
+    EXPECT_EQ(dataset.read(0, 0, 1).value(3), -800);
     for (const char* bad : {"", "dims=2x1,type=u8", "dims=2x1x1", "dims=2x1x1,type=u9", "dims=0x1x1,type=u8",
                             "dims=2x1x1,type=u8,what=1", "dims=1x1x1,type=u8,components=0", "dims=axbxc,type=u8",
                             "dims=1x1x1,type=u8,spacing=0x1x1", "dims=1x1x1,type=u8,times=99999999999"})
@@ -211,8 +211,8 @@ TEST_F(ImportRaw, FileThatShrinksAfterOpeningIsAnError) {
     write("a.json", R"({"dims":[2,2,2],"dtype":"uint8","times":[0,1]})");
     const Dataset dataset = openFiles({path}, {});
     fs::resize_file(path, 12);
-    EXPECT_NO_THROW(dataset.load(0, 0, 0));
-    EXPECT_THROW(dataset.load(0, 0, 1), Error);
+    EXPECT_NO_THROW(dataset.read(0, 0, 0));
+    EXPECT_THROW(dataset.read(0, 0, 1), Error);
 }
 
 TEST_F(ImportRaw, PreviewReadsNoSample) {
@@ -242,7 +242,7 @@ TEST_F(ImportRaw, NamesUnitsTimesAndChoice) {
     EXPECT_EQ(dataset.info.parameters[1].unit, "mol/m3");
     EXPECT_EQ(dataset.info.times, (std::vector<double>{5, 6}));
     EXPECT_EQ(dataset.info.lengthUnit, "um");
-    EXPECT_EQ(dataset.load(1, 0, 1).value(0), '5');
+    EXPECT_EQ(dataset.read(1, 0, 1).value(0), '5');
     options.rename = {{"a", "b"}};
     EXPECT_THAT(failure(path, options), testing::HasSubstr("two parameters"));
     options.rename = {{"c", "b"}};
@@ -261,7 +261,7 @@ TEST_F(ImportRaw, SeveralFilesAreParametersOrTimes) {
     const Dataset gases = openFiles({base + "O2.raw", base + "H2.json"}, {});
     ASSERT_EQ(gases.info.parameters.size(), 2u);
     EXPECT_EQ(gases.info.parameters[0].name, "O2");
-    EXPECT_EQ(gases.load(1, 0, 0).value(0), 'H');
+    EXPECT_EQ(gases.read(1, 0, 0).value(0), 'H');
     const Dataset runs = openFiles({base + "run_*.raw"}, {});
     EXPECT_EQ(runs.info.times, (std::vector<double>{2, 10}));
     EXPECT_EQ(runs.info.timeName, "step");
@@ -292,7 +292,7 @@ TEST_F(ImportRaw, FramesOfASeriesHaveOneType) {
     EXPECT_EQ(mixed.info.parameters[0].type, ScalarType::F32);
     EXPECT_EQ(whole.info.parameters[0].type, ScalarType::I32);
     const auto expectFrame = [](const Dataset& data, int time, const std::vector<double>& values, std::size_t absent) {
-        const Field field = data.load(0, 0, time);
+        const Field field = data.read(0, 0, time);
         EXPECT_EQ(field.type, data.info.parameters[0].type) << time;
         for (std::size_t i = 0; i < 3; ++i) {
             EXPECT_EQ(field.present(i), i != absent) << time << " " << i;

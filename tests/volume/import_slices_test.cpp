@@ -1,5 +1,5 @@
 #include "volume/base/error.h"
-#include "volume/import/sliced.h"
+#include "volume/import/import.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -26,17 +26,17 @@ protected:
         return (folder_ / name).string();
     }
     /// Every parameter and time, cut in several ways, equals the same slices of the whole frame.
-    static void expectSlices(const SlicedDataset& data) {
-        ASSERT_TRUE(data.slices);
-        const DatasetInfo& info = data.dataset.info;
+    static void expectSlices(const Dataset& data) {
+        ASSERT_TRUE(data.read.inParts());
+        const DatasetInfo& info = data.info;
         for (int p = 0; p < int(info.parameters.size()); ++p)
             for (int c = 0; c < info.parameters[std::size_t(p)].components; ++c)
                 for (int t = 0; t < int(info.times.size()); ++t) {
-                    const Field whole = data.dataset.load(p, c, t);
+                    const Field whole = data.read(p, c, t);
                     for (const int step : {1, 3, 4, info.lattice.size.z})
                         for (int first = 0; first < info.lattice.size.z; first += step) {
                             const int count = std::min(step, info.lattice.size.z - first);
-                            const Field part = data.slices(p, c, t, first, count),
+                            const Field part = data.read(p, c, t, {first, count}),
                                         wanted = slicesOf(whole, first, count);
                             EXPECT_EQ(part.lattice, wanted.lattice);
                             EXPECT_EQ(part.type, wanted.type);
@@ -74,13 +74,13 @@ TEST_F(ImportSlices, OfRawFilesWithAllThatIsDoneToThem) {
     ImportOptions options;
     options.absent = {"v=0", "a=region:2"};
     options.parts = {"*=joined"}; // noise jumps everywhere
-    const SlicedDataset data = openSliced({path}, options);
-    EXPECT_EQ(data.dataset.info.lattice.size, size);
-    EXPECT_EQ(data.dataset.info.parameters.at(0).type, ScalarType::I32);
+    const Dataset data = openFiles({path}, options);
+    EXPECT_EQ(data.info.lattice.size, size);
+    EXPECT_EQ(data.info.parameters.at(0).type, ScalarType::I32);
     expectSlices(data);
     options.parameters = {"b", "v"};
-    const SlicedDataset some = openSliced({path}, options);
-    ASSERT_EQ(some.dataset.info.parameters.size(), 2u);
+    const Dataset some = openFiles({path}, options);
+    ASSERT_EQ(some.info.parameters.size(), 2u);
     expectSlices(some);
 }
 
@@ -92,15 +92,15 @@ TEST_F(ImportSlices, OfSeveralFiles) {
     const std::string first = write("p_1.raw", bytes);
     std::reverse(bytes.begin(), bytes.end());
     const std::string second = write("p_2.raw", bytes);
-    const SlicedDataset data = openSliced({first, second}, options);
-    EXPECT_EQ(data.dataset.info.times.size(), 2u);
+    const Dataset data = openFiles({first, second}, options);
+    EXPECT_EQ(data.info.times.size(), 2u);
     expectSlices(data);
 }
 
 TEST_F(ImportSlices, OfPlainNrrd) {
     const std::string path = write("a.nrrd", "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 4 3 8\nencoding: raw\n\n" +
                                                  std::string(4 * 3 * 8 / 2, 'x') + std::string(4 * 3 * 8 / 2, 'y'));
-    expectSlices(openSliced({path}, {}));
+    expectSlices(openFiles({path}, {}));
 }
 
 } // namespace

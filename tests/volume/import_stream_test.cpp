@@ -146,7 +146,7 @@ protected:
     std::string failure(const Progress& progress = {}) const {
         try {
             Dataset dataset = openFiles({(folder_ / "a.vti").string()}, {}, progress);
-            dataset.load(0, 0, 0);
+            dataset.read(0, 0, 0);
             return "";
         } catch (const Error& error) {
             return error.what();

@@ -45,7 +45,7 @@ TEST(MarschnerLobb, ModelOfAnySizeTypeAndTimes) {
             makeModel("marschner-lobb", {{"nx", 5}, {"ny", 17}, {"nz", 2}, {"times", 3}, {"fM", 2}, {"bits", bits}});
         EXPECT_EQ(dataset.info.times, (std::vector<double>{0, 1.0 / 3, 2.0 / 3}));
         const MarschnerLobb signal{0.25, 2};
-        const Field field = dataset.load(0, 0, 2);
+        const Field field = dataset.read(0, 0, 2);
         EXPECT_EQ(field.lattice, dataset.info.lattice);
         EXPECT_EQ(field.lattice.size, glm::ivec3(5, 17, 2));
         const double step = bits == 32 ? 1e-7 : 0.5001 / (std::exp2(bits) - 1);

@@ -49,7 +49,7 @@ TEST(MemorySource, FineBricksAreTheField) {
         for (const bool holes : {false, true})
             for (const LatticeKind kind : {LatticeKind::CC, LatticeKind::BCC}) {
                 const Dataset dataset = waves(size, holes);
-                Field whole = dataset.load(0, 0, 0);
+                Field whole = dataset.read(0, 0, 0);
                 if (kind == LatticeKind::BCC) whole = toBcc(whole, false);
                 const auto source = open(dataset, kind);
                 EXPECT_EQ(source->info().lattice, whole.lattice);
@@ -150,7 +150,7 @@ TEST(MemorySource, MagnitudesComeFromTheComponents) {
     const Lattice lattice = ccLattice({9, 10, 11});
     Dataset dataset = test::datasetOf({sampled<float>(lattice, wave)});
     dataset.info.parameters[0].components = 3;
-    dataset.load = [lattice](int, int component, int) {
+    dataset.read = [lattice](int, int component, int) {
         Field field = sampled<float>(lattice, [&](glm::dvec3 p) { return wave(p) * (component - 0.7); });
         test::removeWhere(field, [](glm::dvec3 p) { return p.z > 6; });
         return field;
@@ -180,11 +180,11 @@ TEST(MemorySource, LoadsAFrameOnceAndForgetsBeyondTheBudget) {
     Dataset dataset = test::datasetOf(frames, 4);
     auto loads = std::make_shared<std::atomic<int>>(0);
     auto inside = std::make_shared<std::atomic<int>>(0);
-    dataset.load = [load = dataset.load, loads, inside](int p, int c, int t) {
+    dataset.read = [read = dataset.read, loads, inside](int p, int c, int t) {
         EXPECT_EQ(inside->fetch_add(1), 0) << "one load at a time";
         ++*loads;
         std::this_thread::sleep_for(std::chrono::milliseconds(5));
-        Field field = load(p, c, t);
+        Field field = read(p, c, t);
         inside->fetch_sub(1);
         return field;
     };
@@ -215,9 +215,9 @@ TEST(MemorySource, LoadsAFrameOnceAndForgetsBeyondTheBudget) {
 TEST(MemorySource, AFailedLoadIsReportedAndTriedAgain) {
     Dataset dataset = waves({8, 8, 8}, false);
     auto fail = std::make_shared<bool>(true);
-    dataset.load = [load = dataset.load, fail](int p, int c, int t) {
+    dataset.read = [read = dataset.read, fail](int p, int c, int t) {
         if (*fail) throw Error("truncated", "frame.raw");
-        return load(p, c, t);
+        return read(p, c, t);
     };
     const auto source = open(dataset, LatticeKind::CC);
     EXPECT_THROW(source->read({0, 0, 0, {0, 0, 0}}), Error);
@@ -225,9 +225,9 @@ TEST(MemorySource, AFailedLoadIsReportedAndTriedAgain) {
     EXPECT_NO_THROW(source->read({0, 0, 0, {0, 0, 0}}));
     EXPECT_THROW(source->read({0, 1, 0, {0, 0, 0}}), Error);
     EXPECT_THROW(source->read({0, 0, 0, {1, 0, 0}}), Error);
-    dataset.load = [](int, int, int) { return makeField(ccLattice({8, 8, 8}), ScalarType::U8); }; // float is said
+    dataset.read = [](int, int, int) { return makeField(ccLattice({8, 8, 8}), ScalarType::U8); }; // float is said
     EXPECT_THROW(open(dataset, LatticeKind::CC)->read({0, 0, 0, {0, 0, 0}}), Error);
-    dataset.load = [](int, int, int) { return makeField(ccLattice({7, 8, 8}), ScalarType::F32); };
+    dataset.read = [](int, int, int) { return makeField(ccLattice({7, 8, 8}), ScalarType::F32); };
     EXPECT_THROW(open(dataset, LatticeKind::CC)->read({0, 0, 0, {0, 0, 0}}), Error);
 }
 

@@ -20,7 +20,7 @@ std::shared_ptr<const BrickSource> counted(LatticeKind kind, float offset, doubl
     data.info.parameters[0].name = "a";
     data.info.parameters[1].name = "v";
     data.info.parameters[1].components = 3;
-    data.load = [lattice = data.info.lattice, offset](int, int component, int) {
+    data.read = [lattice = data.info.lattice, offset](int, int component, int) {
         Field field = makeField(lattice, ScalarType::F32);
         for (std::size_t i = 0; i < field.count(); ++i)
             field.as<float>()[i] = std::sin(0.1f * float(i)) + float(component) + offset;

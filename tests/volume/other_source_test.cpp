@@ -7,6 +7,7 @@
 
 #include <cmath>
 #include <functional>
+#include <glm/common.hpp>
 #include <gtest/gtest.h>
 #include <limits>
 
@@ -42,7 +43,7 @@ std::shared_ptr<const BrickSource> make(const Made& wanted, const std::string& n
     data.info.parameters[1].categorical = true;
     data.info.parameters[1].type = ScalarType::U8;
     data.info.parameters[1].ranges = {{0, 1}};
-    data.load = [wanted](int parameter, int, int time) {
+    data.read = [wanted](int parameter, int, int time) {
         Field field = makeField(wanted.lattice, parameter == 0 ? ScalarType::F32 : ScalarType::U8);
         auto mask = std::make_shared<Mask>(field.count(), std::uint8_t(1));
         std::size_t i = 0;

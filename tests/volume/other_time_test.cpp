@@ -11,6 +11,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <functional>
+#include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
 /// Parameters at another time: closed forms in place and time, and a real series.
@@ -234,7 +235,7 @@ TEST(OtherTime, TheFuelCellDiffersFromItsFirstTimeAsItsFilesDo) {
         throw Error("no parameter " + name);
     };
     for (const std::string name : {"T", "O2"}) {
-        const Field a = last.load(parameter(last.info, name), 0, 0), b = first.load(parameter(first.info, name), 0, 0);
+        const Field a = last.read(parameter(last.info, name), 0, 0), b = first.read(parameter(first.info, name), 0, 0);
         const auto source = derive(makeMemorySource(series, {LatticeKind::CC, 128}),
                                    {"d", "", ExpressionRecipe{name + " - at(" + name + ", first)"}});
         const auto same = derive(makeMemorySource(series, {LatticeKind::CC, 128}),

@@ -29,8 +29,8 @@ int parameterOf(const std::string& name) {
 
 /// Calls visit(position, value with, value without) for the present samples of a parameter.
 template <class Visit> int each(const std::string& name, int time, Visit visit) {
-    const Field with = models().with.load(parameterOf(name), 0, time),
-                without = models().without.load(parameterOf(name), 0, time);
+    const Field with = models().with.read(parameterOf(name), 0, time),
+                without = models().without.read(parameterOf(name), 0, time);
     int count = 0;
     const glm::ivec3 size = with.lattice.size;
     for (int z = 0; z < size.z; ++z)
@@ -48,8 +48,8 @@ template <class Visit> int each(const std::string& name, int time, Visit visit) 
 TEST(Planted, TheRestIsTheFuelCell) {
     EXPECT_EQ(models().with.info.times, models().without.info.times);
     for (const char* name : {"U", "region"})
-        EXPECT_EQ(models().with.load(parameterOf(name), 0, 3).samples,
-                  models().without.load(parameterOf(name), 0, 3).samples);
+        EXPECT_EQ(models().with.read(parameterOf(name), 0, 3).samples,
+                  models().without.read(parameterOf(name), 0, 3).samples);
 }
 
 TEST(Planted, WaterAndLittleOxygenIsTheFloodedBoxAlone) {

@@ -98,7 +98,7 @@ TEST(Probe, BetweenTwoTimesValuesAreMixed) {
     Dataset dataset = test::datasetOf({sampled<float>(lattice, [](glm::dvec3 p) { return p.x; })});
     dataset.info.bounds = test::boxOf(lattice);
     dataset.info.times = {0, 10};
-    dataset.load = [lattice](int, int, int time) {
+    dataset.read = [lattice](int, int, int time) {
         Field field = sampled<float>(lattice, [&](glm::dvec3 p) { return time == 0 ? p.x : 5 + 3 * p.z; });
         if (time == 1) { // the far end has no samples then
             auto mask = std::make_shared<Mask>(field.count(), std::uint8_t(1));

@@ -176,7 +176,7 @@ Dataset twoFrames() {
     dataset.info.parameters = {{"T", "K", 1, ScalarType::F32, false, {}, {}}};
     dataset.info.quantities = {{"cell voltage", "V", {0.7, 0.1}},
                                {"j", "", {1e4, std::numeric_limits<double>::quiet_NaN()}}};
-    dataset.load = [lattice = dataset.info.lattice](int, int, int time) {
+    dataset.read = [lattice = dataset.info.lattice](int, int, int time) {
         Field field = makeField(lattice, ScalarType::F32);
         std::ranges::fill(field.as<float>(), float(time));
         return field;
@@ -279,7 +279,7 @@ TEST_F(Quantities, OfMeshesAreReadOfEveryFileOfASeries) {
     const Dataset dataset = openFiles(paths, options);
     EXPECT_EQ(dataset.info.times, (std::vector<double>{0.1, 0.26}));
     EXPECT_EQ(named(dataset.info, "voltage").values, (std::vector<double>{0.55, 0.4}));
-    const Field frame = dataset.load(0, 0, 1); // samples are read as before
+    const Field frame = dataset.read(0, 0, 1); // samples are read as before
     std::size_t present = 0;
     for (std::size_t i = 0; i < frame.count(); ++i) present += frame.present(i) ? 1 : 0;
     EXPECT_GT(present, frame.count() / 4);

@@ -27,10 +27,10 @@ TEST(RegionStatistics, AgreeWithBruteForce) {
         EXPECT_EQ(got.regions, query.regions);
         EXPECT_EQ(got.allSamples, double(lattice.count()));
         EXPECT_NEAR(got.allVolume, 4 * 2.5 * 36, 1e-8);
-        const Field label = data.load(test::kRegion, 0, 0);
+        const Field label = data.read(test::kRegion, 0, 0);
         for (std::size_t r = 0; r <= 3; ++r)
             for (std::size_t c = 0; c < 2; ++c) {
-                const Field field = data.load(c == 0 ? test::kO2 : test::kRho, 0, 0);
+                const Field field = data.read(c == 0 ? test::kO2 : test::kRho, 0, 0);
                 double n = 0, sum = 0, squares = 0, volume = 0, lo = INFINITY, hi = -INFINITY, any = 0;
                 forAll(lattice, [&](glm::ivec3 at, std::size_t i) {
                     if (r < 3 && !(label.present(i) && label.value(i) == query.regions[r])) return;

@@ -42,7 +42,7 @@ Dataset twoRegions(const Lattice& lattice, const Value& value, const TwoRegions&
 inline Dataset asVector(Dataset dataset) {
     dataset.info.parameters[0].name = "U";
     dataset.info.parameters[0].components = 3;
-    dataset.load = [load = dataset.load](int parameter, int, int time) { return load(parameter, 0, time); };
+    dataset.read = [read = dataset.read](int parameter, int, int time) { return read(parameter, 0, time); };
     return dataset;
 }
 

@@ -157,7 +157,7 @@ std::vector<Cell> cells() {
         Cell cell{name, openFiles({file}, {}), {}, {}, {}};
         const DatasetInfo& info = cell.dataset.info;
         const auto label = std::ranges::find_if(info.parameters, &Parameter::categorical);
-        cell.labels = cell.dataset.load(int(label - info.parameters.begin()), 0, int(info.times.size()) - 1);
+        cell.labels = cell.dataset.read(int(label - info.parameters.begin()), 0, int(info.times.size()) - 1);
         cell.border = besideBorders(cell.labels, std::not_equal_to<>());
         cell.membrane = besideBorders(cell.labels, [](double own, double other) { // 1 is air, 3 fuel, 0 solid
             return (own == 1 && other == 3) || (own == 3 && other == 1);
@@ -180,7 +180,7 @@ TEST(RegionsOfTheFuelCell, KeepTheirValuesOnBccAndBack) {
             if (parameter.categorical) continue;
             for (int c = 0; c < parameter.components; ++c) {
                 const std::string what = name + " " + parameter.name + "." + std::to_string(c);
-                const Field source = parted.load(int(p), c, last);
+                const Field source = parted.read(int(p), c, last);
                 const Range range = rangeOf(source);
                 const double width = range.hi - range.lo;
                 const Field bcc = toBcc(source, false), back = resample(bcc, source.lattice, ResampleFilter::Cubic);
@@ -198,7 +198,7 @@ TEST(RegionsOfTheFuelCell, KeepTheirValuesOnBccAndBack) {
                             what.c_str(), 100 * errors.near99(), 100 * errors.inside99(), ratio, beside, bend,
                             100 * beyond, filled, samples);
                 if (parameter.parts.count() > 1) {
-                    const Field plain = dataset.load(int(p), c, last);
+                    const Field plain = dataset.read(int(p), c, last);
                     const ByPlace mixed = errorsOf(
                         plain, resample(toBcc(plain, false), plain.lattice, ResampleFilter::Cubic), border, width);
                     EXPECT_LE(errors.near99(), mixed.near99()) << what;

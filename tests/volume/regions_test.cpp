@@ -69,7 +69,7 @@ TEST(Regions, NothingIsMixedByAnyFilterOnAnyLattice) {
     const Lattice targets[] = {bccFor(cc), test::ccLattice({24, 13, 30}, {0.66, 1.25, 0.46}), cc};
     const Dataset constant = withParts(test::twoRegions(cc, test::constantIn)),
                   linear = withParts(test::twoRegions(cc, test::linearIn));
-    const Field labels = constant.load(1, 0, 0), ones = constant.load(0, 0, 0), slopes = linear.load(0, 0, 0);
+    const Field labels = constant.read(1, 0, 0), ones = constant.read(0, 0, 0), slopes = linear.read(0, 0, 0);
     const Extents extents(slopes, labels);
     for (const ResampleOptions& options : everyKernel())
         for (const Lattice& target : targets) {
@@ -170,7 +170,7 @@ TEST(Regions, BetweenTimesEachSampleIsOfTheNearerOne) {
         for (const ResampleOptions& options : everyKernel()) {
             const D4Frames d4 = framesOfD4(source, options);
             for (int t = 0; t < int(d4.frames.info.times.size()); ++t) {
-                const Field values = d4.frames.load(0, 0, t), labels = d4.frames.load(1, 0, t);
+                const Field values = d4.frames.read(0, 0, t), labels = d4.frames.read(1, 0, t);
                 for (std::size_t i = 0; i < values.count(); ++i)
                     if (values.present(i)) {
                         ASSERT_NEAR(values.value(i), test::constantIn(int(labels.value(i)), {}), 1e-5)

@@ -1,3 +1,4 @@
+#include "volume/resample/resample.h"
 #include "volume/resample/resample_taps.h"
 #include "volume/resample/spline_prefilter.h"
 

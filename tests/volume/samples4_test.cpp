@@ -4,6 +4,7 @@
 #include "volume/sources/memory_source.h"
 
 #include <cmath>
+#include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 #include <set>
 

@@ -37,8 +37,8 @@ double valueAt(const Field& field, std::size_t i) {
 std::map<double, Plane> bruteForce(const Dataset& data, int parameter, int axis, std::optional<int> region,
                                    bool massFlow, const std::function<double(double, glm::dvec3)>& doi = {}) {
     const Lattice& lattice = data.info.lattice;
-    const Field f = data.load(parameter, 0, 0), label = data.load(test::kRegion, 0, 0),
-                rho = data.load(test::kRho, 0, 0), u = data.load(test::kU, axis, 0);
+    const Field f = data.read(parameter, 0, 0), label = data.read(test::kRegion, 0, 0),
+                rho = data.read(test::kRho, 0, 0), u = data.read(test::kU, axis, 0);
     std::map<double, Plane> planes;
     forAll(lattice, [&](glm::ivec3 at, std::size_t i) {
         Plane& plane = planes[lattice.position(at)[axis]];
@@ -200,7 +200,7 @@ TEST(Sections, AddUpToTheVolumeIntegralAlongAxesAndLines) {
         const Box box = boxFor(lattice);
         const Dataset data = cellData(lattice, box);
         const auto source = cellSource(data);
-        const Field o2 = data.load(test::kO2, 0, 0), label = data.load(test::kRegion, 0, 0);
+        const Field o2 = data.read(test::kO2, 0, 0), label = data.read(test::kRegion, 0, 0);
         const int share = lattice.kind == LatticeKind::BCC ? 2 : 1;
         std::map<int, double> whole;
         forAll(lattice, [&](glm::ivec3 at, std::size_t i) {
@@ -314,7 +314,7 @@ TEST(Sections, ALineWithoutLengthIsAnError) {
 /// Means per slice of a parameter of a CC data set along z, by area of half cells at the faces, of one label value.
 std::vector<double> meansAlongZ(const Dataset& data, int parameter, int label, int region, int time) {
     const Lattice& lattice = data.info.lattice;
-    const Field f = data.load(parameter, 0, time), labels = data.load(label, 0, time);
+    const Field f = data.read(parameter, 0, time), labels = data.read(label, 0, time);
     std::vector<double> sums(std::size_t(lattice.size.z)), areas(sums);
     forAll(lattice, [&](glm::ivec3 at, std::size_t i) {
         if (!f.present(i) || !labels.present(i) || labels.value(i) != region) return;

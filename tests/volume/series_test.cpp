@@ -6,6 +6,8 @@
 #include "volume/resample/series_dataset.h"
 
 #include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/vector_relational.hpp>
 #include <gtest/gtest.h>
 #include <random>
 
@@ -103,7 +105,7 @@ Dataset planeTimes(int first, int count) {
     dataset.info.times.clear();
     for (int t = 0; t < count; ++t) dataset.info.times.push_back(10 + 0.5 * (first + t));
     dataset.info.parameters = {Parameter{}};
-    dataset.load = [lattice = dataset.info.lattice, times = dataset.info.times](int, int, int t) {
+    dataset.read = [lattice = dataset.info.lattice, times = dataset.info.times](int, int, int t) {
         return test::sampled<float>(
             lattice, [&](glm::dvec3 p) { return p.x - 2 * p.y + 0.5 * p.z + 6 * times.at(std::size_t(t)); });
     };
@@ -130,7 +132,7 @@ TEST(Series, D4GoesOnWithLaterTimes) {
             for (std::size_t t = 0; t < later.frames.info.times.size(); ++t) {
                 const double time = later.frames.info.times[t];
                 EXPECT_NEAR(time - frames.back(), step, 1e-9);
-                const Field frame = later.frames.load(0, 0, int(t));
+                const Field frame = later.frames.read(0, 0, int(t));
                 const double moved = frames.size() % 2 == 0 ? 0 : 0.5;
                 EXPECT_NEAR(frame.lattice.origin.x, shown.info.lattice.origin.x + moved * frame.lattice.spacing.x,
                             1e-12);

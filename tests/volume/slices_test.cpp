@@ -1,6 +1,7 @@
 #include "tests/volume/fields.h"
 #include "volume/base/error.h"
 #include "volume/bricks/brick_importance.h"
+#include "volume/resample/resample.h"
 #include "volume/resample/resample_slices.h"
 #include "volume/system/scratch_file.h"
 
@@ -72,7 +73,7 @@ TEST(Slices, ResampledInPartsIsTheSameAsWhole) {
                     const Field whole = resample(field, target, options);
                     const int step = 2 * std::uniform_int_distribution(1, 9)(random);
                     const SlicedFrame parts =
-                        resampled(slicedFrame(field), target, options, step / 2, testing::TempDir());
+                        resampled(slicedFrame(field), target, options, {step / 2, testing::TempDir()});
                     expectSame(whole, joined(parts, field.type, step),
                                std::string(kResampleFilterNames[std::size_t(options.filter)]) + " gaps " +
                                    std::to_string(gaps) + " step " + std::to_string(step));
@@ -93,7 +94,7 @@ TEST(Slices, APartOfTheSourceIsRead) {
         most = std::max(most, count);
         return read(first, count);
     };
-    joined(resampled(frame, bccFor(field.lattice), {}, 8, testing::TempDir()), field.type, 8);
+    joined(resampled(frame, bccFor(field.lattice), {}, {8, testing::TempDir()}), field.type, 8);
     EXPECT_LE(most, 10); // 8 slices of BCC are 5.7 of CC, and 2 on either side
     EXPECT_GE(most, 6);
 }

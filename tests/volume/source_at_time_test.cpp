@@ -25,7 +25,7 @@ std::shared_ptr<const BrickSource> rising() {
     data.info.parameters[1].type = ScalarType::U8;
     data.info.parameters[1].categorical = true;
     data.info.parameters[1].ranges = {{0, 2}};
-    data.load = [lattice = data.info.lattice, times = data.info.times](int parameter, int, int time) {
+    data.read = [lattice = data.info.lattice, times = data.info.times](int parameter, int, int time) {
         Field field = makeField(lattice, parameter == 0 ? ScalarType::F32 : ScalarType::U8);
         auto mask = std::make_shared<Mask>(field.count(), std::uint8_t(1));
         for (std::size_t i = 0; i < field.count(); ++i) {

@@ -3,6 +3,7 @@
 #include "tests/volume/fields.h"
 #include "volume/sources/memory_source.h"
 
+#include <cmath>
 #include <gtest/gtest.h>
 
 namespace tessera::volume {

@@ -65,7 +65,7 @@ TEST(Statistics, AgreesWithBruteForce) {
         ASSERT_EQ(result.joint.size(), 3u);
 
         std::vector<Field> fields;
-        for (int c = 0; c < 3; ++c) fields.push_back(dataset.load(c, 0, 0));
+        for (int c = 0; c < 3; ++c) fields.push_back(dataset.read(c, 0, 0));
         const auto value = [&](int c, std::size_t i) {
             return fields[std::size_t(c)].present(i) ? float(fields[std::size_t(c)].value(i)) : NAN;
         };

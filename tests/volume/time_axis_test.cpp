@@ -18,7 +18,7 @@ std::shared_ptr<const BrickSource> moving(LatticeKind kind) {
     data.info.parameters.resize(1);
     data.info.parameters[0].name = "a";
     data.info.parameters[0].ranges = {{1, 445}};
-    data.load = [lattice = data.info.lattice, times = data.info.times](int, int, int time) {
+    data.read = [lattice = data.info.lattice, times = data.info.times](int, int, int time) {
         Field field = makeField(lattice, ScalarType::F32);
         auto mask = std::make_shared<Mask>(field.count(), std::uint8_t(1));
         for (int z = 0; z < lattice.size.z; ++z)
@@ -43,7 +43,7 @@ TEST(TimeAxis, APlaneAtAllTimesKeepsItsValuesAndItsShape) {
     EXPECT_DOUBLE_EQ(timePerLength(made.info, {SpaceAxis::Z, 0.25}), 1) << "4 of time over 4 of length";
     EXPECT_DOUBLE_EQ(made.info.bounds.lo.z, 1) << "time 1";
 
-    const Field values = made.load(0, 0, 0), clock = made.load(1, 0, 0);
+    const Field values = made.read(0, 0, 0), clock = made.read(1, 0, 0);
     const double steps[] = {1, 1 + 4.0 / 3, 1 + 8.0 / 3, 5}; // even steps between the first and the last
     for (int k = 0; k < 4; ++k)
         for (int x = 0; x < 5; ++x) {
@@ -66,7 +66,7 @@ TEST(TimeAxis, AnyAxisAndLattice) {
         EXPECT_EQ(made.info.lattice.kind, LatticeKind::CC);
         EXPECT_EQ(made.info.lattice.size[a], 4);
         EXPECT_EQ(made.info.bounds.size(), source->info().bounds.size());
-        const Field values = made.load(0, 0, 0);
+        const Field values = made.read(0, 0, 0);
         glm::ivec3 middle = made.info.lattice.size / 2;
         middle[a] = 0;
         glm::dvec3 at = made.info.lattice.position(middle);
@@ -84,7 +84,7 @@ TEST(TimeAxis, NeedsTimesAndAnExtent) {
     flat.info.bounds = {glm::dvec3(0), glm::dvec3(3, 3, 0)};
     flat.info.times = {0, 1};
     flat.info.parameters.resize(1);
-    flat.load = [lattice = flat.info.lattice](int, int, int) { return makeField(lattice, ScalarType::F32); };
+    flat.read = [lattice = flat.info.lattice](int, int, int) { return makeField(lattice, ScalarType::F32); };
     EXPECT_THROW(withTimeAlong(makeMemorySource(std::move(flat), {.lattice = LatticeKind::CC}), {}), Error);
 }
 

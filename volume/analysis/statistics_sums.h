@@ -1,6 +1,6 @@
 #pragma once
 
-#include "volume/analysis/statistics.h"
+#include "volume/analysis/statistics_results.h"
 
 #include <algorithm>
 #include <array>

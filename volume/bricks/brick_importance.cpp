@@ -269,51 +269,48 @@ struct OwnImportance {
     static constexpr int kMargin = 4; ///< reach of the details of smoothed samples
 };
 
-} // namespace
-
-std::vector<BrickImportance> importanceOfBricks(const BrickGrid& grid, const Field& field, Range range,
-                                                bool categorical, const ImportanceOptions& options) {
+/// Of all bricks of a frame. `forParts(margin, visit)` calls visit(part, first texel, layer, end) for parts of the
+/// frame that together hold all layers of bricks, with `margin` texels more on both sides.
+std::vector<BrickImportance> importanceOfParts(const BrickGrid& grid, Range range, bool categorical,
+                                               const ImportanceOptions& options, const auto& forParts) {
     const glm::ivec3 count = grid.count();
     std::vector<BrickImportance> own(countOf(count));
     if (categorical) {
-        OwnImportance{grid, {range}, 1, own}.takeLabels(field, 0, count.z);
-        return withNeighbours(own, count, options.neighbours);
-    }
-    const Extent extent = extentOf(field);
-    if (!(range.lo <= range.hi)) range = extent.range;
-    if (!(range.lo < range.hi)) return own; // one value, or nothing
-    OwnImportance{grid, extent.within(range), options.borderWeight, own}.take(field, 0, 0, count.z);
-    return withNeighbours(own, count, options.neighbours);
-}
-
-std::vector<BrickImportance> importanceOfBricks(const BrickGrid& grid, const SliceReader& read, int layers, Range range,
-                                                bool categorical, const ImportanceOptions& options) {
-    const glm::ivec3 count = grid.count();
-    std::vector<BrickImportance> own(countOf(count));
-    const OwnImportance plain{grid, {range}, 1, own};
-    const int texels = grid.lattice.texels().z;
-    /// Calls `visit(part, first texel, layer, end)`.
-    const auto forParts = [&](int margin, auto&& visit) {
-        for (int layer = 0; layer < count.z; layer += layers) {
-            const int end = std::min(layer + layers, count.z);
-            const int first = std::max(layer * grid.brickSize - margin, 0),
-                      last = std::min(end * grid.brickSize + margin, texels);
-            const int from = first * plain.slices(), to = std::min(last * plain.slices(), grid.lattice.size.z);
-            visit(read(from, to - from), first, layer, end);
-        }
-    };
-    if (categorical) {
-        forParts(0, [&](const Field& part, int, int layer, int end) { plain.takeLabels(part, layer, end); });
+        const OwnImportance labels{grid, {range}, 1, own};
+        forParts(0, [&](const Field& part, int, int layer, int end) { labels.takeLabels(part, layer, end); });
         return withNeighbours(own, count, options.neighbours);
     }
     Extent extent;
     forParts(0, [&](const Field& part, int, int, int) { extent.add(extentOf(part)); });
     if (!(range.lo <= range.hi)) range = extent.range;
-    if (!(range.lo < range.hi)) return own;
+    if (!(range.lo < range.hi)) return own; // one value, or nothing
     const OwnImportance smooth{grid, extent.within(range), options.borderWeight, own};
     forParts(OwnImportance::kMargin,
              [&](const Field& part, int first, int layer, int end) { smooth.take(part, first, layer, end); });
     return withNeighbours(own, count, options.neighbours);
+}
+
+} // namespace
+
+std::vector<BrickImportance> importanceOfBricks(const BrickGrid& grid, const Field& field, Range range,
+                                                bool categorical, const ImportanceOptions& options) {
+    return importanceOfParts(grid, range, categorical, options,
+                             [&](int, auto&& visit) { visit(field, 0, 0, grid.count().z); });
+}
+
+std::vector<BrickImportance> importanceOfBricks(const BrickGrid& grid, const SliceReader& read, int layers, Range range,
+                                                bool categorical, const ImportanceOptions& options) {
+    const int all = grid.count().z, texels = grid.lattice.texels().z;
+    const int slices = grid.lattice.kind == LatticeKind::BCC ? 2 : 1; // of a texel
+    return importanceOfParts(grid, range, categorical, options, [&](int margin, auto&& visit) {
+        for (int layer = 0; layer < all; layer += layers) {
+            const int end = std::min(layer + layers, all);
+            const int first = std::max(layer * grid.brickSize - margin, 0),
+                      last = std::min(end * grid.brickSize + margin, texels);
+            const int from = first * slices, to = std::min(last * slices, grid.lattice.size.z);
+            visit(read(from, to - from), first, layer, end);
+        }
+    });
 }
 
 } // namespace tessera::volume

@@ -1,6 +1,7 @@
 #pragma once
 
-#include "volume/derived/derived.h"
+#include "volume/bricks/brick_source.h"
+#include "volume/derived/derived_recipe.h"
 
 #include <memory>
 #include <optional>

@@ -1,11 +1,11 @@
 #pragma once
 
-#include "volume/derived/derived.h"
+#include "volume/derived/derived_recipe.h"
 
 #include <string>
 #include <vector>
 
-/// Resolves names in recipes for a data set: internal to derived parameters.
+/// Resolves and checks the names in recipes for a data set.
 namespace tessera::volume {
 
 /// Names a formula may use: channels, vectors (for their magnitude), then x, y, z, t where these are free.
@@ -24,5 +24,11 @@ int componentsOf(const DerivedRecipe& recipe);
 
 /// The parts of a derived parameter: those of its inputs. If their labels differ, the first one is used.
 Parts partsOf(const DerivedRecipe& recipe, const DatasetInfo& info);
+
+/// Error message for a derived parameter of a data set, with the position in the formula; "" if it is valid.
+std::string derivedProblem(const DerivedParameter& parameter, const DatasetInfo& info);
+
+/// Error messages for several derived parameters, each of which may use those before it.
+std::vector<std::string> derivedProblems(const std::vector<DerivedParameter>& parameters, DatasetInfo info);
 
 } // namespace tessera::volume

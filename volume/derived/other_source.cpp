@@ -3,7 +3,6 @@
 #include "volume/base/error.h"
 #include "volume/bricks/brick_cache.h"
 #include "volume/bricks/sample_position.h"
-#include "volume/derived/derived_bricks.h"
 #include "volume/reconstruct/probe.h"
 
 #include <algorithm>

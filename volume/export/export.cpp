@@ -32,17 +32,17 @@ std::string writeNrrd(const Dataset& dataset, const ExportSelection& selection, 
     const Channel& channel = channels[std::size_t(*chosen)];
     Field field;
     if (channel.magnitude) {
-        field = asFloat(dataset.load(channel.parameter, 0, times[0]));
+        field = asFloat(dataset.read(channel.parameter, 0, times[0]));
         const auto sum = field.as<float>();
         std::vector<double> squares(field.count(), 0);
         for (int c = 0; c < info.parameters[std::size_t(channel.parameter)].components; ++c) {
-            const Field part = asFloat(dataset.load(channel.parameter, c, times[0]));
+            const Field part = asFloat(dataset.read(channel.parameter, c, times[0]));
             const auto values = part.as<float>();
             for (std::size_t i = 0; i < squares.size(); ++i) squares[i] += double(values[i]) * double(values[i]);
         }
         for (std::size_t i = 0; i < squares.size(); ++i) sum[i] = static_cast<float>(std::sqrt(squares[i]));
     } else {
-        field = dataset.load(channel.parameter, channel.component, times[0]);
+        field = dataset.read(channel.parameter, channel.component, times[0]);
         if (field.mask || field.scale != 1 || field.offset != 0) field = asFloat(field);
     }
     const Lattice& lattice = info.lattice;

@@ -45,7 +45,7 @@ Storage storageOf(const Dataset& dataset, int parameter, const std::vector<int>&
     storage.type = what.type;
     for (const int time : times)
         for (int c = 0; c < what.components; ++c) {
-            const Field field = dataset.load(parameter, c, time);
+            const Field field = dataset.read(parameter, c, time);
             storage.presence = storage.presence || field.mask;
             if (time == times.front()) storage.scaling[std::size_t(c)] = {field.scale, field.offset};
             if (!isStoredAs(field, c, storage)) return floatStorage(what.components);
@@ -55,9 +55,9 @@ Storage storageOf(const Dataset& dataset, int parameter, const std::vector<int>&
 
 bool masksAgree(const Dataset& dataset, int parameter, const std::vector<int>& times) {
     for (const int time : times) {
-        const Field first = dataset.load(parameter, 0, time);
+        const Field first = dataset.read(parameter, 0, time);
         for (int c = 1; c < dataset.info.parameters[std::size_t(parameter)].components; ++c) {
-            const Field other = dataset.load(parameter, c, time);
+            const Field other = dataset.read(parameter, c, time);
             if (first.mask != other.mask && presenceOf(first) != presenceOf(other)) return false;
         }
     }
@@ -69,7 +69,7 @@ bool isStoredAs(const Field& field, int component, const Storage& storage) {
 }
 
 Field loadAs(const Dataset& dataset, int parameter, int component, int time, const Storage& storage) {
-    Field field = dataset.load(parameter, component, time);
+    Field field = dataset.read(parameter, component, time);
     if (!isStoredAs(field, component, storage)) field = asFloat(field);
     markAbsent(field);
     return field;
@@ -97,7 +97,7 @@ std::optional<ScalarType> typeOfValues(const Dataset& dataset, int parameter, co
     Range range{0, 0}; // absent samples become 0
     for (const int time : times)
         for (int c = 0; c < what.components; ++c) {
-            const Field field = dataset.load(parameter, c, time);
+            const Field field = dataset.read(parameter, c, time);
             scaled = scaled || Scaling{field.scale, field.offset} != Scaling{};
             whole = whole && field.scale == std::rint(field.scale) && field.offset == std::rint(field.offset);
             for (std::size_t i = 0; i < field.count(); ++i) {
@@ -129,8 +129,8 @@ Dataset withValues(Dataset dataset, const std::vector<int>& parameters, const st
     for (const int p : parameters)
         if (const auto type = typeOfValues(dataset, p, times)) types[p] = *type;
     for (const auto& [p, type] : types) dataset.info.parameters[std::size_t(p)].type = type;
-    dataset.load = [load = std::move(dataset.load), types](int parameter, int component, int time) {
-        const Field field = load(parameter, component, time);
+    dataset.read = [read = std::move(dataset.read), types](int parameter, int component, int time) {
+        const Field field = read(parameter, component, time);
         const auto type = types.find(parameter);
         if (type == types.end()) return field;
         return type->second == ScalarType::F32 ? asFloat(field) : asWhole(field, type->second);

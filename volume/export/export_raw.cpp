@@ -22,7 +22,7 @@ Marker markerOf(const Dataset& dataset, int parameter, int component, const std:
                 const Storage& storage) {
     Marker marker;
     for (const int time : times) {
-        const Field field = dataset.load(parameter, component, time);
+        const Field field = dataset.read(parameter, component, time);
         marker.converted = marker.converted || !isStoredAs(field, component, storage);
         if (!field.mask) continue;
         dispatch(field.type, [&]<class T>(T) {
@@ -37,7 +37,7 @@ Marker markerOf(const Dataset& dataset, int parameter, int component, const std:
     }
     if (!marker.value) return marker;
     for (const int time : times) {
-        const Field field = dataset.load(parameter, component, time);
+        const Field field = dataset.read(parameter, component, time);
         dispatch(field.type, [&]<class T>(T) {
             const auto stored = field.as<T>();
             for (std::size_t i = 0; i < stored.size() && marker.works; ++i)
@@ -70,21 +70,10 @@ Form formOf(const Dataset& dataset, int parameter, const std::vector<int>& times
     return form;
 }
 
-} // namespace
+using json = nlohmann::ordered_json;
 
-std::vector<std::string> writeRaw(const Dataset& dataset, const std::vector<int>& parameters,
-                                  const std::vector<int>& times, const fs::path& path, const Progress& progress) {
-    const DatasetInfo& info = dataset.info;
-    fs::path raw = path, sidecar = path;
-    raw.replace_extension(".raw");
-    sidecar.replace_extension(".json");
-    std::vector<Form> forms;
-    for (std::size_t i = 0; i < parameters.size(); ++i) {
-        progress.advance(0.3 * double(i) / double(parameters.size()), "forms");
-        forms.push_back(formOf(dataset, parameters[i], times));
-    }
-
-    using json = nlohmann::ordered_json;
+/// The sidecar's list of components.
+json componentsOf(const DatasetInfo& info, const std::vector<int>& parameters, const std::vector<Form>& forms) {
     json components = json::array();
     const auto add = [&](const std::string& componentName, const std::string& unit, ScalarType type) -> json& {
         json entry;
@@ -111,16 +100,21 @@ std::vector<std::string> writeRaw(const Dataset& dataset, const std::vector<int>
         }
         if (forms[i].storage.presence) add(what.name + ".present", "", ScalarType::U8)["presence_of"] = what.name;
     }
-    AtomicFile file(raw.string());
+    return components;
+}
+
+/// Writes every frame; gives their bytes.
+std::uint64_t writeFrames(const Dataset& dataset, const std::vector<int>& parameters, const std::vector<Form>& forms,
+                          const std::vector<int>& times, AtomicFile& file, const Progress& progress) {
     double written = 0, done = 0;
     for (const int t : times)
         for (std::size_t i = 0; i < parameters.size(); ++i) {
-            const Parameter& what = info.parameters[std::size_t(parameters[i])];
-            progress.advance(0.3 + 0.7 * done++ / double(times.size() * parameters.size()), what.name);
+            const Parameter& what = dataset.info.parameters[std::size_t(parameters[i])];
+            progress.advance(done++ / double(times.size() * parameters.size()), what.name);
             Field field;
             for (int c = 0; c < what.components; ++c) {
                 field = forms[i].converted ? loadAs(dataset, parameters[i], c, t, forms[i].storage)
-                                           : dataset.load(parameters[i], c, t); // absent samples as they are
+                                           : dataset.read(parameters[i], c, t); // absent samples as they are
                 writeField(file, field);
                 written += double(field.samples.size());
             }
@@ -130,6 +124,38 @@ std::vector<std::string> writeRaw(const Dataset& dataset, const std::vector<int>
                 written += double(flags.size());
             }
         }
+    return static_cast<std::uint64_t>(written);
+}
+
+/// The sidecar's list of quantities.
+json quantitiesOf(const DatasetInfo& info, const std::vector<int>& times) {
+    json quantities;
+    for (const Quantity& quantity : info.quantities) {
+        json values = json::array();
+        for (const int t : times) {
+            const double value = quantity.values[std::size_t(t)];
+            values.push_back(std::isfinite(value) ? json(value) : json());
+        }
+        quantities.push_back({{"name", quantity.name}, {"unit", quantity.unit}, {"values", values}});
+    }
+    return quantities;
+}
+
+} // namespace
+
+std::vector<std::string> writeRaw(const Dataset& dataset, const std::vector<int>& parameters,
+                                  const std::vector<int>& times, const fs::path& path, const Progress& progress) {
+    const DatasetInfo& info = dataset.info;
+    fs::path raw = path, sidecar = path;
+    raw.replace_extension(".raw");
+    sidecar.replace_extension(".json");
+    std::vector<Form> forms;
+    for (std::size_t i = 0; i < parameters.size(); ++i) {
+        progress.advance(0.3 * double(i) / double(parameters.size()), "forms");
+        forms.push_back(formOf(dataset, parameters[i], times));
+    }
+    AtomicFile file(raw.string());
+    const std::uint64_t bytes = writeFrames(dataset, parameters, forms, times, file, progress.part(0.3, 1));
     json out;
     out["name"] = info.name;
     out["file"] = raw.filename().string();
@@ -141,21 +167,14 @@ std::vector<std::string> writeRaw(const Dataset& dataset, const std::vector<int>
     out["spacing"] = {lattice.spacing.x, lattice.spacing.y, lattice.spacing.z};
     out["origin"] = {lattice.origin.x, lattice.origin.y, lattice.origin.z};
     out["length_unit"] = info.lengthUnit;
-    out["components"] = std::move(components);
+    out["components"] = componentsOf(info, parameters, forms);
     out["times"] = json::array();
     for (const int t : times) out["times"].push_back(info.times[std::size_t(t)]);
     out["time_name"] = info.timeName;
     out["time_unit"] = info.timeUnit;
-    for (const Quantity& quantity : info.quantities) {
-        json values = json::array();
-        for (const int t : times) {
-            const double value = quantity.values[std::size_t(t)];
-            values.push_back(std::isfinite(value) ? json(value) : json());
-        }
-        out["quantities"].push_back({{"name", quantity.name}, {"unit", quantity.unit}, {"values", values}});
-    }
+    if (!info.quantities.empty()) out["quantities"] = quantitiesOf(info, times);
     out["missing_value"] = nullptr;
-    out["bytes"] = static_cast<std::uint64_t>(written);
+    out["bytes"] = bytes;
     if (!info.provenance.empty()) out["provenance"] = info.provenance;
     AtomicFile words(sidecar.string());
     words.write(out.dump(1) + "\n");

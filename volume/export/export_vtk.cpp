@@ -52,19 +52,15 @@ std::string_view vtkName(ScalarType type) {
     return kNames[std::size_t(type)];
 }
 
-} // namespace
+/// The samples of a parameter in a file, or its presence flags.
+struct Block {
+    int parameter;
+    Storage storage;
+    bool flags; ///< the presence flags of the parameter instead of its samples
+};
 
-void writeVti(const Dataset& dataset, const std::vector<int>& parameters, int time, const std::string& path,
-              const Progress& progress) {
-    const DatasetInfo& info = dataset.info;
-    const Lattice& lattice = info.lattice;
-    struct Block {
-        int parameter;
-        Storage storage;
-        bool flags; ///< the presence flags of the parameter instead of its samples
-    };
+std::vector<Block> blocksOf(const Dataset& dataset, const std::vector<int>& parameters, int time) {
     std::vector<Block> blocks;
-    std::string units, labels;
     for (const int p : parameters) {
         Storage storage = storageOf(dataset, p, {time});
         const bool plain = std::all_of(storage.scaling.begin(), storage.scaling.end(),
@@ -73,6 +69,19 @@ void writeVti(const Dataset& dataset, const std::vector<int>& parameters, int ti
             storage = floatStorage(dataset.info.parameters[std::size_t(p)].components);
         blocks.push_back({p, storage, false});
         if (storage.presence) blocks.push_back({p, storage, true});
+    }
+    return blocks;
+}
+
+std::size_t bytesOf(const Block& block, const DatasetInfo& info) {
+    const auto components = std::size_t(info.parameters[std::size_t(block.parameter)].components);
+    return info.lattice.count() * (block.flags ? 1 : components * byteSize(block.storage.type));
+}
+
+/// The field data of a frame: its time, quantities, units, labels.
+std::string fieldData(const DatasetInfo& info, const std::vector<int>& parameters, int time) {
+    std::string units, labels;
+    for (const int p : parameters) {
         const Parameter& what = info.parameters[std::size_t(p)];
         units += (units.empty() ? "" : "; ") + listed(what.name) + " " +
                  (what.unit.empty() || what.unitGuessed ? "-" : what.unit);
@@ -80,21 +89,15 @@ void writeVti(const Dataset& dataset, const std::vector<int>& parameters, int ti
             labels += (labels.empty() ? "" : "; ") + listed(what.name) + " " + std::to_string(label.value) + " " +
                       labelText(label);
     }
-    const std::string extent = "0 " + std::to_string(lattice.size.x - 1) + " 0 " + std::to_string(lattice.size.y - 1) +
-                               " 0 " + std::to_string(lattice.size.z - 1);
-    const auto triple = [](glm::dvec3 v) { return exactText(v.x) + " " + exactText(v.y) + " " + exactText(v.z); };
-    std::string head = "<?xml version=\"1.0\"?>\n<VTKFile type=\"ImageData\" version=\"1.0\" "
-                       "byte_order=\"LittleEndian\" header_type=\"UInt64\">\n";
-    head += "<ImageData WholeExtent=\"" + extent + "\" Origin=\"" + triple(lattice.origin) + "\" Spacing=\"" +
-            triple(lattice.spacing) + "\">\n<FieldData>\n";
-    head += "<DataArray type=\"Float64\" Name=\"TimeValue\" NumberOfTuples=\"1\" format=\"ascii\">" +
-            exactText(info.times[std::size_t(time)]) + "</DataArray>\n";
+    const auto number = [](const std::string& name, double value) {
+        return "<DataArray type=\"Float64\" Name=\"" + name + "\" NumberOfTuples=\"1\" format=\"ascii\">" +
+               exactText(value) + "</DataArray>\n";
+    };
+    std::string out = number("TimeValue", info.times[std::size_t(time)]);
     for (const Quantity& quantity : info.quantities) {
         units += "; " + listed(quantity.name) + " " + (quantity.unit.empty() ? "-" : quantity.unit);
         if (std::isfinite(quantity.values[std::size_t(time)]))
-            head += "<DataArray type=\"Float64\" Name=\"" + escaped(quantity.name) +
-                    "\" NumberOfTuples=\"1\" format=\"ascii\">" + exactText(quantity.values[std::size_t(time)]) +
-                    "</DataArray>\n";
+            out += number(escaped(quantity.name), quantity.values[std::size_t(time)]);
     }
     const auto words = [](const std::string& name, const std::string& value) {
         std::string codes;
@@ -102,17 +105,25 @@ void writeVti(const Dataset& dataset, const std::vector<int>& parameters, int ti
         return "<Array type=\"String\" Name=\"" + name + "\" NumberOfTuples=\"1\" format=\"ascii\">" + codes +
                "0</Array>\n";
     };
-    head += words("units", units);
-    if (!labels.empty()) head += words("labels", labels);
-    head +=
-        words("length_unit", info.lengthUnit) + words("time_name", info.timeName) + words("time_unit", info.timeUnit);
+    out += words("units", units);
+    if (!labels.empty()) out += words("labels", labels);
+    return out + words("length_unit", info.lengthUnit) + words("time_name", info.timeName) +
+           words("time_unit", info.timeUnit);
+}
+
+/// All before the samples.
+std::string headOf(const DatasetInfo& info, const std::vector<int>& parameters, const std::vector<Block>& blocks,
+                   int time) {
+    const Lattice& lattice = info.lattice;
+    const std::string extent = "0 " + std::to_string(lattice.size.x - 1) + " 0 " + std::to_string(lattice.size.y - 1) +
+                               " 0 " + std::to_string(lattice.size.z - 1);
+    const auto triple = [](glm::dvec3 v) { return exactText(v.x) + " " + exactText(v.y) + " " + exactText(v.z); };
+    std::string head = "<?xml version=\"1.0\"?>\n<VTKFile type=\"ImageData\" version=\"1.0\" "
+                       "byte_order=\"LittleEndian\" header_type=\"UInt64\">\n";
+    head += "<ImageData WholeExtent=\"" + extent + "\" Origin=\"" + triple(lattice.origin) + "\" Spacing=\"" +
+            triple(lattice.spacing) + "\">\n<FieldData>\n" + fieldData(info, parameters, time);
     head += "</FieldData>\n<Piece Extent=\"" + extent + "\">\n<PointData>\n";
     std::size_t offset = 0;
-    const auto sizeOf = [&](const Block& block) {
-        const Parameter& what = info.parameters[std::size_t(block.parameter)];
-        return block.flags ? lattice.count()
-                           : lattice.count() * std::size_t(what.components) * byteSize(block.storage.type);
-    };
     for (const Block& block : blocks) {
         const Parameter& what = info.parameters[std::size_t(block.parameter)];
         head += "<DataArray type=\"" + std::string(block.flags ? "UInt8" : vtkName(block.storage.type)) + "\" Name=\"" +
@@ -120,32 +131,44 @@ void writeVti(const Dataset& dataset, const std::vector<int>& parameters, int ti
         if (what.components > 1 && !block.flags)
             head += " NumberOfComponents=\"" + std::to_string(what.components) + "\"";
         head += " format=\"appended\" offset=\"" + std::to_string(offset) + "\"/>\n";
-        offset += sizeof(std::uint64_t) + sizeOf(block);
+        offset += sizeof(std::uint64_t) + bytesOf(block, info);
     }
-    head += "</PointData>\n</Piece>\n</ImageData>\n<AppendedData encoding=\"raw\">\n_";
+    return head + "</PointData>\n</Piece>\n</ImageData>\n<AppendedData encoding=\"raw\">\n_";
+}
 
+/// The samples of a vector, components side by side.
+std::vector<std::byte> tuplesOf(const Dataset& dataset, const Block& block, int time) {
+    const int components = dataset.info.parameters[std::size_t(block.parameter)].components;
+    const std::size_t bytes = byteSize(block.storage.type), stride = bytes * std::size_t(components);
+    std::vector<std::byte> tuples(bytesOf(block, dataset.info));
+    for (int c = 0; c < components; ++c) {
+        const Field field = loadAs(dataset, block.parameter, c, time, block.storage);
+        for (std::size_t i = 0; i < field.count(); ++i)
+            std::memcpy(tuples.data() + i * stride + std::size_t(c) * bytes, field.samples.data() + i * bytes, bytes);
+    }
+    return tuples;
+}
+
+} // namespace
+
+void writeVti(const Dataset& dataset, const std::vector<int>& parameters, int time, const std::string& path,
+              const Progress& progress) {
+    const std::vector<Block> blocks = blocksOf(dataset, parameters, time);
     AtomicFile file(path);
-    file.write(head);
+    file.write(headOf(dataset.info, parameters, blocks, time));
     for (std::size_t b = 0; b < blocks.size(); ++b) {
         const Block& block = blocks[b];
-        const Parameter& what = info.parameters[std::size_t(block.parameter)];
+        const Parameter& what = dataset.info.parameters[std::size_t(block.parameter)];
         progress.advance(double(b) / double(blocks.size()), what.name);
-        const std::uint64_t size = sizeOf(block);
+        const std::uint64_t size = bytesOf(block, dataset.info);
         file.write(&size, sizeof size);
         if (block.flags) {
-            const auto flags = presenceOf(dataset.load(block.parameter, 0, time));
+            const auto flags = presenceOf(dataset.read(block.parameter, 0, time));
             file.write(flags.data(), flags.size());
         } else if (what.components == 1) {
             writeField(file, loadAs(dataset, block.parameter, 0, time, block.storage));
-        } else { // components side by side
-            const std::size_t bytes = byteSize(block.storage.type), stride = bytes * std::size_t(what.components);
-            std::vector<std::byte> tuples(size);
-            for (int c = 0; c < what.components; ++c) {
-                const Field field = loadAs(dataset, block.parameter, c, time, block.storage);
-                for (std::size_t i = 0; i < field.count(); ++i)
-                    std::memcpy(tuples.data() + i * stride + std::size_t(c) * bytes, field.samples.data() + i * bytes,
-                                bytes);
-            }
+        } else {
+            const std::vector<std::byte> tuples = tuplesOf(dataset, block, time);
             file.write(tuples.data(), tuples.size());
         }
     }

@@ -2,10 +2,10 @@
 
 #include "volume/base/describe.h"
 #include "volume/field/field.h"
+#include "volume/field/frame_reader.h"
 #include "volume/field/lattice.h"
 #include "volume/field/parts.h"
 
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -82,11 +82,11 @@ struct DatasetInfo {
     int nearestTime(double time) const;
 };
 
-/// A data set that is read on demand: `load(parameter, component, time index)` returns one stored component. May be
-/// called from any thread, one call at a time per data set; throws Error when the file is bad.
+/// A data set that is read on demand: `read(parameter, component, time index)` returns all of one stored component,
+/// `read(parameter, component, time index, slices)` some slices of it.
 struct Dataset {
     DatasetInfo info;
-    std::function<Field(int parameter, int component, int time)> load;
+    FrameReader read;
 };
 
 } // namespace tessera::volume

@@ -3,34 +3,12 @@
 #include "volume/base/error.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <memory>
 #include <utility>
 #include <vector>
 
 namespace tessera::volume {
-
-namespace {
-
-/// By parameter, the label of its parts or -1.
-std::vector<int> labelsOf(const DatasetInfo& info) {
-    std::vector<int> labels;
-    for (const Parameter& parameter : info.parameters) labels.push_back(labelOf(info, parameter));
-    return labels;
-}
-
-bool noneHasParts(const std::vector<int>& labels) {
-    return std::all_of(labels.begin(), labels.end(), [](int label) { return label < 0; });
-}
-
-std::vector<Parts> partsOf(const DatasetInfo& info) {
-    std::vector<Parts> parts;
-    for (const Parameter& parameter : info.parameters) parts.push_back(parameter.parts);
-    return parts;
-}
-
-} // namespace
 
 int labelOf(const DatasetInfo& info, const Parameter& parameter) {
     if (parameter.categorical || parameter.parts.count() < 2) return -1;
@@ -76,40 +54,30 @@ Field withoutParts(Field field) {
 }
 
 Dataset withParts(const Dataset& dataset) {
-    const std::vector<int> labels = labelsOf(dataset.info);
-    if (noneHasParts(labels)) return dataset;
-    Dataset out = dataset;
+    std::vector<int> labels; // of each parameter that of its parts, or -1
+    std::vector<Parts> parts;
+    for (const Parameter& parameter : dataset.info.parameters) {
+        labels.push_back(labelOf(dataset.info, parameter));
+        parts.push_back(parameter.parts);
+    }
+    if (std::ranges::all_of(labels, [](int label) { return label < 0; })) return dataset;
     struct Kept {
         int label = -1, time = -1;
+        SliceRange slices;
         Field field;
     };
-    out.load = [load = dataset.load, labels, parts = partsOf(dataset.info),
-                kept = std::make_shared<Kept>()](int parameter, int component, int time) {
-        Field field = load(parameter, component, time);
-        const int label = labels[std::size_t(parameter)];
-        if (label < 0) return field;
-        if (kept->label != label || kept->time != time) *kept = {label, time, load(label, 0, time)};
-        return withParts(std::move(field), kept->field, parts[std::size_t(parameter)]);
-    };
+    Dataset out = dataset;
+    out.read =
+        dataset.read.through([labels, parts, kept = std::make_shared<Kept>()](
+                                 const FrameReader& read, int parameter, int component, int time, SliceRange slices) {
+            Field field = read(parameter, component, time, slices);
+            const int label = labels[std::size_t(parameter)];
+            if (label < 0) return field;
+            if (kept->label != label || kept->time != time || kept->slices != slices)
+                *kept = {label, time, slices, read(label, 0, time, slices)};
+            return withParts(std::move(field), kept->field, parts[std::size_t(parameter)]);
+        });
     return out;
-}
-
-SliceLoad withParts(const DatasetInfo& info, SliceLoad slices) {
-    const std::vector<int> labels = labelsOf(info);
-    if (!slices || noneHasParts(labels)) return slices;
-    struct Kept {
-        std::array<int, 4> key{-1, -1, -1, -1};
-        Field field;
-    };
-    return [load = std::move(slices), labels, parts = partsOf(info),
-            kept = std::make_shared<Kept>()](int parameter, int component, int time, int first, int count) {
-        Field field = load(parameter, component, time, first, count);
-        const int label = labels[std::size_t(parameter)];
-        if (label < 0) return field;
-        const std::array<int, 4> key{label, time, first, count};
-        if (kept->key != key) *kept = {key, load(label, 0, time, first, count)};
-        return withParts(std::move(field), kept->field, parts[std::size_t(parameter)]);
-    };
 }
 
 } // namespace tessera::volume

@@ -1,7 +1,6 @@
 #pragma once
 
 #include "volume/field/dataset.h"
-#include "volume/field/slices.h"
 
 #include <cstdint>
 
@@ -22,9 +21,7 @@ Field withParts(Field field, const Field& label, const Parts& parts);
 /// The field with a mask of zeros and ones; without mask if all samples are present.
 Field withoutParts(Field field);
 
-/// A data set whose masks contain the parts of samples. The latest label is cached.
+/// A data set whose masks contain the parts of samples. The label read last is cached.
 Dataset withParts(const Dataset& dataset);
-/// The same for slices; null stays null.
-SliceLoad withParts(const DatasetInfo& info, SliceLoad slices);
 
 } // namespace tessera::volume

@@ -165,7 +165,7 @@ std::vector<AbsentRule> suggestAbsentRules(const Dataset& dataset, const Progres
     double done = 0;
     const double total = double(times.size()) * double(info.parameters.size());
     for (const int time : times) {
-        const Field region = dataset.load(label, 0, time);
+        const Field region = dataset.read(label, 0, time);
         const std::vector<double> labels = physicalValues(region);
         for (std::size_t i = 0; i < labels.size(); ++i)
             if (region.present(i) && ++values[labels[i]] == 1 && values.size() > kMostSuggested) return {};
@@ -173,7 +173,7 @@ std::vector<AbsentRule> suggestAbsentRules(const Dataset& dataset, const Progres
             progress.advance(done++ / total, info.parameters[p].name);
             if (info.parameters[p].categorical) continue;
             for (int c = 0; c < info.parameters[p].components; ++c) {
-                const Field field = dataset.load(static_cast<int>(p), c, time);
+                const Field field = dataset.read(static_cast<int>(p), c, time);
                 double lastAlive = std::nan("");
                 for (std::size_t i = 0; i < labels.size(); ++i)
                     if (labels[i] != lastAlive && field.present(i) && region.present(i)) {
@@ -202,7 +202,7 @@ void findLabels(Dataset& dataset) {
     for (std::size_t p = 0; p < dataset.info.parameters.size(); ++p) {
         Parameter& parameter = dataset.info.parameters[p];
         if (!parameter.categorical || !parameter.labels.empty()) continue;
-        const Field field = dataset.load(static_cast<int>(p), 0, 0);
+        const Field field = dataset.read(static_cast<int>(p), 0, 0);
         std::set<int> values;
         int last = 0;
         for (std::size_t i = 0; i < field.count() && values.size() <= kMostLabels; ++i) {
@@ -219,8 +219,10 @@ void findLabels(Dataset& dataset) {
     }
 }
 
-SlicedDataset withAbsent(SlicedDataset data, const std::vector<AbsentRule>& rules) {
-    const DatasetInfo& info = data.dataset.info;
+namespace {
+
+/// The rules of each parameter.
+std::vector<std::vector<Resolved>> resolvedRules(const DatasetInfo& info, const std::vector<AbsentRule>& rules) {
     std::vector<std::vector<Resolved>> byParameter(info.parameters.size());
     for (const AbsentRule& rule : rules) {
         if (rule.nothing || rule.values.empty()) continue;
@@ -242,52 +244,46 @@ SlicedDataset withAbsent(SlicedDataset data, const std::vector<AbsentRule>& rule
         for (std::size_t p = 0; p < info.parameters.size(); ++p)
             if (!info.parameters[p].categorical) byParameter[p].push_back(resolved);
     }
-    std::vector<int> components;
-    for (const Parameter& parameter : info.parameters) components.push_back(parameter.components);
-    const auto pool = std::make_shared<MaskPool>();
-    // `read(parameter, component)` gives the samples of one time, or a part of them.
-    const auto apply = [byParameter, components, pool](int parameter, int component, const auto& read) {
-        Field field = read(parameter, component);
-        const auto p = static_cast<std::size_t>(parameter);
-        Mask mask = field.mask ? *field.mask : Mask(field.count(), 1);
-        bool any = field.mask != nullptr;
-        any = markNaN(field, mask) || any;
-        for (const Resolved& rule : byParameter[p]) {
-            any = true;
-            if (rule.label >= 0) {
-                markValues(read(rule.label, 0), rule.values, mask);
-                continue;
-            }
-            if (components[p] == 1) {
-                markValues(field, rule.values, mask);
-                continue;
-            }
-            // A vector is absent where all its components have the value.
-            Mask kept(field.count(), 0);
-            for (int c = 0; c < components[p]; ++c) {
-                Mask own(field.count(), 1);
-                markValues(c == component ? field : read(parameter, c), rule.values, own);
-                for (std::size_t i = 0; i < own.size(); ++i) kept[i] |= own[i];
-            }
-            for (std::size_t i = 0; i < kept.size(); ++i) mask[i] &= kept[i];
-        }
-        if (any && std::find(mask.begin(), mask.end(), std::uint8_t(0)) == mask.end()) any = false;
-        field.mask = any ? pool->share(std::move(mask)) : nullptr;
-        return field;
-    };
-    data.dataset.load = [inner = std::move(data.dataset.load), apply](int parameter, int component, int time) {
-        return apply(parameter, component, [&](int p, int c) { return inner(p, c, time); });
-    };
-    if (data.slices)
-        data.slices = [inner = std::move(data.slices), apply](int parameter, int component, int time, int first,
-                                                              int count) {
-            return apply(parameter, component, [&](int p, int c) { return inner(p, c, time, first, count); });
-        };
-    return data;
+    return byParameter;
 }
 
+} // namespace
+
 Dataset withAbsent(Dataset dataset, const std::vector<AbsentRule>& rules) {
-    return withAbsent(SlicedDataset{std::move(dataset), {}}, rules).dataset;
+    std::vector<int> components;
+    for (const Parameter& parameter : dataset.info.parameters) components.push_back(parameter.components);
+    dataset.read = dataset.read.through(
+        [byParameter = resolvedRules(dataset.info, rules), components, pool = std::make_shared<MaskPool>()](
+            const FrameReader& read, int parameter, int component, int time, SliceRange slices) {
+            Field field = read(parameter, component, time, slices);
+            const auto p = static_cast<std::size_t>(parameter);
+            Mask mask = field.mask ? *field.mask : Mask(field.count(), 1);
+            bool any = field.mask != nullptr;
+            any = markNaN(field, mask) || any;
+            for (const Resolved& rule : byParameter[p]) {
+                any = true;
+                if (rule.label >= 0) {
+                    markValues(read(rule.label, 0, time, slices), rule.values, mask);
+                    continue;
+                }
+                if (components[p] == 1) {
+                    markValues(field, rule.values, mask);
+                    continue;
+                }
+                // A vector is absent where all its components have the value.
+                Mask kept(field.count(), 0);
+                for (int c = 0; c < components[p]; ++c) {
+                    Mask own(field.count(), 1);
+                    markValues(c == component ? field : read(parameter, c, time, slices), rule.values, own);
+                    for (std::size_t i = 0; i < own.size(); ++i) kept[i] |= own[i];
+                }
+                for (std::size_t i = 0; i < kept.size(); ++i) mask[i] &= kept[i];
+            }
+            if (any && std::find(mask.begin(), mask.end(), std::uint8_t(0)) == mask.end()) any = false;
+            field.mask = any ? pool->share(std::move(mask)) : nullptr;
+            return field;
+        });
+    return dataset;
 }
 
 } // namespace tessera::volume

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "volume/base/progress.h"
-#include "volume/import/sliced.h"
+#include "volume/field/dataset.h"
 
 #include <string>
 #include <string_view>
@@ -33,7 +33,6 @@ void findLabels(Dataset& dataset);
 /// The data set with NaN and the samples of the rules absent; equal masks are shared. Throws Error for a parameter or
 /// label that does not exist.
 Dataset withAbsent(Dataset dataset, const std::vector<AbsentRule>& rules);
-SlicedDataset withAbsent(SlicedDataset data, const std::vector<AbsentRule>& rules);
 
 /// True for usual names of labels: region, material, label, id, zone, ... (also "regionId", "mat_id").
 bool isLabelName(std::string_view name);

@@ -1,23 +1,18 @@
 #pragma once
 
-#include "volume/import/files/piece.h"
-#include "volume/import/files/series.h"
-#include "volume/import/import.h"
+#include "volume/base/progress.h"
+#include "volume/field/dataset.h"
+#include "volume/import/file_groups.h"
 
+#include <functional>
+#include <string>
 #include <vector>
 
 namespace tessera::volume {
 
-/// A file of a series and the blocks a reader found in it.
-struct OpenedFile {
-    SeriesFile entry;
-    std::vector<Piece> pieces;
-};
-
 /// A data set assembled from files.
 struct Assembled {
-    Dataset dataset;  ///< with the file's own array names
-    SliceLoad slices; ///< of its frames; null where one of the files can only be read whole
+    Dataset dataset; ///< with the file's own array names; read in parts where all files can be
     std::vector<std::string> notes;
     bool mesh = false; ///< samples are found in cells, which costs time
     /// Ranges of a parameter of meshes over all times, from the values at points or cells; empty where not known. Reads

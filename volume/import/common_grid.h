@@ -1,6 +1,6 @@
 #pragma once
 
-#include "volume/import/assemble.h"
+#include "volume/import/file_groups.h"
 
 #include <string>
 #include <vector>

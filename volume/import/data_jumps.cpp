@@ -2,6 +2,7 @@
 
 #include "volume/base/error.h"
 #include "volume/field/part_masks.h"
+#include "volume/import/find_parts.h"
 
 #include <algorithm>
 #include <array>
@@ -217,16 +218,12 @@ std::vector<std::uint8_t> regionsOfJumps(std::span<const Field> components) {
     return out;
 }
 
-std::string jumpsLabel(const std::string& parameter) {
-    return parameter + " jumps";
-}
-
 namespace {
 
 /// Frames of the labels behind those of the files.
 class JumpLabels {
 public:
-    JumpLabels(const Dataset& dataset, std::vector<int> of) : load_(dataset.load), of_(std::move(of)) {
+    JumpLabels(const Dataset& dataset, std::vector<int> of) : read_(dataset.read), of_(std::move(of)) {
         for (const int parameter : of_)
             components_.push_back(dataset.info.parameters[std::size_t(parameter)].components);
     }
@@ -234,7 +231,7 @@ public:
     const Field& at(std::size_t label, int time) {
         if (label_ == label && time_ == time) return frame_;
         std::vector<Field> components;
-        for (int c = 0; c < components_[label]; ++c) components.push_back(load_(of_[label], c, time));
+        for (int c = 0; c < components_[label]; ++c) components.push_back(read_(of_[label], c, time));
         const std::vector<std::uint8_t> regions = regionsOfJumps(components);
         frame_ = makeField(components.front().lattice, ScalarType::U8);
         std::ranges::copy(regions, frame_.as<std::uint8_t>().begin());
@@ -249,7 +246,7 @@ public:
     }
 
 private:
-    std::function<Field(int, int, int)> load_;
+    FrameReader read_;
     std::vector<int> of_, components_;
     std::size_t label_ = 0;
     int time_ = -1;
@@ -278,18 +275,17 @@ std::vector<int> parametersOfJumps(const DatasetInfo& info, const std::vector<Pa
 
 } // namespace
 
-SlicedDataset withJumps(SlicedDataset data, const std::vector<PartsRule>& rules, std::vector<std::string>& notes,
-                        const Progress& progress) {
-    const std::vector<int> of = parametersOfJumps(data.dataset.info, rules);
+Dataset withJumps(Dataset data, const std::vector<PartsRule>& rules, std::vector<std::string>& notes,
+                  const Progress& progress) {
+    const std::vector<int> of = parametersOfJumps(data.info, rules);
     if (of.empty()) return data;
-    const auto labels = std::make_shared<JumpLabels>(data.dataset, of);
-    const std::size_t own = data.dataset.info.parameters.size(), times = data.dataset.info.times.size();
+    const auto labels = std::make_shared<JumpLabels>(data, of);
+    const std::size_t own = data.info.parameters.size(), times = data.info.times.size();
     std::vector<std::size_t> kept; // of the labels, those that tell parts apart
     for (std::size_t n = 0; n < of.size(); ++n) {
-        Parameter& parameter = data.dataset.info.parameters[std::size_t(of[n])];
+        Parameter& parameter = data.info.parameters[std::size_t(of[n])];
         const std::string name = parameter.name, label = jumpsLabel(name);
-        if (std::ranges::find(data.dataset.info.parameters, label, &Parameter::name) !=
-            data.dataset.info.parameters.end())
+        if (std::ranges::find(data.info.parameters, label, &Parameter::name) != data.info.parameters.end())
             throw Error("there is a parameter \"" + label + "\" already", {}, "--parts " + name + "=jumps");
         int count = 1;
         for (std::size_t t = 0; t < times; ++t) {
@@ -315,20 +311,13 @@ SlicedDataset withJumps(SlicedDataset data, const std::vector<PartsRule>& rules,
         }
         notes.push_back(name + ": " + partsText(parameter));
         kept.push_back(n);
-        data.dataset.info.parameters.push_back(std::move(added));
+        data.info.parameters.push_back(std::move(added));
     }
-    const auto frame = [labels, kept, own](int parameter, int time) -> const Field& {
-        return labels->at(kept[std::size_t(parameter) - own], time);
-    };
-    data.dataset.load = [inner = std::move(data.dataset.load), frame, own](int parameter, int component, int time) {
-        return std::size_t(parameter) < own ? inner(parameter, component, time) : frame(parameter, time);
-    };
-    if (data.slices)
-        data.slices = [inner = std::move(data.slices), frame, own](int parameter, int component, int time, int first,
-                                                                   int count) {
-            if (std::size_t(parameter) < own) return inner(parameter, component, time, first, count);
-            return slicesOf(frame(parameter, time), first, count);
-        };
+    data.read = data.read.through(
+        [labels, kept, own](const FrameReader& read, int parameter, int component, int time, SliceRange slices) {
+            if (std::size_t(parameter) < own) return read(parameter, component, time, slices);
+            return slicesOf(labels->at(kept[std::size_t(parameter) - own], time), slices);
+        });
     return data;
 }
 

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "volume/field/field.h"
+#include "volume/field/dataset.h"
 #include "volume/import/find_parts.h"
-#include "volume/import/sliced.h"
+#include "volume/import/parts_rules.h"
 
 #include <cstdint>
 #include <span>
@@ -24,13 +24,10 @@ namespace tessera::volume {
 /// another lattice.
 std::vector<std::uint8_t> regionsOfJumps(std::span<const Field> components);
 
-/// Name of the label that a rule "p=jumps" creates.
-std::string jumpsLabel(const std::string& parameter);
-
 /// Adds the labels of "jumps" rules, and the resulting parts; one line for each is added to `notes`. Reads every frame
 /// of these parameters. A label's frame is computed from whole frames on demand; the last one is cached. Throws Error
 /// for a parameter that does not exist or whose jumps need more than kMostParts parts.
-SlicedDataset withJumps(SlicedDataset data, const std::vector<PartsRule>& rules, std::vector<std::string>& notes,
-                        const Progress& progress = {});
+Dataset withJumps(Dataset data, const std::vector<PartsRule>& rules, std::vector<std::string>& notes,
+                  const Progress& progress = {});
 
 } // namespace tessera::volume

@@ -166,7 +166,8 @@ std::vector<std::vector<Piece>> openForeign(const std::vector<SeriesFile>& entri
                 if (from.flags >= 0) return std::vector<Range>{}; // of what is present: not known
                 return importer->ranges(f, p, from.index, time);
             };
-            piece.load = [importer, f, p, kept, types](int array, int component, int time, const Lattice& target) {
+            piece.read = [importer, f, p, kept, types](int array, int component, int time, const Lattice& target,
+                                                       SliceRange) {
                 if (array < 0) return importer->frame(f, p, -1, 0, time, target, ScalarType::U8);
                 const Kept from = kept[std::size_t(array)];
                 Field field = importer->frame(f, p, from.index, component, time, target, types[std::size_t(array)]);

@@ -11,7 +11,6 @@
 #include "volume/import/find_parts.h"
 #include "volume/import/foreign.h"
 #include "volume/import/over_time.h"
-#include "volume/import/sliced.h"
 #include "volume/import/unit_guess.h"
 
 #include <algorithm>
@@ -27,7 +26,7 @@ namespace tessera::volume {
 namespace {
 
 struct Opened {
-    SlicedDataset data;
+    Dataset dataset;
     std::string format;
     std::vector<std::string> notes;
 };
@@ -62,9 +61,8 @@ void nameParameters(DatasetInfo& info, const ImportOptions& options) {
 }
 
 /// Only the parameters asked for, and the labels that say their parts; the rest stays loadable for rules until here.
-SlicedDataset withParameters(SlicedDataset data, const std::vector<std::string>& wanted) {
-    if (wanted.empty()) return data;
-    Dataset& dataset = data.dataset;
+Dataset withParameters(Dataset dataset, const std::vector<std::string>& wanted) {
+    if (wanted.empty()) return dataset;
     std::vector<int> kept;
     for (const std::string& name : wanted) {
         const auto at = std::find_if(dataset.info.parameters.begin(), dataset.info.parameters.end(),
@@ -85,15 +83,11 @@ SlicedDataset withParameters(SlicedDataset data, const std::vector<std::string>&
     std::vector<Parameter> parameters;
     for (const int index : kept) parameters.push_back(dataset.info.parameters[std::size_t(index)]);
     dataset.info.parameters = std::move(parameters);
-    dataset.load = [inner = std::move(dataset.load), kept](int parameter, int component, int time) {
-        return inner(kept[std::size_t(parameter)], component, time);
-    };
-    if (data.slices)
-        data.slices = [inner = std::move(data.slices), kept](int parameter, int component, int time, int first,
-                                                             int count) {
-            return inner(kept[std::size_t(parameter)], component, time, first, count);
-        };
-    return data;
+    dataset.read = dataset.read.through(
+        [kept](const FrameReader& read, int parameter, int component, int time, SliceRange slices) {
+            return read(kept[std::size_t(parameter)], component, time, slices);
+        });
+    return dataset;
 }
 
 /// A label stored as floating point in whole numbers.
@@ -113,24 +107,19 @@ Field inWholeNumbers(const Field& field) {
 }
 
 /// Labels stored as floating point become whole numbers, so that a mask or a name finds them.
-SlicedDataset withLabels(SlicedDataset data) {
+Dataset withLabels(Dataset dataset) {
     std::vector<bool> rounded;
-    for (Parameter& parameter : data.dataset.info.parameters) {
+    for (Parameter& parameter : dataset.info.parameters) {
         rounded.push_back(parameter.categorical && parameter.type == ScalarType::F32);
         if (rounded.back()) parameter.type = ScalarType::I32;
     }
-    if (std::find(rounded.begin(), rounded.end(), true) == rounded.end()) return data;
-    data.dataset.load = [inner = std::move(data.dataset.load), rounded](int parameter, int component, int time) {
-        Field field = inner(parameter, component, time);
-        return rounded[std::size_t(parameter)] ? inWholeNumbers(field) : field;
-    };
-    if (data.slices)
-        data.slices = [inner = std::move(data.slices), rounded](int parameter, int component, int time, int first,
-                                                                int count) {
-            Field field = inner(parameter, component, time, first, count);
+    if (std::find(rounded.begin(), rounded.end(), true) == rounded.end()) return dataset;
+    dataset.read = dataset.read.through(
+        [rounded](const FrameReader& read, int parameter, int component, int time, SliceRange slices) {
+            Field field = read(parameter, component, time, slices);
             return rounded[std::size_t(parameter)] ? inWholeNumbers(field) : field;
-        };
-    return data;
+        });
+    return dataset;
 }
 
 /// Arrays named like labels, or stated to be some, are taken as such if they are whole numbers with few distinct
@@ -144,7 +133,7 @@ void markLabels(Dataset& dataset, const std::set<std::string>& stated, bool read
             parameter.categorical = parameter.type != ScalarType::F32;
             continue;
         }
-        const Field field = dataset.load(static_cast<int>(p), 0, 0);
+        const Field field = dataset.read(static_cast<int>(p), 0, 0);
         std::set<double> values;
         bool whole = true;
         for (std::size_t i = 0; i < field.count() && whole && values.size() <= 64; ++i) {
@@ -221,80 +210,88 @@ void stateRanges(DatasetInfo& info, const Assembled& assembled, const std::vecto
     }
 }
 
-Opened open(const std::vector<std::string>& paths, const ImportOptions& options, bool readSamples,
-            const Progress& progress, bool meshRanges = false) {
-    if (paths.empty()) throw Error("no file given");
-    std::vector<AbsentRule> stated;
-    for (const std::string& rule : options.absent) stated.push_back(parseAbsentRule(rule));
-    std::vector<PartsRule> parts;
-    for (const std::string& rule : options.parts) parts.push_back(parsePartsRule(rule));
-    std::vector<LabelRule> labels;
-    for (const std::string& rule : options.labels) labels.push_back(parseLabelRule(rule));
-
-    const std::vector<SeriesFile> entries = expandPaths(paths);
+/// The blocks of every file: our own readers first, all others through one tessera-import.
+std::vector<OpenedFile> openEach(const std::vector<SeriesFile>& entries, const std::string& rawOption,
+                                 const Progress& progress) {
     std::vector<OpenedFile> files(entries.size());
     std::vector<SeriesFile> foreign;
     for (std::size_t i = 0; i < entries.size(); ++i) {
         files[i].entry = entries[i];
-        if (isRaw(entries[i].path, options.raw))
-            files[i].pieces.push_back(openRaw(entries[i].path, options.raw));
+        if (isRaw(entries[i].path, rawOption))
+            files[i].pieces.push_back(openRaw(entries[i].path, rawOption));
         else if (std::optional<Piece> piece = openNrrd(entries[i].path))
             files[i].pieces.push_back(std::move(*piece));
         else
             foreign.push_back(entries[i]);
     }
-    if (!foreign.empty()) {
-        std::vector<std::vector<Piece>> pieces = openForeign(foreign, progress.part(0, 0.3));
-        std::size_t next = 0;
-        for (OpenedFile& file : files)
-            if (file.pieces.empty()) {
-                file.pieces = std::move(pieces[next++]);
-                for (Piece& piece : file.pieces)
-                    if (!file.entry.part.empty() || piece.name.empty()) piece.name = blockName(file.entry);
-            }
+    if (foreign.empty()) return files;
+    std::vector<std::vector<Piece>> pieces = openForeign(foreign, progress);
+    std::size_t next = 0;
+    for (OpenedFile& file : files)
+        if (file.pieces.empty()) {
+            file.pieces = std::move(pieces[next++]);
+            for (Piece& piece : file.pieces)
+                if (!file.entry.part.empty() || piece.name.empty()) piece.name = blockName(file.entry);
+        }
+    return files;
+}
+
+/// The rules stated, and those that the samples suggest for parameters without one; a line for each of these.
+std::vector<AbsentRule> withSuggested(const std::vector<AbsentRule>& stated, const Dataset& dataset,
+                                      std::vector<std::string>& notes, const Progress& progress) {
+    std::vector<AbsentRule> rules = stated;
+    for (AbsentRule& rule : suggestAbsentRules(dataset, progress)) {
+        const bool ruled = std::any_of(stated.begin(), stated.end(), [&](const AbsentRule& own) {
+            return own.parameter == rule.parameter || (own.parameter == "*" && own.nothing);
+        });
+        if (ruled) continue;
+        notes.push_back("absent: " + toText(rule) + " (it is 0 there; " + rule.parameter + "=none keeps it)");
+        rules.push_back(std::move(rule));
     }
+    return rules;
+}
+
+Opened open(const std::vector<std::string>& paths, const ImportOptions& options, bool readSamples,
+            const Progress& progress, bool meshRanges) {
+    if (paths.empty()) throw Error("no file given");
+    std::vector<AbsentRule> rules;
+    for (const std::string& rule : options.absent) rules.push_back(parseAbsentRule(rule));
+    std::vector<PartsRule> parts;
+    for (const std::string& rule : options.parts) parts.push_back(parsePartsRule(rule));
+    std::vector<LabelRule> labels;
+    for (const std::string& rule : options.labels) labels.push_back(parseLabelRule(rule));
+
+    std::vector<OpenedFile> files = openEach(expandPaths(paths), options.raw, progress.part(0, 0.3));
     Opened opened;
     opened.format = files.front().pieces.empty() ? "" : files.front().pieces.front().format;
     Assembled assembled = assemble(std::move(files), options.gridSize, readSamples, progress.part(0.3, 0.7));
-    Dataset& dataset = opened.data.dataset;
+    Dataset& dataset = opened.dataset;
     dataset = std::move(assembled.dataset);
-    opened.data.slices = std::move(assembled.slices);
     opened.notes = std::move(assembled.notes);
     // Previews may read a little, if that is fast.
     constexpr double kQuickBytes = 64e6;
-    const DatasetInfo& info = dataset.info;
-    const double times = double(info.times.size());
-    if (!assembled.mesh && bytesOf(info) / times * std::min(3.0, times) <= kQuickBytes) readSamples = true;
+    const double times = double(dataset.info.times.size());
+    if (!assembled.mesh && bytesOf(dataset.info) / times * std::min(3.0, times) <= kQuickBytes) readSamples = true;
     markLabels(dataset, namesInFile(labels, options), readSamples);
-    opened.data = withLabels(std::move(opened.data));
+    dataset = withLabels(std::move(dataset));
     const bool unitsStated = opened.format == "OpenFOAM" ||
                              std::ranges::any_of(dataset.info.parameters,
                                                  [](const Parameter& parameter) { return !parameter.unit.empty(); });
     nameParameters(dataset.info, options);
     if (readSamples) findLabels(dataset);
     applyLabels(dataset.info, labels, readSamples);
-    std::vector<AbsentRule> rules = stated;
     // A label made from blocks adds nothing: outside its block a field is absent anyway.
-    if (options.autoAbsent && readSamples && !assembled.madeLabel) {
-        for (AbsentRule& rule : suggestAbsentRules(dataset, progress.part(0.7, 0.85))) {
-            const bool ruled = std::any_of(stated.begin(), stated.end(), [&](const AbsentRule& own) {
-                return own.parameter == rule.parameter || (own.parameter == "*" && own.nothing);
-            });
-            if (ruled) continue;
-            opened.notes.push_back("absent: " + toText(rule) + " (it is 0 there; " + rule.parameter +
-                                   "=none keeps it)");
-            rules.push_back(std::move(rule));
-        }
-    }
-    opened.data = withAbsent(std::move(opened.data), rules);
+    if (options.autoAbsent && readSamples && !assembled.madeLabel)
+        rules = withSuggested(rules, dataset, opened.notes, progress.part(0.7, 0.85));
+    dataset = withAbsent(std::move(dataset), rules);
     if (meshRanges && assembled.ranges) stateRanges(dataset.info, assembled, rules, options, progress.part(0.8, 0.85));
     if (readSamples) {
         setParts(dataset.info, parts);
         for (std::string& note : findParts(dataset, parts, options.parameters, progress.part(0.85, 0.95)))
             opened.notes.push_back(std::move(note));
-        opened.data = withJumps(std::move(opened.data), parts, opened.notes, progress.part(0.95, 1));
+        dataset = withJumps(std::move(dataset), parts, opened.notes, progress.part(0.95, 1));
     }
-    opened.data = withParameters(std::move(opened.data), options.parameters);
+    dataset = withParameters(std::move(dataset), options.parameters);
     if (!unitsStated && formatNamed(opened.format) != nullptr) guessUnits(dataset, readSamples);
     return opened;
 }
@@ -303,20 +300,16 @@ Opened open(const std::vector<std::string>& paths, const ImportOptions& options,
 
 ImportPreview previewFiles(const std::vector<std::string>& paths, const ImportOptions& options,
                            const Progress& progress) {
-    Opened opened = open(paths, options, false, progress);
+    Opened opened = open(paths, options, false, progress, false);
     ImportPreview preview{opened.format, {}, 0, std::move(opened.notes)};
-    preview.bytes = bytesOf(opened.data.dataset.info);
-    preview.info = std::move(opened.data.dataset.info);
+    preview.bytes = bytesOf(opened.dataset.info);
+    preview.info = std::move(opened.dataset.info);
     return preview;
 }
 
-Dataset openFiles(const std::vector<std::string>& paths, const ImportOptions& options, const Progress& progress) {
-    return open(paths, options, true, progress, true).data.dataset;
-}
-
-SlicedDataset openSliced(const std::vector<std::string>& paths, const ImportOptions& options,
-                         const Progress& progress) {
-    return open(paths, options, true, progress).data;
+Dataset openFiles(const std::vector<std::string>& paths, const ImportOptions& options, const Progress& progress,
+                  bool meshRanges) {
+    return open(paths, options, true, progress, meshRanges).dataset;
 }
 
 void scanRanges(Dataset& dataset, const Progress& progress) {
@@ -339,7 +332,7 @@ void scanRanges(Dataset& dataset, const Progress& progress) {
             std::vector<std::uint8_t> present;
             for (std::size_t c = 0; c < components; ++c) {
                 progress.advance(done++ / total, parameter.name);
-                const Field field = dataset.load(static_cast<int>(p), static_cast<int>(c), static_cast<int>(t));
+                const Field field = dataset.read(static_cast<int>(p), static_cast<int>(c), static_cast<int>(t));
                 if (components > 1 && squares.empty()) {
                     squares.resize(field.count());
                     present.assign(field.count(), 1);

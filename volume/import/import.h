@@ -2,66 +2,14 @@
 
 #include "volume/base/progress.h"
 #include "volume/field/dataset.h"
+#include "volume/import/import_options.h"
 
-#include <map>
-#include <optional>
 #include <string>
 #include <vector>
 
 /// Import of foreign files as a Dataset on a CC grid: raw files with a JSON sidecar here, everything else through the
 /// second program `tessera-import` (VTK's readers), which streams frames over a pipe.
 namespace tessera::volume {
-
-/// What the user states about files that lack this information. Remembered per parameter name by the caller.
-struct ImportOptions {
-    glm::ivec3 gridSize{0}; ///< meshes are resampled to this grid; 0 = chosen from the number of cells
-    std::string
-        raw; ///< "dims=XxYxZ,type=u8,spacing=..,origin=..,components=N,times=N,big-endian,skip=BYTES" for headless raw
-    /// Rules that make samples absent: "O2=region:0,3" (where the label has these values), "O2=0" (a value), "O2=nan".
-    std::vector<std::string> absent;
-    std::map<std::string, std::string> rename; ///< file's array name -> parameter name
-    std::map<std::string, std::string> units;  ///< parameter name -> unit
-    std::string lengthUnit;                    ///< "" = what the file says, else m for simulations, none for voxels
-    std::vector<double> times;                 ///< overrides the times of a series
-    std::vector<std::string> parameters;       ///< only these (by final name); empty = all
-    /// Find a label such as `region` and parameters that are exactly 0 wherever the label has certain values, and treat
-    /// them as absent there. Rules of `absent` for the same parameter take precedence ("O2=none": nothing is absent).
-    bool autoAbsent = true;
-    /// Names, and after a '#' colours, of label values: "region:0=cathode,1=anode#e07b39".
-    std::vector<std::string> labels;
-    /// Parts by parameter: "p=region:1|3" (1 and 3 are two parts), "T=region:0,1,3" (one part), "T=joined" (one part,
-    /// whatever the data show), "p=jumps" (regions enclosed by jumps of its own samples, without a label;
-    /// volume/import/data_jumps.h). For other parameters they are found from the data.
-    std::vector<std::string> parts;
-    std::string timeName, timeUnit; ///< of the axis of a series; "" = what the files say
-    std::string overTime;           ///< CSV file with quantities over time, "" = none
-
-    bool operator==(const ImportOptions&) const = default;
-    static void describe(auto& self, auto&& visit) {
-        visit(self.gridSize, FieldInfo{.key = "gridSize",
-                                       .unit = "",
-                                       .doc = "Grid that meshes are resampled to, 0 = chosen by the number of cells",
-                                       .range = Range{0, 4096}});
-        visit(self.raw, FieldInfo{.key = "raw", .unit = "", .doc = "Layout of a raw file: dims=..,type=..,..."});
-        visit(self.absent, FieldInfo{.key = "absent", .unit = "", .doc = "Rules for absent samples: O2=region:0,3"});
-        visit(self.rename, FieldInfo{.key = "rename", .unit = "", .doc = "Parameter names by names in the file"});
-        visit(self.units, FieldInfo{.key = "units", .unit = "", .doc = "Units by parameter"});
-        visit(self.lengthUnit, FieldInfo{.key = "lengthUnit", .unit = "", .doc = "Unit of length of the file"});
-        visit(self.times, FieldInfo{.key = "times", .unit = "", .doc = "Times of a series"});
-        visit(self.parameters, FieldInfo{.key = "parameters", .unit = "", .doc = "Parameters read, empty = all"});
-        visit(self.autoAbsent,
-              FieldInfo{.key = "autoAbsent", .unit = "", .doc = "Find absent samples by a label such as region"});
-        visit(self.labels, FieldInfo{.key = "labels",
-                                     .unit = "",
-                                     .doc = "Names and colours of label values: region:0=cathode,1=anode#e07b39"});
-        visit(self.parts, FieldInfo{.key = "parts",
-                                    .unit = "",
-                                    .doc = "Regions whose samples are never mixed: p=region:1|3, T=joined, p=jumps"});
-        visit(self.timeName, FieldInfo{.key = "timeName", .unit = "", .doc = "Name of the axis of a series"});
-        visit(self.timeUnit, FieldInfo{.key = "timeUnit", .unit = "", .doc = "Unit of the axis of a series"});
-        visit(self.overTime, FieldInfo{.key = "overTime", .unit = "", .doc = "CSV file with quantities over time"});
-    }
-};
 
 /// Contents of files as far as their headers tell, without reading samples.
 struct ImportPreview {
@@ -75,8 +23,11 @@ struct ImportPreview {
 ImportPreview previewFiles(const std::vector<std::string>& paths, const ImportOptions& options,
                            const Progress& progress = {});
 
-/// Opens the files; frames are read on demand. Throws Error.
-Dataset openFiles(const std::vector<std::string>& paths, const ImportOptions& options, const Progress& progress = {});
+/// Opens the files; frames are read on demand, in parts where the files allow it: raw files, and NRRD files without
+/// compression. `meshRanges`: Parameter::ranges of meshes are those of their own values at points or cells, for which
+/// every file is read; else unknown, as those of grids are. Throws Error.
+Dataset openFiles(const std::vector<std::string>& paths, const ImportOptions& options, const Progress& progress = {},
+                  bool meshRanges = true);
 
 /// Fills in Parameter::ranges (present samples, all times) by reading every frame once. Throws Error, Cancelled.
 void scanRanges(Dataset& dataset, const Progress& progress = {});

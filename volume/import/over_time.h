@@ -1,7 +1,7 @@
 #pragma once
 
 #include "volume/field/dataset.h"
-#include "volume/import/import.h"
+#include "volume/import/import_options.h"
 
 #include <string>
 #include <string_view>

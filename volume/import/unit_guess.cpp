@@ -61,7 +61,7 @@ void guessUnits(Dataset& dataset, bool readSamples) {
         Parameter& parameter = dataset.info.parameters[p];
         const std::string unit = parameter.unit.empty() ? usualUnit(parameter) : std::string();
         if (unit.empty()) continue;
-        if (unit != "m/s" && (!readSamples || contradicted(unit, dataset.load(static_cast<int>(p), 0, 0)))) continue;
+        if (unit != "m/s" && (!readSamples || contradicted(unit, dataset.read(static_cast<int>(p), 0, 0)))) continue;
         parameter.unit = unit;
         parameter.unitGuessed = true;
     }

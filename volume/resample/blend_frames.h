@@ -2,7 +2,7 @@
 
 #include "volume/field/field.h"
 #include "volume/field/stored_range.h"
-#include "volume/resample/resample.h"
+#include "volume/resample/resample_options.h"
 
 #include <memory>
 #include <span>

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdint>
 #include <glm/geometric.hpp>
+#include <vector>
 
 namespace tessera::volume {
 
@@ -39,105 +40,144 @@ std::uint8_t numberOf(const Field& field, glm::ivec3 at) {
     return (*field.mask)[field.lattice.index(clampToLattice(field.lattice.kind, field.lattice.size, at))];
 }
 
-} // namespace
+/// A slice on its way: its grid, and the sums of the frames so far.
+class Slicing {
+public:
+    Slicing(const Series& series, const Hyperplane& plane)
+        : lattice_(series.lattice), categorical_(series.categorical), box_(boxOf(series.lattice)), plane_(plane) {
+        const glm::dvec4 extent = box_.hi - box_.lo, steep = glm::abs(plane.normal * extent);
+        out_.solved = 0;
+        for (int axis = 1; axis < 4; ++axis)
+            if (steep[axis] >= steep[out_.solved]) out_.solved = axis;
+        if (!(steep[out_.solved] > 0)) throw Error("a hyperplane needs a normal that is not 0");
 
-HyperplaneSlice sliceBy(const Series& series, const Hyperplane& plane, const Progress& progress) {
-    const Lattice4& lattice = series.lattice;
-    const Box4 box = boxOf(lattice);
-    const glm::dvec4 extent = box.hi - box.lo, steep = glm::abs(plane.normal * extent);
-    HyperplaneSlice out;
-    out.solved = 0;
-    for (int axis = 1; axis < 4; ++axis)
-        if (steep[axis] >= steep[out.solved]) out.solved = axis;
-    if (!(steep[out.solved] > 0)) throw Error("a hyperplane needs a normal that is not 0");
-
-    const double finer = lattice.kind == LatticeKind4::D4 ? 1 / kBccSpacing : 1;
-    Lattice grid;
-    for (int i = 0, axis = 0; axis < 4; ++axis) {
-        if (axis == out.solved) continue;
-        out.axes[std::size_t(i)] = axis;
-        grid.origin[i] = box.lo[axis];
-        grid.spacing[i] = lattice.spacing[axis] * finer;
-        grid.size[i] = int(extent[axis] / grid.spacing[i] + 1e-9) + 1;
-        ++i;
+        const double finer = lattice_.kind == LatticeKind4::D4 ? 1 / kBccSpacing : 1;
+        for (int i = 0, axis = 0; axis < 4; ++axis) {
+            if (axis == out_.solved) continue;
+            out_.axes[std::size_t(i)] = axis;
+            grid_.origin[i] = box_.lo[axis];
+            grid_.spacing[i] = lattice_.spacing[axis] * finer;
+            grid_.size[i] = int(extent[axis] / grid_.spacing[i] + 1e-9) + 1;
+            ++i;
+        }
+        margin_ = 1e-9 * extent[out_.solved];
+        out_.field = makeField(grid_, ScalarType::F32);
+        for (std::vector<float>* values : {&sum_, &coverage_, &best_}) values->resize(grid_.count());
+        if (!categorical_) part_.resize(grid_.count(), 1);
     }
-    const double margin = 1e-9 * extent[out.solved];
-    const auto pointAt = [&](glm::ivec3 at) {
-        const glm::dvec3 p = grid.position(at);
-        glm::dvec4 point(0);
-        for (int i = 0; i < 3; ++i) point[out.axes[std::size_t(i)]] = p[i];
-        point[out.solved] = -(glm::dot(plane.normal, point) + plane.e) / plane.normal[out.solved];
-        return point;
-    };
 
-    out.field = makeField(grid, ScalarType::F32);
-    std::vector<float> sum(grid.count()), coverage(grid.count()), best(grid.count());
-    std::vector<std::uint8_t> part(series.categorical ? 0 : grid.count(), 1); // as the frame nearest in time says
-    for (int frame = 0; frame < lattice.size.w; ++frame) {
-        progress.advance(double(frame) / lattice.size.w, "slice");
-        std::shared_ptr<const Field> samples;
-        const Lattice ownGrid = lattice.grid(frame);
-        const auto touched = [&](const glm::dvec4& point) {
-            return point[out.solved] >= box.lo[out.solved] - margin &&
-                   point[out.solved] <= box.hi[out.solved] + margin && frameWeight(lattice, frame, point.w) > 0;
-        };
-        // Frames that no sample needs are not read.
-        std::vector<std::uint8_t> slices(std::size_t(grid.size.z), 0);
+    /// Flags of the slices of the grid that a frame adds to.
+    std::vector<std::uint8_t> slicesTouchedBy(int frame) const {
+        std::vector<std::uint8_t> slices(std::size_t(grid_.size.z), 0);
         parallelFor(slices.size(), [&](std::size_t k) {
-            for (int j = 0; j < grid.size.y && slices[k] == 0; ++j)
-                for (int i = 0; i < grid.size.x && slices[k] == 0; ++i)
-                    if (touched(pointAt({i, j, int(k)}))) slices[k] = 1;
+            for (int j = 0; j < grid_.size.y && slices[k] == 0; ++j)
+                for (int i = 0; i < grid_.size.x && slices[k] == 0; ++i)
+                    if (isTouched(frame, pointAt({i, j, int(k)}))) slices[k] = 1;
         });
-        if (std::none_of(slices.begin(), slices.end(), [](std::uint8_t s) { return s != 0; })) continue;
-        samples = series.frame(frame);
-        const FieldSamples values{*samples};
-        const LevelGeometry geometry{LatticeKind::CC, 1, 0};
+        return slices;
+    }
+
+    void add(int frame, const Field& samples, const std::vector<std::uint8_t>& slices) {
+        const Lattice ownGrid = lattice_.grid(frame);
         parallelFor(slices.size(), [&](std::size_t k) {
             if (slices[k] == 0) return;
-            std::size_t index = grid.index({0, 0, int(k)});
-            for (int j = 0; j < grid.size.y; ++j)
-                for (int i = 0; i < grid.size.x; ++i, ++index) {
+            std::size_t index = grid_.index({0, 0, int(k)});
+            for (int j = 0; j < grid_.size.y; ++j)
+                for (int i = 0; i < grid_.size.x; ++i, ++index) {
                     const glm::dvec4 point = pointAt({i, j, int(k)});
-                    if (!touched(point)) continue;
-                    const double weight = frameWeight(lattice, frame, point.w);
+                    if (!isTouched(frame, point)) continue;
+                    const double weight = frameWeight(lattice_, frame, point.w);
                     const glm::dvec3 cells = ownGrid.toCells(glm::dvec3(point));
-                    if (series.categorical) { // the frame nearest in time speaks
-                        const Sample label = nearest(geometry, values, cells);
-                        if (float(weight) <= best[index]) continue;
-                        best[index] = float(weight);
-                        sum[index] = float(label.value);
-                        coverage[index] = label.present ? 1.0f : 0.0f;
-                        continue;
-                    }
-                    if (const std::uint8_t number = numberOf(*samples, glm::ivec3(glm::round(cells)));
-                        float(weight) > best[index]) {
-                        best[index] = float(weight);
-                        if (number != 0 && number != part[index]) sum[index] = coverage[index] = 0;
-                        if (number != 0) part[index] = number;
-                    }
-                    const auto ownPart = [&](glm::ivec3 at) {
-                        const Sample sample = values(at);
-                        return Sample{sample.value, sample.present && numberOf(*samples, at) == part[index]};
-                    };
-                    // Samples of other parts are there, but of the own one's value.
-                    const Blend own = linear(geometry, ownPart, cells);
-                    if (own.coverage <= 0) continue;
-                    const double there = linear(geometry, values, cells).coverage;
-                    sum[index] += float(weight * there * own.sum / own.coverage);
-                    coverage[index] += float(weight * there);
+                    if (categorical_)
+                        addLabel(index, samples, cells, weight);
+                    else
+                        addValue(index, samples, cells, weight);
                 }
         });
     }
-    auto mask = std::make_shared<Mask>(grid.count(), std::uint8_t(0));
-    const auto to = out.field.as<float>();
-    for (std::size_t i = 0; i < to.size(); ++i) {
-        if (coverage[i] < float(kPresentCoverage)) continue;
-        (*mask)[i] = 1;
-        to[i] = sum[i] / coverage[i];
+
+    HyperplaneSlice finish() {
+        auto mask = std::make_shared<Mask>(grid_.count(), std::uint8_t(0));
+        const auto to = out_.field.as<float>();
+        for (std::size_t i = 0; i < to.size(); ++i) {
+            if (coverage_[i] < float(kPresentCoverage)) continue;
+            (*mask)[i] = 1;
+            to[i] = sum_[i] / coverage_[i];
+        }
+        const auto present = std::count(mask->begin(), mask->end(), std::uint8_t(1));
+        if (present == 0) throw Error("the hyperplane meets no sample of the data");
+        if (std::size_t(present) < mask->size()) out_.field.mask = std::move(mask);
+        return std::move(out_);
     }
-    const auto present = std::count(mask->begin(), mask->end(), std::uint8_t(1));
-    if (present == 0) throw Error("the hyperplane meets no sample of the data");
-    if (std::size_t(present) < mask->size()) out.field.mask = std::move(mask);
+
+private:
+    glm::dvec4 pointAt(glm::ivec3 at) const {
+        const glm::dvec3 p = grid_.position(at);
+        glm::dvec4 point(0);
+        for (int i = 0; i < 3; ++i) point[out_.axes[std::size_t(i)]] = p[i];
+        point[out_.solved] = -(glm::dot(plane_.normal, point) + plane_.e) / plane_.normal[out_.solved];
+        return point;
+    }
+
+    bool isTouched(int frame, const glm::dvec4& point) const {
+        return point[out_.solved] >= box_.lo[out_.solved] - margin_ &&
+               point[out_.solved] <= box_.hi[out_.solved] + margin_ && frameWeight(lattice_, frame, point.w) > 0;
+    }
+
+    /// Of labels the frame nearest in time counts.
+    void addLabel(std::size_t index, const Field& samples, glm::dvec3 cells, double weight) {
+        const Sample label = nearest(kCells, FieldSamples{samples}, cells);
+        if (float(weight) <= best_[index]) return;
+        best_[index] = float(weight);
+        sum_[index] = float(label.value);
+        coverage_[index] = label.present ? 1.0f : 0.0f;
+    }
+
+    void addValue(std::size_t index, const Field& samples, glm::dvec3 cells, double weight) {
+        if (const std::uint8_t number = numberOf(samples, glm::ivec3(glm::round(cells)));
+            float(weight) > best_[index]) {
+            best_[index] = float(weight);
+            if (number != 0 && number != part_[index]) sum_[index] = coverage_[index] = 0;
+            if (number != 0) part_[index] = number;
+        }
+        const FieldSamples values{samples};
+        const auto ownPart = [&](glm::ivec3 at) {
+            const Sample sample = values(at);
+            return Sample{sample.value, sample.present && numberOf(samples, at) == part_[index]};
+        };
+        // Samples of other parts are there, but of the own one's value.
+        const Blend own = linear(kCells, ownPart, cells);
+        if (own.coverage <= 0) return;
+        const double there = linear(kCells, values, cells).coverage;
+        sum_[index] += float(weight * there * own.sum / own.coverage);
+        coverage_[index] += float(weight * there);
+    }
+
+    static constexpr LevelGeometry kCells{LatticeKind::CC, 1, 0};
+
+    Lattice4 lattice_;
+    bool categorical_;
+    Box4 box_;
+    Hyperplane plane_;
+    HyperplaneSlice out_;
+    Lattice grid_;
+    double margin_ = 0;
+    std::vector<float> sum_, coverage_, best_;
+    std::vector<std::uint8_t> part_; ///< in the frame nearest in time
+};
+
+} // namespace
+
+HyperplaneSlice sliceBy(const Series& series, const Hyperplane& plane, const Progress& progress) {
+    Slicing slicing(series, plane);
+    for (int frame = 0; frame < series.lattice.size.w; ++frame) {
+        progress.advance(double(frame) / series.lattice.size.w, "slice");
+        const std::vector<std::uint8_t> slices = slicing.slicesTouchedBy(frame);
+        // Frames that no sample needs are not read.
+        if (std::none_of(slices.begin(), slices.end(), [](std::uint8_t s) { return s != 0; })) continue;
+        slicing.add(frame, *series.frame(frame), slices);
+    }
+    HyperplaneSlice out = slicing.finish();
     progress.advance(1, "slice");
     return out;
 }

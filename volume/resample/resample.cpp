@@ -1,19 +1,11 @@
 #include "volume/resample/resample.h"
 
-#include "volume/field/for_slices.h"
-#include "volume/reconstruct/continued.h"
-#include "volume/reconstruct/reconstruct.h"
+#include "volume/resample/resample_bcc.h"
 #include "volume/resample/resample_cc.h"
-#include "volume/resample/resample_slices.h"
 #include "volume/resample/slice_filter.h"
 #include "volume/resample/spline_prefilter.h"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
-#include <limits>
-#include <optional>
-#include <type_traits>
 
 namespace tessera::volume {
 
@@ -35,213 +27,7 @@ Field fromCc(const Field& source, const Lattice& target, const ResampleOptions& 
     });
 }
 
-/// Nearest sample of a BCC source, copied.
-template <class T> void fromNearest(const Field& source, Field& out, Mask* mask, const Progress& progress) {
-    const Lattice& target = out.lattice;
-    T* const samples = out.as<T>().data();
-    const auto stored = source.as<T>();
-    forSlices(target, progress, [&](int k) {
-        for (int j = 0; j < target.size.y; ++j)
-            for (int i = 0; i < target.size.x; ++i) {
-                const std::size_t to = target.index({i, j, k});
-                const std::size_t from = source.lattice.index(source.lattice.nearest(target.position({i, j, k})));
-                if (mask != nullptr) (*mask)[to] = (*source.mask)[from];
-                samples[to] = source.present(from) ? stored[from] : T{};
-            }
-    });
-}
-
-/// Precision of prefiltered values of a stored type.
-template <class T> using Filtered = std::conditional_t<std::is_same_v<T, std::int32_t>, double, float>;
-
-/// The number of each sample's part (volume/field/part_masks.h).
-struct PartNumbers {
-    const Mask* mask;
-    std::uint8_t operator()(std::size_t index) const { return mask != nullptr ? (*mask)[index] : std::uint8_t(1); }
-};
-
-/// Calls `visit(a, b)` with the memory indices of the nearest neighbours of a sample, each beside the one across.
-template <class Visit> void forOppositePairs(const Lattice& lattice, glm::ivec3 at, const Visit& visit) {
-    const auto index = [&](int x, int y, int z) {
-        return lattice.index(clampToLattice(lattice.kind, lattice.size, at + glm::ivec3(x, y, z)));
-    };
-    if (lattice.kind == LatticeKind::CC) {
-        visit(index(-1, 0, 0), index(1, 0, 0));
-        visit(index(0, -1, 0), index(0, 1, 0));
-        visit(index(0, 0, -1), index(0, 0, 1));
-        return;
-    }
-    const int lo = (at.z & 1) - 1; // an even sample's neighbours have indices -1 and 0, an odd one's 0 and 1
-    for (int y : {0, 1})
-        for (int x : {0, 1}) visit(index(lo + x, lo + y, -1), index(lo + 1 - x, lo + 1 - y, 1));
-}
-
-glm::ivec3 storageIndex(const Lattice& lattice, std::size_t index) {
-    const std::size_t nx = std::size_t(lattice.size.x), ny = std::size_t(lattice.size.y);
-    return {int(index % nx), int(index / nx % ny), int(index / (nx * ny))};
-}
-
-/// A BCC source's stored values, prefiltered (volume/reconstruct/reconstruct.h); 0 where absent. Beyond the border of
-/// its part the part is continued.
-template <class T> std::vector<Filtered<T>> prefilteredValues(const Field& source) {
-    const Lattice& lattice = source.lattice;
-    const auto stored = source.as<T>();
-    const PartNumbers number{source.mask.get()};
-    std::vector<Filtered<T>> values(source.count());
-    parallelFor(std::size_t(lattice.size.z), [&](std::size_t k) {
-        std::size_t index = lattice.index({0, 0, int(k)});
-        for (int j = 0; j < lattice.size.y; ++j)
-            for (int i = 0; i < lattice.size.x; ++i, ++index) {
-                const std::uint8_t own = number(index);
-                if (own == 0) continue;
-                const double centre = double(stored[index]);
-                const auto ownValue = [&](glm::ivec3 there) -> std::optional<double> {
-                    if (clampToLattice(lattice.kind, lattice.size, there) != there) return std::nullopt;
-                    const std::size_t at = lattice.index(there);
-                    return number(at) == own ? std::optional(double(stored[at])) : std::nullopt;
-                };
-                const auto besideThis = [&](glm::ivec3 there) { return isBeside(lattice.kind, there, {i, j, int(k)}); };
-                double differences = 0;
-                forOppositePairs(lattice, {i, j, int(k)}, [&](std::size_t a, std::size_t b) {
-                    for (const std::size_t at : {a, b})
-                        differences += (number(at) == own
-                                            ? double(stored[at])
-                                            : continued(lattice.kind, storageIndex(lattice, at), ownValue, besideThis)
-                                                  .value_or(centre)) -
-                                       centre;
-                });
-                values[index] = Filtered<T>(centre - differences / 12);
-            }
-    });
-    return values;
-}
-
-/// The two samples around a position along one axis of a BCC sublattice, as distances in memory.
-struct PairTap {
-    std::size_t lower, upper;
-    double fraction;
-};
-
-/// Target positions of one axis in a BCC source: index pairs in both sublattices.
-std::array<std::vector<PairTap>, 2> pairTaps(const Lattice& source, const Lattice& target, int targetSublattice,
-                                             int axis) {
-    const std::size_t steps[] = {1, std::size_t(source.size.x),
-                                 std::size_t(source.size.x) * std::size_t(source.size.y)};
-    const double last = (axis == 2 ? (source.size.z - 1) * 0.5 : source.size[axis] - 0.5);
-    std::array<std::vector<PairTap>, 2> taps;
-    for (int s = 0; s < 2; ++s) {
-        const int own = source.size.z > 1 ? s : 0; // a single slice stands for both
-        const int count = source.sublatticeSize(own)[axis];
-        for (int i = 0; i < target.sublatticeSize(targetSublattice)[axis]; ++i) {
-            const double cells =
-                std::clamp(sourceCells(source, target, targetSublattice, axis, i), 0.0, last) - 0.5 * own;
-            const double base = std::floor(cells);
-            const auto offset = [&](double at) {
-                const int inside = std::clamp(int(at), 0, count - 1);
-                return steps[axis] * std::size_t(axis == 2 ? 2 * inside + own : inside);
-            };
-            taps[std::size_t(s)].push_back({offset(base), offset(base + 1), cells - base});
-        }
-    }
-    return taps;
-}
-
-/// The average of the trilinear interpolations of both sublattices of prefiltered samples.
-template <class T> void fromBcc(const Field& source, Field& out, Mask* mask, const Progress& progress) {
-    const Lattice &from = source.lattice, &target = out.lattice;
-    const std::vector<Filtered<T>> values = prefilteredValues<T>(source);
-    const int sublattices = target.kind == LatticeKind::BCC ? 2 : 1;
-    std::array<std::vector<PairTap>, 2> taps[2][3]; // [target sublattice][axis][source sublattice]
-    for (int s = 0; s < sublattices; ++s)
-        for (int axis = 0; axis < 3; ++axis) taps[s][axis] = pairTaps(from, target, s, axis);
-    StoredExtent extent;
-    extent.add(source);
-    const StoredRange<T> range(extent);
-    const PartNumbers number{source.mask.get()};
-    T* const stored = out.as<T>().data();
-    forSlices(target, progress, [&](int k) {
-        const auto& [tx, ty, tz] = taps[k % sublattices];
-        std::size_t to = target.index({0, 0, k});
-        for (int j = 0; j < target.size.y; ++j)
-            for (int i = 0; i < target.size.x; ++i, ++to) {
-                std::size_t nearest = 0;
-                std::uint8_t own = 1;
-                if (mask != nullptr) {
-                    nearest = from.index(from.nearest(target.position({i, j, k})));
-                    (*mask)[to] = own = number(nearest);
-                    if (own == 0) continue;
-                }
-                const auto ownValue = [&](glm::ivec3 there) -> std::optional<double> {
-                    if (clampToLattice(from.kind, from.size, there) != there) return std::nullopt;
-                    const std::size_t index = from.index(there);
-                    return number(index) == own ? std::optional(double(values[index])) : std::nullopt;
-                };
-                const auto besideNearest = [&](glm::ivec3 there) {
-                    return isBeside(from.kind, there, storageIndex(from, nearest));
-                };
-                double sum = 0;
-                for (std::size_t s = 0; s < 2; ++s) {
-                    const PairTap &x = tx[s][std::size_t(i)], &y = ty[s][std::size_t(j)],
-                                  &z = tz[s][std::size_t(k / sublattices)];
-                    for (std::size_t corner = 0; corner < 8; ++corner) {
-                        const double w = (corner & 1 ? x.fraction : 1 - x.fraction) *
-                                         (corner & 2 ? y.fraction : 1 - y.fraction) *
-                                         (corner & 4 ? z.fraction : 1 - z.fraction);
-                        const std::size_t at = (corner & 1 ? x.upper : x.lower) + (corner & 2 ? y.upper : y.lower) +
-                                               (corner & 4 ? z.upper : z.lower);
-                        if (number(at) == own)
-                            sum += w * double(values[at]);
-                        else if (w != 0)
-                            sum += w * continued(from.kind, storageIndex(from, at), ownValue, besideNearest)
-                                           .value_or(double(values[nearest]));
-                    }
-                }
-                stored[to] = range.store(sum / 2, own); // the weights of a sublattice sum to 1
-            }
-    });
-}
-
 } // namespace
-
-void checkOrder(const ResampleOptions& options) {
-    if (options.order < kLeastOrder || options.order > kMostOrder)
-        throw Error("the order of a filter must be from " + std::to_string(kLeastOrder) + " to " +
-                    std::to_string(kMostOrder));
-}
-
-Field sharpened(const Field& source, double amount, const StoredExtent& extent) {
-    const Lattice& lattice = source.lattice;
-    Field out = source;
-    dispatch(source.type, [&]<class T>(T) {
-        const auto stored = source.as<T>();
-        const auto to = out.as<T>();
-        const StoredRange<T> range(extent);
-        const PartNumbers number{source.mask.get()};
-        forSlices(lattice, {}, [&](int k) {
-            std::size_t index = lattice.index({0, 0, k});
-            for (int j = 0; j < lattice.size.y; ++j)
-                for (int i = 0; i < lattice.size.x; ++i, ++index) {
-                    const std::uint8_t own = number(index);
-                    if (own == 0) continue;
-                    double difference = 0, count = 0;
-                    forOppositePairs(lattice, {i, j, k}, [&](std::size_t a, std::size_t b) {
-                        count += 2;
-                        if (number(a) != own || number(b) != own) return; // goes on as across: no difference
-                        difference += double(stored[a]) - double(stored[index]);
-                        difference += double(stored[b]) - double(stored[index]);
-                    });
-                    to[index] = range.store(double(stored[index]) - amount * difference / count, own);
-                }
-        });
-    });
-    return out;
-}
-
-Field sharpened(const Field& source, double amount) {
-    StoredExtent extent;
-    extent.add(source);
-    return sharpened(source, amount, extent);
-}
 
 Field resample(const Field& source, const Lattice& target, const ResampleOptions& options, const Progress& progress) {
     checkOrder(options);
@@ -256,23 +42,8 @@ Field resample(const Field& source, const Lattice& target, const ResampleOptions
         progress.advance(1, "resample");
         return source;
     }
-    Field out;
-    if (source.lattice.kind == LatticeKind::CC) {
-        out = fromCc(source, target, options, progress);
-    } else {
-        out = makeField(target, source.type);
-        out.offset = source.offset;
-        out.scale = source.scale;
-        std::shared_ptr<Mask> mask;
-        if (source.mask) mask = std::make_shared<Mask>(target.count(), std::uint8_t(1));
-        dispatch(source.type, [&]<class T>(T) {
-            if (options.filter == ResampleFilter::Nearest)
-                fromNearest<T>(source, out, mask.get(), progress);
-            else
-                fromBcc<T>(source, out, mask.get(), progress);
-        });
-        out.mask = std::move(mask);
-    }
+    Field out = source.lattice.kind == LatticeKind::CC ? fromCc(source, target, options, progress)
+                                                       : resampleBcc(source, target, options.filter, progress);
     const auto isPlain = [](std::uint8_t number) { return number == 1; };
     if (out.mask && std::all_of(out.mask->begin(), out.mask->end(), isPlain)) out.mask.reset();
     return out;

@@ -1,6 +1,8 @@
 #include "volume/resample/resample_slices.h"
 
+#include "volume/resample/resample.h"
 #include "volume/resample/resample_cc.h"
+#include "volume/resample/sharpen.h"
 #include "volume/resample/slice_filter.h"
 #include "volume/resample/spline_prefilter.h"
 #include "volume/system/scratch_file.h"
@@ -35,10 +37,10 @@ Field cut(const Field& part, int begin, const Lattice& frame, int first, int cou
 /// Coefficients of a B-spline for every sample of a frame, in a scratch file.
 class SlicedCoefficients {
 public:
-    SlicedCoefficients(const SlicedFrame& source, ScalarType type, int degree, int step, const std::string& folder,
+    SlicedCoefficients(const SlicedFrame& source, ScalarType type, int degree, const SliceMemory& memory,
                        const Progress& progress)
-        : slice_(std::size_t(source.lattice.size.x) * std::size_t(source.lattice.size.y)), values_(folder) {
-        dispatch(type, [&]<class T>(T) { make<SumOf<T>>(source, degree, step, folder, progress); });
+        : slice_(std::size_t(source.lattice.size.x) * std::size_t(source.lattice.size.y)), values_(memory.folder) {
+        dispatch(type, [&]<class T>(T) { make<SumOf<T>>(source, degree, memory, progress); });
     }
 
     /// Those of some slices, as bytes.
@@ -50,11 +52,11 @@ public:
 
 private:
     template <class Real>
-    void make(const SlicedFrame& source, int degree, int step, const std::string& folder, const Progress& progress) {
+    void make(const SlicedFrame& source, int degree, const SliceMemory& memory, const Progress& progress) {
         valueBytes_ = sizeof(Real);
         const glm::ivec3 size = source.lattice.size;
-        ScratchFile flags(folder);
-        forRuns(size.z, step, progress.part(0, 0.5), [&](int first, int count) {
+        ScratchFile flags(memory.folder);
+        forRuns(size.z, memory.step, progress.part(0, 0.5), [&](int first, int count) {
             const Field part = maskedAlike(source.read(first, count), source.extent.masked);
             std::vector<Real> values = splineValues<Real>(part);
             for (const int axis : {0, 1})
@@ -63,7 +65,7 @@ private:
             if (part.mask) flags.write(slice_ * std::size_t(first), std::as_bytes(std::span(*part.mask)));
         });
         // Whole lines along z, as many rows of every slice as make up the samples of a step.
-        const int rows = std::clamp(int(double(step) * size.y / size.z), 1, size.y);
+        const int rows = std::clamp(int(double(memory.step) * size.y / size.z), 1, size.y);
         const std::size_t nx = std::size_t(size.x);
         for (int y = 0; y < size.y; y += rows) {
             progress.advance(0.5 + 0.5 * y / size.y, "resample");
@@ -96,6 +98,11 @@ private:
 
 } // namespace
 
+SlicedFrame inMemory(Field field) {
+    const auto whole = std::make_shared<Field>(std::move(field));
+    return {whole->lattice, [whole](int first, int count) { return slicesOf(*whole, first, count); }, {}, whole};
+}
+
 StoredExtent extentOf(const Lattice& lattice, const SliceReader& read, int step, const Progress& progress) {
     StoredExtent extent;
     forRuns(lattice.size.z, step, progress, [&](int first, int count) { extent.add(read(first, count)); });
@@ -114,18 +121,20 @@ SlicedFrame sharpened(const SlicedFrame& source, double amount, int step, const 
     return out;
 }
 
-SlicedFrame resampled(const SlicedFrame& source, const Lattice& target, const ResampleOptions& options, int step,
-                      const std::string& scratch, const Progress& progress) {
+SlicedFrame resampled(const SlicedFrame& source, const Lattice& target, const ResampleOptions& options,
+                      const SliceMemory& memory, const Progress& progress) {
+    if (source.whole) return inMemory(resample(*source.whole, target, options, progress));
     checkOrder(options);
     if (options.sharpen > 0) {
         ResampleOptions plain = options;
         plain.sharpen = 0;
         const bool before = options.sharpenWhen == SharpenWhen::Before;
-        const SlicedFrame first = before ? sharpened(source, options.sharpen, step, progress.part(0, 0.5)) : source;
-        SlicedFrame out = resampled(first, target, plain, step, scratch, progress.part(0.5, 1));
+        const SlicedFrame first =
+            before ? sharpened(source, options.sharpen, memory.step, progress.part(0, 0.5)) : source;
+        SlicedFrame out = resampled(first, target, plain, memory, progress.part(0.5, 1));
         if (before) return out;
-        out.extent = extentOf(target, out.read, step, progress.part(0.5, 1));
-        return sharpened(out, options.sharpen, step, progress.part(0.5, 1));
+        out.extent = extentOf(target, out.read, memory.step, progress.part(0.5, 1));
+        return sharpened(out, options.sharpen, memory.step, progress.part(0.5, 1));
     }
     if (source.lattice == target) return source;
     if (source.lattice.kind != LatticeKind::CC) throw Error("only regular grids can be resampled in parts");
@@ -133,7 +142,7 @@ SlicedFrame resampled(const SlicedFrame& source, const Lattice& target, const Re
     std::shared_ptr<const SlicedCoefficients> coefficients;
     if (const int degree = splineDegree(options.filter); degree > 0)
         coefficients =
-            std::make_shared<const SlicedCoefficients>(source, source.read(0, 1).type, degree, step, scratch, progress);
+            std::make_shared<const SlicedCoefficients>(source, source.read(0, 1).type, degree, memory, progress);
     SlicedFrame out{target, {}, source.extent};
     out.read = [source, target, taps, coefficients, stop = progress.stop](int first, int count) {
         // Beyond what is wanted, as far as gaps reach.

@@ -1,5 +1,7 @@
 #include "volume/resample/resample_taps.h"
 
+#include "volume/base/error.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -92,6 +94,12 @@ void addLagrange(Tap& tap, double cells) {
 }
 
 } // namespace
+
+void checkOrder(const ResampleOptions& options) {
+    if (options.order < kLeastOrder || options.order > kMostOrder)
+        throw Error("the order of a filter must be from " + std::to_string(kLeastOrder) + " to " +
+                    std::to_string(kMostOrder));
+}
 
 int tapCount(const ResampleOptions& options, int count) {
     if (options.filter == ResampleFilter::Lagrange) return std::min(options.order + 1, count);

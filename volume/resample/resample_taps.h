@@ -1,7 +1,7 @@
 #pragma once
 
 #include "volume/field/lattice.h"
-#include "volume/resample/resample.h"
+#include "volume/resample/resample_options.h"
 
 #include <array>
 #include <cstddef>

@@ -29,8 +29,8 @@ std::string textOf(double number) {
 
 Series framesOf(const Dataset& dataset, int parameter, int component, LatticeKind4 kind) {
     return {frameLattice(dataset.info, kind), dataset.info.parameters[std::size_t(parameter)].categorical,
-            [load = dataset.load, parameter, component](int frame) {
-                return std::make_shared<const Field>(load(parameter, component, frame));
+            [read = dataset.read, parameter, component](int frame) {
+                return std::make_shared<const Field>(read(parameter, component, frame));
             }};
 }
 
@@ -63,7 +63,7 @@ namespace {
 
 /// The frames of a D4* lattice from number `first` on; `source` is the whole series.
 D4Frames framesFrom(const Dataset& source, const Lattice4& lattice, int first, const ResampleOptions& options,
-                    const SliceLoad& slices) {
+                    const SliceMemory& memory) {
     D4Frames out;
     out.times = source.info.times;
     out.frames.info = source.info;
@@ -72,33 +72,34 @@ D4Frames framesFrom(const Dataset& source, const Lattice4& lattice, int first, c
     for (int k = first; k < lattice.size.w; ++k)
         out.frames.info.times.push_back(timeAt(source.info.times, lattice.time(k)));
     out.frames.info.quantities = atTimes(source.info.quantities, source.info.times, out.frames.info.times);
+    if (memory.step > 0) {
+        out.frames.read =
+            d4Slices(source, frameLattice(source.info, LatticeKind4::CC), lattice, first, options, memory);
+        return out;
+    }
     // One series per component, each with the frames its filter spans and one to move on.
     const auto series = std::make_shared<std::map<std::pair<int, int>, Series>>();
     const Dataset parted = withParts(source);
     for (int p = 0; p < int(source.info.parameters.size()); ++p)
         for (int c = 0; c < source.info.parameters[std::size_t(p)].components; ++c)
             (*series)[{p, c}] = remembering(seriesOf(parted, p, c), std::size_t(framesSpanned(options)) + 1);
-    out.frames.load = [series, lattice, first, options](int parameter, int component, int time) {
+    out.frames.read = [series, lattice, first, options](int parameter, int component, int time) {
         return withoutParts(toD4Frame(series->at({parameter, component}), lattice, first + time, options));
     };
-    if (slices)
-        out.slices = [info = source.info, slices, lattice, first, options](int step, const std::string& scratch) {
-            return d4Slices(info, slices, frameLattice(info, LatticeKind4::CC), lattice, first, options, step, scratch);
-        };
     return out;
 }
 
 } // namespace
 
-D4Frames framesOfD4(const Dataset& source, const ResampleOptions& options, const SliceLoad& slices) {
+D4Frames framesOfD4(const Dataset& source, const ResampleOptions& options, const SliceMemory& memory) {
     if (source.info.lattice.kind != LatticeKind::CC)
         throw Error("D4* is made from a regular grid, and this is none", source.info.name);
     if (source.info.times.size() < 2) throw Error("D4* is a lattice in space and time: it needs two times or more");
-    return framesFrom(source, d4For(frameLattice(source.info, LatticeKind4::CC)), 0, options, slices);
+    return framesFrom(source, d4For(frameLattice(source.info, LatticeKind4::CC)), 0, options, memory);
 }
 
 D4Frames continueD4(Dataset source, const std::vector<double>& known, const std::vector<double>& frames,
-                    const ResampleOptions& options, SliceLoad slices) {
+                    const ResampleOptions& options, const SliceMemory& memory) {
     const std::vector<double> given = source.info.times;
     std::vector<double> times = known;
     for (const double time : given)
@@ -117,13 +118,10 @@ D4Frames continueD4(Dataset source, const std::vector<double>& known, const std:
         quantity.values = std::move(values);
     }
     source.info.times = times;
-    source.load = [load = source.load, place](int parameter, int component, int time) {
-        return load(parameter, component, place[std::size_t(time)]);
-    };
-    if (slices)
-        slices = [load = slices, place](int parameter, int component, int time, int from, int count) {
-            return load(parameter, component, place[std::size_t(time)], from, count);
-        };
+    source.read = source.read.through(
+        [place](const FrameReader& read, int parameter, int component, int time, SliceRange slices) {
+            return read(parameter, component, place[std::size_t(time)], slices);
+        });
     Lattice4 lattice = d4For(frameLattice(source.info, LatticeKind4::CC));
     lattice.origin.w = frameAt(known, frames.front());
     const double last = double(times.size() - 1), step = 0.5 * lattice.spacing.w;
@@ -137,7 +135,7 @@ D4Frames continueD4(Dataset source, const std::vector<double>& known, const std:
         throw Error("frames of D4* to come are also made of earlier times: the data must have those again at " +
                         missing,
                     source.info.name);
-    return framesFrom(source, lattice, first, options, slices);
+    return framesFrom(source, lattice, first, options, memory);
 }
 
 } // namespace tessera::volume

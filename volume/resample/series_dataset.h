@@ -1,12 +1,10 @@
 #pragma once
 
 #include "volume/field/dataset.h"
-#include "volume/field/slices.h"
+#include "volume/resample/resample_slices.h"
 #include "volume/resample/series.h"
 
-#include <functional>
 #include <span>
-#include <string>
 #include <vector>
 
 /// Data sets as series, and D4* between them. Times of a data set may be unevenly spaced: a series counts frames, so
@@ -24,21 +22,16 @@ Series seriesOf(const Dataset& dataset, int parameter, int component);
 /// The frames of a D4* lattice, as made by toD4(), as a series.
 Series d4SeriesOf(const Dataset& frames, int parameter, int component);
 
-/// Slices of the frames of a data set, `step` slices of what they are made of in memory at a time; `scratch`: folder
-/// for scratch files.
-using SliceMaker = std::function<SliceLoad(int step, const std::string& scratch)>;
-
 /// A series as frames of a D4* lattice.
 struct D4Frames {
-    Dataset frames;            ///< their times lie between those of the series; `load` gives a frame on its own grid
+    Dataset frames;            ///< their times lie between those of the series; each frame is on its own grid
     std::vector<double> times; ///< of the series
-    SliceMaker slices;         ///< of `frames` (volume/resample/series_slices.h); null where the source has none
 };
 
 /// A data set on CC as frames of d4For(it). The lattice of the info is that of the even frames. Frames are best asked
-/// for in order; some of the source are kept. `slices`: of the source, or null. Throws Error when the source is not CC
-/// or has one time.
-D4Frames framesOfD4(const Dataset& source, const ResampleOptions& options, const SliceLoad& slices = {});
+/// for in order; some of the source are kept, or with `memory.step` they are read in slices of it
+/// (volume/resample/series_slices.h). Throws Error when the source is not CC or has one time.
+D4Frames framesOfD4(const Dataset& source, const ResampleOptions& options, const SliceMemory& memory = {});
 inline Dataset toD4(const Dataset& source, const ResampleOptions& options) {
     return framesOfD4(source, options).frames;
 }
@@ -48,6 +41,6 @@ inline Dataset toD4(const Dataset& source, const ResampleOptions& options) {
 /// without the times to come). `source` begins with the last of the known times, as many as the filter reaches back to,
 /// and has later ones. Throws Error when it has none or lacks one of those.
 D4Frames continueD4(Dataset source, const std::vector<double>& known, const std::vector<double>& frames,
-                    const ResampleOptions& options, SliceLoad slices = {});
+                    const ResampleOptions& options, const SliceMemory& memory = {});
 
 } // namespace tessera::volume

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "volume/field/field.h"
-#include "volume/resample/resample.h"
+#include "volume/resample/resample_options.h"
 
 #include <span>
 #include <vector>

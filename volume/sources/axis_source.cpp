@@ -65,8 +65,8 @@ std::optional<OtherAxis> axisBy(const DatasetInfo& info, std::string_view quanti
 
 Dataset onAxis(Dataset dataset, const OtherAxis& axis) {
     dataset.info = axis.info;
-    dataset.load = [load = std::move(dataset.load), order = axis.order](int parameter, int component, int time) {
-        return load(parameter, component, order[std::size_t(time)]);
+    dataset.read = [read = std::move(dataset.read), order = axis.order](int parameter, int component, int time) {
+        return read(parameter, component, order[std::size_t(time)]);
     };
     return dataset;
 }

@@ -177,7 +177,7 @@ private:
         Field field;
         {
             const std::lock_guard lock(loading_);
-            field = dataset_.load(key.parameter, key.component, key.time);
+            field = dataset_.read(key.parameter, key.component, key.time);
         }
         if (field.lattice.size != dataset_.info.lattice.size || field.lattice.kind != dataset_.info.lattice.kind ||
             field.samples.size() != field.count() * byteSize(field.type))

@@ -88,7 +88,7 @@ Dataset withTimeAlong(std::shared_ptr<const BrickSource> source, const TimeAxis&
     clock.ranges = {{from.times.front(), from.times.back()}};
     const int clockIndex = int(made.info.parameters.size()) - 1;
 
-    made.load = [source, grid, axis, place, clockIndex](int parameter, int component, int) {
+    made.read = [source, grid, axis, place, clockIndex](int parameter, int component, int) {
         const DatasetInfo& info = source->info();
         if (parameter != clockIndex) {
             int channel = 0;

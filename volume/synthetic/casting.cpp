@@ -70,7 +70,7 @@ Dataset makeCasting(const std::map<std::string, double>& given) {
     info.parameters = {density};
     info.times = {0};
     info.provenance = "a computed casting";
-    dataset.load = [lattice = info.lattice, noise = settings.noise](int, int, int) {
+    dataset.read = [lattice = info.lattice, noise = settings.noise](int, int, int) {
         Field field = makeField(lattice, ScalarType::U8);
         const auto samples = field.as<std::uint8_t>();
         const glm::dvec3 step = 2.0 / glm::dvec3(lattice.size - 1);

@@ -308,7 +308,7 @@ Dataset makeFuelCell(const std::map<std::string, double>& given, const Progress&
     text << "built-in PEM fuel cell, " << solved.nx << " x " << solved.ny << " x " << solved.nz << " volumes solved; "
          << shown.voltageBefore << " V, after " << shown.stepTime << " s " << shown.voltageAfter << " V";
     info.provenance = text.str();
-    dataset.load = [solution](int parameter, int component, int time) {
+    dataset.read = [solution](int parameter, int component, int time) {
         return loadField(*solution, parameter, component, time);
     };
     progress.advance(1);

@@ -7,25 +7,12 @@
 
 namespace tessera::volume::cell {
 
-void FuelCellSolver::setUpSpace(int which) {
-    GasSpace& space = spaces_[std::size_t(which)];
-    const CellGrid& g = grid_;
-    space.air = which == 1;
-    space.yBegin = space.air ? g.rows[3] : 0;
-    space.rows = space.air ? g.ny - g.rows[3] : g.rows[2];
-    const int layerBegin = space.air ? 0 : g.rows[1], layerEnd = space.air ? g.rows[4] - g.rows[3] : g.rows[2];
-    const std::size_t section = std::size_t(g.nx * space.rows), cells = section * std::size_t(g.nz);
+namespace {
 
-    space.kind.assign(section, 0);
-    for (int row = 0; row < space.rows; ++row)
-        for (int x = 0; x < g.nx; ++x) {
-            const bool layer = row >= layerBegin && row < layerEnd;
-            if (layer || (x >= g.channelBegin && x < g.channelEnd))
-                space.kind[std::size_t(x + g.nx * row)] = layer ? 2 : 1;
-        }
-
-    // Fully developed laminar flow in the duct: -laplace(profile) = 1, 0 on its walls (and on the gas-diffusion layer,
-    // where the gas is slower by four orders of magnitude); velocity = profile / viscosity * pressure gradient.
+/// Velocity profile of a duct, of fully developed laminar flow: -laplace(profile) = 1, 0 on its walls (and on the
+/// gas-diffusion layer, where the gas is slower by four orders of magnitude); velocity = profile / viscosity * pressure
+/// gradient.
+std::vector<double> ductProfile(const GasSpace& space, const CellGrid& g) {
     StencilSystem duct(g.nx, space.rows, 1);
     for (int row = 0; row < space.rows; ++row)
         for (int x = 0; x < g.nx; ++x) {
@@ -46,9 +33,63 @@ void FuelCellSolver::setUpSpace(int which) {
             face(row + 1 < space.rows, p + std::size_t(g.nx), g.dy, duct.north);
             duct.rhs[p] = 1;
         }
-    space.permeability.assign(section, 0.0);
-    solve(duct, PlanePreconditioner(duct), space.permeability, 1e-12);
+    std::vector<double> profile(space.kind.size(), 0.0);
+    solve(duct, PlanePreconditioner(duct), profile, 1e-12);
+    return profile;
+}
 
+/// The pressure system of a gas space: volume flux = conductance * pressure difference. Along the flow the duct profile
+/// or Darcy's law; across it Darcy's law too, with the mean of the profile in the channel: the flow across a channel is
+/// only what the reaction draws, and its pressure differences are far below those along it.
+StencilSystem pressureSystem(const GasSpace& space, const CellGrid& g, double meanProfile) {
+    const std::size_t section = space.kind.size();
+    StencilSystem flow(g.nx, space.rows, g.nz);
+    const double viscosity = space.air ? kViscosityAir : kViscosityHydrogen;
+    const auto across = [&](std::size_t p) { return space.kind[p] == 1 ? meanProfile : space.permeability[p]; };
+    const std::size_t row = std::size_t(g.nx);
+    for (int z = 0; z < g.nz; ++z)
+        for (std::size_t s = 0; s < section; ++s) {
+            const std::size_t p = s + section * std::size_t(z);
+            if (space.kind[s] == 0) {
+                flow.diag[p] = 1;
+                continue;
+            }
+            const auto link = [&](std::vector<double>& toNext, std::vector<double>& back, std::size_t step, double k) {
+                flow.diag[p] += k, flow.diag[p + step] += k;
+                toNext[p] = k, back[p + step] = k;
+            };
+            const std::size_t x = s % row;
+            if (x + 1 < row && space.kind[s + 1] != 0)
+                link(flow.east, flow.west, 1, series(across(s), across(s + 1)) / viscosity * g.dy * g.dz / g.dx);
+            if (s + row < section && space.kind[s + row] != 0)
+                link(flow.north, flow.south, row, series(across(s), across(s + row)) / viscosity * g.dx * g.dz / g.dy);
+            const double along = space.permeability[s] / viscosity * g.dx * g.dy / g.dz;
+            if (z + 1 < g.nz) link(flow.up, flow.down, section, along);
+            if (z == (space.air ? g.nz - 1 : 0) && space.kind[s] == 1) flow.diag[p] += 2 * along;
+        }
+    return flow;
+}
+
+} // namespace
+
+void FuelCellSolver::setUpSpace(int which) {
+    GasSpace& space = spaces_[std::size_t(which)];
+    const CellGrid& g = grid_;
+    space.air = which == 1;
+    space.yBegin = space.air ? g.rows[3] : 0;
+    space.rows = space.air ? g.ny - g.rows[3] : g.rows[2];
+    const int layerBegin = space.air ? 0 : g.rows[1], layerEnd = space.air ? g.rows[4] - g.rows[3] : g.rows[2];
+    const std::size_t section = std::size_t(g.nx * space.rows), cells = section * std::size_t(g.nz);
+
+    space.kind.assign(section, 0);
+    for (int row = 0; row < space.rows; ++row)
+        for (int x = 0; x < g.nx; ++x) {
+            const bool layer = row >= layerBegin && row < layerEnd;
+            if (layer || (x >= g.channelBegin && x < g.channelEnd))
+                space.kind[std::size_t(x + g.nx * row)] = layer ? 2 : 1;
+        }
+
+    space.permeability = ductProfile(space, g);
     double sum = 0;
     int channelCells = 0;
     for (std::size_t p = 0; p < section; ++p) {
@@ -80,35 +121,8 @@ void FuelCellSolver::setUpSpace(int which) {
     for (auto* column : {&reactantRate_, &waterRate_, &waterSlope_})
         (*column)[std::size_t(which)].assign(std::size_t(g.nx * g.nz), 0.0);
 
-    // The pressure system: volume flux = conductance * pressure difference. Along the flow the duct profile or Darcy's
-    // law; across it Darcy's law too, with the mean of the profile in the channel: the flow across a channel is only
-    // what the reaction draws, and its pressure differences are far below those along it.
-    StencilSystem& flow = flow_[std::size_t(which)];
-    flow = StencilSystem(g.nx, space.rows, g.nz);
-    const double viscosity = space.air ? kViscosityAir : kViscosityHydrogen;
-    const auto across = [&](std::size_t p) { return space.kind[p] == 1 ? meanProfile : space.permeability[p]; };
-    const std::size_t row = std::size_t(g.nx);
-    for (int z = 0; z < g.nz; ++z)
-        for (std::size_t s = 0; s < section; ++s) {
-            const std::size_t p = s + section * std::size_t(z);
-            if (space.kind[s] == 0) {
-                flow.diag[p] = 1;
-                continue;
-            }
-            const auto link = [&](std::vector<double>& toNext, std::vector<double>& back, std::size_t step, double k) {
-                flow.diag[p] += k, flow.diag[p + step] += k;
-                toNext[p] = k, back[p + step] = k;
-            };
-            const std::size_t x = s % row;
-            if (x + 1 < row && space.kind[s + 1] != 0)
-                link(flow.east, flow.west, 1, series(across(s), across(s + 1)) / viscosity * g.dy * g.dz / g.dx);
-            if (s + row < section && space.kind[s + row] != 0)
-                link(flow.north, flow.south, row, series(across(s), across(s + row)) / viscosity * g.dx * g.dz / g.dy);
-            const double along = space.permeability[s] / viscosity * g.dx * g.dy / g.dz;
-            if (z + 1 < g.nz) link(flow.up, flow.down, section, along);
-            if (z == (space.air ? g.nz - 1 : 0) && space.kind[s] == 1) flow.diag[p] += 2 * along;
-        }
-    flowPreconditioner_[std::size_t(which)] = PlanePreconditioner(flow);
+    flow_[std::size_t(which)] = pressureSystem(space, g, meanProfile);
+    flowPreconditioner_[std::size_t(which)] = PlanePreconditioner(flow_[std::size_t(which)]);
     for (int water2 : {0, 1}) species_[std::size_t(2 * which + water2)].system = StencilSystem(g.nx, space.rows, g.nz);
 }
 
@@ -153,13 +167,44 @@ void FuelCellSolver::solveFlow(int which) {
             space.outlet[s] = 2 * space.permeability[s] / viscosity * g.dx * g.dy / g.dz * p[last + s];
 }
 
+FuelCellSolver::WallRate FuelCellSolver::wallRate(int which, bool water, const std::vector<double>& c,
+                                                  StencilSystem& a) const {
+    const GasSpace& space = spaces_[std::size_t(which)];
+    const CellGrid& g = grid_;
+    const double area = g.dx * g.dz;
+    const std::size_t columns = std::size_t(g.nx * g.nz);
+    WallRate wall{std::vector<double>(columns), std::vector<double>(columns)};
+    for (int z = 0; z < g.nz; ++z)
+        for (int x = 0; x < g.nx; ++x) {
+            const std::size_t column = std::size_t(x + g.nx * z), p = a.index(x, space.wallRow(), z);
+            const double i = current_[column];
+            const double release = !water      ? -i / ((space.air ? 4 : 2) * kFaraday)
+                                   : space.air ? i / (2 * kFaraday) + waterFlux_[column]
+                                               : -waterFlux_[column];
+            const double now = std::max(c[p], 1e-9);
+            const double slope = water       ? waterSlope_[std::size_t(which)][column]
+                                 : space.air ? currentSlope_[column] / (4 * kFaraday)
+                                             : 0.0;
+            const bool tangent = !water && space.air;
+            wall.constant[column] = release + slope * now;
+            wall.factor[column] = slope;
+            if (!tangent && wall.constant[column] < 0) {
+                wall.factor[column] -= wall.constant[column] / now;
+                wall.constant[column] = 0;
+            }
+            a.rhs[p] += area * wall.constant[column];
+            a.diag[p] += area * wall.factor[column];
+        }
+    return wall;
+}
+
 void FuelCellSolver::solveSpecies(int which, bool water, double rate, const std::vector<double>& before, bool refresh) {
     GasSpace& space = spaces_[std::size_t(which)];
     SpeciesSystem& own = species_[std::size_t(2 * which + (water ? 1 : 0))];
     StencilSystem& a = own.system;
     const CellGrid& g = grid_;
     const std::size_t section = std::size_t(g.nx * space.rows), row = std::size_t(g.nx);
-    const double volume = g.dx * g.dy * g.dz, area = g.dx * g.dz;
+    const double volume = g.dx * g.dy * g.dz;
     std::vector<double>& c = water ? space.water : space.reactant;
     const double inletValue = water ? space.inletWater : space.inletReactant;
 
@@ -201,39 +246,15 @@ void FuelCellSolver::solveSpecies(int which, bool water, double rate, const std:
             }
         }
 
-    // At the catalyst the total molar rate is given, as constant - factor * concentration: for oxygen the tangent of
-    // the current (Newton's method), for water the answer of the membrane; any other loss as proportional to the
-    // concentration, which keeps it positive.
-    std::vector<double>& used = water ? waterRate_[std::size_t(which)] : reactantRate_[std::size_t(which)];
-    std::vector<double> constant(used.size()), factor(used.size());
-    for (int z = 0; z < g.nz; ++z)
-        for (int x = 0; x < g.nx; ++x) {
-            const std::size_t column = std::size_t(x + g.nx * z), p = a.index(x, space.wallRow(), z);
-            const double i = current_[column];
-            const double release = !water      ? -i / ((space.air ? 4 : 2) * kFaraday)
-                                   : space.air ? i / (2 * kFaraday) + waterFlux_[column]
-                                               : -waterFlux_[column];
-            const double now = std::max(c[p], 1e-9);
-            const double slope = water       ? waterSlope_[std::size_t(which)][column]
-                                 : space.air ? currentSlope_[column] / (4 * kFaraday)
-                                             : 0.0;
-            const bool tangent = !water && space.air;
-            constant[column] = release + slope * now;
-            factor[column] = slope;
-            if (!tangent && constant[column] < 0) {
-                factor[column] -= constant[column] / now;
-                constant[column] = 0;
-            }
-            a.rhs[p] += area * constant[column];
-            a.diag[p] += area * factor[column];
-        }
+    const WallRate wall = wallRate(which, water, c, a);
     if (refresh || own.preconditioner.empty()) own.preconditioner = PlanePreconditioner(a);
     const std::vector<double> start = !water && space.air ? c : std::vector<double>();
     solve(a, own.preconditioner, c, 1e-8);
+    std::vector<double>& used = water ? waterRate_[std::size_t(which)] : reactantRate_[std::size_t(which)];
     for (int z = 0; z < g.nz; ++z)
         for (int x = 0; x < g.nx; ++x) {
             const std::size_t column = std::size_t(x + g.nx * z);
-            used[column] = constant[column] - factor[column] * c[a.index(x, space.wallRow(), z)];
+            used[column] = wall.constant[column] - wall.factor[column] * c[a.index(x, space.wallRow(), z)];
         }
     if (!water && space.air)
         for (std::size_t p = 0; p < c.size(); ++p) c[p] = std::max(c[p], 0.2 * start[p]); // a tangent can go too far

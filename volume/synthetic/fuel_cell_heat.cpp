@@ -6,31 +6,65 @@
 
 namespace tessera::volume::cell {
 
+namespace {
+
+struct Material {
+    double inPlane, through, capacity;
+};
+
+Material materialOf(CellRegion region, double gasCapacity) {
+    switch (region) {
+    case CellRegion::Land:
+        return {kConductivityLand, kConductivityLand, kHeatCapacityLand};
+    case CellRegion::AnodeChannel:
+        return {kConductivityHydrogen, kConductivityHydrogen, gasCapacity};
+    case CellRegion::CathodeChannel:
+        return {kConductivityAir, kConductivityAir, gasCapacity};
+    case CellRegion::Mea:
+        return {kConductivityMea, kConductivityMea, kHeatCapacityMea};
+    default:
+        return {kConductivityGdlInPlane, kConductivityGdl, kHeatCapacityGdl};
+    }
+}
+
+} // namespace
+
+void FuelCellSolver::carryHeat(const GasSpace& space, double gasCapacity) {
+    const CellGrid& g = grid_;
+    StencilSystem& a = heat_;
+    const std::size_t row = std::size_t(g.nx), plane = a.plane();
+    const std::size_t section = row * std::size_t(space.rows), shift = row * std::size_t(space.yBegin);
+    for (int z = 0; z < g.nz; ++z)
+        for (std::size_t s = 0; s < section; ++s) {
+            if (space.kind[s] == 0) continue;
+            const std::size_t q = s + section * std::size_t(z), p = s + shift + plane * std::size_t(z);
+            const auto carry = [&](double flux, std::vector<double>& next, std::vector<double>& back,
+                                   std::size_t step) {
+                const double heat = gasCapacity * std::abs(flux);
+                if (flux > 0)
+                    a.diag[p + step] += heat, back[p + step] += heat;
+                else
+                    a.diag[p] += heat, next[p] += heat;
+            };
+            if (s % row + 1 < row) carry(space.fluxX[q], a.east, a.west, 1);
+            if (s + row < section) carry(space.fluxY[q], a.north, a.south, row);
+            if (z + 1 < g.nz) carry(space.fluxZ[q], a.up, a.down, plane);
+            if (z == (space.air ? 0 : g.nz - 1)) {
+                a.diag[p] += gasCapacity * space.inlet[s];
+                a.rhs[p] += gasCapacity * space.inlet[s] * settings_.inletTemperature;
+            }
+        }
+}
+
 void FuelCellSolver::solveHeat(double voltage, double rate, const std::vector<double>& before, bool refresh) {
     const CellGrid& g = grid_;
     StencilSystem& a = heat_;
     const std::size_t row = std::size_t(g.nx), plane = a.plane();
     const double volume = g.dx * g.dy * g.dz;
-    struct Material {
-        double inPlane, through, capacity;
-    };
     const double gasCapacity = concentration_ * kGasHeatCapacity;
-    const auto material = [&](CellRegion region) -> Material {
-        switch (region) {
-        case CellRegion::Land:
-            return {kConductivityLand, kConductivityLand, kHeatCapacityLand};
-        case CellRegion::AnodeChannel:
-            return {kConductivityHydrogen, kConductivityHydrogen, gasCapacity};
-        case CellRegion::CathodeChannel:
-            return {kConductivityAir, kConductivityAir, gasCapacity};
-        case CellRegion::Mea:
-            return {kConductivityMea, kConductivityMea, kHeatCapacityMea};
-        default:
-            return {kConductivityGdlInPlane, kConductivityGdl, kHeatCapacityGdl};
-        }
-    };
     std::vector<Material> materials(plane);
-    for (std::size_t s = 0; s < plane; ++s) materials[s] = material(grid_.region(int(s % row), int(s / row)));
+    for (std::size_t s = 0; s < plane; ++s)
+        materials[s] = materialOf(grid_.region(int(s % row), int(s / row)), gasCapacity);
 
     a.clear();
     for (int z = 0; z < g.nz; ++z)
@@ -57,30 +91,7 @@ void FuelCellSolver::solveHeat(double voltage, double rate, const std::vector<do
             }
         }
 
-    // Heat carried by the gas, upwind, in the form that needs no balance of moles: each cell takes what flows in.
-    for (const GasSpace& space : spaces_) {
-        const std::size_t section = row * std::size_t(space.rows), shift = row * std::size_t(space.yBegin);
-        for (int z = 0; z < g.nz; ++z)
-            for (std::size_t s = 0; s < section; ++s) {
-                if (space.kind[s] == 0) continue;
-                const std::size_t q = s + section * std::size_t(z), p = s + shift + plane * std::size_t(z);
-                const auto carry = [&](double flux, std::vector<double>& next, std::vector<double>& back,
-                                       std::size_t step) {
-                    const double heat = gasCapacity * std::abs(flux);
-                    if (flux > 0)
-                        a.diag[p + step] += heat, back[p + step] += heat;
-                    else
-                        a.diag[p] += heat, next[p] += heat;
-                };
-                if (s % row + 1 < row) carry(space.fluxX[q], a.east, a.west, 1);
-                if (s + row < section) carry(space.fluxY[q], a.north, a.south, row);
-                if (z + 1 < g.nz) carry(space.fluxZ[q], a.up, a.down, plane);
-                if (z == (space.air ? 0 : g.nz - 1)) {
-                    a.diag[p] += gasCapacity * space.inlet[s];
-                    a.rhs[p] += gasCapacity * space.inlet[s] * settings_.inletTemperature;
-                }
-            }
-    }
+    for (const GasSpace& space : spaces_) carryHeat(space, gasCapacity);
 
     const int meaRows = g.rows[3] - g.rows[2];
     for (int z = 0; z < g.nz; ++z)

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "volume/base/progress.h"
-#include "volume/synthetic/fuel_cell.h"
+#include "volume/synthetic/fuel_cell_settings.h"
 #include "volume/synthetic/plane_solver.h"
 
 #include <array>
@@ -89,11 +89,22 @@ private:
         PlanePreconditioner preconditioner;
     };
 
+    /// Molar rate from the catalyst into a gas space by column, as constant - factor * concentration, mol/(m2 s).
+    struct WallRate {
+        std::vector<double> constant, factor;
+    };
+
     void setUpSpace(int space);
     bool advance(double rate, double voltage, int maxIterations, double tolerance, const Progress& progress);
     void updateCurrent(double voltage);
     void solveFlow(int space);
     void solveSpecies(int space, bool water, double rate, const std::vector<double>& before, bool refresh);
+    /// The rate given at the catalyst, added to the equations of a species: for oxygen the tangent of the current
+    /// (Newton's method), for water the answer of the membrane; any other loss as proportional to the concentration,
+    /// which keeps it positive.
+    WallRate wallRate(int space, bool water, const std::vector<double>& concentration, StencilSystem& equations) const;
+    /// Heat carried by the gas, upwind, in the form that needs no balance of moles: each cell takes what flows in.
+    void carryHeat(const GasSpace& space, double gasCapacity);
     void solveHeat(double voltage, double rate, const std::vector<double>& before, bool refresh);
     double diffusion(const GasSpace& space, bool water, std::size_t section, bool inPlane) const;
 

@@ -77,7 +77,7 @@ Dataset makeMarschnerLobb(const std::map<std::string, double>& given) {
     info.times.clear();
     for (int t = 0; t < settings.times; ++t) info.times.push_back(double(t) / settings.times);
     info.provenance = "Marschner and Lobb's test signal, Vis 1994";
-    dataset.load = [lattice, type = rho.type, signal, phases = info.times](int, int, int time) {
+    dataset.read = [lattice, type = rho.type, signal, phases = info.times](int, int, int time) {
         return sampleField(lattice, type, signal, phases[std::size_t(time)]);
     };
     return dataset;

@@ -45,7 +45,7 @@ Dataset makePlanted(const std::map<std::string, double>& settings, const Progres
     Dataset dataset = makeFuelCell(settings, progress.part(0, 0.9));
     dataset.info.name = "planted";
     dataset.info.provenance += "; with planted events";
-    dataset.load = [plain = dataset.load, info = dataset.info](int parameter, int component, int time) {
+    dataset.read = [plain = dataset.read, info = dataset.info](int parameter, int component, int time) {
         Field field = plain(parameter, component, time);
         const std::string& name = info.parameters[std::size_t(parameter)].name;
         if (name == "U" || name == "region") return field;
@@ -68,7 +68,7 @@ Dataset makePlanted(const std::map<std::string, double>& settings, const Progres
         if (parameter.components > 1 || parameter.categorical) continue;
         Range range{1e300, -1e300};
         for (std::size_t time = 0; time < dataset.info.times.size(); ++time) {
-            const Field field = dataset.load(int(p), 0, int(time));
+            const Field field = dataset.read(int(p), 0, int(time));
             const auto values = field.as<float>();
             for (std::size_t i = 0; i < values.size(); ++i)
                 if (field.present(i))

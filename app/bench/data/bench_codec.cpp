@@ -30,7 +30,7 @@ template <class Visit> void forFrames(const volume::DatasetInfo& info, Visit&& v
 void measure(const std::string& name, volume::Dataset dataset, BenchTable& table) {
     codec::Bytes raw;
     forFrames(dataset.info, [&](int p, int c, int t) {
-        const volume::Field field = dataset.load(p, c, t);
+        const volume::Field field = dataset.read(p, c, t);
         raw.insert(raw.end(), field.samples.begin(), field.samples.end());
     });
     const double bytes = double(raw.size());

@@ -25,8 +25,8 @@ volume::Dataset asOneArray(const volume::Dataset& dataset) {
     one.info = dataset.info;
     one.info.lattice = volume::bccFor(dataset.info.lattice);
     one.info.lattice.kind = volume::LatticeKind::CC;
-    one.load = [load = dataset.load](int parameter, int component, int time) {
-        volume::Field field = volume::toBcc(load(parameter, component, time), false);
+    one.read = [read = dataset.read](int parameter, int component, int time) {
+        volume::Field field = volume::toBcc(read(parameter, component, time), false);
         field.lattice.kind = volume::LatticeKind::CC;
         return field;
     };
@@ -39,7 +39,7 @@ double errorAtSource(const volume::Dataset& source, const std::shared_ptr<const 
     const volume::Dataset back = codec::gridDataset(archive, 0);
     double squares = 0, count = 0, lo = std::numeric_limits<double>::infinity(), hi = -lo;
     for (int time = 0; time < int(source.info.times.size()); ++time) {
-        const volume::Field truth = source.load(0, 0, time), shown = back.load(0, 0, time);
+        const volume::Field truth = source.read(0, 0, time), shown = back.read(0, 0, time);
         for (std::size_t i = 0; i < truth.count(); ++i) {
             if (!truth.present(i) || !shown.present(i)) continue;
             const double value = truth.value(i), error = shown.value(i) - value;

@@ -50,7 +50,7 @@ volume::Dataset sampledOver(const RandomWaves& signal, volume::LatticeKind kind,
     volume::Parameter parameter;
     parameter.name = "w";
     dataset.info.parameters = {parameter};
-    dataset.load = [&signal, lattice = dataset.info.lattice](int, int, int) {
+    dataset.read = [&signal, lattice = dataset.info.lattice](int, int, int) {
         volume::Field field = volume::makeField(lattice, volume::ScalarType::F32);
         for (int z = 0; z < lattice.size.z; ++z)
             for (int y = 0; y < lattice.size.y; ++y)

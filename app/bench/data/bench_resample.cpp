@@ -42,7 +42,7 @@ BenchTable benchResample() {
     table.name = "resampling";
     table.columns = {"data", "filter", "Msamples in", "seconds", "CPU seconds", "Msamples/s"};
     const volume::Dataset volume = volume::makeMarschnerLobb({{"nx", 256}, {"ny", 256}, {"nz", 256}, {"bits", 8}});
-    const volume::Field cube = volume.load(0, 0, 0);
+    const volume::Field cube = volume.read(0, 0, 0);
     const volume::ResampleOptions filters[] = {
         {.filter = volume::ResampleFilter::Nearest},
         {.filter = volume::ResampleFilter::Linear},
@@ -60,7 +60,7 @@ BenchTable benchResample() {
     // ones.
     const volume::Dataset parted = volume::makeMarschnerLobb({{"nx", 128}, {"ny", 128}, {"nz", 128}});
     const auto halves = [&](std::uint8_t low, std::uint8_t high) {
-        volume::Field field = parted.load(0, 0, 0);
+        volume::Field field = parted.read(0, 0, 0);
         auto mask = std::make_shared<volume::Mask>(field.count());
         for (std::size_t i = 0; i < mask->size(); ++i) (*mask)[i] = i / 128 % 128 < 64 ? low : high;
         if (low != high) field.mask = std::move(mask);
@@ -74,7 +74,7 @@ BenchTable benchResample() {
     const volume::Dataset moving =
         volume::makeMarschnerLobb({{"nx", 90}, {"ny", 90}, {"nz", 80}, {"times", 64}, {"bits", 8}});
     std::vector<std::shared_ptr<const volume::Field>> frames;
-    for (int t = 0; t < 64; ++t) frames.push_back(std::make_shared<const volume::Field>(moving.load(0, 0, t)));
+    for (int t = 0; t < 64; ++t) frames.push_back(std::make_shared<const volume::Field>(moving.read(0, 0, t)));
     const volume::Series series{
         {volume::LatticeKind4::CC, {90, 90, 80, 64}, glm::dvec4(1), glm::dvec4(0)}, false, [&](int t) {
             volume::Field frame = *frames[std::size_t(t)];

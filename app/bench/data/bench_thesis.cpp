@@ -41,8 +41,8 @@ volume::Dataset madeAsLarge(const ThesisData& row) {
     settings["bits"] = 8;
     volume::Dataset made = volume::makeModel("marschner-lobb", settings);
     std::vector<volume::Field> frames; // computed before anything is timed
-    for (int t = 0; t < row.size.w; ++t) frames.push_back(made.load(0, 0, t));
-    made.load = [frames = std::move(frames)](int, int, int time) { return frames[std::size_t(time)]; };
+    for (int t = 0; t < row.size.w; ++t) frames.push_back(made.read(0, 0, t));
+    made.read = [frames = std::move(frames)](int, int, int time) { return frames[std::size_t(time)]; };
     return made;
 }
 
@@ -106,7 +106,7 @@ BenchTable benchThesisCoding() {
     for (const Row& row : rows)
         table.rows.push_back({"skull", row.wavelet, row.threshold, "16000", row.skull, "", "", ""});
     for (auto& [name, dataset] : thesisVolumes()) {
-        const volume::Field field = dataset.load(0, 0, 0);
+        const volume::Field field = dataset.read(0, 0, 0);
         if (field.mask) continue;
         const BenchFile file;
         codec::PackOptions options;

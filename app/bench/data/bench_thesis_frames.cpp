@@ -35,7 +35,7 @@ volume::Dataset movingSeries(volume::ScalarType type) {
     parameter.name = "x";
     parameter.type = type;
     series.info.parameters = {parameter};
-    series.load = [type, lattice = series.info.lattice](int, int, int time) {
+    series.read = [type, lattice = series.info.lattice](int, int, int time) {
         volume::Field field = volume::makeField(lattice, type);
         volume::dispatch(type, [&]<class T>(T) {
             const auto samples = field.as<T>();

@@ -60,15 +60,15 @@ volume::Field enlarged(const volume::Field& coarse, const volume::Lattice& from,
 
 volume::Dataset enlargedCell(glm::ivec3 size, int times, double noise) {
     auto small = std::make_shared<volume::Dataset>(volume::makeModel("fuel-cell", {{"times", double(times)}}));
-    volume::Dataset large{.info = small->info, .load = {}};
+    volume::Dataset large{.info = small->info, .read = {}};
     const volume::Lattice from = small->info.lattice;
     volume::Lattice& to = large.info.lattice;
     to.size = size;
     to.origin = small->info.bounds.lo;
     to.spacing = small->info.bounds.size() / glm::dvec3(to.size - 1);
-    large.load = [small, from, to, noise](int parameter, int component, int time) {
+    large.read = [small, from, to, noise](int parameter, int component, int time) {
         const volume::Parameter& known = small->info.parameters[std::size_t(parameter)];
-        volume::Field fine = enlarged(small->load(parameter, component, time), from, to, known.categorical);
+        volume::Field fine = enlarged(small->read(parameter, component, time), from, to, known.categorical);
         if (noise == 0 || known.categorical) return fine;
         const auto [least, most] = std::ranges::minmax(fine.as<float>());
         const double scale = noise * double(most - least);

@@ -86,7 +86,7 @@ std::vector<BenchVolume> realVolumes() {
         volume::Dataset data = volume::openFiles({sidecar.string()}, {});
         const glm::ivec3 size = data.info.lattice.size;
         if (data.info.parameters.size() != 1 || std::max({size.x, size.y, size.z}) < 90) continue;
-        const volume::Field field = data.load(0, 0, 0);
+        const volume::Field field = data.read(0, 0, 0);
         BenchVolume out{sidecar.stem().string().substr(0, sidecar.stem().string().find('_')), size, {}};
         out.bytes.resize(field.count());
         const std::vector<double> values = volume::physicalValues(field);
@@ -111,7 +111,7 @@ volume::Dataset benchDataset(const BenchVolume& volume) {
     parameter.type = volume::ScalarType::U8;
     parameter.ranges = {{0, 255}};
     made.info.parameters = {parameter};
-    made.load = [&volume, lattice = made.info.lattice](int, int, int) {
+    made.read = [&volume, lattice = made.info.lattice](int, int, int) {
         volume::Field field = volume::makeField(lattice, volume::ScalarType::U8);
         std::ranges::copy(volume.bytes, field.as<std::uint8_t>().begin());
         return field;

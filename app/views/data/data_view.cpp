@@ -9,6 +9,7 @@
 #include "app/views/data/derived_list.h"
 #include "app/views/data/selection_rows.h"
 #include "codec/archive/archive.h"
+#include "codec/container/exactness.h"
 #include "volume/derived/derived.h"
 
 #include <algorithm>

@@ -55,6 +55,75 @@ std::vector<double> lengths(const std::string& text, const std::string& file, co
     return out;
 }
 
+/// What a header says, field by field.
+struct Header {
+    std::optional<RawType> type;
+    std::vector<double> sizes, spacing, origin;
+    std::string encoding, kinds, content;
+    bool skips = false;  ///< lines or bytes before the samples
+    std::size_t end = 0; ///< of the header, where it ends
+    bool hasEnd = false; ///< else the file does before it
+};
+
+/// A key with a value of its own, "key:=value".
+void takePair(const std::string& key, const std::string& value, const std::string& file, RawForm& form,
+              RawForm::Component& component) {
+    if (key == "unit") component.unit = value;
+    if (key == "time" && !value.empty()) form.times = numbers(value, file, key);
+}
+
+void takeField(const std::string& key, const std::string& value, const std::string& file, RawForm& form,
+               Header& header) {
+    if (key == "type")
+        header.type = typeOf(value);
+    else if (key == "encoding")
+        header.encoding = value;
+    else if (key == "sizes")
+        header.sizes = numbers(value, file, key);
+    else if (key == "spacings")
+        header.spacing = numbers(value, file, key);
+    else if (key == "space directions")
+        header.spacing = lengths(value, file, key);
+    else if (key == "space origin" && value.size() > 1)
+        header.origin = numbers(value.substr(1, value.size() - 2), file, key);
+    else if (key == "kinds")
+        header.kinds = value;
+    else if (key == "content")
+        header.content = value;
+    else if (key == "endian")
+        form.bigEndian = value == "big";
+    else if (key == "data file" || key == "datafile")
+        form.dataFile = value;
+    else if (key == "line skip" || key == "lineskip" || key == "byte skip" || key == "byteskip")
+        header.skips = header.skips || value != "0";
+}
+
+Header readHeader(std::string_view head, const std::string& file, RawForm& form, RawForm::Component& component) {
+    Header header;
+    while (header.end < head.size() && !header.skips) {
+        const std::size_t end = head.find('\n', header.end);
+        if (end == std::string_view::npos) break;
+        std::string line(head.substr(header.end, end - header.end));
+        header.end = end + 1;
+        if (line.ends_with('\r')) line.pop_back();
+        if (line.empty()) {
+            header.hasEnd = true;
+            break;
+        }
+        if (line.starts_with('#') || line.starts_with("NRRD")) continue;
+        if (const std::size_t pair = line.find(":="); pair != std::string::npos) {
+            takePair(line.substr(0, pair), line.substr(pair + 2), file, form, component);
+            continue;
+        }
+        const std::size_t colon = line.find(": ");
+        if (colon == std::string::npos) throw Error("\"" + line.substr(0, 60) + "\" is no field", file, "header");
+        std::string value = line.substr(colon + 2);
+        value.erase(value.find_last_not_of(" \t") + 1);
+        takeField(line.substr(0, colon), value, file, form, header);
+    }
+    return header;
+}
+
 } // namespace
 
 std::optional<RawForm> parseNrrd(std::string_view head, const std::string& file, NrrdEncoding wanted) {
@@ -62,79 +131,32 @@ std::optional<RawForm> parseNrrd(std::string_view head, const std::string& file,
     RawForm form;
     RawForm::Component component;
     component.name = "value";
-    std::optional<RawType> type;
-    std::vector<double> sizes, spacing, origin;
-    std::string encoding, kinds, content;
-    std::size_t at = 0;
-    bool ended = false;
-    while (at < head.size()) {
-        const std::size_t end = head.find('\n', at);
-        if (end == std::string_view::npos) break;
-        std::string line(head.substr(at, end - at));
-        at = end + 1;
-        if (line.ends_with('\r')) line.pop_back();
-        if (line.empty()) {
-            ended = true;
-            break;
-        }
-        if (line.starts_with('#') || line.starts_with("NRRD")) continue;
-        if (const std::size_t pair = line.find(":="); pair != std::string::npos) {
-            const std::string key = line.substr(0, pair), value = line.substr(pair + 2);
-            if (key == "unit") component.unit = value;
-            if (key == "time" && !value.empty()) form.times = numbers(value, file, key);
-            continue;
-        }
-        const std::size_t colon = line.find(": ");
-        if (colon == std::string::npos) throw Error("\"" + line.substr(0, 60) + "\" is no field", file, "header");
-        const std::string key = line.substr(0, colon);
-        std::string value = line.substr(colon + 2);
-        value.erase(value.find_last_not_of(" \t") + 1);
-        if (key == "type")
-            type = typeOf(value);
-        else if (key == "encoding")
-            encoding = value;
-        else if (key == "sizes")
-            sizes = numbers(value, file, key);
-        else if (key == "spacings")
-            spacing = numbers(value, file, key);
-        else if (key == "space directions")
-            spacing = lengths(value, file, key);
-        else if (key == "space origin" && value.size() > 1)
-            origin = numbers(value.substr(1, value.size() - 2), file, key);
-        else if (key == "kinds")
-            kinds = value;
-        else if (key == "content")
-            content = value;
-        else if (key == "endian")
-            form.bigEndian = value == "big";
-        else if (key == "data file" || key == "datafile")
-            form.dataFile = value;
-        else if (key == "line skip" || key == "lineskip" || key == "byte skip" || key == "byteskip") {
-            if (value != "0") return std::nullopt;
-        }
-    }
-    if (!ended && form.dataFile.empty()) throw Error("the header does not end", file);
-    if (sizes.empty()) throw Error("is missing", file, "sizes");
-    const bool vector = kinds.find("vector") != std::string::npos || kinds.find("color") != std::string::npos ||
-                        kinds.find("list") != std::string::npos || kinds.find("matrix") != std::string::npos;
-    const bool text = encoding == "ascii" || encoding == "text" || encoding == "txt";
-    const bool asWanted = wanted == NrrdEncoding::Raw ? encoding == "raw" : text;
-    if (!asWanted || !type || sizes.size() > 3 || vector || form.dataFile.find(' ') != std::string::npos ||
-        form.dataFile == "LIST")
+    const Header header = readHeader(head, file, form, component);
+    if (header.skips) return std::nullopt;
+    if (!header.hasEnd && form.dataFile.empty()) throw Error("the header does not end", file);
+    if (header.sizes.empty()) throw Error("is missing", file, "sizes");
+    const auto isKind = [&](const char* kind) { return header.kinds.find(kind) != std::string::npos; };
+    const bool vector = isKind("vector") || isKind("color") || isKind("list") || isKind("matrix");
+    const bool text = header.encoding == "ascii" || header.encoding == "text" || header.encoding == "txt";
+    const bool asWanted = wanted == NrrdEncoding::Raw ? header.encoding == "raw" : text;
+    if (!asWanted || !header.type || header.sizes.size() > 3 || vector ||
+        form.dataFile.find(' ') != std::string::npos || form.dataFile == "LIST")
         return std::nullopt;
-    for (std::size_t axis = 0; axis < sizes.size(); ++axis) {
+    for (std::size_t axis = 0; axis < header.sizes.size(); ++axis) {
         const int i = static_cast<int>(axis);
-        if (!(sizes[axis] >= 1 && sizes[axis] <= kMostSamplesPerAxis) || sizes[axis] != std::floor(sizes[axis]))
+        const double size = header.sizes[axis];
+        if (!(size >= 1 && size <= kMostSamplesPerAxis) || size != std::floor(size))
             throw Error("is out of range", file, "sizes");
-        form.lattice.size[i] = static_cast<int>(sizes[axis]);
-        if (axis < spacing.size() && spacing[axis] > 0 && std::isfinite(spacing[axis]))
-            form.lattice.spacing[i] = spacing[axis];
-        if (axis < origin.size() && std::isfinite(origin[axis])) form.lattice.origin[i] = origin[axis];
+        form.lattice.size[i] = static_cast<int>(size);
+        if (axis < header.spacing.size() && header.spacing[axis] > 0 && std::isfinite(header.spacing[axis]))
+            form.lattice.spacing[i] = header.spacing[axis];
+        if (axis < header.origin.size() && std::isfinite(header.origin[axis]))
+            form.lattice.origin[i] = header.origin[axis];
     }
     if (form.times.size() > 1 || (form.times.size() == 1 && !std::isfinite(form.times[0]))) form.times.clear();
-    if (!content.empty()) component.name = content;
-    component.type = *type;
-    if (form.dataFile.empty()) form.skip = at;
+    if (!header.content.empty()) component.name = header.content;
+    component.type = *header.type;
+    if (form.dataFile.empty()) form.skip = header.end;
     form.components.push_back(std::move(component));
     return form;
 }

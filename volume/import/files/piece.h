@@ -25,7 +25,7 @@ struct Piece {
     std::string file;       ///< as the user named it
     std::string format;     ///< "raw", "vti", "OpenFOAM", ...
     std::string name;       ///< of the block, "" where the file is one block
-    bool resamples = false; ///< `load` can sample on any grid; a grid only on its own otherwise
+    bool resamples = false; ///< `read` can sample on any grid; a grid only on its own otherwise
     bool mesh = false;      ///< cells that are sampled; else samples lie on `lattice` as they are
     bool cellData = false;  ///< mesh: values belong to cells, so samples go to the middle of cells
     Lattice lattice;        ///< of a grid
@@ -38,11 +38,10 @@ struct Piece {
     std::vector<Array> arrays;
     std::vector<double> times;        ///< empty: one frame whose time is not stated
     std::vector<Quantity> quantities; ///< one value for each time, or one for the only frame
-    /// One component of one array at the piece's own time index, sampled on `target` (equal to `lattice` for grids;
-    /// samples outside a mesh are absent).
-    std::function<Field(int array, int component, int time, const Lattice& target)> load;
-    /// The same of slices [first, first + count) of a grid; null where it can only be read whole.
-    SliceLoad slices;
+    /// Slices of one component of one array at the piece's own time index, sampled on `target` (equal to `lattice` for
+    /// grids; samples outside a mesh are absent).
+    std::function<Field(int array, int component, int time, const Lattice& target, SliceRange slices)> read;
+    bool inParts = false; ///< `read` gives any slices, of the grid alone; else only all of them
     /// Ranges of an array's own values, at points or cells: one per component, then for a vector that of its magnitude;
     /// lo > hi where there is no value. Null, or empty, where they are not known.
     std::function<std::vector<Range>(int array, int time)> ranges;

@@ -35,9 +35,9 @@ template <class To, class From> void convert(std::span<const char> bytes, std::s
     }
 }
 
-/// Reads slices [first, first + count) of one component at one time.
-Field readComponent(const std::string& path, const RawForm& form, std::size_t component, std::size_t time, int first,
-                    int count) {
+/// Reads slices of one component at one time.
+Field readComponent(const std::string& path, const RawForm& form, std::size_t component, std::size_t time,
+                    SliceRange slices) {
     std::size_t at = form.skip, frame = 0;
     for (std::size_t c = 0; c < form.components.size(); ++c) {
         const std::size_t size = form.lattice.count() * storedBytes(form.components[c].type);
@@ -45,9 +45,9 @@ Field readComponent(const std::string& path, const RawForm& form, std::size_t co
         frame += size;
     }
     const RawForm::Component& what = form.components[component];
-    Field field = makeField(slicesOf(form.lattice, first, count), loadedType(what.type));
+    Field field = makeField(slicesOf(form.lattice, slices), loadedType(what.type));
     const std::size_t size = field.count() * storedBytes(what.type);
-    at += time * frame + size / std::size_t(count) * std::size_t(first);
+    at += time * frame + size / std::size_t(field.lattice.size.z) * std::size_t(slices.first);
     field.scale = what.scale;
     field.offset = what.offset;
 
@@ -198,20 +198,18 @@ Piece openForm(const RawForm& form, const std::string& path, const std::string& 
         c += vector ? 3 : 1;
     }
     if (piece.arrays.empty()) throw Error("holds no parameter", path);
-    piece.slices = [form, firstComponent, presence, data](int array, int component, int time, int first, int count) {
+    piece.inParts = true;
+    piece.read = [form, firstComponent, presence, data](int array, int component, int time, const Lattice&,
+                                                        SliceRange slices) {
         const auto a = static_cast<std::size_t>(array), t = static_cast<std::size_t>(time);
-        Field field =
-            readComponent(data, form, firstComponent[a] + static_cast<std::size_t>(component), t, first, count);
+        Field field = readComponent(data, form, firstComponent[a] + static_cast<std::size_t>(component), t, slices);
         if (presence[a] != 0) {
-            const Field flags = readComponent(data, form, presence[a] - 1, t, first, count);
+            const Field flags = readComponent(data, form, presence[a] - 1, t, slices);
             Mask mask(field.count());
             for (std::size_t i = 0; i < mask.size(); ++i) mask[i] = field.present(i) && flags.value(i) != 0 ? 1 : 0;
             field.mask = std::make_shared<const Mask>(std::move(mask));
         }
         return field;
-    };
-    piece.load = [slices = piece.slices](int array, int component, int time, const Lattice& whole) {
-        return slices(array, component, time, 0, whole.size.z);
     };
     return piece;
 }

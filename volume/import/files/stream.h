@@ -59,7 +59,7 @@ std::uint64_t frameBytes(const Lattice& lattice, ScalarType type, bool mask);
 /// 64 MiB, or a frame of one of the two lengths that fit `lattice` and `type`.
 MessageHead parseMessageHead(std::span<const std::byte> bytes, const Lattice& lattice, ScalarType type);
 
-/// Pieces of a header message, without `load`. Throws Error for malformed messages.
+/// Pieces of a header message, without `read`. Throws Error for malformed messages.
 std::vector<Piece> parseStreamHeader(std::string_view json, const std::string& file);
 
 /// Ranges of an answer to "ranges". Throws Error for malformed messages.

@@ -1,0 +1,61 @@
+#include "codec/brick/brick_format.h"
+
+#include "codec/wavelet/lift_box.h"
+
+namespace tessera::codec {
+
+using volume::LatticeKind;
+using volume::ScalarType;
+
+glm::ivec3 BrickFormat::sublatticeSize(int sublattice) const {
+    if (kind == LatticeKind::CC) return size;
+    return {size.x, size.y, (size.z + 1 - sublattice) / 2};
+}
+
+bool BrickFormat::predictsOdd(bool masked) const {
+    return bodyCentred && kind == LatticeKind::BCC && !masked && levels > 1 && size.z > 1 &&
+           numbers.kind != NumberKind::Float;
+}
+
+bool BrickFormat::canHaveExact() const {
+    return numbers.kind == NumberKind::Scaled || numbers.kind == NumberKind::Quantised;
+}
+
+int codeBitsOf(ScalarType type) {
+    return type == ScalarType::U8 ? 8 : type == ScalarType::I16 || type == ScalarType::U16 ? 16 : 32;
+}
+
+Arithmetic arithmeticOf(const BrickFormat& format) {
+    if (format.numbers.kind == NumberKind::Float) return Arithmetic::Float;
+    return format.codeBits > kBitsOfInt32 ? Arithmetic::Wide : Arithmetic::Narrow;
+}
+
+Wavelet effectiveWavelet(const BrickFormat& format) {
+    if (format.numbers.kind != NumberKind::Float) return format.wavelet;
+    return levelPhase(format.wavelet) == 0 && format.wavelet != Wavelet::N1 ? Wavelet::N2 : Wavelet::N1;
+}
+
+glm::ivec3 samplesAt(const BrickFormat& format, int level) {
+    glm::ivec3 size = levelSize(format.size, level);
+    if (format.kind == LatticeKind::BCC)
+        size.z = levelSize(format.sublatticeSize(0), level).z + levelSize(format.sublatticeSize(1), level).z;
+    return size;
+}
+
+std::vector<std::uint8_t> maskAt(const BrickFormat& format, std::span<const std::uint8_t> present, int level) {
+    if (present.empty()) return {};
+    const glm::ivec3 size = samplesAt(format, level);
+    const int perTexel = format.sublattices(), stride = 1 << level;
+    std::vector<std::uint8_t> out;
+    out.reserve(countOf(size));
+    for (int z = 0; z < size.z; ++z)
+        for (int y = 0; y < size.y; ++y) {
+            const int fineZ = (z / perTexel) * stride * perTexel + z % perTexel;
+            const std::size_t row = (std::size_t(fineZ) * std::size_t(format.size.y) + std::size_t(y * stride)) *
+                                    std::size_t(format.size.x);
+            for (int x = 0; x < size.x; ++x) out.push_back(present[row + std::size_t(x * stride)]);
+        }
+    return out;
+}
+
+} // namespace tessera::codec

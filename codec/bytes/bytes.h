@@ -1,0 +1,22 @@
+#pragma once
+
+#include "codec/bytes/decode_status.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace tessera::codec {
+
+using Bytes = std::vector<std::byte>;
+
+/// Little-endian numbers.
+void appendU32(Bytes& out, std::uint32_t value);
+std::uint32_t readU32(const std::byte* at);
+/// Lengths: 7 bits a byte, lowest first, bit 7 set on all but the last; at most 5 bytes.
+void appendLength(Bytes& out, std::uint32_t length);
+/// Reads one from the front of `in`, which then starts behind it.
+DecodeStatus takeLength(std::span<const std::byte>& in, std::uint64_t& length) noexcept;
+
+} // namespace tessera::codec

@@ -1,0 +1,153 @@
+#pragma once
+
+#include "volume/base/describe.h"
+#include "volume/derived/other_time.h"
+
+#include <string>
+#include <string_view>
+#include <variant>
+
+/// How parameters are computed from others.
+namespace tessera::volume {
+
+/// A formula over channels, position and time, point by point: "O2 / (O2 + H2O)", "T - at(T, first)". See Expression.
+struct ExpressionRecipe {
+    static constexpr std::string_view kType = "expression";
+    std::string formula;
+    bool operator==(const ExpressionRecipe&) const = default;
+    static void describe(auto& self, auto&& visit) {
+        visit(self.formula, FieldInfo{.key = "formula",
+                                      .unit = "",
+                                      .doc = "Formula of parameters, position x y z and time t, e.g. O2/(O2+H2O), "
+                                             "T - at(T, first)"});
+    }
+};
+
+/// sqrt(x^2 + y^2 + z^2) of three channels.
+struct MagnitudeRecipe {
+    static constexpr std::string_view kType = "magnitude";
+    std::string x, y, z;
+    bool operator==(const MagnitudeRecipe&) const = default;
+    static void describe(auto& self, auto&& visit) {
+        visit(self.x, FieldInfo{.key = "x", .unit = "", .doc = "First component", .refersTo = "channel"});
+        visit(self.y, FieldInfo{.key = "y", .unit = "", .doc = "Second component", .refersTo = "channel"});
+        visit(self.z, FieldInfo{.key = "z", .unit = "", .doc = "Third component", .refersTo = "channel"});
+    }
+};
+
+inline constexpr FieldInfo kDerivedFrom{
+    .key = "channel", .unit = "", .doc = "Parameter it is made of", .refersTo = "channel"};
+
+/// A vector, with magnitude: central differences within each sublattice, one-sided beside absent samples and borders.
+struct GradientRecipe {
+    static constexpr std::string_view kType = "gradient";
+    std::string channel;
+    bool operator==(const GradientRecipe&) const = default;
+    static void describe(auto& self, auto&& visit) { visit(self.channel, kDerivedFrom); }
+};
+
+inline constexpr FieldInfo kDerivedVector{
+    .key = "vector", .unit = "", .doc = "Vector it is made of", .refersTo = "vector"};
+
+struct DivergenceRecipe {
+    static constexpr std::string_view kType = "divergence";
+    std::string vector;
+    bool operator==(const DivergenceRecipe&) const = default;
+    static void describe(auto& self, auto&& visit) { visit(self.vector, kDerivedVector); }
+};
+
+/// The curl of a vector: a vector, with magnitude.
+struct VorticityRecipe {
+    static constexpr std::string_view kType = "vorticity";
+    std::string vector;
+    bool operator==(const VorticityRecipe&) const = default;
+    static void describe(auto& self, auto&& visit) { visit(self.vector, kDerivedVector); }
+};
+
+enum class TimeMeasure { FromMean, StandardDeviation };
+inline constexpr std::string_view kTimeMeasureNames[] = {"fromMean", "standardDeviation"};
+
+/// Difference of a channel, at every point, from its mean over all times at which it is present.
+struct DeviationRecipe {
+    static constexpr std::string_view kType = "deviation";
+    std::string channel;
+    TimeMeasure measure = TimeMeasure::FromMean;
+    bool operator==(const DeviationRecipe&) const = default;
+    static void describe(auto& self, auto&& visit) {
+        visit(self.channel, kDerivedFrom);
+        visit(self.measure, FieldInfo{.key = "measure",
+                                      .unit = "",
+                                      .doc = "Difference from the mean over time, or the standard deviation",
+                                      .names = kTimeMeasureNames});
+    }
+};
+
+/// A Gaussian over present samples of the same sublattice, cut at three widths.
+struct SmoothRecipe {
+    static constexpr std::string_view kType = "smooth";
+    std::string channel;
+    double width = 1; ///< cells
+    bool operator==(const SmoothRecipe&) const = default;
+    static void describe(auto& self, auto&& visit) {
+        visit(self.channel, kDerivedFrom);
+        visit(self.width, FieldInfo{.key = "width",
+                                    .unit = "cell",
+                                    .doc = "Standard deviation of the Gaussian",
+                                    .range = Range{0.1, 16},
+                                    .logScale = true});
+    }
+};
+
+/// The position of a sample: a vector "name.x", "name.y", "name.z" in the data's length unit.
+struct PositionRecipe {
+    static constexpr std::string_view kType = "position";
+    bool operator==(const PositionRecipe&) const = default;
+    static void describe(auto&, auto&&) {}
+};
+
+/// The time of a sample, the same everywhere.
+struct TimeRecipe {
+    static constexpr std::string_view kType = "time";
+    bool operator==(const TimeRecipe&) const = default;
+    static void describe(auto&, auto&&) {}
+};
+
+/// A channel minus itself at another time, or in the other data set (volume/derived/other_source.h); absent where
+/// either is.
+struct DifferenceRecipe {
+    static constexpr std::string_view kType = "difference";
+    std::string channel;
+    OtherTime from = OtherTime::First;
+    double time = 0; ///< of OtherTime::Time
+    bool operator==(const DifferenceRecipe&) const = default;
+    static void describe(auto& self, auto&& visit) {
+        visit(self.channel, kDerivedFrom);
+        visit(self.from, FieldInfo{.key = "from",
+                                   .unit = "",
+                                   .doc = "What is taken away: the values at the first, last, previous, next or a "
+                                          "stated time, or of the other data",
+                                   .names = kOtherTimeNames});
+        visit(self.time, FieldInfo{.key = "time",
+                                   .unit = "",
+                                   .doc = "Stated time, in the unit of the data's times; between stored ones "
+                                          "interpolated",
+                                   .applies = self.from == OtherTime::Time});
+    }
+    TimeReference reference() const { return {from, time}; }
+};
+
+using DerivedRecipe = std::variant<ExpressionRecipe, MagnitudeRecipe, GradientRecipe, DivergenceRecipe, VorticityRecipe,
+                                   DeviationRecipe, SmoothRecipe, PositionRecipe, TimeRecipe, DifferenceRecipe>;
+
+struct DerivedParameter {
+    std::string name, unit;
+    DerivedRecipe recipe;
+    bool operator==(const DerivedParameter&) const = default;
+    static void describe(auto& self, auto&& visit) {
+        visit(self.name, FieldInfo{.key = "name", .unit = "", .doc = "Name of the derived parameter"});
+        visit(self.unit, FieldInfo{.key = "unit", .unit = "", .doc = "Unit of its values"});
+        visit(self.recipe, FieldInfo{.key = "recipe", .unit = "", .doc = "How it is computed"});
+    }
+};
+
+} // namespace tessera::volume

@@ -1,0 +1,41 @@
+#pragma once
+
+#include "volume/import/files/piece.h"
+#include "volume/import/files/series.h"
+
+#include <cstddef>
+#include <vector>
+
+/// Which of the files opened follow each other in time, and what they say of each time.
+namespace tessera::volume {
+
+/// A file of a series and the blocks a reader found in it.
+struct OpenedFile {
+    SeriesFile entry;
+    std::vector<Piece> pieces;
+};
+
+/// Files of one group, consecutive in time: they differ only in their samples.
+struct FileGroup {
+    std::vector<const OpenedFile*> files;
+    struct Frame {
+        std::size_t file;
+        int localTime;
+    };
+    std::vector<double> times; ///< strictly increasing; empty: one frame that is there at all times
+    std::vector<Frame> frames; ///< one per time, or the only one
+    bool timesAreNumbers = false;
+};
+
+/// Files whose entries are of one group and whose blocks hold the same arrays form a group, in the order of the files,
+/// which must outlive it. Throws Error where two of one have the same time.
+std::vector<FileGroup> groupsInTime(const std::vector<OpenedFile>& files);
+
+/// A type that holds an array's numbers in every file of its group.
+ScalarType typeInAll(const FileGroup& group, std::size_t piece, std::size_t array);
+
+/// Times and quantities that the files of a group, and the list file that names them, state. The first statement is
+/// used.
+void addQuantities(DatasetInfo& info, const FileGroup& group);
+
+} // namespace tessera::volume

@@ -1,0 +1,14 @@
+#pragma once
+
+#include "volume/base/progress.h"
+#include "volume/field/field.h"
+#include "volume/resample/resample_options.h"
+
+namespace tessera::volume {
+
+/// A BCC field on another lattice, inside of volume/resample/resample.cpp: nearest, or for all other filters the
+/// average of both sublattices' trilinear interpolations of prefiltered samples (volume/reconstruct/reconstruct.h). A
+/// mask is made where the source has one, though everything be present. Throws Cancelled.
+Field resampleBcc(const Field& source, const Lattice& target, ResampleFilter filter, const Progress& progress);
+
+} // namespace tessera::volume

@@ -1,0 +1,94 @@
+#pragma once
+
+#include "volume/base/describe.h"
+
+#include <cstdint>
+
+namespace tessera::volume {
+
+/// Settings of the built-in fuel cell: a straight channel of a low-temperature PEM cell (353 K, one gas phase),
+/// hydrogen and air in counter-flow. x lateral, y through-plane (anode below, cathode above), z along the air flow.
+/// docs/fuel-cell-model.md has the equations and the source of every number.
+struct FuelCellSettings {
+    int nx = 11, ny = 13, nz = 101;
+    int times = 24;
+    double interval = 0.03;
+    double stepTime = 0.15;
+    double voltageBefore = 0.75;
+    double voltageAfter = 0.55;
+    double airStoichiometry = 2.0;
+    double hydrogenStoichiometry = 1.5;
+    double ratedCurrent = 8.0e3;
+    double airHumidity = 0.3;
+    double fuelHumidity = 0.5;
+    double coolantTemperature = 353.15;
+    double inletTemperature = 353.15;
+    double outletPressure = 101325;
+    double dragFactor = 1;
+    double backDiffusionFactor = 1;
+    bool operator==(const FuelCellSettings&) const = default;
+
+    static void describe(auto& self, auto&& visit) {
+        visit(self.nx, {.key = "nx", .unit = "", .doc = "Samples across the channel", .range = Range{3, 250}});
+        visit(self.ny, {.key = "ny", .unit = "", .doc = "Samples through the layers", .range = Range{5, 250}});
+        visit(self.nz, {.key = "nz", .unit = "", .doc = "Samples along the flow", .range = Range{4, 1000}});
+        visit(self.times, {.key = "times", .unit = "", .doc = "Time steps kept", .range = Range{1, 10000}});
+        visit(
+            self.interval,
+            {.key = "interval", .unit = "s", .doc = "Time from one kept step to the next", .range = Range{1e-5, 1e4}});
+        visit(self.stepTime, {.key = "stepTime",
+                              .unit = "s",
+                              .doc = "When the cell voltage falls; the cell is steady before",
+                              .range = Range{0, 1e8}});
+        visit(self.voltageBefore, {.key = "voltageBefore",
+                                   .unit = "V",
+                                   .doc = "Cell voltage before the load step",
+                                   .range = Range{0.4, 1.0}});
+        visit(
+            self.voltageAfter,
+            {.key = "voltageAfter", .unit = "V", .doc = "Cell voltage after the load step", .range = Range{0.4, 1.0}});
+        visit(self.airStoichiometry, {.key = "airStoichiometry",
+                                      .unit = "",
+                                      .doc = "Oxygen fed over oxygen used at the rated current",
+                                      .range = Range{1.5, 20}});
+        visit(self.hydrogenStoichiometry, {.key = "hydrogenStoichiometry",
+                                           .unit = "",
+                                           .doc = "Hydrogen fed over hydrogen used at the rated current",
+                                           .range = Range{1.2, 20}});
+        visit(self.ratedCurrent, {.key = "ratedCurrent",
+                                  .unit = "A/m2",
+                                  .doc = "Current density the gas feeds are sized for",
+                                  .range = Range{1e3, 3e4}});
+        visit(self.airHumidity, {.key = "airHumidity",
+                                 .unit = "",
+                                 .doc = "Relative humidity of the air at coolant temperature",
+                                 .range = Range{0.05, 0.9}});
+        visit(self.fuelHumidity, {.key = "fuelHumidity",
+                                  .unit = "",
+                                  .doc = "Relative humidity of the hydrogen at coolant temperature",
+                                  .range = Range{0.05, 0.9}});
+        visit(self.coolantTemperature, {.key = "coolantTemperature",
+                                        .unit = "K",
+                                        .doc = "Temperature of the cooled plates behind the lands",
+                                        .range = Range{323.15, 363.15}});
+        visit(self.inletTemperature, {.key = "inletTemperature",
+                                      .unit = "K",
+                                      .doc = "Temperature of both gases at their inlets",
+                                      .range = Range{303.15, 363.15}});
+        visit(self.outletPressure,
+              {.key = "outletPressure", .unit = "Pa", .doc = "Pressure at both outlets", .range = Range{9e4, 3e5}});
+        visit(self.dragFactor, {.key = "dragFactor",
+                                .unit = "",
+                                .doc = "Scales the electro-osmotic drag of water (0: none)",
+                                .range = Range{0, 2}});
+        visit(self.backDiffusionFactor, {.key = "backDiffusionFactor",
+                                         .unit = "",
+                                         .doc = "Scales the diffusion of water through the membrane (0: none)",
+                                         .range = Range{0, 4}});
+    }
+};
+
+/// Values of the labels of "region".
+enum class CellRegion : std::uint8_t { Land, AnodeChannel, AnodeGdl, Mea, CathodeGdl, CathodeChannel };
+
+} // namespace tessera::volume
