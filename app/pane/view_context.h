@@ -1,8 +1,10 @@
 #pragma once
 
 #include "app/data/number_origin.h"
+#include "app/session/history.h"
 #include "app/session/session.h"
 #include "app/ui/jobs.h"
+#include "app/ui/messages.h"
 #include "vis/passes/renderer.h"
 #include "volume/bricks/brick_source.h"
 
@@ -47,6 +49,10 @@ struct ViewContext {
     bool headless = false;      ///< finish everything before the frame ends: no budget, no progressive states
     int renderers = 1;          ///< that share the session's limits of memory
     bool figure = false;        ///< a picture of this view alone: without the controls, which nobody can press there
+    const History* history = nullptr; ///< of the session; null in tests
+    /// Asks for the session as it was after so many steps of its history, after this frame; null in tests.
+    std::function<void(std::size_t position)> goToStep = {};
+    const Messages* log = nullptr; ///< what the program had to say; null in tests
     /// Asks the workbench to run a command of its table, by name, after this frame; null in tests.
     std::function<void(const std::string& command)> runCommand = {};
     /// Asks where to save, then writes what `make` returns, in the background; null in tests.
@@ -78,22 +84,5 @@ template <class Cache> Cache& cacheOf(ViewContext& context, const std::string& p
     if (!dynamic_cast<Cache*>(slot.get())) slot = std::make_unique<Cache>();
     return static_cast<Cache&>(*slot);
 }
-
-// One function per kind of view, each in its own file; called inside the pane's ImGui window.
-void drawVolumeView(ViewContext& context, const std::string& pane, VolumeView& view);
-void drawSlicesView(ViewContext& context, const std::string& pane, SlicesView& view);
-void drawScatterMatrixView(ViewContext& context, const std::string& pane, ScatterMatrixView& view);
-void drawTransferView(ViewContext& context, const std::string& pane, TransferView& view);
-void drawLayersView(ViewContext& context, const std::string& pane, LayersView& view);
-void drawTimelineView(ViewContext& context, const std::string& pane, TimelineView& view);
-void drawDataView(ViewContext& context, const std::string& pane, DataView& view);
-void drawStatisticsView(ViewContext& context, const std::string& pane, StatisticsView& view);
-void drawHistogramView(ViewContext& context, const std::string& pane, HistogramView& view);
-void drawProfileView(ViewContext& context, const std::string& pane, ProfileView& view);
-void drawSliceMatrixView(ViewContext& context, const std::string& pane, SliceMatrixView& view);
-void drawShadowCubeView(ViewContext& context, const std::string& pane, ShadowCubeView& view);
-void drawTesseractView(ViewContext& context, const std::string& pane, TesseractView& view);
-void drawCurvesView(ViewContext& context, const std::string& pane, CurvesView& view);
-void drawCompareView(ViewContext& context, const std::string& pane, CompareView& view);
 
 } // namespace tessera::app

@@ -40,6 +40,15 @@ template <HasPresets T> std::string presetNames() {
     return all;
 }
 
+/// What a kind of view shows, and what it can be exported as.
+std::string describeKind(const ViewTraits& kind) {
+    std::string text = std::string(kind.title) + ": " + std::string(kind.help) + ".";
+    if (kind.svg || kind.csv)
+        text += std::string(" Can be exported as ") + (kind.svg ? "SVG" : "") + (kind.svg && kind.csv ? " and " : "") +
+                (kind.csv ? "CSV" : "") + ".";
+    return text;
+}
+
 } // namespace
 
 std::string parameterReference() {
@@ -78,20 +87,10 @@ std::string parameterReference() {
     out += markdownSection<vis::Light>("lighting.lights", "One light.");
     out += markdownSection<vis::Clip>("clips", "One plane or body that cuts the picture.");
     out += markdownSection<vis::Lens>("lenses", "One magic lens; layers belong to it by its name.");
-    out += markdownSection<VolumeView>("View of type `volume`", "The 3D view.");
-    out += markdownSection<SlicesView>("View of type `slices`", "Three orthogonal slices.");
-    out += markdownSection<ScatterMatrixView>("View of type `scatterMatrix`", "Every pair of parameters.");
-    out += markdownSection<TransferView>("View of type `transfer`", "The transfer-function editor.");
-    out += markdownSection<StatisticsView>("View of type `statistics`", "Numbers inside and outside of the selection.");
-    out += markdownSection<HistogramView>("View of type `histogram`", "One parameter's histogram.");
-    out += markdownSection<ProfileView>("View of type `profile`", "Parameters along a line.");
-    out += markdownSection<CurvesView>("View of type `curves`", "Quantities and statistics over time.");
-    out += markdownSection<SliceMatrixView>("View of type `sliceMatrix`", "Parameters on parallel planes.");
-    out += markdownSection<ShadowCubeView>("View of type `shadowCube`",
-                                           "The scene in a cube; parameters projected on its faces.");
-    out += markdownSection<TesseractView>("View of type `tesseract`",
-                                          "The field in four dimensions, turned in six planes.");
-    out += markdownSection<CompareView>("View of type `compare`", "Variants of the 3D scene side by side.");
+    forEachViewKind([&](const auto& kind) {
+        using View = typename std::decay_t<decltype(kind)>::State;
+        out += markdownSection<View>("View of type `" + std::string(View::kType) + "`", describeKind(kind.traits));
+    });
     out += markdownSection<CompareVariant>("views.variants", "One variant.");
     out += markdownSection<Track>("animation.tracks", "Keyframes of one parameter.");
     out += markdownSection<Keyframe>("animation.tracks.keys", "One keyframe.");

@@ -102,25 +102,17 @@ std::vector<std::string> paneKeys(const Session& session) {
 std::string paneTitle(const Session& session, const std::string& pane) {
     const auto found = session.views.find(pane);
     if (found == session.views.end()) return pane;
-    static constexpr std::string_view titles[] = {
-        "Volume",       "Slices",      "Scatterplots", "Transfer function", "Layers",    "Timeline",
-        "Data",         "History",     "Messages",     "Statistics",        "Histogram", "Line profile",
-        "Slice matrix", "Shadow cube", "Tesseract",    "Side by side",      "Curves"};
-    static_assert(std::variant_size_v<ViewState> == std::size(titles));
-    std::string title(titles[found->second.index()]);
+    std::string title(traitsOf(found->second).title);
     if (const auto dash = pane.rfind('-'); dash != std::string::npos) title += " " + pane.substr(dash + 1);
     return title;
 }
 
 std::optional<ViewState> viewOfKind(std::string_view kind) {
     std::optional<ViewState> view;
-    [&]<std::size_t... kinds>(std::index_sequence<kinds...>) {
-        ((std::variant_alternative_t<kinds, ViewState>::kType == kind
-              ? void(view = std::variant_alternative_t<kinds, ViewState>{})
-              : void()),
-         ...);
-    }
-    (std::make_index_sequence<std::variant_size_v<ViewState>>{});
+    forEachViewKind([&](const auto& row) {
+        using State = typename std::decay_t<decltype(row)>::State;
+        if (State::kType == kind) view = State{};
+    });
     return view;
 }
 

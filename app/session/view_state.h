@@ -1,14 +1,17 @@
 #pragma once
 
+#include "app/session/view_kind.h"
 #include "app/session/view_state_compare.h"
 #include "app/session/view_state_plots.h"
 #include "app/session/view_state_scenes.h"
 
+#include <array>
 #include <string>
+#include <tuple>
 #include <variant>
 
-/// The saved state of each kind of view: plain described structs, one per kind. How a view draws itself is in
-/// app/views.
+/// The kinds of view: the saved state of each, a plain described struct, and the one table of all of them. To add a
+/// kind: its struct, its row here, and the file in app/views that draws it.
 namespace tessera::app {
 
 struct TransferView {
@@ -33,6 +36,7 @@ struct TransferView {
                                          .doc = "Make the curve from boundaries: their emphasis is edited"});
     }
 };
+DrawView<TransferView> drawTransferView;
 
 struct LayersView {
     static constexpr std::string_view kType = "layers";
@@ -46,12 +50,14 @@ struct LayersView {
                                        .hidden = true});
     }
 };
+DrawView<LayersView> drawLayersView;
 
 struct TimelineView {
     static constexpr std::string_view kType = "timeline";
     bool operator==(const TimelineView&) const = default;
     static void describe(auto&, auto&&) {}
 };
+DrawView<TimelineView> drawTimelineView;
 
 /// What is in the data set, and the selection with its statistics.
 struct DataView {
@@ -59,21 +65,84 @@ struct DataView {
     bool operator==(const DataView&) const = default;
     static void describe(auto&, auto&&) {}
 };
+DrawView<DataView> drawDataView;
 
 struct HistoryView {
     static constexpr std::string_view kType = "history";
     bool operator==(const HistoryView&) const = default;
     static void describe(auto&, auto&&) {}
 };
+DrawView<HistoryView> drawHistoryView;
 
 struct LogView {
     static constexpr std::string_view kType = "log";
     bool operator==(const LogView&) const = default;
     static void describe(auto&, auto&&) {}
 };
+DrawView<LogView> drawLogView;
 
-using ViewState = std::variant<VolumeView, SlicesView, ScatterMatrixView, TransferView, LayersView, TimelineView,
-                               DataView, HistoryView, LogView, StatisticsView, HistogramView, ProfileView,
-                               SliceMatrixView, ShadowCubeView, TesseractView, CompareView, CurvesView>;
+/// Every kind of view, a row for each: its struct, the function that draws it, and what else is known of it. Menus,
+/// panes, documentation and tests read this table.
+inline constexpr std::tuple kViewKinds{
+    ViewKind<VolumeView, drawVolumeView>{
+        {.title = "Volume", .help = "The data in space", .inSpace = true, .camera = true, .padded = false}},
+    ViewKind<SlicesView, drawSlicesView>{
+        {.title = "Slices", .help = "Three orthogonal slices with a read-out", .svg = true}},
+    ViewKind<ScatterMatrixView, drawScatterMatrixView>{
+        {.title = "Scatterplots", .help = "Every pair of parameters; brush to select", .svg = true, .csv = true}},
+    ViewKind<TransferView, drawTransferView>{
+        {.title = "Transfer function", .help = "Colours and opacity of a parameter"}},
+    ViewKind<LayersView, drawLayersView>{{.title = "Layers", .help = "What the 3D views show"}},
+    ViewKind<TimelineView, drawTimelineView>{{.title = "Timeline", .help = "Play through time", .plays = true}},
+    ViewKind<DataView, drawDataView>{{.title = "Data", .help = "What is in the data set and the selection"}},
+    ViewKind<HistoryView, drawHistoryView>{{.title = "History", .help = "Every edit, undone and redone by a click"}},
+    ViewKind<LogView, drawLogView>{{.title = "Messages", .help = "What the program had to say"}},
+    ViewKind<StatisticsView, drawStatisticsView>{
+        {.title = "Statistics", .help = "Every parameter inside and outside of the selection", .csv = true},
+        {.title = "Region table",
+         .help = "Every parameter in every region, and what flows in and out of them",
+         .prepare = [](StatisticsView& view) { view.byRegion = true; }}},
+    ViewKind<HistogramView, drawHistogramView>{
+        {.title = "Histogram", .help = "One parameter's histogram; drag to select", .svg = true, .csv = true}},
+    ViewKind<ProfileView, drawProfileView>{
+        {.title = "Line profile", .help = "Parameters along a line", .svg = true, .csv = true},
+        {.title = "Section averages",
+         .help = "Means over planes across an axis, a curve for each region",
+         .prepare = [](ProfileView& view) { view.over = ProfileOver::Sections; }}},
+    ViewKind<CurvesView, drawCurvesView>{{.title = "Curves",
+                                          .help = "Quantities and statistics over time, against each other",
+                                          .svg = true,
+                                          .csv = true}},
+    ViewKind<SliceMatrixView, drawSliceMatrixView>{
+        {.title = "Slice matrix", .help = "Parameters on parallel planes", .svg = true, .csv = true}},
+    ViewKind<ShadowCubeView, drawShadowCubeView>{
+        {.title = "Shadow cube", .help = "Projections on the faces of a cube around the scene", .inSpace = true}},
+    ViewKind<TesseractView, drawTesseractView>{
+        {.title = "Tesseract", .help = "The field in four dimensions, turned in six planes", .inSpace = true}},
+    ViewKind<CompareView, drawCompareView>{{.title = "Side by side",
+                                            .help = "The 3D scene with other settings",
+                                            .csv = true,
+                                            .inSpace = true,
+                                            .camera = true}},
+};
+
+namespace detail {
+template <class... Kinds> std::variant<typename Kinds::State...> stateOf(const std::tuple<Kinds...>&);
+} // namespace detail
+
+/// The saved state of a view of any kind; the alternatives are in the order of kViewKinds.
+using ViewState = decltype(detail::stateOf(kViewKinds));
+
+/// Calls visit(kind) for each row of kViewKinds, in order.
+constexpr void forEachViewKind(auto&& visit) {
+    std::apply([&](const auto&... kinds) { (visit(kinds), ...); }, kViewKinds);
+}
+
+/// What is known of the kind of a view.
+inline const ViewTraits& traitsOf(const ViewState& view) {
+    static constexpr auto kTraits =
+        std::apply([](const auto&... kinds) { return std::array{kinds.traits...}; }, kViewKinds);
+    return kTraits[view.index()];
+}
 
 } // namespace tessera::app

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "app/session/view_kind.h"
 #include "volume/base/describe.h"
 
 #include <map>
@@ -107,5 +108,6 @@ struct CompareView {
                                         .hidden = true});
     }
 };
+DrawView<CompareView> drawCompareView;
 
 } // namespace tessera::app

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "app/session/section_settings.h"
+#include "app/session/view_kind.h"
 #include "volume/base/describe.h"
 #include "volume/field/space_axis.h"
 
@@ -55,6 +56,7 @@ struct ScatterMatrixView {
                                        .hidden = true});
     }
 };
+DrawView<ScatterMatrixView> drawScatterMatrixView;
 
 /// Count, volume, mean, spread and correlation of every parameter inside and outside of the selection.
 struct StatisticsView {
@@ -79,6 +81,7 @@ struct StatisticsView {
                         .refersTo = "channel"});
     }
 };
+DrawView<StatisticsView> drawStatisticsView;
 
 struct HistogramView {
     static constexpr std::string_view kType = "histogram";
@@ -97,6 +100,7 @@ struct HistogramView {
                                        .range = Range{0, 1}});
     }
 };
+DrawView<HistogramView> drawHistogramView;
 
 /// What a profile runs over: a line in space, every time at the cursor, both as a picture, or planes across an axis or
 /// the line.
@@ -126,6 +130,7 @@ struct ProfileView {
         visit(self.sections, FieldInfo{.key = "sections", .unit = "", .doc = "Averages over planes"});
     }
 };
+DrawView<ProfileView> drawProfileView;
 
 /// Quantities over time, statistics of parameters and formulas of both, against time or each other.
 struct CurvesView {
@@ -152,6 +157,7 @@ struct CurvesView {
               FieldInfo{.key = "brushed", .unit = "", .doc = "Statistics are of what the brushes select"});
     }
 };
+DrawView<CurvesView> drawCurvesView;
 
 /// Parameters (rows) on parallel planes (columns).
 struct SliceMatrixView {
@@ -169,5 +175,6 @@ struct SliceMatrixView {
               FieldInfo{.key = "planes", .unit = "", .doc = "Planes, evenly spread", .range = Range{1, 12}});
     }
 };
+DrawView<SliceMatrixView> drawSliceMatrixView;
 
 } // namespace tessera::app

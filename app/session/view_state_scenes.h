@@ -1,5 +1,6 @@
 #pragma once
 
+#include "app/session/view_kind.h"
 #include "volume/base/describe.h"
 
 #include <glm/gtc/quaternion.hpp>
@@ -32,6 +33,7 @@ struct VolumeView {
                                              "cross-hair, with the plane that is shown at all times"});
     }
 };
+DrawView<VolumeView> drawVolumeView;
 
 struct SlicesView {
     static constexpr std::string_view kType = "slices";
@@ -56,6 +58,7 @@ struct SlicesView {
         visit(self.showReadout, FieldInfo{.key = "readout", .unit = "", .doc = "List every parameter at the cursor"});
     }
 };
+DrawView<SlicesView> drawSlicesView;
 
 /// What a face of the cube shows of its parameter, along the axis that the face stands on.
 enum class WallKind { Slice, Mean, Maximum, XRay, Shadow };
@@ -106,6 +109,7 @@ struct ShadowCubeView {
               FieldInfo{.key = "brushing", .unit = "", .doc = "Dragging on a face selects the prism behind it"});
     }
 };
+DrawView<ShadowCubeView> drawShadowCubeView;
 
 /// What colours the points of a tesseract.
 enum class TesseractColor { Value, Fourth };
@@ -187,5 +191,6 @@ struct TesseractView {
                                         .applies = self.tour});
     }
 };
+DrawView<TesseractView> drawTesseractView;
 
 } // namespace tessera::app

@@ -6,8 +6,6 @@
 #include "volume/import/over_time.h"
 
 #include <algorithm>
-#include <cstdio>
-#include <ctime>
 #include <filesystem>
 #include <imgui.h>
 #include <limits>
@@ -16,13 +14,8 @@ namespace tessera::app {
 
 namespace fs = std::filesystem;
 
-namespace {
-
-constexpr std::size_t kMessages = 500;
-
-} // namespace
-
-Workbench::Workbench(WorkbenchOptions options) : options_(std::move(options)) {
+Workbench::Workbench(WorkbenchOptions options)
+    : options_(std::move(options)), messages_([this] { return now(); }, options_.headless) {
     renderer_ = options_.renderer ? options_.renderer : std::make_shared<vis::Renderer>(options_.render);
     if (!options_.headless) {
         helpInBackground();
@@ -145,14 +138,7 @@ bool Workbench::dirty() const {
 }
 
 void Workbench::message(const std::string& text, bool failure) {
-    char clock[16] = "";
-    const std::time_t time = std::time(nullptr);
-    std::tm local{};
-    if (localtime_r(&time, &local)) std::strftime(clock, sizeof clock, "%H:%M:%S", &local);
-    messages_.push_back({text, clock, failure, now(), false});
-    if (messages_.size() > kMessages) messages_.pop_front();
-    // Without a window nobody sees the log pane.
-    if (options_.headless && failure) std::fprintf(stderr, "tessera: %s\n", text.c_str());
+    messages_.add(text, failure);
 }
 
 bool Workbench::prepare(float contentScale) {
@@ -204,7 +190,7 @@ void Workbench::frame() {
     panes.draw = [this](const std::string& pane) { drawPane(pane); };
     panes.padded = [this](const std::string& pane) {
         const auto found = session_.views.find(pane);
-        return found == session_.views.end() || !std::holds_alternative<VolumeView>(found->second);
+        return found == session_.views.end() || traitsOf(found->second).padded;
     };
     panes.close = [this](const std::string& pane) { closePane(pane); };
     if (source_)
@@ -225,7 +211,7 @@ void Workbench::frame() {
     if (!options_.headless) {
         drawDialogs();
         if (const Command* command = drawPalette(palette_, commands_)) chosen_ = command->run;
-        drawToasts();
+        drawToasts(messages_, scale_, fonts_.icons != nullptr);
         play();
     }
     watchEdits();
@@ -266,7 +252,7 @@ void Workbench::play() {
     busy_ = true;
     // A timeline on screen plays by itself.
     for (const auto& [pane, view] : session_.views)
-        if (drawn_.contains(pane) && std::holds_alternative<TimelineView>(view)) return;
+        if (drawn_.contains(pane) && traitsOf(view).plays) return;
     playOn(playback_, session_, source_->info().times, double(ImGui::GetIO().DeltaTime));
 }
 
@@ -373,8 +359,7 @@ double Workbench::idleSeconds() const {
     if (busy_ || export_ || chosen_ || history_.pending()) return 0;
     double wait = std::numeric_limits<double>::infinity();
     for (const Jobs::Status& job : jobs_.list()) wait = std::min(wait, job.quiet ? 0.25 : 0.1);
-    for (const Message& each : messages_)
-        if (!each.gone) wait = std::min(wait, std::max(0.05, each.born + each.toastSeconds() - now()));
+    wait = std::min(wait, messages_.secondsToChange());
     if (unsavedEdits_) wait = std::min(wait, std::max(0.1, nextAutosave() - now()));
     return wait;
 }

@@ -7,6 +7,7 @@
 #include "app/ui/dock.h"
 #include "app/ui/file_dialog.h"
 #include "app/ui/jobs.h"
+#include "app/ui/messages.h"
 #include "app/ui/theme.h"
 #include "app/user_files/state_dir.h"
 #include "app/views/timeline/playback.h"
@@ -14,7 +15,6 @@
 
 #include <array>
 #include <chrono>
-#include <deque>
 #include <memory>
 #include <optional>
 #include <set>
@@ -111,14 +111,6 @@ public:
 
 private:
     static constexpr const char* kLatticeChoice = "lattice"; ///< by this name it is remembered
-    static constexpr int kToasts = 3;                        ///< messages that stand over the views at a time
-    struct Message {
-        std::string text, clock;
-        bool failure = false;
-        double born = 0;
-        bool gone = false; ///< no longer shown as a toast
-        double toastSeconds() const { return failure ? 30 : 7; }
-    };
     struct Export {
         PictureRequest request;
         std::string path;
@@ -131,6 +123,7 @@ private:
     void addHelpCommands();                                  // workbench_commands.cpp
     void showSpaceBeside(bool wanted);                       // workbench_view_commands.cpp
     void addViewCommands();                                  // workbench_view_commands.cpp
+    void openView(const ViewState& view);                    // workbench_view_commands.cpp
     void addLayoutCommands();                                // workbench_view_commands.cpp
     void drawMenus();                                        // workbench_commands.cpp
     void drawDialogs();                                      // workbench_dialogs.cpp
@@ -139,14 +132,11 @@ private:
     void drawExport();                                       // workbench_dialogs.cpp
     void drawLeaving();                                      // workbench_dialogs.cpp
     void drawHelp();                                         // workbench_dialogs.cpp
-    void drawToasts();                                       // workbench_toasts.cpp
     void drawImportOptions();                                // workbench_import.cpp
     FilePreview previewOf(const std::string& path);          // workbench_import.cpp
     void filesChosen(const std::vector<std::string>& paths); // workbench_import.cpp
     void drawStatusBar(float height);                        // workbench_panes.cpp
     void drawPane(const std::string& pane);                  // workbench_panes.cpp
-    void drawHistoryPane();                                  // workbench_panes.cpp
-    void drawLogPane();                                      // workbench_panes.cpp
 
     /// Does what gives the session up: at once, or after asking whether to save what has changed.
     void leave(std::function<void()> go);
@@ -230,7 +220,7 @@ private:
     std::size_t locating_ = 0;
     std::unique_ptr<Autosave> autosave_;
     std::vector<Recovery> recoveries_;
-    std::deque<Message> messages_;
+    Messages messages_;
     std::string focusedPane_, hoveredPane_;
     std::set<std::string> drawn_, drawnBefore_; ///< panes of this frame and of the last
     std::string lastSpacePane_;                 ///< the view of the scene that the hand was on last

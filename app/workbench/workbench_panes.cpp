@@ -6,7 +6,7 @@
 #include <imgui.h>
 #include <utility>
 
-/// What the workbench draws itself among the views: history, messages, status bar.
+/// Panes of views, and the status bar.
 namespace tessera::app {
 
 namespace {
@@ -14,8 +14,7 @@ namespace {
 /// Whether a pane shows the scene from the session's camera.
 bool showsSpace(const Session& session, const std::string& pane) {
     const auto found = session.views.find(pane);
-    return found != session.views.end() &&
-           (std::holds_alternative<VolumeView>(found->second) || std::holds_alternative<CompareView>(found->second));
+    return found != session.views.end() && traitsOf(found->second).camera;
 }
 
 } // namespace
@@ -51,6 +50,9 @@ void Workbench::drawPane(const std::string& pane) {
                         .scale = scale_,
                         .headless = options_.headless,
                         .renderers = renderers_,
+                        .history = &history_,
+                        .goToStep = [this](std::size_t to) { chosen_ = [this, to] { replace(history_.seek(to)); }; },
+                        .log = &messages_,
                         .figure = options_.headless && !options_.onlyPane.empty() && !options_.controls,
                         .runCommand =
                             [this](const std::string& name) {
@@ -74,82 +76,15 @@ void Workbench::drawPane(const std::string& pane) {
                         .interacting = interacting_};
     if (options_.headless) context.offerExport = [&](ViewExport made) { exports_[pane] = std::move(made); };
     ImGui::PushID(pane.c_str());
-    std::visit(
-        [&](auto& view) {
-            using View = std::decay_t<decltype(view)>;
-            if constexpr (std::is_same_v<View, VolumeView>)
-                drawVolumeView(context, pane, view);
-            else if constexpr (std::is_same_v<View, SlicesView>)
-                drawSlicesView(context, pane, view);
-            else if constexpr (std::is_same_v<View, ScatterMatrixView>)
-                drawScatterMatrixView(context, pane, view);
-            else if constexpr (std::is_same_v<View, TransferView>)
-                drawTransferView(context, pane, view);
-            else if constexpr (std::is_same_v<View, LayersView>)
-                drawLayersView(context, pane, view);
-            else if constexpr (std::is_same_v<View, TimelineView>)
-                drawTimelineView(context, pane, view);
-            else if constexpr (std::is_same_v<View, DataView>)
-                drawDataView(context, pane, view);
-            else if constexpr (std::is_same_v<View, StatisticsView>)
-                drawStatisticsView(context, pane, view);
-            else if constexpr (std::is_same_v<View, HistogramView>)
-                drawHistogramView(context, pane, view);
-            else if constexpr (std::is_same_v<View, ProfileView>)
-                drawProfileView(context, pane, view);
-            else if constexpr (std::is_same_v<View, SliceMatrixView>)
-                drawSliceMatrixView(context, pane, view);
-            else if constexpr (std::is_same_v<View, ShadowCubeView>)
-                drawShadowCubeView(context, pane, view);
-            else if constexpr (std::is_same_v<View, TesseractView>)
-                drawTesseractView(context, pane, view);
-            else if constexpr (std::is_same_v<View, CompareView>)
-                drawCompareView(context, pane, view);
-            else if constexpr (std::is_same_v<View, CurvesView>)
-                drawCurvesView(context, pane, view);
-            else if constexpr (std::is_same_v<View, HistoryView>)
-                drawHistoryPane();
-            else
-                drawLogPane();
-        },
-        found->second);
+    // By its index: drawing may take the view out of the session.
+    forEachViewKind([&, at = std::size_t(0), index = found->second.index()]<class Kind>(const Kind&) mutable {
+        if (at++ == index) Kind::draw(context, pane, std::get<typename Kind::State>(found->second));
+    });
     ImGui::PopID();
     for (const std::string& text : context.messages) message(text, true);
     busy_ = busy_ || context.busy;
     compiling_ = compiling_ || context.compiling;
     if (options_.paneDrawn) options_.paneDrawn(pane, context.behind);
-}
-
-void Workbench::drawHistoryPane() {
-    const auto& steps = history_.steps();
-    ImGui::TextDisabled("Every edit; click to go back to it.");
-    ImGui::Separator();
-    ImGui::BeginChild("##steps");
-    std::optional<std::size_t> wanted;
-    if (ImGui::Selectable("As opened", history_.position() == 0)) wanted = 0;
-    for (std::size_t i = 0; i < steps.size(); ++i) {
-        const bool undone = i >= history_.position();
-        ImGui::PushID(static_cast<int>(i));
-        if (undone) ImGui::PushStyleColor(ImGuiCol_Text, palette().muted);
-        if (ImGui::Selectable(steps[i].name.c_str(), i + 1 == history_.position())) wanted = i + 1;
-        if (undone) ImGui::PopStyleColor();
-        ImGui::PopID();
-    }
-    ImGui::EndChild();
-    if (wanted) chosen_ = [this, to = *wanted] { replace(history_.seek(to)); };
-}
-
-void Workbench::drawLogPane() {
-    if (messages_.empty()) ImGui::TextDisabled("No messages.");
-    ImGui::PushTextWrapPos(0);
-    for (auto each = messages_.rbegin(); each != messages_.rend(); ++each) {
-        ImGui::TextDisabled("%s", each->clock.c_str());
-        ImGui::SameLine();
-        if (each->failure) ImGui::PushStyleColor(ImGuiCol_Text, palette().failure);
-        ImGui::TextUnformatted(each->text.c_str());
-        if (each->failure) ImGui::PopStyleColor();
-    }
-    ImGui::PopTextWrapPos();
 }
 
 void Workbench::drawStatusBar(float height) {

@@ -13,45 +13,6 @@ namespace tessera::app {
 
 namespace {
 
-struct ViewKind {
-    const char *name, *help;
-    ViewState view;
-};
-
-StatisticsView regionTable() {
-    StatisticsView view;
-    view.byRegion = true;
-    return view;
-}
-
-ProfileView sectionAverages() {
-    ProfileView view;
-    view.over = ProfileOver::Sections;
-    return view;
-}
-
-std::vector<ViewKind> viewKinds() {
-    return {{"Volume", "The data in space", VolumeView{}},
-            {"Slices", "Three orthogonal slices with a read-out", SlicesView{}},
-            {"Scatterplots", "Every pair of parameters; brush to select", ScatterMatrixView{}},
-            {"Transfer function", "Colours and opacity of a parameter", TransferView{}},
-            {"Layers", "What the 3D views show", LayersView{}},
-            {"Timeline", "Play through time", TimelineView{}},
-            {"Data", "What is in the data set and the selection", DataView{}},
-            {"History", "Every edit, undone and redone by a click", HistoryView{}},
-            {"Messages", "What the program had to say", LogView{}},
-            {"Statistics", "Every parameter inside and outside of the selection", StatisticsView{}},
-            {"Region table", "Every parameter in every region, and what flows in and out of them", regionTable()},
-            {"Histogram", "One parameter's histogram; drag to select", HistogramView{}},
-            {"Line profile", "Parameters along a line", ProfileView{}},
-            {"Section averages", "Means over planes across an axis, a curve for each region", sectionAverages()},
-            {"Curves", "Quantities and statistics over time, against each other", CurvesView{}},
-            {"Slice matrix", "Parameters on parallel planes", SliceMatrixView{}},
-            {"Shadow cube", "Projections on the faces of a cube around the scene", ShadowCubeView{}},
-            {"Tesseract", "The field in four dimensions, turned in six planes", TesseractView{}},
-            {"Side by side", "The 3D scene with other settings", CompareView{}}};
-}
-
 /// The stack a new view opens in: that of the pane the hand is on, unless it is too narrow to read; then the largest
 /// that hides no picture in space. 0: none.
 int stackFor(const Session& session, const std::string& beside, const std::map<int, DockRect>& rects, float scale) {
@@ -70,10 +31,7 @@ int stackFor(const Session& session, const std::string& beside, const std::map<i
         };
         constexpr float kReadable = 400; // design pixels, the width of a tool bar
         const bool near = has([&](const std::string& pane, const ViewState&) { return pane == beside; });
-        const bool space = has([](const std::string&, const ViewState& view) {
-            return std::holds_alternative<VolumeView>(view) || std::holds_alternative<ShadowCubeView>(view) ||
-                   std::holds_alternative<TesseractView>(view) || std::holds_alternative<CompareView>(view);
-        });
+        const bool space = has([](const std::string&, const ViewState& view) { return traitsOf(view).inSpace; });
         float worth = size.x * size.y;
         if (near && size.x >= kReadable * scale) worth += 1e12f;
         if (space && !near) worth *= 1e-6f;
@@ -117,22 +75,31 @@ void Workbench::showSpaceBeside(bool wanted) {
     session_.dock.maximised.clear();
 }
 
+/// Opens a view beside the pane the hand is on, or where there is room for it.
+void Workbench::openView(const ViewState& view) {
+    const std::string beside = currentPane();
+    const std::string pane = addView(session_, view);
+    const std::map<int, DockRect> rects =
+        layoutDock(session_.dock, {{0, 0}, ImGui::GetMainViewport()->Size}, scale_).rects;
+    if (const int id = stackFor(session_, beside, rects, scale_)) insertPane(session_.dock, pane, id, DockSide::Center);
+    session_.dock.maximised.clear();
+    hand_.focus = pane;
+}
+
 void Workbench::addViewCommands() {
     const auto add = [this](Command command) { commands_.push_back(std::move(command)); };
-    for (const ViewKind& kind : viewKinds())
-        add({.menu = "View",
-             .name = std::string("New: ") + kind.name,
-             .help = kind.help,
-             .run = [this, view = kind.view] {
-                 const std::string beside = currentPane();
-                 const std::string pane = addView(session_, view);
-                 const std::map<int, DockRect> rects =
-                     layoutDock(session_.dock, {{0, 0}, ImGui::GetMainViewport()->Size}, scale_).rects;
-                 if (const int id = stackFor(session_, beside, rects, scale_))
-                     insertPane(session_.dock, pane, id, DockSide::Center);
-                 session_.dock.maximised.clear();
-                 hand_.focus = pane;
+    const auto opens = [&](std::string_view title, std::string_view help, const ViewState& view) {
+        add({.menu = "View", .name = "New: " + std::string(title), .help = std::string(help), .run = [this, view] {
+                 openView(view);
              }});
+    };
+    forEachViewKind([&]<class Kind>(const Kind& kind) {
+        typename Kind::State view;
+        opens(kind.traits.title, kind.traits.help, view);
+        if (!kind.preset.prepare) return;
+        kind.preset.prepare(view);
+        opens(kind.preset.title, kind.preset.help, view);
+    });
     add({.menu = "View",
          .name = "-Maximise pane",
          .help = "The pane under the mouse fills the window, or goes back",

@@ -38,7 +38,7 @@ const std::set<std::string> kElsewhere = {
     "Reset the camera",
 };
 
-Check added(const char* kind) {
+Check added(std::string_view kind) {
     return [kind](const Session& before, const Session& after) {
         ASSERT_EQ(after.views.size(), before.views.size() + 1);
         std::string pane;
@@ -124,24 +124,9 @@ const std::map<std::string, Check>& checks() {
             {"New: Section averages", [](const Session&, const Session& after) {
                  EXPECT_EQ(std::get<ProfileView>(after.views.at("profile")).over, ProfileOver::Sections);
              }}};
-        for (const auto& [name, kind] : std::map<const char*, const char*>{{"Volume", "volume"},
-                                                                           {"Slices", "slices"},
-                                                                           {"Scatterplots", "scatterMatrix"},
-                                                                           {"Transfer function", "transfer"},
-                                                                           {"Layers", "layers"},
-                                                                           {"Timeline", "timeline"},
-                                                                           {"Data", "data"},
-                                                                           {"History", "history"},
-                                                                           {"Messages", "log"},
-                                                                           {"Statistics", "statistics"},
-                                                                           {"Histogram", "histogram"},
-                                                                           {"Line profile", "profile"},
-                                                                           {"Curves", "curves"},
-                                                                           {"Slice matrix", "sliceMatrix"},
-                                                                           {"Shadow cube", "shadowCube"},
-                                                                           {"Tesseract", "tesseract"},
-                                                                           {"Side by side", "compare"}})
-            made["New: " + std::string(name)] = added(kind);
+        forEachViewKind([&]<class Kind>(const Kind& kind) {
+            made["New: " + std::string(kind.traits.title)] = added(Kind::State::kType);
+        });
         return made;
     }();
     return all;

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <deque>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace tessera::app {
+
+/// What the program had to say, oldest first: all of it in the pane Messages, the newest over the views for a while.
+class Messages {
+public:
+    static constexpr std::size_t kKept = 500; ///< older ones are forgotten
+    static constexpr std::size_t kToasts = 3; ///< over the views at a time
+
+    struct Message {
+        std::string text;
+        std::string clock; ///< local time, "14:03:59"
+        bool failure = false;
+        double born = 0;   ///< s, by the clock
+        bool gone = false; ///< no longer over the views
+        double toastSeconds() const { return failure ? 30 : 7; }
+    };
+
+    /// `now`: seconds of a clock that only rises. `echo`: failures are written to the error stream too, for runs
+    /// without a window.
+    explicit Messages(std::function<double()> now, bool echo = false);
+
+    void add(const std::string& text, bool failure = false);
+    const std::deque<Message>& list() const { return messages_; }
+    /// Those over the views at this time, newest first. What is too old or too much for that is `gone` from now on.
+    std::vector<Message*> toasts();
+    /// Seconds until one of those over the views goes; infinity where none is there.
+    double secondsToChange() const;
+
+private:
+    std::function<double()> now_;
+    bool echo_;
+    std::deque<Message> messages_;
+};
+
+/// Draws the toasts at the lower right of the window, the newest at the bottom; a click takes one away. `scale`: pixels
+/// per design pixel; `icons`: the font of icons is there.
+void drawToasts(Messages& messages, float scale, bool icons);
+
+} // namespace tessera::app

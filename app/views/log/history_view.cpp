@@ -1,0 +1,29 @@
+#include "app/pane/view_context.h"
+#include "app/session/history.h"
+#include "app/ui/theme.h"
+
+#include <imgui.h>
+#include <optional>
+
+namespace tessera::app {
+
+void drawHistoryView(ViewContext& context, const std::string&, HistoryView&) {
+    ImGui::TextDisabled("Every edit; click to go back to it.");
+    ImGui::Separator();
+    ImGui::BeginChild("##steps");
+    std::optional<std::size_t> wanted;
+    const std::size_t position = context.history ? context.history->position() : 0;
+    if (ImGui::Selectable("As opened", position == 0)) wanted = 0;
+    for (std::size_t i = 0; context.history && i < context.history->steps().size(); ++i) {
+        const bool undone = i >= position;
+        ImGui::PushID(static_cast<int>(i));
+        if (undone) ImGui::PushStyleColor(ImGuiCol_Text, palette().muted);
+        if (ImGui::Selectable(context.history->steps()[i].name.c_str(), i + 1 == position)) wanted = i + 1;
+        if (undone) ImGui::PopStyleColor();
+        ImGui::PopID();
+    }
+    ImGui::EndChild();
+    if (wanted && context.goToStep) context.goToStep(*wanted);
+}
+
+} // namespace tessera::app
