@@ -47,8 +47,8 @@ std::string errorText(const NumberOrigin& origin, const volume::DatasetInfo& inf
     return text;
 }
 
-std::string readText(const NumberOrigin& origin, const volume::DatasetInfo& info,
-                     const std::vector<volume::Channel>& channels) {
+std::string readFromText(const NumberOrigin& origin, const volume::DatasetInfo& info,
+                         const std::vector<volume::Channel>& channels) {
     const std::string computed = origin.mesh ? "resampled" : "as computed";
     if (!origin.stored) return computed;
     const std::string error = origin.exact ? std::string() : errorText(origin, info, channels);
@@ -121,7 +121,7 @@ std::string originText(const NumberOrigin& origin, const volume::DatasetInfo& in
             for (const volume::Channel& channel : all)
                 if (channel.parameter < origin.parameters && !isOriginal(origin, info, channel))
                     read.push_back(channel);
-        text = (onlyDerived ? "derived from samples " : "") + readText(origin, info, read);
+        text = (onlyDerived ? "derived from samples " : "") + readFromText(origin, info, read);
         if (derived && !onlyDerived) text += "; derived ones from these";
         if (!original.empty()) text += "; the originals as computed";
     } else {

@@ -233,7 +233,7 @@ void runWindow(const OpenRequest& request, const std::string& screenshots) {
         photographed = complete;
         glfwSwapBuffers(window.handle);
         workbench.afterFrame();
-        if (std::string next = workbench.windowTitle(); next != title) {
+        if (std::string next = workbench.document().windowTitle(); next != title) {
             title = std::move(next);
             glfwSetWindowTitle(window.handle, title.c_str());
         }

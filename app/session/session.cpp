@@ -26,19 +26,6 @@ DockNode split(int id, DockKind kind, float ratio, DockNode a, DockNode b) {
     return node;
 }
 
-/// The channel to look at first: a scalar with a range, else anything that is not a label.
-std::string firstChannel(const volume::DatasetInfo& info) {
-    const auto channels = info.channels();
-    for (const volume::Channel& channel : channels) {
-        const volume::Parameter& parameter = info.parameters[static_cast<std::size_t>(channel.parameter)];
-        const Range range = info.channelRange(channel);
-        if (!parameter.categorical && parameter.components == 1 && range.hi > range.lo) return channel.name;
-    }
-    for (const volume::Channel& channel : channels)
-        if (!info.parameters[static_cast<std::size_t>(channel.parameter)].categorical) return channel.name;
-    return channels.empty() ? std::string() : channels.front().name;
-}
-
 /// 1, 2 or 5 times a power of ten, at or below `value`.
 double niceBelow(double value) {
     const double power = std::pow(10.0, std::floor(std::log10(value)));
@@ -131,112 +118,22 @@ std::string firstVector(const volume::DatasetInfo& info) {
     return {};
 }
 
+std::string firstChannel(const volume::DatasetInfo& info) {
+    const auto channels = info.channels();
+    for (const volume::Channel& channel : channels) {
+        const volume::Parameter& parameter = info.parameters[static_cast<std::size_t>(channel.parameter)];
+        const Range range = info.channelRange(channel);
+        if (!parameter.categorical && parameter.components == 1 && range.hi > range.lo) return channel.name;
+    }
+    for (const volume::Channel& channel : channels)
+        if (!info.parameters[static_cast<std::size_t>(channel.parameter)].categorical) return channel.name;
+    return channels.empty() ? std::string() : channels.front().name;
+}
+
 void colorDifferences(Session& session) {
     for (const volume::DerivedParameter& each : session.data.derived)
         if (std::holds_alternative<volume::DifferenceRecipe>(each.recipe))
             session.transfer.try_emplace(each.name, vis::divergingFunction());
-}
-
-void fitSession(Session& session, const volume::DatasetInfo& info, std::vector<std::string>& messages) {
-    repair(session.dock, paneKeys(session));
-    const auto channels = info.channels();
-    if (channels.empty()) return;
-    colorDifferences(session);
-    const auto known = [&](const std::string& name) { return info.findChannel(name).has_value(); };
-
-    // A name that is missing is replaced by the same stand-in everywhere, different ones by different channels.
-    std::map<std::string, std::string> standIn;
-    std::vector<std::string> free;
-    for (const volume::Channel& channel : channels)
-        if (!info.parameters[static_cast<std::size_t>(channel.parameter)].categorical &&
-            (info.parameters[static_cast<std::size_t>(channel.parameter)].components == 1 || channel.magnitude))
-            free.push_back(channel.name);
-    const std::string fallback = firstChannel(info);
-    const auto replace = [&](std::string& name) {
-        if (name.empty() || known(name)) return false;
-        auto found = standIn.find(name);
-        if (found == standIn.end()) {
-            const std::string with = standIn.size() < free.size() ? free[standIn.size()] : fallback;
-            found = standIn.emplace(name, with).first;
-            messages.push_back("parameter " + name + " is not in the data; showing " + with + " instead");
-        }
-        name = found->second;
-        return true;
-    };
-    for (vis::Layer& layer : session.layers) {
-        std::visit(
-            [&](auto& technique) {
-                if constexpr (requires { technique.vector; }) {
-                    const auto isVector = [&](const volume::Parameter& parameter) {
-                        return parameter.components == 3 && parameter.name == technique.vector;
-                    };
-                    if (std::none_of(info.parameters.begin(), info.parameters.end(), isVector))
-                        technique.vector = firstVector(info);
-                }
-                if constexpr (requires { technique.weight; })
-                    if (!known(technique.weight)) technique.weight.clear();
-                if constexpr (requires { technique.colorBy; })
-                    if (!technique.colorBy.empty() && !known(technique.colorBy)) {
-                        messages.push_back("layer " + layer.name + " has its own colours: " + technique.colorBy +
-                                           " is not in the data");
-                        technique.colorBy.clear();
-                    }
-                const bool replaced = replace(technique.channel);
-                if (replaced) layer.name = technique.channel;
-                if (technique.channel.empty()) technique.channel = fallback;
-                if constexpr (requires { technique.value; }) {
-                    const auto index = info.findChannel(technique.channel);
-                    if (replaced && index) {
-                        const Range range = info.channelRange(channels[static_cast<std::size_t>(*index)]);
-                        technique.value = 0.5 * (range.lo + range.hi);
-                    }
-                }
-            },
-            layer.technique);
-    }
-    for (vis::Layer& layer : session.layers) {
-        const auto named = [&](const vis::Lens& lens) { return lens.name == layer.lens; };
-        if (layer.lens.empty() || std::any_of(session.lenses.begin(), session.lenses.end(), named)) continue;
-        messages.push_back("layer " + layer.name + " is hidden: there is no lens " + layer.lens);
-        layer.visible = false;
-        layer.lens.clear();
-    }
-    const auto owned = [&](const std::string& name) { // by a layer alone
-        return std::any_of(session.layers.begin(), session.layers.end(),
-                           [&](const vis::Layer& layer) { return !name.empty() && layer.transfer == name; });
-    };
-    for (auto& [key, view] : session.views) {
-        if (auto* slices = std::get_if<SlicesView>(&view)) replace(slices->channel);
-        if (auto* transfer = std::get_if<TransferView>(&view); transfer && !owned(transfer->channel))
-            replace(transfer->channel);
-        if (auto* histogram = std::get_if<HistogramView>(&view)) replace(histogram->channel);
-        if (auto* tesseract = std::get_if<TesseractView>(&view)) {
-            replace(tesseract->channel);
-            if (!known(tesseract->fourth)) tesseract->fourth.clear();
-        }
-        std::visit(
-            [&](auto& each) {
-                if constexpr (requires { each.channels; })
-                    std::erase_if(each.channels, [&](const std::string& name) { return !known(name); });
-            },
-            view);
-        if (auto* scatter = std::get_if<ScatterMatrixView>(&view)) {
-            if (std::none_of(scatter->channels.begin(), scatter->channels.end(), known)) scatter->channels.clear();
-            std::erase_if(scatter->channels, [&](const std::string& name) { return !known(name); });
-        }
-    }
-    std::erase_if(session.selection.brushes, [&](const vis::Brush& brush) {
-        const std::vector<std::string> names = vis::regionChannels(brush.region);
-        const bool lost = !std::all_of(names.begin(), names.end(), known);
-        if (lost) messages.push_back("brush " + brush.name + " is dropped: its parameters are not in the data");
-        return lost;
-    });
-    for (int axis = 0; axis < 3; ++axis) {
-        const double lo = info.bounds.lo[axis], hi = info.bounds.hi[axis];
-        if (!(session.cursor[axis] >= lo && session.cursor[axis] <= hi)) session.cursor[axis] = 0.5 * (lo + hi);
-    }
-    if (!info.times.empty() && !(session.time >= info.times.front() && session.time <= info.times.back()))
-        session.time = info.times[static_cast<std::size_t>(info.nearestTime(session.time))];
 }
 
 Session defaultSession(const volume::DatasetInfo& info, const DataRef& data) {

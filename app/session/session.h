@@ -188,6 +188,9 @@ vis::Scene sceneOf(const Session& session);
 /// The name of the first parameter with three components, "" if there is none.
 std::string firstVector(const volume::DatasetInfo& info);
 
+/// The channel to look at first: a scalar with a range, else anything that is not a label; "" if there is none.
+std::string firstChannel(const volume::DatasetInfo& info);
+
 /// The session's lenses in the space of its data.
 vis::LensSpace lensSpace(const Session& session, const volume::DatasetInfo& info);
 

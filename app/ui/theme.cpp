@@ -77,8 +77,9 @@ Fonts loadFonts(float scale) {
     return fonts;
 }
 
-void applyTheme(Theme theme, float scale) {
-    const bool dark = theme == Theme::Dark;
+namespace {
+
+ImGuiStyle styleSizes(bool dark, float scale) {
     ImGuiStyle style;
     style.WindowPadding = {10, 8};
     style.FramePadding = {8, 4};
@@ -102,78 +103,99 @@ void applyTheme(Theme theme, float scale) {
     style.WindowMenuButtonPosition = ImGuiDir_None;
     style.ScaleAllSizes(scale);
     style.WindowBorderSize = style.PopupBorderSize = std::max(1.0f, std::floor(scale));
+    return style;
+}
 
-    ImVec4* c = style.Colors;
-    const ImVec4 text = dark ? rgb(0xDADDE2) : rgb(0x23272E);
-    const ImVec4 muted = dark ? rgb(0x8A919C) : rgb(0x6A717C);
-    const ImVec4 window = dark ? rgb(0x1D2025) : rgb(0xFAFAFB);
-    const ImVec4 host = dark ? rgb(0x131519) : rgb(0xDFE2E6);
-    const ImVec4 frame = dark ? rgb(0x2A2E35) : rgb(0xFFFFFF);
-    const ImVec4 frameHover = dark ? rgb(0x343942) : rgb(0xF0F4FA);
-    const ImVec4 border = dark ? rgb(0x34383F) : rgb(0xC9CED5);
-    const ImVec4 accent = dark ? rgb(0x5AA2F0) : rgb(0x1F6FCB);
-    const auto tint = [&](float alpha) { return ImVec4(accent.x, accent.y, accent.z, alpha); };
-    c[ImGuiCol_Text] = text;
-    c[ImGuiCol_TextDisabled] = muted;
-    c[ImGuiCol_WindowBg] = window;
+/// The colours that the others are made of.
+struct Shades {
+    explicit Shades(bool isDark) : dark(isDark) {}
+    bool dark;
+    ImVec4 text = dark ? rgb(0xDADDE2) : rgb(0x23272E);
+    ImVec4 muted = dark ? rgb(0x8A919C) : rgb(0x6A717C);
+    ImVec4 window = dark ? rgb(0x1D2025) : rgb(0xFAFAFB);
+    ImVec4 host = dark ? rgb(0x131519) : rgb(0xDFE2E6);
+    ImVec4 frame = dark ? rgb(0x2A2E35) : rgb(0xFFFFFF);
+    ImVec4 frameHover = dark ? rgb(0x343942) : rgb(0xF0F4FA);
+    ImVec4 border = dark ? rgb(0x34383F) : rgb(0xC9CED5);
+    ImVec4 accent = dark ? rgb(0x5AA2F0) : rgb(0x1F6FCB);
+    ImVec4 tint(float alpha) const { return {accent.x, accent.y, accent.z, alpha}; }
+};
+
+void setColors(ImVec4* c, const Shades& shades) {
+    c[ImGuiCol_Text] = shades.text;
+    c[ImGuiCol_TextDisabled] = shades.muted;
+    c[ImGuiCol_WindowBg] = shades.window;
     c[ImGuiCol_ChildBg] = {0, 0, 0, 0};
-    c[ImGuiCol_PopupBg] = dark ? rgb(0x24272D, 0.98f) : rgb(0xFFFFFF, 0.99f);
-    c[ImGuiCol_Border] = border;
+    c[ImGuiCol_PopupBg] = shades.dark ? rgb(0x24272D, 0.98f) : rgb(0xFFFFFF, 0.99f);
+    c[ImGuiCol_Border] = shades.border;
     c[ImGuiCol_BorderShadow] = {0, 0, 0, 0};
-    c[ImGuiCol_FrameBg] = frame;
-    c[ImGuiCol_FrameBgHovered] = frameHover;
-    c[ImGuiCol_FrameBgActive] = dark ? rgb(0x3B414B) : rgb(0xE4EDF8);
-    c[ImGuiCol_TitleBg] = c[ImGuiCol_TitleBgCollapsed] = host;
-    c[ImGuiCol_TitleBgActive] = dark ? rgb(0x1A1D22) : rgb(0xD3D8DE);
-    c[ImGuiCol_MenuBarBg] = host;
+    c[ImGuiCol_FrameBg] = shades.frame;
+    c[ImGuiCol_FrameBgHovered] = shades.frameHover;
+    c[ImGuiCol_FrameBgActive] = shades.dark ? rgb(0x3B414B) : rgb(0xE4EDF8);
+    c[ImGuiCol_TitleBg] = c[ImGuiCol_TitleBgCollapsed] = shades.host;
+    c[ImGuiCol_TitleBgActive] = shades.dark ? rgb(0x1A1D22) : rgb(0xD3D8DE);
+    c[ImGuiCol_MenuBarBg] = shades.host;
     c[ImGuiCol_ScrollbarBg] = {0, 0, 0, 0};
-    c[ImGuiCol_ScrollbarGrab] = dark ? rgb(0x444A54) : rgb(0xC2C8D0);
-    c[ImGuiCol_ScrollbarGrabHovered] = dark ? rgb(0x59606C) : rgb(0xA9B1BB);
-    c[ImGuiCol_ScrollbarGrabActive] = accent;
-    c[ImGuiCol_CheckMark] = accent;
-    c[ImGuiCol_SliderGrab] = tint(0.5f);
-    c[ImGuiCol_SliderGrabActive] = accent;
-    c[ImGuiCol_Button] = dark ? rgb(0x2F343C) : rgb(0xEBEEF2);
-    c[ImGuiCol_ButtonHovered] = dark ? rgb(0x3B424C) : rgb(0xDDE6F2);
-    c[ImGuiCol_ButtonActive] = tint(0.55f);
-    c[ImGuiCol_Header] = tint(dark ? 0.22f : 0.16f);
-    c[ImGuiCol_HeaderHovered] = tint(dark ? 0.30f : 0.22f);
-    c[ImGuiCol_HeaderActive] = tint(0.42f);
-    c[ImGuiCol_Separator] = border;
-    c[ImGuiCol_SeparatorHovered] = tint(0.6f);
-    c[ImGuiCol_SeparatorActive] = accent;
+    c[ImGuiCol_ScrollbarGrab] = shades.dark ? rgb(0x444A54) : rgb(0xC2C8D0);
+    c[ImGuiCol_ScrollbarGrabHovered] = shades.dark ? rgb(0x59606C) : rgb(0xA9B1BB);
+    c[ImGuiCol_ScrollbarGrabActive] = shades.accent;
+    c[ImGuiCol_CheckMark] = shades.accent;
+    c[ImGuiCol_SliderGrab] = shades.tint(0.5f);
+    c[ImGuiCol_SliderGrabActive] = shades.accent;
+    c[ImGuiCol_Button] = shades.dark ? rgb(0x2F343C) : rgb(0xEBEEF2);
+    c[ImGuiCol_ButtonHovered] = shades.dark ? rgb(0x3B424C) : rgb(0xDDE6F2);
+    c[ImGuiCol_ButtonActive] = shades.tint(0.55f);
+    c[ImGuiCol_Header] = shades.tint(shades.dark ? 0.22f : 0.16f);
+    c[ImGuiCol_HeaderHovered] = shades.tint(shades.dark ? 0.30f : 0.22f);
+    c[ImGuiCol_HeaderActive] = shades.tint(0.42f);
+    c[ImGuiCol_Separator] = shades.border;
+    c[ImGuiCol_SeparatorHovered] = shades.tint(0.6f);
+    c[ImGuiCol_SeparatorActive] = shades.accent;
     c[ImGuiCol_ResizeGrip] = {0, 0, 0, 0};
-    c[ImGuiCol_ResizeGripHovered] = tint(0.5f);
-    c[ImGuiCol_ResizeGripActive] = accent;
-    c[ImGuiCol_Tab] = c[ImGuiCol_TabUnfocused] = host;
-    c[ImGuiCol_TabHovered] = frameHover;
-    c[ImGuiCol_TabActive] = c[ImGuiCol_TabUnfocusedActive] = window;
-    c[ImGuiCol_PlotLines] = c[ImGuiCol_PlotHistogram] = accent;
-    c[ImGuiCol_PlotLinesHovered] = c[ImGuiCol_PlotHistogramHovered] = tint(0.8f);
-    c[ImGuiCol_TableHeaderBg] = dark ? rgb(0x24282E) : rgb(0xECEFF3);
-    c[ImGuiCol_TableBorderStrong] = border;
-    c[ImGuiCol_TableBorderLight] = dark ? rgb(0x2A2E34) : rgb(0xE0E4E9);
+    c[ImGuiCol_ResizeGripHovered] = shades.tint(0.5f);
+    c[ImGuiCol_ResizeGripActive] = shades.accent;
+    c[ImGuiCol_Tab] = c[ImGuiCol_TabUnfocused] = shades.host;
+    c[ImGuiCol_TabHovered] = shades.frameHover;
+    c[ImGuiCol_TabActive] = c[ImGuiCol_TabUnfocusedActive] = shades.window;
+    c[ImGuiCol_PlotLines] = c[ImGuiCol_PlotHistogram] = shades.accent;
+    c[ImGuiCol_PlotLinesHovered] = c[ImGuiCol_PlotHistogramHovered] = shades.tint(0.8f);
+    c[ImGuiCol_TableHeaderBg] = shades.dark ? rgb(0x24282E) : rgb(0xECEFF3);
+    c[ImGuiCol_TableBorderStrong] = shades.border;
+    c[ImGuiCol_TableBorderLight] = shades.dark ? rgb(0x2A2E34) : rgb(0xE0E4E9);
     c[ImGuiCol_TableRowBg] = {0, 0, 0, 0};
-    c[ImGuiCol_TableRowBgAlt] = dark ? rgb(0xFFFFFF, 0.025f) : rgb(0x000000, 0.025f);
-    c[ImGuiCol_TextSelectedBg] = tint(0.35f);
-    c[ImGuiCol_DragDropTarget] = accent;
-    c[ImGuiCol_NavHighlight] = accent;
-    c[ImGuiCol_NavWindowingHighlight] = accent;
+    c[ImGuiCol_TableRowBgAlt] = shades.dark ? rgb(0xFFFFFF, 0.025f) : rgb(0x000000, 0.025f);
+    c[ImGuiCol_TextSelectedBg] = shades.tint(0.35f);
+    c[ImGuiCol_DragDropTarget] = shades.accent;
+    c[ImGuiCol_NavHighlight] = shades.accent;
+    c[ImGuiCol_NavWindowingHighlight] = shades.accent;
     c[ImGuiCol_NavWindowingDimBg] = {0, 0, 0, 0.35f};
-    c[ImGuiCol_ModalWindowDimBg] = {0, 0, 0, dark ? 0.5f : 0.28f};
-    ImGui::GetStyle() = style;
+    c[ImGuiCol_ModalWindowDimBg] = {0, 0, 0, shades.dark ? 0.5f : 0.28f};
+}
 
-    current.text = pack(text);
-    current.muted = pack(muted);
-    current.accent = pack(accent);
-    current.accentSoft = pack(tint(0.25f));
-    current.panel = pack(host);
-    current.plot = pack(dark ? rgb(0x15171B) : rgb(0xFFFFFF));
-    current.grid = pack(dark ? rgb(0x2B2F36) : rgb(0xE4E7EB));
-    current.line = pack(border);
-    current.warning = pack(dark ? rgb(0xE5B25D) : rgb(0xA86A00));
-    current.failure = pack(dark ? rgb(0xEF7B72) : rgb(0xBF2F26));
-    current.good = pack(dark ? rgb(0x7CC38A) : rgb(0x2C7D3D));
+Palette paletteOf(const Shades& shades) {
+    Palette made{};
+    made.text = pack(shades.text);
+    made.muted = pack(shades.muted);
+    made.accent = pack(shades.accent);
+    made.accentSoft = pack(shades.tint(0.25f));
+    made.panel = pack(shades.host);
+    made.plot = pack(shades.dark ? rgb(0x15171B) : rgb(0xFFFFFF));
+    made.grid = pack(shades.dark ? rgb(0x2B2F36) : rgb(0xE4E7EB));
+    made.line = pack(shades.border);
+    made.warning = pack(shades.dark ? rgb(0xE5B25D) : rgb(0xA86A00));
+    made.failure = pack(shades.dark ? rgb(0xEF7B72) : rgb(0xBF2F26));
+    made.good = pack(shades.dark ? rgb(0x7CC38A) : rgb(0x2C7D3D));
+    return made;
+}
+
+} // namespace
+
+void applyTheme(Theme theme, float scale) {
+    const Shades shades(theme == Theme::Dark);
+    ImGuiStyle style = styleSizes(shades.dark, scale);
+    setColors(style.Colors, shades);
+    ImGui::GetStyle() = style;
+    current = paletteOf(shades);
 }
 
 const Palette& palette() {

@@ -1,32 +1,43 @@
 #include "app/session/session.h"
 #include "randomise.h"
 #include "volume/base/error.h"
+#include "volume/bricks/brick_layout.h"
+#include "volume/synthetic/casting.h"
+#include "volume/synthetic/fuel_cell.h"
+#include "volume/synthetic/marschner_lobb.h"
 
+#include <cstdlib>
+#include <cxxabi.h>
+#include <filesystem>
+#include <fstream>
 #include <gtest/gtest.h>
+#include <map>
+#include <memory>
+#include <regex>
 #include <set>
+#include <typeinfo>
 
 namespace tessera::app {
 namespace {
 
-/// Every described struct of the program.
-using Structs = ::testing::Types<
-    vis::Camera, vis::VolumeLayer, vis::IsoLayer, vis::SliceLayer, vis::FlowLayer, vis::Layer, vis::RenderParams,
-    vis::Light, vis::EnvironmentLight, vis::Shadows, vis::Lighting, vis::Clip, vis::Tone, vis::BrushInterval,
-    vis::RangeRegion, vis::EllipseRegion, vis::LassoRegion, vis::SphereRegion, vis::BoxRegion, vis::LensRegion,
-    vis::Lens, vis::Brush, vis::Selection, vis::TransferFunction, DockNode, FloatingPane, DockTree, DataFile, OtherData,
-    DataRef, Animation, Appearance, VolumeView, SlicesView, ScatterMatrixView, TransferView, LayersView, TimelineView,
-    DataView, HistoryView, LogView, StatisticsView, HistogramView, ProfileView, SliceMatrixView, ShadowCubeView,
-    TesseractView, CurvesView, vis::Look, vis::Paper, volume::DerivedParameter, Session>;
+/// What must hold of one described struct; `name` as the compiler gives it.
+struct DescribedStruct {
+    std::string name;
+    void (*roundTrips)();
+    void (*defaultsAreValid)();
+    void (*missingKeysKeepTheValue)();
+    void (*wrongTypesAreReported)();
+};
+void PrintTo(const DescribedStruct& each, std::ostream* out) {
+    *out << each.name;
+}
 
-template <class T> class DescribeTest : public ::testing::Test {};
-TYPED_TEST_SUITE(DescribeTest, Structs);
-
-TYPED_TEST(DescribeTest, RoundTripsRandomValues) {
+template <Described T> void roundTrips() {
     std::mt19937 random(7);
     for (int i = 0; i < 1000; ++i) {
-        const TypeParam value = randomValue<TypeParam>(random);
+        const T value = randomValue<T>(random);
         const std::string text = printJson(toJson(value));
-        TypeParam back{};
+        T back{};
         std::vector<JsonIssue> issues;
         fromJson(back, parseJson(text, "test"), issues);
         ASSERT_TRUE(issues.empty()) << issues.front().path << ": " << issues.front().reason << "\n" << text;
@@ -35,43 +46,128 @@ TYPED_TEST(DescribeTest, RoundTripsRandomValues) {
     }
 }
 
-TYPED_TEST(DescribeTest, DefaultsAreValidKeysUniqueAndDocumented) {
-    TypeParam value{};
+template <Described T> void defaultsAreValid() {
+    T value{};
     std::vector<JsonIssue> issues;
-    fromJson(value, toJson(TypeParam{}), issues);
+    fromJson(value, toJson(T{}), issues);
     EXPECT_TRUE(issues.empty()) << issues.front().path << ": " << issues.front().reason;
     std::set<std::string> keys;
-    TypeParam::describe(value, [&](auto&, const FieldInfo& info) {
+    T::describe(value, [&](auto&, const FieldInfo& info) {
         EXPECT_TRUE(keys.insert(std::string(info.key)).second) << "key used twice: " << info.key;
         EXPECT_NE(info.key, "type") << "taken by variants";
         EXPECT_FALSE(info.doc.empty()) << info.key;
     });
 }
 
-TYPED_TEST(DescribeTest, MissingKeysKeepTheValue) {
+template <Described T> void missingKeysKeepTheValue() {
     std::mt19937 random(11);
-    const TypeParam value = randomValue<TypeParam>(random);
-    TypeParam back = value;
+    const T value = randomValue<T>(random);
+    T back = value;
     std::vector<JsonIssue> issues;
     fromJson(back, Json::object(), issues);
     EXPECT_TRUE(issues.empty());
     EXPECT_TRUE(back == value);
 }
 
-TYPED_TEST(DescribeTest, WrongTypesAreReportedAndLeaveTheValue) {
-    // Every leaf in turn becomes an object nobody knows: an issue at its path, nothing thrown.
-    const Json document = toJson(TypeParam{});
+/// Every leaf in turn becomes an object nobody knows: an issue at its path, nothing thrown.
+template <Described T> void wrongTypesAreReported() {
+    const Json document = toJson(T{});
     for (const auto& [key, member] : document.items()) {
         Json broken = document;
         broken[key] = member.is_boolean() ? Json(3) : Json(true);
-        TypeParam value{};
+        T value{};
         std::vector<JsonIssue> issues;
         fromJson(value, broken, issues);
         ASSERT_EQ(issues.size(), 1u) << key;
         EXPECT_EQ(issues[0].path, "/" + key);
         EXPECT_FALSE(issues[0].unknownKey);
-        EXPECT_TRUE(value == TypeParam{}) << key;
+        EXPECT_TRUE(value == T{}) << key;
     }
+}
+
+/// "VolumeLayer", without its namespaces.
+template <class T> std::string nameOf() {
+    const std::unique_ptr<char, void (*)(void*)> text(abi::__cxa_demangle(typeid(T).name(), nullptr, nullptr, nullptr),
+                                                      std::free);
+    const std::string name = text.get();
+    return name.substr(name.rfind(':') + 1);
+}
+
+/// Lists a described struct and all those inside of it: members, elements, alternatives.
+struct Lister {
+    std::map<std::string, DescribedStruct>& found;
+
+    template <class T> void add() const {
+        if constexpr (Described<T>) {
+            const std::string name = nameOf<T>();
+            if (!found
+                     .try_emplace(name, DescribedStruct{name, roundTrips<T>, defaultsAreValid<T>,
+                                                        missingKeysKeepTheValue<T>, wrongTypesAreReported<T>})
+                     .second)
+                return;
+            const T value{};
+            T::describe(value, [&]<class Member>(const Member&, const FieldInfo&) { add<Member>(); });
+        } else if constexpr (detail::IsVector<T>::value || detail::IsOptional<T>::value) {
+            add<typename T::value_type>();
+        } else if constexpr (detail::IsMap<T>::value) {
+            add<typename T::mapped_type>();
+        } else if constexpr (detail::IsVariant<T>::value) {
+            [&]<class... Ts>(std::type_identity<std::variant<Ts...>>) { (add<Ts>(), ...); }(std::type_identity<T>{});
+        }
+    }
+};
+
+/// Every described struct that a file may hold: those of a session, of archives and of built-in models.
+std::vector<DescribedStruct> everyStruct() {
+    std::map<std::string, DescribedStruct> found;
+    const Lister list{found};
+    list.add<Session>();
+    list.add<volume::MergeOptions>();
+    list.add<volume::FuelCellSettings>();
+    list.add<volume::MarschnerLobbSettings>();
+    list.add<volume::CastingSettings>();
+    std::vector<DescribedStruct> all;
+    for (const auto& [name, each] : found) all.push_back(each);
+    return all;
+}
+
+class DescribeTest : public testing::TestWithParam<DescribedStruct> {};
+
+TEST_P(DescribeTest, RoundTripsRandomValues) {
+    GetParam().roundTrips();
+}
+TEST_P(DescribeTest, DefaultsAreValidKeysUniqueAndDocumented) {
+    GetParam().defaultsAreValid();
+}
+TEST_P(DescribeTest, MissingKeysKeepTheValue) {
+    GetParam().missingKeysKeepTheValue();
+}
+TEST_P(DescribeTest, WrongTypesAreReportedAndLeaveTheValue) {
+    GetParam().wrongTypesAreReported();
+}
+INSTANTIATE_TEST_SUITE_P(EveryStruct, DescribeTest, testing::ValuesIn(everyStruct()),
+                         [](const auto& each) { return each.param.name; });
+
+TEST(DescribedStructs, AreAllOfTheHeaders) {
+    namespace fs = std::filesystem;
+    std::set<std::string> tested;
+    for (const DescribedStruct& each : everyStruct()) tested.insert(each.name);
+    const std::regex head("struct (\\w+) \\{");
+    std::size_t described = 0;
+    for (const char* room : {"volume", "codec", "vis", "app/session"})
+        for (const auto& entry : fs::recursive_directory_iterator(fs::path(TESSERA_SOURCE_DIR) / room)) {
+            if (entry.path().extension() != ".h") continue;
+            std::ifstream in(entry.path());
+            std::string last;
+            for (std::string line; std::getline(in, line);) {
+                std::smatch match;
+                if (std::regex_search(line, match, head)) last = match[1];
+                if (line.find("static void describe(auto") == std::string::npos || last.empty()) continue;
+                ++described;
+                EXPECT_TRUE(tested.contains(last)) << entry.path() << ": " << last << " is in no session or archive";
+            }
+        }
+    EXPECT_GT(described, 60u);
 }
 
 TEST(DescribeJson, FloatsAreShort) {

@@ -218,7 +218,7 @@ TEST_F(WorkbenchData, AnotherFileStandsBeside) {
     settle();
     const std::string shown = workbench.source()->info().channel(0).name;
     ASSERT_EQ(shown, "slope");
-    workbench.compareWith({(folder / "other.raw").string()});
+    workbench.data().compareWith({(folder / "other.raw").string()});
     settle(); // the other file is read, then
     settle(); // the difference is made
     const auto source = workbench.source();

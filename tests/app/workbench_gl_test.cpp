@@ -304,7 +304,7 @@ TEST_F(WorkbenchLeaving, ACancelledSaveLeavesEverythingAsItIs) {
     press(key::kEscape); // but nowhere
     settle();
     EXPECT_TRUE(workbench.session() == edited);
-    EXPECT_NE(workbench.windowTitle().find('*'), std::string::npos);
+    EXPECT_NE(workbench.document().windowTitle().find('*'), std::string::npos);
     EXPECT_TRUE(std::filesystem::is_empty(folder));
 
     ASSERT_TRUE(run("Save session as..."));
@@ -313,7 +313,7 @@ TEST_F(WorkbenchLeaving, ACancelledSaveLeavesEverythingAsItIs) {
     settle();
     EXPECT_TRUE(std::filesystem::exists("session.tessera.json"));
     EXPECT_TRUE(workbench.session() == edited);
-    EXPECT_EQ(workbench.windowTitle().find('*'), std::string::npos);
+    EXPECT_EQ(workbench.document().windowTitle().find('*'), std::string::npos);
 
     // With a place the same answer saves, and what was waited for is done.
     addBrush("saved on leaving");

@@ -92,110 +92,153 @@ struct InkOnPaper {
     }
 };
 
-void drawSpace(ViewContext& context, const std::string& pane, VolumeView& view) {
-    VolumeCache& cache = cacheOf<VolumeCache>(context, pane);
-    const volume::DatasetInfo& info = context.source->info();
-    Session& session = context.session;
-    const ImVec2 room = ImGui::GetContentRegionAvail();
-    PictureBox picture{ImGui::GetCursorScreenPos(), {std::floor(room.x), std::floor(room.y)}};
-    if (picture.size.x < 8 || picture.size.y < 8) return;
-    const ImVec2 max{picture.min.x + picture.size.x, picture.min.y + picture.size.y};
-    const vis::WorldFrame world = vis::worldFrame(info.bounds, session.stretch);
+/// One frame of a picture of the scene in a pane.
+class SpacePicture {
+public:
+    SpacePicture(ViewContext& context, VolumeCache& cache, VolumeView& view, PictureBox picture)
+        : context_(context), cache_(cache), view_(view), picture_(picture), session_(context.session),
+          info_(context.source->info()), world_(vis::worldFrame(info_.bounds, session_.stretch)), triad_(em() * 2.6f),
+          triadAt_(picture.min.x + triad_ + em(), max().y - triad_ - em()),
+          showTriad_(view.showGizmo && picture.size.x > em() * 14 && picture.size.y > em() * 12) {}
 
-    ImGui::InvisibleButton("picture", picture.size,
-                           ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonMiddle |
-                               ImGuiButtonFlags_MouseButtonRight);
-    const bool hovered = ImGui::IsItemHovered();
-    const float triad = em() * 2.6f;
-    const ImVec2 triadAt{picture.min.x + triad + em(), max.y - triad - em()};
-    const bool showTriad = view.showGizmo && picture.size.x > em() * 14 && picture.size.y > em() * 12;
-    const ImVec2 mouse = ImGui::GetIO().MousePos;
-    cache.hand.blocked =
-        showTriad && hovered && std::hypot(mouse.x - triadAt.x, mouse.y - triadAt.y) < triad + em() * 0.5f;
-    const SpaceFrame before = spaceFrame(picture.min, max, session.camera, info.bounds, session.stretch);
-    const bool free = hovered && !cache.hand.dragging() && !cache.hand.blocked;
-    const bool onHandle =
-        view.showLenses && !cache.lens.active && editHandles(cache.handles, session, info, before, free);
-    const bool onLens =
-        view.showLenses && !onHandle && cache.handles.object.empty() && editLenses(cache.lens, session, before, free);
-    const bool follows = view.showLenses && followPointer(session, before, free);
-    const bool moving =
-        onHandle || onLens || follows || handleMouse(context, cache.hand, cache.target.get(), picture, world, "menu");
-    drawMenu(context, "menu", view, world, picture.aspect());
-    if (cache.hand.dragging() || cache.lens.active || cache.handles.active) context.interacting = true;
+    void draw(const std::string& pane) {
+        const bool moving = useHands();
+        vis::FrameRequest request;
+        request.size = {picture_.size.x, picture_.size.y};
+        request.moving = (moving || context_.interacting || session_.animation.playing) && !context_.headless;
+        request.wait = context_.headless;
+        if (!cache_.target) cache_.target = context_.renderer.makeTarget();
+        vis::Scene scene = cache_.scene.get(context_, pane, request.moving);
+        // In motion a third of the frame is left to what else is drawn.
+        if (request.moving) request.budgetMs = double(scene.render.limits.frameTime) * 2 / 3;
+        scene.showBox = view_.showBox;
+        const vis::FrameStatus status = context_.renderer.render(*cache_.target, scene, request);
+        context_.follow(status);
 
-    if (!cache.target) cache.target = context.renderer.makeTarget();
-    vis::FrameRequest request;
-    request.size = {picture.size.x, picture.size.y};
-    request.moving = (moving || context.interacting || session.animation.playing) && !context.headless;
-    request.wait = context.headless;
-    vis::Scene scene = cache.scene.get(context, pane, request.moving);
-    // In motion a third of the frame is left to what else is drawn.
-    if (request.moving) request.budgetMs = double(scene.render.limits.frameTime) * 2 / 3;
-    scene.showBox = view.showBox;
-    const vis::FrameStatus status = context.renderer.render(*cache.target, scene, request);
-    context.follow(status);
-
-    const InkOnPaper ink(scene);
-    ImDrawList& draw = *ImGui::GetWindowDrawList();
-    draw.PushClipRect(picture.min, max, true);
-    addPicture(draw, status.texture, picture.min, max);
-    const SpaceFrame space = spaceFrame(picture.min, max, session.camera, info.bounds, session.stretch);
-    if (view.showCursor) drawCursor3d(draw, space, session.cursor);
-    drawSpaceBrushes(draw, space, session.selection);
-    drawProfileLines(draw, space, session);
-    if (view.showLenses) {
-        drawLenses(draw, space, session, cache.lens.lens);
-        drawLensHandles(draw, cache.lens, space, session);
-        drawHandles(draw, cache.handles, space, session, info);
+        const InkOnPaper ink(scene);
+        list_ = ImGui::GetWindowDrawList();
+        list_->PushClipRect(picture_.min, max(), true);
+        addPicture(*list_, status.texture, picture_.min, max());
+        const SpaceFrame space = spaceFrame(picture_.min, max(), session_.camera, info_.bounds, session_.stretch);
+        drawObjects(space);
+        const AxisLabels labels = axisLabels(session_, info_);
+        drawLegend();
+        if (showTriad_) drawTriadAt(labels);
+        if (view_.showScaleBar && !timeAxisOf(session_, info_)) drawBar();
+        drawTexts();
+        if (!status.complete && !context_.headless && !request.moving) drawProgress(status);
+        if (view_.showAxes) drawAxes3d(*list_, space, session_.camera, labels, taken_);
+        list_->PopClipRect();
     }
 
-    const AxisLabels labels = axisLabels(session, info);
-    std::vector<std::pair<ImVec2, ImVec2>> taken;
-    if (view.showLegend) {
-        const LegendArea area = drawLegends(draw, sceneLegends(session, info), picture.min, max);
-        taken.push_back({area.min, area.max});
+private:
+    ImVec2 max() const { return picture_.max(); }
+
+    /// Mouse and keys over the picture; true while something moves.
+    bool useHands() {
+        ImGui::InvisibleButton("picture", picture_.size,
+                               ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonMiddle |
+                                   ImGuiButtonFlags_MouseButtonRight);
+        const bool hovered = ImGui::IsItemHovered();
+        const ImVec2 mouse = ImGui::GetIO().MousePos;
+        cache_.hand.blocked =
+            showTriad_ && hovered && std::hypot(mouse.x - triadAt_.x, mouse.y - triadAt_.y) < triad_ + em() * 0.5f;
+        const SpaceFrame before = spaceFrame(picture_.min, max(), session_.camera, info_.bounds, session_.stretch);
+        const bool free = hovered && !cache_.hand.dragging() && !cache_.hand.blocked, lenses = view_.showLenses;
+        const bool onHandle =
+            lenses && !cache_.lens.active && editHandles(cache_.handles, session_, info_, before, free);
+        const bool onLens =
+            lenses && !onHandle && cache_.handles.object.empty() && editLenses(cache_.lens, session_, before, free);
+        const bool follows = lenses && followPointer(session_, before, free);
+        const bool moving = onHandle || onLens || follows ||
+                            handleMouse(context_, cache_.hand, cache_.target.get(), picture_, world_, "menu");
+        drawMenu(context_, "menu", view_, world_, picture_.aspect());
+        if (cache_.hand.dragging() || cache_.lens.active || cache_.handles.active) context_.interacting = true;
+        return moving;
     }
-    if (showTriad) {
+
+    /// What lies in space besides the scene.
+    void drawObjects(const SpaceFrame& space) {
+        if (view_.showCursor) drawCursor3d(*list_, space, session_.cursor);
+        drawSpaceBrushes(*list_, space, session_.selection);
+        drawProfileLines(*list_, space, session_);
+        if (!view_.showLenses) return;
+        drawLenses(*list_, space, session_, cache_.lens.lens);
+        drawLensHandles(*list_, cache_.lens, space, session_);
+        drawHandles(*list_, cache_.handles, space, session_, info_);
+    }
+
+    void drawLegend() {
+        if (!view_.showLegend) return;
+        const LegendArea area = drawLegends(*list_, sceneLegends(session_, info_), picture_.min, max());
+        taken_.push_back({area.min, area.max});
+    }
+
+    void drawTriadAt(const AxisLabels& labels) {
+        const ImVec2 mouse = ImGui::GetIO().MousePos;
         const auto clicked =
-            drawTriad(draw, triadAt, triad, session.camera, labels, cache.hand.blocked ? &mouse : nullptr,
-                      cache.hand.blocked && ImGui::IsMouseClicked(ImGuiMouseButton_Left));
-        if (clicked) lookAlong(session.camera, *clicked, world, picture.aspect());
-        taken.push_back({{triadAt.x - triad, triadAt.y - triad}, {triadAt.x + triad, triadAt.y + triad}});
+            drawTriad(*list_, triadAt_, triad_, session_.camera, labels, cache_.hand.blocked ? &mouse : nullptr,
+                      cache_.hand.blocked && ImGui::IsMouseClicked(ImGuiMouseButton_Left));
+        if (clicked) lookAlong(session_.camera, *clicked, world_, picture_.aspect());
+        taken_.push_back({{triadAt_.x - triad_, triadAt_.y - triad_}, {triadAt_.x + triad_, triadAt_.y + triad_}});
     }
-    if (view.showScaleBar && !timeAxisOf(session, info)) {
-        const float left = showTriad ? triadAt.x + triad + em() : picture.min.x + em();
-        const float right = taken.empty() || !view.showLegend ? max.x : taken.front().first.x;
+
+    void drawBar() {
+        const float left = showTriad_ ? triadAt_.x + triad_ + em() : picture_.min.x + em();
+        const float right = taken_.empty() || !view_.showLegend ? max().x : taken_.front().first.x;
         const float most = std::min(em() * 9, right - left - em());
-        const ScaleBar bar = scaleBar(session.camera, world, session.stretch, info.lengthUnit, picture.size.y, most);
+        const ScaleBar bar =
+            scaleBar(session_.camera, world_, session_.stretch, info_.lengthUnit, picture_.size.y, most);
         const float width = std::max(bar.pixels, ImGui::CalcTextSize(bar.text.c_str()).x);
         if (bar.pixels >= em() * 2 && left + width < right)
-            taken.push_back(drawScaleBar(draw, {left, max.y - em() * 0.5f}, bar));
+            taken_.push_back(drawScaleBar(*list_, {left, max().y - em() * 0.5f}, bar));
     }
-    const PlotColors colors = plotColors();
-    if (const std::string text = stretchText(session.stretch); !text.empty()) {
-        const ImVec2 at{max.x - em() * 0.5f, picture.min.y + em() * 0.4f}, size = ImGui::CalcTextSize(text.c_str());
-        addTextWithBackdrop(draw, at, {1, 0}, colors.faint, text.c_str());
-        taken.push_back({{at.x - size.x, at.y}, {at.x, at.y + size.y}});
+
+    /// Says how the data are stretched, and in a picture for a report the state shown.
+    void drawTexts() {
+        if (const std::string text = stretchText(session_.stretch); !text.empty()) {
+            const ImVec2 at{max().x - em() * 0.5f, picture_.min.y + em() * 0.4f},
+                size = ImGui::CalcTextSize(text.c_str());
+            addTextWithBackdrop(*list_, at, {1, 0}, plotColors().faint, text.c_str());
+            taken_.push_back({{at.x - size.x, at.y}, {at.x, at.y + size.y}});
+        }
+        // The window has its timeline, but not where time runs along an axis.
+        if ((context_.figure || session_.data.timeAxis) && info_.times.size() > 1)
+            drawUpperLeft(stateText(info_, session_.time, session_.data.axis), plotColors().text);
     }
-    // The window has its timeline, but not where time runs along an axis.
-    if ((context.figure || session.data.timeAxis) && info.times.size() > 1) {
-        const std::string text = stateText(info, session.time, session.data.axis);
-        const ImVec2 at{picture.min.x + em() * 0.5f, picture.min.y + em() * 0.4f},
-            size = ImGui::CalcTextSize(text.c_str());
-        addTextWithBackdrop(draw, at, {0, 0}, colors.text, text.c_str());
-        taken.push_back({at, {at.x + size.x, at.y + size.y}});
-    }
-    if (!status.complete && !context.headless && !request.moving) {
+
+    void drawProgress(const vis::FrameStatus& status) {
         std::string text = status.compiling ? "compiling shaders" : "refining";
         if (status.bricksMissing > 0) text += ", " + formatCount(status.bricksMissing) + " bricks to come";
-        const ImVec2 at{picture.min.x + em() * 0.5f, picture.min.y + em() * 0.4f},
-            size = ImGui::CalcTextSize(text.c_str());
-        addTextWithBackdrop(draw, at, {0, 0}, colors.faint, text.c_str());
-        taken.push_back({at, {at.x + size.x, at.y + size.y}});
+        drawUpperLeft(text, plotColors().faint);
     }
-    if (view.showAxes) drawAxes3d(draw, space, session.camera, labels, taken);
-    draw.PopClipRect();
+
+    void drawUpperLeft(const std::string& text, ImU32 color) {
+        const ImVec2 at{picture_.min.x + em() * 0.5f, picture_.min.y + em() * 0.4f},
+            size = ImGui::CalcTextSize(text.c_str());
+        addTextWithBackdrop(*list_, at, {0, 0}, color, text.c_str());
+        taken_.push_back({at, {at.x + size.x, at.y + size.y}});
+    }
+
+    ViewContext& context_;
+    VolumeCache& cache_;
+    VolumeView& view_;
+    PictureBox picture_;
+    Session& session_;
+    const volume::DatasetInfo& info_;
+    vis::WorldFrame world_;
+    float triad_;    ///< radius, pixels
+    ImVec2 triadAt_; ///< its middle
+    bool showTriad_;
+    ImDrawList* list_ = nullptr;
+    std::vector<std::pair<ImVec2, ImVec2>> taken_; ///< corners of what is drawn already, which labels keep clear of
+};
+
+void drawSpace(ViewContext& context, const std::string& pane, VolumeView& view) {
+    const ImVec2 room = ImGui::GetContentRegionAvail();
+    const PictureBox picture{ImGui::GetCursorScreenPos(), {std::floor(room.x), std::floor(room.y)}};
+    if (picture.size.x < 8 || picture.size.y < 8) return;
+    SpacePicture(context, cacheOf<VolumeCache>(context, pane), view, picture).draw(pane);
 }
 
 /// The data that a plane at all times is cut from, through a renderer of their own.

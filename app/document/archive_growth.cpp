@@ -1,4 +1,4 @@
-#include "app/workbench/workbench.h"
+#include "app/document/archive_growth.h"
 
 #include "codec/archive/archive.h"
 #include "volume/base/error.h"
@@ -7,7 +7,6 @@
 #include "volume/sources/labelled_source.h"
 
 #include <algorithm>
-#include <array>
 #include <filesystem>
 
 namespace tessera::app {
@@ -97,55 +96,43 @@ std::string grownText(const std::string& path, const volume::BrickSource& was, c
 
 } // namespace
 
-/// Takes over what has become whole in archives that grow while they are shown, the first or the one beside it; the
-/// view of the data stays as it is.
-void Workbench::followGrowth() {
-    const bool follow = source_ && !options_.headless && !session_.data.timeAxis;
+bool ArchiveGrowth::changed(const DataRef* data, const std::function<void()>& wake) {
     std::array<std::string, 2> paths;
-    if (follow) paths = {archivePath(session_.data), archivePath(otherData(session_.data))};
-    bool changed = false;
+    if (data) paths = {archivePath(*data), archivePath(otherData(*data))};
+    bool any = false;
     for (std::size_t i = 0; i < paths.size(); ++i) {
         if (paths[i].empty())
-            growth_[i].reset();
-        else if (!growth_[i] || growth_[i]->path() != paths[i])
-            growth_[i] = std::make_unique<GrowthWatch>(paths[i], jobs_.wake, options_.growthInterval);
-        if (growth_[i] && growth_[i]->changed()) changed = true;
+            watches_[i].reset();
+        else if (!watches_[i] || watches_[i]->path() != paths[i])
+            watches_[i] = std::make_unique<GrowthWatch>(paths[i], wake, interval_);
+        if (watches_[i] && watches_[i]->changed()) any = true;
     }
-    if (!changed) return;
-    jobs_.start(
-        "growth", "Reading what is new",
-        [this, paths, data = session_.data, from = sources(),
-         derived = derivedShown_](const Progress& progress) -> Jobs::Finish {
-            auto messages = std::make_shared<std::vector<std::string>>();
-            const Both was(volume::underived(from.pictures));
-            if (data.other.has_value() != (was.other != nullptr)) return {}; // about to be shown otherwise
-            Sources made;
-            try {
-                made = readAgain(data, from);
-            } catch (const Error&) {
-                return {}; // being replaced: what is shown stays good
-            }
-            const Both is(made.pictures);
-            if (!goesOn(*was.own, *is.own) || (was.other && !goesOn(*was.other, *is.other))) return {};
-            const std::string grown = grownText(paths[0], *was.own, *is.own),
-                              otherGrown = was.other ? grownText(paths[1], *was.other, *is.other) : "";
-            if (grown.empty() && otherGrown.empty()) return {};
-            vis::SameSamples same = sameSamples(*volume::underived(from.pictures), *made.pictures);
-            if (!otherGrown.empty()) same.channels = std::min(same.channels, int(was.own->info().channels().size()));
-            made = deriveBoth(made, derived, *messages, progress);
-            return [this, grown, otherGrown, messages, made, from, same] {
-                if (source_ != from.pictures) { // other data, or derived anew from what was there: look again
-                    growth_ = {};
-                    return;
-                }
-                take(made, same); // views keep what they have: a drag goes on
-                fitSession(session_, source_->info(), *messages);
-                for (const std::string& text : {grown, otherGrown})
-                    if (!text.empty()) message(text);
-                for (const std::string& text : *messages) message(text, true);
-            };
-        },
-        true);
+    return any;
+}
+
+std::optional<Grown> readGrown(const DataRef& data, const Sources& shown,
+                               const std::vector<volume::DerivedParameter>& derived, const Progress& progress) {
+    const auto before = volume::underived(shown.pictures);
+    const Both was(before);
+    if (data.other.has_value() != (was.other != nullptr)) return {}; // about to be shown otherwise
+    Sources now;
+    try {
+        now = readAgain(data, shown);
+    } catch (const Error&) {
+        return {}; // being replaced: what is shown stays good
+    }
+    const Both is(now.pictures);
+    if (!goesOn(*was.own, *is.own) || (was.other && !goesOn(*was.other, *is.other))) return {};
+    Grown grown;
+    const std::string own = grownText(archivePath(data), *was.own, *is.own),
+                      other = was.other ? grownText(archivePath(otherData(data)), *was.other, *is.other) : "";
+    for (const std::string& text : {own, other})
+        if (!text.empty()) grown.news.push_back(text);
+    if (grown.news.empty()) return {};
+    grown.same = sameSamples(*before, *now.pictures);
+    if (!other.empty()) grown.same.channels = std::min(grown.same.channels, int(was.own->info().channels().size()));
+    grown.sources = deriveBoth(now, derived, grown.problems, progress);
+    return grown;
 }
 
 } // namespace tessera::app

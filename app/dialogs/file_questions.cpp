@@ -1,0 +1,49 @@
+#include "app/dialogs/file_questions.h"
+
+#include <utility>
+
+namespace tessera::app {
+
+namespace {
+
+constexpr const char* kData = "data"; ///< the purpose of a question whose files must be readable
+
+} // namespace
+
+FileQuestions::FileQuestions(Jobs& jobs) : form_(jobs) {
+    dialog_.preview = [this](const std::string& path) {
+        FilePreview preview = form_.previewOf(path);
+        // Other questions are for files that are no data (colours), or whose form a session states.
+        preview.failed = preview.failed && dialog_.purpose() == kData;
+        return preview;
+    };
+    dialog_.filesChosen = [this](const std::vector<std::string>& paths) { form_.filesChosen(paths); };
+    dialog_.options = [this] { form_.draw(); };
+}
+
+void FileQuestions::askData(std::function<void(const std::vector<std::string>&, const volume::ImportOptions&)> answer) {
+    answer_ = [this, answer = std::move(answer)](const auto& paths) { answer(paths, form_.stated()); };
+    dialog_.show(FileMode::Open, "Open", kData, dialog_.folder());
+}
+
+void FileQuestions::askOpen(const std::string& title, std::function<void(const std::vector<std::string>&)> answer,
+                            const std::string& folder) {
+    answer_ = std::move(answer);
+    dialog_.show(FileMode::Open, title, "", folder.empty() ? dialog_.folder() : folder);
+}
+
+void FileQuestions::askSave(const std::string& title, const std::string& name, const std::string& ending,
+                            std::function<void(const std::string&)> answer) {
+    answer_ = [answer = std::move(answer)](const std::vector<std::string>& paths) { answer(paths.front()); };
+    dialog_.show(FileMode::Save, title, "", dialog_.folder(), name, ending);
+}
+
+void FileQuestions::draw() {
+    if (const auto answer = dialog_.draw(); answer && answer_) {
+        std::exchange(answer_, nullptr)(answer->paths); // may ask again
+        return;
+    }
+    if (!dialog_.shown()) answer_ = nullptr;
+}
+
+} // namespace tessera::app

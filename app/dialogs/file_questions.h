@@ -1,0 +1,38 @@
+#pragma once
+
+#include "app/dialogs/import_form.h"
+
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace tessera::app {
+
+/// The file dialog with what happens to the answer; one question at a time.
+class FileQuestions {
+public:
+    /// Previews are read by the jobs.
+    explicit FileQuestions(Jobs& jobs);
+
+    /// Asks for data or a session; what is stated about data files comes with the answer.
+    void
+    askData(std::function<void(const std::vector<std::string>& paths, const volume::ImportOptions& stated)> answer);
+    /// Asks for files to open. `folder`: to look in first, "" = the last one.
+    void askOpen(const std::string& title, std::function<void(const std::vector<std::string>& paths)> answer,
+                 const std::string& folder = {});
+    /// Asks where to save. `ending` is added to names without one.
+    void askSave(const std::string& title, const std::string& name, const std::string& ending,
+                 std::function<void(const std::string& path)> answer);
+
+    bool shown() const { return dialog_.shown(); }
+    /// Draws it if it is shown; the answer is given in the frame the user decides. A question that is left is
+    /// forgotten.
+    void draw();
+
+private:
+    ImportForm form_;
+    FileDialog dialog_;
+    std::function<void(const std::vector<std::string>&)> answer_;
+};
+
+} // namespace tessera::app

@@ -1,0 +1,262 @@
+#include "app/document/data_follower.h"
+
+#include "app/data/pack_child.h"
+#include "app/pane/view_parts.h"
+#include "app/ui/file_dialog.h"
+#include "app/user_files/import_memory.h"
+#include "app/user_files/state_dir.h"
+#include "app/views/data/derived_list.h"
+#include "volume/base/background.h"
+#include "volume/import/over_time.h"
+
+#include <filesystem>
+
+namespace tessera::app {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr const char* kLatticeChoice = "lattice"; ///< by this name it is remembered
+
+} // namespace
+
+DataFollower::DataFollower(Document& document, Jobs& jobs, Messages& messages, Options options,
+                           std::function<void(std::optional<vis::SameSamples>)> shown)
+    : document_(document), jobs_(jobs), messages_(messages), options_(std::move(options)), shown_(std::move(shown)),
+      growth_(options_.growthInterval) {}
+
+bool showsDataFiles(const Document& document) {
+    const auto& files = document.session().data.files;
+    return document.loaded() && !files.empty() && !(files.size() == 1 && files[0].absolutePath.ends_with(".tsr"));
+}
+
+OpenRequest DataFollower::withChoices(OpenRequest request) const {
+    const std::string chosen = rememberedChoice(options_.stateFolder, kLatticeChoice);
+    for (const auto lattice : {PictureLattice::Grid, PictureLattice::BodyCentred})
+        if (chosen == kPictureLatticeNames[std::size_t(lattice)]) {
+            request.lattice = lattice;
+            if (request.data && request.paths.empty() && request.data->files.empty()) request.data->lattice = lattice;
+        }
+    return request;
+}
+
+DataFollower::CountedBy DataFollower::countedBy(const DataRef& data) {
+    return {data.axis, data.timeAxis, data.import.overTime};
+}
+
+void DataFollower::reset() {
+    const DataRef& data = document_.session().data;
+    derived_.settle(data.derived);
+    counted_.settle(countedBy(data));
+    lattice_.settle(data.lattice);
+    labels_.settle(data.import.labels);
+}
+
+void DataFollower::follow(bool typing, bool dragging) {
+    if (!document_.loaded()) return;
+    followLattice();
+    followLabels(typing);
+    followDerived();
+    followAxis(dragging);
+    followGrowth();
+}
+
+/// The document shows other sources from now on.
+void DataFollower::take(Sources sources, std::optional<vis::SameSamples> grown) {
+    document_.setSources(std::move(sources));
+    shown_(grown);
+}
+
+/// Shows what a job has made. False, and nothing changes, where other data are shown by now.
+bool DataFollower::moveTo(RemadeData made) {
+    if (!document_.moveTo(made)) return false;
+    derived_.settle(made.data.derived);
+    counted_.settle(countedBy(made.data));
+    lattice_.settle(made.data.lattice);
+    labels_.shown = made.data.import.labels;
+    shown_({});
+    for (const std::string& text : made.messages) messages_.add(text);
+    return true;
+}
+
+void DataFollower::show(const DataRef& data, const std::string& title) {
+    jobs_.start("open", title,
+                [this, title, from = document_.sources().pictures, data](const Progress& progress) -> Jobs::Finish {
+                    const auto made = std::make_shared<RemadeData>(RemadeData{from, {}, data, {}});
+                    made->sources = openSources(data, made->messages, progress);
+                    return [this, title, made] {
+                        if (!moveTo(std::move(*made)))
+                            messages_.add(title + ": not shown, as the data have changed meanwhile");
+                    };
+                });
+}
+
+void DataFollower::compareWith(const std::vector<std::string>& paths) {
+    const std::string title = paths.empty() ? "Without the other data" : "Comparing with another file";
+    jobs_.start("open", title,
+                [this, title, paths, from = document_.sources().pictures,
+                 data = document_.session().data](const Progress& progress) -> Jobs::Finish {
+                    const auto made = std::make_shared<RemadeData>(RemadeData{from, {}, data, {}});
+                    made->data.other.reset();
+                    if (!paths.empty()) {
+                        const DataRef other =
+                            dataOf(paths, recallOptions(paths, volume::ImportOptions{}, progress.part(0, 0.1)));
+                        made->data.other =
+                            OtherData{.files = other.files, .model = {}, .settings = {}, .import = other.import};
+                    }
+                    made->sources = openSources(made->data, made->messages, progress.part(0.1, 1));
+                    return [this, title, made] {
+                        if (!moveTo(std::move(*made)))
+                            return messages_.add(title + ": not shown, as the data have changed meanwhile");
+                        addDifference();
+                    };
+                });
+}
+
+/// A new parameter: how the one shown first differs in the other data.
+void DataFollower::addDifference() {
+    Session& session = document_.session();
+    const volume::DatasetInfo& info = document_.info();
+    const auto channel = session.data.other ? resolveChannel(info, session, "") : std::nullopt;
+    if (!channel) return;
+    const volume::DerivedParameter difference =
+        newDifference(info, info.channel(*channel).name, {volume::OtherTime::Other});
+    if (const std::string problem = volume::derivedProblem(difference, info); problem.empty())
+        messages_.add("New parameter: " + addDerived(session, difference));
+    else
+        messages_.add("No difference is made: " + problem);
+}
+
+void DataFollower::pack(const std::string& path) {
+    const DataRef& data = document_.session().data;
+    std::vector<std::string> inputs;
+    for (const DataFile& file : data.files) inputs.push_back(file.absolutePath);
+    jobs_.start("pack", "Packing " + fs::path(path).filename().string(),
+                [this, path, inputs, from = document_.sources().pictures, import = data.import, derived = data.derived,
+                 other = data.other, program = options_.program](const Progress& progress) -> Jobs::Finish {
+                    workInBackground();
+                    const PackedArchive archive =
+                        packInChild(fs::canonical(program).string(), inputs, import, path, progress.part(0, 0.95));
+                    const std::string done =
+                        "Packed " + textOfBytes(archive.sourceBytes) + " into " + textOfBytes(archive.archiveBytes);
+                    const auto made = std::make_shared<RemadeData>(RemadeData{from, {}, dataOf({path}, {}), {}});
+                    made->data.derived = derived;
+                    made->data.other = other;
+                    made->sources = openSources(made->data, made->messages, progress.part(0.95, 1));
+                    return [this, path, done, made] {
+                        messages_.add(done + (moveTo(std::move(*made)) ? ", now shown from " : ": ") + path);
+                    };
+                });
+}
+
+/// Draws the data on another lattice when that has been edited.
+void DataFollower::followLattice() {
+    const DataRef& data = document_.session().data;
+    const PictureLattice wanted = data.lattice;
+    const auto step = lattice_.next(wanted);
+    if (step == Tracked<PictureLattice>::Step::Cancel) jobs_.cancel("lattice");
+    if (step != Tracked<PictureLattice>::Step::Make) return;
+    rememberChoice(options_.stateFolder, kLatticeChoice, std::string(kPictureLatticeNames[std::size_t(wanted)]));
+    if (isArchive(data) || data.packed) {
+        lattice_.shown = wanted; // of data that lie on a lattice of their own
+        return;
+    }
+    jobs_.start("lattice", "Resampling for pictures",
+                [this, wanted, from = document_.sources(), derived = derived_.shown](const Progress&) -> Jobs::Finish {
+                    const Sources made = drawnOn(wanted, from, derived);
+                    return [this, made, wanted, from] {
+                        // Gone on, or other data, meanwhile: made of those.
+                        if (document_.sources().pictures != from.pictures) return lattice_.giveUp();
+                        take(made);
+                        lattice_.shown = wanted;
+                    };
+                });
+}
+
+/// Opens the data again when the axis of times, the plane whose times run along an axis, or the table over time has
+/// been edited; what is shown stays until then.
+void DataFollower::followAxis(bool dragging) {
+    const DataRef& data = document_.session().data;
+    const auto step = counted_.next(countedBy(data), dragging);
+    if (step == Tracked<CountedBy>::Step::Cancel) jobs_.cancel("axis");
+    if (step != Tracked<CountedBy>::Step::Make) return;
+    jobs_.start("axis", "Reading the times",
+                [this, from = document_.sources().pictures, data](const Progress& progress) -> Jobs::Finish {
+                    const auto made = std::make_shared<RemadeData>(RemadeData{from, {}, data, {}});
+                    made->sources = openSources(data, made->messages, progress);
+                    return [this, made] {
+                        if (!moveTo(std::move(*made))) counted_.giveUp();
+                    };
+                });
+}
+
+void DataFollower::addTable(const std::string& path) {
+    jobs_.start("table", "Reading " + fs::path(path).filename().string(),
+                [this, path, from = document_.sources().pictures](const Progress&) -> Jobs::Finish {
+                    volume::DatasetInfo info = from->info();
+                    const volume::TimeTable table = volume::readTimeTable(path);
+                    volume::addTable(info, table);
+                    return [this, path, from, columns = table.columns.size()] {
+                        if (document_.sources().pictures != from) return;
+                        document_.session().data.import.overTime = absolutePath(path).generic_string();
+                        messages_.add(std::to_string(columns) + (columns == 1 ? " quantity" : " quantities") +
+                                      " over time from " + path);
+                    };
+                });
+}
+
+/// Opens the data again, with the names that regions have been given; not while one is being typed.
+void DataFollower::followLabels(bool typing) {
+    const DataRef& data = document_.session().data;
+    if (labels_.next(data.import.labels, typing) != decltype(labels_)::Step::Make) return;
+    if (!options_.headless) rememberLabels(data.import.labels, labels_.shown, document_.info().name);
+    show(data, "Naming regions");
+}
+
+/// Makes the source again when the parameters derived from it have been edited; what is shown stays until then.
+void DataFollower::followDerived() {
+    const auto& wanted = document_.session().data.derived;
+    const auto step = derived_.next(wanted);
+    if (step == decltype(derived_)::Step::Cancel) jobs_.cancel("derive");
+    if (step != decltype(derived_)::Step::Make) return;
+    const Sources& now = document_.sources();
+    jobs_.start("derive", "Deriving parameters",
+                [this, below = Sources(volume::underived(now.pictures), volume::underived(now.numbers), now.origin),
+                 wanted, from = now.pictures](const Progress& progress) -> Jobs::Finish {
+                    auto messages = std::make_shared<std::vector<std::string>>();
+                    const Sources made = deriveBoth(below, wanted, *messages, progress);
+                    return [this, messages, made, wanted, from] {
+                        // Gone on, or other data, meanwhile: derived from those.
+                        if (document_.sources().pictures != from) return derived_.giveUp();
+                        take(made);
+                        derived_.shown = wanted;
+                        fitSession(document_.session(), document_.info(), *messages);
+                        for (const std::string& text : *messages) messages_.add(text, true);
+                    };
+                });
+}
+
+/// Takes over what has become whole in archives that grow while they are shown; the view of the data stays as it is.
+void DataFollower::followGrowth() {
+    const DataRef& data = document_.session().data;
+    if (!growth_.changed(options_.headless || data.timeAxis ? nullptr : &data, jobs_.wake)) return;
+    jobs_.start(
+        "growth", "Reading what is new",
+        [this, data, from = document_.sources(), derived = derived_.shown](const Progress& progress) -> Jobs::Finish {
+            const auto grown = std::make_shared<std::optional<Grown>>(readGrown(data, from, derived, progress));
+            if (!*grown) return {};
+            return [this, grown, from] {
+                // Other data, or derived anew from what was there: look again.
+                if (document_.sources().pictures != from.pictures) return growth_.lookAgain();
+                Grown& now = **grown;
+                take(std::move(now.sources), now.same); // views keep what they have: a drag goes on
+                fitSession(document_.session(), document_.info(), now.problems);
+                for (const std::string& text : now.news) messages_.add(text);
+                for (const std::string& text : now.problems) messages_.add(text, true);
+            };
+        },
+        true);
+}
+
+} // namespace tessera::app

@@ -1,0 +1,120 @@
+#include "app/document/document.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <utility>
+
+namespace tessera::app {
+
+namespace fs = std::filesystem;
+
+Document::Document() {
+    history_.reset(session_);
+    saved_ = session_;
+}
+
+SessionDocument Document::snapshot() const {
+    SessionDocument document;
+    document.session = session_;
+    document.history = history_;
+    document.unknown = unknown_;
+    return document;
+}
+
+std::string Document::windowTitle() const {
+    std::string title = path_.empty() ? session_.title : fs::path(path_).filename().string();
+    if (!title.empty()) title += dirty() ? " * - " : " - ";
+    return title + "Tessera";
+}
+
+bool Document::dirty() const {
+    Session now = session_;
+    now.animation.playing = saved_.animation.playing;
+    now.dock = saved_.dock; // looking around is nothing to be asked about
+    now.camera = saved_.camera;
+    now.time = saved_.time;
+    return !(now == saved_);
+}
+
+void Document::install(Opened opened) {
+    const Appearance appearance = session_.appearance;
+    const bool first = !loaded();
+    sources_ = opened.sources();
+    session_ = std::move(opened.document.session);
+    // A data file says nothing about the looks of the window: they stay. A session does.
+    if (!first && opened.document.raw.is_null()) session_.appearance = appearance;
+    history_ = std::move(opened.document.history);
+    unknown_ = std::move(opened.document.unknown);
+    if (history_.steps().empty()) history_.reset(session_);
+    path_ = opened.sessionPath;
+    saved_ = session_;
+    playback_ = {};
+}
+
+bool Document::moveTo(RemadeData& made) {
+    if (sources_.pictures != made.from) return false;
+    DataRef data = made.data;
+    const DataRef& now = session_.data;
+    data.derived = now.derived; // others by now: they are made next
+    data.lattice = now.lattice;
+    data.axis = now.axis;
+    data.import.overTime = now.import.overTime;
+    if (data.files == now.files) data.import.labels = now.import.labels;
+    const DataRef recorded = history_.data();
+    app::moveTo(session_, history_, &info(), made.sources.pictures->info(), data, made.messages);
+    data.lattice = recorded.lattice;
+    data.axis = recorded.axis;
+    data.import.overTime = recorded.import.overTime;
+    if (data.files == recorded.files) data.import.labels = recorded.import.labels;
+    data.derived = recorded.derived; // an edit that goes on is still to become a step
+    history_.setData(data);
+    sources_ = made.sources;
+    playback_ = {};
+    ++edits_;
+    return true;
+}
+
+void Document::save(const std::string& path) {
+    SessionDocument written = snapshot();
+    saveSession(written, path);
+    path_ = fs::absolute(path).lexically_normal().string();
+    saved_ = session_;
+}
+
+void Document::setUnsaved() {
+    saved_ = Session{};
+    ++edits_;
+}
+
+bool Document::observe(bool editing, double seconds) {
+    if (!loaded() || !history_.observe(session_, editing, seconds)) return false;
+    ++edits_;
+    return true;
+}
+
+void Document::replace(Session session) {
+    session.animation.playing = false;
+    session_ = std::move(session);
+    repair(session_.dock, paneKeys(session_));
+    ++edits_;
+}
+
+void Document::replace(Session session, const std::string& name) {
+    replace(std::move(session));
+    history_.nameNext(name);
+}
+
+void Document::stepTime(int count) {
+    if (!loaded()) return;
+    const std::vector<double>& times = info().times;
+    const int last = static_cast<int>(times.size()) - 1;
+    const int at = std::clamp(info().nearestTime(session_.time) + count, 0, last);
+    session_.animation.playing = false;
+    session_.time = times[static_cast<std::size_t>(at)];
+}
+
+void Document::play(double seconds) {
+    playOn(playback_, session_, info().times, seconds);
+}
+
+} // namespace tessera::app

@@ -1,0 +1,151 @@
+#include "app/session/session.h"
+
+#include <algorithm>
+#include <map>
+
+namespace tessera::app {
+
+namespace {
+
+/// Makes the names in a session fit the parameters of a data set.
+class Fitting {
+public:
+    Fitting(Session& session, const volume::DatasetInfo& info, std::vector<std::string>& messages)
+        : session_(session), info_(info), messages_(messages), channels_(info.channels()),
+          fallback_(firstChannel(info)) {
+        for (const volume::Channel& channel : channels_) {
+            const volume::Parameter& parameter = info.parameters[static_cast<std::size_t>(channel.parameter)];
+            if (!parameter.categorical && (parameter.components == 1 || channel.magnitude))
+                free_.push_back(channel.name);
+        }
+    }
+
+    void layers() {
+        for (vis::Layer& layer : session_.layers) {
+            std::visit([&](auto& technique) { fit(layer, technique); }, layer.technique);
+            const auto named = [&](const vis::Lens& lens) { return lens.name == layer.lens; };
+            if (layer.lens.empty() || std::ranges::any_of(session_.lenses, named)) continue;
+            messages_.push_back("layer " + layer.name + " is hidden: there is no lens " + layer.lens);
+            layer.visible = false;
+            layer.lens.clear();
+        }
+    }
+
+    void views() {
+        const auto owned = [&](const std::string& name) { // by a layer alone
+            return !name.empty() && std::ranges::any_of(session_.layers, [&](const vis::Layer& layer) {
+                return layer.transfer == name;
+            });
+        };
+        for (auto& [key, view] : session_.views) {
+            if (auto* slices = std::get_if<SlicesView>(&view)) replace(slices->channel);
+            if (auto* transfer = std::get_if<TransferView>(&view); transfer && !owned(transfer->channel))
+                replace(transfer->channel);
+            if (auto* histogram = std::get_if<HistogramView>(&view)) replace(histogram->channel);
+            if (auto* tesseract = std::get_if<TesseractView>(&view)) {
+                replace(tesseract->channel);
+                if (!known(tesseract->fourth)) tesseract->fourth.clear();
+            }
+            std::visit(
+                [&](auto& each) {
+                    if constexpr (requires { each.channels; })
+                        std::erase_if(each.channels, [&](const std::string& name) { return !known(name); });
+                },
+                view);
+        }
+    }
+
+    void brushes() {
+        std::erase_if(session_.selection.brushes, [&](const vis::Brush& brush) {
+            const std::vector<std::string> names = vis::regionChannels(brush.region);
+            const bool lost = !std::ranges::all_of(names, [&](const std::string& name) { return known(name); });
+            if (lost) messages_.push_back("brush " + brush.name + " is dropped: its parameters are not in the data");
+            return lost;
+        });
+    }
+
+    /// Cross-hair and time lie inside.
+    void place() {
+        for (int axis = 0; axis < 3; ++axis) {
+            const double lo = info_.bounds.lo[axis], hi = info_.bounds.hi[axis];
+            double& at = session_.cursor[axis];
+            if (!(at >= lo && at <= hi)) at = 0.5 * (lo + hi);
+        }
+        if (info_.times.empty()) return;
+        if (!(session_.time >= info_.times.front() && session_.time <= info_.times.back()))
+            session_.time = info_.times[static_cast<std::size_t>(info_.nearestTime(session_.time))];
+    }
+
+private:
+    bool known(const std::string& name) const { return info_.findChannel(name).has_value(); }
+
+    /// A name that is missing is replaced by the same stand-in everywhere, different ones by different channels. True
+    /// where it was.
+    bool replace(std::string& name) {
+        if (name.empty() || known(name)) return false;
+        auto found = standIn_.find(name);
+        if (found == standIn_.end()) {
+            const std::string with = standIn_.size() < free_.size() ? free_[standIn_.size()] : fallback_;
+            found = standIn_.emplace(name, with).first;
+            messages_.push_back("parameter " + name + " is not in the data; showing " + with + " instead");
+        }
+        name = found->second;
+        return true;
+    }
+
+    /// Every member that names a parameter, by what its description says it refers to.
+    template <class Technique> void fit(vis::Layer& layer, Technique& technique) {
+        bool replaced = false;
+        Technique::describe(technique, [&]<class Member>(Member& member, const FieldInfo& field) {
+            if constexpr (std::is_same_v<Member, std::string>) {
+                if (field.refersTo == "channel") {
+                    if (replace(member)) layer.name = member, replaced = true;
+                    if (member.empty()) member = fallback_;
+                } else if (field.refersTo == "vector") {
+                    fitVector(member);
+                } else if (field.refersTo == "optionalChannel") {
+                    if (!known(member)) member.clear();
+                } else if (field.refersTo == "colorChannel" && !member.empty() && !known(member)) {
+                    messages_.push_back("layer " + layer.name + " has its own colours: " + member +
+                                        " is not in the data");
+                    member.clear();
+                }
+            }
+        });
+        if constexpr (requires { technique.value; })
+            if (const auto index = info_.findChannel(technique.channel); replaced && index) {
+                const Range range = info_.channelRange(channels_[static_cast<std::size_t>(*index)]);
+                technique.value = 0.5 * (range.lo + range.hi);
+            }
+    }
+
+    void fitVector(std::string& name) const {
+        const bool there = std::ranges::any_of(info_.parameters, [&](const volume::Parameter& parameter) {
+            return parameter.components == 3 && parameter.name == name;
+        });
+        if (!there) name = firstVector(info_);
+    }
+
+    Session& session_;
+    const volume::DatasetInfo& info_;
+    std::vector<std::string>& messages_;
+    std::vector<volume::Channel> channels_;
+    std::string fallback_;
+    std::vector<std::string> free_;              ///< channels that stand in
+    std::map<std::string, std::string> standIn_; ///< by the name that is missing
+};
+
+} // namespace
+
+void fitSession(Session& session, const volume::DatasetInfo& info, std::vector<std::string>& messages) {
+    repair(session.dock, paneKeys(session));
+    if (info.channels().empty()) return;
+    colorDifferences(session);
+    Fitting fitting(session, info, messages);
+    fitting.layers();
+    fitting.views();
+    fitting.brushes();
+    fitting.place();
+}
+
+} // namespace tessera::app

@@ -1,0 +1,208 @@
+#include "app/pane/view_parts.h"
+#include "app/ui/keys.h"
+#include "app/views/data/derived_list.h"
+#include "app/workbench/workbench.h"
+#include "app/workbench/workbench_commands.h"
+
+#include <algorithm>
+#include <imgui.h>
+
+/// The menu Edit, and parameters made by a command.
+namespace tessera::app {
+
+namespace {
+
+/// The stack that holds a pane; 0: none.
+int stackOf(const DockNode& node, const std::string& pane) {
+    if (std::ranges::find(node.tabs, pane) != node.tabs.end()) return node.id;
+    for (const DockNode& child : node.children)
+        if (const int id = stackOf(child, pane)) return id;
+    return 0;
+}
+
+/// A view of the data in space to the right of the first volume view, or none any more.
+void showSpaceBeside(Session& session, bool wanted) {
+    const auto inSpace = [](const auto& view) {
+        const auto* volume = std::get_if<VolumeView>(&view.second);
+        return volume && volume->inSpace;
+    };
+    if (!wanted) {
+        std::erase_if(session.views, inSpace);
+        repair(session.dock, paneKeys(session));
+        return;
+    }
+    const auto first = std::ranges::find_if(
+        session.views, [](const auto& view) { return std::holds_alternative<VolumeView>(view.second); });
+    if (first == session.views.end() || std::ranges::any_of(session.views, inSpace)) return;
+    const std::string beside = first->first;
+    VolumeView view = std::get<VolumeView>(first->second);
+    view.inSpace = true;
+    const std::string pane = addView(session, view);
+    if (const int id = stackOf(session.dock.root, beside)) insertPane(session.dock, pane, id, DockSide::Right);
+    session.dock.maximised.clear();
+}
+
+std::vector<Command> historyCommands(Workbench& workbench) {
+    return {{.menu = "Edit",
+             .name = "Undo",
+             .help = "Take back the last edit",
+             .shortcut = {.key = 'Z', .ctrl = true},
+             .run = [&workbench] { workbench.document().undo(); },
+             .enabled = [&workbench] { return workbench.history().canUndo() && !workbench.history().pending(); },
+             .repeats = true},
+            {.menu = "Edit",
+             .name = "Redo",
+             .help = "Do it again",
+             .shortcut = {.key = 'Z', .ctrl = true, .shift = true},
+             .alternative = {.key = 'Y', .ctrl = true},
+             .run = [&workbench] { workbench.document().redo(); },
+             .enabled = [&workbench] { return workbench.history().canRedo() && !workbench.history().pending(); },
+             .repeats = true}};
+}
+
+std::vector<Command> brushCommands(Workbench& workbench) {
+    const auto brushes = [&workbench]() -> auto& {
+        return workbench.session().selection.brushes;
+    };
+    return {{.menu = "Edit",
+             .name = "-Clear brushes",
+             .help = "Nothing is selected: everything is in focus",
+             .shortcut = {.key = key::kEscape},
+             .run = [brushes] { brushes().clear(); },
+             // While something is dragged Esc takes back that alone.
+             .enabled = [brushes] { return !brushes().empty() && !ImGui::IsAnyItemActive(); }},
+            {.menu = "Edit",
+             .name = "Invert brushes",
+             .help = "Focus what is outside of every brush",
+             .run =
+                 [brushes] {
+                     for (vis::Brush& brush : brushes()) brush.inverted = !brush.inverted;
+                 },
+             .enabled = [brushes] { return !brushes().empty(); }}};
+}
+
+std::vector<Command> timeCommands(Workbench& workbench) {
+    const auto loaded = [&workbench] { return workbench.document().loaded(); };
+    const auto playing = [&workbench]() -> bool& { return workbench.session().animation.playing; };
+    return {{.menu = "Edit",
+             .name = "-Previous time",
+             .help = "One stored time back",
+             .shortcut = {.key = key::kLeft},
+             .run = [&workbench] { workbench.document().stepTime(-1); },
+             .enabled = loaded,
+             .repeats = true},
+            {.menu = "Edit",
+             .name = "Next time",
+             .help = "One stored time on",
+             .shortcut = {.key = key::kRight},
+             .run = [&workbench] { workbench.document().stepTime(1); },
+             .enabled = loaded,
+             .repeats = true},
+            {.menu = "Edit",
+             .name = "Play",
+             .help = "Play or pause",
+             .shortcut = {.key = key::kSpace},
+             .run = [playing] { playing() = !playing(); },
+             .enabled = [&workbench, loaded] { return loaded() && workbench.document().info().times.size() > 1; },
+             .checked = playing}};
+}
+
+std::vector<Command> latticeCommands(Workbench& workbench) {
+    std::vector<Command> commands;
+    for (const auto lattice : {PictureLattice::Grid, PictureLattice::BodyCentred})
+        commands.push_back({.menu = "Edit",
+                            .name = lattice == PictureLattice::Grid
+                                        ? "-Draw on the grid of the file"
+                                        : "Draw on the body-centred lattice (70.7 % of the samples)",
+                            .help = "What pictures are drawn from; numbers come from the samples of the file on either",
+                            .run = [&workbench, lattice] { workbench.session().data.lattice = lattice; },
+                            .enabled =
+                                [&workbench] {
+                                    const DataRef& data = workbench.session().data;
+                                    return workbench.document().loaded() && !data.packed &&
+                                           (data.files.empty() || showsDataFiles(workbench.document()));
+                                },
+                            .checked = [&workbench, lattice] { return workbench.session().data.lattice == lattice; }});
+    return commands;
+}
+
+/// The plane through the cross-hair at all times in place of the data in space, or these again.
+void toggleTimeAlong(Workbench& workbench, volume::SpaceAxis axis) {
+    DataRef data = workbench.session().data;
+    const bool shown = data.timeAxis && data.timeAxis->axis == axis;
+    data.timeAxis.reset();
+    const volume::Box& box = workbench.document().info().bounds;
+    const int a = static_cast<int>(axis);
+    if (!shown) data.timeAxis = {axis, (workbench.session().cursor[a] - box.lo[a]) / box.size()[a]};
+    showSpaceBeside(workbench.session(), data.timeAxis.has_value());
+    workbench.data().show(data, "Times as an axis");
+}
+
+std::vector<Command> timeAlongCommands(Workbench& workbench) {
+    std::vector<Command> commands;
+    for (const auto axis : {volume::SpaceAxis::X, volume::SpaceAxis::Y, volume::SpaceAxis::Z}) {
+        const auto shown = [&workbench, axis] {
+            const auto& along = workbench.session().data.timeAxis;
+            return along && along->axis == axis;
+        };
+        const auto possible = [&workbench, axis] {
+            const volume::DatasetInfo& info = workbench.document().info();
+            return !workbench.session().data.timeAxis && info.times.size() > 1 &&
+                   info.bounds.size()[static_cast<int>(axis)] > 0;
+        };
+        commands.push_back(
+            {.menu = "Edit",
+             .name = "Time along " + std::string(volume::kSpaceAxisNames[std::size_t(axis)]),
+             .help =
+                 "The plane through the cross-hair at all times, time in place of the axis; the data in space beside",
+             .run = [&workbench, axis] { toggleTimeAlong(workbench, axis); },
+             .enabled = [&workbench, shown,
+                         possible] { return workbench.document().loaded() && (shown() || possible()); },
+             .checked = shown});
+    }
+    return commands;
+}
+
+/// Of the parameter shown first, as new parameters; the list of derived ones offers further times.
+std::vector<Command> differenceCommands(Workbench& workbench) {
+    const auto command = [&workbench](const char* name, const char* help, volume::OtherTime which) -> Command {
+        return {
+            .menu = "",
+            .name = name,
+            .help = help,
+            .run =
+                [&workbench, which] {
+                    const volume::DatasetInfo& info = workbench.document().info();
+                    Session& session = workbench.session();
+                    const auto channel = resolveChannel(info, session, "");
+                    if (!channel) return;
+                    const std::string of = info.channel(*channel).name;
+                    const volume::DerivedParameter made = newDifference(info, of, {which, session.time});
+                    workbench.message("New parameter: " + addDerived(session, made));
+                },
+            .enabled =
+                [&workbench] { return workbench.document().loaded() && workbench.document().info().times.size() > 1; }};
+    };
+    return {command("Minus another time: first", "How the parameter shown differs from what it is at the first time",
+                    volume::OtherTime::First),
+            command("Minus another time: previous",
+                    "How the parameter shown differs from what it is at the time before", volume::OtherTime::Previous),
+            command("Minus another time: last", "How the parameter shown differs from what it is at the last time",
+                    volume::OtherTime::Last),
+            command("Minus another time: shown now",
+                    "How the parameter shown differs from what it is at the time shown now", volume::OtherTime::Time)};
+}
+
+} // namespace
+
+std::vector<Command> editCommands(Workbench& workbench) {
+    std::vector<Command> all;
+    for (const auto make :
+         {historyCommands, brushCommands, timeCommands, latticeCommands, timeAlongCommands, differenceCommands}) {
+        std::vector<Command> commands = make(workbench);
+        std::ranges::move(commands, std::back_inserter(all));
+    }
+    return all;
+}
+
+} // namespace tessera::app

@@ -1,0 +1,152 @@
+#include "app/document/surface_export.h"
+#include "app/ui/keys.h"
+#include "app/workbench/workbench.h"
+#include "app/workbench/workbench_commands.h"
+#include "volume/base/error.h"
+#include "volume/synthetic/models.h"
+
+#include <filesystem>
+#include <imgui.h>
+
+/// The menus File and Help.
+namespace tessera::app {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+void askPack(Workbench& workbench) {
+    const std::string stem = fs::path(workbench.session().data.files.front().absolutePath).stem().string();
+    workbench.files().askSave("Pack into an archive", stem + ".tsr", ".tsr",
+                              [&workbench](const std::string& path) { workbench.data().pack(path); });
+}
+
+void askCompared(Workbench& workbench) {
+    if (workbench.session().data.other) return workbench.data().compareWith({});
+    workbench.files().askOpen(
+        "Compare with", [&workbench](const std::vector<std::string>& paths) { workbench.data().compareWith(paths); });
+}
+
+void askSurface(Workbench& workbench) {
+    workbench.files().askSave("Export surface", "surface.ply", "", [&workbench](const std::string& path) {
+        exportSurface(workbench.document(), path, workbench.jobs(), workbench.messages());
+    });
+}
+
+void copySession(Workbench& workbench) {
+    const std::string folder = fs::current_path().string();
+    ImGui::SetClipboardText(printSession(workbench.document().snapshot(), folder + "/clipboard").c_str());
+    workbench.message("Session copied");
+}
+
+void pasteSession(Workbench& workbench) {
+    const char* text = ImGui::GetClipboardText();
+    if (!text || !looksLikeSession(text)) return workbench.message("The clipboard holds no session");
+    try {
+        workbench.openText(text);
+    } catch (const Error& error) {
+        workbench.message(error.what(), true);
+    }
+}
+
+} // namespace
+
+std::vector<Command> fileCommands(Workbench& workbench) {
+    const auto loaded = [&workbench] { return workbench.document().loaded(); };
+    return {{.menu = "File",
+             .name = "Open...",
+             .help = "A session, an archive, a picture of ours or data files",
+             .shortcut = {.key = 'O', .ctrl = true},
+             .run =
+                 [&workbench] {
+                     workbench.files().askData(
+                         [&workbench](const std::vector<std::string>& paths, const volume::ImportOptions& stated) {
+                             OpenRequest request;
+                             request.paths = paths;
+                             request.import = stated;
+                             workbench.open(std::move(request));
+                         });
+                 }},
+            {.menu = "File",
+             .name = "-Save session",
+             .help = "Write the session to its file",
+             .shortcut = {.key = 'S', .ctrl = true},
+             .run = [&workbench] { workbench.save(); },
+             .enabled = loaded},
+            {.menu = "File",
+             .name = "Save session as...",
+             .help = "Write the session to another file",
+             .shortcut = {.key = 'S', .ctrl = true, .shift = true},
+             .run = [&workbench] { workbench.saveAs(); },
+             .enabled = loaded},
+            {.menu = "File",
+             .name = "Pack into an archive...",
+             .help = "Compress the data files shown into one .tsr file that opens at once, and show that",
+             .run = [&workbench] { askPack(workbench); },
+             .enabled = [&workbench] { return showsDataFiles(workbench.document()); }},
+            {.menu = "File",
+             .name = "Compare with another file...",
+             .help = "The parameters of another data set beside these, on the same grid, and how they differ",
+             .run = [&workbench] { askCompared(workbench); },
+             .enabled = loaded,
+             .checked = [&workbench] { return workbench.session().data.other.has_value(); }},
+            {.menu = "File",
+             .name = "-Save picture...",
+             .help = "The window or one view as PNG at any size; it carries the session",
+             .shortcut = {.key = key::kF12},
+             .run = [&workbench] { workbench.pictureDialog().show(workbench.panes().current(workbench.session())); },
+             .enabled = loaded},
+            {.menu = "File",
+             .name = "Export surface...",
+             .help = "The selected iso-surface layer at full resolution as PLY, STL, OBJ or VTP, by the ending",
+             .run = [&workbench] { askSurface(workbench); },
+             .enabled = [&workbench, loaded] { return loaded() && chosenSurface(workbench.session()) >= 0; }},
+            {.menu = "File",
+             .name = "Copy session",
+             .help = "The session as text, for a colleague or an issue",
+             .shortcut = {.key = 'C', .ctrl = true},
+             .run = [&workbench] { copySession(workbench); },
+             .enabled = loaded},
+            {.menu = "File",
+             .name = "Paste session",
+             .help = "Open the session in the clipboard",
+             .shortcut = {.key = 'V', .ctrl = true},
+             .run = [&workbench] { pasteSession(workbench); }},
+            {.menu = "File",
+             .name = "-Quit",
+             .help = "End the program",
+             .shortcut = {.key = 'Q', .ctrl = true},
+             .run = [&workbench] { workbench.requestQuit(); }}};
+}
+
+std::vector<Command> helpCommands(Workbench& workbench) {
+    std::vector<Command> commands = {{.menu = "Help",
+                                      .name = "Shortcuts",
+                                      .help = "Every key",
+                                      .shortcut = {.key = key::kF1},
+                                      .alternative = {.key = 'H'},
+                                      .run = [&workbench] { workbench.help().showShortcuts(); }},
+                                     {.menu = "Help",
+                                      .name = "Command palette",
+                                      .help = "Find anything by name",
+                                      .shortcut = {.key = 'P', .ctrl = true, .shift = true},
+                                      .alternative = {.key = key::kSpace, .ctrl = true},
+                                      .run = [&workbench] { workbench.palette().open = true; }}};
+    for (const std::string& model : volume::modelNames())
+        commands.push_back({.menu = "Help",
+                            .name = (model == volume::modelNames().front() ? "-" : "") + ("Example data: " + model),
+                            .help = "Computed by the program",
+                            .run = [&workbench, model] {
+                                OpenRequest request;
+                                request.data.emplace();
+                                request.data->model = model;
+                                if (model == "fuel-cell" || model == "planted") request.layout = "overview";
+                                workbench.open(std::move(request));
+                            }});
+    commands.push_back({.menu = "Help", .name = "-About Tessera", .help = "Version", .run = [&workbench] {
+                            workbench.help().showAbout();
+                        }});
+    return commands;
+}
+
+} // namespace tessera::app

@@ -1,0 +1,149 @@
+#include "app/workbench/pane_host.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace tessera::app {
+
+namespace {
+
+/// Whether a pane shows the scene from the session's camera.
+bool hasCamera(const Session& session, const std::string& pane) {
+    const auto found = session.views.find(pane);
+    return found != session.views.end() && traitsOf(found->second).camera;
+}
+
+/// The stack a new view opens in: that of the pane the hand is on, unless it is too narrow to read; then the largest
+/// that hides no picture in space. 0: none.
+int stackFor(const Session& session, const std::string& beside, const std::map<int, DockRect>& rects, float scale) {
+    int chosen = 0;
+    float largest = 0;
+    const std::function<void(const DockNode&)> look = [&](const DockNode& node) {
+        for (const DockNode& child : node.children) look(child);
+        const auto rect = rects.find(node.id);
+        if (node.tabs.empty() || rect == rects.end()) return;
+        const ImVec2 size{rect->second.hi.x - rect->second.lo.x, rect->second.hi.y - rect->second.lo.y};
+        const auto has = [&](const auto& wanted) {
+            return std::any_of(node.tabs.begin(), node.tabs.end(), [&](const std::string& pane) {
+                const auto view = session.views.find(pane);
+                return view != session.views.end() && wanted(pane, view->second);
+            });
+        };
+        constexpr float kReadable = 400; // design pixels, the width of a tool bar
+        const bool near = has([&](const std::string& pane, const ViewState&) { return pane == beside; });
+        const bool space = has([](const std::string&, const ViewState& view) { return traitsOf(view).inSpace; });
+        float worth = size.x * size.y;
+        if (near && size.x >= kReadable * scale) worth += 1e12f;
+        if (space && !near) worth *= 1e-6f;
+        if (worth <= largest) return;
+        largest = worth;
+        chosen = node.id;
+    };
+    look(session.dock.root);
+    return chosen;
+}
+
+} // namespace
+
+const ViewCache* PaneHost::cache(const std::string& pane) const {
+    const auto found = caches_.find(pane);
+    return found == caches_.end() ? nullptr : found->second.get();
+}
+
+const ViewExport* PaneHost::exported(const std::string& pane) const {
+    const auto found = exports_.find(pane);
+    return found == exports_.end() ? nullptr : &found->second;
+}
+
+void PaneHost::draw(const ViewContext& frame, const Area& area) {
+    Session& session = frame.session;
+    std::erase_if(caches_, [&](const auto& entry) { return !session.views.contains(entry.first); });
+    int renderers = 1;
+    for (const auto& [pane, cache] : caches_) renderers += cache->renderers();
+    busy_ = compiling_ = false;
+    hovered_.clear();
+    drawn_.clear();
+    DockPanes panes;
+    panes.title = [&](const std::string& pane) { return paneTitle(session, pane); };
+    panes.draw = [&](const std::string& pane) { drawPane(frame, pane, renderers); };
+    panes.padded = [&](const std::string& pane) {
+        const auto found = session.views.find(pane);
+        return found == session.views.end() || traitsOf(found->second).padded;
+    };
+    panes.close = [&](const std::string& pane) {
+        removePane(session.dock, pane);
+        session.views.erase(pane);
+    };
+    panes.none = area.none;
+    if (area.only.empty()) {
+        drawDock(session.dock, hand_, panes, area.origin, area.size, frame.scale);
+    } else {
+        DockTree alone;
+        alone.maximised = area.only;
+        drawDock(alone, hand_, panes, area.origin, area.size, frame.scale, true);
+    }
+    last_ = drawn_;
+}
+
+void PaneHost::drawPane(const ViewContext& frame, const std::string& pane, int renderers) {
+    drawn_.insert(pane);
+    const bool focused =
+        ImGui::IsWindowFocused(ImGuiFocusedFlags_ChildWindows) && std::exchange(focused_, pane) != pane;
+    if (ImGui::IsWindowHovered(ImGuiHoveredFlags_ChildWindows | ImGuiHoveredFlags_AllowWhenBlockedByActiveItem))
+        hovered_ = pane;
+    if ((focused || hovered_ == pane) && hasCamera(frame.session, pane)) lastSpace_ = pane;
+    const auto found = frame.session.views.find(pane);
+    if (found == frame.session.views.end()) {
+        ImGui::TextDisabled("There is no view named %s.", pane.c_str());
+        return;
+    }
+    ViewContext context = frame;
+    context.renderers = renderers;
+    if (cameraPane_ == pane) context.cameraKey = std::exchange(cameraKey_, 0);
+    if (frame.headless) context.offerExport = [&](ViewExport made) { exports_[pane] = std::move(made); };
+    ImGui::PushID(pane.c_str());
+    // By its index: drawing may take the view out of the session.
+    forEachViewKind([&, at = std::size_t(0), index = found->second.index()]<class Kind>(const Kind&) mutable {
+        if (at++ == index) Kind::draw(context, pane, std::get<typename Kind::State>(found->second));
+    });
+    ImGui::PopID();
+    messages_.insert(messages_.end(), context.messages.begin(), context.messages.end());
+    busy_ = busy_ || context.busy;
+    compiling_ = compiling_ || context.compiling;
+    if (paneDrawn) paneDrawn(pane, context.behind);
+}
+
+void PaneHost::open(Session& session, const ViewState& view, float scale) {
+    const std::string beside = current(session);
+    const std::string pane = addView(session, view);
+    const std::map<int, DockRect> rects =
+        layoutDock(session.dock, {{0, 0}, ImGui::GetMainViewport()->Size}, scale).rects;
+    if (const int id = stackFor(session, beside, rects, scale)) insertPane(session.dock, pane, id, DockSide::Center);
+    session.dock.maximised.clear();
+    hand_.focus = pane;
+}
+
+std::string PaneHost::current(const Session& session) const {
+    if (!session.dock.maximised.empty()) return session.dock.maximised;
+    if (session.views.contains(hovered_)) return hovered_;
+    return session.views.contains(focused_) ? focused_ : std::string();
+}
+
+std::string PaneHost::space(const Session& session) const {
+    if (last_.contains(lastSpace_) && hasCamera(session, lastSpace_)) return lastSpace_;
+    for (const std::string& pane : last_)
+        if (hasCamera(session, pane)) return pane;
+    return {};
+}
+
+void PaneHost::pressCameraKey(const Session& session, int key) {
+    cameraPane_ = space(session);
+    cameraKey_ = key;
+}
+
+bool PaneHost::plays(const Session& session) const {
+    return std::ranges::any_of(
+        session.views, [&](const auto& view) { return last_.contains(view.first) && traitsOf(view.second).plays; });
+}
+
+} // namespace tessera::app

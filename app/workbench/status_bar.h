@@ -1,0 +1,21 @@
+#pragma once
+
+#include "app/data/sources.h"
+#include "app/ui/jobs.h"
+#include "vis/passes/renderer.h"
+
+#include <string>
+
+/// The line at the lower edge of the window.
+namespace tessera::app {
+
+/// What is shown: "channel   128 × 64 × 64 CC   6 parameters, 11 times"; "No data".
+std::string dataText(const Sources& sources);
+/// How much of it the GPU holds: "   textures 12.5 of 512 MiB, 96 bricks, 4 to come"; "" = nothing yet.
+std::string residencyText(const vis::ResidencyInfo& use);
+
+/// Draws a text at the left, and the jobs at the right, each with a button that cancels it. `height` in pixels, `scale`
+/// in pixels per design pixel; `icons`: the font of icons is there; no `jobs`: none are shown.
+void drawStatusBar(const std::string& text, Jobs* jobs, float height, float scale, bool icons);
+
+} // namespace tessera::app

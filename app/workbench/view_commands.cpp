@@ -1,0 +1,153 @@
+#include "app/ui/keys.h"
+#include "app/workbench/workbench.h"
+#include "app/workbench/workbench_commands.h"
+#include "volume/base/error.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <imgui.h>
+
+/// The menus View and Layout: which views are open, where, and how they look.
+namespace tessera::app {
+
+namespace {
+
+/// One for each kind of view, and for each preset of one.
+void addOpeningCommands(std::vector<Command>& commands, Workbench& workbench) {
+    const auto opens = [&](std::string_view title, std::string_view help, const ViewState& view) {
+        commands.push_back({.menu = "View",
+                            .name = "New: " + std::string(title),
+                            .help = std::string(help),
+                            .run = [&workbench, view] {
+                                workbench.panes().open(workbench.session(), view, workbench.look().scale());
+                            }});
+    };
+    forEachViewKind([&]<class Kind>(const Kind& kind) {
+        typename Kind::State view;
+        opens(kind.traits.title, kind.traits.help, view);
+        if (!kind.preset.prepare) return;
+        kind.preset.prepare(view);
+        opens(kind.preset.title, kind.preset.help, view);
+    });
+}
+
+void addPaneCommands(std::vector<Command>& commands, Workbench& workbench) {
+    const auto current = [&workbench] { return workbench.panes().current(workbench.session()); };
+    commands.push_back({.menu = "View",
+                        .name = "-Maximise pane",
+                        .help = "The pane under the mouse fills the window, or goes back",
+                        .shortcut = {.key = key::kF11},
+                        .run = [&workbench, current] {
+                            std::string& maximised = workbench.session().dock.maximised;
+                            maximised = maximised.empty() ? current() : std::string();
+                        }});
+    commands.push_back({.menu = "View",
+                        .name = "Duplicate pane",
+                        .help = "Another view like the one under the mouse",
+                        .shortcut = {.key = 'D', .ctrl = true},
+                        .run = [&workbench, current] {
+                            Session& session = workbench.session();
+                            if (const auto found = session.views.find(current()); found != session.views.end())
+                                addView(session, ViewState(found->second));
+                        }});
+}
+
+void addLookCommands(std::vector<Command>& commands, Workbench& workbench) {
+    const auto looks = [&workbench]() -> Appearance& { return workbench.session().appearance; };
+    const auto resize = [looks](float factor) {
+        looks().scale = std::clamp(std::round(looks().scale * factor * 20) / 20, 0.5f, 3.0f);
+    };
+    commands.push_back({.menu = "View",
+                        .name = "-Light theme",
+                        .help = "Dark on light, for print and bright rooms",
+                        .run = [looks] { looks().theme = looks().theme == Theme::Dark ? Theme::Light : Theme::Dark; },
+                        .checked = [looks] { return looks().theme == Theme::Light; }});
+    commands.push_back({.menu = "View",
+                        .name = "Larger text",
+                        .help = "Text and controls grow",
+                        .shortcut = {.key = '=', .ctrl = true},
+                        .run = [resize] { resize(1.125f); }});
+    commands.push_back({.menu = "View",
+                        .name = "Smaller text",
+                        .help = "Text and controls shrink",
+                        .shortcut = {.key = '-', .ctrl = true},
+                        .run = [resize] { resize(1 / 1.125f); }});
+}
+
+void addCameraCommands(std::vector<Command>& commands, Workbench& workbench) {
+    for (const auto& [name, key, help] : {std::tuple{"-Look from the front", '1', "Shift: from the back"},
+                                          {"Look from the right", '3', "Shift: from the left"},
+                                          {"Look from the top", '7', "Shift: from below"},
+                                          {"Look isometric", '9', "The corner"},
+                                          {"Parallel projection", '5', "Perspective or parallel"},
+                                          {"Reset the camera", 'R', "See everything again"}})
+        commands.push_back(
+            {.menu = "View",
+             .name = name,
+             .help = std::string(help) + "; in the volume used last, by key in the one under the mouse",
+             .shortcut = {.key = key},
+             .run = [&workbench, key = key] { workbench.panes().pressCameraKey(workbench.session(), key); },
+             .enabled =
+                 [&workbench] {
+                     return workbench.document().loaded() && !workbench.panes().space(workbench.session()).empty();
+                 },
+             .checked =
+                 [&workbench, key = key] {
+                     return key == '5' && workbench.session().camera.projection == vis::Projection::Orthographic;
+                 },
+             .keyInView = true});
+}
+
+/// Every view open, arranged as at first.
+void resetArrangement(Workbench& workbench) {
+    Session& session = workbench.session();
+    const Session fresh = defaultSession(workbench.document().info(), session.data);
+    for (const auto& [pane, view] : fresh.views) session.views.emplace(pane, view);
+    session.dock = fresh.dock;
+    repair(session.dock, paneKeys(session));
+}
+
+void showLayout(Workbench& workbench, const std::string& name, const std::string& title) {
+    try {
+        std::vector<std::string> messages;
+        const SessionDocument layout = loadSession(findLayout(name));
+        workbench.document().replace(changeLayout(layout, *workbench.source(), workbench.session(), messages),
+                                     "Layout: " + title);
+        for (const std::string& text : messages) workbench.message(text);
+    } catch (const Error& error) {
+        workbench.message(error.what(), true);
+    }
+}
+
+} // namespace
+
+std::vector<Command> viewCommands(Workbench& workbench) {
+    std::vector<Command> commands;
+    for (const auto add : {addOpeningCommands, addPaneCommands, addLookCommands, addCameraCommands})
+        add(commands, workbench);
+    return commands;
+}
+
+std::vector<Command> layoutCommands(Workbench& workbench) {
+    const auto loaded = [&workbench] { return workbench.document().loaded(); };
+    std::vector<Command> commands = {{.menu = "Layout",
+                                      .name = "Reset arrangement",
+                                      .help = "Every view open, arranged as at first",
+                                      .shortcut = {.key = 'R', .ctrl = true, .shift = true},
+                                      .run = [&workbench] { resetArrangement(workbench); },
+                                      .enabled = loaded}};
+    for (const std::string& name : layoutNames()) {
+        std::string title = name;
+        std::replace(title.begin(), title.end(), '_', ' ');
+        title[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(title[0])));
+        commands.push_back({.menu = "Layout",
+                            .name = (name == layoutNames().front() ? "-" : "") + title,
+                            .help = "Show the data in the layout " + name,
+                            .run = [&workbench, name, title] { showLayout(workbench, name, title); },
+                            .enabled = loaded});
+    }
+    return commands;
+}
+
+} // namespace tessera::app

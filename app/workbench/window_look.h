@@ -1,0 +1,23 @@
+#pragma once
+
+#include "app/ui/theme.h"
+
+namespace tessera::app {
+
+/// Fonts and style of the window, for the display it is on and the looks that the session wants.
+class WindowLook {
+public:
+    /// Before ImGui::NewFrame. True when the font atlas changed and must be uploaded.
+    bool prepare(float contentScale, const Appearance& appearance);
+    const Fonts& fonts() const { return fonts_; }
+    bool hasIcons() const { return fonts_.icons != nullptr; }
+    float scale() const { return scale_; } ///< pixels per design pixel
+
+private:
+    Fonts fonts_;
+    float scale_ = 0;
+    Theme theme_ = Theme::Dark;
+    bool styled_ = false;
+};
+
+} // namespace tessera::app
