@@ -14,7 +14,7 @@ TEST(ViewKinds, HaveNamesOfTheirOwnAndSayWhatTheyShow) {
         EXPECT_FALSE(kind.traits.help.empty()) << kind.traits.title;
         EXPECT_EQ(kind.preset.prepare == nullptr, kind.preset.title.empty());
         EXPECT_EQ(kind.preset.title.empty(), kind.preset.help.empty());
-        if (kind.preset.prepare) EXPECT_TRUE(titles.insert(kind.preset.title).second) << kind.preset.title;
+        EXPECT_TRUE(!kind.preset.prepare || titles.insert(kind.preset.title).second) << kind.preset.title;
     });
     EXPECT_EQ(types.size(), std::variant_size_v<ViewState>);
 }
