@@ -1,9 +1,7 @@
 #include "vis/passes/renderer_impl.h"
 
 #include "vis/demand/lens_pixels.h"
-#include "vis/optics/context_blur.h"
 #include "vis/optics/proxy.h"
-#include "vis/raycast/look_uniforms.h"
 #include "vis/raycast/ray_uniforms.h"
 
 #include <algorithm>
@@ -38,31 +36,51 @@ glm::ivec2 sharedByProcessors(const Tile& drawn, glm::ivec2 picture, glm::ivec2 
     return first;
 }
 
+/// The pixels of a reduced picture that show those of a tile of the whole, and what is blended with them when it is
+/// enlarged.
+Tile reducedTile(const Tile& tile, glm::ivec2 reduced, glm::ivec2 whole) {
+    const glm::dvec2 scale = glm::dvec2(reduced) / glm::dvec2(whole);
+    return intersection({glm::ivec2(glm::floor(glm::dvec2(tile.begin) * scale)) - 1,
+                         glm::ivec2(glm::ceil(glm::dvec2(tile.end) * scale)) + 1},
+                        {{0, 0}, reduced});
+}
+
 } // namespace
 
-/// Draws as much of the bound plan as the budget allows.
-void Renderer::Impl::refine(ViewTarget& target, const Scene& scene, const FrameRequest& request, RayPlan& plan,
-                            Clock::time_point start) {
-    const bool probing = target.share < 1;
-    const bool done = target.fullValid ? target.stillDone || request.moving : target.reducedValid && request.moving;
-    if (done && !probing) return;
-    const ProgramRecipe recipe = prepare(target, scene, plan);
-    target.compiling = true;
-    const ProgramAnswer answer = request.wait ? ProgramAnswer{programs.find(recipe), ProgramStage::Ready}
-                                              : programs.request(recipe, request.budgetMs / 4);
-    // A variant that is being compiled, or does not compile, leaves the former picture as it is.
-    const auto later = [&] {
-        if (!target.shows) blank(target, scene);
-        target.fullValid = target.stillDone = false;
+/// A variant that is being compiled leaves the former picture as it is.
+void Renderer::Impl::postpone(ViewTarget& target, const Scene& scene) {
+    if (!target.state.presented()) blank(target, scene);
+    target.state.setDone(PictureState::Done::Nothing);
+}
+
+/// So does one that does not compile.
+void Renderer::Impl::giveUp(ViewTarget& target, const RenderCall& call) {
+    target.shown.compiling = false;
+    if (!target.state.presented() || call.request.wait) nothing(target, call.scene);
+    target.state.setDone(PictureState::Done::Still);
+}
+
+/// Says once when lights or clips are left out, or parts of channels have no room.
+void Renderer::Impl::sayLimits(const RenderCall& call) {
+    const Scene& scene = call.scene;
+    const auto enabled = [](const auto& all) {
+        return std::count_if(all.begin(), all.end(), [](const auto& each) { return each.enabled; });
     };
-    if (!answer.program) {
-        target.compiling = answer.stage != ProgramStage::Failed && !request.wait;
-        if (target.compiling) return later();
-        if (!target.shows || request.wait) nothing(target, scene);
-        target.fullValid = target.stillDone = true;
-        return;
-    }
-    const bool presents = request.wait || presentable(target, scene);
+    std::string now;
+    if (!scene.lighting.inMaps && enabled(scene.lighting.lights) > kMaxLights)
+        now = "the first " + std::to_string(kMaxLights) + " lights are used; light through maps takes any number";
+    if (enabled(scene.clips) > kMaxClips)
+        now += (now.empty() ? "" : "; ") + ("the first " + std::to_string(kMaxClips)) + " clips are used";
+    if (enabled(scene.lenses) > kMaxLenses)
+        now += (now.empty() ? "" : "; ") + ("the first " + std::to_string(kMaxLenses)) + " lenses are used";
+    if (!call.plan.limit.empty()) now += (now.empty() ? "" : "; ") + call.plan.limit;
+    if (now != limits && !now.empty()) tools.messages.push_back(now);
+    limits = now;
+}
+
+/// Binds the textures of a plan's fields and tables.
+void Renderer::Impl::bindPlan(const ViewTarget& target, const RenderCall& call) {
+    const RayPlan& plan = call.plan;
     const RayUnits units = rayUnits(plan);
     for (std::size_t i = 0; i < plan.fields.size(); ++i) {
         const BoundField& field = plan.fields[i];
@@ -71,151 +89,172 @@ void Renderer::Impl::refine(ViewTarget& target, const Scene& scene, const FrameR
         glBindTextureUnit(GLuint(units.pages) + GLuint(i), field.pages);
         glBindTextureUnit(GLuint(units.atlases) + GLuint(i), field.atlas);
     }
-    glBindTextureUnit(GLuint(units.table), target.table.name());
-    glBindTextureUnit(GLuint(units.blocks), target.blocks.name());
-    glBindTextureUnit(GLuint(units.planes), target.planes.name());
-    const volume::DatasetInfo& info = source->info();
-    if (std::any_of(plan.layers.begin(), plan.layers.end(), [](const RayLayer& l) { return l.look & kCharcoalBit; }))
-        glBindTextureUnit(GLuint(units.grain), grain.get());
-    glBindTextureUnit(GLuint(units.lassos), brushes.update(brushTests(plan, scene, info)));
-    const bool lit = probing || bindLight(target, scene, request, plan);
+    target.tables.bind(units);
+    if (std::ranges::any_of(plan.layers, [](const RayLayer& layer) { return layer.look & kCharcoalBit; }))
+        glBindTextureUnit(GLuint(units.grain), tools.grain.get());
+    glBindTextureUnit(GLuint(units.lassos), tools.brushes.update(brushTests(plan, call.scene, call.info())));
+}
 
-    // Brings a program to where it can draw; false while that is on its way.
-    const auto ready = [&](const ProgramAnswer& program, const ProgramRecipe& made, const RayPlan& drawn,
-                           const Scene& shown) {
-        if (!program.program) return false;
-        const bool linked = program.stage == ProgramStage::Linked;
-        if (!linked && !programs.firstUse(*program.program)) return true;
-        setRayUniforms(*program.program, drawn, shown, info, source->grid(), target.size, 1);
-        if (linked) {
-            geometry(target, scene, plan, target.size, target.everything());
-            programs.warmUp(made, target.full.framebuffer);
-            return false;
-        }
-        // Software GL compiles at the first draw: do that before any clock runs.
-        geometry(target, scene, plan, target.size, target.everything());
-        target.reduced.first = {0, 0};
-        rays({program.program}, scene, target.reduced, target.size, {target.size / 2, target.size / 2 + 1}, nullptr);
-        glFinish();
-        target.reducedValid = false;
-        return true;
-    };
-    if (!ready(answer, recipe, plan, scene) || !presents) return later();
-    target.compiling = false;
-    RayPrograms rayPrograms{answer.program};
-    RayPlan beyond = beyondLenses(plan);
-    Scene lensless;
-    if (!beyond.empty() && !drawnByProxy(scene) &&
-        !lensTiles(scene, worldFrame(info.bounds, scene.stretch), target.size).value_or(std::vector<Tile>()).empty()) {
-        lensless = scene;
-        lensless.lenses.clear();
-        const ProgramRecipe other = variant(target, lensless, beyond);
-        const ProgramAnswer found =
-            request.wait ? ProgramAnswer{programs.find(other), ProgramStage::Ready} : programs.request(other, 0);
-        if (ready(found, other, beyond, lensless)) rayPrograms.beyond = found.program;
+/// Brings the program of `own`, which is all of the call or part of it, to where it can draw; false while that is on
+/// its way.
+bool Renderer::Impl::ready(ViewTarget& target, const RenderCall& call, const RenderCall& own,
+                           const ProgramAnswer& answer, const ProgramRecipe& recipe) {
+    if (!answer.program) return false;
+    const bool linked = answer.stage == ProgramStage::Linked;
+    if (!linked && !tools.programs.firstUse(*answer.program)) return true;
+    const glm::ivec2 size = target.buffers.size;
+    setRayUniforms(*answer.program, own.plan, own.scene, own.info(), own.grid(), size, 1);
+    geometry(target, call, size, target.buffers.everything());
+    if (linked) {
+        tools.programs.warmUp(recipe, target.buffers.full.framebuffer);
+        return false;
     }
-    // Between the samples of coarser levels there is nothing to see: steps are as long as their cells.
-    const auto setUniforms = [&](double stepFactor) {
-        const double factor = stepFactor * target.cell;
-        setRayUniforms(*rayPrograms.program, plan, scene, info, source->grid(), target.size, factor);
-        if (rayPrograms.beyond)
-            setRayUniforms(*rayPrograms.beyond, beyond, lensless, info, source->grid(), target.size, factor);
-    };
+    // Software GL compiles at the first draw: do that before any clock runs.
+    target.buffers.reduced.first = {0, 0};
+    rays({.program = answer.program, .beyondPlan = {}, .beyondScene = {}}, call, target.buffers.reduced,
+         {.size = size, .tile = {size / 2, size / 2 + 1}});
+    glFinish();
+    target.state.dropReduced();
+    return true;
+}
 
-    const auto drawReduced = [&](double shrink, double stepFactor) {
-        target.reducedSize = glm::max(glm::ivec2(glm::vec2(target.size) / float(shrink)), glm::ivec2(1));
-        target.reducedTile = target.changed;
-        // And what is blended with it when it is enlarged.
-        const glm::dvec2 scale = glm::dvec2(target.reducedSize) / glm::dvec2(target.size);
-        const Tile tile = intersection({glm::ivec2(glm::floor(glm::dvec2(target.changed.begin) * scale)) - 1,
-                                        glm::ivec2(glm::ceil(glm::dvec2(target.changed.end) * scale)) + 1},
-                                       {{0, 0}, target.reducedSize});
-        target.reduced.first = sharedByProcessors(tile, target.reducedSize, target.size);
-        setUniforms(stepFactor);
-        const Clock::time_point before = Clock::now();
-        geometry(target, scene, plan, target.reducedSize, tile);
-        if (plan.peels > 0) glFinish();
-        target.geometryMs = millisecondsSince(before);
-        const Clock::time_point begin = Clock::now();
-        rays(rayPrograms, scene, target.reduced, target.reducedSize, tile,
-             covered(target, scene, plan, target.reducedSize), stepFactor * target.cell);
-        glFinish();
-        const double cost = millisecondsSince(begin) * stepFactor / std::max(1.0, tile.area());
-        target.msPerPixel = target.msPerPixel > 0 ? 0.5 * (target.msPerPixel + cost) : cost;
-        target.reducedValid = target.reducedDrawn = true;
-        present(target, scene, true, target.changed);
-        target.changed = {};
-        glBindTextureUnit(0, plan.fields[0].texture);
-    };
-    if (probing) return drawReduced(kProbeShrink, 1);
-    const auto left = [&] { return request.budgetMs - millisecondsSince(start); };
-    const double expected = target.msPerPixel * target.changed.area();
-    const bool fast = target.msPerPixel > 0 && target.msPerPixel * target.stale.area() < std::max(left(), 1.0);
-    if (!request.wait && !fast && (request.moving || !(target.reducedValid || target.fullValid))) {
-        double shrink = 6, stepFactor = 2;
-        if (target.msPerPixel > 0)
-            // Not smaller than that: two processors would share one tile of software GL.
-            for (const auto& [smaller, longer] : {std::pair{1.0, 1.0},
-                                                  {1.5, 1.5},
-                                                  {2.0, 2.0},
-                                                  {3.0, 2.0},
-                                                  {4.0, 2.0},
-                                                  {6.0, 2.0},
-                                                  {8.0, 3.0},
-                                                  {8.0, 5.0}}) {
-                shrink = smaller;
-                stepFactor = longer;
-                if (target.geometryMs + expected / (shrink * shrink * stepFactor) < left()) break;
-            }
-        drawReduced(shrink, stepFactor);
-        if (request.moving) return;
-    }
+/// Beyond all lenses a program without them draws, once it is here.
+void Renderer::Impl::addBeyond(RayPrograms& programs, ViewTarget& target, const RenderCall& call) {
+    programs.beyondPlan = beyondLenses(call.plan);
+    if (programs.beyondPlan.empty() || drawnByProxy(call.scene) ||
+        lensTiles(call.scene, call.frame(), target.buffers.size).value_or(std::vector<Tile>()).empty())
+        return;
+    programs.beyondScene = call.scene;
+    programs.beyondScene.lenses.clear();
+    const ProgramRecipe recipe = variant(target, programs.beyondScene, programs.beyondPlan);
+    const ProgramAnswer answer = call.request.wait ? ProgramAnswer{tools.programs.find(recipe), ProgramStage::Ready}
+                                                   : tools.programs.request(recipe, 0);
+    const RenderCall beyond{programs.beyondScene, call.request, call.source, programs.beyondPlan};
+    if (ready(target, call, beyond, answer, recipe)) programs.beyond = answer.program;
+}
 
-    // Tiles as large as a third of the budget allows; the same grid until the picture is done.
-    if (target.tilesDone == 0) {
-        target.passMilliseconds = 0;
-        // Never the whole: what a coarse picture cost says little of the fine one.
-        target.tileEdge = request.wait ? 1024 : 128;
-        const double perTile = request.wait ? 1e9 : std::max(request.budgetMs / 3, 2.0);
-        while (target.tileEdge > 32 && target.msPerPixel * target.tileEdge * target.tileEdge > perTile)
-            target.tileEdge /= 2;
-    }
-    const std::vector<Tile> tiles = tilesOf(target.stale, target.tileEdge);
-    setUniforms(1);
-    bool first = true;
-    // The whole picture once, then again with rays elsewhere in the pixels for a supersampled still.
-    const int perPass = int(tiles.size()), wanted = perPass * std::max(scene.render.samples, 1);
-    while (target.tilesDone < wanted && (request.wait || first || left() > 0)) {
-        const Tile& tile = tiles[std::size_t(target.tilesDone % perPass)];
-        const int pass = target.tilesDone / perPass;
-        geometry(target, scene, plan, target.size, target.stale, pass);
-        const Clock::time_point begin = Clock::now();
-        if (pass == 0)
-            rays(rayPrograms, scene, target.full, target.size, tile, covered(target, scene, plan, target.size),
-                 target.cell);
-        else
-            accumulate(rayPrograms, target, scene, tile, covered(target, scene, plan, target.size), pass);
-        glFinish();
-        if (pass == 0) target.passMilliseconds += millisecondsSince(begin);
-        present(target, scene, false, tile);
-        glBindTextureUnit(0, plan.fields[0].texture);
-        ++target.tilesDone;
-        first = false;
-        if (target.tilesDone == perPass) {
-            target.fullValid = true;
-            target.changed = {};
-            target.msPerPixel = target.passMilliseconds / std::max(1.0, target.stale.area());
-            // As if all had been drawn.
-            target.passMilliseconds *= target.everything().area() / std::max(1.0, target.stale.area());
-            if (request.moving) break;
-        }
+/// Between the samples of coarser levels there is nothing to see: steps are as long as their cells.
+void Renderer::Impl::setUniforms(const RayPrograms& programs, const ViewTarget& target, const RenderCall& call,
+                                 double stepFactor) {
+    const double factor = stepFactor * target.demand.cell();
+    const auto set = [&](const Program* program, const RayPlan& plan, const Scene& scene) {
+        if (program) setRayUniforms(*program, plan, scene, call.info(), call.grid(), target.buffers.size, factor);
+    };
+    set(programs.program, call.plan, call.scene);
+    set(programs.beyond, programs.beyondPlan, programs.beyondScene);
+}
+
+/// Draws what has changed smaller, with longer steps, and presents it.
+void Renderer::Impl::drawReduced(ViewTarget& target, const RenderCall& call, const RayPrograms& programs,
+                                 Pace::Reduction how) {
+    PictureBuffers& buffers = target.buffers;
+    const Tile changed = target.state.changed();
+    buffers.reducedSize = glm::max(glm::ivec2(glm::vec2(buffers.size) / float(how.shrink)), glm::ivec2(1));
+    const Tile tile = reducedTile(changed, buffers.reducedSize, buffers.size);
+    buffers.reduced.first = sharedByProcessors(tile, buffers.reducedSize, buffers.size);
+    setUniforms(programs, target, call, how.stepFactor);
+    const Clock::time_point before = Clock::now();
+    geometry(target, call, buffers.reducedSize, tile);
+    if (call.plan.peels > 0) glFinish();
+    const double geometryMs = millisecondsSince(before);
+    const Clock::time_point begin = Clock::now();
+    rays(programs, call, buffers.reduced,
+         {.size = buffers.reducedSize,
+          .tile = tile,
+          .parts = target.tables.covered(call, buffers.reducedSize),
+          .stepFactor = how.stepFactor * target.demand.cell()});
+    glFinish();
+    target.pace.tookReduced(geometryMs, millisecondsSince(begin), how.stepFactor, tile.area());
+    present(target, call.scene, true, changed);
+    target.state.drewReduced();
+    target.hidden.drewReduced();
+    glBindTextureUnit(0, call.plan.fields[0].texture);
+}
+
+/// Draws a tile of a pass into the full buffer and presents it.
+void Renderer::Impl::drawTile(ViewTarget& target, const RenderCall& call, const RayPrograms& programs, const Tile& tile,
+                              int pass) {
+    const glm::ivec2 size = target.buffers.size;
+    geometry(target, call, size, target.state.stale(), pass);
+    const Clock::time_point begin = Clock::now();
+    const RayTile what{.size = size,
+                       .tile = tile,
+                       .parts = target.tables.covered(call, size),
+                       .stepFactor = target.demand.cell(),
+                       .pass = pass};
+    if (pass == 0)
+        rays(programs, call, target.buffers.full, what);
+    else
+        accumulate(target, call, programs, what);
+    glFinish();
+    if (pass == 0) target.pace.tookTile(millisecondsSince(begin));
+    present(target, call.scene, false, tile);
+    glBindTextureUnit(0, call.plan.fields[0].texture);
+    target.state.drewTile();
+}
+
+/// Draws what is stale once, then again with rays elsewhere in the pixels for a supersampled still, tile by tile while
+/// there is time.
+void Renderer::Impl::drawTiles(ViewTarget& target, const RenderCall& call, const RayPrograms& programs,
+                               Clock::time_point start, bool lit) {
+    const FrameRequest& request = call.request;
+    PictureState& state = target.state;
+    if (state.tilesDone() == 0) target.pace.beginPass(request.wait, request.budgetMs);
+    const std::vector<Tile> tiles = tilesOf(state.stale(), target.pace.tileEdge());
+    setUniforms(programs, target, call, 1);
+    const int perPass = int(tiles.size()), wanted = perPass * std::max(call.scene.render.samples, 1);
+    for (bool first = true;
+         state.tilesDone() < wanted && (request.wait || first || millisecondsSince(start) < request.budgetMs);
+         first = false) {
+        drawTile(target, call, programs, tiles[std::size_t(state.tilesDone() % perPass)], state.tilesDone() / perPass);
+        if (state.tilesDone() != perPass) continue;
+        state.drewPass();
+        target.pace.finishPass(state.stale().area(), target.buffers.everything().area());
+        if (request.moving) break;
     }
     // What is out of focus spreads over the borders of tiles.
-    if (blursContext(scene) && target.tilesDone >= perPass) {
-        present(target, scene, false, target.everything());
-        glBindTextureUnit(0, plan.fields[0].texture);
+    if (blursContext(call.scene) && state.tilesDone() >= perPass) {
+        present(target, call.scene, false, target.buffers.everything());
+        glBindTextureUnit(0, call.plan.fields[0].texture);
     }
-    target.stillDone = target.tilesDone >= wanted && lit;
+    if (state.tilesDone() >= wanted && lit) state.setDone(PictureState::Done::Still);
+}
+
+/// Draws as much of the bound plan as the budget allows.
+void Renderer::Impl::refine(ViewTarget& target, const RenderCall& call, Clock::time_point start) {
+    const Scene& scene = call.scene;
+    const FrameRequest& request = call.request;
+    const PictureState& state = target.state;
+    const bool probing = target.demand.probing();
+    const bool done = state.full() ? state.still() || request.moving : state.reduced() && request.moving;
+    if (done && !probing) return;
+    target.tables.update(call, residency.revision(), target.demand.frames());
+    const ProgramRecipe recipe = variant(target, scene, call.plan);
+    target.shown.compiling = true;
+    const ProgramAnswer answer = request.wait ? ProgramAnswer{tools.programs.find(recipe), ProgramStage::Ready}
+                                              : tools.programs.request(recipe, request.budgetMs / 4);
+    if (!answer.program && (answer.stage == ProgramStage::Failed || request.wait)) return giveUp(target, call);
+    if (!answer.program) return postpone(target, scene);
+    const bool presents = request.wait || presentable(target, scene);
+    bindPlan(target, call);
+    ViewLight::Progress light;
+    if (!probing) {
+        sayLimits(call);
+        light = target.light.bind(tools, call, {residency.revision(), target.demand.time().value_or(0)});
+        if (light.changed) target.redraw(target.buffers.everything());
+    }
+    if (!ready(target, call, call, answer, recipe) || !presents) return postpone(target, scene);
+    target.shown.compiling = false;
+    RayPrograms programs{.program = answer.program, .beyondPlan = {}, .beyondScene = {}};
+    addBeyond(programs, target, call);
+    if (probing) return drawReduced(target, call, programs, {kProbeShrink, 1});
+    const double left = request.budgetMs - millisecondsSince(start);
+    const bool fast = target.pace.known() && target.pace.expected(state.stale().area()) < std::max(left, 1.0);
+    if (!request.wait && !fast && (request.moving || !(state.reduced() || state.full()))) {
+        drawReduced(target, call, programs, target.pace.reduction(state.changed().area(), left));
+        if (request.moving) return;
+    }
+    drawTiles(target, call, programs, start, light.done);
 }
 
 } // namespace tessera::vis

@@ -37,23 +37,24 @@ ProgramRecipe resolveRecipe(const Scene& scene, bool lines) {
 void Renderer::Impl::setPresented(const Program& resolve, const ViewTarget& target, const Scene& scene,
                                   const BoxLines& lines, bool reduced) {
     const std::optional<Paper> paper = paperOf(scene);
-    const RayBuffer& from = reduced ? target.reduced : target.full;
-    const glm::vec2 used(reduced ? target.reducedSize : target.size), whole(from.size), first(from.first);
+    const RayBuffer& from = reduced ? target.buffers.reduced : target.buffers.full;
+    const glm::vec2 used(reduced ? target.buffers.reducedSize : target.buffers.size), whole(from.size),
+        first(from.first);
     resolve.set("source", 0);
-    resolve.set("sourceScale", used / glm::vec2(target.size) / whole);
+    resolve.set("sourceScale", used / glm::vec2(target.buffers.size) / whole);
     resolve.set("sourceFirst", first / whole);
     resolve.set("sourceLimit", (first + used - 0.5f) / whole);
     resolve.set("background", glm::vec3(linearFromSrgb(glm::dvec3(groundColor(scene)))));
     if (isRough(paper)) {
         resolve.set("paper", glm::vec2(paper->tooth, kGrainTexels / double(paper->grain)));
         resolve.set("grainTile", RayUnits::kPaper);
-        glBindTextureUnit(GLuint(RayUnits::kPaper), grain.get());
+        glBindTextureUnit(GLuint(RayUnits::kPaper), tools.grain.get());
     }
     resolve.set("boxColor", glm::vec3(linearFromSrgb(glm::dvec3(scene.boxColor))));
     resolve.set("lineWidth", 1.3f);
     resolve.set("toneCurve", int(scene.tone.curve));
     resolve.set("seen", kSeenUnit);
-    resolve.set("blurRadius", scene.selection.contextBlur * float(target.size.y));
+    resolve.set("blurRadius", scene.selection.contextBlur * float(target.buffers.size.y));
     resolve.set("blurTaps", kBlurTaps);
     if (blursContext(scene)) glBindTextureUnit(GLuint(kSeenUnit), from.pick.name());
     resolve.set("tone", glm::vec2(std::exp2(scene.tone.exposure), scene.tone.white));
@@ -65,32 +66,32 @@ void Renderer::Impl::setPresented(const Program& resolve, const ViewTarget& targ
 
 BoxLines Renderer::Impl::box(const ViewTarget& target, const Scene& scene) const {
     if (!scene.showBox || !source) return {};
-    return boxLines(scene.camera, worldFrame(source->info().bounds, scene.stretch).halfSize, target.size);
+    return boxLines(scene.camera, worldFrame(source->info().bounds, scene.stretch).halfSize, target.buffers.size);
 }
 
 void Renderer::Impl::present(ViewTarget& target, const Scene& scene, bool reduced, const Tile& tile) {
     const BoxLines lines = box(target, scene);
-    const Program* resolve = programs.find(resolveRecipe(scene, !lines.edges.empty()));
+    const Program* resolve = tools.programs.find(resolveRecipe(scene, !lines.edges.empty()));
     if (!resolve) throw Error("the program that presents pictures does not compile");
     setPresented(*resolve, target, scene, lines, reduced);
-    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, target.outputFramebuffer.name());
-    glViewport(0, 0, target.size.x, target.size.y);
+    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, target.buffers.outputFramebuffer.name());
+    glViewport(0, 0, target.buffers.size.x, target.buffers.size.y);
     glEnable(GL_SCISSOR_TEST);
     glScissor(tile.begin.x, tile.begin.y, tile.end.x - tile.begin.x, tile.end.y - tile.begin.y);
     glUseProgram(resolve->name());
-    glBindVertexArray(vertices.name());
+    glBindVertexArray(tools.vertices.name());
     glDrawArrays(GL_TRIANGLES, 0, 3);
-    target.shows = true;
+    target.state.setPresented(true);
 }
 
 /// Whether the program that presents the scene is there; else brings it on its way.
 bool Renderer::Impl::presentable(const ViewTarget& target, const Scene& scene) {
     const BoxLines lines = box(target, scene);
     const ProgramRecipe recipe = resolveRecipe(scene, !lines.edges.empty());
-    const ProgramAnswer answer = programs.request(recipe, 0);
+    const ProgramAnswer answer = tools.programs.request(recipe, 0);
     if (answer.stage == ProgramStage::Linked) {
         setPresented(*answer.program, target, scene, lines, false);
-        programs.warmUp(recipe, target.outputFramebuffer);
+        tools.programs.warmUp(recipe, target.buffers.outputFramebuffer);
     }
     return answer.stage == ProgramStage::Ready || answer.stage == ProgramStage::Failed; // present() says which
 }
@@ -100,14 +101,14 @@ void Renderer::Impl::blank(ViewTarget& target, const Scene& scene) {
     if (presentable(target, scene)) return nothing(target, scene);
     const glm::vec4 ground(groundColor(scene), scene.showGround ? 1 : 0);
     glDisable(GL_SCISSOR_TEST);
-    glClearNamedFramebufferfv(target.outputFramebuffer.name(), GL_COLOR, 0, &ground.x);
+    glClearNamedFramebufferfv(target.buffers.outputFramebuffer.name(), GL_COLOR, 0, &ground.x);
 }
 
 /// The background alone: nothing is loaded, or the program does not compile.
 void Renderer::Impl::nothing(ViewTarget& target, const Scene& scene) {
-    target.full.clear();
-    present(target, scene, false, target.everything());
-    target.fullValid = target.stillDone = true;
+    target.buffers.full.clear();
+    present(target, scene, false, target.buffers.everything());
+    target.state.setDone(PictureState::Done::Still);
 }
 
 } // namespace tessera::vis

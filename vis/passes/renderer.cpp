@@ -1,6 +1,8 @@
-#include "vis/demand/changed_pixels.h"
 #include "vis/passes/renderer_impl.h"
 
+#include "vis/demand/changed_pixels.h"
+#include "vis/optics/proxy.h"
+#include "vis/raycast/lens_uniforms.h"
 #include "volume/base/error.h"
 
 #include <algorithm>
@@ -59,34 +61,127 @@ ViewTargetPtr Renderer::makeTarget() {
     return ViewTargetPtr(new ViewTarget);
 }
 
-/// Asks for what the scene shows and draws, or refines, what is here of it; false where nothing can be drawn.
-bool Renderer::Impl::draw(ViewTarget& target, const Scene& scene, const FrameRequest& request, RayPlan& plan,
-                          Clock::time_point start, FrameStatus& status) {
-    const bool any = source && !plan.empty() && bind(target, scene, request, plan, status);
-    const std::uint64_t revision = residency.revision();
-    const bool same = target.source == source.get();
-    if (!target.started || !(target.scene == scene) || target.revision != revision || !same) {
-        std::optional<Tile> part;
-        if (source && target.started && target.shows && same && target.revision == revision)
-            part = changedPixels(target.scene, scene, worldFrame(source->info().bounds, scene.stretch), target.size);
-        target.redraw(part.value_or(target.everything()));
-        if (!(target.scene == scene) || !same) ++target.sceneNumber;
-        target.scene = scene;
-        target.revision = revision;
-        target.shows = target.shows && (same || target.source == formerSource);
-        target.source = source.get();
-        target.started = true;
+/// Makes the target as large as the picture; false where the driver has no memory for that, which is said once.
+bool Renderer::Impl::resize(ViewTarget& target, const FrameRequest& request) {
+    try {
+        target.resize(request.size, options.exactTextures);
+        return true;
+    } catch (const MachineError& error) {
+        if (request.wait) throw;
+        if (refusal != error.what()) tools.messages.push_back(error.what());
+        refusal = error.what();
+        return false;
     }
-    target.compiling = false;
+}
+
+/// Takes in what has been loaded, within the scene's limits.
+void Renderer::Impl::beginFrame(ViewTarget& target, const Scene& scene, const FrameRequest& request) {
+    const RenderLimits& given = scene.render.limits;
+    residency.setBudgets(std::min(options.textureBudget, std::size_t(given.textureMemory) << 20),
+                         std::min(options.memoryBudget, std::size_t(given.brickMemory) << 20));
+    residency.setKeptChange(double(given.keptChange));
+    // A frame of a window draws each of its targets once; a picture that is waited for stands for itself.
+    if (request.wait || target.shown.frame == residency.frame()) residency.beginFrame();
+    target.shown.frame = residency.frame();
+    residency.update(request.wait ? ~std::size_t(0) : kUploadPerFrame);
+}
+
+/// Whether pictures of the scene tell which bricks they hide. Where a lens magnifies, rays see other places than those
+/// they pass.
+bool Renderer::Impl::findsHidden(const Scene& scene) const {
+    return scene.render.cullHidden && residency.bricked() && !lensesBend(scene) && !drawnByProxy(scene) &&
+           !options.countSamples;
+}
+
+/// What the last picture of these data hid, as far as it counts for a scene.
+const HiddenInView* Renderer::Impl::hiddenIn(const ViewTarget& target, const Scene& scene) const {
+    return findsHidden(scene) && target.shown.source == source.get() ? &target.hidden.bricks() : nullptr;
+}
+
+void Renderer::Impl::takeHidden(ViewTarget& target, bool wait) {
+    target.hidden.take(wait, target.shown.source == source.get() && source ? &source->grid() : nullptr);
+}
+
+/// Asks for what the plan samples and binds what is here; false when it cannot be drawn yet.
+bool Renderer::Impl::bind(ViewTarget& target, const RenderCall& call, FrameStatus& status) {
+    takeHidden(target, false);
+    const std::optional<double> former = target.demand.time();
+    const bool any = target.demand.bind(residency, call, hiddenIn(target, call.scene), status);
+    if (target.demand.time() != former) ++target.shown.number;
+    return any;
+}
+
+/// From here on the target shows the scene: what it holds of another one is out of date.
+void Renderer::Impl::show(ViewTarget& target, const Scene& scene) {
+    ShownScene& shown = target.shown;
+    const std::uint64_t resident = residency.revision();
+    const bool same = shown.source == source.get();
+    if (shown.started && shown.scene == scene && shown.resident == resident && same) return;
+    std::optional<Tile> part;
+    if (source && shown.started && target.state.presented() && same && shown.resident == resident)
+        part = changedPixels(shown.scene, scene, worldFrame(source->info().bounds, scene.stretch), target.buffers.size);
+    target.redraw(part.value_or(target.buffers.everything()));
+    if (!(shown.scene == scene) || !same) ++shown.number;
+    target.state.setPresented(target.state.presented() && (same || shown.source == formerSource));
+    shown.scene = scene;
+    shown.resident = resident;
+    shown.source = source.get();
+    shown.started = true;
+}
+
+/// Asks for what the scene shows and draws, or refines, what is here of it; false where nothing can be drawn.
+bool Renderer::Impl::draw(ViewTarget& target, const RenderCall& call, Clock::time_point start, FrameStatus& status) {
+    const bool any = !call.plan.empty() && bind(target, call, status);
+    show(target, call.scene);
+    target.shown.compiling = false;
     if (any) {
-        refine(target, scene, request, plan, start);
-        if (findsHidden(scene)) startReach(target, scene);
-    } else if (!target.fullValid && !plan.empty() && !status.complete && !target.shows && !request.wait) {
-        blank(target, scene);
-    } else if (!target.fullValid && (plan.empty() || status.complete || !target.shows)) {
-        nothing(target, scene);
+        refine(target, call, start);
+        if (findsHidden(call.scene))
+            target.hidden.start(tools, call, target.buffers, target.state, target.shown.number);
+    } else if (!target.state.full()) {
+        const bool comes = !call.plan.empty() && !status.complete;
+        if (comes && !target.state.presented() && !call.request.wait)
+            blank(target, call.scene);
+        else if (!comes || !target.state.presented())
+            nothing(target, call.scene);
     }
     return any;
+}
+
+/// Draws the scene small from the coarsest bricks, then from more and more of the others, nearest first, so that most
+/// of what they hide is never asked for.
+void Renderer::Impl::probe(ViewTarget& target, const RenderCall& call) {
+    ++target.shown.number;
+    target.shown.scene = call.scene;
+    target.shown.source = source.get();
+    for (const double share : {0.0, 0.125, 0.25, 0.5}) {
+        target.demand.setShare(share);
+        FrameStatus unused;
+        if (!bind(target, call, unused)) break;
+        target.redraw(target.buffers.everything());
+        refine(target, call, Clock::now());
+        target.hidden.start(tools, call, target.buffers, target.state, target.shown.number);
+        takeHidden(target, true);
+    }
+    target.demand.setShare(1);
+}
+
+/// Whether the finished picture shows bricks that were taken to be hidden: what is wanted then is something else.
+bool Renderer::Impl::reveals(ViewTarget& target, const RenderCall& call) {
+    takeHidden(target, true);
+    return target.demand.chooseAgain(residency, call, hiddenIn(target, call.scene));
+}
+
+/// Draws the scene as far as the request allows.
+void Renderer::Impl::drawAll(ViewTarget& target, const RenderCall& call, Clock::time_point start, FrameStatus& status) {
+    const bool waits = call.request.wait, finds = !call.plan.empty() && findsHidden(call.scene);
+    // What the last picture hid will do to begin with.
+    if (waits && finds && !target.hidden.any()) probe(target, call);
+    bool any = false;
+    do any = draw(target, call, start, status);
+    while (waits && any && finds && reveals(target, call));
+    // What is hidden may be coarse, but it has to be known that it is.
+    if (any && finds) status.complete = status.complete && target.hidden.known();
 }
 
 FrameStatus Renderer::render(ViewTarget& target, const Scene& scene, const FrameRequest& wanted) {
@@ -100,80 +195,59 @@ FrameStatus Renderer::render(ViewTarget& target, const Scene& scene, const Frame
     }
     const SavedState saved;
     status.complete = true;
-    try {
-        target.resize(request.size, impl_->options.exactTextures);
-    } catch (const MachineError& error) {
-        if (request.wait) throw;
-        if (impl_->refusal != error.what()) impl_->messages.push_back(error.what());
-        impl_->refusal = error.what();
-        status.texture = target.output.name();
-        return status;
-    }
-    status.texture = target.output.name();
-
-    RayPlan plan;
-    bool any = false, finds = false;
+    const bool fits = impl_->resize(target, request);
+    status.texture = target.buffers.output.name();
+    if (!fits) return status;
+    if (!liesAtCursor(scene)) target.shown.scene.cursor = scene.cursor;
+    if (target.shown.source != impl_->source.get()) target.hidden.forgetData();
     if (impl_->source) {
-        const RenderLimits& limits = scene.render.limits;
-        impl_->residency.setBudgets(std::min(impl_->options.textureBudget, std::size_t(limits.textureMemory) << 20),
-                                    std::min(impl_->options.memoryBudget, std::size_t(limits.brickMemory) << 20));
-        impl_->residency.setKeptChange(double(limits.keptChange));
-        // A frame of a window draws each of its targets once; a picture that is waited for stands for itself.
-        if (request.wait || target.frame == impl_->residency.frame()) impl_->residency.beginFrame();
-        target.frame = impl_->residency.frame();
-        impl_->residency.update(request.wait ? ~std::size_t(0) : kUploadPerFrame);
+        impl_->beginFrame(target, scene, request);
         // Bricks take two texture units each.
         const int mostFields = kMostFields / (impl_->residency.bricked() ? 2 : 1);
-        plan = planRays(scene, impl_->source->info(), mostFields);
-        finds = !plan.empty() && impl_->findsHidden(scene);
+        RayPlan plan = planRays(scene, impl_->source->info(), mostFields);
+        impl_->drawAll(target, {scene, request, *impl_->source, plan}, start, status);
+    } else {
+        impl_->show(target, scene);
+        target.shown.compiling = false;
+        if (!target.state.full()) impl_->nothing(target, scene);
     }
-    if (!liesAtCursor(scene)) target.scene.cursor = scene.cursor;
-    if (target.source != impl_->source.get()) {
-        target.hidden.learn({}, false);
-        target.hiddenScene = 0;
-    }
-    // What the last picture hid will do to begin with.
-    if (request.wait && finds && target.hiddenScene == 0) impl_->probe(target, scene, request, plan);
-    do any = impl_->draw(target, scene, request, plan, start, status);
-    while (request.wait && any && finds && impl_->reveals(target, scene, request, plan));
-    status.complete = status.complete && target.fullValid && target.stillDone;
-    // What is hidden may be coarse, but it has to be known that it is.
-    if (any && finds) status.complete = status.complete && target.hiddenKnown;
-    status.current = status.complete || target.changed.empty();
-    status.compiling = target.compiling;
-    status.milliseconds = target.passMilliseconds;
+    status.complete = status.complete && target.state.still();
+    status.current = status.complete || target.state.changed().empty();
+    status.compiling = target.shown.compiling;
+    status.milliseconds = target.pace.pass();
     return status;
 }
 
 std::optional<Pick> Renderer::pick(ViewTarget& target, glm::ivec2 pixel) {
-    if (!target.started || !impl_->source || pixel.x < 0 || pixel.y < 0 || pixel.x >= target.size.x ||
-        pixel.y >= target.size.y)
-        return std::nullopt;
-    const glm::ivec2 place(pixel.x, target.size.y - 1 - pixel.y);
-    const bool full = target.fullValid || (target.shows && !target.stale.holds(place));
-    if (!full && !(target.reducedValid && target.reducedTile.holds(place))) return std::nullopt;
-    const RayBuffer& from = full ? target.full : target.reduced;
-    const glm::dvec2 size(target.size);
+    const PictureBuffers& buffers = target.buffers;
+    const PictureState& state = target.state;
+    const glm::ivec2 place(pixel.x, buffers.size.y - 1 - pixel.y);
+    if (!target.shown.started || !impl_->source || !buffers.everything().holds(place)) return std::nullopt;
+    const bool full = state.full() || (state.presented() && !state.stale().holds(place));
+    if (!full && !(state.reduced() && state.reduced()->holds(place))) return std::nullopt;
+    const RayBuffer& from = full ? buffers.full : buffers.reduced;
+    const glm::dvec2 size(buffers.size);
     glm::dvec2 at = glm::dvec2(place) + 0.5;
     const glm::ivec2 texel =
         full ? glm::ivec2(at)
-             : from.first + glm::min(glm::ivec2(at / size * glm::dvec2(target.reducedSize)), target.reducedSize - 1);
-    if (!full) at = (glm::dvec2(texel - from.first) + 0.5) / glm::dvec2(target.reducedSize) * size;
+             : from.first + glm::min(glm::ivec2(at / size * glm::dvec2(buffers.reducedSize)), buffers.reducedSize - 1);
+    if (!full) at = (glm::dvec2(texel - from.first) + 0.5) / glm::dvec2(buffers.reducedSize) * size;
     float distance = 0;
     glGetTextureSubImage(from.pick.name(), 0, texel.x, texel.y, 0, 1, 1, 1, GL_RED, GL_FLOAT, sizeof distance,
                          &distance);
     if (std::abs(distance) > 1e8f) return std::nullopt;
-    const Ray ray = cameraRay(target.scene.camera, size.x / size.y, at / size * 2.0 - 1.0);
-    const WorldFrame frame = worldFrame(impl_->source->info().bounds, target.scene.stretch);
+    const Ray ray = cameraRay(target.shown.scene.camera, size.x / size.y, at / size * 2.0 - 1.0);
+    const WorldFrame frame = worldFrame(impl_->source->info().bounds, target.shown.scene.stretch);
     return Pick{frame.toPhysical(ray.origin + ray.direction * double(distance))};
 }
 
 std::vector<glm::vec4> Renderer::readLinear(ViewTarget& target) {
-    const std::size_t width(static_cast<std::size_t>(target.size.x)), height(static_cast<std::size_t>(target.size.y));
+    const std::size_t width(static_cast<std::size_t>(target.buffers.size.x)),
+        height(static_cast<std::size_t>(target.buffers.size.y));
     std::vector<glm::vec4> pixels(width * height), out(pixels.size());
     if (pixels.empty()) return pixels;
-    glGetTextureImage(target.full.color.name(), 0, GL_RGBA, GL_FLOAT, GLsizei(pixels.size() * sizeof(glm::vec4)),
-                      pixels.data());
+    glGetTextureImage(target.buffers.full.color.name(), 0, GL_RGBA, GL_FLOAT,
+                      GLsizei(pixels.size() * sizeof(glm::vec4)), pixels.data());
     for (std::size_t y = 0; y < height; ++y)
         std::copy_n(pixels.begin() + std::ptrdiff_t((height - 1 - y) * width), width,
                     out.begin() + std::ptrdiff_t(y * width));
@@ -181,11 +255,12 @@ std::vector<glm::vec4> Renderer::readLinear(ViewTarget& target) {
 }
 
 std::vector<std::uint8_t> Renderer::readPixels(ViewTarget& target, glm::ivec2& size) {
-    size = target.size;
+    size = target.buffers.size;
     const std::size_t row = static_cast<std::size_t>(size.x) * 4, height = static_cast<std::size_t>(size.y);
     std::vector<std::uint8_t> pixels(row * height), out(pixels.size());
     if (pixels.empty()) return pixels;
-    glGetTextureImage(target.output.name(), 0, GL_RGBA, GL_UNSIGNED_BYTE, GLsizei(pixels.size()), pixels.data());
+    glGetTextureImage(target.buffers.output.name(), 0, GL_RGBA, GL_UNSIGNED_BYTE, GLsizei(pixels.size()),
+                      pixels.data());
     for (std::size_t y = 0; y < height; ++y)
         std::copy_n(pixels.begin() + std::ptrdiff_t((height - 1 - y) * row), row,
                     out.begin() + std::ptrdiff_t(y * row));
@@ -197,10 +272,10 @@ ResidencyInfo Renderer::residency() const {
 }
 
 std::vector<std::string> Renderer::takeMessages() {
-    std::vector<std::string> all = impl_->programs.takeMessages();
+    std::vector<std::string> all = impl_->tools.programs.takeMessages();
     for (std::string& message : impl_->residency.takeMessages()) all.push_back(std::move(message));
-    for (std::string& message : std::exchange(impl_->messages, {})) all.push_back(std::move(message));
-    for (std::string& message : impl_->brushes.takeMessages()) all.push_back(std::move(message));
+    for (std::string& message : std::exchange(impl_->tools.messages, {})) all.push_back(std::move(message));
+    for (std::string& message : impl_->tools.brushes.takeMessages()) all.push_back(std::move(message));
     return all;
 }
 

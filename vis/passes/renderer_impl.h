@@ -2,29 +2,29 @@
 
 #include "vis/bricks/residency.h"
 #include "vis/demand/box_lines.h"
-#include "vis/gl/program_cache.h"
-#include "vis/passes/renderer.h"
+#include "vis/passes/render_tools.h"
 #include "vis/passes/view_target.h"
-#include "vis/raycast/brush_uniforms.h"
-#include "vis/raycast/look_uniforms.h"
-#include "vis/raycast/ray_plan.h"
-#include "vis/raycast/ray_tables.h"
 
-/// Inside the renderer: renderer.cpp has what is public, binding.cpp asks for textures, light_binding.cpp for light,
-/// ray_pass.cpp draws with them, occlusion.cpp finds what is hidden, present.cpp shows it, frame.cpp does as much of
-/// all this as there is time for.
+/// Inside the renderer: renderer.cpp has what is public, frame.cpp draws as much as there is time for, ray_pass.cpp
+/// draws tiles, present.cpp shows them. The stages before (ViewDemand, ViewTables, ViewLight, ViewHidden) have files of
+/// their own.
 namespace tessera::vis {
-
-using Clock = std::chrono::steady_clock;
-
-inline double millisecondsSince(Clock::time_point start) {
-    return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-}
 
 /// The variants of the ray caster that one picture is drawn with.
 struct RayPrograms {
     const Program* program = nullptr;
     const Program* beyond = nullptr; ///< beyond all lenses; null: that of the whole picture
+    RayPlan beyondPlan;              ///< what `beyond` draws
+    Scene beyondScene;
+};
+
+/// Which part of which picture rays draw.
+struct RayTile {
+    glm::ivec2 size{0}; ///< of the whole picture
+    Tile tile;
+    const std::vector<Tile>* parts = nullptr; ///< of the tile only what lies in one of these; null: all
+    double stepFactor = 1;
+    int pass = 0; ///< of a supersampled still
 };
 
 struct Renderer::Impl {
@@ -33,44 +33,46 @@ struct Renderer::Impl {
     std::shared_ptr<const volume::BrickSource> source;
     const volume::BrickSource* formerSource =
         nullptr; ///< what `source` goes on with: its pictures stay until there are new
-    VertexArray vertices = makeVertexArray("no vertices");
-    ProgramCache programs;
-    BrushTables brushes;
-    GeometryPass geometryPass;
-    GrainTexture grain;
+    RenderTools tools;
     std::string limits;  ///< said last about what there is too much of
     std::string refusal; ///< said last about a picture that the driver has no memory for
-    std::vector<std::string> messages;
-    Texture noShadow = makeUniform3D(glm::vec4(1), "no shadow"), noLight = makeUniform3D(glm::vec4(0), "no light");
 
     explicit Impl(const RendererOptions& given) : options(given), residency(given) {}
 
-    // binding.cpp
-    bool demandBricks(ViewTarget& target, const Scene& scene, const FrameRequest& request, const RayPlan& plan,
-                      const std::vector<ChannelKey>& keys);
-    bool bindField(BoundField& field, const ChannelKey& key);
-    void bindRanges(ViewTarget& target, RayPlan& plan, const std::vector<ChannelKey>& keys);
-    bool bind(ViewTarget& target, const Scene& scene, const FrameRequest& request, RayPlan& plan, FrameStatus& status);
+    // renderer.cpp
+    bool resize(ViewTarget& target, const FrameRequest& request);
+    void beginFrame(ViewTarget& target, const Scene& scene, const FrameRequest& request);
+    bool bind(ViewTarget& target, const RenderCall& call, FrameStatus& status);
+    void show(ViewTarget& target, const Scene& scene);
+    bool draw(ViewTarget& target, const RenderCall& call, Clock::time_point start, FrameStatus& status);
+    void drawAll(ViewTarget& target, const RenderCall& call, Clock::time_point start, FrameStatus& status);
+    bool findsHidden(const Scene& scene) const;
+    const HiddenInView* hiddenIn(const ViewTarget& target, const Scene& scene) const;
+    void takeHidden(ViewTarget& target, bool wait);
+    void probe(ViewTarget& target, const RenderCall& call);
+    bool reveals(ViewTarget& target, const RenderCall& call);
+
+    // frame.cpp
+    void refine(ViewTarget& target, const RenderCall& call, Clock::time_point start);
+    void postpone(ViewTarget& target, const Scene& scene);
+    void giveUp(ViewTarget& target, const RenderCall& call);
+    void sayLimits(const RenderCall& call);
+    void bindPlan(const ViewTarget& target, const RenderCall& call);
+    bool ready(ViewTarget& target, const RenderCall& call, const RenderCall& own, const ProgramAnswer& answer,
+               const ProgramRecipe& recipe);
+    void addBeyond(RayPrograms& programs, ViewTarget& target, const RenderCall& call);
+    void setUniforms(const RayPrograms& programs, const ViewTarget& target, const RenderCall& call, double stepFactor);
+    void drawReduced(ViewTarget& target, const RenderCall& call, const RayPrograms& programs, Pace::Reduction how);
+    void drawTile(ViewTarget& target, const RenderCall& call, const RayPrograms& programs, const Tile& tile, int pass);
+    void drawTiles(ViewTarget& target, const RenderCall& call, const RayPrograms& programs, Clock::time_point start,
+                   bool lit);
 
     // ray_pass.cpp
-    double workLeft(const BlockDistances& blocks, const std::vector<std::uint8_t>& steps, const Scene& scene) const;
     ProgramRecipe variant(const ViewTarget& target, const Scene& scene, const RayPlan& plan) const;
-    ProgramRecipe prepare(ViewTarget& target, const Scene& scene, RayPlan& plan);
-    void geometry(ViewTarget& target, const Scene& scene, const RayPlan& plan, glm::ivec2 size, const Tile& tile,
-                  int pass = 0);
-    const std::vector<Tile>* covered(ViewTarget& target, const Scene& scene, const RayPlan& plan, glm::ivec2 size);
-    void rays(const RayPrograms& rayPrograms, const Scene& scene, const RayBuffer& buffer, glm::ivec2 size,
-              const Tile& tile, const std::vector<Tile>* parts, double stepFactor = 1, int pass = 0);
-    void proxies(const Program& program, const Scene& scene, const RayBuffer& buffer, double stepFactor);
-    void accumulate(const RayPrograms& rayPrograms, ViewTarget& target, const Scene& scene, const Tile& tile,
-                    const std::vector<Tile>* parts, int pass);
-
-    // occlusion.cpp
-    bool findsHidden(const Scene& scene) const;
-    void startReach(ViewTarget& target, const Scene& scene);
-    void takeReach(ViewTarget& target, bool wait);
-    void probe(ViewTarget& target, const Scene& scene, const FrameRequest& request, RayPlan& plan);
-    bool reveals(ViewTarget& target, const Scene& scene, const FrameRequest& request, const RayPlan& plan);
+    void geometry(ViewTarget& target, const RenderCall& call, glm::ivec2 size, const Tile& tile, int pass = 0);
+    void rays(const RayPrograms& programs, const RenderCall& call, const RayBuffer& buffer, const RayTile& what);
+    void proxies(const Program& program, const RenderCall& call, const RayBuffer& buffer, double stepFactor);
+    void accumulate(ViewTarget& target, const RenderCall& call, const RayPrograms& programs, const RayTile& what);
 
     // present.cpp
     BoxLines box(const ViewTarget& target, const Scene& scene) const;
@@ -80,18 +82,6 @@ struct Renderer::Impl {
     bool presentable(const ViewTarget& target, const Scene& scene);
     void blank(ViewTarget& target, const Scene& scene);
     void nothing(ViewTarget& target, const Scene& scene);
-
-    // light_binding.cpp
-    void sayLimits(const Scene& scene, const RayPlan& plan);
-    bool bindLight(ViewTarget& target, const Scene& scene, const FrameRequest& request, const RayPlan& plan);
-
-    // renderer.cpp
-    bool draw(ViewTarget& target, const Scene& scene, const FrameRequest& request, RayPlan& plan,
-              Clock::time_point start, FrameStatus& status);
-
-    // frame.cpp
-    void refine(ViewTarget& target, const Scene& scene, const FrameRequest& request, RayPlan& plan,
-                Clock::time_point start);
 };
 
 } // namespace tessera::vis

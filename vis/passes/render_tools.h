@@ -1,0 +1,44 @@
+#pragma once
+
+#include "vis/gl/program_cache.h"
+#include "vis/passes/geometry_pass.h"
+#include "vis/passes/renderer.h"
+#include "vis/raycast/brush_uniforms.h"
+#include "vis/raycast/look_uniforms.h"
+#include "vis/raycast/ray_plan.h"
+
+#include <chrono>
+
+/// What the stages of a picture are given.
+namespace tessera::vis {
+
+using Clock = std::chrono::steady_clock;
+
+inline double millisecondsSince(Clock::time_point start) {
+    return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+/// What one call of Renderer::render() draws. `plan` is bound to what is resident by ViewDemand::bind().
+struct RenderCall {
+    const Scene& scene;
+    const FrameRequest& request;
+    const volume::BrickSource& source;
+    RayPlan& plan;
+
+    const volume::DatasetInfo& info() const { return source.info(); }
+    const volume::BrickGrid& grid() const { return source.grid(); }
+    WorldFrame frame() const { return worldFrame(info().bounds, scene.stretch); }
+};
+
+/// What all pictures of a context are drawn with.
+struct RenderTools {
+    VertexArray vertices = makeVertexArray("no vertices");
+    ProgramCache programs;
+    BrushTables brushes;
+    GeometryPass geometryPass;
+    GrainTexture grain;
+    Texture noShadow = makeUniform3D(glm::vec4(1), "no shadow"), noLight = makeUniform3D(glm::vec4(0), "no light");
+    std::vector<std::string> messages;
+};
+
+} // namespace tessera::vis

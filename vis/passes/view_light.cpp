@@ -1,0 +1,67 @@
+#include "vis/passes/view_light.h"
+
+#include "vis/raycast/ray_uniforms.h"
+
+namespace tessera::vis {
+
+ViewLight::Progress ViewLight::bind(RenderTools& tools, const RenderCall& call, const LightBaker::Matter& matter) {
+    const Lighting& lighting = call.scene.lighting;
+    const GLuint first = GLuint(rayUnits(call.plan).light);
+    Progress maps, volume;
+    if (usesMaps(lighting)) maps = bindMaps(tools, call, first);
+    if (lighting.shadows.any()) volume = bindVolume(tools, call, matter, first + 2);
+    return {maps.done && volume.done, maps.changed || volume.changed};
+}
+
+ViewLight::Progress ViewLight::bindMaps(RenderTools& tools, const RenderCall& call, GLuint firstUnit) {
+    const std::uint64_t former = maps_.version();
+    const bool here = maps_.update(call.scene.lighting, call.scene.camera, call.request.wait,
+                                   [&](const std::string& message) { tools.messages.push_back(message); });
+    const bool changed = mapsPending_ && maps_.version() != former;
+    mapsPending_ = !here;
+    glBindTextureUnit(firstUnit, maps_.diffuse());
+    glBindTextureUnit(firstUnit + 1, maps_.specular());
+    glEnable(GL_TEXTURE_CUBE_MAP_SEAMLESS);
+    return {here, changed};
+}
+
+/// The volume made last, or light as if there were no matter.
+void ViewLight::bindTextures(const RenderTools& tools, GLuint firstUnit) const {
+    glBindTextureUnit(firstUnit, baker_.version() > 0 ? baker_.visible() : tools.noShadow.name());
+    glBindTextureUnit(firstUnit + 1, baker_.scattered() != 0 ? baker_.scattered() : tools.noLight.name());
+}
+
+ViewLight::Progress ViewLight::bindVolume(RenderTools& tools, const RenderCall& call, const LightBaker::Matter& matter,
+                                          GLuint firstUnit) {
+    const RayPlan& plan = call.plan;
+    const FrameRequest& request = call.request;
+    if (plan.layers.empty() && (plan.peels == 0 || !call.scene.lighting.shadows.meshes)) { // slices cast no shadow
+        glBindTextureUnit(firstUnit, tools.noShadow.name());
+        glBindTextureUnit(firstUnit + 1, tools.noLight.name());
+        return {};
+    }
+    ProgramRecipe recipe = rayRecipe(plan, call.scene, call.grid(), false);
+    recipe.vertex = "screen.vert.glsl";
+    recipe.fragment = "light_matter.frag.glsl";
+    const ProgramAnswer answer = request.wait ? ProgramAnswer{tools.programs.find(recipe), ProgramStage::Ready}
+                                              : tools.programs.request(recipe, request.budgetMs / 4);
+    bindTextures(tools, firstUnit);
+    if (!answer.program) return {request.wait || answer.stage == ProgramStage::Failed, false};
+    const auto setUniforms = [&](const Program& program) {
+        setRayUniforms(program, plan, call.scene, call.info(), call.grid(), request.size, 1);
+    };
+    if (answer.stage == ProgramStage::Linked) {
+        setUniforms(*answer.program);
+        const Texture like = makeTexture2D({1, 1}, kMatterFormat, GL_NEAREST, "like the light volume's matter");
+        tools.programs.warmUp(recipe, makeFramebuffer({like.name()}, "like the light volume's matter"));
+        return {false, false};
+    }
+    baker_.update(call.scene, call.info(), matter, *answer.program, setUniforms, tools.vertices.name(),
+                  request.budgetMs / 3, request.wait);
+    const bool changed = version_ != baker_.version();
+    version_ = baker_.version();
+    bindTextures(tools, firstUnit);
+    return {baker_.ready(), changed};
+}
+
+} // namespace tessera::vis
