@@ -20,7 +20,7 @@ std::shared_ptr<const std::vector<double>> AsyncVisibility::get(ViewContext& con
     const vis::VolumeLayer* layer = nullptr;
     for (const vis::Layer& entry : session.layers)
         if (const auto* volume = std::get_if<vis::VolumeLayer>(&entry.technique))
-            if (!layer && entry.visible && volume->style == vis::VolumeStyle::Composite && volume->channel == name)
+            if (!layer && entry.visible && volume->style == vis::RayStyle::Composite && volume->channel == name)
                 layer = volume;
     if (!layer || !(range.hi > range.lo)) return nullptr;
     using Source = std::shared_ptr<const volume::BrickSource>;

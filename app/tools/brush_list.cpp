@@ -160,7 +160,7 @@ std::optional<SpaceShape> spaceShape(const vis::Brush& brush) {
 void makeOpaque(Session& session) {
     for (vis::Layer& layer : session.layers) {
         const auto* volume = std::get_if<vis::VolumeLayer>(&layer.technique);
-        if (!volume || !layer.visible || volume->style != vis::VolumeStyle::Composite) continue;
+        if (!volume || !layer.visible || volume->style != vis::RayStyle::Composite) continue;
         if (layer.transfer.empty()) {
             std::string name = layer.name;
             while (name.empty() || session.transfer.contains(name)) name += "'";

@@ -75,7 +75,7 @@ TEST(Tracks, MoveEveryKindOfParameter) {
     EXPECT_TRUE(setNumbersAt(session, "/cursor", std::vector<double>{1, 2, 3}));
     const auto& volume = std::get<vis::VolumeLayer>(session.layers[0].technique);
     EXPECT_EQ(volume.density, 2.5f);
-    EXPECT_EQ(volume.style, vis::VolumeStyle::Maximum);
+    EXPECT_EQ(volume.style, vis::RayStyle::Maximum);
     EXPECT_FALSE(session.layers[0].visible);
     EXPECT_EQ(session.cursor, glm::dvec3(1, 2, 3));
     EXPECT_TRUE(setNumbersAt(session, "/layers/0/technique/density", std::vector<double>{1e9}));

@@ -115,7 +115,7 @@ TEST_F(UiTest, WhatDoesNotApplyIsNotDrawn) {
     EXPECT_EQ(height(threshold), 1);
     layer.quantity = vis::Quantity::Gradient;
     EXPECT_EQ(height(all), composite - 1) << "no classification";
-    layer.style = vis::VolumeStyle::LocalMaximum;
+    layer.style = vis::RayStyle::LocalMaximum;
     EXPECT_EQ(height(all), composite - 2) << "no shading and look, but a threshold";
     EXPECT_EQ(height(threshold), 1);
 }

@@ -122,7 +122,7 @@ TEST_F(AdaptiveSteps, TakeFewerSamplesWhereItIsSmooth) {
 TEST_F(AdaptiveSteps, LeaveTheRestAsItIs) {
     const auto source = smoothSource(volume::LatticeKind::CC, false);
     std::vector<Scene> scenes(6, smoothScene());
-    std::get<vis::VolumeLayer>(scenes[0].layers[0].technique).style = vis::VolumeStyle::Maximum;
+    std::get<vis::VolumeLayer>(scenes[0].layers[0].technique).style = vis::RayStyle::Maximum;
     std::get<vis::VolumeLayer>(scenes[1].layers[0].technique).quantity = vis::Quantity::Gradient;
     std::get<vis::VolumeLayer>(scenes[2].layers[0].technique).classification = vis::Classification::PreIntegrated;
     scenes[3].lenses.push_back({});

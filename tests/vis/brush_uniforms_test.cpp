@@ -26,11 +26,10 @@ TEST(BrushTests, OnlyWholeBrushesAreDroppedAndCounted) {
     for (const auto& [count, tests, dropped] : {std::tuple{3, 6, 0}, {64, 128, 0}, {67, 128, 3}}) {
         const Scene scene = sceneOf(std::vector<Brush>(std::size_t(count), two));
         const RayPlan plan = planRays(scene, twoChannels());
-        const BrushTests result = brushTests(plan, scene, twoChannels());
-        EXPECT_EQ(result.meanings.size(), std::size_t(tests));
-        EXPECT_EQ(result.shapes.size(), 2 * result.meanings.size());
+        const BrushTests& result = plan.brushes;
+        EXPECT_EQ(result.tests.size(), std::size_t(tests));
         EXPECT_EQ(result.dropped, dropped);
-        EXPECT_EQ(result.meanings.back().w & 2, 2) << "the last test ends its brush";
+        EXPECT_TRUE(result.tests.back().flags & BrushTest::Last) << "the last test ends its brush";
     }
 }
 
@@ -46,20 +45,23 @@ TEST(BrushTests, SayWhatTheProgramNeeds) {
     const Scene scene = sceneOf(brushes);
     const RayPlan plan = planRays(scene, twoChannels());
     EXPECT_EQ(plan.brushFields.size(), 2u);
-    const BrushTests tests = brushTests(plan, scene, twoChannels());
-    ASSERT_EQ(tests.meanings.size(), 3u);
+    const BrushTests& tests = plan.brushes;
+    ASSERT_EQ(tests.tests.size(), 3u);
     EXPECT_EQ(tests.start, 0) << "the first one says or";
-    EXPECT_EQ(tests.meanings[0].y, -1) << "an unknown channel holds nowhere";
-    EXPECT_EQ(tests.meanings[1].w, 1 | 2 | 4) << "minus is the inverse";
+    EXPECT_EQ(tests.tests[0].x, -1) << "an unknown channel holds nowhere";
+    EXPECT_EQ(tests.tests[1].flags, BrushTest::First | BrushTest::Last | BrushTest::Inverted) << "minus is the inverse";
     EXPECT_EQ(tests.lassos.size(), 1u);
-    const std::map<std::string, std::string> defines(plan.brushDefines.begin(), plan.brushDefines.end());
+    const auto definesOf = [](const RayPlan& of, const Scene& drawn) {
+        const auto all = brushDefines(of.brushes, drawn.selection);
+        return std::map<std::string, std::string>(all.begin(), all.end());
+    };
+    const std::map<std::string, std::string> defines = definesOf(plan, scene);
     EXPECT_EQ(defines.at("BRUSH_TESTS"), "8");
     EXPECT_EQ(defines.at("BRUSH_RANGES"), "0");
     EXPECT_EQ(defines.at("BRUSH_ELLIPSES"), "1");
     EXPECT_EQ(defines.at("BRUSH_LASSOS"), "1");
     EXPECT_EQ(defines.at("BRUSH_SPACE"), "1");
-    const RayPlan none = planRays(sceneOf({}), twoChannels());
-    const std::map<std::string, std::string> bare(none.brushDefines.begin(), none.brushDefines.end());
+    const std::map<std::string, std::string> bare = definesOf(planRays(sceneOf({}), twoChannels()), sceneOf({}));
     EXPECT_EQ(bare.at("BRUSH_TESTS"), "0") << "without brushes nothing of it is compiled";
 }
 

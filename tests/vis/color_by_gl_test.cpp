@@ -19,7 +19,7 @@ struct Mode {
 /// The nearest label of a place, which colours it, falls the other way in single precision more often than others.
 constexpr std::size_t kLabelOutliers = 24;
 
-VolumeLayer coloredVolume(VolumeStyle style = VolumeStyle::Composite) {
+VolumeLayer coloredVolume(RayStyle style = RayStyle::Composite) {
     return {.channel = "a", .style = style, .density = 2, .colorBy = "b"};
 }
 
@@ -78,24 +78,24 @@ const Mode kModes[] = {
      kRmse, kLabelOutliers},
     {"maximum",
      [](Scene& s) {
-         s.layers = {{"", true, coloredVolume(VolumeStyle::Maximum)}};
+         s.layers = {{"", true, coloredVolume(RayStyle::Maximum)}};
          s.transfer["a"].opacity = {{0, 0.2f}, {1, 0.6f}};
      }},
     {"local maximum and minimum",
      [](Scene& s) {
-         VolumeLayer local = coloredVolume(VolumeStyle::LocalMaximum);
+         VolumeLayer local = coloredVolume(RayStyle::LocalMaximum);
          local.threshold = 310;
-         s.layers = {{"", true, local}, {"", true, coloredVolume(VolumeStyle::Minimum)}};
+         s.layers = {{"", true, local}, {"", true, coloredVolume(RayStyle::Minimum)}};
          s.transfer["a"].opacity = {{0, 0.3f}, {1, 0.2f}};
      }},
     {"average",
      [](Scene& s) {
-         s.layers = {{"", true, coloredVolume(VolumeStyle::Average)}};
+         s.layers = {{"", true, coloredVolume(RayStyle::Average)}};
          s.transfer["a"].opacity = {{0, 0.3f}, {1, 0.5f}};
      }},
     {"x-ray",
      [](Scene& s) {
-         s.layers = {{"", true, coloredVolume(VolumeStyle::XRay)}};
+         s.layers = {{"", true, coloredVolume(RayStyle::XRay)}};
          s.transfer["a"].opacity = {{0, 0.02f}, {1, 0.2f}};
      }},
     {"translucent, among brushes",
@@ -174,7 +174,7 @@ TEST_P(ColorBy, AgreesWithTheReference) {
 /// What a channel colours by itself is what it shows by itself.
 TEST_P(ColorBy, ItsOwnParameterChangesNothing) {
     Drawing drawing(GetParam().kind, GetParam().masked, true);
-    for (const VolumeStyle style : {VolumeStyle::Composite, VolumeStyle::Maximum, VolumeStyle::Minimum}) {
+    for (const RayStyle style : {RayStyle::Composite, RayStyle::Maximum, RayStyle::Minimum}) {
         Scene scene = baseScene(true);
         scene.layers = {{"", true, VolumeLayer{.channel = "a", .style = style, .density = 3}}};
         scene.transfer["a"].opacity = {{0, 0.05f}, {1, 0.2f}};
@@ -209,7 +209,7 @@ TEST(ColorByFunction, GivesTheColours) {
     const glm::vec3 plain(0.1f, 0.8f, 0.3f);
     const std::vector<Technique> techniques{
         VolumeLayer{.channel = "shape", .shaded = false, .density = 20, .colorBy = "ramp"},
-        VolumeLayer{.channel = "shape", .style = VolumeStyle::Maximum, .density = 20, .colorBy = "ramp"},
+        VolumeLayer{.channel = "shape", .style = RayStyle::Maximum, .density = 20, .colorBy = "ramp"},
         IsoLayer{.channel = "shape", .value = 0.5, .color = plain, .colorBy = "ramp"}};
     const TransferFunction& function = scene.transfer["ramp"];
     for (const Technique& technique : techniques) {

@@ -130,11 +130,10 @@ TEST_F(ResidencyTest, HiddenBricksComeWhenTheyAreSeen) {
 
 // Clouds, projections and no culling: everything comes, and nothing is said to be hidden.
 TEST_F(ResidencyTest, TranslucentMatterHidesNothing) {
-    for (const vis::VolumeStyle style :
-         {vis::VolumeStyle::Composite, vis::VolumeStyle::Maximum, vis::VolumeStyle::XRay}) {
+    for (const vis::RayStyle style : {vis::RayStyle::Composite, vis::RayStyle::Maximum, vis::RayStyle::XRay}) {
         Scene scene = walledScene(vis::Projection::Perspective);
         std::get<vis::VolumeLayer>(scene.layers[0].technique).style = style;
-        if (style == vis::VolumeStyle::Composite) scene.transfer["v"].opacity = {{0, 0}, {0.1f, 0}, {1, 0.02f}};
+        if (style == vis::RayStyle::Composite) scene.transfer["v"].opacity = {{0, 0}, {0.1f, 0}, {1, 0.02f}};
         const HiddenDrawn all = drawWaiting(walled(volume::LatticeKind::CC), uncovered(scene));
         const HiddenDrawn culled = drawWaiting(walled(volume::LatticeKind::CC), scene);
         EXPECT_EQ(culled.info.bricksHidden, 0);

@@ -29,18 +29,18 @@ TEST_F(LensLib, WeighsBendsAndActsAsItsTwinDoes) {
                                     .strength = 0.7f});
         scene.layers = {{"", true, VolumeLayer{}, "1"}};
         ProgramRecipe recipe;
-        addLenses(recipe, scene);
         const WorldFrame frame;
+        const std::vector<PlacedLens> lenses = placeLenses(scene, frame);
+        addLenses(recipe, lenses, scene);
         const auto got = [&](const std::string& expression) {
             return evaluate("uniform vec3 halfSize;\n#include \"lib/lenses.glsl\"\n", expression, recipe,
                             [&](const Program& program) {
-                                setLensUniforms(program, scene, frame);
+                                setLensUniforms(program, lenses);
                                 program.set("halfSize", glm::vec3(frame.halfSize));
                             });
         };
         const auto weights = got("vec4(lensAction(-1, 0.5 * a[i].xyz), lensAction(1, 0.5 * a[i].xyz))");
         const auto bent = got("vec4(lensBend(0.5 * a[i].xyz), lensConfine(abs(b[i].x), 0.5 * a[i].xyz))");
-        const std::vector<PlacedLens> lenses = placeLenses(scene, frame);
         for (int i = 0; i < kCases; ++i) {
             const glm::dvec3 p = 0.5 * glm::dvec3(a[i]);
             const LensAction below = lensAction(lenses, -1, p), own = lensAction(lenses, 1, p);
@@ -125,9 +125,9 @@ const Mode kModes[] = {
      }},
     {"projections",
      [](Scene& s) {
-         s.layers = {{"", true, VolumeLayer{.channel = "a", .style = VolumeStyle::Maximum}},
-                     {"", true, VolumeLayer{.channel = "b", .style = VolumeStyle::XRay, .density = 0.3f}, "disc"},
-                     {"", true, VolumeLayer{.channel = "b", .style = VolumeStyle::Average}}};
+         s.layers = {{"", true, VolumeLayer{.channel = "a", .style = RayStyle::Maximum}},
+                     {"", true, VolumeLayer{.channel = "b", .style = RayStyle::XRay, .density = 0.3f}, "disc"},
+                     {"", true, VolumeLayer{.channel = "b", .style = RayStyle::Average}}};
          s.lenses = {lensAt("disc", s.cursor, 0.2f)};
          s.lenses[0].shape = LensShape::Disc;
      }},

@@ -46,7 +46,8 @@ TEST_P(LensPixelsGl, BeyondALensItsLayersTakeNoSamples) {
     plain.lenses.clear();
     std::erase_if(plain.layers, [](const Layer& layer) { return !layer.lens.empty(); });
     const auto data = source(LatticeKind::BCC, true);
-    const std::vector<Tile> tiles = lensTiles(scene, worldFrame(data->info().bounds, scene.stretch), kSize).value();
+    const std::vector<Tile> tiles =
+        lensTiles(placeLenses(scene, worldFrame(data->info().bounds, scene.stretch)), scene, kSize).value();
     std::vector<std::vector<glm::vec4>> counts, pictures;
     for (const bool counting : {true, false})
         for (const Scene* each : {&scene, static_cast<const Scene*>(&plain)}) {
@@ -83,7 +84,7 @@ TEST(LensPixels, AreAnywhereWhereALensActsOutsideOfItself) {
     const auto known = [&](const std::function<void(Scene&)>& change) {
         Scene changed = scene;
         change(changed);
-        return lensTiles(changed, frame, kSize).has_value();
+        return lensTiles(placeLenses(changed, frame), changed, kSize).has_value();
     };
     EXPECT_TRUE(known([](Scene&) {}));
     EXPECT_FALSE(known([](Scene& s) { s.lenses[0].inverted = true; }));

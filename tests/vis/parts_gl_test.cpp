@@ -48,11 +48,11 @@ const Mode kModes[] = {
      }},
     {"maximum",
      [](Scene& s) {
-         s.layers = {{"", true, VolumeLayer{.channel = "gas", .style = VolumeStyle::Maximum, .density = 5}}};
+         s.layers = {{"", true, VolumeLayer{.channel = "gas", .style = RayStyle::Maximum, .density = 5}}};
      }},
     {"x-ray",
      [](Scene& s) {
-         s.layers = {{"", true, VolumeLayer{.channel = "heat", .style = VolumeStyle::XRay, .density = 0.5f}}};
+         s.layers = {{"", true, VolumeLayer{.channel = "heat", .style = RayStyle::XRay, .density = 0.5f}}};
      }},
     {"slices",
      [](Scene& s) {
@@ -161,7 +161,7 @@ const Mode kFilled[] = {
      }},
     {"x-ray",
      [](Scene& s) {
-         s.layers = {{"", true, VolumeLayer{.channel = "gas", .style = VolumeStyle::XRay, .density = 3}}};
+         s.layers = {{"", true, VolumeLayer{.channel = "gas", .style = RayStyle::XRay, .density = 3}}};
      }},
     {"surface",
      [](Scene& s) {

@@ -47,10 +47,10 @@ INSTANTIATE_TEST_SUITE_P(Lattices, RayStyles,
 TEST_P(RayStyles, ProjectionsAgree) {
     Scene scene = baseScene(true);
     scene.transfer["a"].opacity = {{0, 0.02f}, {1, 0.01f}};
-    scene.layers = {{"", true, VolumeLayer{.channel = "b", .style = VolumeStyle::Minimum, .density = 0.3f}},
-                    {"", true, VolumeLayer{.channel = "b", .style = VolumeStyle::Average, .density = 0.3f}},
-                    {"", true, VolumeLayer{.channel = "a", .style = VolumeStyle::XRay, .density = 2}},
-                    {"", true, VolumeLayer{.channel = "b", .style = VolumeStyle::LocalMaximum, .threshold = 0.5}}};
+    scene.layers = {{"", true, VolumeLayer{.channel = "b", .style = RayStyle::Minimum, .density = 0.3f}},
+                    {"", true, VolumeLayer{.channel = "b", .style = RayStyle::Average, .density = 0.3f}},
+                    {"", true, VolumeLayer{.channel = "a", .style = RayStyle::XRay, .density = 2}},
+                    {"", true, VolumeLayer{.channel = "b", .style = RayStyle::LocalMaximum, .threshold = 0.5}}};
     const std::vector<Layer> all = scene.layers;
     for (const Layer& layer : all) {
         scene.layers = {layer};
@@ -73,7 +73,7 @@ TEST_P(RayStyles, GradientMagnitudeAgrees) {
     check("gradient without shading", scene);
     scene.layers = {
         {"", true,
-         VolumeLayer{.channel = "b", .style = VolumeStyle::Maximum, .quantity = Quantity::Gradient, .density = 0.5f}}};
+         VolumeLayer{.channel = "b", .style = RayStyle::Maximum, .quantity = Quantity::Gradient, .density = 0.5f}}};
     check("largest gradient", scene);
 }
 

@@ -110,7 +110,7 @@ const Mode kModes[] = {
          s.layers = {{"", true, VolumeLayer{.channel = "a", .density = 3}},
                      {"", true, IsoLayer{.channel = "b", .value = 0.55, .opacity = 0.6f}},
                      {"", true, SliceLayer{.channel = "a", .orientation = SliceOrientation::Y, .opacity = 0.8f}},
-                     {"", true, VolumeLayer{.channel = "b", .style = VolumeStyle::XRay, .density = 0.3f}}};
+                     {"", true, VolumeLayer{.channel = "b", .style = RayStyle::XRay, .density = 0.3f}}};
          s.clips = {{.axis = {0.6f, 0.7f, 0.2f}},
                     {.kind = ClipKind::Sphere, .keep = ClipKeep::Outside, .center = {0.4f, 0.3f, 0.6f}, .radius = 0.2f},
                     {.enabled = false, .kind = ClipKind::Sphere, .radius = 0},
@@ -125,7 +125,7 @@ const Mode kModes[] = {
     {"clipped plain",
      [](Scene& s) {
          s.layers = {{"", true, VolumeLayer{.channel = "a", .shaded = false}},
-                     {"", true, VolumeLayer{.channel = "b", .style = VolumeStyle::Maximum}}};
+                     {"", true, VolumeLayer{.channel = "b", .style = RayStyle::Maximum}}};
          s.clips = {{.kind = ClipKind::Box, .keep = ClipKeep::Outside, .size = {0.3f, 0.4f, 0.5f}},
                     {.kind = ClipKind::Cylinder, .axis = {0.1f, 0.2f, 1}, .radius = 0.35f, .length = 0.9f}};
      }},
@@ -138,11 +138,11 @@ const Mode kModes[] = {
      }},
     {"maximum",
      [](Scene& s) {
-         s.layers = {{"", true, VolumeLayer{.channel = "b", .style = VolumeStyle::Maximum}}};
+         s.layers = {{"", true, VolumeLayer{.channel = "b", .style = RayStyle::Maximum}}};
      }},
     {"average",
      [](Scene& s) {
-         s.layers = {{"", true, VolumeLayer{.channel = "b", .style = VolumeStyle::Average}}};
+         s.layers = {{"", true, VolumeLayer{.channel = "b", .style = RayStyle::Average}}};
      }},
     {"slices",
      [](Scene& s) {
@@ -162,7 +162,7 @@ const Mode kModes[] = {
                      {"", true, IsoLayer{.channel = "b", .value = 0.55, .color = {0.2f, 0.5f, 0.9f}, .opacity = 0.5f}},
                      {"", true, SliceLayer{.channel = "a", .orientation = SliceOrientation::Y, .opacity = 0.8f}},
                      {"", false, IsoLayer{.channel = "a", .value = 300}},
-                     {"", true, VolumeLayer{.channel = "b", .style = VolumeStyle::Maximum, .density = 0.5f}}};
+                     {"", true, VolumeLayer{.channel = "b", .style = RayStyle::Maximum, .density = 0.5f}}};
          s.selection.brushes = {rangeBrush({{"a", 290, 340, 12}, {"b", 0.1, 0.9, 0.2}}),
                                 rangeBrush({{"b", 0.3, 0.4, 0.05}})};
          s.selection.brushes[1].inverted = true;

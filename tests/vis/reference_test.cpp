@@ -104,13 +104,13 @@ TEST(Reference, LayersCompositeFrontToBack) {
 
 TEST(Reference, MaximumAndAverageLookAtTheWholeRay) {
     for (LatticeKind kind : kKinds) {
-        Scene scene = frontal(VolumeLayer{.channel = "c", .style = VolumeStyle::Maximum, .density = 20});
+        Scene scene = frontal(VolumeLayer{.channel = "c", .style = RayStyle::Maximum, .density = 20});
         scene.render.stepVoxels = 0.25f;
         Image image = reference::render(scene, ramp(kind), {3, 3});
         const double alpha = 20 * 0.01f;
         EXPECT_NEAR(image.pixels[4].a, alpha, 1e-6);
         EXPECT_NEAR(srgbFromLinear(image.pixels[4].r / alpha), 1, 0.02);
-        scene.layers[0].technique = VolumeLayer{.channel = "c", .style = VolumeStyle::Average, .density = 20};
+        scene.layers[0].technique = VolumeLayer{.channel = "c", .style = RayStyle::Average, .density = 20};
         image = reference::render(scene, ramp(kind), {3, 3});
         EXPECT_NEAR(srgbFromLinear(image.pixels[4].r / alpha), 0.5, 2e-3);
     }

@@ -139,101 +139,147 @@ bool meets(const PlacedLens& lens, const WorldBox& box) {
     return glm::length(glm::dvec2(u)) - u.z < 1 + glm::length(glm::dvec2(reach)) + reach.z;
 }
 
-} // namespace
+/// Where each field shows something: 1 or 0 per brick.
+using ShownBricks = std::vector<std::vector<std::uint8_t>>;
 
-std::vector<std::shared_ptr<const BrickDemand>>
-brickDemands(RayPlan plan, const Scene& scene, const volume::DatasetInfo& info, const volume::BrickGrid& grid,
-             const std::vector<const BlockRanges*>& ranges, const std::vector<std::span<const float>>& importance,
-             const DemandSettings& settings, std::span<const std::uint8_t> hidden) {
-    const glm::ivec3 count = grid.count();
-    const std::size_t total = countOf(count), fields = plan.fields.size();
-    const WorldFrame frame = worldFrame(info.bounds, scene.stretch);
-    const volume::Lattice& lattice = grid.lattice;
-    const Sight sight(scene.camera, glm::max(settings.size, glm::ivec2(1)));
-    const glm::dvec3 cellWorld = frame.scale * lattice.spacing, cursor = frame.toWorld(scene.cursor);
-    const glm::dvec3 voxels = worldCell(lattice, frame);
-    const double voxel = std::max({voxels.x, voxels.y, voxels.z});
-
-    std::vector<std::vector<std::uint8_t>> shown(fields, std::vector<std::uint8_t>(total, 0));
-    for (std::size_t f = 0; f < fields; ++f) {
+/// By what is known of the bricks' values. Slices and brushes are not in it.
+ShownBricks shownByLayers(RayPlan plan, const Scene& scene, const volume::DatasetInfo& info,
+                          const std::vector<const BlockRanges*>& ranges, std::size_t bricks) {
+    ShownBricks shown(plan.fields.size(), std::vector<std::uint8_t>(bricks, 0));
+    for (std::size_t f = 0; f < shown.size(); ++f) {
         plan.fields[f].blocks = ranges[f];
         if (ranges[f]) markShown(shown[f], plan, int(f), scene, info);
     }
     // What gives a layer its colours is looked at where the layer shows.
-    if (std::ranges::any_of(plan.layers, [](const RayLayer& layer) { return layer.color >= 0; })) {
-        const std::vector<std::vector<std::uint8_t>> shapes = shown;
-        for (const RayLayer& layer : plan.layers)
-            for (std::size_t i = 0; layer.color >= 0 && i < total; ++i)
-                if (shapes[std::size_t(layer.field)][i]) shown[std::size_t(layer.color)][i] = 1;
-    }
-    std::vector<Plane> planes;
-    for (const SliceUse& use : plan.slices)
-        planes.push_back(
-            slicePlane(std::get<SliceLayer>(scene.layers[std::size_t(use.layer)].technique), frame, scene.cursor));
+    if (std::ranges::none_of(plan.layers, [](const RayLayer& layer) { return layer.color >= 0; })) return shown;
+    const ShownBricks shapes = shown;
+    for (const RayLayer& layer : plan.layers)
+        for (std::size_t i = 0; layer.color >= 0 && i < bricks; ++i)
+            if (shapes[std::size_t(layer.field)][i]) shown[std::size_t(layer.color)][i] = 1;
+    return shown;
+}
 
-    const std::vector<PlacedLens> lenses = placeLenses(scene, frame);
-    BrickDemand none;
-    none.level.assign(total, kNotWanted);
-    none.priority.assign(total, 0);
-    none.hidden.assign(total, 0);
-    const std::optional<std::uint8_t> light = lightLevel(scene, frame, voxel, grid.levels);
-    std::vector<BrickDemand> demands(fields, none);
-    std::vector<Coarser> coarser;
-    for (std::size_t f = 0; f < fields; ++f) coarser.emplace_back(importance[f], settings.importance);
-    std::size_t i = 0;
-    for (int z = 0; z < count.z; ++z)
-        for (int y = 0; y < count.y; ++y)
-            for (int x = 0; x < count.x; ++x, ++i) {
-                // One cell more on every side: the moved sublattice and interpolation reach that far.
-                const glm::dvec3 lo = glm::dvec3(glm::ivec3(x, y, z) * grid.brickSize) - 1.0,
-                                 hi = lo + double(grid.brickSize) + 2.0;
-                const auto world = [&](glm::dvec3 cell) {
-                    return frame.toWorld(lattice.origin + cell * lattice.spacing);
-                };
-                const WorldBox box{0.5 * (world(lo) + world(hi)), 0.5 * glm::abs(cellWorld) * (hi - lo)};
-                if (!sight.sees(box)) continue;
-                const double depth = sight.depth(box), pixels = voxel / sight.pixel(depth);
-                double detail = settings.detail;
-                bool inLens = false;
-                for (const PlacedLens& lens : lenses) {
-                    if (!meets(lens, box)) continue;
-                    inLens = true;
-                    if (lens.detail != 1) detail = settings.detail * lens.detail;
-                }
-                const double toCursor = glm::length(glm::max(glm::abs(cursor - box.centre) - box.half, 0.0));
-                const double priority =
-                    (depth + 0.5 * sight.aside(box.centre) + 0.25 * toCursor) * (inLens ? kInLens : 1);
-                bool any = false;
-                for (std::size_t s = 0; s < planes.size(); ++s) {
-                    const double offset = planes[s].offset;
-                    if (box.below(planes[s].normal) > offset || -box.below(-planes[s].normal) < offset) continue;
-                    shown[std::size_t(plan.slices[s].field)][i] = 1;
-                }
-                for (const std::vector<std::uint8_t>& field : shown) any = any || field[i] != 0;
-                for (const int brush : plan.brushFields)
-                    if (any) shown[std::size_t(brush)][i] = 1;
-                for (std::size_t f = 0; f < fields; ++f)
-                    if (shown[f][i]) {
-                        std::uint8_t level = levelOf(pixels, detail * coarser[f](i), grid.levels);
-                        demands[f].hidden[i] = !hidden.empty() && hidden[i] != 0;
-                        if (demands[f].hidden[i] != 0) level = light ? std::max(level, *light) : kNotWanted;
-                        demands[f].level[i] = level;
-                        demands[f].priority[i] = float(priority);
-                    }
-            }
-    for (BrickDemand& demand : demands) keepMostUrgent(demand, settings.share);
-    // Fields of the same samples (drawn by functions of their own) want them together.
-    for (std::size_t f = 0; f < fields; ++f)
-        for (std::size_t g = 0; g < fields; ++g) {
+/// What a picture asks of its bricks, brick by brick.
+class Chooser {
+public:
+    Chooser(const RayPlan& plan, const Scene& scene, const volume::DatasetInfo& info, const volume::BrickGrid& grid,
+            const DemandSettings& settings)
+        : plan_(plan), grid_(grid), settings_(settings), frame_(worldFrame(info.bounds, scene.stretch)),
+          sight_(scene.camera, glm::max(settings.size, glm::ivec2(1))), cursor_(frame_.toWorld(scene.cursor)) {
+        const glm::dvec3 voxels = worldCell(grid.lattice, frame_);
+        voxel_ = std::max({voxels.x, voxels.y, voxels.z});
+        light_ = lightLevel(scene, frame_, voxel_, grid.levels);
+        for (const SliceUse& use : plan.slices)
+            planes_.push_back(
+                slicePlane(std::get<SliceLayer>(scene.layers[std::size_t(use.layer)].technique), frame_, scene.cursor));
+    }
+
+    /// A brick in the picture.
+    struct Seen {
+        double pixels = 0; ///< edge of a voxel of full resolution
+        double detail = 0;
+        float priority = 0;
+    };
+    /// nullopt: not in the picture.
+    std::optional<Seen> look(const WorldBox& box) const {
+        if (!sight_.sees(box)) return std::nullopt;
+        const double depth = sight_.depth(box);
+        Seen seen{voxel_ / sight_.pixel(depth), settings_.detail, 0};
+        bool inLens = false;
+        for (const PlacedLens& lens : plan_.lenses) {
+            if (!meets(lens, box)) continue;
+            inLens = true;
+            if (lens.detail != 1) seen.detail = settings_.detail * lens.detail;
+        }
+        const double toCursor = glm::length(glm::max(glm::abs(cursor_ - box.centre) - box.half, 0.0));
+        seen.priority = float((depth + 0.5 * sight_.aside(box.centre) + 0.25 * toCursor) * (inLens ? kInLens : 1));
+        return seen;
+    }
+    /// The box of a brick. One cell more on every side: the moved sublattice and interpolation reach that far.
+    WorldBox box(glm::ivec3 brick) const {
+        const volume::Lattice& lattice = grid_.lattice;
+        const glm::dvec3 lo = glm::dvec3(brick * grid_.brickSize) - 1.0, hi = lo + double(grid_.brickSize) + 2.0;
+        const auto world = [&](glm::dvec3 cell) { return frame_.toWorld(lattice.origin + cell * lattice.spacing); };
+        return {0.5 * (world(lo) + world(hi)), 0.5 * glm::abs(frame_.scale * lattice.spacing) * (hi - lo)};
+    }
+    /// Adds to what is shown of brick i the slices through its box, and the brushes' fields where anything is.
+    void addSlicesAndBrushes(ShownBricks& shown, std::size_t i, const WorldBox& box) const {
+        for (std::size_t s = 0; s < planes_.size(); ++s) {
+            const double offset = planes_[s].offset;
+            if (box.below(planes_[s].normal) > offset || -box.below(-planes_[s].normal) < offset) continue;
+            shown[std::size_t(plan_.slices[s].field)][i] = 1;
+        }
+        if (std::ranges::none_of(shown, [i](const std::vector<std::uint8_t>& field) { return field[i] != 0; })) return;
+        for (const int brush : plan_.brushFields) shown[std::size_t(brush)][i] = 1;
+    }
+    /// The level wanted of a brick whose voxels may be `coarser` times as large; hidden: for light alone.
+    std::uint8_t level(const Seen& seen, double coarser, bool hidden) const {
+        const std::uint8_t level = levelOf(seen.pixels, seen.detail * coarser, grid_.levels);
+        if (!hidden) return level;
+        return light_ ? std::max(level, *light_) : kNotWanted;
+    }
+
+private:
+    const RayPlan& plan_;
+    const volume::BrickGrid& grid_;
+    const DemandSettings& settings_;
+    WorldFrame frame_;
+    Sight sight_;
+    glm::dvec3 cursor_;
+    double voxel_ = 0;
+    std::optional<std::uint8_t> light_;
+    std::vector<Plane> planes_;
+};
+
+/// Fields of the same samples (drawn by functions of their own) want them together.
+void joinSameSamples(std::vector<BrickDemand>& demands, const RayPlan& plan, const ShownBricks& shown) {
+    for (std::size_t f = 0; f < demands.size(); ++f)
+        for (std::size_t g = 0; g < demands.size(); ++g) {
             const BoundField &a = plan.fields[f], &b = plan.fields[g];
             if (f == g || a.channel != b.channel || a.raw != b.raw || a.timeShift != b.timeShift) continue;
-            for (std::size_t k = 0; k < total; ++k)
+            for (std::size_t k = 0; k < shown[g].size(); ++k)
                 if (shown[g][k]) {
                     demands[f].level[k] = demands[g].level[k];
                     demands[f].priority[k] = demands[g].priority[k];
                     demands[f].hidden[k] = demands[g].hidden[k];
                 }
         }
+}
+
+} // namespace
+
+std::vector<std::shared_ptr<const BrickDemand>>
+brickDemands(const RayPlan& plan, const Scene& scene, const volume::DatasetInfo& info, const volume::BrickGrid& grid,
+             const std::vector<const BlockRanges*>& ranges, const std::vector<std::span<const float>>& importance,
+             const DemandSettings& settings, std::span<const std::uint8_t> hidden) {
+    const glm::ivec3 count = grid.count();
+    const std::size_t total = countOf(count), fields = plan.fields.size();
+    ShownBricks shown = shownByLayers(plan, scene, info, ranges, total);
+    const Chooser chooser(plan, scene, info, grid, settings);
+    BrickDemand none;
+    none.level.assign(total, kNotWanted);
+    none.priority.assign(total, 0);
+    none.hidden.assign(total, 0);
+    std::vector<BrickDemand> demands(fields, none);
+    std::vector<Coarser> coarser;
+    for (std::size_t f = 0; f < fields; ++f) coarser.emplace_back(importance[f], settings.importance);
+    for (std::size_t i = 0; i < total; ++i) {
+        const std::size_t row = i / std::size_t(count.x);
+        const WorldBox box = chooser.box(
+            {int(i % std::size_t(count.x)), int(row % std::size_t(count.y)), int(row / std::size_t(count.y))});
+        const std::optional<Chooser::Seen> seen = chooser.look(box);
+        if (!seen) continue;
+        chooser.addSlicesAndBrushes(shown, i, box);
+        const bool behind = !hidden.empty() && hidden[i] != 0;
+        for (std::size_t f = 0; f < fields; ++f) {
+            if (!shown[f][i]) continue;
+            demands[f].hidden[i] = behind;
+            demands[f].level[i] = chooser.level(*seen, coarser[f](i), behind);
+            demands[f].priority[i] = seen->priority;
+        }
+    }
+    for (BrickDemand& demand : demands) keepMostUrgent(demand, settings.share);
+    joinSameSamples(demands, plan, shown);
     std::vector<std::shared_ptr<const BrickDemand>> out;
     for (std::size_t f = 0; f < fields; ++f)
         out.push_back(ranges[f] ? std::make_shared<const BrickDemand>(std::move(demands[f])) : nullptr);

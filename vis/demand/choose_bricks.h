@@ -30,7 +30,7 @@ struct DemandSettings {
 /// Near ones, those in the middle of the picture, near the cursor and in lenses come first. `hidden`: as of
 /// hiddenBricks(); such bricks are wanted for light inside the volume alone.
 std::vector<std::shared_ptr<const BrickDemand>>
-brickDemands(RayPlan plan, const Scene& scene, const volume::DatasetInfo& info, const volume::BrickGrid& grid,
+brickDemands(const RayPlan& plan, const Scene& scene, const volume::DatasetInfo& info, const volume::BrickGrid& grid,
              const std::vector<const BlockRanges*>& ranges, const std::vector<std::span<const float>>& importance,
              const DemandSettings& settings, std::span<const std::uint8_t> hidden = {});
 

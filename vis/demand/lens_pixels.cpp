@@ -20,10 +20,10 @@ std::optional<Tile> lensPixels(const PlacedLens& lens, const Camera& camera, glm
                 glm::ivec2(glm::ceil(glm::clamp(found->hi + kBeside, glm::dvec2(0), most)))};
 }
 
-std::optional<std::vector<Tile>> lensTiles(const Scene& scene, const WorldFrame& frame, glm::ivec2 size) {
+std::optional<std::vector<Tile>> lensTiles(const std::vector<PlacedLens>& lenses, const Scene& scene, glm::ivec2 size) {
     if (selectsLens(scene.selection)) return std::nullopt;
     std::vector<Tile> tiles;
-    for (const PlacedLens& lens : placeLenses(scene, frame)) {
+    for (const PlacedLens& lens : lenses) {
         const bool local = !lens.inverted && lens.outside == 1 && lens.focus == 0;
         const std::optional<Tile> tile = local ? lensPixels(lens, scene.camera, size) : std::nullopt;
         if (!tile) return std::nullopt;
@@ -57,6 +57,7 @@ std::vector<Tile> remainder(const Tile& whole, std::span<const Tile> cut) {
 }
 
 RayPlan beyondLenses(RayPlan plan) {
+    plan.lenses.clear();
     std::erase_if(plan.layers, [](const RayLayer& layer) { return layer.lens >= 0; });
     std::erase_if(plan.slices, [](const SliceUse& slice) { return slice.lens >= 0; });
     return plan;

@@ -15,9 +15,9 @@ namespace tessera::vis {
 /// Pixels of the rays that pass through a lens, of a picture of `size` pixels; nullopt where it reaches behind the eye.
 std::optional<Tile> lensPixels(const PlacedLens& lens, const Camera& camera, glm::ivec2 size);
 
-/// Tiles apart from each other with all pixels that the scene's lenses change; nullopt: any pixel may, as with lenses
-/// that act outside of themselves or choose what is brushed.
-std::optional<std::vector<Tile>> lensTiles(const Scene& scene, const WorldFrame& frame, glm::ivec2 size);
+/// Tiles apart from each other with all pixels that the lenses of a scene change; nullopt: any pixel may, as with
+/// lenses that act outside of themselves or choose what is brushed.
+std::optional<std::vector<Tile>> lensTiles(const std::vector<PlacedLens>& lenses, const Scene& scene, glm::ivec2 size);
 
 /// The remainder of a tile outside `cut`, as disjoint tiles.
 std::vector<Tile> remainder(const Tile& whole, std::span<const Tile> cut);

@@ -1,5 +1,6 @@
 #include "vis/gl/program.h"
 
+#include "vis/gl/shader_constants.h"
 #include "vis/gl/shader_files.h"
 #include "volume/base/error.h"
 
@@ -95,7 +96,7 @@ GLuint compile(GLenum stage, const std::string& root, const ComposedShader& comp
 
 ComposedShader composeShader(const std::string& root, const ProgramRecipe& recipe) {
     Composer composer{recipe, {}, {}};
-    composer.out.text = "#version 450 core\n";
+    composer.out.text = "#version 450 core\n" + shaderConstants();
     for (const auto& [name, value] : recipe.defines) composer.out.text += "#define " + name + ' ' + value + '\n';
     composer.add(root, {});
     return std::move(composer.out);

@@ -24,11 +24,21 @@ namespace tessera::vis {
 struct ProgramRecipe {
     std::string vertex, fragment;
     std::map<std::string, std::string> slots;
-    std::vector<std::pair<std::string, std::string>> defines; ///< `#define first second`, before everything else
+    std::vector<std::pair<std::string, std::string>> defines; ///< `#define first second`, before everything else but
+                                                              ///< shaderConstants()
 
     /// Equal for equal recipes: the key of a program cache.
     std::string key() const;
 };
+
+/// `member` of the i-th of `all`, a number or an enumerator, as an expression of i that folds to a constant once a loop
+/// is unrolled. (Not a constant array: Mesa turns such arrays into uniforms before it unrolls loops.)
+template <class Each, class Member> std::string choice(const std::vector<Each>& all, Member member) {
+    std::string chain = "0";
+    for (std::size_t i = all.size(); i-- > 0;)
+        chain = "((i)==" + std::to_string(i) + "?" + std::to_string(int(member(all[i]))) + ":" + chain + ")";
+    return chain;
+}
 
 /// One stage, ready for the compiler. `#line` numbers are file * 10000 + line, with `files[file]` the path.
 struct ComposedShader {

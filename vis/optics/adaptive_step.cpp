@@ -23,7 +23,7 @@ bool adapts(const Layer& layer, const Scene& scene, const volume::DatasetInfo& i
     const std::optional<int> channel = info.findChannel(volume->channel);
     if (!channel) return true;
     const std::string name = layer.transfer.empty() ? info.channel(*channel).name : layer.transfer;
-    return volume->style == VolumeStyle::Composite && volume->colorBy.empty() && volume->quantity == Quantity::Value &&
+    return volume->style == RayStyle::Composite && volume->colorBy.empty() && volume->quantity == Quantity::Value &&
            volume->classification != Classification::PreIntegrated &&
            transferFor(scene, name).kind == TransferKind::Curve &&
            (layer.brushes == BrushEffect::None || !scene.selection.active());

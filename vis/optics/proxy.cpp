@@ -13,7 +13,7 @@ bool drawnByProxy(const Scene& scene) {
     return std::all_of(scene.layers.begin(), scene.layers.end(), [&](const Layer& layer) {
         const auto* volume = std::get_if<VolumeLayer>(&layer.technique);
         return !layer.visible ||
-               (volume && volume->style == VolumeStyle::Composite && volume->quantity == Quantity::Value &&
+               (volume && volume->style == RayStyle::Composite && volume->quantity == Quantity::Value &&
                 volume->classification == Classification::Post && !volume->look.any() &&
                 transferFor(scene, volume->channel).kind == TransferKind::Curve);
     });

@@ -90,9 +90,10 @@ void Renderer::Impl::bindPlan(const ViewTarget& target, const RenderCall& call) 
         glBindTextureUnit(GLuint(units.atlases) + GLuint(i), field.atlas);
     }
     target.tables.bind(units);
-    if (std::ranges::any_of(plan.layers, [](const RayLayer& layer) { return layer.look & kCharcoalBit; }))
+    if (std::ranges::any_of(plan.layers,
+                            [](const RayLayer& layer) { return layer.look & bitOf(LookFeature::Charcoal); }))
         glBindTextureUnit(GLuint(units.grain), tools.grain.get());
-    glBindTextureUnit(GLuint(units.lassos), tools.brushes.update(brushTests(plan, call.scene, call.info())));
+    glBindTextureUnit(GLuint(units.lassos), tools.brushes.update(plan.brushes));
 }
 
 /// Brings the program of `own`, which is all of the call or part of it, to where it can draw; false while that is on
@@ -122,7 +123,7 @@ bool Renderer::Impl::ready(ViewTarget& target, const RenderCall& call, const Ren
 void Renderer::Impl::addBeyond(RayPrograms& programs, ViewTarget& target, const RenderCall& call) {
     programs.beyondPlan = beyondLenses(call.plan);
     if (programs.beyondPlan.empty() || drawnByProxy(call.scene) ||
-        lensTiles(call.scene, call.frame(), target.buffers.size).value_or(std::vector<Tile>()).empty())
+        lensTiles(call.plan.lenses, call.scene, target.buffers.size).value_or(std::vector<Tile>()).empty())
         return;
     programs.beyondScene = call.scene;
     programs.beyondScene.lenses.clear();

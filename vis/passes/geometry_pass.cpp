@@ -141,123 +141,144 @@ void GeometryPass::table(const Scene& scene, const volume::DatasetInfo& info) {
     glTextureSubImage2D(table_.name(), 0, 0, 0, kColors, rows, GL_RGBA, GL_FLOAT, colors.data());
 }
 
-const Program& GeometryPass::program(const Scene& scene, bool lines, int look) {
+const Program& GeometryPass::program(const GeometryJob& job, bool lines, int look) {
     const std::string bits = std::to_string(look);
     ProgramRecipe recipe{lines ? "geometry_lines.vert.glsl" : "geometry_mesh.vert.glsl",
                          "geometry.frag.glsl",
                          {},
                          {{"LINES", lines ? "1" : "0"}, {"LAYERS", "1"}, {"LOOKS", bits}, {"LAYER_LOOK(i)", bits}}};
-    addLighting(recipe, scene);
-    addClipping(recipe, scene);
-    addLenses(recipe, scene);
+    addLighting(recipe, job.scene);
+    addClipping(recipe, job.scene);
+    addLenses(recipe, job.lenses, job.scene);
     Program& made = programs_[recipe.key()];
     if (!made) made = makeProgram(recipe);
     return made;
 }
 
-void GeometryPass::draw(GeometryBuffer& buffer, const Scene& scene, const volume::DatasetInfo& info, glm::ivec2 size,
-                        glm::ivec2 first, const Tile& tile, glm::ivec2 pictureSize, int most, int lightUnit,
-                        GrainTexture& grain, glm::dvec2 jitter) {
-    const int peels = peelsOf(scene);
-    if (peels == 0) return;
-    table(scene, info);
+namespace {
+
+/// What all layers of a job have in common.
+void setCommon(const Program& program, const GeometryJob& job) {
+    const Scene& scene = job.scene;
+    const glm::ivec2 size = job.size;
     const double aspect = double(size.x) / size.y;
-    const WorldFrame frame = worldFrame(info.bounds, scene.stretch);
+    const WorldFrame frame = worldFrame(job.info.bounds, scene.stretch);
     const Ray middle = cameraRay(scene.camera, aspect, {0, 0});
     // A ray's ndc is its pixel's plus 2 jitter / size, so what is drawn moves the other way.
-    const glm::dmat4 moved = glm::translate(glm::dmat4(1), glm::dvec3(-2.0 * jitter / glm::dvec2(size), 0));
+    const glm::dmat4 moved = glm::translate(glm::dmat4(1), glm::dvec3(-2.0 * job.jitter / glm::dvec2(size), 0));
     const glm::mat4 worldToClip(moved * projectionMatrix(scene.camera, aspect) * viewMatrix(scene.camera));
-    // Brushes take their share of the opacity later.
-    const bool covers = !scene.selection.active();
-    const auto prepare = [&](const Program& program) {
-        program.set("worldScale", glm::vec3(frame.scale));
-        program.set("worldOffset", glm::vec3(frame.offset));
-        glProgramUniformMatrix4fv(program.name(), glGetUniformLocation(program.name(), "worldToClip"), 1, GL_FALSE,
-                                  &worldToClip[0][0]);
-        program.set("rayOrigin", glm::vec3(middle.origin));
-        program.set("forward", glm::vec3(middle.direction));
-        program.set("perspective", scene.camera.projection == Projection::Perspective ? 1 : 0);
-        program.set("halfSize", glm::vec3(glm::max(frame.halfSize, glm::dvec3(1e-5))));
-        setLightUniforms(program, scene, frame, lightUnit);
-        setClipUniforms(program, scene, frame);
-        setLensUniforms(program, scene, frame);
-        program.set("pixels", glm::vec2(size));
-        program.set("colors", kTableUnit);
-        program.set("former", kFormerUnit);
-        program.set("formerColors", kFormerColorUnit);
-        program.set("covers", covers ? 1 : 0);
-    };
-    const std::vector<PlacedLens> placed = placeLenses(scene, frame);
-    // What is drawn, each layer with its own variant.
-    struct Draw {
-        std::size_t layer;
-        int lens;
-        bool lines;
-        const Uploaded* up;
-        const Program* program;
-    };
+    program.set("worldScale", glm::vec3(frame.scale));
+    program.set("worldOffset", glm::vec3(frame.offset));
+    glProgramUniformMatrix4fv(program.name(), glGetUniformLocation(program.name(), "worldToClip"), 1, GL_FALSE,
+                              &worldToClip[0][0]);
+    program.set("rayOrigin", glm::vec3(middle.origin));
+    program.set("forward", glm::vec3(middle.direction));
+    program.set("perspective", scene.camera.projection == Projection::Perspective ? 1 : 0);
+    program.set("halfSize", glm::vec3(glm::max(frame.halfSize, glm::dvec3(1e-5))));
+    setLightUniforms(program, scene, frame, job.lightUnit);
+    setClipUniforms(program, scene, frame);
+    setLensUniforms(program, job.lenses);
+    program.set("pixels", glm::vec2(size));
+    program.set("colors", kTableUnit);
+    program.set("former", kFormerUnit);
+    program.set("formerColors", kFormerColorUnit);
+    program.set("covers", scene.selection.active() ? 0 : 1); // brushes take their share of the opacity later
+}
+
+/// The state that geometry is drawn in, of which the depth test and the scissor are ended with it.
+class DrawingState {
+public:
+    DrawingState(const GeometryJob& job) {
+        const glm::ivec2 first = job.first, begin = first + job.tile.begin, edges = job.tile.end - job.tile.begin;
+        glDisable(GL_BLEND);
+        glEnable(GL_SCISSOR_TEST);
+        glScissor(begin.x, begin.y, edges.x, edges.y);
+        glEnable(GL_DEPTH_TEST);
+        glDepthMask(GL_TRUE);
+        glDepthFunc(GL_LESS);
+        glViewport(first.x, first.y, job.size.x, job.size.y);
+    }
+    ~DrawingState() {
+        glDisable(GL_DEPTH_TEST);
+        glDisable(GL_SCISSOR_TEST);
+    }
+    DrawingState(const DrawingState&) = delete;
+    DrawingState& operator=(const DrawingState&) = delete;
+};
+
+void clear(GLuint framebuffer) {
+    const float empty[] = {0, 0, 0, 0}, nowhere[] = {kNoGeometry, 0, 0, 0}, far = 1;
+    glClearNamedFramebufferfv(framebuffer, GL_COLOR, 0, empty);
+    glClearNamedFramebufferfv(framebuffer, GL_COLOR, 1, nowhere);
+    glClearNamedFramebufferfv(framebuffer, GL_DEPTH, 0, &far);
+}
+
+} // namespace
+
+/// What is drawn, with the uniforms that all share.
+std::vector<GeometryPass::Draw> GeometryPass::collect(const GeometryJob& job, GrainTexture& grain) {
     std::vector<Draw> draws;
-    for (std::size_t i = 0; i < scene.geometry.size(); ++i) {
-        const GeometryLayer& layer = scene.geometry[i];
-        const std::optional<int> lens = lensOf(placed, layer.lens);
-        if (!drawn(scene, layer) || !lens) continue;
+    for (std::size_t i = 0; i < job.scene.geometry.size(); ++i) {
+        const GeometryLayer& layer = job.scene.geometry[i];
+        const std::optional<int> lens = lensOf(job.lenses, layer.lens);
+        if (!drawn(job.scene, layer) || !lens) continue;
         const Uploaded& up = upload(layer.geometry);
         if (layer.look.charcoal) glBindTextureUnit(kGrainUnit, grain.get());
         for (const bool lines : {false, true}) {
             if ((lines ? up.segmentCount : up.indexCount) == 0) continue;
-            const Program& own = program(scene, lines, lookBits(layer.look));
-            prepare(own);
+            const Program& own = program(job, lines, lookBits(layer.look));
+            setCommon(own, job);
             draws.push_back({i, *lens, lines, &up, &own});
         }
     }
+    return draws;
+}
+
+void GeometryPass::drawOne(const Draw& each, const GeometryJob& job, int peel) const {
+    const GeometryLayer& layer = job.scene.geometry[each.layer];
+    const Program& own = *each.program;
+    const WorldFrame frame = worldFrame(job.info.bounds, job.scene.stretch);
+    own.set("peel", peel);
+    own.set("row", (float(each.layer) + 0.5f) / float(tableRows_));
+    own.set("map", maps_[each.layer]);
+    own.set("plain", glm::vec3(linearFromSrgb(glm::dvec3(layer.color))));
+    own.set("opacity", layer.opacity);
+    own.set("lens", each.lens);
+    own.set("lineWidth", layer.lineWidth);
+    own.set("brushEffect", float(int(layer.brushes)));
+    // Layers share variants: what looks say is set anew for each.
+    setLookUniforms(own, {layer.look.any() ? &layer.look : nullptr}, job.scene, frame,
+                    worldCell(job.info.lattice, frame), job.pictureSize, kGrainUnit);
+    glUseProgram(own.name());
+    glBindVertexArray(each.lines ? each.up->lines.name() : each.up->mesh.name());
+    if (each.lines)
+        glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, each.up->segmentCount);
+    else
+        glDrawElements(GL_TRIANGLES, each.up->indexCount, GL_UNSIGNED_INT, nullptr);
+}
+
+void GeometryPass::draw(GeometryBuffer& buffer, const GeometryJob& job, GrainTexture& grain) {
+    const int peels = peelsOf(job.scene);
+    if (peels == 0) return;
+    table(job.scene, job.info);
+    const std::vector<Draw> draws = collect(job, grain);
     glBindTextureUnit(kTableUnit, table_.name());
     glBindTextureUnit(kFormerUnit, buffer.distance.name());
     glBindTextureUnit(kFormerColorUnit, buffer.color.name());
-    glDisable(GL_BLEND);
-    glEnable(GL_SCISSOR_TEST);
-    glScissor(first.x + tile.begin.x, first.y + tile.begin.y, tile.end.x - tile.begin.x, tile.end.y - tile.begin.y);
-    glEnable(GL_DEPTH_TEST);
-    glDepthMask(GL_TRUE);
-    glDepthFunc(GL_LESS);
-    glViewport(first.x, first.y, size.x, size.y);
-    const float empty[] = {0, 0, 0, 0}, nowhere[] = {kNoGeometry, 0, 0, 0}, far = 1;
+    const DrawingState state(job);
     for (int peel = 0; peel < peels; ++peel) {
         const GLuint framebuffer = buffer.framebuffers[std::size_t(peel)].name();
         glBindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer);
-        glClearNamedFramebufferfv(framebuffer, GL_COLOR, 0, empty);
-        glClearNamedFramebufferfv(framebuffer, GL_COLOR, 1, nowhere);
-        glClearNamedFramebufferfv(framebuffer, GL_DEPTH, 0, &far);
-        if (peel >= most) continue;
+        clear(framebuffer);
+        if (peel >= job.most) continue;
         // A peel that shows nothing is the last: what follows it is not drawn.
         if (peel > 0) glBeginConditionalRender(buffer.shown[std::size_t(peel) - 1].name(), GL_QUERY_WAIT);
         glBeginQuery(GL_ANY_SAMPLES_PASSED, buffer.shown[std::size_t(peel)].name());
-        for (const Draw& each : draws) {
-            const GeometryLayer& layer = scene.geometry[each.layer];
-            const Program& own = *each.program;
-            own.set("peel", peel);
-            own.set("row", (float(each.layer) + 0.5f) / float(tableRows_));
-            own.set("map", maps_[each.layer]);
-            own.set("plain", glm::vec3(linearFromSrgb(glm::dvec3(layer.color))));
-            own.set("opacity", layer.opacity);
-            own.set("lens", each.lens);
-            own.set("lineWidth", layer.lineWidth);
-            own.set("brushEffect", float(int(layer.brushes)));
-            // Layers share variants: what looks say is set anew for each.
-            setLookUniforms(own, {layer.look.any() ? &layer.look : nullptr}, scene, frame,
-                            worldCell(info.lattice, frame), pictureSize, kGrainUnit);
-            glUseProgram(own.name());
-            glBindVertexArray(each.lines ? each.up->lines.name() : each.up->mesh.name());
-            if (each.lines)
-                glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, each.up->segmentCount);
-            else
-                glDrawElements(GL_TRIANGLES, each.up->indexCount, GL_UNSIGNED_INT, nullptr);
-        }
+        for (const Draw& each : draws) drawOne(each, job, peel);
         glEndQuery(GL_ANY_SAMPLES_PASSED);
         if (peel > 0) glEndConditionalRender();
         glTextureBarrier(); // the next peel reads what this one wrote
     }
-    glDisable(GL_DEPTH_TEST);
-    glDisable(GL_SCISSOR_TEST);
 }
 
 } // namespace tessera::vis

@@ -24,18 +24,26 @@ struct GeometryBuffer {
 };
 inline constexpr float kNoGeometry = 1e9f;
 
+/// What of a scene's geometry is rasterised.
+struct GeometryJob {
+    const Scene& scene;
+    const volume::DatasetInfo& info;
+    const std::vector<PlacedLens>& lenses; ///< of the scene
+    glm::ivec2 size{0};                    ///< of the picture drawn, in pixels
+    glm::ivec2 first{0};                   ///< texel of the buffer for its lower left pixel
+    Tile tile;                             ///< of it, that is filled
+    glm::ivec2 pictureSize{0};             ///< of the picture at rest, for what looks measure in pixels
+    int most = 0;                          ///< surfaces behind one another that are drawn, further layers stay empty
+    int lightUnit = 0;                     ///< texture units from here on have the light (light_uniforms.h)
+    glm::dvec2 jitter{0};                  ///< pixels by which every pixel's centre is moved
+};
+
 /// Draws Scene::geometry by depth peeling (Everitt 2001): each further pass keeps what lies behind the former one.
 /// Keeps what it uploaded for as long as someone holds the geometry.
 class GeometryPass {
 public:
-    /// Fills a tile of a picture of `size` pixels, whose lower left one is texel `first` of the buffer; every pixel's
-    /// centre is moved by `jitter` pixels. Light is looked up in the texture units from `lightUnit` on
-    /// (light_uniforms.h). Nothing is drawn, and no layer made, when the scene has no geometry. `pictureSize`: of the
-    /// picture at rest, for what looks measure in pixels; `most`: surfaces behind one another that are drawn, further
-    /// layers stay empty; `grain`: called where one draws with it.
-    void draw(GeometryBuffer& buffer, const Scene& scene, const volume::DatasetInfo& info, glm::ivec2 size,
-              glm::ivec2 first, const Tile& tile, glm::ivec2 pictureSize, int most, int lightUnit, GrainTexture& grain,
-              glm::dvec2 jitter = glm::dvec2(0));
+    /// Nothing is drawn, and no layer made, when the scene has no geometry. `grain`: called where one draws with it.
+    void draw(GeometryBuffer& buffer, const GeometryJob& job, GrainTexture& grain);
 
 private:
     struct Uploaded {
@@ -47,7 +55,17 @@ private:
     const Uploaded& upload(const std::shared_ptr<const Geometry>& geometry);
     void table(const Scene& scene, const volume::DatasetInfo& info);
 
-    const Program& program(const Scene& scene, bool lines, int look);
+    /// A layer's mesh or lines, with the variant that draws them.
+    struct Draw {
+        std::size_t layer;
+        int lens;
+        bool lines;
+        const Uploaded* up;
+        const Program* program;
+    };
+    const Program& program(const GeometryJob& job, bool lines, int look);
+    std::vector<Draw> collect(const GeometryJob& job, GrainTexture& grain);
+    void drawOne(const Draw& each, const GeometryJob& job, int peel) const;
 
     std::map<std::string, Program> programs_; ///< by recipe: variants of light, clips and looks
     std::map<const Geometry*, Uploaded> uploaded_;

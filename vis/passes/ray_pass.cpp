@@ -31,9 +31,18 @@ void Renderer::Impl::geometry(ViewTarget& target, const RenderCall& call, glm::i
     if (!target.geometry.shows(size, tile, pass)) {
         buffer.resize(whole, peels);
         const glm::ivec2 first = size == whole ? glm::ivec2(0) : target.buffers.reduced.first;
-        tools.geometryPass.draw(buffer, call.scene, call.info(), size, first, tile, whole,
-                                size == whole ? peels : std::min(peels, 2), rayUnits(call.plan).light, tools.grain,
-                                pixelJitter(pass));
+        tools.geometryPass.draw(buffer,
+                                {.scene = call.scene,
+                                 .info = call.info(),
+                                 .lenses = call.plan.lenses,
+                                 .size = size,
+                                 .first = first,
+                                 .tile = tile,
+                                 .pictureSize = whole,
+                                 .most = size == whole ? peels : std::min(peels, 2),
+                                 .lightUnit = rayUnits(call.plan).light,
+                                 .jitter = pixelJitter(pass)},
+                                tools.grain);
         target.geometry.setShown(size, tile, pass);
     }
     glBindTextureUnit(GLuint(RayUnits::kGeometry), buffer.color.name());
@@ -102,7 +111,7 @@ void Renderer::Impl::rays(const RayPrograms& programs, const RenderCall& call, c
             }
     };
     const std::optional<std::vector<Tile>> lensed =
-        programs.beyond ? lensTiles(scene, call.frame(), size) : std::nullopt;
+        programs.beyond ? lensTiles(call.plan.lenses, scene, size) : std::nullopt;
     if (!lensed) return draw(whole);
     draw(*lensed);
     prepare(*programs.beyond);

@@ -6,17 +6,10 @@ namespace tessera::vis {
 
 void addClipping(ProgramRecipe& recipe, const Scene& scene) {
     const std::vector<PlacedClip> clips = placeClips(scene.clips, {});
-    // Chains of ?: as everywhere (lib/bindings.glsl).
-    std::string kinds = "0", holes = "0";
-    for (std::size_t i = clips.size(); i-- > 0;) {
-        const std::string test = "((i)==" + std::to_string(i) + "?";
-        kinds = test + std::to_string(int(clips[i].kind)) + ":" + kinds + ")";
-        holes = test + (clips[i].hole ? "1" : "0") + ":" + holes + ")";
-    }
     const bool any = std::any_of(clips.begin(), clips.end(), [](const PlacedClip& clip) { return clip.hole; });
     recipe.defines.emplace_back("CLIPS", std::to_string(clips.size()));
-    recipe.defines.emplace_back("CLIP_KIND(i)", kinds);
-    recipe.defines.emplace_back("CLIP_HOLE(i)", holes);
+    recipe.defines.emplace_back("CLIP_KIND(i)", choice(clips, [](const PlacedClip& clip) { return clip.kind; }));
+    recipe.defines.emplace_back("CLIP_HOLE(i)", choice(clips, [](const PlacedClip& clip) { return clip.hole; }));
     recipe.defines.emplace_back("CLIP_HOLES", any ? "1" : "0");
 }
 

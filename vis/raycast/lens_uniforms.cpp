@@ -15,30 +15,25 @@ bool anyOwned(const Scene& scene) {
 
 } // namespace
 
-void addLenses(ProgramRecipe& recipe, const Scene& scene) {
-    const std::vector<PlacedLens> lenses = placeLenses(scene, {});
-    // Chains of ?: as everywhere (lib/bindings.glsl).
-    std::string kinds = "0", bending = "0";
-    for (std::size_t i = lenses.size(); i-- > 0;) {
-        const std::string test = "((i)==" + std::to_string(i) + "?";
-        kinds = test + std::to_string(int(lenses[i].shape)) + ":" + kinds + ")";
-        bending = test + (lenses[i].effect == LensEffect::Magnify ? "1" : "0") + ":" + bending + ")";
-    }
-    const auto any = [&](const auto& is) { return std::any_of(lenses.begin(), lenses.end(), is); };
+void addLenses(ProgramRecipe& recipe, const std::vector<PlacedLens>& lenses, const Scene& scene) {
     const auto define = [&](const char* name, const std::string& value) { recipe.defines.emplace_back(name, value); };
+    const auto flag = [&](const char* name, bool on) { define(name, on ? "1" : "0"); };
+    const auto any = [&](LensEffect effect) {
+        return std::ranges::any_of(lenses, [=](const PlacedLens& lens) { return lens.effect == effect; });
+    };
     define("LENSES", std::to_string(lenses.size()));
-    define("LENS_KIND(i)", kinds);
-    define("LENS_BENDING(i)", bending);
-    const bool acts = any([](const PlacedLens& lens) { return lens.acts(); });
-    define("LENS_ACTS", !lenses.empty() && (acts || anyOwned(scene)) ? "1" : "0");
-    define("LENS_BENDS", lensesBend(scene) ? "1" : "0");
-    define("LENS_FOCUS", any([](const PlacedLens& lens) { return lens.effect == LensEffect::Focus; }) ? "1" : "0");
+    define("LENS_KIND(i)", choice(lenses, [](const PlacedLens& lens) { return lens.shape; }));
+    define("LENS_BENDING(i)",
+           choice(lenses, [](const PlacedLens& lens) { return lens.effect == LensEffect::Magnify; }));
+    flag("LENS_ACTS", !lenses.empty() && (std::ranges::any_of(lenses, &PlacedLens::acts) || anyOwned(scene)));
+    flag("LENS_BENDS", any(LensEffect::Magnify));
+    flag("LENS_FOCUS", any(LensEffect::Focus));
 }
 
-void setLensUniforms(const Program& program, const Scene& scene, const WorldFrame& frame) {
+void setLensUniforms(const Program& program, const std::vector<PlacedLens>& lenses) {
     std::vector<glm::vec3> centers, rows, columns, acts;
     std::vector<glm::vec4> edges;
-    for (const PlacedLens& lens : placeLenses(scene, frame)) {
+    for (const PlacedLens& lens : lenses) {
         centers.emplace_back(lens.center);
         for (int i = 0; i < 3; ++i) {
             rows.emplace_back(lens.toUnit[0][i], lens.toUnit[1][i], lens.toUnit[2][i]);

@@ -4,11 +4,11 @@
 #include "vis/scene/scene.h"
 
 /// Uniforms of the scene's lenses (vis/shaders/lib/lens_bindings.glsl). Position, size and strength are not compiled
-/// into the program, so dragging a lens needs no new one.
+/// into the program, so dragging a lens needs no new one. `lenses`: those of the scene, placed.
 namespace tessera::vis {
 
-void addLenses(ProgramRecipe& recipe, const Scene& scene);
-void setLensUniforms(const Program& program, const Scene& scene, const WorldFrame& frame);
+void addLenses(ProgramRecipe& recipe, const std::vector<PlacedLens>& lenses, const Scene& scene);
+void setLensUniforms(const Program& program, const std::vector<PlacedLens>& lenses);
 
 /// Whether a lens magnifies, so that data appear displaced.
 bool lensesBend(const Scene& scene);

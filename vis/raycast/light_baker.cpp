@@ -9,24 +9,30 @@ namespace tessera::vis {
 
 namespace {
 
-/// Lenses that face the viewer turn with the camera, others may lie at the cursor.
-bool sameLenses(const Scene& a, const Scene& b) {
-    return placeLenses(a, {}) == placeLenses(b, {});
-}
-
-/// Equal matter: everything that opacity and colour of a place depend on.
-bool sameMatter(const Scene& a, const Scene& b) {
-    return a.layers == b.layers && a.transfer == b.transfer && a.selection == b.selection && a.clips == b.clips &&
-           sameLenses(a, b) && a.render.filter == b.render.filter && a.stretch == b.stretch &&
-           a.geometry == b.geometry && a.lighting.shadows.meshes == b.lighting.shadows.meshes;
-}
-
 bool sameSpread(const Shadows& a, const Shadows& b) {
     return (a.strength > 0) == (b.strength > 0) && (a.occlusion > 0) == (b.occlusion > 0) && a.reach == b.reach &&
            a.translucency == b.translucency && a.scatter == b.scatter;
 }
 
 } // namespace
+
+LightBaker::MatterKey LightBaker::keyOf(const Scene& scene, const LightGrid& grid, const Matter& matter) {
+    MatterKey key{scene, placeLenses(scene, {}), grid, matter};
+    Scene& used = key.scene;
+    used.lenses.clear(); // those that face the viewer turn with the camera, others may lie at the cursor
+    used.camera = {};
+    used.cursor = glm::dvec3(0);
+    used.time = 0; // `matter` tells
+    used.render = {};
+    used.render.filter = scene.render.filter;
+    used.lighting = {};
+    used.lighting.shadows.meshes = scene.lighting.shadows.meshes;
+    used.tone = {};
+    used.background = used.boxColor = glm::vec3(0);
+    used.paper.reset();
+    used.showGround = used.showBox = false;
+    return key;
+}
 
 bool LightBaker::same(const Spread& a, const Spread& b) {
     return a.matter == b.matter && a.lights == b.lights && sameSpread(a.shadows, b.shadows);
@@ -40,10 +46,9 @@ void LightBaker::update(const Scene& scene, const volume::DatasetInfo& info, con
                         const Program& program, const std::function<void(const Program&)>& setUniforms, GLuint vertices,
                         double budgetMs, bool wait) {
     const LightGrid grid = lightGrid(worldFrame(info.bounds, scene.stretch), scene.lighting.shadows);
-    if (!scene_ || !(grid == grid_) || !(matter == matterKey_) || !sameMatter(*scene_, scene)) {
-        scene_ = scene;
+    if (MatterKey key = keyOf(scene, grid, matter); matterOf_ != key) {
+        matterOf_ = std::move(key);
         grid_ = grid;
-        matterKey_ = matter;
         ++wanted_.matter;
         matterReady_ = false;
         rows_ = 0;

@@ -59,8 +59,17 @@ private:
     void take();
 
     Spread wanted_, shown_;
-    std::optional<Scene> scene_; ///< the matter's
-    Matter matterKey_;
+    /// What the matter is made of: the scene without what it does not depend on, and its lenses where they lie.
+    struct MatterKey {
+        Scene scene;
+        std::vector<PlacedLens> lenses;
+        LightGrid grid;
+        Matter matter;
+        bool operator==(const MatterKey&) const = default;
+    };
+    static MatterKey keyOf(const Scene& scene, const LightGrid& grid, const Matter& matter);
+
+    std::optional<MatterKey> matterOf_;
     LightGrid grid_;
     int rows_ = 0; ///< of the matter, drawn
     bool matterReady_ = false;

@@ -10,9 +10,11 @@
 namespace tessera::vis {
 
 int lookBits(const Look& look) {
-    return (look.tone ? kToneBit : 0) | (look.boundary ? kBoundaryBit : 0) | (look.silhouette ? kSilhouetteBit : 0) |
-           (look.distance ? kDistanceBit : 0) | (look.cartoon ? kCartoonBit : 0) | (look.charcoal ? kCharcoalBit : 0) |
-           (look.wire ? kWireBit : 0);
+    const auto bit = [](const auto& part, LookFeature name) { return part ? bitOf(name) : 0; };
+    return bit(look.tone, LookFeature::Tone) | bit(look.boundary, LookFeature::Boundary) |
+           bit(look.silhouette, LookFeature::Silhouette) | bit(look.distance, LookFeature::Distance) |
+           bit(look.cartoon, LookFeature::Cartoon) | bit(look.charcoal, LookFeature::Charcoal) |
+           bit(look.wire, LookFeature::Wire);
 }
 
 std::vector<const Look*> looksOf(const RayPlan& plan, const Scene& scene) {

@@ -6,16 +6,7 @@
 /// Looks of a plan's layers as input of lib/draw_look.glsl.
 namespace tessera::vis {
 
-/// The parts of a look that a program needs; numbers known to lib/draw_look.glsl.
-enum LookBits : int {
-    kToneBit = 1,
-    kBoundaryBit = 2,
-    kSilhouetteBit = 4,
-    kDistanceBit = 8,
-    kCartoonBit = 16,
-    kCharcoalBit = 32,
-    kWireBit = 64
-};
+/// What a look does, as bits of LookFeature.
 int lookBits(const Look& look);
 
 /// Sets everything but the texture, which goes to `unit`. `looks`: of each layer, null where it has none. `size`:

@@ -3,6 +3,7 @@
 #include "vis/bricks/texels.h"
 #include "vis/gl/program.h"
 #include "vis/optics/ray_setup.h"
+#include "vis/raycast/brush_tests.h"
 #include "vis/scene/scene.h"
 
 #include <optional>
@@ -34,14 +35,6 @@ struct BoundField {
     glm::ivec3 atlasSize{1};
 };
 
-/// Numbers known to lib/bindings.glsl; those of volume layers are VolumeStyle's.
-enum class RayStyle { Composite, Maximum, Minimum, Average, XRay, LocalMaximum, Iso };
-
-/// Classification of a composite layer: by the curve at its value (Curve), by a table over value and gradient (Plane),
-/// by the curve at the surrounding samples (Lattice), or by the pre-integration table (Slab). Numbers known to
-/// lib/bindings.glsl.
-enum class RayLookup { Curve, Plane, Lattice, Slab };
-
 struct RayLayer {
     int layer = 0; ///< index into Scene::layers
     int row = 0;   ///< of the transfer tables
@@ -51,8 +44,8 @@ struct RayLayer {
     RayLookup lookup = RayLookup::Curve;
     bool gradient = false; ///< shows the gradient's magnitude
     int page = -1;         ///< of the plane tables, for Plane and Slab
-    int lens = -1;         ///< of placeLenses() that it is drawn in, -1: everywhere
-    int look = 0;          ///< parts of the look: LookBits of look_uniforms.h
+    int lens = -1;         ///< of RayPlan::lenses that it is drawn in, -1: everywhere
+    int look = 0;          ///< parts of the look: lookBits()
     int color = -1;        ///< field that gives the colours, -1: its own
     int colorRow = -1;     ///< of the transfer tables, for these
     /// The places between which all opacity lies, filled with the tables; none: there are gaps between.
@@ -75,11 +68,12 @@ struct RayPlan {
     std::vector<RayLayer> layers;
     std::vector<SliceUse> slices;
     std::vector<int> brushFields;
-    std::vector<std::pair<std::string, std::string>> brushDefines; ///< which tests of brushes the program needs
-    int peels = 0;     ///< layers of rasterised geometry that lie among the samples
-    int pages = 0;     ///< of the plane tables
-    int rows = 0;      ///< of the transfer tables: of layers, then of slices, then of layers' colours
-    std::string limit; ///< what there is no room for; "": nothing
+    BrushTests brushes;             ///< that act
+    std::vector<PlacedLens> lenses; ///< in world space
+    int peels = 0;                  ///< layers of rasterised geometry that lie among the samples
+    int pages = 0;                  ///< of the plane tables
+    int rows = 0;                   ///< of the transfer tables: of layers, then of slices, then of layers' colours
+    std::string limit;              ///< what there is no room for; "": nothing
     bool empty() const { return layers.empty() && slices.empty() && peels == 0; }
 };
 

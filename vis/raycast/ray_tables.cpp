@@ -14,7 +14,6 @@ namespace tessera::vis {
 
 namespace {
 
-constexpr double kLabelRoom = 0.25;
 constexpr int kFocusGroup = 2;       ///< blocks along an edge
 constexpr float kTexelSlack = 1e-4f; ///< rounding of the textures and of their interpolation
 
@@ -209,7 +208,7 @@ std::vector<std::uint8_t> outOfFocus(const RayPlan& plan, const Scene& scene, co
                 lo = std::min(lo, field->blocks->min[block]);
                 hi = std::max(hi, field->blocks->max[block]);
             });
-            const double room = field->categorical ? kLabelRoom : 0; // as in brush_uniforms.cpp
+            const double room = field->categorical ? kLabelRoom : 0;
             const TexelEncoding& encoding = field->encoding;
             ranges[channels[std::size_t(field->channel)].name] = {
                 encoding.offset + encoding.scale * double(lo - kTexelSlack) - room,

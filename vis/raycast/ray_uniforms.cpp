@@ -140,7 +140,7 @@ void setRayUniforms(const Program& program, const RayPlan& plan, const Scene& sc
     setCamera(program, scene, double(size.x) / size.y);
     setFields(program, plan, grid);
     setLayers(program, plan, scene, info, frame);
-    setBrushUniforms(program, brushTests(plan, scene, info), scene);
+    setBrushUniforms(program, plan, scene.selection);
     // A data set of one layer has no thickness: enough of it to meet a slice.
     program.set("halfSize", glm::vec3(glm::max(frame.halfSize, glm::dvec3(1e-5))));
     program.set("worldCell", glm::vec3(worldCell(grid.lattice, frame)));
@@ -156,7 +156,7 @@ void setRayUniforms(const Program& program, const RayPlan& plan, const Scene& sc
     program.set("latticeCorners", grid.lattice.kind == volume::LatticeKind::BCC ? 16 : 8);
     setLightUniforms(program, scene, frame, rayUnits(plan).light);
     setClipUniforms(program, scene, frame);
-    setLensUniforms(program, scene, frame);
+    setLensUniforms(program, plan.lenses);
     setLookUniforms(program, looksOf(plan, scene), scene, frame, worldCell(grid.lattice, frame), size,
                     rayUnits(plan).grain);
     program.set("stepUnit", float(stepUnit(worldCell(grid.lattice, frame))));

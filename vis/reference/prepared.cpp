@@ -80,7 +80,7 @@ Prepared::Prepared(const Scene& drawn, const volume::BrickSource& source, glm::i
         one.function = &functionOf(channel, !surface || !one.colors);
         one.range = effectiveRange(*one.function, info.channelRange(channel));
         const auto* volume = std::get_if<VolumeLayer>(one.technique);
-        if (volume != nullptr && volume->style == VolumeStyle::Composite && volume->quantity == Quantity::Value &&
+        if (volume != nullptr && volume->style == RayStyle::Composite && volume->quantity == Quantity::Value &&
             !one.samples->categorical() && one.function->kind == TransferKind::Curve)
             one.classification = volume->classification;
         if (one.classification == Classification::Pre) one.samples = load(name, true, layer.timeShift);
@@ -155,7 +155,7 @@ glm::dvec4 matterAt(const Prepared& scene, const LightGrid& grid, glm::dvec3 cen
         int part = 0; // of the first point; surfaces lie within one
         const auto* volume = std::get_if<VolumeLayer>(layer.technique);
         const auto* iso = std::get_if<IsoLayer>(layer.technique);
-        if (!iso && (!volume || volume->style != VolumeStyle::Composite)) continue;
+        if (!iso && (!volume || volume->style != RayStyle::Composite)) continue;
         for (int n = 0; n < kPoints; ++n) {
             const glm::dvec3 way = glm::dvec3(n & 1, n >> 1 & 1, n >> 2) - 0.5, world = center + 0.5 * way * edges;
             const std::optional<Reading> found = layer.samples->read(scene.cells(world));

@@ -9,7 +9,7 @@ void Projected::add(const Prepared& scene, const DrawnLayer& layer, std::optiona
     const auto& volume = std::get<VolumeLayer>(*layer.technique);
     const double threshold = std::max(0.0, layer.unclamped(volume.threshold));
     if (!found) {
-        if (volume.style == VolumeStyle::LocalMaximum) found_ = found_ || best_ >= threshold;
+        if (volume.style == RayStyle::LocalMaximum) found_ = found_ || best_ >= threshold;
         return;
     }
     const LensAction lens = scene.lensAction(layer, place);
@@ -24,14 +24,14 @@ void Projected::add(const Prepared& scene, const DrawnLayer& layer, std::optiona
         (1 - absorbed_) * correctedOpacity(layer.classifyPlace(x).a * factor, step, double(volume.density));
     absorbed_ += absorbed;
     ++count_;
-    const bool sums = volume.style == VolumeStyle::Average || volume.style == VolumeStyle::XRay;
+    const bool sums = volume.style == RayStyle::Average || volume.style == RayStyle::XRay;
     if (const auto tint = sums && layer.colors ? layer.colors->value(scene.cells(place)) : std::nullopt) {
-        const double weight = volume.style == VolumeStyle::XRay ? absorbed : factor;
+        const double weight = volume.style == RayStyle::XRay ? absorbed : factor;
         tint_ += weight * *tint;
         tintWeight_ += weight;
     }
-    const double score = (volume.style == VolumeStyle::Minimum ? 1 - x : x) * factor;
-    if (volume.style == VolumeStyle::LocalMaximum) found_ = found_ || (best_ >= threshold && score < best_);
+    const double score = (volume.style == RayStyle::Minimum ? 1 - x : x) * factor;
+    if (volume.style == RayStyle::LocalMaximum) found_ = found_ || (best_ >= threshold && score < best_);
     if (score > best_ && !found_)
         best_ = score, bestPlace_ = x, bestWorld_ = place, bestInterest_ = doi, bestLens_ = lens;
 }
@@ -45,8 +45,8 @@ std::optional<Projected::Shown> Projected::shown(const Prepared& scene, const Dr
     if (count_ == 0 || !(factors_ > 0)) return std::nullopt;
     const auto& volume = std::get<VolumeLayer>(*layer.technique);
     const auto opacity = [&](glm::dvec4 color) { return std::min(1.0, double(volume.density) * color.a); };
-    if (volume.style == VolumeStyle::XRay) return Shown{colorOfSum(layer, layer.classifyPlace(absorbed_)), absorbed_};
-    if (volume.style == VolumeStyle::Average) {
+    if (volume.style == RayStyle::XRay) return Shown{colorOfSum(layer, layer.classifyPlace(absorbed_)), absorbed_};
+    if (volume.style == RayStyle::Average) {
         // The mean belongs to no place: brushes act on it through its weights alone.
         const glm::dvec4 color = layer.classifyPlace(std::clamp(weighted_ / factors_, 0.0, 1.0));
         return Shown{colorOfSum(layer, color), std::min(opacity(color) * factors_ / count_, 1.0)};

@@ -259,7 +259,7 @@ template <class Number> struct Caster {
         step = Number(samples.step);
         const auto isVolume = [](const DrawnLayer& layer, bool composite) {
             const auto* volume = std::get_if<VolumeLayer>(layer.technique);
-            return volume != nullptr && (volume->style == VolumeStyle::Composite) == composite;
+            return volume != nullptr && (volume->style == RayStyle::Composite) == composite;
         };
         std::vector<std::optional<Reading>> before(scene.layers.size()), now(scene.layers.size());
         std::vector<Projected> seen(scene.layers.size());

@@ -6,7 +6,8 @@
 namespace tessera::vis {
 
 /// What brushes do to a layer: what is not brushed fades as the selection's context settings say; nothing; only what is
-/// not brushed stays; only what is brushed stays. Numbers known to vis/shaders/lib/doi.glsl.
+/// not brushed stays; only what is brushed stays. Shaders know them as
+/// BRUSHED_FADE and so on.
 enum class BrushEffect { Fade, None, ContextOnly, FocusOnly };
 inline constexpr std::string_view kBrushEffectNames[] = {"fade", "none", "context", "focus"};
 

@@ -6,15 +6,20 @@
 #include "volume/base/describe.h"
 
 #include <glm/vec3.hpp>
+#include <span>
 #include <string>
 #include <variant>
 #include <vector>
 
 namespace tessera::vis {
 
-enum class VolumeStyle { Composite, Maximum, Minimum, Average, XRay, LocalMaximum };
-inline constexpr std::string_view kVolumeStyleNames[] = {"composite", "maximum", "minimum",
-                                                         "average",   "xray",    "localmaximum"};
+/// How rays meet a layer. Everything between composites and iso-surfaces is a projection of the whole ray
+/// (vis/shaders/lib/projections.glsl, vis/reference/projection.h); shaders know them as STYLE_COMPOSITE and so on.
+enum class RayStyle { Composite, Maximum, Minimum, Average, XRay, LocalMaximum, Iso };
+inline constexpr std::string_view kRayStyleNames[] = {"composite", "maximum",      "minimum", "average",
+                                                      "xray",      "localmaximum", "iso"};
+/// Those of volume layers; the last style is that of iso-surfaces.
+inline constexpr std::span<const std::string_view> kVolumeStyleNames(kRayStyleNames, std::size_t(RayStyle::Iso));
 
 /// What a volume layer shows of its channel.
 enum class Quantity { Value, Gradient };
@@ -28,7 +33,7 @@ inline constexpr std::string_view kClassificationNames[] = {"post", "pre", "prei
 struct VolumeLayer {
     static constexpr std::string_view kType = "volume";
     std::string channel;
-    VolumeStyle style = VolumeStyle::Composite;
+    RayStyle style = RayStyle::Composite;
     Quantity quantity = Quantity::Value;
     Classification classification = Classification::Post; ///< of values; composite only
     double threshold = 0;                                 ///< physical; local maximum only
@@ -58,21 +63,21 @@ struct VolumeLayer {
                         .doc = "Composite: colour of interpolated values (post), interpolated colours of samples "
                                "(pre), or the mean colour of all values between two samples (preintegrated)",
                         .names = kClassificationNames,
-                        .applies = self.style == VolumeStyle::Composite && self.quantity == Quantity::Value});
+                        .applies = self.style == RayStyle::Composite && self.quantity == Quantity::Value});
         visit(self.threshold, FieldInfo{.key = "threshold",
                                         .unit = "",
                                         .doc = "Local maximum: value that the first maximum must reach",
-                                        .applies = self.style == VolumeStyle::LocalMaximum});
+                                        .applies = self.style == RayStyle::LocalMaximum});
         visit(self.shaded, FieldInfo{.key = "shaded",
                                      .unit = "",
                                      .doc = "Phong shading by the gradient",
-                                     .applies = self.style == VolumeStyle::Composite});
+                                     .applies = self.style == RayStyle::Composite});
         visit(self.density, FieldInfo{.key = "density",
                                       .unit = "",
                                       .doc = "Factor on the optical depth",
                                       .range = Range{0.01, 100},
                                       .logScale = true});
-        visit(self.look, lookField(self.style == VolumeStyle::Composite));
+        visit(self.look, lookField(self.style == RayStyle::Composite));
     }
 };
 

@@ -59,14 +59,14 @@ void main() {
         for (int i = 0; i < LAYERS; ++i) {
             Reading s = readAt(LAYER_FIELD(i), p);
             bool is = present(s);
-            if (LAYER_STYLE(i) == COMPOSITE) {
+            if (LAYER_STYLE(i) == STYLE_COMPOSITE) {
                 vec4 c = colorAt(i, p, s.xy);
                 c.rgb = colorBy(i, p, c.rgb);
                 vec2 lens = lensAction(LAYER_LENS(i), world);
                 float factor = kept * focusOpacity(doi, LAYER_BRUSHED(i));
                 float own = -log(1.0 - min(c.a * factor * lens.x, kThickest)) * layerMap[i].z * REFERENCE_LENGTHS;
                 sum += is ? vec4(focusColor(c.rgb, doi, lens.y, LAYER_BRUSHED(i)), 1.0) * (own / 8.0) : vec4(0.0);
-            } else if (LAYER_STYLE(i) == ISO) {
+            } else if (LAYER_STYLE(i) == STYLE_ISO) {
                 mean[i] += s.x / 8.0;
 #if PARTS
                 if (n == 0) part[i] = s.z;
@@ -79,7 +79,7 @@ void main() {
     }
     float longest = max(max(edges.x, edges.y), edges.z), middle = degreeOfInterest(toCells(center));
     for (int i = 0; i < LAYERS; ++i) {
-        if (LAYER_STYLE(i) != ISO) continue;
+        if (LAYER_STYLE(i) != STYLE_ISO) continue;
         float away = abs(mean[i] - layerMap[i].z) / max(length(slope[i]), 1e-20);
         vec2 lens = lensAction(LAYER_LENS(i), center);
         float alpha = min(layerMap[i].w * focusOpacity(middle, LAYER_BRUSHED(i)) * lens.x, kThickest);

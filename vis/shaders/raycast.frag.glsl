@@ -137,9 +137,9 @@ int march() {
                 bool is = present(s);
                 here[i] = s.xy;
                 float x = s.x * layerMap[i].x + layerMap[i].y;
-                if (LAYER_GRADIENT(i) == 1 && (FLAT == 0 || LAYER_STYLE(i) != COMPOSITE))
+                if (LAYER_GRADIENT(i) == 1 && (FLAT == 0 || LAYER_STYLE(i) != STYLE_COMPOSITE))
                     x = gradientPlace(i, cellGradient(LAYER_FIELD(i), p, s.x, is));
-                if (LAYER_STYLE(i) == COMPOSITE) {
+                if (LAYER_STYLE(i) == STYLE_COMPOSITE) {
                     float share = 1.0, opacity = is && opaqueAt(i, x) ? 1.0 : 0.0;
 #if HAS_SLABS
                     if (LAYER_LOOKUP(i) == LOOKUP_SLAB) {
@@ -152,7 +152,7 @@ int march() {
                     if (LAYER_LOOKUP(i) == LOOKUP_LATTICE) opacity = latticeColor(i, p, share).a;
 #endif
                     hit = hit || opacity * share * lens.x > 0.0;
-                } else if (LAYER_STYLE(i) == ISO) {
+                } else if (LAYER_STYLE(i) == STYLE_ISO) {
                     float value = layerMap[i].z;
                     float last = notedValue(previous[i]);
                     hit = hit || (is && last > kUnknown && joined(previous[i], note(s, s.x)) &&
@@ -177,7 +177,7 @@ int march() {
             float at = float(k) + 0.5 * float(together - 1);
 #if !FLAT
             for (int i = 0; i < LAYERS; ++i)
-                if (LAYER_STYLE(i) == COMPOSITE) here[i] = reconstruct(LAYER_FIELD(i), cellsAt(at));
+                if (LAYER_STYLE(i) == STYLE_COMPOSITE) here[i] = reconstruct(LAYER_FIELD(i), cellsAt(at));
 #endif
 #if HAS_SLABS
             for (int i = 0; i < LAYERS; ++i)

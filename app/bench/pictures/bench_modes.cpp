@@ -20,7 +20,7 @@ struct Mode {
 };
 
 std::vector<Mode> modes() {
-    using vis::Classification, vis::VolumeStyle;
+    using vis::Classification, vis::RayStyle;
     const std::vector<glm::vec2> haze{{0, 0}, {0.15f, 0}, {1, 0.05f}},
         solid{{0, 0}, {0.55f, 0}, {0.7f, 0.8f}, {1, 0.8f}};
     const std::vector<glm::vec2> all{{0, 1}, {1, 1}};
@@ -29,7 +29,7 @@ std::vector<Mode> modes() {
         layer.*member = value;
         return layer;
     };
-    const auto style = [&](VolumeStyle value) { return with(plain, &vis::VolumeLayer::style, value); };
+    const auto style = [&](RayStyle value) { return with(plain, &vis::VolumeLayer::style, value); };
     const auto classified = [&](Classification value) { return with(plain, &vis::VolumeLayer::classification, value); };
     std::vector<Mode> out{
         {"composite", benchScene(plain, haze)},
@@ -37,11 +37,11 @@ std::vector<Mode> modes() {
         {"preintegrated", benchScene(classified(Classification::PreIntegrated), haze)},
         {"gradient", benchScene(with(plain, &vis::VolumeLayer::quantity, vis::Quantity::Gradient), haze)},
         {"shaded", benchScene(shaded, solid)},
-        {"maximum", benchScene(style(VolumeStyle::Maximum), all)},
-        {"minimum", benchScene(style(VolumeStyle::Minimum), all)},
-        {"average", benchScene(style(VolumeStyle::Average), all)},
-        {"x-ray", benchScene(style(VolumeStyle::XRay), haze)},
-        {"local maximum", benchScene(with(style(VolumeStyle::LocalMaximum), &vis::VolumeLayer::threshold, 90.0), all)},
+        {"maximum", benchScene(style(RayStyle::Maximum), all)},
+        {"minimum", benchScene(style(RayStyle::Minimum), all)},
+        {"average", benchScene(style(RayStyle::Average), all)},
+        {"x-ray", benchScene(style(RayStyle::XRay), haze)},
+        {"local maximum", benchScene(with(style(RayStyle::LocalMaximum), &vis::VolumeLayer::threshold, 90.0), all)},
         {"iso-surface", benchScene(vis::IsoLayer{.channel = "v", .value = 150}, all)}};
 
     vis::Scene regions = benchScene(shaded, all);

@@ -31,7 +31,7 @@ struct Style {
 std::vector<Style> styles() {
     const vis::VolumeLayer unshaded{.channel = "v", .shaded = false}, shaded{.channel = "v"};
     const vis::VolumeLayer slabs{.channel = "v", .classification = vis::Classification::PreIntegrated, .shaded = false};
-    const vis::VolumeLayer maximum{.channel = "v", .style = vis::VolumeStyle::Maximum};
+    const vis::VolumeLayer maximum{.channel = "v", .style = vis::RayStyle::Maximum};
     const std::vector<glm::vec2> haze{{0, 0}, {0.15f, 0}, {1, 0.05f}};
     const std::vector<glm::vec2> solid{{0, 0}, {0.55f, 0}, {0.7f, 0.8f}, {1, 0.8f}};
     return {{"translucent", unshaded, haze},

@@ -33,15 +33,15 @@ std::string quoted(const fs::path& path) {
 }
 
 /// nullptr: VTK has no such ray style.
-const char* styleName(vis::VolumeStyle style) {
+const char* styleName(vis::RayStyle style) {
     switch (style) {
-    case vis::VolumeStyle::Composite:
+    case vis::RayStyle::Composite:
         return "composite";
-    case vis::VolumeStyle::Maximum:
+    case vis::RayStyle::Maximum:
         return "maximum";
-    case vis::VolumeStyle::Minimum:
+    case vis::RayStyle::Minimum:
         return "minimum";
-    case vis::VolumeStyle::Average:
+    case vis::RayStyle::Average:
         return "average";
     default:
         return nullptr;
@@ -64,7 +64,7 @@ std::string jobText(glm::ivec3 size, const vis::Scene& scene, PeerSizes sizes) {
         out << (volume != nullptr ? styleName(volume->style) : "composite");
     const vis::Lighting& p = scene.lighting;
     const bool shaded =
-        iso != nullptr || (volume != nullptr && volume->shaded && volume->style == vis::VolumeStyle::Composite);
+        iso != nullptr || (volume != nullptr && volume->shaded && volume->style == vis::RayStyle::Composite);
     out << "\nshaded " << shaded << ' ' << p.ambient << ' ' << p.diffuse << ' ' << p.specular << ' ' << p.shininess;
     put(vis::lightDirection(p.lights.front(), scene.camera));
     const double cell = 1.0 / (std::max({size.x, size.y, size.z}) - 1);

@@ -100,10 +100,10 @@ vis::Scene wallScene(const vis::Scene& scene, const std::string& channel, WallKi
     vis::TransferFunction& function = out.transfer[channel];
     vis::VolumeLayer layer{.channel = channel};
     if (kind == WallKind::Mean || kind == WallKind::Maximum) {
-        layer.style = kind == WallKind::Mean ? vis::VolumeStyle::Average : vis::VolumeStyle::Maximum;
+        layer.style = kind == WallKind::Mean ? vis::RayStyle::Average : vis::RayStyle::Maximum;
         function.opacity = {{0, 1}, {1, 1}};
     } else {
-        layer.style = vis::VolumeStyle::XRay;
+        layer.style = vis::RayStyle::XRay;
     }
     if (kind == WallKind::Shadow) {
         out.selection = scene.selection;

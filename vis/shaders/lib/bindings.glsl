@@ -1,8 +1,9 @@
-// What the ray caster knows of the scene. Compiled-in (generated #defines):
+// What the ray caster knows of the scene. Compiled-in (generated #defines; the names of their values are those of
+// vis/gl/shader_constants.h):
 //   FIELDS    number of channels bound, and their parts; FIELD_COVERAGE(i), FIELD_NEAREST(i): 0 or 1; LATER, PARTS,
 //             FIELD_PARTS(i), FIELD_MORE(i), PART_MARGIN: see lib/between_times.glsl
-//   LAYERS    ray layers; LAYER_STYLE(i) (below), LAYER_FIELD(i), LAYER_SHADED(i); LAYER_LOOKUP(i): how a composite
-//             layer is classified (below); LAYER_GRADIENT(i): 1 where the gradient's magnitude is shown;
+//   LAYERS    ray layers; LAYER_STYLE(i) (STYLE_COMPOSITE, ...), LAYER_FIELD(i), LAYER_SHADED(i); LAYER_LOOKUP(i): how a composite
+//             layer is classified (LOOKUP_CURVE, ...); LAYER_GRADIENT(i): 1 where the gradient's magnitude is shown;
 //             LAYER_LOOK(i) (lib/draw_look.glsl); LAYER_INTERVAL(i): 1 where all opacity lies between layerOpaque[i];
 //             LAYER_PLANE(i): page of planeTable of LOOKUP_PLANE and LOOKUP_SLAB; COLORED, LAYER_COLORED(i),
 //             LAYER_COLOR(i), LAYER_COLOR_ROW(i): see lib/color_by.glsl
@@ -10,7 +11,7 @@
 //   SLICES    slice planes; SLICE_FIELD(i)
 //   GEOMETRY  layers of rasterised surfaces
 //   LAYER_LENS(i), SLICE_LENS(i)  lens that it is drawn in, -1 everywhere
-//   LAYER_BRUSHED(i), SLICE_BRUSHED(i)  BrushEffect of vis/scene/brush_effect.h
+//   LAYER_BRUSHED(i), SLICE_BRUSHED(i)  what brushes do to it (BRUSHED_FADE, ...)
 //   BRUSH_TESTS    room for tests of brushes, 0 = no brush is active; BRUSH_RANGES, BRUSH_ELLIPSES, BRUSH_LASSOS,
 //                  BRUSH_SPACE, BRUSH_LENSES: 0 or 1; BRUSH_COLORS: 1 where samples take theirs; BRUSH_FIELDS channels they look at, BRUSH_FIELD(i)
 // These are chains of ?: and not constant arrays, since Mesa turns such arrays into uniforms before it unrolls loops
@@ -49,20 +50,6 @@ uniform int gradientDirections, bisections, latticeCorners;
 // JITTER: 1 if rays start at random; the number of the pass of a supersampled still.
 uniform int passNumber;
 
-// RayStyle of vis/raycast/ray_plan.h
-#define COMPOSITE 0
-#define MAXIMUM 1
-#define MINIMUM 2
-#define AVERAGE 3
-#define XRAY 4
-#define LOCAL_MAXIMUM 5
-#define ISO 6
-// RayLookup of vis/raycast/ray_plan.h
-#define LOOKUP_CURVE 0
-#define LOOKUP_PLANE 1
-#define LOOKUP_LATTICE 2
-#define LOOKUP_SLAB 3
-
 // Layers. layerMap: transfer coordinate = value * x + y; z = density, or the iso value; w = opacity of an iso-surface.
 // Rows of the transfer table: TABLE_ROW(i) of layer i, of slice i - LAYERS; TABLE_ROWS further on whether a layer has
 // opacity (opaqueAt).
@@ -92,7 +79,7 @@ uniform sampler2DArray geometryDistance; // along the ray, 1e9: nothing; BrushEf
 
 #if BRUSH_TESTS > 0
 uniform int brushTestCount;
-uniform ivec4 brushMeaning[BRUSH_TESTS];   // kind, brush fields, flags: BrushTests in vis/raycast/brush_uniforms.h
+uniform ivec4 brushMeaning[BRUSH_TESTS];   // BRUSH_TEST_ALWAYS, ...; brush fields, flags: BrushTest in vis/raycast/brush_tests.h
 uniform vec4 brushShape[2 * BRUSH_TESTS];
 uniform float brushStart;
 uniform sampler2D lassoTables;

@@ -16,18 +16,18 @@ vec2 clipBall(vec3 offset, vec3 slope, float radius) {
     return a < 1e-12 ? apart : met;
 }
 
-// The part of a line inside a body: kind 0 plane, 1 box, 2 sphere, 3 cylinder.
+// The part of a line inside a body: `kind`: CLIP_KIND_PLANE, ...
 vec2 clipInside(int kind, vec3 center, vec3 axis, vec3 halfSize, vec3 origin, vec3 direction) {
     vec3 from = origin - center;
     float offset = dot(axis, from), slope = dot(axis, direction);
-    if (kind == 0) {
+    if (kind == CLIP_KIND_PLANE) {
         float at = -offset / (abs(slope) < 1e-9 ? 1e-9 : slope);
         vec2 apart = offset <= 0.0 ? vec2(-kFar, kFar) : vec2(kFar, -kFar);
         return abs(slope) < 1e-9 ? apart : slope > 0.0 ? vec2(-kFar, at) : vec2(at, kFar);
     }
-    if (kind == 2) return clipBall(from, direction, halfSize.x);
+    if (kind == CLIP_KIND_SPHERE) return clipBall(from, direction, halfSize.x);
     vec2 a, b;
-    if (kind == 1) {
+    if (kind == CLIP_KIND_BOX) {
         vec2 x = clipSlab(from.x, direction.x, halfSize.x), y = clipSlab(from.y, direction.y, halfSize.y);
         a = vec2(max(x.x, y.x), min(x.y, y.y));
         b = clipSlab(from.z, direction.z, halfSize.z);

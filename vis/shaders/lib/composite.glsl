@@ -5,7 +5,7 @@
 void showComposites(int k, float at, int together) {
     vec3 p = cellsAt(at), world = worldAt(at);
     for (int i = 0; i < LAYERS; ++i) {
-        if (LAYER_STYLE(i) != COMPOSITE) continue;
+        if (LAYER_STYLE(i) != STYLE_COMPOSITE) continue;
         vec2 s = here[i];
         float share = present(s) ? 1.0 : 0.0;
         bool byGradient = LAYER_GRADIENT(i) == 1 || LAYER_LOOKUP(i) == LOOKUP_PLANE;

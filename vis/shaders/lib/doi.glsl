@@ -44,7 +44,7 @@ float degreeOfInterest(vec3 p) {
         ivec4 meaning = brushMeaning[i]; // kind, first field or -1, second field, flags
         vec4 a = brushShape[2 * i], b = brushShape[2 * i + 1];
         if ((meaning.w & 1) != 0) own = 1.0;
-        float test = meaning.x == 0 ? 1.0 : 0.0;
+        float test = meaning.x == BRUSH_TEST_ALWAYS ? 1.0 : 0.0;
 #if BRUSH_FIELDS > 0
         vec2 x = samples[0], y = samples[0];
         for (int j = 1; j < BRUSH_FIELDS; ++j) {
@@ -54,26 +54,26 @@ float degreeOfInterest(vec3 p) {
         bool both = x.y >= PRESENT_COVERAGE && y.y >= PRESENT_COVERAGE && meaning.y >= 0 && meaning.z >= 0;
 #if BRUSH_RANGES
         float outside = max(max(a.x - x.x, x.x - a.y), 0.0);
-        if (meaning.x == 1) test = both ? (outside > 0.0 ? max(0.0, 1.0 - outside * a.z) : 1.0) : 0.0;
+        if (meaning.x == BRUSH_TEST_RANGE) test = both ? (outside > 0.0 ? max(0.0, 1.0 - outside * a.z) : 1.0) : 0.0;
 #endif
 #if BRUSH_ELLIPSES || BRUSH_LASSOS
         vec2 away = (vec2(x.x, y.x) - a.xy) * a.zw;
 #endif
 #if BRUSH_ELLIPSES
         float squared = (dot(away, away) - 2.0 * b.x * away.x * away.y) * b.y;
-        if (meaning.x == 2) test = both ? radialDoi(sqrt(max(squared, 0.0)), b.z) : 0.0;
+        if (meaning.x == BRUSH_TEST_ELLIPSE) test = both ? radialDoi(sqrt(max(squared, 0.0)), b.z) : 0.0;
 #endif
 #if BRUSH_LASSOS
-        if (meaning.x == 3) test = both ? lassoDoi(int(b.x), (away + 1.0) * (0.5 * float(LASSO_TABLE - 1))) : 0.0;
+        if (meaning.x == BRUSH_TEST_LASSO) test = both ? lassoDoi(int(b.x), (away + 1.0) * (0.5 * float(LASSO_TABLE - 1))) : 0.0;
 #endif
 #endif
 #if BRUSH_SPACE
         vec3 from = abs((dataCells(p) - a.xyz) * b.xyz);
-        if (meaning.x == 4) test = radialDoi(length(from), a.w);
-        if (meaning.x == 5) test = radialDoi(max(from.x, max(from.y, from.z)), a.w);
+        if (meaning.x == BRUSH_TEST_SPHERE) test = radialDoi(length(from), a.w);
+        if (meaning.x == BRUSH_TEST_BOX) test = radialDoi(max(from.x, max(from.y, from.z)), a.w);
 #endif
 #if BRUSH_LENSES
-        if (meaning.x == 6) {
+        if (meaning.x == BRUSH_TEST_LENS) {
             vec3 world = fromCells(dataCells(p));
             for (int j = 0; j < LENSES; ++j)
                 if ((meaning.y >> j & 1) != 0) test = max(test, lensWeightAt(j, world));
@@ -100,23 +100,26 @@ float degreeOfInterest(vec3 p) {
 
 // Factor on opacity of a layer that brushes affect so (BrushEffect of vis/scene/brush_effect.h).
 float focusOpacity(float doi, int effect) {
-    return effect == 0 ? mix(context.x, 1.0, doi) : effect == 1 ? 1.0 : effect == 2 ? 1.0 - doi : doi;
+    return effect == BRUSHED_FADE      ? mix(context.x, 1.0, doi)
+           : effect == BRUSHED_NONE    ? 1.0
+           : effect == BRUSHED_CONTEXT ? 1.0 - doi
+                                       : doi;
 }
 
 // Degree of interest that out-of-focus blur sees.
 float focusInterest(float doi, int effect) {
-    return effect == 1 ? 1.0 : doi;
+    return effect == BRUSHED_NONE ? 1.0 : doi;
 }
 
 // Colour pulled towards its luminance, further by the factor `saturation`, and made darker or lighter, then towards the
 // colour of the brush that holds the place of the last degreeOfInterest().
 vec3 focusColor(vec3 color, float doi, float saturation, int effect) {
-    float share = effect == 0 ? doi : 1.0;
+    float share = effect == BRUSHED_FADE ? doi : 1.0;
     vec3 c = mix(vec3(luminance(color)), color, mix(context.y, 1.0, share) * saturation);
     float lightness = mix(context.z, 1.0, share);
     c = mix(c * min(lightness, 1.0), vec3(1.0), max(lightness - 1.0, 0.0));
 #if BRUSH_COLORS
-    c = mix(c, brushHolder.rgb, effect == 1 ? 0.0 : brushHolder.a * doi * brushColorShare);
+    c = mix(c, brushHolder.rgb, effect == BRUSHED_NONE ? 0.0 : brushHolder.a * doi * brushColorShare);
 #endif
     return c;
 }

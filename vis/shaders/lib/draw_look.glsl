@@ -1,15 +1,8 @@
 // Looks of layers: what the scene knows of them, put together. LAYER_LOOK(i): the parts of a layer's look, bits of
-// LookBits in vis/raycast/look_uniforms.h; LOOKS: those of any layer.
+// LookFeature in vis/gl/shader_constants.h; LOOKS: those of any layer.
 #include "lib/look.glsl"
 #include "lib/grain.glsl"
 
-#define LOOK_TONE 1
-#define LOOK_BOUNDARY 2
-#define LOOK_SILHOUETTE 4
-#define LOOK_DISTANCE 8
-#define LOOK_CARTOON 16
-#define LOOK_CHARCOAL 32
-#define LOOK_WIRE 64
 #define LOOK_OUTLINE (LOOK_CARTOON | LOOK_CHARCOAL)
 
 uniform vec4 lookLight;   // direction towards the first light, 0; or its position, 1

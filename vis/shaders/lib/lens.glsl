@@ -1,12 +1,12 @@
 // Shapes of lenses; twin: PlacedLens in vis/scene/lens.h. `u`: place in the lens, 1 / radius from its middle.
 
-// 0 in the middle, 1 on the outline: kind 0 sphere, 1 box, 2 cylinder, 3 disc.
+// 0 in the middle, 1 on the outline; `kind`: LENS_SHAPE_SPHERE, ...
 float lensRadius(int kind, vec3 u) {
     float across = length(u.xy);
-    return kind == 0   ? length(u)
-           : kind == 1 ? max(max(abs(u.x), abs(u.y)), abs(u.z))
-           : kind == 2 ? max(across, abs(u.z))
-                       : across / max(1.0 + u.z, 1e-6);
+    return kind == LENS_SHAPE_SPHERE     ? length(u)
+           : kind == LENS_SHAPE_BOX      ? max(max(abs(u.x), abs(u.y)), abs(u.z))
+           : kind == LENS_SHAPE_CYLINDER ? max(across, abs(u.z))
+                                         : across / max(1.0 + u.z, 1e-6);
 }
 
 // 1 inside, 0 outside, smoothstep over the share `rim` of the radius.

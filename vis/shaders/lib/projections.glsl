@@ -26,25 +26,25 @@ void beginProjections() {
 void project(int i, int k, vec3 p, float x, float lens, bool is) {
     float f = is ? focusOpacity(degreeOfInterest(p), LAYER_BRUSHED(i)) * lens : 0.0;
     float place = clamp(x, 0.0, 1.0), share = f; // of the sum
-    if (LAYER_STYLE(i) == AVERAGE) {
+    if (LAYER_STYLE(i) == STYLE_AVERAGE) {
         sum[i] += is ? f * x : 0.0;
         weight[i] += f;
         factor[i] += is ? 1.0 : 0.0;
-    } else if (LAYER_STYLE(i) == XRAY) {
+    } else if (LAYER_STYLE(i) == STYLE_XRAY) {
         float a = is ? correctedOpacity(transfer(i, x).a * f, ray.stepLength * REFERENCE_LENGTHS * layerMap[i].z) : 0.0;
         share = (1.0 - sum[i]) * a;
         sum[i] += share;
     } else {
-        float score = (LAYER_STYLE(i) == MINIMUM ? 1.0 - place : place) * f;
+        float score = (LAYER_STYLE(i) == STYLE_MINIMUM ? 1.0 - place : place) * f;
         // A local maximum stands when the values fall again above the threshold.
-        if (LAYER_STYLE(i) == LOCAL_MAXIMUM)
+        if (LAYER_STYLE(i) == STYLE_LOCALMAXIMUM)
             weight[i] = best[i] >= layerMore[i].y && (!is || score < best[i]) ? 1.0 : weight[i];
         bool better = is && score > best[i] && weight[i] == 0.0;
         bestAt[i] = better ? float(k) : bestAt[i];
         best[i] = better ? score : best[i];
     }
 #if COLORED
-    if (LAYER_COLORED(i) == 1 && (LAYER_STYLE(i) == AVERAGE || LAYER_STYLE(i) == XRAY)) {
+    if (LAYER_COLORED(i) == 1 && (LAYER_STYLE(i) == STYLE_AVERAGE || LAYER_STYLE(i) == STYLE_XRAY)) {
         vec2 s = reconstruct(LAYER_COLOR(i), p);
         tint[i] += is && present(s) ? share * vec2(s.x, 1.0) : vec2(0.0);
     }
@@ -62,14 +62,14 @@ vec3 colorOfSum(int i, vec3 own) {
 
 void showProjections() {
     for (int i = 0; i < LAYERS; ++i) {
-        if (LAYER_STYLE(i) == COMPOSITE || LAYER_STYLE(i) == ISO) continue;
+        if (LAYER_STYLE(i) == STYLE_COMPOSITE || LAYER_STYLE(i) == STYLE_ISO) continue;
         vec4 c;
         float alpha, at = 0.5 * float(ray.count), doi = 1.0; // sums belong to no place
-        if (LAYER_STYLE(i) == XRAY) {
+        if (LAYER_STYLE(i) == STYLE_XRAY) {
             alpha = sum[i];
             c = transfer(i, alpha);
             c.rgb = colorOfSum(i, c.rgb);
-        } else if (LAYER_STYLE(i) == AVERAGE) {
+        } else if (LAYER_STYLE(i) == STYLE_AVERAGE) {
             c = transfer(i, sum[i] / max(weight[i], 1e-6));
             c.rgb = colorOfSum(i, c.rgb);
             alpha = weight[i] > 0.0
