@@ -17,10 +17,8 @@ std::size_t texelCount(glm::ivec3 size) {
 
 } // namespace
 
-Residency::Residency(const RendererOptions& options)
-    : options_(options), jobs_(options.decodeThreads, JobThreads::Background) {
-    glGetIntegerv(GL_MAX_3D_TEXTURE_SIZE, &maxTextureSize_);
-}
+Residency::Residency(const RendererOptions& options, const Driver& driver)
+    : options_(options), driver_(driver), jobs_(options.decodeThreads, JobThreads::Background) {}
 
 Residency::~Residency() = default;
 
@@ -76,8 +74,8 @@ int Residency::textureLevel() const {
     const std::size_t texelBytes = std::size_t(componentsOf(true)) * (options_.exactTextures ? 4 : 2);
     for (int level = 0; level < grid.levels; ++level) {
         const glm::ivec3 size = levelTexels(grid, level) + 2 * kHalo;
-        if (std::max({size.x, size.y, size.z}) <= maxTextureSize_ && texelCount(size) <= options_.denseTexels &&
-            texelCount(size) * texelBytes <= kMaxTextureBytes)
+        if (std::max({size.x, size.y, size.z}) <= driver_.texture3DEdge && texelCount(size) <= options_.denseTexels &&
+            texelCount(size) * texelBytes <= driver_.textureBytes)
             return level;
     }
     return grid.levels - 1;

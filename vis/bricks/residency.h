@@ -12,8 +12,7 @@
 /// per frame, within a budget.
 namespace tessera::vis {
 
-inline constexpr std::uint64_t kFramesInUse = 2;                      ///< what one of the last frames used stays
-inline constexpr std::size_t kMaxTextureBytes = std::size_t(1) << 30; ///< software GL refuses more in one texture
+inline constexpr std::uint64_t kFramesInUse = 2; ///< what one of the last frames used stays
 
 /// One channel at one time on the GPU: a texture of the whole where that is small enough, else bricks in an atlas.
 struct ChannelTexture {
@@ -34,7 +33,7 @@ struct ChannelTexture {
 
 class Residency {
 public:
-    explicit Residency(const RendererOptions& options);
+    Residency(const RendererOptions& options, const Driver& driver);
     ~Residency();
 
     /// Textures and decoded bricks of the samples that the former source has too stay.
@@ -155,7 +154,7 @@ private:
     std::uint64_t guestsFrame_ = 0;
     std::uint64_t frame_ = 1, revision_ = 0;
     bool waiting_ = false; ///< finish() runs: the budget may be exceeded
-    int maxTextureSize_ = 0;
+    Driver driver_;
     double keptChange_ = 0;
     int uploaded_ = 0, kept_ = 0; ///< bricks
     std::vector<std::string> messages_;

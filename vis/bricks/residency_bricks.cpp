@@ -185,7 +185,7 @@ BrickAtlas& Residency::atlasFor(int components) {
         if (!roomiest || unused(atlas) > unused(*roomiest)) roomiest = &atlas;
     // Half of what is left at most: the rest is for other formats.
     const std::size_t left = options_.textureBudget > used ? (options_.textureBudget - used) / 2 : 0;
-    const std::size_t slots = std::min({useful, left / bytes, kMaxTextureBytes / bytes});
+    const std::size_t slots = std::min({useful, left / bytes, driver_.textureBytes / bytes});
     if (roomiest && (unused(*roomiest) > roomiest->most / 4 || slots < roomiest->most / 2)) return *roomiest->texture;
     auto texture = makeAtlas(components, std::clamp<std::size_t>(slots, 1, channel * 5 / 4 + kFewSlots));
     const std::size_t most = std::max(slots, texture->capacity());
@@ -198,7 +198,7 @@ std::unique_ptr<BrickAtlas> Residency::makeAtlas(int components, std::size_t slo
         try {
             reserve(slots * slotBytes(components));
             return std::make_unique<BrickAtlas>(exchange_->source->grid().brickSize, components, options_.exactTextures,
-                                                slots, maxTextureSize_);
+                                                slots, driver_.texture3DEdge);
         } catch (const MachineError&) {
             if (slots <= kFewSlots) throw;
             exchange_->say("the driver has no memory for the texture budget; less is used");
@@ -260,7 +260,7 @@ bool Residency::grow(const BrickAtlas* atlas, bool beyond) {
         for (Atlas& each : list) {
             if (each.texture.get() != atlas) continue;
             const std::size_t slots = beyond ? atlas->capacity() * 2 : std::min(atlas->capacity() * 2, each.most);
-            if (slots <= atlas->capacity() || slots * slotBytes(components) > kMaxTextureBytes) return false;
+            if (slots <= atlas->capacity() || slots * slotBytes(components) > driver_.textureBytes) return false;
             const std::size_t most = std::exchange(each.most, atlas->capacity()); // kept if there is no more
             std::unique_ptr<BrickAtlas> larger;
             try {

@@ -1,6 +1,9 @@
 #pragma once
 
+#include "vis/gl/driver.h"
+
 #include <cstddef>
+#include <optional>
 
 /// What may be held on the GPU, and what is.
 namespace tessera::vis {
@@ -14,6 +17,7 @@ struct RendererOptions {
     bool exactTextures = false; ///< 32-bit float bricks instead of 16-bit: for comparison with the reference
     /// Bytes of data textures that the driver is taken to have; more is refused as a driver does. For tests.
     std::size_t driverMemory = ~std::size_t(0);
+    std::optional<Driver> driver = {}; ///< taken to be this one; none: as it says. For tests.
     bool countSamples = false; ///< instead of colours, readLinear gives how often each ray reconstructed a layer (red)
 };
 

@@ -44,7 +44,8 @@ bool underWay(ProgramStage stage) {
 
 } // namespace
 
-ProgramCache::ProgramCache() : shared_(std::make_shared<Shared>()), context_(SharedContext::make()) {
+ProgramCache::ProgramCache(bool warmsUp)
+    : warmsUp_(warmsUp), shared_(std::make_shared<Shared>()), context_(SharedContext::make()) {
     if (context_) worker_ = std::make_unique<JobQueue>(1, JobThreads::Equal);
 }
 
@@ -72,9 +73,10 @@ ProgramCache::Entry& ProgramCache::make(const ProgramRecipe& recipe, bool backgr
     if (!background || !worker_) {
         link(ProgramStage::Ready);
     } else {
-        worker_->add(0, [link, context = context_.get()](std::stop_token) {
+        const ProgramStage next = warmsUp_ ? ProgramStage::Linked : ProgramStage::Ready;
+        worker_->add(0, [link, next, context = context_.get()](std::stop_token) {
             const SharedContext::Use use(*context);
-            link(ProgramStage::Linked);
+            link(next);
         });
     }
     return *entry;

@@ -32,7 +32,9 @@ struct ProgramAnswer {
 
 class ProgramCache {
 public:
-    ProgramCache();
+    /// `warmsUp`: programs want warmUp(), as Driver::compilesAtFirstDraw says; else they are ready once they are
+    /// linked.
+    explicit ProgramCache(bool warmsUp = true);
     ~ProgramCache(); ///< waits for a compilation that has begun
 
     /// The program of a recipe, compiled now if necessary; null if it does not compile.
@@ -59,6 +61,7 @@ private:
     using Clock = std::chrono::steady_clock;
     void awaitDiskCache(const Drawn& drawn, std::size_t trial, Clock::time_point since);
 
+    bool warmsUp_;
     std::map<std::string, std::shared_ptr<Entry>> programs_;
     std::shared_ptr<Shared> shared_;
     std::set<GLuint> drawn_;

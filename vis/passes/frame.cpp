@@ -26,11 +26,11 @@ std::vector<Tile> tilesOf(const Tile& whole, int edge) {
     return tiles;
 }
 
-/// Where a reduced picture begins in a buffer so that the corner of four tiles of software GL, which are what its
-/// processors share, lies in the middle of what is drawn of it.
-glm::ivec2 sharedByProcessors(const Tile& drawn, glm::ivec2 picture, glm::ivec2 buffer) {
-    constexpr int kEdge = 64;
-    glm::ivec2 first = (kEdge - (drawn.begin + drawn.end) / 2 % kEdge) % kEdge;
+/// Where a reduced picture begins in a buffer so that the corner of four of the tiles that the driver's processors
+/// share (Driver::sharedTile) lies in the middle of what is drawn of it.
+glm::ivec2 placeInTiles(const Tile& drawn, glm::ivec2 picture, glm::ivec2 buffer, int edge) {
+    if (edge == 0) return glm::ivec2(0);
+    glm::ivec2 first = (edge - (drawn.begin + drawn.end) / 2 % edge) % edge;
     for (int axis = 0; axis < 2; ++axis)
         if (first[axis] + picture[axis] > buffer[axis]) first[axis] = 0;
     return first;
@@ -102,6 +102,7 @@ bool Renderer::Impl::ready(ViewTarget& target, const RenderCall& call, const Ren
                            const ProgramAnswer& answer, const ProgramRecipe& recipe) {
     if (!answer.program) return false;
     const bool linked = answer.stage == ProgramStage::Linked;
+    if (!tools.driver.compilesAtFirstDraw) return true;
     if (!linked && !tools.programs.firstUse(*answer.program)) return true;
     const glm::ivec2 size = target.buffers.size;
     setRayUniforms(*answer.program, own.plan, own.scene, own.info(), own.grid(), size, 1);
@@ -110,7 +111,7 @@ bool Renderer::Impl::ready(ViewTarget& target, const RenderCall& call, const Ren
         tools.programs.warmUp(recipe, target.buffers.full.framebuffer);
         return false;
     }
-    // Software GL compiles at the first draw: do that before any clock runs.
+    // The first draw compiles: do that before any clock runs.
     target.buffers.reduced.first = {0, 0};
     rays({.program = answer.program, .beyondPlan = {}, .beyondScene = {}}, call, target.buffers.reduced,
          {.size = size, .tile = {size / 2, size / 2 + 1}});
@@ -152,20 +153,15 @@ void Renderer::Impl::drawReduced(ViewTarget& target, const RenderCall& call, con
     const Tile changed = target.state.changed();
     buffers.reducedSize = glm::max(glm::ivec2(glm::vec2(buffers.size) / float(how.shrink)), glm::ivec2(1));
     const Tile tile = reducedTile(changed, buffers.reducedSize, buffers.size);
-    buffers.reduced.first = sharedByProcessors(tile, buffers.reducedSize, buffers.size);
+    buffers.reduced.first = placeInTiles(tile, buffers.reducedSize, buffers.size, tools.driver.sharedTile);
     setUniforms(programs, target, call, how.stepFactor);
-    const Clock::time_point before = Clock::now();
-    geometry(target, call, buffers.reducedSize, tile);
-    if (call.plan.peels > 0) glFinish();
-    const double geometryMs = millisecondsSince(before);
-    const Clock::time_point begin = Clock::now();
-    rays(programs, call, buffers.reduced,
-         {.size = buffers.reducedSize,
-          .tile = tile,
-          .parts = target.tables.covered(call, buffers.reducedSize),
-          .stepFactor = how.stepFactor * target.demand.cell()});
-    glFinish();
-    target.pace.tookReduced(geometryMs, millisecondsSince(begin), how.stepFactor, tile.area());
+    const auto rasterise = [&] { geometry(target, call, buffers.reducedSize, tile); };
+    if (call.plan.peels > 0) target.pace.timeGeometry(rasterise);
+    const RayTile what{.size = buffers.reducedSize,
+                       .tile = tile,
+                       .parts = target.tables.covered(call, buffers.reducedSize),
+                       .stepFactor = how.stepFactor * target.demand.cell()};
+    target.pace.timeReduced([&] { rays(programs, call, buffers.reduced, what); }, how.stepFactor, tile.area());
     present(target, call.scene, true, changed);
     target.state.drewReduced();
     target.hidden.drewReduced();
@@ -177,18 +173,18 @@ void Renderer::Impl::drawTile(ViewTarget& target, const RenderCall& call, const 
                               int pass) {
     const glm::ivec2 size = target.buffers.size;
     geometry(target, call, size, target.state.stale(), pass);
-    const Clock::time_point begin = Clock::now();
     const RayTile what{.size = size,
                        .tile = tile,
                        .parts = target.tables.covered(call, size),
                        .stepFactor = target.demand.cell(),
                        .pass = pass};
-    if (pass == 0)
-        rays(programs, call, target.buffers.full, what);
-    else
-        accumulate(target, call, programs, what);
-    glFinish();
-    if (pass == 0) target.pace.tookTile(millisecondsSince(begin));
+    const auto draw = [&] {
+        if (pass == 0)
+            rays(programs, call, target.buffers.full, what);
+        else
+            accumulate(target, call, programs, what);
+    };
+    target.pace.timeTile(draw, tile.area(), pass == 0);
     present(target, call.scene, false, tile);
     glBindTextureUnit(0, call.plan.fields[0].texture);
     target.state.drewTile();
@@ -204,10 +200,11 @@ void Renderer::Impl::drawTiles(ViewTarget& target, const RenderCall& call, const
     const std::vector<Tile> tiles = tilesOf(state.stale(), target.pace.tileEdge());
     setUniforms(programs, target, call, 1);
     const int perPass = int(tiles.size()), wanted = perPass * std::max(call.scene.render.samples, 1);
-    for (bool first = true;
-         state.tilesDone() < wanted && (request.wait || first || millisecondsSince(start) < request.budgetMs);
-         first = false) {
-        drawTile(target, call, programs, tiles[std::size_t(state.tilesDone() % perPass)], state.tilesDone() / perPass);
+    for (bool first = true; state.tilesDone() < wanted; first = false) {
+        const Tile& tile = tiles[std::size_t(state.tilesDone() % perPass)];
+        const double left = request.budgetMs - millisecondsSince(start);
+        if (!request.wait && !first && !target.pace.fits(tile.area(), left)) break;
+        drawTile(target, call, programs, tile, state.tilesDone() / perPass);
         if (state.tilesDone() != perPass) continue;
         state.drewPass();
         target.pace.finishPass(state.stale().area(), target.buffers.everything().area());
@@ -229,6 +226,7 @@ void Renderer::Impl::refine(ViewTarget& target, const RenderCall& call, Clock::t
     const bool probing = target.demand.probing();
     const bool done = state.full() ? state.still() || request.moving : state.reduced() && request.moving;
     if (done && !probing) return;
+    if (!target.pace.beginCall() && !request.wait) return;
     target.tables.update(call, residency.revision(), target.demand.frames());
     const ProgramRecipe recipe = variant(target, scene, call.plan);
     target.shown.compiling = true;
@@ -252,7 +250,7 @@ void Renderer::Impl::refine(ViewTarget& target, const RenderCall& call, Clock::t
     const double left = request.budgetMs - millisecondsSince(start);
     const bool fast = target.pace.known() && target.pace.expected(state.stale().area()) < std::max(left, 1.0);
     if (!request.wait && !fast && (request.moving || !(state.reduced() || state.full()))) {
-        drawReduced(target, call, programs, target.pace.reduction(state.changed().area(), left));
+        drawReduced(target, call, programs, target.pace.reduction(state.changed().area(), left, call.plan.peels > 0));
         if (request.moving) return;
     }
     drawTiles(target, call, programs, start, light.done);

@@ -5,34 +5,76 @@
 
 namespace tessera::vis {
 
-Pace::Reduction Pace::reduction(double area, double budget) const {
-    // Not smaller than the last: two processors would share one tile of software GL.
+bool Pace::beginCall() {
+    constexpr std::size_t kMostBehind = 8; // draws not measured yet
+    given_ = 0;
+    collect(false);
+    return timer_.pending() <= kMostBehind;
+}
+
+bool Pace::fits(double area, double left) const {
+    if (!timer_.queries()) return left > 0;
+    return known() && given_ + expected(area) < left;
+}
+
+Pace::Reduction Pace::reduction(double area, double budget, bool geometry) const {
     static constexpr Reduction kReductions[] = {{1.0, 1.0}, {1.5, 1.5}, {2.0, 2.0}, {3.0, 2.0},
                                                 {4.0, 2.0}, {6.0, 2.0}, {8.0, 3.0}, {8.0, 5.0}};
+    // Not smaller than the last: two processors would share one tile of software GL.
     if (!known()) return {};
+    const double before = geometry ? geometry_ : 0;
     for (const Reduction& each : kReductions)
-        if (geometry_ + expected(area) / (each.shrink * each.shrink * each.stepFactor) < budget) return each;
+        if (before + expected(area) / (each.shrink * each.shrink * each.stepFactor) < budget) return each;
     return kReductions[std::size(kReductions) - 1];
 }
 
-void Pace::tookReduced(double geometry, double rays, double stepFactor, double area) {
-    geometry_ = geometry;
-    const double cost = rays * stepFactor / std::max(1.0, area);
-    perPixel_ = known() ? 0.5 * (perPixel_ + cost) : cost;
+void Pace::timeGeometry(const std::function<void()>& draw) {
+    given_ += geometry_;
+    timer_.measure(draw, [this](double milliseconds) { geometry_ = milliseconds; });
+}
+
+void Pace::timeReduced(const std::function<void()>& draw, double stepFactor, double area) {
+    given_ += expected(area) / stepFactor;
+    timer_.measure(draw, [this, stepFactor, area](double milliseconds) {
+        learn(milliseconds * stepFactor / std::max(1.0, area));
+    });
 }
 
 void Pace::beginPass(bool wait, double budget) {
     constexpr int kLargest = 128, kSmallest = 32, kWaiting = 1024;
-    pass_ = 0;
+    ++passNumber_;
+    pass_ = measured_ = area_ = 0;
+    scale_ = 1;
     // Never the whole: what a coarse picture cost says little of the fine one.
     tileEdge_ = wait ? kWaiting : kLargest;
     const double perTile = wait ? 1e9 : std::max(budget / 3, 2.0);
     while (tileEdge_ > kSmallest && expected(double(tileEdge_) * tileEdge_) > perTile) tileEdge_ /= 2;
 }
 
+void Pace::timeTile(const std::function<void()>& draw, double area, bool counts) {
+    given_ += expected(area);
+    timer_.measure(draw, [this, area, number = counts ? passNumber_ : 0](double milliseconds) {
+        tookTile(milliseconds, area, number);
+    });
+}
+
+void Pace::tookTile(double milliseconds, double area, int pass) {
+    if (pass != passNumber_) return;
+    pass_ += milliseconds;
+    measured_ += area;
+    if (!known() && timer_.queries()) learn(milliseconds / std::max(1.0, area));
+    settle();
+}
+
 void Pace::finishPass(double area, double whole) {
-    perPixel_ = pass_ / std::max(1.0, area);
-    pass_ *= whole / std::max(1.0, area);
+    area_ = std::max(1.0, area);
+    scale_ = whole / area_;
+    settle();
+}
+
+/// What all of a pass took says what the next one will.
+void Pace::settle() {
+    if (area_ > 0 && measured_ >= area_) perPixel_ = pass_ / area_;
 }
 
 } // namespace tessera::vis

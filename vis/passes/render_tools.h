@@ -1,5 +1,6 @@
 #pragma once
 
+#include "vis/gl/driver.h"
 #include "vis/gl/program_cache.h"
 #include "vis/passes/geometry_pass.h"
 #include "vis/passes/renderer.h"
@@ -32,8 +33,11 @@ struct RenderCall {
 
 /// What all pictures of a context are drawn with.
 struct RenderTools {
+    explicit RenderTools(const Driver& given) : driver(given) {}
+
+    Driver driver;
     VertexArray vertices = makeVertexArray("no vertices");
-    ProgramCache programs;
+    ProgramCache programs{driver.compilesAtFirstDraw};
     BrushTables brushes;
     GeometryPass geometryPass;
     GrainTexture grain;

@@ -43,7 +43,8 @@ bool liesAtCursor(const Scene& scene) {
 
 } // namespace
 
-Renderer::Renderer(const RendererOptions& options) : impl_(std::make_unique<Impl>(options)) {}
+Renderer::Renderer(const RendererOptions& options)
+    : impl_(std::make_unique<Impl>(options, options.driver ? *options.driver : currentDriver())) {}
 Renderer::~Renderer() = default;
 
 void Renderer::setSource(std::shared_ptr<const volume::BrickSource> source, SameSamples same) {
@@ -58,7 +59,7 @@ const volume::BrickSource* Renderer::source() const {
 }
 
 ViewTargetPtr Renderer::makeTarget() {
-    return ViewTargetPtr(new ViewTarget);
+    return ViewTargetPtr(new ViewTarget(impl_->tools.driver));
 }
 
 /// Makes the target as large as the picture; false where the driver has no memory for that, which is said once.
@@ -202,9 +203,8 @@ FrameStatus Renderer::render(ViewTarget& target, const Scene& scene, const Frame
     if (target.shown.source != impl_->source.get()) target.hidden.forgetData();
     if (impl_->source) {
         impl_->beginFrame(target, scene, request);
-        // Bricks take two texture units each.
-        const int mostFields = kMostFields / (impl_->residency.bricked() ? 2 : 1);
-        RayPlan plan = planRays(scene, impl_->source->info(), mostFields);
+        const int most = mostFields(impl_->tools.driver.fragmentSamplers, scene, impl_->residency.bricked());
+        RayPlan plan = planRays(scene, impl_->source->info(), most);
         impl_->drawAll(target, {scene, request, *impl_->source, plan}, start, status);
     } else {
         impl_->show(target, scene);
@@ -214,6 +214,7 @@ FrameStatus Renderer::render(ViewTarget& target, const Scene& scene, const Frame
     status.complete = status.complete && target.state.still();
     status.current = status.complete || target.state.changed().empty();
     status.compiling = target.shown.compiling;
+    if (request.wait) target.pace.collect(true);
     status.milliseconds = target.pace.pass();
     return status;
 }

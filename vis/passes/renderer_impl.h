@@ -37,7 +37,8 @@ struct Renderer::Impl {
     std::string limits;  ///< said last about what there is too much of
     std::string refusal; ///< said last about a picture that the driver has no memory for
 
-    explicit Impl(const RendererOptions& given) : options(given), residency(given) {}
+    explicit Impl(const RendererOptions& given, const Driver& driver)
+        : options(given), residency(given, driver), tools(driver) {}
 
     // renderer.cpp
     bool resize(ViewTarget& target, const FrameRequest& request);

@@ -27,12 +27,12 @@ void addCost(FrameStatus& status, const volume::BrickGrid& grid, const ChannelTe
     status.bytes += bricks * (channel->atlas->bytes() / std::max<std::size_t>(channel->atlas->capacity(), 1));
 }
 
-PlanFrames framesAt(const RenderCall& call, double time, bool bricked) {
+PlanFrames framesAt(const RenderCall& call, double time) {
     const RayPlan& plan = call.plan;
     const volume::DatasetInfo& info = call.info();
     const bool prefiltered = call.scene.render.filter == Filter::AverageQuasi;
     const std::size_t count = plan.later > 0 ? std::size_t(plan.later) : plan.fields.size();
-    const bool fits = 2 * count * (bricked ? 2 : 1) <= std::size_t(kMostFields);
+    const bool fits = 2 * count <= std::size_t(plan.mostFields);
     PlanFrames frames;
     std::vector<volume::TimePair> pairs;
     bool between = false;
@@ -266,7 +266,7 @@ bool ViewDemand::choose(const Residency& residency, const RenderCall& call, cons
 /// Asks for the frames of the scene's time.
 PlanFrames ViewDemand::wantFrames(Residency& residency, const RenderCall& call, const HiddenInView* hidden) {
     const bool waits = call.request.wait;
-    const PlanFrames wanted = framesAt(call, call.scene.time, residency.bricked());
+    const PlanFrames wanted = framesAt(call, call.scene.time);
     setFrames(call.plan, wanted);
     const glm::ivec3 texels = call.grid().lattice.texels();
     const bool large = std::size_t(texels.x) * std::size_t(texels.y) * std::size_t(texels.z) > kSmallTexels;
@@ -285,7 +285,7 @@ PlanFrames ViewDemand::showFrames(Residency& residency, const RenderCall& call, 
                                   double& time) const {
     time = call.scene.time;
     if (allHere(residency, wanted) || !time_) return wanted;
-    const PlanFrames former = framesAt(call, *time_, residency.bricked());
+    const PlanFrames former = framesAt(call, *time_);
     if (!allHere(residency, former)) return wanted;
     time = *time_;
     setFrames(call.plan, former);
@@ -301,7 +301,7 @@ void ViewDemand::wantNext(Residency& residency, const RenderCall& call, bool set
     wantedTime_ = now.earlier;
     const int next = (timeStep_ > 0 ? now.later : now.earlier) + timeStep_;
     if (!settled || call.request.wait || timeStep_ == 0 || next < 0 || next >= int(times.size())) return;
-    const PlanFrames coming = framesAt(call, times[std::size_t(next)], residency.bricked());
+    const PlanFrames coming = framesAt(call, times[std::size_t(next)]);
     for (std::size_t i = 0; i < coming.keys.size(); ++i)
         residency.want(coming.keys[i], kAfterTheRest + double(i), false, demands_[i % demands_.size()]);
 }

@@ -44,6 +44,8 @@ private:
 /// The picture of one view: its buffers and the stages that lead to them, each of which owns its state.
 class ViewTarget {
 public:
+    explicit ViewTarget(const Driver& driver) : pace(driver.timerQueries) {}
+
     PictureBuffers buffers;
     PictureState state;
     ShownScene shown;

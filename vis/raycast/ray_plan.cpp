@@ -77,6 +77,12 @@ void addParts(RayPlan& plan, const volume::DatasetInfo& info, int mostFields) {
                      ": its nearest samples are shown, without surfaces and gradients; show fewer layers";
 }
 
+std::string tooMany(const std::vector<std::string>& left) {
+    std::string names;
+    for (const std::string& name : left) names += (names.empty() ? "" : ", ") + name;
+    return "too many channels at once for the graphics driver: " + names + " left out; show fewer layers";
+}
+
 /// The channel a layer shows.
 const std::string& channelOf(const Layer& layer) {
     return std::visit([](const auto& technique) -> const std::string& { return technique.channel; }, layer.technique);
@@ -110,45 +116,62 @@ RayLayer volumeUse(RayPlan& plan, int layer, const VolumeLayer& volume, int chan
     return use;
 }
 
-/// The layers of a scene that rays meet, and their fields.
-void planLayers(RayPlan& plan, const Scene& scene, const volume::DatasetInfo& info) {
-    for (std::size_t i = 0; i < scene.layers.size(); ++i) {
-        const Layer& layer = scene.layers[i];
-        const std::optional<int> channel = info.findChannel(channelOf(layer));
-        const std::optional<int> lens = lensOf(plan.lenses, layer.lens);
-        if (!layer.visible || !channel || !lens) continue;
-        const auto* surface = std::get_if<IsoLayer>(&layer.technique);
-        const std::optional<int> color =
-            colorByOf(layer.technique).empty() ? std::nullopt : info.findChannel(colorByOf(layer.technique));
-        // A function of its own is that of what it shows by colours: of a surface, that which colours it.
-        Layer shape = layer, colors = layer;
-        (surface && color ? shape : colors).transfer.clear();
-        if (surface && surface->method == SurfaceMethod::Polygons) continue; // comes as Scene::geometry
-        if (std::holds_alternative<FlowLayer>(layer.technique)) continue;    // so does this
-        if (const auto* volume = std::get_if<VolumeLayer>(&layer.technique))
-            plan.layers.push_back(volumeUse(plan, int(i), *volume, *channel, scene, info));
-        else if (surface)
-            plan.layers.push_back({.layer = int(i),
-                                   .style = RayStyle::Iso,
-                                   .field = fieldOf(plan, info, *channel, false, shape),
-                                   .shaded = true,
-                                   .look = lookBits(surface->look)});
-        else
-            plan.slices.push_back({int(i), fieldOf(plan, info, *channel, false, layer), *lens, layer.brushes, 0});
-        if (std::holds_alternative<SliceLayer>(layer.technique)) continue;
-        plan.layers.back().lens = *lens;
-        plan.layers.back().brushes = layer.brushes;
-        if (color) plan.layers.back().color = fieldOf(plan, info, *color, false, colors);
+/// Adds a layer of a scene, if rays meet it, and its fields.
+void planLayer(RayPlan& plan, const Scene& scene, const volume::DatasetInfo& info, int number) {
+    const Layer& layer = scene.layers[std::size_t(number)];
+    const std::optional<int> channel = info.findChannel(channelOf(layer));
+    const std::optional<int> lens = lensOf(plan.lenses, layer.lens);
+    if (!layer.visible || !channel || !lens) return;
+    const auto* surface = std::get_if<IsoLayer>(&layer.technique);
+    const std::optional<int> color =
+        colorByOf(layer.technique).empty() ? std::nullopt : info.findChannel(colorByOf(layer.technique));
+    // A function of its own is that of what it shows by colours: of a surface, that which colours it.
+    Layer shape = layer, colors = layer;
+    (surface && color ? shape : colors).transfer.clear();
+    if (surface && surface->method == SurfaceMethod::Polygons) return; // comes as Scene::geometry
+    if (std::holds_alternative<FlowLayer>(layer.technique)) return;    // so does this
+    if (std::holds_alternative<SliceLayer>(layer.technique)) {
+        plan.slices.push_back({number, fieldOf(plan, info, *channel, false, layer), *lens, layer.brushes, 0});
+        return;
     }
+    if (const auto* volume = std::get_if<VolumeLayer>(&layer.technique))
+        plan.layers.push_back(volumeUse(plan, number, *volume, *channel, scene, info));
+    else
+        plan.layers.push_back({.layer = number,
+                               .style = RayStyle::Iso,
+                               .field = fieldOf(plan, info, *channel, false, shape),
+                               .shaded = true,
+                               .look = lookBits(surface->look)});
+    plan.layers.back().lens = *lens;
+    plan.layers.back().brushes = layer.brushes;
+    if (color) plan.layers.back().color = fieldOf(plan, info, *color, false, colors);
 }
 
-/// The brushes, and the fields that they look at.
-void planBrushes(RayPlan& plan, const Scene& scene, const volume::DatasetInfo& info) {
+/// The layers of a scene that rays meet, as far as there is room for their fields; returns the channels of the others.
+std::vector<std::string> planLayers(RayPlan& plan, const Scene& scene, const volume::DatasetInfo& info) {
+    std::vector<std::string> left;
+    for (std::size_t i = 0; i < scene.layers.size(); ++i) {
+        const RayPlan former = plan;
+        planLayer(plan, scene, info, int(i));
+        if (int(plan.fields.size()) <= plan.mostFields) continue;
+        plan = former;
+        left.push_back(channelOf(scene.layers[i]));
+    }
+    return left;
+}
+
+/// The brushes, and the fields that they look at; adds to `left` those without room.
+void planBrushes(RayPlan& plan, const Scene& scene, const volume::DatasetInfo& info, std::vector<std::string>& left) {
     const std::vector<std::string> brushed = selectedChannels(scene.selection);
     for (const std::string& name : brushed) {
         const std::optional<int> channel = info.findChannel(name);
         if (!channel) continue;
         const int field = fieldOf(plan, info, *channel);
+        if (int(plan.fields.size()) > plan.mostFields) {
+            plan.fields.pop_back();
+            left.push_back(name);
+            continue;
+        }
         if (std::find(plan.brushFields.begin(), plan.brushFields.end(), field) == plan.brushFields.end())
             plan.brushFields.push_back(field);
     }
@@ -161,14 +184,37 @@ void planBrushes(RayPlan& plan, const Scene& scene, const volume::DatasetInfo& i
 
 } // namespace
 
+int mostFields(int samplers, const Scene& scene, bool bricked) {
+    // Transfer tables and block distances; lassos, planes, maps and a volume of light, grain, geometry.
+    const auto charcoal = [](const Layer& layer) {
+        const Look* look = lookOf(layer.technique);
+        return look && look->charcoal;
+    };
+    const auto regions = [](const auto& each) { return each.second.kind == TransferKind::Regions; };
+    const auto integrated = [](const Layer& layer) {
+        const auto* volume = std::get_if<VolumeLayer>(&layer.technique);
+        return volume && volume->classification == Classification::PreIntegrated;
+    };
+    const bool lasso = std::ranges::any_of(scene.selection.brushes, [](const Brush& brush) {
+        return brush.enabled && std::holds_alternative<LassoRegion>(brush.region);
+    });
+    const bool planes = std::ranges::any_of(scene.transfer, regions) || std::ranges::any_of(scene.layers, integrated);
+    const int others = 2 + lasso + planes + (usesMaps(scene.lighting) ? 2 : 0) +
+                       (scene.lighting.shadows.any() ? 2 : 0) + std::ranges::any_of(scene.layers, charcoal) +
+                       (peelsOf(scene) > 0 ? 2 : 0);
+    return std::min(kMostFields, samplers - others) / (bricked ? 2 : 1);
+}
+
 RayPlan planRays(const Scene& scene, const volume::DatasetInfo& info, int mostFields) {
     RayPlan plan;
+    plan.mostFields = mostFields;
     plan.lenses = placeLenses(scene, worldFrame(info.bounds, scene.stretch));
-    planLayers(plan, scene, info);
+    std::vector<std::string> left = planLayers(plan, scene, info);
     plan.peels = peelsOf(scene);
     if (plan.peels > 0 && plan.fields.empty() && !info.channels().empty()) fieldOf(plan, info, 0); // samplers need one
-    if (!plan.empty() && scene.selection.active()) planBrushes(plan, scene, info);
+    if (!plan.empty() && scene.selection.active()) planBrushes(plan, scene, info, left);
     addParts(plan, info, mostFields);
+    if (!left.empty()) plan.limit += (plan.limit.empty() ? "" : "; ") + tooMany(left);
     for (RayLayer& layer : plan.layers) layer.row = plan.rows++;
     for (SliceUse& slice : plan.slices) slice.row = plan.rows++;
     for (RayLayer& layer : plan.layers)

@@ -59,6 +59,9 @@ struct SliceUse {
     int row = 0; ///< of the transfer tables
 };
 
+/// Fields that a plan has at most, whatever the driver offers.
+inline constexpr int kMostFields = 23;
+
 /// Requirements of a scene, independent of what is resident.
 struct RayPlan {
     std::vector<BoundField> fields;
@@ -73,14 +76,16 @@ struct RayPlan {
     int peels = 0;                  ///< layers of rasterised geometry that lie among the samples
     int pages = 0;                  ///< of the plane tables
     int rows = 0;                   ///< of the transfer tables: of layers, then of slices, then of layers' colours
+    int mostFields = kMostFields;   ///< that there is room for
     std::string limit;              ///< what there is no room for; "": nothing
     bool empty() const { return layers.empty() && slices.empty() && peels == 0; }
 };
 
-/// Fields that a program has texture units for: 32 less those of tables, light, geometry; half as many in bricks.
-inline constexpr int kMostFields = 32 - 9;
+/// Fields that a program with so many samplers has room for, beside what else the scene looks up; bricks take two each.
+int mostFields(int samplers, const Scene& scene, bool bricked);
 
-/// Visible layers whose channel the data set has; layers of unknown channels are left out. A channel of several parts
+/// Visible layers whose channel the data set has; layers of unknown channels are left out, and those for whose channels
+/// `mostFields` leaves no room. A channel of several parts
 /// has a field for each; where that would be more than `mostFields` its nearest samples are shown, which mix nothing,
 /// and its surfaces are left out.
 RayPlan planRays(const Scene& scene, const volume::DatasetInfo& info, int mostFields = kMostFields);

@@ -1,0 +1,47 @@
+#include "vis/gl/driver.h"
+
+#include <algorithm>
+#include <array>
+#include <epoxy/gl.h>
+#include <string_view>
+
+namespace tessera::vis {
+
+namespace {
+
+std::string text(GLenum name) {
+    const GLubyte* found = glGetString(name);
+    return found ? reinterpret_cast<const char*>(found) : "";
+}
+
+int number(GLenum name) {
+    GLint value = 0;
+    glGetIntegerv(name, &value);
+    return value;
+}
+
+} // namespace
+
+Driver currentDriver() {
+    static constexpr std::array<std::string_view, 5> kSoftware{"llvmpipe", "softpipe", "swrast", "SwiftShader",
+                                                               "lavapipe"};
+    Driver driver;
+    driver.renderer = text(GL_RENDERER);
+    driver.software = std::ranges::any_of(
+        kSoftware, [&](std::string_view name) { return driver.renderer.find(name) != std::string::npos; });
+    driver.fragmentSamplers = number(GL_MAX_TEXTURE_IMAGE_UNITS);
+    driver.texture3DEdge = number(GL_MAX_3D_TEXTURE_SIZE);
+    if (driver.software) {
+        constexpr int kTile = 64; // of llvmpipe
+        driver.compilesAtFirstDraw = true;
+        driver.sharedTile = kTile;
+        driver.textureBytes = std::size_t(1) << 30; // Mesa's software GL refuses more
+        return driver;
+    }
+    GLint bits = 0;
+    glGetQueryiv(GL_TIME_ELAPSED, GL_QUERY_COUNTER_BITS, &bits);
+    driver.timerQueries = bits > 0;
+    return driver;
+}
+
+} // namespace tessera::vis
