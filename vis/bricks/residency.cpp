@@ -11,6 +11,8 @@ namespace tessera::vis {
 
 namespace {
 
+constexpr double kFirst = 1e6; ///< in priority: what something is seen of at once
+
 std::size_t texelCount(glm::ivec3 size) {
     return std::size_t(size.x) * std::size_t(size.y) * std::size_t(size.z);
 }
@@ -18,7 +20,10 @@ std::size_t texelCount(glm::ivec3 size) {
 } // namespace
 
 Residency::Residency(const RendererOptions& options, const Driver& driver)
-    : options_(options), driver_(driver), jobs_(options.decodeThreads, JobThreads::Background) {}
+    : options_(options), driver_(driver), atlases_(
+                                              options, driver, [this](std::size_t bytes) { reserve(bytes); },
+                                              [this](const std::string& message) { exchange_->say(message); }),
+      jobs_(options.decodeThreads, JobThreads::Background) {}
 
 Residency::~Residency() = default;
 
@@ -37,12 +42,17 @@ void Residency::setSource(std::shared_ptr<const volume::BrickSource> source, Sam
         keepSame(*former, same);
         return;
     }
-    entries_.clear();
-    atlases_.clear();
-    guests_.clear();
-    guestsOf_ = nullptr;
+    channels_.clear();
+    clearAtlases();
     uploaded_ = kept_ = 0;
     if (source) makeNothing();
+}
+
+/// Drops all atlases, none of which may be in use.
+void Residency::clearAtlases() {
+    candidates_ = {};
+    const volume::BrickGrid grid = exchange_ ? exchange_->source->grid() : volume::BrickGrid();
+    atlases_.clear(grid.brickSize, exchange_ ? grid.count() : glm::ivec3(0));
 }
 
 void Residency::setBudgets(std::size_t texture, std::size_t memory) {
@@ -51,27 +61,21 @@ void Residency::setBudgets(std::size_t texture, std::size_t memory) {
     if (texture == options_.textureBudget) return;
     const bool larger = texture > options_.textureBudget;
     options_.textureBudget = texture;
-    std::size_t bytes = 0;
-    bool outOfRoom = false;
-    for (const auto& [components, list] : atlases_)
-        for (const Atlas& atlas : list) bytes += atlas.texture->bytes();
-    for (const auto& [key, entry] : entries_) outOfRoom = outOfRoom || (entry.shown && entry.shown->outOfRoom);
-    if (larger ? !outOfRoom : bytes <= texture) return;
-    std::erase_if(entries_, [](const auto& each) { return each.second.shown && each.second.shown->bricks; });
-    atlases_.clear();
-    guests_.clear();
-    guestsOf_ = nullptr;
+    atlases_.setBudget(texture);
+    const bool outOfRoom = std::ranges::any_of(channels_, [](const auto& each) {
+        return each.second.shown && each.second.shown->room != ChannelTexture::Room::Left;
+    });
+    if (!exchange_ || (larger ? !outOfRoom : atlases_.bytes() <= texture)) return;
+    std::erase_if(channels_, [](const auto& each) { return each.second.hasBricks(); });
+    clearAtlases();
     ++revision_;
-}
-
-int Residency::componentsOf(bool coverage) const {
-    return (exchange_->source->grid().lattice.kind == volume::LatticeKind::BCC ? 2 : 1) * (coverage ? 2 : 1);
 }
 
 /// The finest level that fits into one texture.
 int Residency::textureLevel() const {
     const volume::BrickGrid& grid = exchange_->source->grid();
-    const std::size_t texelBytes = std::size_t(componentsOf(true)) * (options_.exactTextures ? 4 : 2);
+    const std::size_t components = grid.lattice.kind == volume::LatticeKind::BCC ? 4 : 2; // with coverage
+    const std::size_t texelBytes = components * (options_.exactTextures ? 4 : 2);
     for (int level = 0; level < grid.levels; ++level) {
         const glm::ivec3 size = levelTexels(grid, level) + 2 * kHalo;
         if (std::max({size.x, size.y, size.z}) <= driver_.texture3DEdge && texelCount(size) <= options_.denseTexels &&
@@ -88,58 +92,83 @@ void Residency::add(double priority, LoadRequest request) {
     });
 }
 
-std::size_t Residency::slotBytes(int components) const {
-    const std::size_t edge = std::size_t(exchange_->source->grid().brickSize + 2 * kHalo);
-    return edge * edge * edge * std::size_t(components) * (options_.exactTextures ? 4 : 2);
+int Residency::bricksOfChannel() const {
+    return int(texelCount(exchange_->source->grid().count()));
 }
 
 void Residency::want(const ChannelKey& key, double priority, bool coarseFirst,
                      std::shared_ptr<const BrickDemand> demand) {
     if (!exchange_) return;
-    Entry& entry = entries_[key];
-    entry.used = frame_;
-    if (entry.failed || entry.loading) return;
-    const volume::BrickGrid& grid = exchange_->source->grid();
-    const int level = textureLevel();
-    LoadRequest request;
-    request.key = key;
-    request.summary = entry.summary;
-    request.coverage = entry.coverage;
-    request.encoding = encodingOfParts(key);
-    if (level > 0) {
-        if (entry.shown) {
-            if (wantedAnew(entry, demand)) entry.shown->outOfRoom = entry.stuck = false; // less may be in sight
-            entry.demand = std::move(demand);
-            entry.shown->bricks->want(entry.demand.get(), frame_);
-            queueBricks(key, entry, priority);
-            return;
-        }
-        request.level = grid.levels - 1;
-        request.brick = glm::ivec3(0);
-        entry.loading = true;
-        add(priority - 1e6, std::move(request));
-    } else if (const int finest = std::max(level, entry.finest); !entry.shown || entry.shown->level > finest) {
-        if (!entry.shown && reuseWhole(key, entry)) return;
-        const bool coarse = !entry.shown && coarseFirst;
-        request.level = coarse ? grid.levels - 1 : finest;
-        entry.loading = true;
-        add(coarse ? priority - 1e6 : priority, std::move(request));
+    ResidentChannel& channel = channels_[key];
+    channel.used = frame_;
+    if (channel.work != ResidentChannel::Work::None) return;
+    if (textureLevel() > 0)
+        wantBricks(key, channel, priority, std::move(demand));
+    else
+        wantWhole(key, channel, priority, coarseFirst);
+}
+
+void Residency::wantBricks(const ChannelKey& key, ResidentChannel& channel, double priority,
+                           std::shared_ptr<const BrickDemand> demand) {
+    if (channel.shown) {
+        // Less may be in sight.
+        if (channel.wantedAnew(demand, frame_)) channel.shown->room = ChannelTexture::Room::Left;
+        channel.demand = std::move(demand);
+        channel.shown->bricks->want(channel.demand.get(), frame_);
+        queueBricks(key, channel, priority);
+        return;
     }
+    channel.work = ResidentChannel::Work::Loading;
+    add(priority - kFirst, {.key = key,
+                            .level = exchange_->source->grid().levels - 1,
+                            .brick = glm::ivec3(0),
+                            .summary = channel.summary,
+                            .encoding = encodingOfParts(key),
+                            .coverage = channel.coverage});
+}
+
+void Residency::wantWhole(const ChannelKey& key, ResidentChannel& channel, double priority, bool coarseFirst) {
+    const int finest = std::max(textureLevel(), channel.finest);
+    if (channel.shown ? channel.shown->level <= finest : reuseWhole(key, channel)) return;
+    const bool coarse = !channel.shown && coarseFirst;
+    channel.work = ResidentChannel::Work::Loading;
+    add(coarse ? priority - kFirst : priority, {.key = key,
+                                                .level = coarse ? exchange_->source->grid().levels - 1 : finest,
+                                                .brick = std::nullopt,
+                                                .summary = channel.summary,
+                                                .encoding = encodingOfParts(key),
+                                                .coverage = channel.coverage});
+}
+
+/// Shows a whole channel with the texture of another time, none of whose bricks changes.
+bool Residency::reuseWhole(const ChannelKey& key, ResidentChannel& channel) {
+    const glm::ivec3 count = exchange_->source->grid().count();
+    for (const auto& [other, from] : channels_) {
+        if (!otherTime(other, key) || !from.shown || from.shown->bricks || from.shown->level > textureLevel()) continue;
+        if (!unchanged().bricks(key, from.shown->madeOf, glm::ivec3(0), count, false)) continue;
+        if (encodingOfParts(key).value_or(from.shown->encoding) != from.shown->encoding) continue;
+        channel.shown = from.shown->sharedWhole();
+        channel.coverage = from.coverage;
+        kept_ += bricksOfChannel();
+        ++revision_;
+        return true;
+    }
+    return false;
 }
 
 void Residency::keep(const ChannelKey& key) {
-    const auto found = entries_.find(key);
-    if (found != entries_.end()) found->second.used = frame_;
+    const auto found = channels_.find(key);
+    if (found != channels_.end()) found->second.used = frame_;
 }
 
 const ChannelTexture* Residency::known(const ChannelKey& key) const {
-    const auto found = entries_.find(key);
-    return found != entries_.end() && found->second.shown ? &*found->second.shown : nullptr;
+    const auto found = channels_.find(key);
+    return found != channels_.end() && found->second.shown ? &*found->second.shown : nullptr;
 }
 
 const ChannelTexture* Residency::find(const ChannelKey& key) const {
     const ChannelTexture* channel = known(key);
-    return channel && channel->bricks && !channel->bricks->drawable() && !channel->outOfRoom ? nullptr : channel;
+    return channel && channel->drawable() ? channel : nullptr;
 }
 
 /// One texel, or one page, of nothing.
@@ -155,119 +184,13 @@ void Residency::makeNothing() {
 }
 
 bool Residency::settled(const ChannelKey& key) const {
-    const auto found = entries_.find(key);
-    if (found == entries_.end()) return false;
-    const Entry& entry = found->second;
-    if (entry.failed) return true;
-    if (!entry.shown) return false;
-    if (!entry.shown->bricks) return entry.shown->level <= std::max(textureLevel(), entry.finest);
-    const bool stays = entry.shown->outOfRoom && (!waiting_ || entry.stuck);
-    return stays || (entry.shown->bricks->drawable() && entry.shown->bricks->missing() == 0);
+    const auto found = channels_.find(key);
+    return found != channels_.end() && found->second.settled(textureLevel(), waiting_);
 }
 
 int Residency::missing(const ChannelKey& key) const {
-    const auto found = entries_.find(key);
-    if (!exchange_ || found == entries_.end() || found->second.failed) return 0;
-    const Entry& entry = found->second;
-    if (entry.shown && entry.shown->bricks) return entry.shown->bricks->missing();
-    return entry.shown && entry.shown->level == 0 ? 0 : int(texelCount(exchange_->source->grid().count()));
-}
-
-bool Residency::uploadWhole(Upload& upload, Entry& entry, std::size_t& bytes) {
-    LoadedTexels& item = upload.item;
-    const TexelBlock& block = item.block;
-    if (!upload.texture) {
-        reserve(block.bytes());
-        upload.texture = makeTexture3D(block.size, texelFormat(block.components, item.encoding.exact), GL_LINEAR,
-                                       "channel " + std::to_string(item.key.channel) + " time " +
-                                           std::to_string(item.key.time) + " level " + std::to_string(item.level));
-    }
-    const std::size_t perSlice = block.bytes() / std::size_t(block.size.z);
-    const int slices = int(std::clamp<std::size_t>(bytes / perSlice, 1, std::size_t(block.size.z - upload.slices)));
-    glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
-    glTextureSubImage3D(upload.texture.name(), 0, 0, 0, upload.slices, block.size.x, block.size.y, slices,
-                        texelLayout(block.components), item.encoding.exact ? GL_FLOAT : GL_UNSIGNED_SHORT,
-                        static_cast<const char*>(block.data()) + perSlice * std::size_t(upload.slices));
-    glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
-    upload.slices += slices;
-    bytes -= std::min(bytes, perSlice * std::size_t(slices));
-    if (upload.slices < block.size.z) return false;
-
-    ChannelTexture made;
-    made.texture = std::make_shared<const Texture>(std::move(upload.texture));
-    made.level = item.level;
-    made.madeOf = item.key.time;
-    made.encoding = item.encoding;
-    made.size = block.size;
-    made.bytes = block.bytes();
-    made.wholeBlocks =
-        item.level == 0 ? std::move(item.block.blocks) : onBlockGrid(exchange_->source->grid(), item.block.blocks);
-    entry.coverage = item.encoding.coverage;
-    entry.shown = std::move(made);
-    if (item.level == 0) uploaded_ += int(texelCount(exchange_->source->grid().count()));
-    return true;
-}
-
-void Residency::update(std::size_t bytes) {
-    if (!exchange_) return;
-    {
-        const std::lock_guard lock(exchange_->mutex);
-        for (LoadedTexels& item : exchange_->loaded) uploads_.push_back({std::move(item), {}, 0});
-        exchange_->loaded.clear();
-    }
-    bool changed = false;
-    while (!uploads_.empty() && bytes > 0) {
-        Upload& upload = uploads_.front();
-        const auto found = entries_.find(upload.item.key);
-        if (found == entries_.end()) { // dropped since
-            uploads_.pop_front();
-            continue;
-        }
-        Entry& entry = found->second;
-        try {
-            if (upload.item.brick && upload.item.damaged) {
-                // The channel has no coverage in its texels: begin anew, with it.
-                const std::uint64_t used = entry.used;
-                const auto summary = entry.summary;
-                drop(found);
-                Entry& fresh = entries_[upload.item.key];
-                fresh.used = used;
-                fresh.summary = summary;
-                fresh.coverage = true;
-            } else if (upload.item.brick) {
-                if (!upload.item.failed)
-                    takeBrick(upload.item, entry);
-                else if (entry.shown) { // out of memory, say: what is here stays as it is
-                    entry.bricksInFlight = std::max(0, entry.bricksInFlight - 1);
-                    entry.shown->bricks->forget({upload.item.level, *upload.item.brick});
-                    entry.shown->outOfRoom = entry.stuck = true;
-                } else
-                    entry.failed = true;
-                entry.loading = false;
-                bytes -= std::min(bytes, upload.item.block.bytes());
-            } else {
-                if (!upload.item.failed && !uploadWhole(upload, entry, bytes)) break;
-                entry.loading = false;
-                entry.summary = upload.item.summary;
-                entry.failed = upload.item.failed;
-            }
-        } catch (const MachineError& error) {
-            if (refused(upload.item)) continue;
-            exchange_->say(error.what());
-            entry.loading = false;
-            entry.failed = !entry.shown;
-            if (entry.shown && entry.shown->bricks) entry.shown->outOfRoom = entry.stuck = true;
-        } catch (const Error& error) {
-            exchange_->say(error.what());
-            entry.loading = false;
-            entry.failed = true;
-        }
-        changed = true;
-        uploads_.pop_front();
-    }
-    if (!changed) return;
-    ++revision_;
-    evict();
+    const auto found = channels_.find(key);
+    return exchange_ && found != channels_.end() ? found->second.missing(bricksOfChannel()) : 0;
 }
 
 void Residency::finish() {
@@ -275,46 +198,43 @@ void Residency::finish() {
     for (;;) {
         update(~std::size_t(0));
         std::vector<ChannelKey> pending;
-        for (const auto& [key, entry] : entries_)
-            if (entry.used == frame_ && !settled(key)) pending.push_back(key);
+        for (const auto& [key, channel] : channels_)
+            if (channel.used == frame_ && !settled(key)) pending.push_back(key);
         if (pending.empty()) break;
-        for (const ChannelKey& key : pending) want(key, 0, false, entries_[key].demand);
+        for (const ChannelKey& key : pending) want(key, 0, false, channels_[key].demand);
         jobs_.waitForOne();
     }
     waiting_ = false;
 }
 
-void Residency::drop(std::map<ChannelKey, Entry>::iterator entry) {
-    ChannelTexture* shown = entry->second.shown ? &*entry->second.shown : nullptr;
-    if (shown && shown->bricks) shown->bricks->eachSlot([&](glm::ivec3& slot) { shown->atlas->release(slot); });
-    entries_.erase(entry);
+void Residency::drop(Channels::iterator channel) {
+    if (channel->second.hasBricks()) {
+        ChannelTexture& shown = *channel->second.shown;
+        shown.bricks->eachSlot([&](glm::ivec3& slot) { shown.atlas->release(slot); });
+    }
+    channels_.erase(channel);
     ++revision_;
 }
 
+/// Drops whole channels that no view wanted lately, the oldest first, while there are too many.
 void Residency::evict() {
     std::vector<std::pair<std::uint64_t, ChannelKey>> idle;
-    std::size_t total = textureBytes();
-    for (const auto& [key, entry] : entries_) {
-        if (!entry.shown) continue;
-        if (!entry.shown->bricks && entry.used + kFramesInUse < frame_ && !entry.loading)
-            idle.emplace_back(entry.used, key);
-    }
+    for (const auto& [key, channel] : channels_)
+        if (channel.shown && !channel.hasBricks() && channel.used + kFramesInUse < frame_ &&
+            channel.work != ResidentChannel::Work::Loading)
+            idle.emplace_back(channel.used, key);
     std::sort(idle.begin(), idle.end());
     for (const auto& [used, key] : idle) {
-        if (total <= options_.textureBudget) return;
-        const auto entry = entries_.find(key);
-        drop(entry);
-        total = textureBytes();
+        if (textureBytes() <= options_.textureBudget) return;
+        drop(channels_.find(key));
     }
 }
 
 std::size_t Residency::textureBytes() const {
-    std::size_t total = 0;
-    for (const auto& [components, list] : atlases_)
-        for (const Atlas& atlas : list) total += atlas.texture->bytes();
-    for (const auto& [key, entry] : entries_) // of a shared texture each counts its part
-        if (entry.shown && entry.shown->texture)
-            total += entry.shown->bytes / std::size_t(std::max(1L, entry.shown->texture.use_count()));
+    std::size_t total = atlases_.bytes();
+    for (const auto& [key, channel] : channels_) // of a shared texture each counts its part
+        if (channel.shown && channel.shown->texture)
+            total += channel.shown->bytes / std::size_t(std::max(1L, channel.shown->texture.use_count()));
     return total;
 }
 
@@ -323,27 +243,6 @@ void Residency::reserve(std::size_t bytes) const {
     if (options_.driverMemory < bytes || textureBytes() > options_.driverMemory - bytes)
         throw MachineError("the graphics driver has no memory for a texture of " + std::to_string(bytes >> 20) +
                            " MiB");
-}
-
-/// The driver has no memory for a whole channel: channels that no view uses now give way, or it is shown coarser.
-/// True where that leaves something to try.
-bool Residency::refused(const LoadedTexels& item) {
-    if (item.brick) return false;
-    std::vector<ChannelKey> idle;
-    for (const auto& [key, entry] : entries_)
-        if (entry.shown && !entry.shown->bricks && entry.used + 1 < frame_ && !(key == item.key)) idle.push_back(key);
-    for (const ChannelKey& key : idle) drop(entries_.find(key));
-    if (!idle.empty()) return true; // once more
-    Entry& entry = entries_.at(item.key);
-    if (item.level + 1 >= exchange_->source->grid().levels) return false;
-    exchange_->say("the graphics driver has no memory for full resolution; " +
-                   exchange_->source->info().channel(item.key.channel).name + " is shown coarser");
-    entry.finest = item.level + 1;
-    entry.summary = item.summary;
-    entry.loading = false;
-    uploads_.pop_front();
-    ++revision_;
-    return true;
 }
 
 ResidencyInfo Residency::info() const {
@@ -356,14 +255,14 @@ ResidencyInfo Residency::info() const {
     info.textureBytes = textureBytes();
     info.bricksUploaded = uploaded_;
     info.bricksKept = kept_;
-    const int bricks = int(texelCount(exchange_->source->grid().count()));
-    for (const auto& [key, entry] : entries_)
-        if (entry.shown) {
-            if (entry.used + kFramesInUse >= frame_) info.bricksWanted += missing(key);
-            info.bricksResident += entry.shown->bricks ? entry.shown->bricks->resident() : bricks - missing(key);
-            if (entry.shown->bricks)
-                info.bricksHidden += entry.shown->bricks->hidden(frame_ > kFramesInUse ? frame_ - kFramesInUse : 1);
-        }
+    const std::uint64_t lately = frame_ > kFramesInUse ? frame_ - kFramesInUse : 1;
+    for (const auto& [key, channel] : channels_) {
+        if (!channel.shown) continue;
+        const int missing = channel.missing(bricksOfChannel());
+        if (channel.used + kFramesInUse >= frame_) info.bricksWanted += missing;
+        info.bricksResident += channel.hasBricks() ? channel.shown->bricks->resident() : bricksOfChannel() - missing;
+        if (channel.hasBricks()) info.bricksHidden += channel.shown->bricks->hidden(lately);
+    }
     return info;
 }
 

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "vis/bricks/brick_levels.h"
-#include "vis/bricks/residency_options.h"
-#include "vis/gl/handles.h"
+#include "vis/bricks/atlas_pool.h"
+#include "vis/bricks/resident_channel.h"
+#include "vis/bricks/unchanged_bricks.h"
 #include "vis/gl/job_queue.h"
 
 #include <deque>
@@ -11,25 +11,6 @@
 /// Which channels are on the GPU, and how they get there: decoded and packed on threads, coarse first, uploaded a part
 /// per frame, within a budget.
 namespace tessera::vis {
-
-inline constexpr std::uint64_t kFramesInUse = 2; ///< what one of the last frames used stays
-
-/// One channel at one time on the GPU: a texture of the whole where that is small enough, else bricks in an atlas.
-struct ChannelTexture {
-    std::shared_ptr<const Texture> texture; ///< several times may share it; null where there are bricks
-    int level = 0;                          ///< of the texture
-    int madeOf = 0;                         ///< time that it shows
-    TexelEncoding encoding;
-    glm::ivec3 size{0}; ///< texels with halo
-    BlockRanges wholeBlocks;
-    std::size_t bytes = 0;
-    std::unique_ptr<BrickLevels> bricks; ///< null where the texture is all there is
-    BrickAtlas* atlas = nullptr;
-    bool outOfRoom = false; ///< missing bricks stay so: the atlas is full
-
-    /// Texel ranges on blockGrid().
-    const BlockRanges& blocks() const { return bricks ? bricks->blocks() : wholeBlocks; }
-};
 
 class Residency {
 public:
@@ -85,38 +66,29 @@ private:
         Texture texture;
         int slices = 0;
     };
-    struct Wanted {
-        std::shared_ptr<const BrickDemand> demand;
-        std::uint64_t frame = 0; ///< in which a view wanted it last
-    };
-    struct Entry {
-        std::shared_ptr<const ChannelSummary> summary;
-        std::optional<ChannelTexture> shown;
-        std::shared_ptr<const BrickDemand> demand; ///< of the view that asked last
-        std::vector<Wanted> wanted;                ///< of the views of the last frames
-        bool loading = false;                      ///< a job for the whole channel, or its first brick, is under way
-        bool failed = false;                       ///< nothing more will come
-        bool coverage = false;                     ///< a damaged brick asks for it
-        int bricksInFlight = 0;
-        bool stuck = false; ///< the atlas cannot grow either
-        int finest = 0;     ///< level of a whole channel for which the driver has memory
-        std::uint64_t used = 0;
-    };
+    using Channels = std::map<ChannelKey, ResidentChannel>;
+
     int textureLevel() const;
-    int componentsOf(bool coverage) const;
-    std::size_t slotBytes(int components) const;
+    int bricksOfChannel() const;
+    Unchanged unchanged() const { return {*exchange_->source, keptChange_}; }
+    void clearAtlases();
     void add(double priority, LoadRequest request);
-    bool still(const ChannelKey& key, int madeOf, glm::ivec3 first, glm::ivec3 last, bool exactly) const;
-    bool keepsStill(const ChannelKey& key, int madeOf, const BrickId& id) const;
-    bool reuseBrick(const ChannelKey& key, Entry& entry, const BrickId& id);
-    bool reuseWhole(const ChannelKey& key, Entry& entry);
+    void wantBricks(const ChannelKey& key, ResidentChannel& channel, double priority,
+                    std::shared_ptr<const BrickDemand> demand);
+    void wantWhole(const ChannelKey& key, ResidentChannel& channel, double priority, bool coarseFirst);
+    bool reuseWhole(const ChannelKey& key, ResidentChannel& channel);
     std::size_t textureBytes() const;
     void reserve(std::size_t bytes) const;
-    bool refused(const LoadedTexels& item);
-    bool uploadWhole(Upload& upload, Entry& entry, std::size_t& bytes);
     void makeNothing();
-    void drop(std::map<ChannelKey, Entry>::iterator entry);
+    void drop(Channels::iterator channel);
     void evict();
+
+    // residency_uploads.cpp
+    bool upload(Upload& upload, Channels::iterator found, std::size_t& bytes);
+    bool uploadWhole(Upload& upload, ResidentChannel& channel, std::size_t& bytes);
+    void uploadBrick(LoadedTexels& brick, ResidentChannel& channel);
+    void beginAnew(Channels::iterator found);
+    bool refused(const LoadedTexels& item);
 
     // residency_parts.cpp
     bool samePart(const LoadExchange& former, const ChannelKey& key, SameSamples same) const;
@@ -124,37 +96,37 @@ private:
     std::optional<TexelEncoding> encodingOfParts(const ChannelKey& key) const;
 
     // residency_bricks.cpp
-    bool wantedAnew(Entry& entry, const std::shared_ptr<const BrickDemand>& demand) const;
-    void queueBricks(const ChannelKey& key, Entry& entry, double priority);
-    void beginBricks(const LoadedTexels& first, Entry& entry);
-    void takeBrick(LoadedTexels& brick, Entry& entry);
-    BrickAtlas& atlasFor(int components);
-    std::unique_ptr<BrickAtlas> makeAtlas(int components, std::size_t slots);
+    void queueBricks(const ChannelKey& key, ResidentChannel& channel, double priority);
+    bool reuseBrick(const ChannelKey& key, ResidentChannel& channel, const BrickId& id);
+    void beginBricks(const LoadedTexels& first, ResidentChannel& channel);
+    void takeBrick(LoadedTexels& brick, ResidentChannel& channel);
     std::optional<glm::ivec3> slotFor(ChannelTexture& channel, float priority);
     bool makeRoom(const ChannelTexture& channel, float priority);
+    bool dropOldest(const ChannelTexture& channel, std::uint64_t since);
+    void findCandidates(const BrickAtlas* atlas, std::uint64_t since);
     bool grow(const BrickAtlas* atlas, bool beyond);
 
     RendererOptions options_;
+    Driver driver_;
     std::shared_ptr<LoadExchange> exchange_; ///< null while there is no source
-    struct Atlas {
-        std::unique_ptr<BrickAtlas> texture;
-        std::size_t most; ///< slots that it may grow to within the budget
-    };
-    std::map<int, std::vector<Atlas>> atlases_; ///< by components; outlive the entries
-    std::map<ChannelKey, Entry> entries_;
+    AtlasPool atlases_;                      ///< outlives the channels
+    Channels channels_;
     std::deque<Upload> uploads_;
     ChannelTexture nothing_;
     std::unique_ptr<PageTable> nothingPages_;
-    struct Guest {
+    /// Bricks that could make room in an atlas, the first to go last, as they are in a frame.
+    struct Candidate {
         ChannelKey key;
         BrickLevels::Guest brick;
     };
-    std::vector<Guest> guests_; ///< bricks that could make room in guestsOf_, the first to go last
-    const BrickAtlas* guestsOf_ = nullptr;
-    std::uint64_t guestsFrame_ = 0;
+    struct Candidates {
+        const BrickAtlas* of = nullptr;
+        std::uint64_t frame = 0;
+        std::vector<Candidate> bricks;
+    };
+    Candidates candidates_;
     std::uint64_t frame_ = 1, revision_ = 0;
     bool waiting_ = false; ///< finish() runs: the budget may be exceeded
-    Driver driver_;
     double keptChange_ = 0;
     int uploaded_ = 0, kept_ = 0; ///< bricks
     std::vector<std::string> messages_;

@@ -23,26 +23,27 @@ void Residency::keepSame(const LoadExchange& former, SameSamples same) {
     exchange_->bricks->adopt(*former.bricks, [&](const volume::BrickKey& key) {
         return key.channel < same.channels && key.time < same.times;
     });
-    for (auto it = entries_.begin(); it != entries_.end();) {
+    for (auto it = channels_.begin(); it != channels_.end();) {
         const auto at = it++;
-        Entry& entry = at->second;
+        ResidentChannel& channel = at->second;
         const ChannelKey& key = at->first;
-        if (key.channel >= same.channels || key.time >= same.times || entry.failed || !samePart(former, key, same)) {
+        if (key.channel >= same.channels || key.time >= same.times || channel.work == ResidentChannel::Work::Failed ||
+            !samePart(former, key, same)) {
             drop(at);
             continue;
         }
-        entry.loading = false;
-        entry.bricksInFlight = 0;
-        if (entry.shown && entry.shown->bricks) entry.shown->bricks->forgetAsked();
+        channel.work = ResidentChannel::Work::None;
+        channel.bricksInFlight = 0;
+        if (channel.hasBricks()) channel.shown->bricks->forgetAsked();
     }
 }
 
 /// How another part of the channel is encoded, if one is here: all are alike.
 std::optional<TexelEncoding> Residency::encodingOfParts(const ChannelKey& key) const {
-    for (const auto& [other, entry] : entries_)
+    for (const auto& [other, channel] : channels_)
         if (key.part >= 0 && other.part >= 0 && other.part != key.part && other.channel == key.channel &&
-            other.time == key.time && other.prefiltered == key.prefiltered && entry.shown)
-            return entry.shown->encoding;
+            other.time == key.time && other.prefiltered == key.prefiltered && channel.shown)
+            return channel.shown->encoding;
     return std::nullopt;
 }
 
