@@ -1,8 +1,9 @@
 #include "app/tools/lens_outline.h"
 
+#include "vis/scene/lens_shape.h"
+
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
@@ -10,64 +11,8 @@ namespace tessera::app {
 
 namespace {
 
-constexpr int kParts = 64;    ///< of a circle
-constexpr int kEdgeParts = 8; ///< of an edge, so that its farther half is faint
+constexpr int kParts = 64; ///< of an outline in a plane
 constexpr double kPi = 3.14159265358979, kReach = 4;
-
-using Line = std::function<void(glm::dvec3 from, glm::dvec3 to, float strength)>; ///< places in the lens
-
-/// A circle around `middle` through middle + a and middle + b.
-void circle(const Line& line, glm::dvec3 middle, glm::dvec3 a, glm::dvec3 b, float strength) {
-    const auto at = [&](int i) {
-        const double angle = 2 * kPi * i / kParts;
-        return middle + std::cos(angle) * a + std::sin(angle) * b;
-    };
-    for (int i = 0; i < kParts; ++i) line(at(i), at(i + 1), strength);
-}
-
-void edge(const Line& line, glm::dvec3 a, glm::dvec3 b) {
-    for (int i = 0; i < kEdgeParts; ++i)
-        line(glm::mix(a, b, double(i) / kEdgeParts), glm::mix(a, b, double(i + 1) / kEdgeParts), 1);
-}
-
-/// The rim of a ball of radius 1 as it is seen from `eye`, or along a direction where that is none.
-void rim(const Line& line, glm::dvec3 eye, bool direction) {
-    const double distance = glm::length(eye);
-    if (!(distance > (direction ? 0 : 1))) return;
-    const glm::dvec3 axis = eye / distance;
-    const double middle = direction ? 0 : 1 / distance, radius = std::sqrt(1 - middle * middle);
-    const glm::dvec3 helper = std::abs(axis.x) < 0.7 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
-    const glm::dvec3 a = glm::normalize(glm::cross(axis, helper)), b = glm::cross(axis, a);
-    circle(line, middle * axis, radius * a, radius * b, 1);
-}
-
-void outline(const vis::PlacedLens& lens, const vis::Ray& middle, bool perspective, const Line& line) {
-    const glm::dvec3 x(1, 0, 0), y(0, 1, 0), z(0, 0, 1);
-    switch (lens.shape) {
-    case vis::LensShape::Sphere:
-        rim(line, lens.toUnit * (perspective ? middle.origin - lens.center : -middle.direction), !perspective);
-        circle(line, {}, x, y, 0.3f);
-        circle(line, {}, y, z, 0.3f);
-        circle(line, {}, z, x, 0.3f);
-        break;
-    case vis::LensShape::Box:
-        for (const auto& [a, b, c] : {std::tuple(x, y, z), std::tuple(y, z, x), std::tuple(z, x, y)})
-            for (const double i : {-1.0, 1.0})
-                for (const double k : {-1.0, 1.0}) edge(line, -a + i * b + k * c, a + i * b + k * c);
-        break;
-    case vis::LensShape::Cylinder:
-        circle(line, z, x, y, 1);
-        circle(line, -z, x, y, 1);
-        for (int i = 0; i < 4; ++i) {
-            const glm::dvec3 side = (i & 1 ? x : -x) * (i < 2 ? 1.0 : 0.0) + (i & 1 ? y : -y) * (i < 2 ? 0.0 : 1.0);
-            edge(line, side - z, side + z);
-        }
-        break;
-    case vis::LensShape::Disc:
-        circle(line, {}, x, y, 1);
-        break;
-    }
-}
 
 ImU32 colorOf(const vis::Lens& lens, float alpha) {
     return toColor({lens.color.r, lens.color.g, lens.color.b}, double(alpha));
@@ -90,11 +35,10 @@ std::optional<ImVec2> worldPixel(const SpaceFrame& frame, glm::dvec3 world) {
 void drawLenses(ImDrawList& draw, const SpaceFrame& frame, const Session& session, int active) {
     const double aspect = double(frame.max.x - frame.min.x) / std::max(1.0f, frame.max.y - frame.min.y);
     const vis::Ray middle = vis::cameraRay(session.camera, aspect, {0, 0});
-    const bool perspective = session.camera.projection == vis::Projection::Perspective;
     eachLens(session, frame.world, [&](int index, const vis::Lens& lens, const vis::PlacedLens& placed) {
         const float width = std::max(1.0f, em() * (index == active ? 0.13f : 0.09f));
         const double depth = glm::dot(placed.center, middle.direction);
-        const Line line = [&](glm::dvec3 a, glm::dvec3 b, float strength) {
+        const auto line = [&](glm::dvec3 a, glm::dvec3 b, float strength) {
             const glm::dvec3 from = placed.center + placed.fromUnit * a, to = placed.center + placed.fromUnit * b;
             const auto p = worldPixel(frame, from), q = worldPixel(frame, to);
             if (!p || !q) return;
@@ -104,7 +48,9 @@ void drawLenses(ImDrawList& draw, const SpaceFrame& frame, const Session& sessio
                                    : 1.0f;
             draw.AddLine(*p, *q, colorOf(lens, 0.85f * strength * seen), width);
         };
-        outline(placed, middle, perspective, line);
+        const bool perspective = session.camera.projection == vis::Projection::Perspective;
+        const glm::dvec3 eye = placed.toUnit * (perspective ? middle.origin - placed.center : -middle.direction);
+        vis::lensOutline(placed.shape, eye, perspective, line);
     });
 }
 

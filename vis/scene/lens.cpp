@@ -1,5 +1,7 @@
 #include "vis/scene/lens.h"
 
+#include "vis/scene/lens_shape.h"
+
 #include <algorithm>
 #include <cmath>
 #include <glm/common.hpp>
@@ -68,18 +70,7 @@ void setPlace(PlacedLens& placed, const Lens& lens, const Camera& camera) {
 } // namespace
 
 double PlacedLens::radius(glm::dvec3 world) const {
-    const glm::dvec3 u = toUnit * (world - center);
-    switch (shape) {
-    case LensShape::Sphere:
-        return glm::length(u);
-    case LensShape::Box:
-        return std::max({std::abs(u.x), std::abs(u.y), std::abs(u.z)});
-    case LensShape::Cylinder:
-        return std::max(std::hypot(u.x, u.y), std::abs(u.z));
-    case LensShape::Disc:
-        return std::hypot(u.x, u.y) / std::max(1 + u.z, 1e-6);
-    }
-    return 0;
+    return lensRadius(shape, toUnit * (world - center));
 }
 
 double PlacedLens::weight(glm::dvec3 world) const {

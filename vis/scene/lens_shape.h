@@ -1,0 +1,18 @@
+#pragma once
+
+#include "vis/scene/lens.h"
+
+#include <functional>
+
+/// What there is to know of each shape of lens. Places are those in the lens (PlacedLens::toUnit).
+namespace tessera::vis {
+
+/// 0 in the middle, 1 on the outline; twin: lensRadius in vis/shaders/lib/lens.glsl.
+double lensRadius(LensShape shape, glm::dvec3 place);
+
+/// Draws the outline as lines between places; `strength` is less than 1 where they only help to see the shape. `eye`:
+/// where it is seen from; without perspective the direction towards the viewer.
+void lensOutline(LensShape shape, glm::dvec3 eye, bool perspective,
+                 const std::function<void(glm::dvec3 from, glm::dvec3 to, float strength)>& line);
+
+} // namespace tessera::vis
