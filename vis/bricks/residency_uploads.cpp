@@ -130,7 +130,7 @@ bool Residency::refused(const LoadedTexels& item) {
     ResidentChannel& channel = channels_.at(item.key);
     if (item.level + 1 >= exchange_->source->grid().levels) return false;
     exchange_->say("the graphics driver has no memory for full resolution; " +
-                   exchange_->source->info().channels()[std::size_t(item.key.channel)].name + " is shown coarser");
+                   exchange_->source->info().channel(item.key.channel).name + " is shown coarser");
     channel.finest = item.level + 1;
     channel.summary = item.summary;
     channel.ended(false);

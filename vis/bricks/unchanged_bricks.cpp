@@ -6,7 +6,7 @@ namespace tessera::vis {
 
 bool Unchanged::bricks(const ChannelKey& key, int madeOf, glm::ivec3 first, glm::ivec3 last, bool exactly) const {
     const volume::DatasetInfo& info = source.info();
-    const volume::Channel channel = info.channels()[std::size_t(key.channel)];
+    const volume::Channel channel = info.channel(key.channel);
     const volume::Parameter& parameter = info.parameters[std::size_t(channel.parameter)];
     const Range range = info.channelRange(channel);
     const double most = exactly || parameter.categorical ? 0 : share * (range.hi - range.lo);

@@ -58,7 +58,7 @@ private:
         return found == channels_.end() ? -1 : int(found - channels_.begin());
     }
     bool categorical(int at) const {
-        const volume::Channel channel = info_.channels()[std::size_t(channels_[std::size_t(at)])];
+        const volume::Channel channel = info_.channel(channels_[std::size_t(at)]);
         return info_.parameters[std::size_t(channel.parameter)].categorical;
     }
 
