@@ -118,10 +118,6 @@ struct BrickSamples {
     bool isPresent(std::size_t index) const { return volume::isPresent(present, index); }
 };
 
-inline bool presentAt(const BrickSamples& samples, std::size_t i) {
-    return samples.present.empty() || samples.present[i] != 0;
-}
-
 /// A data set as bricks; implemented by in-memory data sets and by archives. All functions may be called from any
 /// thread at any time.
 class BrickSource {

@@ -55,11 +55,8 @@ volume::Dataset movingSeries(volume::ScalarType type) {
 
 /// Reads every brick of a time, as they become textures, on all cores.
 void readTime(const volume::BrickSource& source, int time) {
-    const glm::ivec3 count = source.grid().count();
-    parallelFor(std::size_t(count.x * count.y * count.z), [&](std::size_t n) {
-        const int i = int(n);
-        (void)source.read({0, time, 0, {i % count.x, i / count.x % count.y, i / (count.x * count.y)}});
-    });
+    const volume::BrickGrid& grid = source.grid();
+    parallelFor(grid.brickCount(), [&](std::size_t n) { (void)source.read({0, time, 0, grid.indexOf(n)}); });
 }
 
 /// Milliseconds a time takes, the median; every time is read in turn by a source that has just been opened, so that
