@@ -1,6 +1,7 @@
 #include "tests/volume/fields.h"
 #include "volume/base/error.h"
 #include "volume/bricks/brick_importance.h"
+#include "volume/field/frame_reader.h"
 #include "volume/resample/resample.h"
 #include "volume/resample/resample_slices.h"
 #include "volume/system/scratch_file.h"
@@ -123,6 +124,34 @@ TEST(Slices, ImportanceInPartsIsTheSameAsWhole) {
                 compare(gappyNoise<std::uint8_t>(lattice, gaps, random), {10, 200}, false);
                 compare(gappyNoise<std::uint16_t>(lattice, gaps, random), {0, 250}, true);
             }
+}
+
+// A reader of whole frames gives slices too; one made of another reads in parts where that does.
+TEST(FrameReaders, GiveSlicesOfWholeFrames) {
+    std::mt19937 random(6);
+    const Field field = gappyNoise<std::uint16_t>(test::ccLattice({5, 4, 9}), true, random);
+    const FrameReader whole = [&](int, int, int) { return field; };
+    EXPECT_FALSE(whole.inParts());
+    expectSame(whole(0, 0, 0), field, "whole");
+    expectSame(whole(0, 0, 0, {2, 3}), slicesOf(field, 2, 3), "some");
+    expectSame(whole(0, 0, 0, {4}), slicesOf(field, 4, 5), "the last ones");
+    EXPECT_EQ(whole(0, 0, 0, {4}).lattice, slicesOf(field.lattice, 4, 5));
+
+    const auto timeBefore = [](const FrameReader& read, int parameter, int component, int time, SliceRange slices) {
+        return read(parameter, component, time - 1, slices);
+    };
+    EXPECT_FALSE(whole.through(timeBefore).inParts());
+    SliceRange asked;
+    const FrameReader parts = [&](int, int, int time, SliceRange slices) {
+        EXPECT_EQ(time, 2);
+        asked = slices;
+        return slicesOf(field, slices);
+    };
+    EXPECT_TRUE(parts.inParts());
+    const FrameReader later = parts.through(timeBefore);
+    EXPECT_TRUE(later.inParts());
+    expectSame(later(0, 0, 3, {1, 2}), slicesOf(field, 1, 2), "through another");
+    EXPECT_EQ(asked, (SliceRange{1, 2}));
 }
 
 TEST(ScratchFileTest, GivesBackWhatWasWritten) {
