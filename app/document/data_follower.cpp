@@ -51,6 +51,7 @@ void DataFollower::reset() {
     counted_.settle(countedBy(data));
     lattice_.settle(data.lattice);
     labels_.settle(data.import.labels);
+    shown_({});
 }
 
 void DataFollower::follow(bool typing, bool dragging) {

@@ -29,7 +29,7 @@ public:
     DataFollower(Document& document, Jobs& jobs, Messages& messages, Options options,
                  std::function<void(std::optional<vis::SameSamples> grown)> shown);
 
-    /// The document has just been installed: it is as it wants to be.
+    /// The document has just been installed: it is as it wants to be, and shown.
     void reset();
     /// Once per frame: starts what has to be made anew. Not while something is typed or dragged that changes on.
     void follow(bool typing, bool dragging);
