@@ -77,13 +77,13 @@ void measure(const Options& options) {
 
 int main(int argc, char** argv) {
     using namespace tessera::app;
-    CLI::App app{"Measure on this machine the tables of the documentation", "tessera bench"};
+    CLI::App app{"Measure the tables of docs/benchmarks.md on this machine", "tessera bench"};
     Options options;
     std::vector<std::string> known;
     for (const NamedBench& bench : kBenches)
         if (known.empty() || known.back() != bench.name) known.emplace_back(bench.name);
-    app.add_option("name", options.names, "Which tables (all of them)")->check(CLI::IsMember(known));
-    app.add_option("--volume", options.volume, "Of render: only volumes whose name contains this");
+    app.add_option("name", options.names, "Which tables (default: all)")->check(CLI::IsMember(known));
+    app.add_option("--volume", options.volume, "With render: only volumes whose name contains this text");
     app.add_flag("--json", options.json, "Print JSON with stable keys");
     app.callback([&] { measure(options); });
     return parseAndRun(app, argc, argv);

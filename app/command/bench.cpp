@@ -12,7 +12,7 @@
 namespace tessera::app {
 
 void addBenchCommand(CLI::App& app) {
-    CLI::App* command = app.add_subcommand("bench", "Measure on this machine the tables of the documentation");
+    CLI::App* command = app.add_subcommand("bench", "Measure the tables of docs/benchmarks.md on this machine");
     command->set_help_flag(); // tessera-bench knows its options
     command->prefix_command();
     command->callback([command] {

@@ -40,7 +40,7 @@ CompareVariant parseVariant(const std::string& text) {
 std::string comparePane(Session& session, const std::string& wanted) {
     for (const auto& [pane, view] : session.views)
         if (std::holds_alternative<CompareView>(view) && (wanted.empty() || pane == wanted)) return pane;
-    if (!wanted.empty()) throw Error("no side-by-side view of that name", {}, wanted);
+    if (!wanted.empty()) throw Error("no comparison view of that name", {}, wanted);
     return addView(session, CompareView{});
 }
 
@@ -55,18 +55,19 @@ void addCompareCommand(CLI::App& app) {
     };
     auto options = std::make_shared<Options>();
     CLI::App* command = app.add_subcommand(
-        "compare", "Draw a session's 3D scene with other settings side by side: one figure with its table under it");
+        "compare", "Draw the 3D scene of a session with several settings side by side, as one figure with a table");
     addPictureOptions(*command, options->picture);
     command
         ->add_option("--variant", options->variants,
-                     "What to compare, in place of the session's own list, e.g. \"box: /render/filter=tetrahedral\"")
+                     "A variant to compare, instead of those in the session, e.g. \"box: /render/filter=tetrahedral\"; "
+                     "may be repeated")
         ->type_name("[NAME:] /POINTER=VALUE; ...")
         ->expected(1)
         ->take_all();
-    command->add_option("--reference", options->reference, "Variant the others are measured against, from 0")
+    command->add_option("--reference", options->reference, "Variant that the others are compared with, counted from 0")
         ->check(CLI::Range(0, 15));
-    command->add_option("-o,--output", options->output, "PNG to write; it carries the session")->required();
-    command->add_option("--csv", options->csv, "The table as CSV");
+    command->add_option("-o,--output", options->output, "PNG to write; it contains the session")->required();
+    command->add_option("--csv", options->csv, "CSV file to write the table to");
     command->callback([options] {
         const Progress progress = terminalProgress("compare");
         pictureRequest(options->picture, Session{});

@@ -38,7 +38,7 @@ void addDeriveOption(CLI::App& command, std::vector<volume::DerivedParameter>& p
             [&parameters](const std::vector<std::string>& texts) {
                 for (const std::string& text : texts) parameters.push_back(parseDerived(text));
             },
-            "A parameter computed from the others, e.g. \"dT [K] = T - at(T, first)\"; may be given several times")
+            "A parameter computed from others, e.g. \"dT [K] = T - at(T, first)\"; may be repeated")
         ->type_name("NAME [UNIT] = FORMULA")
         ->expected(1)
         ->take_all();

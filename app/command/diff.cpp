@@ -92,8 +92,8 @@ std::vector<int> comparable(const volume::DatasetInfo& info, const DiffRequest& 
     }
     for (const std::string& name : request.parameters)
         if (!info.findChannel(name)) throw Error("there is no parameter \"" + name + "\"", request.first);
-    if (out.empty()) throw Error("the two have no parameter in common", request.second);
-    if (!left.empty()) std::fprintf(stderr, "tessera: not compared: %s\n", left.c_str());
+    if (out.empty()) throw Error("the two data sets have no parameter in common", request.second);
+    if (!left.empty()) std::fprintf(stderr, "tessera: cannot be compared: %s\n", left.c_str());
     return out;
 }
 
@@ -124,7 +124,7 @@ std::vector<DiffRow> compare(const volume::BrickSource& source, const std::vecto
 
 void print(const std::vector<DiffRow>& rows, const DiffRequest& request, const std::string& how) {
     std::printf("%s minus %s, %s, over all times\n", request.first.c_str(), request.second.c_str(), how.c_str());
-    std::printf("  %-16s %-8s %12s %12s %12s %12s %10s %10s\n", "parameter", "unit", "least", "mean", "RMS", "most",
+    std::printf("  %-16s %-8s %12s %12s %12s %12s %10s %10s\n", "parameter", "unit", "min", "mean", "RMS", "max",
                 "samples", "in one");
     for (std::size_t i = 0; i < rows.size();) {
         DiffRow all = rows[i];
@@ -139,7 +139,7 @@ void print(const std::vector<DiffRow>& rows, const DiffRequest& request, const s
 std::string csv(const std::vector<DiffRow>& rows, const volume::DatasetInfo& info, const NumberOrigin& origin) {
     std::string text = originLine(origin, info) + "parameter,unit," + info.timeName +
                        (info.timeUnit.empty() ? "" : " [" + info.timeUnit + "]") +
-                       ",least,mean,RMS,most,samples,in one only\n";
+                       ",min,mean,RMS,max,samples,in one only\n";
     for (const DiffRow& row : rows) {
         text += row.channel.name + "," + row.channel.unit + "," + toJson(row.time).dump();
         for (const double value : {row.least, row.mean(), row.rms(), row.most})
@@ -217,14 +217,13 @@ void run(const DiffRequest& request) {
 
 void addDiffCommand(CLI::App& app) {
     CLI::App* command = app.add_subcommand(
-        "diff", "How the values of one data set differ from those of another, on the same grid or interpolated onto "
-                "that of the first");
+        "diff", "Compare the values of two data sets, on the same grid or interpolated onto the grid of the first");
     const auto request = std::make_shared<DiffRequest>();
     command->add_option("A", request->first, "Archive or data file")->required();
-    command->add_option("B", request->second, "What is taken away from it")->required();
+    command->add_option("B", request->second, "Archive or data file to subtract from it")->required();
     command->add_option("-o,--output", request->output,
-                        "The table at every time (.csv), a picture (.png) or the differences as data (.tsr, .vti, "
-                        ".pvd, .nrrd, .raw)");
+                        "File to write: a table over all times (.csv), a picture (.png) or the differences as data "
+                        "(.tsr, .vti, .pvd, .nrrd, .raw)");
     command->add_option("-p,--only", request->parameters, "Only these parameters, separated by commas")->delimiter(',');
     addImportOptions(*command, request->import);
     command->callback([request] { run(*request); });

@@ -42,7 +42,7 @@ std::map<std::string, double> modelSettings(const GenerateRequest& request) {
             const std::size_t end = std::string(key) == "nz" ? std::string::npos : rest.find('x');
             const auto value = wholeNumber(rest.substr(0, end));
             if (!value || (std::string(key) != "nz" && end == std::string::npos))
-                throw CLI::ValidationError("--size", "wanted is NXxNYxNZ, not \"" + request.size + "\"");
+                throw CLI::ValidationError("--size", "expected NXxNYxNZ, not \"" + request.size + "\"");
             settings[key] = *value;
             if (end != std::string::npos) rest = rest.substr(end + 1);
         }
@@ -51,7 +51,7 @@ std::map<std::string, double> modelSettings(const GenerateRequest& request) {
     for (const std::string& setting : request.settings) {
         const std::size_t equals = setting.find('=');
         const auto value = equals == std::string::npos ? std::nullopt : wholeNumber(setting.substr(equals + 1));
-        if (!value) throw CLI::ValidationError("--set", "wanted is KEY=NUMBER, not \"" + setting + "\"");
+        if (!value) throw CLI::ValidationError("--set", "expected KEY=NUMBER, not \"" + setting + "\"");
         settings[setting.substr(0, equals)] = *value;
     }
     return settings;
@@ -89,7 +89,8 @@ void run(const GenerateRequest& request) {
     bool known = archive;
     for (const char* ending : {".vti", ".pvd", ".raw", ".json", ".nrrd"}) known |= hasEnding(request.output, ending);
     if (!known)
-        throw Error("no such output; wanted is a name ending in .tsr, .vti, .pvd, .raw or .nrrd", request.output);
+        throw Error("cannot write this kind of file; use a name ending in .tsr, .vti, .pvd, .raw or .nrrd",
+                    request.output);
 
     const Progress progress = terminalProgress("generate");
     volume::Dataset dataset = volume::makeModel(request.model, settings, progress.part(0, 0.7));
@@ -110,13 +111,14 @@ void addGenerateCommand(CLI::App& app) {
     const auto request = std::make_shared<GenerateRequest>();
     command
         ->add_option("MODEL", request->model,
-                     "fuel-cell, planted (the same with events of known place), marschner-lobb or casting (a scan)")
+                     "fuel-cell, planted (the fuel cell with added events of known place), marschner-lobb or casting "
+                     "(a CT scan)")
         ->required()
         ->check(CLI::IsMember(volume::modelNames()));
     CLI::Option* output =
         command->add_option("-o,--output", request->output, "File to write: .tsr, .vti (.pvd), .raw or .nrrd");
     command->add_option("--size", request->size, "Samples, e.g. 11x13x101")->type_name("NXxNYxNZ");
-    command->add_option("--times", request->times, "Number of time steps");
+    command->add_option("--times", request->times, "Number of times");
     command->add_option("--set", request->settings, "A setting of the model")->type_name("KEY=NUMBER");
     command->add_flag("--list", request->list, "Show the settings of the model instead")->excludes(output);
     addDescribed(*command, request->options);

@@ -116,7 +116,7 @@ void printArchive(const codec::Archive& archive) {
                 info.timeName == "time" ? "" : (info.timeName + " ").c_str(), numberText(info.times.front()).c_str(),
                 numberText(info.times.back()).c_str(), info.timeUnit.c_str());
     std::printf("%s", quantityLines(info).c_str());
-    if (archive.commits() > 1) std::printf("  grown      in %d steps\n", archive.commits());
+    if (archive.commits() > 1) std::printf("  written    in %d steps\n", archive.commits());
     std::printf("  bricks     %s of %d, %d levels:", triple(grid.count()).c_str(), grid.brickSize, grid.levels);
     for (int level = 0; level < grid.levels; ++level)
         std::printf(" %s", bytesText(double(archive.levelBytes(level))).c_str());
@@ -124,7 +124,7 @@ void printArchive(const codec::Archive& archive) {
     if (archive.maskCount() > 0)
         std::printf("  masks      %d, %s\n", archive.maskCount(), bytesText(double(archive.maskBytes())).c_str());
     if (const auto repeats = archive.repeats(); repeats.bricks > 0)
-        std::printf("  repeats    %llu bricks are those of an earlier time, which saves %s\n",
+        std::printf("  repeats    %llu bricks equal those of the time before, which saves %s\n",
                     static_cast<unsigned long long>(repeats.bricks), bytesText(double(repeats.bytes)).c_str());
     std::printf("  parameters\n");
     for (std::size_t p = 0; p < info.parameters.size(); ++p) {
@@ -149,7 +149,7 @@ SessionDocument sessionOfPicture(const std::string& path) {
     std::map<std::string, std::string> texts;
     (void)vis::readPng(path, &texts);
     const auto found = texts.find(vis::kSessionTextKey);
-    if (found == texts.end()) throw Error("this picture carries no session", path);
+    if (found == texts.end()) throw Error("this picture contains no session", path);
     return parseSession(found->second, path);
 }
 
@@ -322,16 +322,19 @@ void describe(const InfoRequest& request) {
 } // namespace
 
 void addInfoCommand(CLI::App& app) {
-    CLI::App* command = app.add_subcommand("info", "What is in a data file, an archive, a session or a picture");
+    CLI::App* command = app.add_subcommand("info", "Describe a data file, an archive, a session or a picture");
     const auto request = std::make_shared<InfoRequest>();
-    command->add_option("FILE", request->paths, "Archive, session, picture of ours, or data files that belong together")
+    command
+        ->add_option("FILE", request->paths,
+                     "Archive, session, PNG exported by Tessera, or data files that belong together")
         ->required();
-    command->add_flag("--json", request->json, "Print as JSON with stable keys");
+    command->add_flag("--json", request->json, "Print JSON with stable keys");
     command->add_flag("--bricks", request->bricks,
-                      "Of an archive also every brick of every component and time: range, mean, histogram, importance, "
-                      "change from the time before, bytes");
-    command->add_flag("--merge", request->merge,
-                      "Of an archive also how its bricks merge into larger ones, and the bytes those would take");
+                      "Of an archive, list every brick of every component and time: range, mean, histogram, "
+                      "importance, change from the time before, bytes");
+    command->add_flag(
+        "--merge", request->merge,
+        "Of an archive, list how its bricks could be merged into larger ones, and the bytes these would take");
     addDescribed(*command, request->merging, "merge.");
     addImportOptions(*command, request->import);
     command->callback([request] { describe(*request); });

@@ -24,7 +24,8 @@ struct MeshOptions {
     static void describe(auto& self, auto&& visit) {
         visit(self.channel, FieldInfo{.key = "channel", .unit = "", .doc = "Parameter whose surface is extracted"});
         visit(self.iso, FieldInfo{.key = "iso", .unit = "", .doc = "Value on the surface, in the parameter's unit"});
-        visit(self.time, FieldInfo{.key = "time", .unit = "", .doc = "Time, in the unit of the data (first)"});
+        visit(self.time,
+              FieldInfo{.key = "time", .unit = "", .doc = "Time, in the unit of the data (default: the first)"});
         visit(self.colorBy,
               FieldInfo{.key = "colorBy", .unit = "", .doc = "Parameter whose values are stored at the vertices"});
         visit(self.level,

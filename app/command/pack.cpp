@@ -92,7 +92,7 @@ void checkOutput(const PackRequest& request) {
     codec::PackOptions given = request.options;
     given.memoryMb = 0;
     if (given != codec::PackOptions())
-        throw Error("with --append the options are those the archive was packed with; only --memory can be given",
+        throw Error("--append uses the options that the archive was packed with; only --memory can be given",
                     request.output);
     if (!std::filesystem::exists(request.output, ignored))
         throw Error("there is no archive to append to", request.output);
@@ -162,11 +162,11 @@ void run(PackRequest request) {
     }
     for (const std::string& note : summary.notes) std::fprintf(stderr, "tessera: %s\n", note.c_str());
     if (summary.discardedBricks > 0)
-        std::printf("%llu of %llu bricks show too little and are left out\n",
+        std::printf("%llu of %llu bricks are less important than the limit and are left out\n",
                     static_cast<unsigned long long>(summary.discardedBricks),
                     static_cast<unsigned long long>(summary.bricks));
     if (summary.repeatedBricks > 0)
-        std::printf("%llu bricks are those of an earlier time, which saves %s\n",
+        std::printf("%llu bricks equal those of the time before, which saves %s\n",
                     static_cast<unsigned long long>(summary.repeatedBricks),
                     bytesText(double(summary.repeatedBytes)).c_str());
     const double source = double(summary.sourceBytes), stored = double(summary.archiveBytes);
@@ -190,10 +190,9 @@ void addPackCommand(CLI::App& app) {
     const auto request = std::make_shared<PackRequest>();
     command->add_option("IN", request->inputs, "Data files that belong together: parameters, times")->required();
     command->add_option("-o,--output", request->output, "Archive to write (.tsr)")->required();
-    command->add_flag(
-        "--append", request->append,
-        "Append to the archive: times later than its last, or parameters at all its times, packed as those "
-        "in it; what it holds stays readable meanwhile and whatever happens");
+    command->add_flag("--append", request->append,
+                      "Append to the archive: later times, or further parameters at all its times, with the options it "
+                      "was packed with; the archive stays readable meanwhile, even after a crash");
     command->add_flag("--json", request->json, "Print the summary as JSON");
     command->add_flag("--progress-json", request->progressJson, "Print progress and summary as JSON lines");
     addDescribed(*command, request->options);
@@ -203,9 +202,11 @@ void addPackCommand(CLI::App& app) {
 
 void addConvertCommand(CLI::App& app) {
     CLI::App* command = app.add_subcommand(
-        "convert", "Pack an archive anew, with other options or in the newest version of the format");
+        "convert", "Pack an archive again, with other options or in the newest version of the format");
     const auto request = std::make_shared<PackRequest>();
-    command->add_option("IN", request->inputs, "Archive (.tsr); errors add to those it has")->required()->expected(1);
+    command->add_option("IN", request->inputs, "Archive (.tsr); new errors add to those it has")
+        ->required()
+        ->expected(1);
     command->add_option("-o,--output", request->output, "Archive to write (.tsr)")->required();
     command->add_flag("--json", request->json, "Print the summary as JSON");
     command->add_flag("--progress-json", request->progressJson, "Print progress and summary as JSON lines");

@@ -43,15 +43,22 @@ void addLayoutOption(CLI::App& command, std::string& layout) {
 }
 
 void addPictureOptions(CLI::App& command, PictureOptions& options) {
-    command.add_option("input", options.inputs, "Session, layout, picture of ours or data files; none: built-in data")
+    command
+        .add_option("input", options.inputs,
+                    "Session, layout, PNG exported by Tessera, or data files (default: the built-in fuel cell)")
         ->type_name("SESSION|LAYOUT|DATA");
     addLayoutOption(command, options.layout);
-    command.add_option("--view", options.view, "One view alone, e.g. volume or histogram; else the whole window");
-    command.add_option("--size", options.size, "Pixels of the picture")->type_name("WxH")->capture_default_str();
+    command.add_option("--view", options.view,
+                       "Draw this view only, e.g. volume or histogram (default: the whole window)");
+    command.add_option("--size", options.size, "Size of the picture in pixels")
+        ->type_name("WxH")
+        ->capture_default_str();
     command.add_option("--scale", options.scale, "Size of text and lines")
         ->check(CLI::Range(0.25, 8.0))
         ->capture_default_str();
-    command.add_option("--set", options.settings, "Changes the session, e.g. /camera/distance=1.5")
+    command
+        .add_option("--set", options.settings,
+                    "Change a setting of the session, e.g. /camera/distance=1.5; may be repeated")
         ->type_name("/POINTER=VALUE")
         ->expected(1)
         ->take_all();

@@ -43,7 +43,7 @@ void drawPicture(const PlotRequest& request, const DataRef& data, const Sources&
     PictureRequest picture{.pane = pane};
     if (std::sscanf(request.size.c_str(), "%dx%d", &picture.size.x, &picture.size.y) != 2 || picture.size.x < 64 ||
         picture.size.y < 64 || picture.size.x > 16384 || picture.size.y > 16384)
-        throw Error("wants WIDTHxHEIGHT, 64 to 16384 each", {}, "--size");
+        throw Error("needs WIDTHxHEIGHT, 64 to 16384 each", {}, "--size");
     PictureMaker maker;
     vis::writePng(request.output, maker.render(document, sources, picture),
                   {{vis::kSessionTextKey, printSession(document, request.output)}});
@@ -59,7 +59,7 @@ void run(const PlotRequest& request) {
     const Sources sources = openSources(data, messages, progress.part(0, 0.4));
     for (const std::string& message : messages) std::fprintf(stderr, "tessera: %s\n", message.c_str());
     const volume::DatasetInfo& info = sources.numbers->info();
-    if (info.times.size() < 2) throw Error("has one time: curves run over several", request.inputs[0]);
+    if (info.times.size() < 2) throw Error("has only one time: curves need several", request.inputs[0]);
     if (!csv && !svg) return drawPicture(request, data, sources);
     Session session;
     const volume::Curves curves =
@@ -73,26 +73,26 @@ void run(const PlotRequest& request) {
 
 void addPlotCommand(CLI::App& app) {
     CLI::App* command = app.add_subcommand(
-        "plot", "Quantities and statistics over time, against time or each other: .csv, .svg or .png");
+        "plot", "Draw or list quantities and statistics over time, or against each other: .csv, .svg or .png");
     const auto request = std::make_shared<PlotRequest>();
     command->add_option("IN", request->inputs, "Archive, data files that belong together, or a built-in model")
         ->required();
-    command->add_option("-o,--output", request->output, "File to write; its ending says how")->required();
+    command->add_option("-o,--output", request->output, "File to write; its ending chooses the format")->required();
     command->add_option(
         "--x", request->view.x,
-        "What runs to the right: time, a quantity over time, a formula (default: for a cell the current)");
+        "Horizontal axis: time, a quantity over time, or a formula (default: the current, if there is one)");
     command
         ->add_option("--y", request->view.y,
-                     "Curves, each after its own --y: a quantity over time, mean(T), min(T), max(T), deviation(T), "
-                     "share(T), volume(T), integral(T), or a formula such as voltage*current_density (default: the "
+                     "A curve: a quantity over time, mean(T), min(T), max(T), deviation(T), share(T), volume(T), "
+                     "integral(T), or a formula such as voltage*current_density; may be repeated (default: the "
                      "polarisation curve, else every quantity)")
         ->expected(1)
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
     command->add_option("--region", request->view.region,
-                        "Statistics of this region of a label: its name, or region=1 (default: everywhere)");
-    command->add_option("--by", request->axis, "Quantity that takes the place of the times");
-    command->add_option("--time", request->time, "State that is marked in a picture");
-    command->add_option("--size", request->size, "Of a .png: WIDTHxHEIGHT in pixels")->capture_default_str();
+                        "Compute statistics in this region only: its name, or region=1 (default: everywhere)");
+    command->add_option("--by", request->axis, "Quantity over time to use as the time axis");
+    command->add_option("--time", request->time, "Time to mark in a picture");
+    command->add_option("--size", request->size, "Size of a .png: WIDTHxHEIGHT in pixels")->capture_default_str();
     addImportOptions(*command, request->import);
     command->callback([request] { run(*request); });
 }

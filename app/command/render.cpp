@@ -26,12 +26,14 @@ void addRenderCommand(CLI::App& app) {
     };
     auto options = std::make_shared<Options>();
     CLI::App* command = app.add_subcommand(
-        "render", "Draw the window or one view into a PNG, or write the figure or table of a view, without a window");
+        "render",
+        "Draw the window or one view to a PNG, or write the figure or table of a view, without opening a window");
     addPictureOptions(*command, options->picture);
     command->add_option("--time", options->time, "Time to show, in the unit of the data");
     command
-        ->add_option("-o,--output", options->output,
-                     "PNG to write, which carries the session; of one view also its figure (.svg) or table (.csv)")
+        ->add_option(
+            "-o,--output", options->output,
+            "File to write: a PNG, which contains the session; with --view also a figure (.svg) or table (.csv)")
         ->required();
     command->callback([options] {
         const Progress progress = terminalProgress("render");
@@ -39,7 +41,7 @@ void addRenderCommand(CLI::App& app) {
         pictureRequest(options->picture, Session{});
         const std::string ending = textEnding(options->output);
         if (!ending.empty() && options->picture.view.empty())
-            throw Error("a figure or table is of one view: name it by --view", options->output);
+            throw Error("figures and tables are of one view: name it with --view", options->output);
         const auto folder = std::filesystem::absolute(options->output).parent_path();
         if (!std::filesystem::is_directory(folder)) throw MachineError("no such folder", folder.string());
         Opened opened = openForPicture(options->picture, progress);

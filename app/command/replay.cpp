@@ -112,15 +112,16 @@ void run(const ReplayOptions& options) {
 void addReplayCommand(CLI::App& app) {
     auto options = std::make_shared<ReplayOptions>();
     CLI::App* command =
-        app.add_subcommand("replay", "Draw each step of a session's history, or its animation, into numbered PNGs");
+        app.add_subcommand("replay", "Draw each step of the history of a session, or its animation, to numbered PNGs");
     addPictureOptions(*command, options->picture);
     command->add_flag("--animation", options->animation,
-                      "The keyframes in place of the recorded steps; without keyframes every stored time");
-    command->add_option("--fps", options->framesPerSecond, "Pictures per second; else as the session says")
+                      "Draw the keyframe animation instead of the history; without keyframes, every stored time");
+    command->add_option("--fps", options->framesPerSecond, "Pictures per second (default: as in the session)")
         ->check(CLI::Range(0.1, 240.0));
-    command->add_option("--video", options->video, "Join the animation to a video too (needs ffmpeg)")
+    command->add_option("--video", options->video, "Also write the animation as a video (needs ffmpeg)")
         ->type_name("FILE.mp4");
-    command->add_option("-o,--output,--out", options->output, "Folder of the pictures; made if need be")->required();
+    command->add_option("-o,--output,--out", options->output, "Folder for the pictures; created if it does not exist")
+        ->required();
     command->callback([options] { run(*options); });
 }
 

@@ -41,10 +41,11 @@ void run(const StatsRequest& request) {
     if (!request.output.empty() && !svg && !hasEnding(request.output, ".csv") && !hasEnding(request.output, ".json"))
         throw Error("statistics are written as .csv, .svg or .json", request.output);
     if (sections && !options.balance.empty())
-        throw Error("balances are of whole regions: leave out --along and --line", "--balance");
+        throw Error("balances are of whole regions: omit --along and --line", "--balance");
     if (svg && !sections && !options.allTimes && options.balance.empty())
-        throw Error("a figure is drawn of --along, --line, --balance, or --all-times", request.output);
-    if (svg && sections && options.allTimes) throw Error("a figure shows one time: state --time", request.output);
+        throw Error("figures need --along, --line, --balance or --all-times", request.output);
+    if (svg && sections && options.allTimes)
+        throw Error("a figure shows one time: choose it with --time", request.output);
     const Progress progress = terminalProgress("stats");
     const Question question = questionOf(request, openInput(request, progress.part(0, 0.3)));
     rememberStated(request.import, question.info().name);
@@ -89,7 +90,8 @@ void run(const StatsRequest& request) {
 
 void addStatsCommand(CLI::App& app) {
     CLI::App* command = app.add_subcommand(
-        "stats", "Numbers of every region: mean, spread, volume; averages along an axis or line; balances");
+        "stats",
+        "Statistics of every region: mean, standard deviation, volume; averages along an axis or line; balances");
     const auto request = std::make_shared<StatsRequest>();
     command->add_option("IN", request->inputs, "Archive, data files that belong together, or a built-in model")
         ->required();

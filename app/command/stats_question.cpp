@@ -42,7 +42,7 @@ Question questionOf(const StatsRequest& request, const Sources& sources) {
     if (options.by != "none") {
         const auto label = volume::labelChannel(info, options.by);
         if (!label && !options.by.empty())
-            throw Error("there is no label \"" + options.by + "\" that says which region a sample is in", info.name);
+            throw Error("there is no label \"" + options.by + "\" to take regions from", info.name);
         out.label = label.value_or(-1);
     }
     if (!options.balance.empty()) out.balance = channelNamed(out, options.balance);
@@ -61,11 +61,11 @@ Question questionOf(const StatsRequest& request, const Sources& sources) {
             ends[i / 3][static_cast<int>(i % 3)] = std::strtod(parts[i].c_str(), &end);
             numbers = *end == '\0';
         }
-        if (!numbers) throw Error("wants x,y,z,x,y,z, not \"" + options.line + "\"", "--line");
+        if (!numbers) throw Error("needs x,y,z,x,y,z, not \"" + options.line + "\"", "--line");
         out.line = {ends[0], ends[1]};
     }
     if (!options.along.empty() && options.along != "x" && options.along != "y" && options.along != "z")
-        throw Error("wants x, y or z, not \"" + options.along + "\"", "--along");
+        throw Error("needs x, y or z, not \"" + options.along + "\"", "--along");
     out.times = options.allTimes ? info.times : std::vector<double>{options.time.value_or(info.times.back())};
     return out;
 }

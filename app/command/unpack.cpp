@@ -105,18 +105,19 @@ void addUnpackCommand(CLI::App& app) {
     CLI::App* command = app.add_subcommand("unpack", "Write an archive as a regular grid: .raw, .vti, .pvd or .nrrd");
     const auto request = std::make_shared<UnpackRequest>();
     command->add_option("IN", request->input, "Archive (.tsr)")->required();
-    command->add_option("-o,--output", request->output, "File to write; its ending says how")->required();
-    command->add_option("-p,--parameters", request->parameters, "Only these, separated by commas (default: all)")
+    command->add_option("-o,--output", request->output, "File to write; its ending chooses the format")->required();
+    command
+        ->add_option("-p,--parameters", request->parameters,
+                     "Only these parameters, separated by commas (default: all)")
         ->delimiter(',');
     command->add_option("-t,--times", request->times, "Only the times nearest to these, separated by commas")
         ->delimiter(',');
     command->add_option("-l,--level", request->level, "Level of detail: 0 is full resolution")
         ->check(CLI::NonNegativeNumber);
     command
-        ->add_option(
-            "--plane", request->plane,
-            "A,B,C,D,E: the slice a x + b y + c z + d t + e = 0 through space and time instead, as a grid over "
-            "the other three axes than the steepest")
+        ->add_option("--plane", request->plane,
+                     "A,B,C,D,E: write the slice a x + b y + c z + d t + e = 0 through space and time, as a grid over "
+                     "three of the four axes")
         ->delimiter(',')
         ->expected(5);
     addDeriveOption(*command, request->derived);
@@ -127,7 +128,7 @@ void addUnpackCommand(CLI::App& app) {
             [request](const std::string& name) {
                 request->timeFilter = name == "linear" ? volume::TimeFilter::Linear : volume::TimeFilter::Cubic;
             },
-            "Between the frames of a d4 archive: linear or cubic")
+            "Interpolation in time of a d4 archive: linear or cubic")
         ->check(CLI::IsMember({"linear", "cubic"}))
         ->default_str("cubic");
     command->callback([request] { run(*request); });

@@ -43,7 +43,7 @@ void run(const std::string& path, bool json) {
     if (!whole) throw Error(verdictOf(report), path);
     if (!json)
         std::printf("%s: whole%s; %llu bricks decoded at every level, %s checked\n", path.c_str(),
-                    report.damagedHeader ? " but for one copy of the header, which the next append writes anew" : "",
+                    report.damagedHeader ? " but for one copy of the header, which the next append replaces" : "",
                     static_cast<unsigned long long>(report.bricks), bytesText(double(archive.fileBytes())).c_str());
 }
 
@@ -51,13 +51,12 @@ void run(const std::string& path, bool json) {
 
 void addVerifyCommand(CLI::App& app) {
     CLI::App* command = app.add_subcommand("verify", "Check every byte of an archive and decode every brick");
-    command->footer(
-        "Exit status 0 also where only one of the two copies of the header is damaged, as a crash may leave "
-        "it: nothing is lost. 2 for anything else.");
+    command->footer("The exit status is 0 if the archive is intact or only one of its two header copies is damaged (a "
+                    "crash can leave it so; nothing is lost), and 2 for any other damage.");
     const auto path = std::make_shared<std::string>();
     const auto json = std::make_shared<bool>(false);
     command->add_option("IN", *path, "Archive (.tsr)")->required();
-    command->add_flag("--json", *json, "Print the verdict as JSON");
+    command->add_flag("--json", *json, "Print the result as JSON");
     command->callback([path, json] { run(*path, *json); });
 }
 

@@ -17,7 +17,7 @@ void requireFile(const std::string& word) {
     if (word.find_first_of("./") != std::string::npos) throw Error("no such file", word);
     const std::vector<std::string> layouts = layoutNames();
     if (std::find(layouts.begin(), layouts.end(), word) != layouts.end())
-        throw Error("neither a command nor a file; the layout of that name: tessera --layout " + word, word);
+        throw Error("neither a command nor a file; to open the layout of that name: tessera --layout " + word, word);
     throw Error("neither a command nor a file; tessera --help lists the commands", word);
 }
 
@@ -29,11 +29,11 @@ void addWorkbench(CLI::App& app) {
     };
     auto options = std::make_shared<Options>();
     app.add_option("file", options->request.paths,
-                   "Session, archive, picture of ours or data files to open; none: the built-in fuel cell")
+                   "Session, archive, PNG exported by Tessera, or data files to open (default: the built-in fuel cell)")
         ->type_name("FILE");
     addLayoutOption(app, options->request.layout);
     app.add_option("--screenshots", options->screenshots,
-                   "Keep a PNG of the window up to date, written whenever it is complete; for scripts");
+                   "Write a PNG of the window whenever its picture is complete; for scripts");
     addImportOptions(app, options->import);
     app.callback([options, &app] {
         if (!app.get_subcommands().empty()) return;

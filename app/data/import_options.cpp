@@ -17,7 +17,7 @@ namespace {
 std::pair<std::string, std::string> splitPair(const std::string& option, const std::string& text) {
     const std::size_t equals = text.find('=');
     if (equals == std::string::npos || equals == 0)
-        throw CLI::ValidationError(option, "wants NAME=VALUE, not \"" + text + "\"");
+        throw CLI::ValidationError(option, "needs NAME=VALUE, not \"" + text + "\"");
     return {text.substr(0, equals), text.substr(equals + 1)};
 }
 
@@ -26,7 +26,7 @@ glm::ivec3 parseGrid(const std::string& text) {
     int used = 0;
     const int found = std::sscanf(text.c_str(), "%dx%dx%d%n", &values[0], &values[1], &values[2], &used);
     if (found != 3 || static_cast<std::size_t>(used) != text.size())
-        throw CLI::ValidationError("--grid", "wants XxYxZ, not \"" + text + "\"");
+        throw CLI::ValidationError("--grid", "needs XxYxZ, not \"" + text + "\"");
     for (const int value : values)
         if (value < 1 || value > 4096) throw CLI::ValidationError("--grid", "each size must be 1..4096");
     return {values[0], values[1], values[2]};
@@ -79,25 +79,26 @@ std::vector<std::string> importArguments(const volume::ImportOptions& options) {
 void addImportOptions(CLI::App& command, volume::ImportOptions& options) {
     command
         .add_option("--raw", options.raw,
-                    "Form of a raw file without sidecar: dims=XxYxZ,type=u8|i16|u16|i32|f32|f64,spacing=AxBxC,"
-                    "origin=AxBxC,components=N,times=N,big-endian,skip=BYTES")
+                    "Layout of a raw file without sidecar: "
+                    "dims=XxYxZ,type=u8|i16|u16|i32|f32|f64,spacing=AxBxC,origin=AxBxC,components=N,times=N,big-endian,"
+                    "skip=BYTES")
         ->group("Import");
     command
         .add_option_function<std::string>(
             "--grid", [&options](const std::string& text) { options.gridSize = parseGrid(text); },
-            "Samples XxYxZ that meshes are resampled to (default: from their cells)")
+            "Grid XxYxZ that meshes are resampled to (default: chosen by the number of cells)")
         ->group("Import");
     command
         .add_option("--absent", options.absent,
-                    "Samples that do not exist: O2=region:0,3 (where a label has these values), O2=0, O2=nan, O2=none; "
-                    "may be repeated")
+                    "Samples without a value: O2=region:0,3 (where the label region is 0 or 3), O2=0, O2=nan, O2=none "
+                    "(all have one); may be repeated")
         ->expected(1)
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
         ->group("Import");
     command
         .add_flag_function(
             "--no-auto-absent", [&options](std::int64_t) { options.autoAbsent = false; },
-            "Keep samples that are 0 on whole values of a label")
+            "Do not treat samples as absent where a parameter is 0 in a whole region")
         ->group("Import");
     const auto repeated = [&command](const char* name, std::vector<std::string>& rules, const char* help) {
         command.add_option(name, rules, help)
@@ -106,14 +107,13 @@ void addImportOptions(CLI::App& command, volume::ImportOptions& options) {
             ->group("Import");
     };
     repeated("--label", options.labels,
-             "Names, and colours, of label values: region:0=cathode,1=anode#e07b39; may be repeated");
-    repeated(
-        "--parts", options.parts,
-        "Regions whose samples are never mixed: p=region:1|3, T=joined, or p=jumps, what the jumps of its own samples "
-        "enclose (default: found by a label); may be repeated");
-    command.add_option("--time-name", options.timeName, "Name of the axis of a series, e.g. \"operating point\"")
+             "Names and colours of label values: region:0=cathode,1=anode#e07b39; may be repeated");
+    repeated("--parts", options.parts,
+             "Regions between which a parameter is never interpolated: p=region:1|3, T=joined (none), or p=jumps "
+             "(found where its values jump); default: found with the help of a label; may be repeated");
+    command.add_option("--time-name", options.timeName, "What the times of a series count, e.g. \"operating point\"")
         ->group("Import");
-    command.add_option("--time-unit", options.timeUnit, "Unit of the axis of a series")->group("Import");
+    command.add_option("--time-unit", options.timeUnit, "Unit of the times of a series")->group("Import");
     command.add_option("--over-time", options.overTime, "CSV file with quantities over time: voltage, current, ...")
         ->group("Import");
     command
@@ -122,7 +122,7 @@ void addImportOptions(CLI::App& command, volume::ImportOptions& options) {
             [&options](const std::vector<std::string>& pairs) {
                 for (const std::string& pair : pairs) options.rename.insert(splitPair("--rename", pair));
             },
-            "Array of the file to parameter: O2.air=O2; may be repeated")
+            "Rename an array of the file: O2.air=O2; may be repeated")
         ->expected(1)
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
         ->group("Import");
@@ -138,7 +138,7 @@ void addImportOptions(CLI::App& command, volume::ImportOptions& options) {
         ->group("Import");
     command
         .add_option("--length-unit", options.lengthUnit,
-                    "Unit of positions (default: the file's, else m; of raw and NRRD files none)")
+                    "Unit of positions (default: that of the file, else m; none for raw and NRRD files)")
         ->group("Import");
     command.add_option("--times", options.times, "Times of the series, separated by commas")
         ->delimiter(',')

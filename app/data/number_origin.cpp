@@ -55,10 +55,10 @@ std::string readFromText(const NumberOrigin& origin, const volume::DatasetInfo& 
     const bool onGrid = origin.lattice == "CC";
     std::string text = onGrid && error.empty() ? computed
                        : onGrid                ? "stored on CC, " + error
-                       : error.empty()         ? "resampled to " + origin.lattice + ", stored without loss"
+                       : error.empty()         ? "resampled to " + origin.lattice + ", stored losslessly"
                                                : "resampled to " + origin.lattice + ", stored with an " + error;
     if (origin.mesh && onGrid && text != computed) text = "resampled, " + text;
-    if (origin.discarded) text += ", bricks of little importance left out";
+    if (origin.discarded) text += ", without bricks of little importance";
     return text;
 }
 
@@ -122,8 +122,8 @@ std::string originText(const NumberOrigin& origin, const volume::DatasetInfo& in
                 if (channel.parameter < origin.parameters && !isOriginal(origin, info, channel))
                     read.push_back(channel);
         text = (onlyDerived ? "derived from samples " : "") + readFromText(origin, info, read);
-        if (derived && !onlyDerived) text += "; derived ones from these";
-        if (!original.empty()) text += "; the originals as computed";
+        if (derived && !onlyDerived) text += "; derived parameters from these";
+        if (!original.empty()) text += "; originals as computed";
     } else {
         text = "as computed";
     }

@@ -88,7 +88,7 @@ std::string sessionTextOfPicture(const std::string& path) {
     std::map<std::string, std::string> texts;
     vis::readPng(path, &texts);
     const auto found = texts.find(vis::kSessionTextKey);
-    if (found == texts.end()) throw Error("this picture carries no session", path);
+    if (found == texts.end()) throw Error("this picture contains no session", path);
     return found->second;
 }
 
@@ -212,8 +212,8 @@ void dropForeignVariants(Session& session, const DataRef& made, std::vector<std:
                                            [&](const auto& change) { return change.first.starts_with(place); });
             };
             if (!changes("/data/settings") || changes("/data/model")) continue;
-            messages.push_back("this comparison is of the model " + made.model + ": \"" + compare->variants[i].name +
-                               "\" is left out, which needs that model");
+            messages.push_back("this comparison uses the model " + made.model + ": \"" + compare->variants[i].name +
+                               "\" is skipped, as it needs that model");
             compare->variants.erase(compare->variants.begin() + static_cast<std::ptrdiff_t>(i));
             const auto before = [&](int index) { return std::max(0, index - (index > static_cast<int>(i) ? 1 : 0)); };
             compare->reference = before(compare->reference);
@@ -263,7 +263,7 @@ void fitSurfaces(Session& session, const volume::BrickSource& source, bool own, 
         }
         if (!range || !(range->hi > range->lo)) {
             if (layer.visible && without.insert(iso->channel).second)
-                messages.push_back(iso->channel + (range ? " has one value everywhere" : " does not exist anywhere") +
+                messages.push_back(iso->channel + (range ? " has one value everywhere" : " has no value anywhere") +
                                    " at this time, so its surface is empty: choose another time or parameter");
             continue;
         }

@@ -69,7 +69,7 @@ std::shared_ptr<const volume::BrickSource> drawnAlike(const std::shared_ptr<cons
 Sources openPacked(volume::Dataset dataset, const DataRef& data, const Progress& progress) {
     std::string name = (fs::temp_directory_path() / "tessera-packed-XXXXXX.tsr").string();
     const int file = ::mkstemps(name.data(), 4);
-    if (file < 0) throw MachineError("cannot make a file to pack into", name);
+    if (file < 0) throw MachineError("cannot create a temporary file to pack into", name);
     ::close(file);
     // Mapped files live on without a name.
     struct Remove {
@@ -107,9 +107,10 @@ volume::OtherAxis axisOf(const volume::DatasetInfo& given, const DataRef& data, 
     stateTimes(axis.info, data);
     if (const auto by = data.axis.empty() ? std::nullopt : volume::axisBy(axis.info, data.axis)) return *by;
     if (!data.axis.empty() && data.axis != axis.info.timeName)
-        messages.push_back(volume::findQuantity(axis.info, data.axis)
-                               ? data.axis + " does not rise or fall all the time: it is shown beside the times"
-                               : "there is no quantity over time named " + data.axis);
+        messages.push_back(
+            volume::findQuantity(axis.info, data.axis)
+                ? data.axis + " does not rise or fall throughout: it cannot replace the times, and is shown beside them"
+                : "no quantity over time is named " + data.axis);
     for (std::size_t t = 0; t < given.times.size(); ++t) axis.order.push_back(static_cast<int>(t));
     return axis;
 }
@@ -132,7 +133,7 @@ Sources openArchived(const DataRef& data, std::vector<std::string>& messages) {
 namespace {
 
 Sources openWhole(const DataRef& data, std::vector<std::string>& messages, const Progress& progress) {
-    if (!hasData(data)) throw Error("names no data: open data first, or give a data file", {}, "/data");
+    if (!hasData(data)) throw Error("contains no data: open data first, or give a data file", {}, "/data");
     if (isArchive(data)) {
         const Sources archive = openArchived(data, messages);
         const auto named = volume::withLabelNames(archive.pictures, data.import.labels);
@@ -195,7 +196,7 @@ Sources openStored(const DataRef& data, std::vector<std::string>& messages, cons
     Sources whole = openWhole(data, messages, progress.part(0, data.other ? 0.5 : 1));
     if (data.other) {
         const Sources other = openOther(data, messages, progress.part(0.5, 1));
-        messages.push_back(other.numbers->info().name + " is shown beside, " +
+        messages.push_back(other.numbers->info().name + " is shown beside it, " +
                            volume::otherText(*whole.numbers, *other.numbers));
         whole = withOther(whole, other);
     }

@@ -63,8 +63,7 @@ std::optional<Opened> MissingFilesDialog::draw(const Ask& ask) {
         if (!open) opened_.reset();
         return {};
     }
-    ImGui::TextWrapped(
-        "The session shows files that are not where they were. What is open stays until they are found.");
+    ImGui::TextWrapped("Files of the session have moved. What is open now stays open until they are found.");
     ImGui::Spacing();
     for (std::size_t i = 0; i < opened_->missing.size(); ++i) drawFile(i, ask);
     if (dialogButtons({"Cancel"}) == 0) open = false;
@@ -78,7 +77,7 @@ void MissingFilesDialog::drawFile(std::size_t index, const Ask& ask) {
     const auto& transfer = opened_->document.session.transfer;
     ImGui::PushID(static_cast<int>(index));
     ImGui::TextUnformatted(fs::path(wanted.path).filename().c_str());
-    ImGui::TextDisabled("%s, was at %s", wanted.bytes > 0 ? textOfBytes(wanted.bytes).c_str() : "size not known",
+    ImGui::TextDisabled("%s, previously at %s", wanted.bytes > 0 ? textOfBytes(wanted.bytes).c_str() : "size unknown",
                         wanted.absolutePath.empty() ? wanted.path.c_str() : wanted.absolutePath.c_str());
     if (opened_->missing.size() == 1 && !transfer.empty()) {
         std::string names;
@@ -103,7 +102,7 @@ std::optional<Recovery> RecoveryDialog::draw() {
     if (recoveries_.empty()) return {};
     bool open = true;
     if (!beginDialog("Recover the last session?", open, ImGui::GetFontSize() * 34)) return {};
-    ImGui::TextWrapped("Tessera did not end by itself. What was open at %s has been kept.",
+    ImGui::TextWrapped("Tessera did not exit properly. The session of %s was saved automatically.",
                        recoveries_.front().when.c_str());
     const int button = dialogButtons({"Discard", "Later", "Recover"});
     std::optional<Recovery> chosen;
@@ -128,7 +127,7 @@ void PictureDialog::show(const std::string& pane) {
 std::optional<PictureRequest> PictureDialog::draw(const Session& session) {
     if (!shown_ || !beginDialog("Save picture", shown_, ImGui::GetFontSize() * 30)) return {};
     const WidgetContext widgets{nullptr, 0.3f};
-    drawLabel(widgets, "What", "The window, or one view alone");
+    drawLabel(widgets, "What", "The window, or one view");
     const char* const whole = "The whole window";
     if (ImGui::BeginCombo("##what", picture_.pane.empty() ? whole : paneTitle(session, picture_.pane).c_str())) {
         if (ImGui::Selectable(whole, picture_.pane.empty())) picture_.pane.clear();
@@ -136,7 +135,7 @@ std::optional<PictureRequest> PictureDialog::draw(const Session& session) {
             if (ImGui::Selectable(paneTitle(session, pane).c_str(), pane == picture_.pane)) picture_.pane = pane;
         ImGui::EndCombo();
     }
-    drawLabel(widgets, "Size", "Pixels of the picture");
+    drawLabel(widgets, "Size", "Size of the picture in pixels");
     ImGui::InputInt2("##size", &picture_.size.x);
     picture_.size = glm::clamp(picture_.size, glm::ivec2(64), glm::ivec2(8192));
     drawLabel(widgets, "", "");
@@ -147,10 +146,10 @@ std::optional<PictureRequest> PictureDialog::draw(const Session& session) {
         ImGui::SameLine();
     }
     ImGui::NewLine();
-    drawLabel(widgets, "Text size", "Pixels per design pixel: 2 for print at twice the size");
+    drawLabel(widgets, "Text size", "Scale of text and lines, e.g. 2 for a picture of twice the size");
     ImGui::SliderFloat("##scale", &picture_.scale, 0.5f, 4.0f, "%.2f", ImGuiSliderFlags_AlwaysClamp);
     ImGui::Spacing();
-    ImGui::TextDisabled("The picture carries the session: open it here to go on.");
+    ImGui::TextDisabled("The picture contains the session: open it in Tessera to continue from it.");
     const int button = dialogButtons({"Cancel", "Save..."});
     if (button >= 0) shown_ = false;
     endDialog(shown_);
@@ -176,10 +175,9 @@ LeaveDialog::Answer LeaveDialog::draw(bool saved) {
 
 void HelpDialogs::draw(const std::vector<Command>& commands, const Fonts& fonts, const vis::ResidencyInfo& use) {
     if (shortcuts_ && beginDialog("Shortcuts", shortcuts_, ImGui::GetFontSize() * 48)) {
-        ImGui::TextWrapped(
-            "In a volume: left drag turns, wheel and right drag zoom, middle drag or Shift+drag moves, "
-            "Ctrl+drag rolls, double-click sets the cursor. In plots: drag to select (brush); Shift adds, "
-            "Ctrl removes; Esc clears.");
+        ImGui::TextWrapped("In a volume: left drag rotates, wheel and right drag zoom, middle drag or Shift+drag pans, "
+                           "Ctrl+drag rolls, double-click moves the cross-hair. In plots: drag to select (brush); "
+                           "Shift adds, Ctrl removes; Esc clears.");
         ImGui::Spacing();
         drawShortcutHelp(commands);
         if (dialogButtons({"Close"}) == 0) shortcuts_ = false;

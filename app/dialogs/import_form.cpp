@@ -59,7 +59,7 @@ std::string formMissing(const std::string& path, const volume::ImportOptions& im
         fs::file_size(path, unknown) == 0)
         return {};
     return "This file has no sidecar " + fs::path(path).filename().replace_extension(".json").string() +
-           " that states its form.\n\nState it below in Raw layout, such as dims=64x64x64,type=u8";
+           " that states its layout.\n\nState it below in Raw layout, such as dims=64x64x64,type=u8";
 }
 
 /// The reason of a failure, with the name of its file and the fields of this dialog in place of options of the command
@@ -82,7 +82,7 @@ std::string sessionSummary(const std::string& path) {
     for (const DataFile& file : session.data.files) text += file.path + ", " + textOfBytes(file.bytes) + "\n";
     return text + "\n" + std::to_string(session.views.size()) + " views, " + std::to_string(session.layers.size()) +
            " layers, " + std::to_string(session.selection.brushes.size()) + " brushes, " +
-           std::to_string(document.history.steps().size()) + " steps of history";
+           std::to_string(document.history.steps().size()) + " history steps";
 }
 
 std::string archiveSummary(const std::string& path, const Progress& progress) {
@@ -97,7 +97,7 @@ std::string dataSummary(const std::string& path, const volume::ImportOptions& st
     if (const std::string why = formMissing(path, stated); !why.empty()) throw Error(why);
     volume::ImportPreview preview = volume::previewFiles({path}, stated, progress);
     if (!stated.raw.empty() && stated.raw == volume::rawOptionOfName(path))
-        preview.notes.push_back("The raw layout is taken from the file's name.");
+        preview.notes.push_back("The raw layout was filled in from the name of the file.");
     return describe(preview);
 }
 
@@ -108,7 +108,7 @@ std::string summary(const std::string& path, const volume::ImportOptions& stated
                    [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
     if (name.ends_with(".png")) {
         sessionTextOfPicture(path);
-        return "A picture that carries its session.";
+        return "A picture that contains its session.";
     }
     if (name.ends_with(".json") && looksLikeSession(readText(path))) return sessionSummary(path);
     if (name.ends_with(".tsr")) return archiveSummary(path, progress);
@@ -167,7 +167,7 @@ void ImportForm::draw() {
     // At each letter: the preview is how the user sees whether it is right, and Open waits for that.
     ImGui::BeginDisabled(sidecar_);
     bool changed = ImGui::InputTextWithHint("##raw",
-                                            sidecar_ ? "stated by the file's own sidecar"
+                                            sidecar_ ? "stated by the sidecar of the file"
                                                      : "dims=64x64x64,type=u8 (only for files without a header)",
                                             &stated_.raw);
     ImGui::EndDisabled();

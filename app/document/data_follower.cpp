@@ -88,7 +88,7 @@ void DataFollower::show(const DataRef& data, const std::string& title) {
                     made->sources = openSources(data, made->messages, progress);
                     return [this, title, made] {
                         if (!moveTo(std::move(*made)))
-                            messages_.add(title + ": not shown, as the data have changed meanwhile");
+                            messages_.add(title + ": not shown, as the data have changed since");
                     };
                 });
 }
@@ -109,7 +109,7 @@ void DataFollower::compareWith(const std::vector<std::string>& paths) {
                     made->sources = openSources(made->data, made->messages, progress.part(0.1, 1));
                     return [this, title, made] {
                         if (!moveTo(std::move(*made)))
-                            return messages_.add(title + ": not shown, as the data have changed meanwhile");
+                            return messages_.add(title + ": not shown, as the data have changed since");
                         addDifference();
                     };
                 });
@@ -126,7 +126,7 @@ void DataFollower::addDifference() {
     if (const std::string problem = volume::derivedProblem(difference, info); problem.empty())
         messages_.add("New parameter: " + addDerived(session, difference));
     else
-        messages_.add("No difference is made: " + problem);
+        messages_.add("Cannot compute the difference: " + problem);
 }
 
 void DataFollower::pack(const std::string& path) {
@@ -146,7 +146,7 @@ void DataFollower::pack(const std::string& path) {
                     made->data.other = other;
                     made->sources = openSources(made->data, made->messages, progress.part(0.95, 1));
                     return [this, path, done, made] {
-                        messages_.add(done + (moveTo(std::move(*made)) ? ", now shown from " : ": ") + path);
+                        messages_.add(done + (moveTo(std::move(*made)) ? ", now showing " : ": ") + path);
                     };
                 });
 }
@@ -243,7 +243,7 @@ void DataFollower::followGrowth() {
     const DataRef& data = document_.session().data;
     if (!growth_.changed(options_.headless || data.timeAxis ? nullptr : &data, jobs_.wake)) return;
     jobs_.start(
-        "growth", "Reading what is new",
+        "growth", "Reading the new times",
         [this, data, from = document_.sources(), derived = derived_.shown](const Progress& progress) -> Jobs::Finish {
             const auto grown = std::make_shared<std::optional<Grown>>(readGrown(data, from, derived, progress));
             if (!*grown) return {};

@@ -56,7 +56,7 @@ std::string changesText(const Session& session, const CompareVariant& variant) {
         if (parsed.is_null()) shown = "none";
         text += (text.empty() ? "" : ", ") + title + " " + shown;
     }
-    return text.empty() ? "as it is" : text;
+    return text.empty() ? "unchanged" : text;
 }
 
 std::string variantName(const Session& session, const CompareVariant& variant) {
@@ -113,9 +113,9 @@ std::string questionsCsv(const std::vector<CompareQuestion>& questions) {
 
 std::string compareCsv(const std::vector<CompareRow>& rows) {
     const auto number = [](double value) { return std::isfinite(value) ? toJson(value).dump() : std::string("inf"); };
-    std::string csv = "variant,differs,reference,ms per frame,samples,texture bytes,stored bytes,"
-                      "maximum (of 255),RMSE (of 255),PSNR (dB),SSIM,samples that differ,largest error of a sample,"
-                      "RMSE of samples,failure\n";
+    std::string csv =
+        "variant,differs,reference,ms per picture,samples,texture bytes,stored bytes,maximum (of 255),RMSE (of "
+        "255),PSNR (dB),SSIM,samples that differ,largest error of a sample,RMSE of samples,failure\n";
     for (const CompareRow& row : rows) {
         csv += csvField(row.name) + "," + csvField(row.changes) + "," + (row.reference ? "yes" : "no");
         for (const double value : {row.milliseconds, row.samples, row.bytes, row.storedBytes})

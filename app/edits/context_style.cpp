@@ -51,12 +51,12 @@ std::string_view contextStyleHelp(ContextStyle style) {
     static constexpr std::string_view kHelp[] = {
         "What is not brushed is nearly transparent and pale",
         "What is not brushed is translucent, without colour and darker",
-        "What is not brushed is out of focus, as by a large lens",
-        "What is not brushed is left out",
-        "Of the rest only the rim of its hull is drawn",
-        "The rest is a translucent hull around what is brushed",
-        "The rest is a wire frame around what is brushed",
-        "The rest is a hull in warm and cool tones",
+        "What is not brushed is out of focus, as in a photograph",
+        "What is not brushed is hidden",
+        "The rest is drawn as the silhouette of its hull",
+        "The rest is drawn as a translucent hull",
+        "The rest is drawn as a wire-frame hull",
+        "The rest is drawn as a hull in warm and cool tones",
     };
     static_assert(std::size(kHelp) == std::size(kContextStyleNames));
     return kHelp[static_cast<std::size_t>(style)];

@@ -40,7 +40,7 @@ template <class XmlReader> void openXml(Source& source) {
 /// Image files are recognised by content, so that a wrong one is refused with a reason.
 template <class ImageReader, void (*check)(const std::string&)> void openImage(Source& source) {
     vtkNew<ImageReader> reader;
-    if (reader->CanReadFile(source.path.c_str()) == 0) throw std::runtime_error("is damaged or not of this format");
+    if (reader->CanReadFile(source.path.c_str()) == 0) throw std::runtime_error("is damaged or has another format");
     check(source.path);
     reader->SetFileName(source.path.c_str());
     source.reader = reader;

@@ -224,7 +224,7 @@ std::vector<std::uint8_t> validMask(vtkDataSetAttributes* data, std::size_t coun
 void sendFrame(State& state, const Request& request) {
     if (request.file >= state.files.size()) throw std::runtime_error("no such file in the request");
     OpenFile& file = state.files[request.file];
-    if (request.piece >= file.pieces.size()) throw std::runtime_error("no such piece in the request");
+    if (request.piece >= file.pieces.size()) throw std::runtime_error("no such block in the request");
     PieceRef& ref = file.pieces[request.piece];
     if (request.array < -1 || request.array >= int(ref.arrays.size()) || request.time < 0 ||
         request.time >= std::max(1, int(ref.piece.times.size())))

@@ -66,7 +66,7 @@ vtkSmartPointer<vtkDataObject> readByVtk(const Source& source, int time) {
         if (source.format != "vtk") throw;
         throw std::runtime_error("ends early or is damaged: " + std::string(error.what()));
     }
-    if (output == nullptr) throw std::runtime_error("gave no data");
+    if (output == nullptr) throw std::runtime_error("contains no data");
     vtkSmartPointer<vtkDataObject> copy = vtkSmartPointer<vtkDataObject>::Take(output->NewInstance());
     copy->ShallowCopy(output);
     return copy;

@@ -161,7 +161,7 @@ void chooseChannels(const volume::DatasetInfo& info, std::vector<std::string>& n
         if (ImGui::Selectable("All scalars and magnitudes")) names.clear();
         ImGui::EndCombo();
     }
-    if (ImGui::IsItemHovered()) tooltip("Parameters that are shown");
+    if (ImGui::IsItemHovered()) tooltip("Parameters shown");
 }
 
 std::optional<int> resolveChannel(const volume::DatasetInfo& info, const Session& session, const std::string& wanted) {

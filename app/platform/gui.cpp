@@ -23,14 +23,14 @@ public:
         glGetIntegerv(GL_MAX_RENDERBUFFER_SIZE, &largest);
         if (size.x < 1 || size.y < 1 || size.x > largest || size.y > largest)
             throw MachineError("a picture of " + std::to_string(size.x) + "x" + std::to_string(size.y) +
-                               " is too large; this machine draws up to " + std::to_string(largest));
+                               " is too large; this machine can draw up to " + std::to_string(largest));
         glGetIntegerv(GL_FRAMEBUFFER_BINDING, &former_);
         glCreateRenderbuffers(1, &color_);
         glNamedRenderbufferStorage(color_, GL_RGBA8, size.x, size.y);
         glCreateFramebuffers(1, &name_);
         glNamedFramebufferRenderbuffer(name_, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, color_);
         if (glCheckNamedFramebufferStatus(name_, GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
-            throw MachineError("GL cannot draw into a framebuffer of this size");
+            throw MachineError("OpenGL cannot draw into a framebuffer of this size");
     }
     ~Framebuffer() {
         glBindFramebuffer(GL_FRAMEBUFFER, static_cast<GLuint>(former_));
@@ -148,7 +148,7 @@ vis::Image drawUntilDone(Workbench& workbench, glm::ivec2 size, float scale) {
         } else {
             ++quiet;
         }
-        if (frames > 100000) throw MachineError("the picture does not become complete");
+        if (frames > 100000) throw MachineError("the picture was not completed");
     }
     return target.read();
 }

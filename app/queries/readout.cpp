@@ -62,7 +62,7 @@ void updateReadout(ViewContext& context, const std::string& pane, Readout& reado
     const auto values = readout.answers.get(
         context, context.numbers,
         {.key = "cursor " + pane,
-         .title = "Values at the cursor",
+         .title = "Values at the cross-hair",
          .quiet = true,
          .lowPriority = true,
          .duringEdits = true},

@@ -25,13 +25,13 @@ struct Keyframe {
     Easing easing = Easing::InOut;
     bool operator==(const Keyframe&) const = default;
     static void describe(auto& self, auto&& visit) {
-        visit(
-            self.at,
-            FieldInfo{.key = "at", .unit = "s", .doc = "When the parameter has this value", .range = Range{0, 36000}});
+        visit(self.at, FieldInfo{.key = "at",
+                                 .unit = "s",
+                                 .doc = "Time of the animation at which the setting has this value",
+                                 .range = Range{0, 36000}});
         visit(self.value, FieldInfo{.key = "value", .unit = "", .doc = "The value, one number per component"});
         visit(self.easing,
-              FieldInfo{
-                  .key = "easing", .unit = "", .doc = "How the way to the next key is gone", .names = kEasingNames});
+              FieldInfo{.key = "easing", .unit = "", .doc = "Interpolation up to the next key", .names = kEasingNames});
     }
 };
 
@@ -41,8 +41,9 @@ struct Track {
     std::vector<Keyframe> keys;
     bool operator==(const Track&) const = default;
     static void describe(auto& self, auto&& visit) {
-        visit(self.path, FieldInfo{.key = "path", .unit = "", .doc = "Place of the parameter in the session"});
-        visit(self.keys, FieldInfo{.key = "keys", .unit = "", .doc = "Values at times of the animation"});
+        visit(self.path, FieldInfo{.key = "path", .unit = "", .doc = "Path of the setting in the session"});
+        visit(self.keys,
+              FieldInfo{.key = "keys", .unit = "", .doc = "Values of the setting at times of the animation"});
     }
 };
 
@@ -56,17 +57,18 @@ struct Animation {
     std::vector<Track> tracks; ///< without any, the times of the data play
     bool operator==(const Animation&) const = default;
     static void describe(auto& self, auto&& visit) {
-        visit(self.playing, FieldInfo{.key = "playing", .unit = "", .doc = "Time is running"});
+        visit(self.playing, FieldInfo{.key = "playing", .unit = "", .doc = "The animation is playing"});
         visit(self.speed, FieldInfo{.key = "speed",
                                     .unit = "steps/s",
-                                    .doc = "Time steps shown per second, where there are no keyframes",
+                                    .doc = "Stored times shown per second, without keyframes",
                                     .range = Range{0.1, 60},
                                     .logScale = true});
         visit(self.loop,
-              FieldInfo{.key = "loop", .unit = "", .doc = "What happens at the last time", .names = kLoopNames});
-        visit(
-            self.position,
-            FieldInfo{.key = "position", .unit = "s", .doc = "Place in the keyframes shown", .range = Range{0, 36000}});
+              FieldInfo{.key = "loop", .unit = "", .doc = "What playing does at the last time", .names = kLoopNames});
+        visit(self.position, FieldInfo{.key = "position",
+                                       .unit = "s",
+                                       .doc = "Time of the animation that is shown",
+                                       .range = Range{0, 36000}});
         visit(self.duration, FieldInfo{.key = "duration",
                                        .unit = "s",
                                        .doc = "Length of the keyframe animation",
@@ -74,9 +76,9 @@ struct Animation {
                                        .logScale = true});
         visit(self.framesPerSecond, FieldInfo{.key = "framesPerSecond",
                                               .unit = "1/s",
-                                              .doc = "Pictures per second of a recorded animation",
+                                              .doc = "Frames per second of a recorded animation",
                                               .range = Range{1, 120}});
-        visit(self.tracks, FieldInfo{.key = "tracks", .unit = "", .doc = "Keyframes by parameter", .hidden = true});
+        visit(self.tracks, FieldInfo{.key = "tracks", .unit = "", .doc = "Keyframes by setting", .hidden = true});
     }
 };
 

@@ -53,52 +53,55 @@ std::string describeKind(const ViewTraits& kind) {
 
 std::string parameterReference() {
     std::string out =
-        "# Parameters\n\n"
+        "# Settings\n\n"
         "Every setting of a session, written from the descriptions in the source. The key is the member's name in the\n"
         "session file and after `--set`; nested members are joined by a dot here and by a slash there\n"
         "(`tessera render overview --set /render/step=0.25 -o out.png`).\n\n";
-    out += markdownSection<Session>("Session", "What is shown, and what all views share.");
+    out += markdownSection<Session>("Session", "The whole session; the sections below list its parts.");
     out += markdownSection<DataFile>("data.files", "A file of the data set.");
-    out += markdownSection<vis::Layer>("layers",
-                                       "An entry of the list of techniques; `technique` is one of those that follow.");
-    out += markdownSection<vis::VolumeLayer>("Layer of type `volume`", "A scalar through its transfer function.");
+    out +=
+        markdownSection<vis::Layer>("layers", "A layer of the 3D views; `technique` is one of the four types below.");
+    out += markdownSection<vis::VolumeLayer>("Layer of type `volume`", "A scalar drawn with its transfer function.");
     out += markdownSection<vis::IsoLayer>("Layer of type `iso`", "A surface of equal value.");
     out += markdownSection<vis::SliceLayer>("Layer of type `slice`", "A coloured plane with contour lines.");
     out += markdownSection<vis::FlowLayer>("Layer of type `flow`", "Lines, tubes and glyphs of a vector.");
     out += markdownSection<vis::WarmCool>(
-        "look.tone", "Part of a look. A look may also be the name of a preset: " + presetNames<vis::Look>() + ".");
+        "look.tone", "Part of a look. Instead of its parts, a look can be given as the name of a preset: " +
+                         presetNames<vis::Look>() + ".");
     out += markdownSection<vis::BoundaryEnhancement>("look.boundary", "Part of a look.");
     out += markdownSection<vis::SilhouetteEnhancement>("look.silhouette", "Part of a look.");
     out += markdownSection<vis::DistanceColor>("look.distance", "Part of a look.");
     out += markdownSection<vis::Cartoon>("look.cartoon", "Part of a look.");
     out += markdownSection<vis::CharcoalDrawing>("look.charcoal", "Part of a look.");
-    out += markdownSection<vis::Paper>("paper", "What pictures lie on.");
+    out += markdownSection<vis::Paper>("paper", "The background of the picture.");
     out += markdownSection<vis::TransferFunction>("transfer", "Colour and opacity of one parameter, by its name.");
-    out += markdownSection<vis::ColorStop>("transfer.colors", "A colour of a colour map of one's own.");
-    out += markdownSection<vis::TransferRegion>("transfer.regions",
-                                                "A part of the plane of value and gradient magnitude with opacity.");
-    out += markdownSection<vis::Brush>("selection.brushes", "A brush: a region and how it meets the others.");
-    out += markdownSection<vis::BrushInterval>("selection.brushes.region.intervals", "One interval of a range.");
+    out += markdownSection<vis::ColorStop>("transfer.colors", "A colour of a user-defined colour map.");
+    out += markdownSection<vis::TransferRegion>(
+        "transfer.regions", "An area in the plane of value and gradient magnitude that has opacity.");
+    out += markdownSection<vis::Brush>("selection.brushes",
+                                       "A brush: what it selects, and how it combines with the others.");
+    out += markdownSection<vis::BrushInterval>("selection.brushes.region.intervals",
+                                               "A range of values of one parameter.");
     out += markdownSection<vis::EllipseRegion>("Region of type `ellipse`", "An ellipse in two parameters.");
     out += markdownSection<vis::LassoRegion>("Region of type `lasso`", "A polygon in two parameters.");
     out += markdownSection<vis::SphereRegion>("Region of type `sphere`", "A ball in space.");
     out += markdownSection<vis::BoxRegion>("Region of type `box`", "A box in space.");
-    out += markdownSection<vis::LensRegion>("Region of type `lens`", "What lies in a magic lens.");
+    out += markdownSection<vis::LensRegion>("Region of type `lens`", "The inside of a lens.");
     out += markdownSection<vis::Light>("lighting.lights", "One light.");
-    out += markdownSection<vis::Clip>("clips", "One plane or body that cuts the picture.");
-    out += markdownSection<vis::Lens>("lenses", "One magic lens; layers belong to it by its name.");
+    out += markdownSection<vis::Clip>("clips", "A plane or body that cuts the data open.");
+    out += markdownSection<vis::Lens>("lenses", "A lens; layers refer to it by its name.");
     forEachViewKind([&](const auto& kind) {
         using View = typename std::decay_t<decltype(kind)>::State;
         out += markdownSection<View>("View of type `" + std::string(View::kType) + "`", describeKind(kind.traits));
     });
     out += markdownSection<CompareVariant>("views.variants", "One variant.");
-    out += markdownSection<Track>("animation.tracks", "Keyframes of one parameter.");
+    out += markdownSection<Track>("animation.tracks", "The keyframes of one setting.");
     out += markdownSection<Keyframe>("animation.tracks.keys", "One keyframe.");
     out += markdownSection<volume::DerivedParameter>("data.derived", "A parameter computed from others.");
     out += markdownSection<volume::ExpressionRecipe>("Recipe of type `expression`", "A formula.");
     out += markdownSection<volume::GradientRecipe>("Recipe of type `gradient`", "A vector.");
-    out += markdownSection<volume::DeviationRecipe>("Recipe of type `deviation`", "Departure from the mean over time.");
-    out += markdownSection<volume::SmoothRecipe>("Recipe of type `smooth`", "A Gaussian.");
+    out += markdownSection<volume::DeviationRecipe>("Recipe of type `deviation`", "Deviation from the mean over time.");
+    out += markdownSection<volume::SmoothRecipe>("Recipe of type `smooth`", "A copy smoothed by a Gaussian.");
     out += markdownSection<volume::DifferenceRecipe>("Recipe of type `difference`",
                                                      "A parameter minus itself at another time or in other data.");
     return out;

@@ -4,7 +4,7 @@
 
 #include <string>
 
-/// The parameter reference (docs/parameters.md), written from the same descriptions as widgets, JSON and options.
+/// The reference of settings (docs/settings.md), written from the same descriptions as widgets, JSON and options.
 namespace tessera::app {
 
 namespace detail {
@@ -32,7 +32,7 @@ template <Described T> std::string markdownSection(const std::string& title, con
     std::string rows;
     const T defaults{};
     T::describe(defaults, detail::MarkdownRows{rows, ""});
-    if (rows.empty()) return out + "No parameters.\n\n";
+    if (rows.empty()) return out + "No settings.\n\n";
     return out + "| key | default | range | unit | meaning |\n|---|---|---|---|---|\n" + rows + "\n";
 }
 

@@ -24,12 +24,16 @@ struct DockNode {
 
     bool operator==(const DockNode&) const = default;
     static void describe(auto& self, auto&& visit) {
-        visit(self.id, FieldInfo{.key = "id", .unit = "", .doc = "Number of the node"});
-        visit(self.kind,
-              FieldInfo{.key = "kind", .unit = "", .doc = "Stack of tabs or split", .names = kDockKindNames});
-        visit(self.ratio,
-              FieldInfo{.key = "ratio", .unit = "", .doc = "Share of the first part", .range = Range{0, 1}});
-        visit(self.children, FieldInfo{.key = "children", .unit = "", .doc = "Parts of a split"});
+        visit(self.id, FieldInfo{.key = "id", .unit = "", .doc = "Number of the node, unique in the tree"});
+        visit(self.kind, FieldInfo{.key = "kind",
+                                   .unit = "",
+                                   .doc = "A stack of tabs, or a split into a row or column",
+                                   .names = kDockKindNames});
+        visit(self.ratio, FieldInfo{.key = "ratio",
+                                    .unit = "",
+                                    .doc = "Share of the size that the first child takes",
+                                    .range = Range{0, 1}});
+        visit(self.children, FieldInfo{.key = "children", .unit = "", .doc = "Children of a split"});
         visit(self.tabs, FieldInfo{.key = "tabs", .unit = "", .doc = "Panes in the stack"});
         visit(self.active, FieldInfo{.key = "active", .unit = "", .doc = "Pane in front"});
     }

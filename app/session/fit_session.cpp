@@ -25,7 +25,7 @@ public:
             std::visit([&](auto& technique) { fit(layer, technique); }, layer.technique);
             const auto named = [&](const vis::Lens& lens) { return lens.name == layer.lens; };
             if (layer.lens.empty() || std::ranges::any_of(session_.lenses, named)) continue;
-            messages_.push_back("layer " + layer.name + " is hidden: there is no lens " + layer.lens);
+            messages_.push_back("layer " + layer.name + " is not drawn: there is no lens " + layer.lens);
             layer.visible = false;
             layer.lens.clear();
         }
@@ -59,7 +59,7 @@ public:
         std::erase_if(session_.selection.brushes, [&](const vis::Brush& brush) {
             const std::vector<std::string> names = vis::regionChannels(brush.region);
             const bool lost = !std::ranges::all_of(names, [&](const std::string& name) { return known(name); });
-            if (lost) messages_.push_back("brush " + brush.name + " is dropped: its parameters are not in the data");
+            if (lost) messages_.push_back("brush " + brush.name + " is removed: its parameters are not in the data");
             return lost;
         });
     }
@@ -106,7 +106,7 @@ private:
                 } else if (field.refersTo == "optionalChannel") {
                     if (!known(member)) member.clear();
                 } else if (field.refersTo == "colorChannel" && !member.empty() && !known(member)) {
-                    messages_.push_back("layer " + layer.name + " has its own colours: " + member +
+                    messages_.push_back("layer " + layer.name + " keeps its own colours: " + member +
                                         " is not in the data");
                     member.clear();
                 }

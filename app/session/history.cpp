@@ -1,5 +1,6 @@
 #include "app/session/history.h"
 
+#include "app/described/key_words.h"
 #include "volume/base/error.h"
 
 #include <algorithm>
@@ -17,16 +18,6 @@ std::vector<std::string> pathsOf(const Json& patch) {
     for (const Json& operation : patch) paths.push_back(operation.value("path", std::string()));
     std::sort(paths.begin(), paths.end());
     return paths;
-}
-
-/// "contextOpacity" -> "context opacity".
-std::string words(const std::string& key) {
-    std::string out;
-    for (const char c : key) {
-        if (std::isupper(static_cast<unsigned char>(c)) != 0 && !out.empty()) out += ' ';
-        out += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    }
-    return out;
 }
 
 std::vector<std::string> splitPointer(const std::string& path) {
@@ -86,14 +77,14 @@ std::string describePatch(const Json& patch) {
     if (common.empty()) return "several changes";
     if (common[0] == "dock") return "arrangement of panes";
     if (common[0] == "camera") return "camera";
-    std::string name = words(common[0]);
+    std::string name = keyWords(common[0]);
     for (std::size_t i = 1; i < common.size(); ++i) {
         if (isNumber(common[i])) {
             name += " " + std::to_string(std::stoi(common[i].substr(0, 8)) + 1);
         } else if (common[i] != "technique") {
             // Keys of maps are names of parameters and panes: kept as they are.
             const bool mapKey = i == 1 && (common[0] == "transfer" || common[0] == "views");
-            name += (i == 1 && mapKey ? " " : ": ") + (mapKey ? common[i] : words(common[i]));
+            name += (i == 1 && mapKey ? " " : ": ") + (mapKey ? common[i] : keyWords(common[i]));
         }
     }
     if (patch.size() == 1 && operation == "add") name += " added";
@@ -196,10 +187,10 @@ History History::fromJson(const Json& json, const Session& session) {
             history.steps_.push_back({step.at("name").get<std::string>(), step.at("forward"), step.at("inverse")});
         for (const HistoryStep& step : history.steps_)
             if (!isDifference(step.forward) || !isDifference(step.inverse))
-                throw Error("history holds a step that is no difference");
+                throw Error("the history contains a step that is not a JSON patch");
         const auto position = json.at("position").get<std::int64_t>();
         if (position < 0 || static_cast<std::size_t>(position) > history.steps_.size())
-            throw Error("history position is not in the list");
+            throw Error("the position in the history is outside its list of steps");
         history.position_ = static_cast<std::size_t>(position);
         // Walk the whole list once, so that undo and redo cannot fail later.
         History trial = history;
@@ -207,9 +198,9 @@ History History::fromJson(const Json& json, const Session& session) {
         for (std::size_t i = 1; i <= trial.steps_.size(); ++i) trial.seek(i);
         Session end = trial.seek(history.position_);
         followTabs(end.dock.root, session.dock.root);
-        if (!(end == session)) throw Error("history does not lead to the session");
+        if (!(end == session)) throw Error("the history does not end at the session");
     } catch (const Json::exception& error) {
-        throw Error(std::string("history cannot be used: ") + error.what());
+        throw Error(std::string("the history cannot be used: ") + error.what());
     }
     return history;
 }

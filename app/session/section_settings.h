@@ -25,20 +25,22 @@ struct SectionSettings {
     std::vector<int> regions; ///< values of the label shown; none: every one
     bool operator==(const SectionSettings&) const = default;
     static void describe(auto& self, auto&& visit) {
-        visit(self.across, FieldInfo{.key = "across",
-                                     .unit = "",
-                                     .doc = "Axis that the planes lie across, or the line through the view's corners",
-                                     .names = kSectionAcrossNames});
+        visit(self.across,
+              FieldInfo{.key = "across",
+                        .unit = "",
+                        .doc = "Axis perpendicular to the planes, or the line through the corners of the view",
+                        .names = kSectionAcrossNames});
         visit(self.weight, FieldInfo{.key = "weight",
                                      .unit = "",
-                                     .doc = "What the mean over a plane is weighted by",
+                                     .doc = "Weight of the mean over a plane",
                                      .names = volume::kSectionWeightNames});
-        visit(self.measure,
-              FieldInfo{
-                  .key = "measure", .unit = "", .doc = "What is shown of every plane", .names = kSectionMeasureNames});
+        visit(self.measure, FieldInfo{.key = "measure",
+                                      .unit = "",
+                                      .doc = "Quantity shown for every plane",
+                                      .names = kSectionMeasureNames});
         visit(self.byRegion, FieldInfo{.key = "byRegion", .unit = "", .doc = "One curve for each region of the label"});
         visit(self.regions,
-              FieldInfo{.key = "regions", .unit = "", .doc = "Values of the label that have a curve; none: all"});
+              FieldInfo{.key = "regions", .unit = "", .doc = "Values of the label that have a curve; empty: all"});
     }
 };
 

@@ -31,7 +31,7 @@ struct DataFile {
     static void describe(auto& self, auto&& visit) {
         visit(self.path,
               FieldInfo{.key = "path", .unit = "", .doc = "File, relative to the session", .refersTo = "path"});
-        visit(self.absolutePath, FieldInfo{.key = "absolutePath", .unit = "", .doc = "Where the file was when saved"});
+        visit(self.absolutePath, FieldInfo{.key = "absolutePath", .unit = "", .doc = "Absolute path when saved"});
         visit(self.bytes, FieldInfo{.key = "bytes", .unit = "byte", .doc = "Size when saved"});
         visit(self.hash, FieldInfo{.key = "hash", .unit = "", .doc = "xxh64 of the first and last MiB when saved"});
     }
@@ -51,10 +51,11 @@ struct OtherData {
     bool operator==(const OtherData&) const = default;
     static void describe(auto& self, auto&& visit) {
         visit(self.files, FieldInfo{.key = "files", .unit = "", .doc = "Files of the other data set"});
-        visit(self.model, FieldInfo{.key = "model", .unit = "", .doc = "Built-in model where there is no file"});
+        visit(self.model, FieldInfo{.key = "model", .unit = "", .doc = "Built-in model, if there is no file"});
         visit(self.settings, FieldInfo{.key = "settings", .unit = "", .doc = "Settings of the model"});
-        visit(self.import, FieldInfo{.key = "import", .unit = "", .doc = "What was stated about the files"});
-        visit(self.table, FieldInfo{.key = "table", .unit = "", .doc = "The table over time when saved"});
+        visit(self.import, FieldInfo{.key = "import", .unit = "", .doc = "What the user stated about the files"});
+        visit(self.table,
+              FieldInfo{.key = "table", .unit = "", .doc = "File of quantities over time, as it was when saved"});
     }
 };
 
@@ -74,36 +75,39 @@ struct DataRef {
     std::optional<DataFile> table = {};            ///< import.overTime when saved: found again as the files are
     bool operator==(const DataRef&) const = default;
     static void describe(auto& self, auto&& visit) {
-        visit(self.files, FieldInfo{.key = "files", .unit = "", .doc = "Files that are shown together"});
-        visit(self.model, FieldInfo{.key = "model", .unit = "", .doc = "Built-in model shown when there is no file"});
+        visit(self.files, FieldInfo{.key = "files", .unit = "", .doc = "Data files, shown together"});
+        visit(self.model, FieldInfo{.key = "model", .unit = "", .doc = "Built-in model, if there is no file"});
         visit(self.settings, FieldInfo{.key = "settings", .unit = "", .doc = "Settings of the model"});
-        visit(self.lattice, FieldInfo{.key = "lattice",
-                                      .unit = "",
-                                      .doc = "Lattice that pictures of unpacked data are drawn from: the grid of the "
-                                             "file, or body-centred, 70.7 % of the samples; numbers are those of the "
-                                             "file on either",
-                                      .names = kPictureLatticeNames});
+        visit(self.lattice,
+              FieldInfo{.key = "lattice",
+                        .unit = "",
+                        .doc = "Lattice that pictures of data files are drawn from: the grid of the file, or "
+                               "body-centred with 70.7 % of the samples; numbers always come from the file",
+                        .names = kPictureLatticeNames});
         visit(self.derived,
               FieldInfo{.key = "derived", .unit = "", .doc = "Parameters computed from the others", .hidden = true});
-        visit(self.import, FieldInfo{.key = "import", .unit = "", .doc = "What was stated about the files"});
-        visit(self.packed,
-              FieldInfo{.key = "packed",
-                        .unit = "",
-                        .doc = "Show data that are no archive as one packed so would hold them: options of packing, or "
-                               "a preset of them"});
-        visit(self.originals, FieldInfo{.key = "originals",
-                                        .unit = "",
-                                        .doc = "Show packed data with the data as computed beside, as parameters"});
+        visit(self.import, FieldInfo{.key = "import", .unit = "", .doc = "What the user stated about the files"});
+        visit(
+            self.packed,
+            FieldInfo{
+                .key = "packed",
+                .unit = "",
+                .doc =
+                    "Show data files as an archive packed with these options, or with this preset, would store them"});
+        visit(self.originals,
+              FieldInfo{.key = "originals", .unit = "", .doc = "With `packed`: also show the parameters as computed"});
         visit(self.axis, FieldInfo{.key = "axis",
                                    .unit = "",
-                                   .doc = "Quantity over time that takes the place of the times where it rises or "
-                                          "falls all the time; where it does not it is shown first"});
-        visit(self.timeAxis, FieldInfo{.key = "timeAxis", .unit = "", .doc = "Show time in place of an axis"});
-        visit(self.other, FieldInfo{.key = "other",
-                                    .unit = "",
-                                    .doc = "Another data set, whose parameters stand beside these as \"T (other)\" on "
-                                           "their grid"});
-        visit(self.table, FieldInfo{.key = "table", .unit = "", .doc = "The table over time when saved"});
+                                   .doc = "Quantity over time to use as the time axis, if it rises or falls "
+                                          "throughout; otherwise it is listed first"});
+        visit(self.timeAxis, FieldInfo{.key = "timeAxis", .unit = "", .doc = "Show time along an axis of space"});
+        visit(self.other,
+              FieldInfo{
+                  .key = "other",
+                  .unit = "",
+                  .doc = "Another data set; its parameters are added as \"T (other)\", interpolated onto this grid"});
+        visit(self.table,
+              FieldInfo{.key = "table", .unit = "", .doc = "File of quantities over time, as it was when saved"});
     }
 };
 
@@ -156,28 +160,31 @@ struct Session {
     static void describe(auto& self, auto&& visit) {
         visit(self.schema, FieldInfo{.key = "schema", .unit = "", .doc = "Version of this format", .hidden = true});
         visit(self.title, FieldInfo{.key = "title", .unit = "", .doc = "What this session shows"});
-        visit(self.data, FieldInfo{.key = "data", .unit = "", .doc = "What is shown"});
+        visit(self.data, FieldInfo{.key = "data", .unit = "", .doc = "The data set"});
         visit(self.time, FieldInfo{.key = "time", .unit = "s", .doc = "Time shown in every view"});
         visit(self.cursor, FieldInfo{.key = "cursor", .unit = "m", .doc = "Position of the linked cross-hair"});
         visit(self.stretch, FieldInfo{.key = "stretch",
                                       .unit = "",
-                                      .doc = "Factor on each axis; 1 = true proportions",
+                                      .doc = "Factor by which each axis is stretched; 1 = true proportions",
                                       .range = Range{0.01, 1000},
                                       .logScale = true});
         visit(self.camera, FieldInfo{.key = "camera", .unit = "", .doc = "Camera of the 3D views"});
         visit(self.selection, FieldInfo{.key = "selection", .unit = "", .doc = "Brushes shared by all views"});
         visit(self.transfer, FieldInfo{.key = "transfer", .unit = "", .doc = "Transfer functions by parameter"});
-        visit(self.layers, FieldInfo{.key = "layers", .unit = "", .doc = "Techniques shown in the 3D views"});
+        visit(self.layers, FieldInfo{.key = "layers", .unit = "", .doc = "Layers drawn in the 3D views"});
         visit(self.render, FieldInfo{.key = "render", .unit = "", .doc = "Settings of the ray caster"});
         visit(self.lighting, FieldInfo{.key = "lighting", .unit = "", .doc = "Lights and surfaces"});
-        visit(self.clips, FieldInfo{.key = "clips", .unit = "", .doc = "Planes and bodies that cut the picture"});
-        visit(self.lenses, FieldInfo{.key = "lenses", .unit = "", .doc = "Magic lenses, the last one on top"});
-        visit(self.tone, FieldInfo{.key = "tone", .unit = "", .doc = "Bright light brought into range"});
-        visit(self.paper,
-              FieldInfo{.key = "paper", .unit = "", .doc = "What pictures lie on; none: the theme's background"});
+        visit(self.clips, FieldInfo{.key = "clips", .unit = "", .doc = "Planes and bodies that cut the data open"});
+        visit(self.lenses,
+              FieldInfo{.key = "lenses", .unit = "", .doc = "Lenses; a later one lies over an earlier one"});
+        visit(self.tone,
+              FieldInfo{.key = "tone", .unit = "", .doc = "Mapping of bright light to the range of the screen"});
+        visit(self.paper, FieldInfo{.key = "paper",
+                                    .unit = "",
+                                    .doc = "Paper behind the picture; none: the background of the theme"});
         visit(self.animation, FieldInfo{.key = "animation", .unit = "", .doc = "Playing through time or keyframes"});
-        visit(self.appearance, FieldInfo{.key = "appearance", .unit = "", .doc = "Looks of the window"});
-        visit(self.views, FieldInfo{.key = "views", .unit = "", .doc = "Open views by name"});
+        visit(self.appearance, FieldInfo{.key = "appearance", .unit = "", .doc = "Appearance of the window"});
+        visit(self.views, FieldInfo{.key = "views", .unit = "", .doc = "Views by the name of their pane"});
         visit(self.dock, FieldInfo{.key = "dock", .unit = "", .doc = "Arrangement of the panes", .hidden = true});
     }
 };

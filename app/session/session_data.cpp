@@ -80,17 +80,17 @@ void compareOthers(const OtherFiles& wanted, const OtherFiles& now, const std::s
     for (const auto& [other, hash] : wanted) {
         const auto found = now.find(other);
         if (found == now.end())
-            lines.push_back(nameOf(other) + " is no longer read with " + path);
+            lines.push_back(nameOf(other) + " is no longer opened together with " + path);
         else if (found->second != hash)
             lines.push_back(nameOf(other) + " has changed since the session was saved");
     }
     for (const auto& [other, hash] : now)
         if (!wanted.contains(other))
-            lines.push_back(nameOf(other) + " was not read with " + path + " when the session was saved");
+            lines.push_back(nameOf(other) + " was not opened together with " + path + " when the session was saved");
     if (lines.size() > kMost) {
         const std::size_t more = lines.size() - kMost;
         lines.resize(kMost);
-        lines.push_back("and " + std::to_string(more) + " further files of " + path + " are not as they were");
+        lines.push_back("and " + std::to_string(more) + " further files of " + path + " have changed");
     }
     warnings.insert(warnings.end(), lines.begin(), lines.end());
 }

@@ -117,8 +117,8 @@ void migrate(Json& document, const std::string& file) {
     if (!found->is_number_integer()) throw Error("needs a whole number", file, "/schema");
     const auto schema = found->get<std::int64_t>();
     if (schema > kSessionSchema)
-        throw Error("made by a newer version of Tessera (schema " + std::to_string(schema) + ", this one reads up to " +
-                        std::to_string(kSessionSchema) + ")",
+        throw Error("written by a newer version of Tessera (schema " + std::to_string(schema) +
+                        ", this one reads up to " + std::to_string(kSessionSchema) + ")",
                     file, "/schema");
     if (schema < kOldestSchema)
         throw Error("written by an early version of Tessera (schema " + std::to_string(schema) +
@@ -157,7 +157,7 @@ SessionDocument parseSession(std::string_view text, const std::string& file) {
         try {
             document.history = History::fromJson(*history, document.session);
         } catch (const Error& error) {
-            document.messages.push_back((file.empty() ? "" : file + ": ") + "/history: dropped: " + error.what());
+            document.messages.push_back((file.empty() ? "" : file + ": ") + "/history: removed: " + error.what());
         }
     }
     document.raw.erase("history");

@@ -26,14 +26,13 @@ struct TransferView {
                                       .unit = "",
                                       .doc = "Parameter whose transfer function is edited",
                                       .refersTo = "channel"});
-        visit(self.logHistogram,
-              FieldInfo{.key = "logHistogram", .unit = "", .doc = "Show the logarithm of the counts"});
+        visit(self.logHistogram, FieldInfo{.key = "logHistogram", .unit = "", .doc = "Logarithmic counts"});
         visit(self.visibility, FieldInfo{.key = "visibility",
                                          .unit = "",
-                                         .doc = "Show how much of what one sees comes from which values"});
+                                         .doc = "Show which values contribute how much to the visible picture"});
         visit(self.boundaries, FieldInfo{.key = "boundaries",
                                          .unit = "",
-                                         .doc = "Make the curve from boundaries: their emphasis is edited"});
+                                         .doc = "Compute the curve from boundaries, with an editable emphasis"});
     }
 };
 DrawView<TransferView> drawTransferView;
@@ -45,7 +44,7 @@ struct LayersView {
     static void describe(auto& self, auto&& visit) {
         visit(self.selected, FieldInfo{.key = "selected",
                                        .unit = "",
-                                       .doc = "Layer whose parameters are shown, counted from 0",
+                                       .doc = "Layer whose settings are shown, counted from 0",
                                        .range = Range{0, 1000},
                                        .hidden = true});
     }
@@ -87,30 +86,33 @@ inline constexpr std::tuple kViewKinds{
     ViewKind<VolumeView, drawVolumeView>{
         {.title = "Volume", .help = "The data in space", .inSpace = true, .camera = true, .padded = false}},
     ViewKind<SlicesView, drawSlicesView>{
-        {.title = "Slices", .help = "Three orthogonal slices with a read-out", .svg = true}},
+        {.title = "Slices", .help = "Three orthogonal slices, with the values at the cross-hair", .svg = true}},
     ViewKind<ScatterMatrixView, drawScatterMatrixView>{
-        {.title = "Scatterplots", .help = "Every pair of parameters; brush to select", .svg = true, .csv = true}},
+        {.title = "Scatterplots",
+         .help = "Scatterplots of every pair of parameters; drag to select",
+         .svg = true,
+         .csv = true}},
     ViewKind<TransferView, drawTransferView>{
         {.title = "Transfer function", .help = "Colours and opacity of a parameter"}},
     ViewKind<LayersView, drawLayersView>{{.title = "Layers", .help = "What the 3D views show"}},
-    ViewKind<TimelineView, drawTimelineView>{{.title = "Timeline", .help = "Play through time", .plays = true}},
-    ViewKind<DataView, drawDataView>{{.title = "Data", .help = "What is in the data set and the selection"}},
-    ViewKind<HistoryView, drawHistoryView>{{.title = "History", .help = "Every edit, undone and redone by a click"}},
-    ViewKind<LogView, drawLogView>{{.title = "Messages", .help = "What the program had to say"}},
+    ViewKind<TimelineView, drawTimelineView>{{.title = "Timeline", .help = "Play through the times", .plays = true}},
+    ViewKind<DataView, drawDataView>{{.title = "Data", .help = "Contents of the data set and of the selection"}},
+    ViewKind<HistoryView, drawHistoryView>{{.title = "History", .help = "All edits; click to undo or redo"}},
+    ViewKind<LogView, drawLogView>{{.title = "Messages", .help = "Messages of the program"}},
     ViewKind<StatisticsView, drawStatisticsView>{
-        {.title = "Statistics", .help = "Every parameter inside and outside of the selection", .csv = true},
+        {.title = "Statistics", .help = "Statistics of every parameter inside and outside the selection", .csv = true},
         {.title = "Region table",
-         .help = "Every parameter in every region, and what flows in and out of them",
+         .help = "Statistics of every parameter in every region, and balances of inflow and outflow",
          .prepare = [](StatisticsView& view) { view.byRegion = true; }}},
     ViewKind<HistogramView, drawHistogramView>{
         {.title = "Histogram", .help = "One parameter's histogram; drag to select", .svg = true, .csv = true}},
     ViewKind<ProfileView, drawProfileView>{
         {.title = "Line profile", .help = "Parameters along a line", .svg = true, .csv = true},
         {.title = "Section averages",
-         .help = "Means over planes across an axis, a curve for each region",
+         .help = "Means over planes across an axis, with one curve for each region",
          .prepare = [](ProfileView& view) { view.over = ProfileOver::Sections; }}},
     ViewKind<CurvesView, drawCurvesView>{{.title = "Curves",
-                                          .help = "Quantities and statistics over time, against each other",
+                                          .help = "Quantities and statistics over time, or against each other",
                                           .svg = true,
                                           .csv = true}},
     ViewKind<SliceMatrixView, drawSliceMatrixView>{
@@ -118,9 +120,9 @@ inline constexpr std::tuple kViewKinds{
     ViewKind<ShadowCubeView, drawShadowCubeView>{
         {.title = "Shadow cube", .help = "Projections on the faces of a cube around the scene", .inSpace = true}},
     ViewKind<TesseractView, drawTesseractView>{
-        {.title = "Tesseract", .help = "The field in four dimensions, turned in six planes", .inSpace = true}},
+        {.title = "Tesseract", .help = "All times at once in four dimensions, turned in six planes", .inSpace = true}},
     ViewKind<CompareView, drawCompareView>{{.title = "Side by side",
-                                            .help = "The 3D scene with other settings",
+                                            .help = "Compare the 3D scene with different settings",
                                             .csv = true,
                                             .inSpace = true,
                                             .camera = true}},

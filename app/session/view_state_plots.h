@@ -14,7 +14,7 @@
 namespace tessera::app {
 
 inline constexpr FieldInfo kShownChannels{
-    .key = "channels", .unit = "", .doc = "Parameters shown; none: every scalar and magnitude", .refersTo = "channel"};
+    .key = "channels", .unit = "", .doc = "Parameters shown; empty: every scalar and magnitude", .refersTo = "channel"};
 
 /// What a drag in a plot makes.
 enum class BrushTool { Rectangle, Ellipse, Lasso };
@@ -37,21 +37,22 @@ struct ScatterMatrixView {
               FieldInfo{.key = "channels", .unit = "", .doc = "Parameters compared", .refersTo = "channel"});
         visit(self.bins,
               FieldInfo{.key = "bins", .unit = "", .doc = "Bins along each axis of a plot", .range = Range{16, 512}});
-        visit(self.logDensity, FieldInfo{.key = "logDensity", .unit = "", .doc = "Show the logarithm of the density"});
+        visit(self.logDensity, FieldInfo{.key = "logDensity", .unit = "", .doc = "Logarithmic density"});
         visit(self.tool, FieldInfo{.key = "tool", .unit = "", .doc = "Shape of new brushes", .names = kBrushToolNames});
         visit(self.softness, FieldInfo{.key = "softness",
                                        .unit = "",
-                                       .doc = "Soft edge of new brushes, share of their width",
+                                       .doc = "Soft edge of new brushes, as a share of their width",
                                        .range = Range{0, 1}});
         visit(self.colorBy, FieldInfo{.key = "colorBy",
                                       .unit = "",
-                                      .doc = "Parameter whose mean colours the plots; none: the density",
+                                      .doc = "Parameter whose mean colours the plots; empty: colour by density",
                                       .refersTo = "optionalChannel"});
-        visit(self.outliers, FieldInfo{.key = "outliers", .unit = "", .doc = "Mark places where few samples lie"});
-        visit(self.zoom, FieldInfo{.key = "zoom", .unit = "", .doc = "Values shown, by parameter", .hidden = true});
+        visit(self.outliers, FieldInfo{.key = "outliers", .unit = "", .doc = "Mark places with few samples"});
+        visit(self.zoom,
+              FieldInfo{.key = "zoom", .unit = "", .doc = "Visible range of values, by parameter", .hidden = true});
         visit(self.enlarged, FieldInfo{.key = "enlarged",
                                        .unit = "",
-                                       .doc = "Parameters of the plot that is shown large",
+                                       .doc = "Parameters of the enlarged plot",
                                        .refersTo = "channel",
                                        .hidden = true});
     }
@@ -70,15 +71,14 @@ struct StatisticsView {
         visit(self.channels, kShownChannels);
         visit(self.correlateWith, FieldInfo{.key = "correlateWith",
                                             .unit = "",
-                                            .doc = "Parameter that the others are correlated with",
+                                            .doc = "Parameter with which the correlation of the others is shown",
                                             .refersTo = "channel"});
         visit(self.byRegion,
-              FieldInfo{.key = "byRegion", .unit = "", .doc = "Numbers of every region instead of the selection"});
-        visit(self.balance,
-              FieldInfo{.key = "balance",
-                        .unit = "",
-                        .doc = "By region: what of this parameter flows in and out, instead of statistics",
-                        .refersTo = "channel"});
+              FieldInfo{.key = "byRegion", .unit = "", .doc = "Statistics of every region instead of the selection"});
+        visit(self.balance, FieldInfo{.key = "balance",
+                                      .unit = "",
+                                      .doc = "By region: inflow and outflow of this parameter instead of statistics",
+                                      .refersTo = "channel"});
     }
 };
 DrawView<StatisticsView> drawStatisticsView;
@@ -93,10 +93,10 @@ struct HistogramView {
     static void describe(auto& self, auto&& visit) {
         visit(self.channel, FieldInfo{.key = "channel", .unit = "", .doc = "Parameter shown", .refersTo = "channel"});
         visit(self.bins, FieldInfo{.key = "bins", .unit = "", .doc = "Bins", .range = Range{8, 1024}});
-        visit(self.logCounts, FieldInfo{.key = "logCounts", .unit = "", .doc = "Show the logarithm of the counts"});
+        visit(self.logCounts, FieldInfo{.key = "logCounts", .unit = "", .doc = "Logarithmic counts"});
         visit(self.softness, FieldInfo{.key = "softness",
                                        .unit = "",
-                                       .doc = "Soft edge of new brushes, share of their width",
+                                       .doc = "Soft edge of new brushes, as a share of their width",
                                        .range = Range{0, 1}});
     }
 };
@@ -120,13 +120,14 @@ struct ProfileView {
         visit(self.channels, kShownChannels);
         visit(self.over, FieldInfo{.key = "over",
                                    .unit = "",
-                                   .doc = "Values along the line, at the cursor over time, along the line at every "
+                                   .doc = "Values along the line, at the cross-hair over time, along the line at every "
                                           "time as colours, or averages over planes",
                                    .names = kProfileOverNames});
         visit(self.points,
-              FieldInfo{.key = "points", .unit = "m", .doc = "Corners of the line; none: along the longest axis"});
+              FieldInfo{.key = "points", .unit = "m", .doc = "Corners of the line; empty: along the longest axis"});
         visit(self.samples,
-              FieldInfo{.key = "samples", .unit = "", .doc = "Places along the line", .range = Range{16, 4096}});
+              FieldInfo{
+                  .key = "samples", .unit = "", .doc = "Number of points along the line", .range = Range{16, 4096}});
         visit(self.sections, FieldInfo{.key = "sections", .unit = "", .doc = "Averages over planes"});
     }
 };
@@ -141,20 +142,20 @@ struct CurvesView {
     bool brushed = false;       ///< and of what the brushes select
     bool operator==(const CurvesView&) const = default;
     static void describe(auto& self, auto&& visit) {
-        visit(self.x, FieldInfo{.key = "x",
-                                .unit = "",
-                                .doc = "What runs to the right: time, a quantity over time, a formula; none: what the "
-                                       "curves want"});
+        visit(
+            self.x,
+            FieldInfo{.key = "x",
+                      .unit = "",
+                      .doc = "Horizontal axis: time, a quantity over time, or a formula; empty: chosen by the curves"});
         visit(self.y, FieldInfo{.key = "y",
                                 .unit = "",
                                 .doc = "Curves: quantities over time, mean(T), min(T), max(T), deviation(T), share(T), "
-                                       "volume(T), integral(T), formulas of them; none: the polarisation curve, "
+                                       "volume(T), integral(T), or formulas of them; empty: the polarisation curve, "
                                        "else every quantity, else a mean"});
         visit(self.region, FieldInfo{.key = "region",
                                      .unit = "",
-                                     .doc = "Region of a label that statistics are of; none: everywhere"});
-        visit(self.brushed,
-              FieldInfo{.key = "brushed", .unit = "", .doc = "Statistics are of what the brushes select"});
+                                     .doc = "Region in which statistics are computed; empty: everywhere"});
+        visit(self.brushed, FieldInfo{.key = "brushed", .unit = "", .doc = "Compute statistics of the selection"});
     }
 };
 DrawView<CurvesView> drawCurvesView;
@@ -168,11 +169,12 @@ struct SliceMatrixView {
     bool operator==(const SliceMatrixView&) const = default;
     static void describe(auto& self, auto&& visit) {
         visit(self.channels, kShownChannels);
-        visit(
-            self.axis,
-            FieldInfo{.key = "axis", .unit = "", .doc = "Axis the planes stand on", .names = volume::kSpaceAxisNames});
+        visit(self.axis, FieldInfo{.key = "axis",
+                                   .unit = "",
+                                   .doc = "Axis perpendicular to the planes",
+                                   .names = volume::kSpaceAxisNames});
         visit(self.planes,
-              FieldInfo{.key = "planes", .unit = "", .doc = "Planes, evenly spread", .range = Range{1, 12}});
+              FieldInfo{.key = "planes", .unit = "", .doc = "Number of planes, evenly spaced", .range = Range{1, 12}});
     }
 };
 DrawView<SliceMatrixView> drawSliceMatrixView;

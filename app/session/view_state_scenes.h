@@ -23,14 +23,16 @@ struct VolumeView {
         visit(self.showLegend, FieldInfo{.key = "legend", .unit = "", .doc = "Draw colour legends"});
         visit(self.showCursor, FieldInfo{.key = "cursor", .unit = "", .doc = "Draw the linked cross-hair"});
         visit(self.showGizmo,
-              FieldInfo{.key = "gizmo", .unit = "", .doc = "Draw the axis triad; a click on an end looks along it"});
-        visit(self.showScaleBar, FieldInfo{.key = "scaleBar", .unit = "", .doc = "Draw a bar of a round length"});
+              FieldInfo{.key = "gizmo", .unit = "", .doc = "Draw the axis triad; a click on an axis looks along it"});
+        visit(self.showScaleBar, FieldInfo{.key = "scaleBar", .unit = "", .doc = "Draw a scale bar"});
         visit(self.showLenses,
-              FieldInfo{.key = "lenses", .unit = "", .doc = "Draw outlines of lenses, and handles under the mouse"});
+              FieldInfo{.key = "lenses",
+                        .unit = "",
+                        .doc = "Draw outlines of lenses, and the handles of the object under the mouse"});
         visit(self.inSpace, FieldInfo{.key = "inSpace",
                                       .unit = "",
-                                      .doc = "While time runs along an axis: the data in space at the time of the "
-                                             "cross-hair, with the plane that is shown at all times"});
+                                      .doc = "With time along an axis: show the data in space, at the time of the "
+                                             "cross-hair, with the outline of the plane that is shown at all times"});
     }
 };
 DrawView<VolumeView> drawVolumeView;
@@ -51,11 +53,13 @@ struct SlicesView {
         visit(self.contourOf,
               FieldInfo{.key = "contourOf",
                         .unit = "",
-                        .doc = "Parameter that the contour lines are of, at round values; none: the one shown",
+                        .doc = "Parameter of the contour lines, drawn at round values; empty: the parameter shown",
                         .refersTo = "optionalChannel"});
-        visit(self.contourValues,
-              FieldInfo{.key = "contourValues", .unit = "", .doc = "Lines at round values, which are written on them"});
-        visit(self.showReadout, FieldInfo{.key = "readout", .unit = "", .doc = "List every parameter at the cursor"});
+        visit(
+            self.contourValues,
+            FieldInfo{.key = "contourValues", .unit = "", .doc = "Draw the lines at round values, labelled with them"});
+        visit(self.showReadout,
+              FieldInfo{.key = "readout", .unit = "", .doc = "List the value of every parameter at the cross-hair"});
     }
 };
 DrawView<SlicesView> drawSlicesView;
@@ -72,8 +76,8 @@ struct Wall {
         visit(self.channel, FieldInfo{.key = "channel", .unit = "", .doc = "Parameter shown", .refersTo = "channel"});
         visit(self.kind, FieldInfo{.key = "kind",
                                    .unit = "",
-                                   .doc = "At the cursor, mean or maximum along the axis, absorption by the transfer "
-                                          "function, or the shadow that the selection casts",
+                                   .doc = "Projection along the axis: slice at the cross-hair, mean, maximum, "
+                                          "absorption by the transfer function, or shadow of the selection",
                                    .names = kWallKindNames});
     }
 };
@@ -97,16 +101,17 @@ struct ShadowCubeView {
         visit(self.front, FieldInfo{.key = "front", .unit = "", .doc = "Face at the upper end of z"});
         visit(self.gap, FieldInfo{.key = "gap",
                                   .unit = "",
-                                  .doc = "From the data to the faces, longest edge = 1",
+                                  .doc = "Distance from the data to the faces; longest edge = 1",
                                   .range = Range{0, 1}});
-        visit(self.together, FieldInfo{.key = "together",
-                                       .unit = "",
-                                       .doc = "The cube turns with the object; else each is turned by itself"});
+        visit(self.together,
+              FieldInfo{.key = "together", .unit = "", .doc = "Turn cube and data together; else each by itself"});
+        visit(self.orientation, FieldInfo{.key = "orientation",
+                                          .unit = "",
+                                          .doc = "Rotation of the cube while it is turned by itself",
+                                          .hidden = true});
         visit(
-            self.orientation,
-            FieldInfo{.key = "orientation", .unit = "", .doc = "Of the cube while it turns by itself", .hidden = true});
-        visit(self.brushing,
-              FieldInfo{.key = "brushing", .unit = "", .doc = "Dragging on a face selects the prism behind it"});
+            self.brushing,
+            FieldInfo{.key = "brushing", .unit = "", .doc = "Select the prism behind a face by dragging on the face"});
     }
 };
 DrawView<ShadowCubeView> drawShadowCubeView;
@@ -136,11 +141,11 @@ struct TesseractView {
         visit(self.channel, FieldInfo{.key = "channel", .unit = "", .doc = "Parameter shown", .refersTo = "channel"});
         visit(self.fourth, FieldInfo{.key = "fourth",
                                      .unit = "",
-                                     .doc = "Parameter along the fourth axis, at the time shown; none: time itself",
+                                     .doc = "Parameter along the fourth axis, at the time shown; empty: time itself",
                                      .refersTo = "optionalChannel"});
         visit(self.colorBy, FieldInfo{.key = "colorBy",
                                       .unit = "",
-                                      .doc = "Points coloured by their value or by the fourth axis",
+                                      .doc = "Colour points by their value or by the fourth axis",
                                       .names = kTesseractColorNames});
         const Range turn{-180, 180};
         visit(self.turn, FieldInfo{.key = "turn",
@@ -170,18 +175,19 @@ struct TesseractView {
                                       .logScale = true});
         visit(self.points, FieldInfo{.key = "points",
                                      .unit = "",
-                                     .doc = "Samples drawn at most",
+                                     .doc = "Largest number of samples drawn",
                                      .range = Range{1000, 2000000},
                                      .logScale = true});
-        visit(self.cube,
-              FieldInfo{.key = "cube", .unit = "", .doc = "All axes equally long; else the proportions as shown"});
+        visit(self.cube, FieldInfo{.key = "cube",
+                                   .unit = "",
+                                   .doc = "Draw all axes equally long; else in the proportions of the 3D view"});
         visit(self.showWire, FieldInfo{.key = "wire", .unit = "", .doc = "Draw the edges of the tesseract"});
         visit(self.showNow, FieldInfo{.key = "now", .unit = "", .doc = "Draw the cell of the time shown"});
         visit(self.showLegend, FieldInfo{.key = "legend", .unit = "", .doc = "Draw colour legends"});
         visit(self.showControls, FieldInfo{.key = "controls", .unit = "", .doc = "Show a slider for each plane"});
         visit(self.lattice, FieldInfo{.key = "lattice",
                                       .unit = "",
-                                      .doc = "Cells of the lattice drawn along each axis, 0 = none",
+                                      .doc = "Lattice cells drawn along each axis; 0 = none",
                                       .range = Range{0, 8}});
         visit(self.tour, FieldInfo{.key = "tour", .unit = "", .doc = "Keep turning in two planes at once"});
         visit(self.tourSpeed, FieldInfo{.key = "tourSpeed",

@@ -43,7 +43,7 @@ std::string regionText(const volume::DatasetInfo& info, const vis::Region& regio
         return "lasso in " + lasso->x + " \u00d7 " + lasso->y + ", " + std::to_string(lasso->points.size()) +
                " corners";
     if (const auto* lens = std::get_if<vis::LensRegion>(&region))
-        return lens->lens.empty() ? "all lenses that mark" : "inside the lens " + lens->lens;
+        return lens->lens.empty() ? "all lenses that mark samples" : "inside the lens " + lens->lens;
     const bool box = std::holds_alternative<vis::BoxRegion>(region);
     const glm::dvec3 radius =
         box ? std::get<vis::BoxRegion>(region).radius : std::get<vis::SphereRegion>(region).radius;
@@ -67,7 +67,8 @@ void chooseCombine(vis::Brush& brush) {
         ImGui::EndCombo();
     }
     if (ImGui::IsItemHovered())
-        tooltip("How it meets the brushes above: and = where both hold, or = where either holds, minus = without this");
+        tooltip(
+            "How it combines with the brushes above: and = inside both, or = inside either, minus = outside this one");
 }
 
 /// Numbers that make no sense are turned into the nearest that do.
@@ -91,7 +92,7 @@ bool drawBrush(ViewContext& context, vis::Brush& brush, std::size_t index) {
     const volume::DatasetInfo& info = context.source->info();
     const WidgetContext widgets{.info = &info};
     ImGui::Checkbox("##enabled", &brush.enabled);
-    if (ImGui::IsItemHovered()) tooltip("Takes part in the selection");
+    if (ImGui::IsItemHovered()) tooltip("Use this brush in the selection");
     ImGui::SameLine(0, em() * 0.3f);
     ImGui::ColorEdit3("##color", &brush.color.x,
                       ImGuiColorEditFlags_NoInputs | ImGuiColorEditFlags_NoLabel | ImGuiColorEditFlags_NoTooltip);
@@ -118,8 +119,8 @@ bool drawBrush(ViewContext& context, vis::Brush& brush, std::size_t index) {
                 ImGui::PopID();
             }
         } else if (auto* lens = std::get_if<vis::LensRegion>(&brush.region)) {
-            drawLabel(widgets, "Lens", "Lens whose inside is brushed, wherever it is");
-            chooseLens("##lens", context.session, lens->lens, "all that mark");
+            drawLabel(widgets, "Lens", "Lens whose inside is selected, wherever it is dragged");
+            chooseLens("##lens", context.session, lens->lens, "all that mark samples");
         } else {
             std::visit([&](auto& region) { drawDescribed(region, widgets); }, brush.region);
         }
@@ -195,8 +196,8 @@ void drawBrushList(ViewContext& context) {
         if (!first && ImGui::GetItemRectMax().x + style.ItemSpacing.x + width <= right) ImGui::SameLine();
         return ImGui::SmallButton(text);
     };
-    if (button("Sphere at cursor", true)) addAtCursor(context, false);
-    if (button("Box at cursor")) addAtCursor(context, true);
+    if (button("Sphere at cross-hair", true)) addAtCursor(context, false);
+    if (button("Box at cross-hair")) addAtCursor(context, true);
     if (!context.session.lenses.empty() && button("Inside the lens")) {
         vis::Brush brush;
         brush.name = newBrushName(selection, context.session.lenses.back().name);
@@ -205,10 +206,10 @@ void drawBrushList(ViewContext& context) {
         selection.brushes.push_back(std::move(brush));
     }
     if (!selection.brushes.empty() && button("Clear all")) selection.brushes.clear();
-    if (selection.active() && button("Make it opaque")) makeOpaque(context.session);
+    if (selection.active() && button("Make selection opaque")) makeOpaque(context.session);
     if (selection.active() && ImGui::IsItemHovered())
-        tooltip("The volumes become equally opaque everywhere: what is selected shows, whatever the transfer function "
-                "hides, and the rest fades");
+        tooltip("Gives every volume the same opacity for all values, so that selected samples are visible even where "
+                "the transfer function hides them");
 }
 
 std::string combinationText(const vis::Selection& selection) {
@@ -227,7 +228,7 @@ std::string combinationText(const vis::Selection& selection) {
         text = count > 0 ? text + kWords[static_cast<std::size_t>(brush.combine)] + own : own;
         ++count;
     }
-    return count < 2 ? std::string() : either ? text : text + "; Shift in a plot adds (or), Ctrl takes away (minus)";
+    return count < 2 ? std::string() : either ? text : text + "; Shift in a plot adds (or), Ctrl removes (minus)";
 }
 
 vis::Brush spaceBrush(const Session& session, const volume::DatasetInfo& info, bool box) {
@@ -244,8 +245,8 @@ vis::Brush spaceBrush(const Session& session, const volume::DatasetInfo& info, b
 }
 
 void drawBrushMenu(ViewContext& context) {
-    if (ImGui::MenuItem("Brush a sphere at the cursor")) addAtCursor(context, false);
-    if (ImGui::MenuItem("Brush a box at the cursor")) addAtCursor(context, true);
+    if (ImGui::MenuItem("Brush a sphere at the cross-hair")) addAtCursor(context, false);
+    if (ImGui::MenuItem("Brush a box at the cross-hair")) addAtCursor(context, true);
     if (ImGui::MenuItem("Clear brushes", "Esc", false, !context.session.selection.brushes.empty()))
         context.session.selection.brushes.clear();
 }

@@ -17,12 +17,12 @@ struct EffectWords {
     const char* help;
 };
 constexpr EffectWords kEffects[] = {
-    {"replace", "Inside, its own layers stand in for those below; without any, these are cut away"},
-    {"only this", "Only what lies inside stays"},
-    {"enhance", "What lies inside becomes denser"},
-    {"suppress", "What lies inside becomes faint and grey"},
-    {"magnify", "What lies in the middle becomes larger, as through a fisheye"},
-    {"brushes", "Brushes act inside alone; outside everything is in focus"},
+    {"replace", "Inside, the layers of the lens replace the others; a lens without layers cuts them away"},
+    {"only this", "Only what is inside is drawn"},
+    {"enhance", "What is inside becomes more opaque"},
+    {"suppress", "What is inside becomes faint and grey"},
+    {"magnify", "The centre is magnified, as by a fisheye lens"},
+    {"brushes", "Brushes act inside only; outside, everything is in focus"},
 };
 static_assert(std::size(kEffects) == std::size(vis::kLensEffectNames));
 
@@ -110,7 +110,8 @@ enum class RowAction { None, Remove, Up };
 /// A grip in front of a lens: dragged onto another one it takes that one's place in the order. Returns the place of the
 /// lens that was dropped here, -1 for none.
 int drawGrip(const ViewContext& context, const vis::Lens& lens, std::size_t index) {
-    iconButton(context, "grip", {"\uf142", "::"}, "Drag to another lens: later ones lie over those before them");
+    iconButton(context, "grip", {"\uf142", "::"},
+               "Drag onto another lens to change the order; later ones lie over earlier ones");
     if (ImGui::BeginDragDropSource()) {
         const int from = static_cast<int>(index);
         ImGui::SetDragDropPayload(kLensPayload, &from, sizeof from);
@@ -132,7 +133,7 @@ RowAction drawLens(ViewContext& context, const std::string& pane, LensStatistics
     vis::Lens& lens = session.lenses[index];
     RowAction action = RowAction::None;
     ImGui::Checkbox("##enabled", &lens.enabled);
-    if (ImGui::IsItemHovered()) tooltip("Acts and is seen");
+    if (ImGui::IsItemHovered()) tooltip("Apply and show this lens");
     ImGui::SameLine(0, em() * 0.3f);
     ImGui::ColorEdit3("##color", &lens.color.x,
                       ImGuiColorEditFlags_NoInputs | ImGuiColorEditFlags_NoLabel | ImGuiColorEditFlags_NoTooltip);
@@ -145,12 +146,12 @@ RowAction drawLens(ViewContext& context, const std::string& pane, LensStatistics
     std::string name = lens.name;
     if (ImGui::InputText("##name", &name) && !name.empty()) renameLens(session, index, name);
     ImGui::SameLine(0, em() * 0.3f);
-    if (iconButton(context, "up", {"\uf062", "up"}, "Lay it under the one above", index > 0)) action = RowAction::Up;
+    if (iconButton(context, "up", {"\uf062", "up"}, "Move below the lens above it", index > 0)) action = RowAction::Up;
     ImGui::SameLine(0, em() * 0.2f);
     if (iconButton(context, "invert", icons::kInvert, "Act outside instead of inside", true, lens.inverted))
         lens.inverted = !lens.inverted;
     ImGui::SameLine(0, em() * 0.2f);
-    if (iconButton(context, "delete", icons::kTrash, "Remove this lens; its layers are hidden"))
+    if (iconButton(context, "delete", icons::kTrash, "Remove this lens; its layers are no longer drawn"))
         action = RowAction::Remove;
     ImGui::Indent(em() * 1.6f);
     const std::string inside = layersOf(session, lens.name);
@@ -165,7 +166,7 @@ RowAction drawLens(ViewContext& context, const std::string& pane, LensStatistics
             edited.name = lens.name;
         }
         lens = edited;
-        if (ImGui::SmallButton("To the cursor")) lens.center = session.cursor;
+        if (ImGui::SmallButton("To the cross-hair")) lens.center = session.cursor;
         drawStatistics(context, pane, statistics, lens);
         ImGui::TreePop();
     }
@@ -296,8 +297,8 @@ void drawLensList(ViewContext& context, const std::string& pane, LensStatistics&
     if (action == RowAction::Remove) removeLens(session, which);
     if (action == RowAction::Up) std::swap(session.lenses[which], session.lenses[which - 1]);
     if (action == RowAction::None && from != to) moveLens(session, from, to);
-    if (session.lenses.empty()) ImGui::TextDisabled("No lenses: add one at the linked cursor.");
-    if (iconButton(context, "add lens", icons::kPlus, "Add a lens at the cursor")) ImGui::OpenPopup("add lens");
+    if (session.lenses.empty()) ImGui::TextDisabled("No lenses: add one at the cross-hair.");
+    if (iconButton(context, "add lens", icons::kPlus, "Add a lens at the cross-hair")) ImGui::OpenPopup("add lens");
     if (ImGui::BeginPopup("add lens")) {
         drawLensMenu(context);
         ImGui::EndPopup();

@@ -105,7 +105,7 @@ const Command* drawPalette(CommandPalette& palette, const std::vector<Command>& 
 
     if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
     ImGui::SetNextItemWidth(-FLT_MIN);
-    const bool enter = ImGui::InputTextWithHint("##search", "What do you want to do?", &palette.text,
+    const bool enter = ImGui::InputTextWithHint("##search", "Search for a command", &palette.text,
                                                 ImGuiInputTextFlags_EnterReturnsTrue);
     if (ImGui::IsItemEdited()) palette.chosen = 0;
     const int count = static_cast<int>(matches.size());
@@ -127,7 +127,7 @@ const Command* drawPalette(CommandPalette& palette, const std::vector<Command>& 
             ImGui::TextDisabled("%s", keys.c_str());
         }
     }
-    if (count == 0) ImGui::TextDisabled("Nothing of that name");
+    if (count == 0) ImGui::TextDisabled("No such command");
     ImGui::EndChild();
     if (enter && count > 0) chosen = matches[static_cast<std::size_t>(palette.chosen)].command;
     if (chosen || pressed({.key = key::kEscape})) {

@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr const char* kRefused = "This file cannot be opened: the preview says why.";
+constexpr const char* kRefused = "This file cannot be opened; the preview shows the reason.";
 
 } // namespace
 
@@ -203,7 +203,7 @@ void FileDialog::drawPreview(float height) {
     ImGui::BeginChild("##preview", {0, height}, true);
     ImGui::PushTextWrapPos(0);
     if (const std::vector<std::string> paths = filesNamed(); paths.empty()) {
-        ImGui::TextDisabled("Choose a file to see what is in it.");
+        ImGui::TextDisabled("Choose a file to see its contents.");
         ImGui::TextDisabled("Ctrl+click for several.");
     } else if (const FilePreview seen = preview(paths.back()); seen.text.empty()) {
         ImGui::TextDisabled("Reading the header...");

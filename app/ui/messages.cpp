@@ -38,7 +38,7 @@ bool drawToast(const Messages::Message& message, float width, bool icons) {
     ImGui::PushStyleColor(ImGuiCol_Button, 0);
     const bool closed = ImGui::SmallButton(icons ? icon::kCross : "x");
     ImGui::PopStyleColor();
-    if (ImGui::IsItemHovered()) ImGui::SetTooltip("Close; the pane Messages keeps it");
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("Close; the message stays in the pane Messages");
     return closed || (ImGui::IsWindowHovered() && ImGui::IsMouseClicked(ImGuiMouseButton_Left));
 }
 

@@ -1,5 +1,6 @@
 #include "app/ui/widgets.h"
 
+#include "app/described/key_words.h"
 #include "app/ui/theme.h"
 #include "app/ui/ticks.h"
 #include "vis/transfer/transfer_function.h"
@@ -55,11 +56,7 @@ void drawPreview(ImVec2 lo, ImVec2 hi, std::string_view map, bool reversed) {
 } // namespace
 
 std::string labelOf(std::string_view key) {
-    std::string label;
-    for (const char c : key) {
-        if (std::isupper(static_cast<unsigned char>(c)) != 0) label += ' ';
-        label += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    }
+    std::string label = keyWords(key);
     if (!label.empty()) label[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(label[0])));
     return label;
 }
@@ -226,7 +223,7 @@ bool drawText(const WidgetContext& context, const FieldInfo& info, std::string& 
     if (info.refersTo == "channel") return chooseChannel(idOf(info).c_str(), context.info, value, "as first layer");
     if (info.refersTo == "vector") return chooseVector(idOf(info).c_str(), context.info, value);
     if (info.refersTo == "colorChannel")
-        return chooseChannel(idOf(info).c_str(), context.info, value, "its own colour");
+        return chooseChannel(idOf(info).c_str(), context.info, value, "own transfer function");
     if (info.refersTo == "optionalChannel") return chooseChannel(idOf(info).c_str(), context.info, value, "none");
     if (info.refersTo == "colormap") return chooseColormap(idOf(info).c_str(), value);
     if (info.refersTo != "path" || !context.browse) return ImGui::InputText(idOf(info).c_str(), &value);

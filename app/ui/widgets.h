@@ -35,7 +35,7 @@ struct WidgetContext {
 /// A label in the left column with the help as a tooltip; the next item fills the rest of the line.
 void drawLabel(const WidgetContext& context, std::string_view label, std::string_view help);
 
-/// "contextOpacity" -> "Context opacity".
+/// The label of a setting: keyWords with a capital, "contextOpacity" -> "Context opacity".
 std::string labelOf(std::string_view key);
 
 bool drawBool(const WidgetContext& context, const FieldInfo& info, bool& value);
@@ -91,7 +91,7 @@ template <class T> bool drawPresets(const WidgetContext& context, T& value) {
     const auto found = std::find_if(names.begin(), names.end(), [&](auto name) { return T::preset(name) == value; });
     int index = static_cast<int>(found - names.begin());
     if (found == names.end()) names.push_back(kOwn);
-    const FieldInfo field{.key = "preset", .unit = "", .doc = "Ready-made settings to start from", .names = names};
+    const FieldInfo field{.key = "preset", .unit = "", .doc = "Presets to start from", .names = names};
     if (!drawChoice(context, field, index) || names[static_cast<std::size_t>(index)] == kOwn) return false;
     value = *T::preset(names[static_cast<std::size_t>(index)]);
     return true;

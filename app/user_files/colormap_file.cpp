@@ -69,7 +69,7 @@ std::vector<vis::ColorStop> parseColormap(std::string_view text, const std::stri
     std::stable_sort(stops.begin(), stops.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
     if (stops.size() < 2) throw Error("a colour map has at least two colours", file);
     const double lo = stops.front().first, width = stops.back().first - lo;
-    if (!(width > 0)) throw Error("all colours are at one place", file);
+    if (!(width > 0)) throw Error("all colours have the same position", file);
     std::vector<vis::ColorStop> out;
     for (const auto& [position, color] : stops) out.push_back({float((position - lo) / width), color});
     return out;

@@ -45,14 +45,14 @@ void showSpaceBeside(Session& session, bool wanted) {
 std::vector<Command> historyCommands(Workbench& workbench) {
     return {{.menu = "Edit",
              .name = "Undo",
-             .help = "Take back the last edit",
+             .help = "Undo the last edit",
              .shortcut = {.key = 'Z', .ctrl = true},
              .run = [&workbench] { workbench.document().undo(); },
              .enabled = [&workbench] { return workbench.history().canUndo() && !workbench.history().pending(); },
              .repeats = true},
             {.menu = "Edit",
              .name = "Redo",
-             .help = "Do it again",
+             .help = "Redo the last undone edit",
              .shortcut = {.key = 'Z', .ctrl = true, .shift = true},
              .alternative = {.key = 'Y', .ctrl = true},
              .run = [&workbench] { workbench.document().redo(); },
@@ -66,14 +66,14 @@ std::vector<Command> brushCommands(Workbench& workbench) {
     };
     return {{.menu = "Edit",
              .name = "-Clear brushes",
-             .help = "Nothing is selected: everything is in focus",
+             .help = "Remove all brushes, so that everything is in focus",
              .shortcut = {.key = key::kEscape},
              .run = [brushes] { brushes().clear(); },
              // While something is dragged Esc takes back that alone.
              .enabled = [brushes] { return !brushes().empty() && !ImGui::IsAnyItemActive(); }},
             {.menu = "Edit",
              .name = "Invert brushes",
-             .help = "Focus what is outside of every brush",
+             .help = "Invert every brush",
              .run =
                  [brushes] {
                      for (vis::Brush& brush : brushes()) brush.inverted = !brush.inverted;
@@ -86,14 +86,14 @@ std::vector<Command> timeCommands(Workbench& workbench) {
     const auto playing = [&workbench]() -> bool& { return workbench.session().animation.playing; };
     return {{.menu = "Edit",
              .name = "-Previous time",
-             .help = "One stored time back",
+             .help = "Go to the previous stored time",
              .shortcut = {.key = key::kLeft},
              .run = [&workbench] { workbench.document().stepTime(-1); },
              .enabled = loaded,
              .repeats = true},
             {.menu = "Edit",
              .name = "Next time",
-             .help = "One stored time on",
+             .help = "Go to the next stored time",
              .shortcut = {.key = key::kRight},
              .run = [&workbench] { workbench.document().stepTime(1); },
              .enabled = loaded,
@@ -110,19 +110,20 @@ std::vector<Command> timeCommands(Workbench& workbench) {
 std::vector<Command> latticeCommands(Workbench& workbench) {
     std::vector<Command> commands;
     for (const auto lattice : {PictureLattice::Grid, PictureLattice::BodyCentred})
-        commands.push_back({.menu = "Edit",
-                            .name = lattice == PictureLattice::Grid
-                                        ? "-Draw on the grid of the file"
-                                        : "Draw on the body-centred lattice (70.7 % of the samples)",
-                            .help = "What pictures are drawn from; numbers come from the samples of the file on either",
-                            .run = [&workbench, lattice] { workbench.session().data.lattice = lattice; },
-                            .enabled =
-                                [&workbench] {
-                                    const DataRef& data = workbench.session().data;
-                                    return workbench.document().loaded() && !data.packed &&
-                                           (data.files.empty() || showsDataFiles(workbench.document()));
-                                },
-                            .checked = [&workbench, lattice] { return workbench.session().data.lattice == lattice; }});
+        commands.push_back(
+            {.menu = "Edit",
+             .name = lattice == PictureLattice::Grid ? "-Draw on the grid of the file"
+                                                     : "Draw on the body-centred lattice (70.7 % of the samples)",
+             .help =
+                 "Choose the lattice that pictures are drawn from; numbers always come from the samples of the file",
+             .run = [&workbench, lattice] { workbench.session().data.lattice = lattice; },
+             .enabled =
+                 [&workbench] {
+                     const DataRef& data = workbench.session().data;
+                     return workbench.document().loaded() && !data.packed &&
+                            (data.files.empty() || showsDataFiles(workbench.document()));
+                 },
+             .checked = [&workbench, lattice] { return workbench.session().data.lattice == lattice; }});
     return commands;
 }
 
@@ -135,7 +136,7 @@ void toggleTimeAlong(Workbench& workbench, volume::SpaceAxis axis) {
     const int a = static_cast<int>(axis);
     if (!shown) data.timeAxis = {axis, (workbench.session().cursor[a] - box.lo[a]) / box.size()[a]};
     showSpaceBeside(workbench.session(), data.timeAxis.has_value());
-    workbench.data().show(data, "Times as an axis");
+    workbench.data().show(data, "Time along an axis");
 }
 
 std::vector<Command> timeAlongCommands(Workbench& workbench) {
@@ -150,15 +151,14 @@ std::vector<Command> timeAlongCommands(Workbench& workbench) {
             return !workbench.session().data.timeAxis && info.times.size() > 1 &&
                    info.bounds.size()[static_cast<int>(axis)] > 0;
         };
-        commands.push_back(
-            {.menu = "Edit",
-             .name = "Time along " + std::string(volume::kSpaceAxisNames[std::size_t(axis)]),
-             .help =
-                 "The plane through the cross-hair at all times, time in place of the axis; the data in space beside",
-             .run = [&workbench, axis] { toggleTimeAlong(workbench, axis); },
-             .enabled = [&workbench, shown,
-                         possible] { return workbench.document().loaded() && (shown() || possible()); },
-             .checked = shown});
+        commands.push_back({.menu = "Edit",
+                            .name = "Time along " + std::string(volume::kSpaceAxisNames[std::size_t(axis)]),
+                            .help = "Show the plane through the cross-hair at all times, with time along this axis, "
+                                    "beside the data in space",
+                            .run = [&workbench, axis] { toggleTimeAlong(workbench, axis); },
+                            .enabled = [&workbench, shown,
+                                        possible] { return workbench.document().loaded() && (shown() || possible()); },
+                            .checked = shown});
     }
     return commands;
 }
@@ -183,14 +183,14 @@ std::vector<Command> differenceCommands(Workbench& workbench) {
             .enabled =
                 [&workbench] { return workbench.document().loaded() && workbench.document().info().times.size() > 1; }};
     };
-    return {command("Minus another time: first", "How the parameter shown differs from what it is at the first time",
+    return {command("Minus another time: first", "Add the parameter shown minus its values at the first time",
                     volume::OtherTime::First),
-            command("Minus another time: previous",
-                    "How the parameter shown differs from what it is at the time before", volume::OtherTime::Previous),
-            command("Minus another time: last", "How the parameter shown differs from what it is at the last time",
+            command("Minus another time: previous", "Add the parameter shown minus its values at the previous time",
+                    volume::OtherTime::Previous),
+            command("Minus another time: last", "Add the parameter shown minus its values at the last time",
                     volume::OtherTime::Last),
-            command("Minus another time: shown now",
-                    "How the parameter shown differs from what it is at the time shown now", volume::OtherTime::Time)};
+            command("Minus another time: the time shown",
+                    "Add the parameter shown minus its values at the time shown now", volume::OtherTime::Time)};
 }
 
 } // namespace

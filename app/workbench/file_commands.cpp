@@ -41,7 +41,7 @@ void copySession(Workbench& workbench) {
 
 void pasteSession(Workbench& workbench) {
     const char* text = ImGui::GetClipboardText();
-    if (!text || !looksLikeSession(text)) return workbench.message("The clipboard holds no session");
+    if (!text || !looksLikeSession(text)) return workbench.message("The clipboard contains no session");
     try {
         workbench.openText(text);
     } catch (const Error& error) {
@@ -55,7 +55,7 @@ std::vector<Command> fileCommands(Workbench& workbench) {
     const auto loaded = [&workbench] { return workbench.document().loaded(); };
     return {{.menu = "File",
              .name = "Open...",
-             .help = "A session, an archive, a picture of ours or data files",
+             .help = "Open a session, an archive, a PNG exported by Tessera, or data files",
              .shortcut = {.key = 'O', .ctrl = true},
              .run =
                  [&workbench] {
@@ -69,41 +69,41 @@ std::vector<Command> fileCommands(Workbench& workbench) {
                  }},
             {.menu = "File",
              .name = "-Save session",
-             .help = "Write the session to its file",
+             .help = "Save the session to its file",
              .shortcut = {.key = 'S', .ctrl = true},
              .run = [&workbench] { workbench.save(); },
              .enabled = loaded},
             {.menu = "File",
              .name = "Save session as...",
-             .help = "Write the session to another file",
+             .help = "Save the session to another file",
              .shortcut = {.key = 'S', .ctrl = true, .shift = true},
              .run = [&workbench] { workbench.saveAs(); },
              .enabled = loaded},
             {.menu = "File",
              .name = "Pack into an archive...",
-             .help = "Compress the data files shown into one .tsr file that opens at once, and show that",
+             .help = "Pack the data files shown into one .tsr archive, and open it",
              .run = [&workbench] { askPack(workbench); },
              .enabled = [&workbench] { return showsDataFiles(workbench.document()); }},
             {.menu = "File",
              .name = "Compare with another file...",
-             .help = "The parameters of another data set beside these, on the same grid, and how they differ",
+             .help = "Add the parameters of another data set, interpolated onto this grid, and their differences",
              .run = [&workbench] { askCompared(workbench); },
              .enabled = loaded,
              .checked = [&workbench] { return workbench.session().data.other.has_value(); }},
             {.menu = "File",
              .name = "-Save picture...",
-             .help = "The window or one view as PNG at any size; it carries the session",
+             .help = "Save the window or one view as a PNG of any size, which contains the session",
              .shortcut = {.key = key::kF12},
              .run = [&workbench] { workbench.pictureDialog().show(workbench.panes().current(workbench.session())); },
              .enabled = loaded},
             {.menu = "File",
              .name = "Export surface...",
-             .help = "The selected iso-surface layer at full resolution as PLY, STL, OBJ or VTP, by the ending",
+             .help = "Save the selected iso-surface layer at full resolution as PLY, STL, OBJ or VTP",
              .run = [&workbench] { askSurface(workbench); },
              .enabled = [&workbench, loaded] { return loaded() && chosenSurface(workbench.session()) >= 0; }},
             {.menu = "File",
              .name = "Copy session",
-             .help = "The session as text, for a colleague or an issue",
+             .help = "Copy the session as text, to send it to somebody",
              .shortcut = {.key = 'C', .ctrl = true},
              .run = [&workbench] { copySession(workbench); },
              .enabled = loaded},
@@ -114,7 +114,7 @@ std::vector<Command> fileCommands(Workbench& workbench) {
              .run = [&workbench] { pasteSession(workbench); }},
             {.menu = "File",
              .name = "-Quit",
-             .help = "End the program",
+             .help = "Quit the program",
              .shortcut = {.key = 'Q', .ctrl = true},
              .run = [&workbench] { workbench.requestQuit(); }}};
 }
@@ -122,20 +122,20 @@ std::vector<Command> fileCommands(Workbench& workbench) {
 std::vector<Command> helpCommands(Workbench& workbench) {
     std::vector<Command> commands = {{.menu = "Help",
                                       .name = "Shortcuts",
-                                      .help = "Every key",
+                                      .help = "List all keyboard shortcuts",
                                       .shortcut = {.key = key::kF1},
                                       .alternative = {.key = 'H'},
                                       .run = [&workbench] { workbench.help().showShortcuts(); }},
                                      {.menu = "Help",
                                       .name = "Command palette",
-                                      .help = "Find anything by name",
+                                      .help = "Find any command by name",
                                       .shortcut = {.key = 'P', .ctrl = true, .shift = true},
                                       .alternative = {.key = key::kSpace, .ctrl = true},
                                       .run = [&workbench] { workbench.palette().open = true; }}};
     for (const std::string& model : volume::modelNames())
         commands.push_back({.menu = "Help",
                             .name = (model == volume::modelNames().front() ? "-" : "") + ("Example data: " + model),
-                            .help = "Computed by the program",
+                            .help = "Data computed by the program",
                             .run = [&workbench, model] {
                                 OpenRequest request;
                                 request.data.emplace();

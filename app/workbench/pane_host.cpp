@@ -94,7 +94,7 @@ void PaneHost::drawPane(const ViewContext& frame, const std::string& pane, int r
     if ((focused || hovered_ == pane) && hasCamera(frame.session, pane)) lastSpace_ = pane;
     const auto found = frame.session.views.find(pane);
     if (found == frame.session.views.end()) {
-        ImGui::TextDisabled("There is no view named %s.", pane.c_str());
+        ImGui::TextDisabled("No view is named %s.", pane.c_str());
         return;
     }
     ViewContext context = frame;

@@ -32,7 +32,7 @@ void drawJob(Jobs& jobs, const Jobs::Status& job, const std::string& text, float
     ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2(2 * scale, 0));
     if (ImGui::SmallButton(icons ? icon::kCross : "x")) jobs.cancel(job.key);
     ImGui::PopStyleVar();
-    if (ImGui::IsItemHovered()) ImGui::SetTooltip("Cancel; what is shown stays");
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("Cancel; what is shown does not change");
 }
 
 /// At the right, the newest last, as many as have room.
@@ -73,7 +73,7 @@ std::string residencyText(const vis::ResidencyInfo& use) {
                        formatCount(use.bricksResident) + " bricks";
     if (use.bricksKept > 0) text += ", " + formatCount(use.bricksKept) + " kept from other times";
     if (use.bricksHidden > 0) text += ", " + formatCount(use.bricksHidden) + " hidden";
-    if (use.bricksWanted > 0) text += ", " + formatCount(use.bricksWanted) + " to come";
+    if (use.bricksWanted > 0) text += ", " + formatCount(use.bricksWanted) + " loading";
     return text;
 }
 

@@ -36,7 +36,7 @@ void addPaneCommands(std::vector<Command>& commands, Workbench& workbench) {
     const auto current = [&workbench] { return workbench.panes().current(workbench.session()); };
     commands.push_back({.menu = "View",
                         .name = "-Maximise pane",
-                        .help = "The pane under the mouse fills the window, or goes back",
+                        .help = "Make the pane under the mouse fill the window, or restore it",
                         .shortcut = {.key = key::kF11},
                         .run = [&workbench, current] {
                             std::string& maximised = workbench.session().dock.maximised;
@@ -44,7 +44,7 @@ void addPaneCommands(std::vector<Command>& commands, Workbench& workbench) {
                         }});
     commands.push_back({.menu = "View",
                         .name = "Duplicate pane",
-                        .help = "Another view like the one under the mouse",
+                        .help = "Open a copy of the view under the mouse",
                         .shortcut = {.key = 'D', .ctrl = true},
                         .run = [&workbench, current] {
                             Session& session = workbench.session();
@@ -60,32 +60,34 @@ void addLookCommands(std::vector<Command>& commands, Workbench& workbench) {
     };
     commands.push_back({.menu = "View",
                         .name = "-Light theme",
-                        .help = "Dark on light, for print and bright rooms",
+                        .help = "Dark text on a light background, for print and bright rooms",
                         .run = [looks] { looks().theme = looks().theme == Theme::Dark ? Theme::Light : Theme::Dark; },
                         .checked = [looks] { return looks().theme == Theme::Light; }});
     commands.push_back({.menu = "View",
                         .name = "Larger text",
-                        .help = "Text and controls grow",
+                        .help = "Enlarge text and controls",
                         .shortcut = {.key = '=', .ctrl = true},
                         .run = [resize] { resize(1.125f); }});
     commands.push_back({.menu = "View",
                         .name = "Smaller text",
-                        .help = "Text and controls shrink",
+                        .help = "Reduce text and controls",
                         .shortcut = {.key = '-', .ctrl = true},
                         .run = [resize] { resize(1 / 1.125f); }});
 }
 
 void addCameraCommands(std::vector<Command>& commands, Workbench& workbench) {
-    for (const auto& [name, key, help] : {std::tuple{"-Look from the front", '1', "Shift: from the back"},
-                                          {"Look from the right", '3', "Shift: from the left"},
-                                          {"Look from the top", '7', "Shift: from below"},
-                                          {"Look isometric", '9', "The corner"},
-                                          {"Parallel projection", '5', "Perspective or parallel"},
-                                          {"Reset the camera", 'R', "See everything again"}})
+    for (const auto& [name, key, help] :
+         {std::tuple{"-Look from the front", '1', "Shift: from the back"},
+          {"Look from the right", '3', "Shift: from the left"},
+          {"Look from the top", '7', "Shift: from below"},
+          {"Look isometric", '9', "From the corner"},
+          {"Parallel projection", '5', "Switch between perspective and parallel projection"},
+          {"Reset the camera", 'R', "Show the whole data set"}})
         commands.push_back(
             {.menu = "View",
              .name = name,
-             .help = std::string(help) + "; in the volume used last, by key in the one under the mouse",
+             .help =
+                 std::string(help) + "; acts on the volume view used last (with the key: on the one under the mouse)",
              .shortcut = {.key = key},
              .run = [&workbench, key = key] { workbench.panes().pressCameraKey(workbench.session(), key); },
              .enabled =
@@ -133,7 +135,7 @@ std::vector<Command> layoutCommands(Workbench& workbench) {
     const auto loaded = [&workbench] { return workbench.document().loaded(); };
     std::vector<Command> commands = {{.menu = "Layout",
                                       .name = "Reset arrangement",
-                                      .help = "Every view open, arranged as at first",
+                                      .help = "Restore the initial arrangement of views",
                                       .shortcut = {.key = 'R', .ctrl = true, .shift = true},
                                       .run = [&workbench] { resetArrangement(workbench); },
                                       .enabled = loaded}};

@@ -276,7 +276,7 @@ void Workbench::drawRecentFiles() {
     ImGui::Separator();
     if (!ImGui::BeginMenu("Recent files")) return;
     const auto recent = recentFiles(options_.stateFolder);
-    if (recent.empty()) ImGui::TextDisabled("None yet");
+    if (recent.empty()) ImGui::TextDisabled("No recent files");
     for (const std::string& path : recent) {
         std::error_code problem;
         if (ImGui::MenuItem(path.c_str(), nullptr, false, fs::exists(path, problem)))

@@ -31,7 +31,7 @@ std::uint64_t checkedBrickCount(const volume::BrickGrid& grid, const std::string
     std::uint64_t bricks = 1;
     for (int axis = 0; axis < 3; ++axis) {
         bricks *= static_cast<std::uint64_t>(count[axis]);
-        if (bricks > std::uint64_t(1) << 40) throw Error("impossibly many bricks", path, "metadata /data/lattice/size");
+        if (bricks > std::uint64_t(1) << 40) throw Error("too many bricks", path, "metadata /data/lattice/size");
     }
     return bricks;
 }

@@ -51,7 +51,7 @@ std::vector<std::uint8_t> Archive::Impl::flags(const FrameRecord& frame, std::si
     const glm::ivec3 size = metadata.grid.brickSamples(metadata.grid.indexOf(brick), 0);
     const std::size_t count = std::size_t(size.x) * std::size_t(size.y) * std::size_t(size.z);
     const std::uint64_t offset = record.segment.offset;
-    if (record.present > count) damaged(path, offset, "a mask counts more samples than its brick has");
+    if (record.present > count) damaged(path, offset, "a mask has more samples than its brick");
     const auto bytes = segment(record.segment);
     if (record.present == 0 || record.present == count) {
         if (!bytes.empty()) damaged(path, offset, "a uniform mask has bytes");
@@ -71,7 +71,7 @@ std::vector<std::uint8_t> Archive::Impl::flags(const FrameRecord& frame, std::si
         flags[i] = static_cast<std::uint8_t>(static_cast<unsigned>(bits[i / 8]) >> (i % 8) & 1u);
         present += flags[i];
     }
-    if (present != record.present) damaged(path, offset, "a mask does not have the samples it counts");
+    if (present != record.present) damaged(path, offset, "a mask does not have the number of samples that it states");
     return flags;
 }
 
@@ -82,7 +82,7 @@ Model Archive::Impl::model(std::int32_t number) const {
     if (const DecodeStatus status = parseModel(bytes, metadata.grid.levels, parsed); status != DecodeStatus::Ok)
         damaged(path, record.offset, std::string("a model cannot be read: ") + reason(status));
     if (parsed.contexts.byBand && (header.header.features & kBandContexts) == 0)
-        damaged(path, record.offset, "a model has contexts that the archive does not know");
+        damaged(path, record.offset, "a model has contexts that the archive does not declare");
     return parsed;
 }
 

@@ -56,7 +56,7 @@ struct Verifier {
         const TalliedBrick found = tallied(parameter.type, record.valueOffset, record.valueScale,
                                            impl.numbersOf(record, parameter.type, *decoded), fine, true);
         if (!agree(found, noted.min, noted.max, noted.tally))
-            throw Error("its statistics are not those of its samples", impl.path, "index");
+            throw Error("its statistics differ from those of its samples", impl.path, "index");
         return bytes;
     }
 

@@ -25,7 +25,7 @@ constexpr const char* reason(DecodeStatus status) {
     case DecodeStatus::BadMode:
         return "coded brick uses an unknown coding";
     case DecodeStatus::BadLength:
-        return "coded brick states an impossible length";
+        return "coded brick states an invalid length";
     case DecodeStatus::BadData:
         break;
     }

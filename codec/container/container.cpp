@@ -41,7 +41,7 @@ Header parseHeader(std::span<const std::byte> bytes, std::size_t at, std::uint64
     if ((header.features & ~kKnownFeatures) != 0)
         throw Error("the archive needs features this program does not know", file, place(12));
     if (header.fileSize > fileBytes)
-        throw Error("the file has " + std::to_string(fileBytes) + " bytes, its header says " +
+        throw Error("the file has " + std::to_string(fileBytes) + " bytes, but its header says " +
                         std::to_string(header.fileSize),
                     file, place(16));
     const std::uint64_t end = header.fileSize;

@@ -36,7 +36,7 @@ std::string exactnessText(const Metadata& metadata) {
                                                                         : "CC") +
               " grid is exact";
     if (!resampled) return out;
-    out += metadata.lossless ? "; the source was resampled" : " beside resampling";
+    out += metadata.lossless ? "; the source was resampled" : " in addition to resampling";
     double least = std::numeric_limits<double>::infinity();
     std::size_t known = 0;
     for (std::size_t p = 0; p < metadata.resampled.size() && p < metadata.info.parameters.size(); ++p) {
@@ -44,7 +44,7 @@ std::string exactnessText(const Metadata& metadata) {
         ++known;
         least = std::min(least, psnrOf(*metadata.resampled[p], extentOf(metadata.info.parameters[p])));
     }
-    if (known == 0) return out + " (at a cost that is not known)";
+    if (known == 0) return out + " (with an unknown error)";
     if (!std::isfinite(least)) return out + " (without error)";
     return out + " (PSNR " + text("%.1f", least) + (known > 1 ? " dB or more)" : " dB)");
 }

@@ -111,8 +111,7 @@ private:
         const auto max = in_.get<float>();
         const auto share = in_.get<std::uint16_t>();
         notes.repeats = in_.get<std::uint16_t>();
-        require(max >= 0 || (max == FrameBrick::kUnknown && notes.repeats == 0), "an impossible change of a brick",
-                file_);
+        require(max >= 0 || (max == FrameBrick::kUnknown && notes.repeats == 0), "an invalid change of a brick", file_);
         notes.change = changeOf(max, share);
         return notes;
     }
@@ -129,7 +128,7 @@ private:
         require(kind <= static_cast<std::uint8_t>(NumberKind::Quantised), "an unknown coding of numbers", file_);
         require(wavelet < std::size(kWaveletNames), "an unknown wavelet", file_);
         require(keeps <= (notes_ ? 3 : 1), "an unknown flag of a frame", file_);
-        require(codeBits >= 1 && codeBits <= 32, "an impossible width of codes", file_);
+        require(codeBits >= 1 && codeBits <= 32, "an invalid width of codes", file_);
         frame.numbers.kind = static_cast<NumberKind>(kind);
         frame.wavelet = static_cast<Wavelet>(wavelet);
         frame.keepsAbsent = (keeps & 1) != 0;
@@ -349,7 +348,7 @@ Index readIndex(std::span<const std::byte> bytes, const Header& header, const In
     for (FrameRecord& frame : frames) {
         require(frame.time < times && frame.component < shape.components, "a frame of no time or parameter", file);
         const std::size_t number = std::size_t(frame.time) * shape.components + frame.component;
-        require(!known[number], "a frame is there twice", file);
+        require(!known[number], "a frame is present twice", file);
         known[number] = true;
         index.frames[number] = std::move(frame);
     }

@@ -298,7 +298,7 @@ Metadata parseMetadata(std::span<const std::byte> block, std::uint32_t features,
     const auto body = block.subspan(4);
     if (length == body.size()) return metadataFromJson(textOf(body), file);
     if (length > kMost || length / kLeastRatio > body.size())
-        throw Error("the metadata has an impossible length", file, "metadata");
+        throw Error("the metadata has an invalid length", file, "metadata");
     Bytes text(length);
     if (decompress(body, text) != DecodeStatus::Ok) throw Error("the metadata cannot be decoded", file, "metadata");
     return metadataFromJson(textOf(text), file);

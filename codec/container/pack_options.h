@@ -53,9 +53,9 @@ struct PackOptions {
     /// Settings for a purpose.
     static constexpr std::string_view kPresetNames[] = {"none", "lossless", "visual", "small", "thesis"};
     static constexpr std::string_view kPresetDoc =
-        "Settings for a purpose, which options given beside it override: lossless (every sample of the source, on CC), "
-        "visual (error 0.001 of range), small (0.01, most effort), thesis (BCC, bricks of 16, 3 levels, (2,2) on each "
-        "grid, soft threshold by importance)";
+        "Preset, which other options override: lossless (every sample of the source, on CC), visual (error 0.001 of "
+        "range), small (error 0.01 of range, highest effort), thesis (BCC, bricks of 16, 3 levels, wavelet (2,2) on "
+        "each sublattice, soft threshold by importance)";
     /// One of kPresetNames; nullopt of others.
     static std::optional<PackOptions> preset(std::string_view name);
     /// True if the lattice is part of a preset; others go with any.
@@ -63,73 +63,76 @@ struct PackOptions {
     static void describe(auto& self, auto&& visit) {
         visit(self.lattice, FieldInfo{.key = "lattice",
                                       .unit = "",
-                                      .doc = "Lattice of the stored samples: bcc keeps 70.7 % of them, d4 (in space "
-                                             "and time, for two times or more) 50 %",
+                                      .doc = "Lattice of the stored samples: cc (all samples), bcc (70.7 % of them), "
+                                             "or d4 (50 %, in space and time, for two times or more)",
                                       .names = kStoredLatticeNames});
         visit(self.resample,
-              FieldInfo{.key = "resample", .unit = "", .doc = "How samples of another lattice are made"});
+              FieldInfo{.key = "resample", .unit = "", .doc = "How samples of another lattice are computed"});
         visit(self.lossless,
               FieldInfo{.key = "lossless", .unit = "", .doc = "Store every sample of the lattice bit for bit"});
         visit(self.maxError, FieldInfo{.key = "maxError",
                                        .unit = "of range",
-                                       .doc = "Largest error of a sample, relative to its parameter's range; above 0 "
-                                              "it replaces lossless",
+                                       .doc = "Largest error of a sample, relative to the range of its parameter; a "
+                                              "value above 0 replaces lossless",
                                        .range = Range{0, 1}});
         visit(self.absError, FieldInfo{.key = "absError",
                                        .unit = "of the parameter",
                                        .doc = "Largest error of a sample, in the unit of its parameter; 0 = no such "
-                                              "bound. Of several bounds the strictest holds",
+                                              "bound. The strictest of several bounds applies",
                                        .range = Range{0, 1e30}});
         visit(self.psnr, FieldInfo{.key = "psnr",
                                    .unit = "dB",
-                                   .doc = "Least peak signal-to-noise ratio of each frame, its parameter's range over "
-                                          "the RMS error; 0 = not asked for",
+                                   .doc = "Smallest peak signal-to-noise ratio at any time (range of the parameter / "
+                                          "RMS error); 0 = no such bound",
                                    .range = Range{0, 200}});
-        visit(self.sizeMb,
-              FieldInfo{.key = "targetSize",
-                        .unit = "MB",
-                        .doc = "Largest size of the archive: the least error of samples, relative to their "
-                               "ranges, that fits is searched for; 0 = not asked for",
-                        .range = Range{0, 1e9}});
+        visit(self.sizeMb, FieldInfo{.key = "targetSize",
+                                     .unit = "MB",
+                                     .doc = "Largest size of the archive; the smallest error relative to the ranges "
+                                            "that fits is searched for. 0 = no limit",
+                                     .range = Range{0, 1e9}});
         visit(self.threshold, FieldInfo{.key = "threshold",
                                         .unit = "",
-                                        .doc = "Details given up on top of rounding; bounds hold all the same, without "
-                                               "one the error is measured and noted"});
+                                        .doc = "Wavelet thresholding in addition to rounding. Bounds still hold; "
+                                               "without one the error is measured and stored"});
         visit(self.discard, FieldInfo{.key = "discard",
                                       .unit = "importance",
-                                      .doc = "Bricks that are less important than this in every parameter at every "
-                                             "time are left out, as absent samples; 0 = none",
+                                      .doc = "Omit bricks that are less important than this in every parameter at "
+                                             "every time: their samples become absent; 0 = none",
                                       .range = Range{0, 1}});
         visit(self.wavelet, FieldInfo{.key = "wavelet",
                                       .unit = "",
-                                      .doc = "Vanishing moments N,N~ of the integer wavelet; auto: the best by trial",
+                                      .doc = "Vanishing moments N,N~ of the integer wavelet; auto: chosen by trial",
                                       .names = kWaveletChoiceNames});
         visit(self.bccTransform, FieldInfo{.key = "bccTransform",
                                            .unit = "",
-                                           .doc = "Of BCC: take each of its two grids apart by itself, or predict one "
-                                                  "from the other; auto: the shorter by trial",
+                                           .doc = "For BCC: transform each sublattice by itself (separable), or "
+                                                  "predict one from the other (bodyCentred); auto: chosen by trial",
                                            .names = kBccTransformNames});
-        visit(self.brickSize, FieldInfo{.key = "brickSize",
-                                        .unit = "texel",
-                                        .doc = "Edge of a brick, a power of two; 0 = 64, of one small volume of "
-                                               "integers as much as it takes to be one brick",
-                                        .range = Range{0, 128}});
+        visit(self.brickSize,
+              FieldInfo{
+                  .key = "brickSize",
+                  .unit = "texel",
+                  .doc = "Edge of a brick, a power of two; 0 = automatic: 64, or one brick for a small integer volume",
+                  .range = Range{0, 128}});
         visit(self.levels, FieldInfo{.key = "levels",
                                      .unit = "",
-                                     .doc = "Levels of detail; 0 = until a brick is 4 texels wide",
+                                     .doc = "Number of levels of detail; 0 = until a brick is 4 samples wide",
                                      .range = Range{0, 8}});
         visit(self.zstdLevel, FieldInfo{.key = "zstdLevel",
                                         .unit = "",
-                                        .doc = "Effort of zstd, which codes masks and what repeats itself",
+                                        .doc = "Effort of zstd, which codes masks and repetitive bricks",
                                         .range = Range{1, 19}});
-        visit(self.memoryMb, FieldInfo{.key = "memory",
-                                       .unit = "MB",
-                                       .doc = "Most memory for samples while packing; 0 = a quarter of the machine's. "
-                                              "Where it is tight, frames are neither compared with the one before "
-                                              "nor read ahead; those larger than it go through in slabs",
-                                       .range = Range{0, 1e9}});
-        visit(self.importance,
-              FieldInfo{.key = "importance", .unit = "", .doc = "How much a brick has to show, by its samples"});
+        visit(self.memoryMb,
+              FieldInfo{
+                  .key = "memory",
+                  .unit = "MB",
+                  .doc =
+                      "Limit of memory for packing; 0 = a quarter of the machine's. With little memory, data are not "
+                      "compared with the previous time, not read ahead, and read in slabs if one time does not fit",
+                  .range = Range{0, 1e9}});
+        visit(self.importance, FieldInfo{.key = "importance",
+                                         .unit = "",
+                                         .doc = "How the importance of a brick is computed from its samples"});
     }
 };
 

@@ -46,7 +46,7 @@ void requireSame(const Parameter& old, const Parameter& added, const std::string
         refuse("components:", std::to_string(added.components), std::to_string(old.components));
     if (old.unit != added.unit) refuse("the unit", "\"" + added.unit + "\"", "\"" + old.unit + "\"");
     if (old.categorical != added.categorical)
-        throw Error(added.name + " holds labels in one of archive and data, numbers in the other", path);
+        throw Error(added.name + " is a label in one of archive and data, and a number in the other", path);
 }
 
 } // namespace
@@ -153,7 +153,7 @@ Continuation continuationOf(const Archive& archive, Metadata& metadata) {
                     path);
     if (old.grid.brickSize != metadata.grid.brickSize || old.grid.levels != metadata.grid.levels ||
         old.grid.phase != metadata.grid.phase)
-        throw Error("the archive has other bricks than its options say", path);
+        throw Error("the bricks of the archive do not agree with its options", path);
 
     Continuation place;
     metadata.info = old.info;
@@ -186,7 +186,7 @@ Continuation continuationOf(const Archive& archive, Metadata& metadata) {
         if (!find(added, parameter.name)) throw Error("the data has no parameter " + parameter.name, path);
     if (!(added.times.front() > old.info.times.back()))
         throw Error("the times to append begin at " + std::to_string(added.times.front()) +
-                        ", not after the last of the archive, " + std::to_string(old.info.times.back()),
+                        ", which is not after the last one of the archive, " + std::to_string(old.info.times.back()),
                     path);
     place.firstTime = old.info.times.size();
     metadata.info.times.insert(metadata.info.times.end(), added.times.begin(), added.times.end());

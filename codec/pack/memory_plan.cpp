@@ -91,8 +91,8 @@ private:
 };
 
 void refuse(double least, double limit) {
-    throw Error("packing frames of this size takes about " + std::to_string(std::lround(std::ceil(least / kMega))) +
-                " MB, the limit of memory is " + std::to_string(std::lround(limit / kMega)) + " MB");
+    throw Error("packing data of this size needs about " + std::to_string(std::lround(std::ceil(least / kMega))) +
+                " MB, but the limit of memory is " + std::to_string(std::lround(limit / kMega)) + " MB");
 }
 
 /// A plan with as many layers as fit (or `layers`, if not 0), and slices that need no more memory. `whole`: the memory

@@ -85,9 +85,9 @@ void check(const volume::DatasetInfo& source, const PackOptions& options) {
     if (!(options.maxError >= 0 && options.maxError < 1)) throw Error("the error bound must be from 0 to below 1");
     if (!(options.absError >= 0) || !(options.psnr >= 0)) throw Error("error bounds must not be negative");
     if (hasThreshold(options) && (options.psnr > 0 || options.sizeMb > 0))
-        throw Error("a threshold goes with a bound on the error of samples, not with a PSNR or a size");
+        throw Error("a threshold can be combined with a bound on the error of samples, but not with a PSNR or a size");
     if (!options.lossless && isExact(options) && options.discard == 0)
-        throw Error("without lossless an error bound, a threshold or a part to discard is needed");
+        throw Error("without lossless, an error bound, a threshold or a limit of importance is needed");
     if (options.lattice == StoredLattice::CC && source.lattice.kind == LatticeKind::BCC)
         throw Error("the data lies on BCC; it cannot be packed as CC");
 }
@@ -349,10 +349,11 @@ PackSummary Packing::run(const Progress& progress) {
         source_.info.parameters = dataset_.info.parameters;
         Stopwatch write(summary_.writeSeconds);
         if (!memory_.keepFrames && times() > 1)
-            summary_.notes.push_back("memory is too tight to keep frames: what changes from time to time is not noted");
+            summary_.notes.push_back(
+                "too little memory to keep the previous time: changes of bricks between times are not stored");
         if (memory_.slabLayers > 0)
-            summary_.notes.push_back("frames are larger than the memory: they were packed in slabs of " +
-                                     std::to_string(memory_.slabLayers) + " layers of bricks");
+            summary_.notes.push_back("too little memory for a whole time; slabs in memory at once: " +
+                                     std::to_string(memory_.slabLayers));
         summary_.repeatedBricks = writer->repeats().bricks;
         summary_.repeatedBytes = writer->repeats().bytes;
         const Metadata known = soFar(metadata_.info.times.size());

@@ -64,7 +64,7 @@ std::vector<std::uint8_t> bricksToDiscard(volume::Dataset& dataset, const FeedOp
     std::vector<std::uint8_t> discarded;
     for (const float importance : most) discarded.push_back(double(importance) < options.discard ? 1 : 0);
     summary.discardedBricks = std::uint64_t(std::count(discarded.begin(), discarded.end(), std::uint8_t(1)));
-    if (summary.discardedBricks == discarded.size()) throw Error("no brick is important enough to be kept");
+    if (summary.discardedBricks == discarded.size()) throw Error("every brick is less important than the limit");
     return discarded;
 }
 

@@ -156,8 +156,8 @@ PackSummary packToSize(const PackOptions& asked, SizeControl control, const std:
                        const std::function<PackSummary(const PackOptions&, const std::string&, const Progress&)>& pack,
                        const Progress& progress) {
     if (asked.maxError > 0 || asked.absError > 0 || asked.psnr > 0)
-        throw Error("either a size or an error bound can be asked for, not both");
-    if (asked.threshold.kind != ThresholdChoice::None) throw Error("a size cannot be asked for with a threshold");
+        throw Error("choose either a size or an error bound, not both");
+    if (asked.threshold.kind != ThresholdChoice::None) throw Error("a size cannot be combined with a threshold");
     constexpr int kTrials = 10, kNeighbours = 5;
     constexpr double kFull = 0.96, kAim = 0.98; // of the size
     constexpr double kSame = 1.01;              // ratio of bounds between which nothing is looked for: 0.09 dB
@@ -200,7 +200,7 @@ PackSummary packToSize(const PackOptions& asked, SizeControl control, const std:
     for (int n = 1; steps && n <= kNeighbours; ++n)
         if (attempt(above->bound / std::pow(kNextStep, n)).bytes <= wanted) break;
     if (found.archiveBytes == 0)
-        throw Error("the archive cannot be made so small: " + std::to_string(std::llround(above->bytes)) +
+        throw Error("the archive cannot be made that small: it has " + std::to_string(std::llround(above->bytes)) +
                         " bytes even with the largest error tried (labels are stored exactly)",
                     path);
     std::filesystem::rename(best.path, path);

@@ -30,18 +30,19 @@ struct ThresholdOptions {
     static void describe(auto& self, auto&& visit) {
         visit(self.kind, FieldInfo{.key = "kind",
                                    .unit = "",
-                                   .doc = "Which details are given up: hard (small ones become 0), soft (all others "
-                                          "shrink as well), quantile (the smallest of each brick)",
+                                   .doc = "Which wavelet details are removed: hard (small ones become 0), soft (all "
+                                          "others shrink as well), quantile (the smallest share of each brick)",
                                    .names = kThresholdChoiceNames});
         visit(self.value, FieldInfo{.key = "value",
                                     .unit = "of range",
-                                    .doc = "Of hard and soft: size of a detail, relative to its parameter's range; of "
-                                           "quantile: the part of the details",
+                                    .doc = "For hard and soft: threshold relative to the range of the parameter; for "
+                                           "quantile: the share of the details",
                                     .range = Range{0, 1}});
-        visit(self.byImportance, FieldInfo{.key = "byImportance",
-                                           .unit = "",
-                                           .doc = "The most important brick of a frame keeps all, the least gives up "
-                                                  "as much as the value says; off: every brick does"});
+        visit(self.byImportance,
+              FieldInfo{.key = "byImportance",
+                        .unit = "",
+                        .doc = "Scale the threshold by importance: 0 for the most important brick, the full value for "
+                               "the least important one; off: the full value for every brick"});
     }
 };
 

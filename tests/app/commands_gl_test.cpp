@@ -106,8 +106,8 @@ TEST_F(Commands, StatsAreOfTheTimeAndRegions) {
             formula::summed(name, time, [&](Place at) { return region == "all" || (region == "west") == (at.x < 4); });
         EXPECT_EQ(table.number(row, "samples"), sum.samples);
         EXPECT_NEAR(*table.number(row, "mean"), sum.mean, 2e-4);
-        EXPECT_NEAR(*table.number(row, "least"), sum.least, 2e-4);
-        EXPECT_NEAR(*table.number(row, "most"), sum.most, 2e-4);
+        EXPECT_NEAR(*table.number(row, "min"), sum.least, 2e-4);
+        EXPECT_NEAR(*table.number(row, "max"), sum.most, 2e-4);
     };
     for (const double time : {0.0, 0.5, 0.875, 2.0}) {
         ASSERT_EQ(run({"stats", in("cell.tsr"), "--time", std::to_string(time), "-o", in("s.csv")}), 0);

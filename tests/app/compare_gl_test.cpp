@@ -38,7 +38,7 @@ struct Compared {
 
 TEST(CompareView, MeasuresVariantsAgainstTheReference) {
     Compared compared;
-    compared.view.variants = {{"as it is", {}}, {"again", {}}, {"coarse steps", {{"/render/step", "3"}}}};
+    compared.view.variants = {{"unchanged", {}}, {"again", {}}, {"coarse steps", {{"/render/step", "3"}}}};
     compared.draw();
     ASSERT_EQ(compared.rows.size(), 3u);
     EXPECT_TRUE(compared.rows[0].reference);
@@ -176,7 +176,7 @@ TEST(CompareView, ValuesDifferInTheirUnit) {
     EXPECT_LT(up * down, 0) << up << " and " << down;
     EXPECT_GT(std::abs(up), 1000);
     // Colours alone differ: there are no values to show, and the picture says so.
-    compared.view.variants = {{"as it is", {}}, {"coarse steps", {{"/render/step", "3"}}}};
+    compared.view.variants = {{"unchanged", {}}, {"coarse steps", {{"/render/step", "3"}}}};
     compared.draw({800, 400});
     EXPECT_FALSE(compared.rows[1].data);
     EXPECT_TRUE(compared.rows[1].measured);

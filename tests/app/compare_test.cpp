@@ -56,7 +56,7 @@ TEST(Compare, AChangeThatDoesNotFitSaysWhere) {
 
 TEST(Compare, ACaptionSaysWhatDiffers) {
     const Session session = withLayer();
-    EXPECT_EQ(changesText(session, {}), "as it is");
+    EXPECT_EQ(changesText(session, {}), "unchanged");
     EXPECT_EQ(changesText(session, {"", {{"/render/filter", "average"}}}), "filter average");
     EXPECT_EQ(changesText(session, {"", {{"/data/lattice", "grid"}}}), "lattice CC");
     EXPECT_EQ(changesText(session, {"", {{"/layers/0/technique/density", "2"}}}), "O2: density 2");

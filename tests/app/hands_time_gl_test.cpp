@@ -211,13 +211,13 @@ TEST_F(KeyHands, TheRulerSaysWhichPlaceIsShown) {
 
 TEST_F(KeyHands, KeysAreSetAndRemoved) {
     showTimeline([](Session& edited) { edited.animation.position = 1.5; });
-    clickOn("Key the time");
+    clickOn("Set time key");
     ASSERT_EQ(session().animation.tracks.size(), 1u);
     EXPECT_EQ(session().animation.tracks[0].path, kTime);
     ASSERT_EQ(keys().size(), 1u);
     EXPECT_EQ(keys()[0].at, 1.5);
     EXPECT_EQ(keys()[0].value, std::vector<double>{0.5});
-    clickOn("Key the camera");
+    clickOn("Set camera key");
     const auto& tracks = session().animation.tracks;
     ASSERT_EQ(tracks.size(), 4u);
     for (const char* path : {"/camera/orientation", "/camera/target", "/camera/distance"})
@@ -234,7 +234,7 @@ TEST_F(KeyHands, KeysAreSetAndRemoved) {
     EXPECT_EQ(session().animation.position, 4);
     EXPECT_NEAR(session().time, 0.8, 1e-12);
     session().time = 1.9;
-    choose(1, "Set to the present value");
+    choose(1, "Set to the current value");
     EXPECT_EQ(keys()[1].value, std::vector<double>{1.9});
     choose(1, "Slow start");
     EXPECT_EQ(keys()[1].easing, Easing::In);

@@ -49,7 +49,7 @@ TEST(NumberOrigin, SaysWhereNumbersComeFrom) {
     EXPECT_EQ(originText(computed, info), "as computed");
     EXPECT_EQ(originText(computed, info, channel(info, "T")), "as computed");
     EXPECT_EQ(originText(storedOn(volume::LatticeKind::CC, 0), info), "as computed") << "every sample is exact";
-    EXPECT_EQ(originText(storedOn(volume::LatticeKind::BCC, 0), info), "resampled to BCC, stored without loss");
+    EXPECT_EQ(originText(storedOn(volume::LatticeKind::BCC, 0), info), "resampled to BCC, stored losslessly");
     EXPECT_EQ(originLine(computed, info), "# numbers: as computed\n");
     info.provenance = volume::meshProvenance(41000, {24, 32, 88});
     EXPECT_EQ(originText(computedOrigin(info), info), "resampled");
@@ -83,7 +83,7 @@ TEST(NumberOrigin, TellsDerivedParametersAndOriginalsFromWhatIsRead) {
     info.parameters.back().name = "T - 300";
     EXPECT_EQ(originText(origin, info, channel(info, "T - 300")), "derived from samples as computed");
     EXPECT_EQ(originText(origin, info, {channel(info, "T")[0], channel(info, "T - 300")[0]}),
-              "as computed; derived ones from these");
+              "as computed; derived parameters from these");
 
     info = fourParameters();
     info.parameters.push_back(info.parameters[0]);
@@ -94,7 +94,7 @@ TEST(NumberOrigin, TellsDerivedParametersAndOriginalsFromWhatIsRead) {
     EXPECT_EQ(originText(origin, info, channel(info, "T as computed")), "as computed");
     EXPECT_EQ(originText(origin, info, channel(info, "T")), "resampled to BCC, stored with an error at most 0.4 K");
     EXPECT_EQ(originText(origin, info, {channel(info, "T")[0], channel(info, "T as computed")[0]}),
-              "resampled to BCC, stored with an error at most 0.4 K; the originals as computed");
+              "resampled to BCC, stored with an error at most 0.4 K; originals as computed");
     origin.alongTime = true;
     EXPECT_EQ(originText(origin, info, channel(info, "T as computed")), "as computed, interpolated along time");
 }

@@ -293,7 +293,7 @@ TEST(Numbers, OfAnArchiveAreItsOwn) {
     codec::pack(cell, packing(StoredLattice::BCC), path);
     const Sources sources = opened(dataOf({path}, {}));
     EXPECT_EQ(sources.pictures, sources.numbers);
-    EXPECT_EQ(originText(sources.origin, sources.numbers->info()), "resampled to BCC, stored without loss");
+    EXPECT_EQ(originText(sources.origin, sources.numbers->info()), "resampled to BCC, stored losslessly");
     std::filesystem::remove(path);
 }
 

@@ -263,7 +263,7 @@ TEST_F(OpenTest, VariantsOfAnotherModelAreLeftOut) {
     EXPECT_EQ(compare.variants[0].name, "CC, trilinear");
     EXPECT_EQ(compare.reference, 0);
     EXPECT_TRUE(std::ranges::any_of(messages, [](const std::string& text) {
-        return text.starts_with("this comparison is of the model marschner-lobb");
+        return text.starts_with("this comparison uses the model marschner-lobb");
     }));
     // On the model itself all are there.
     request.data->model = "marschner-lobb";

@@ -338,7 +338,7 @@ TEST_F(AsyncQueries, CancelledSamplesOfTheTesseractWaitForAnotherQuery) {
 
 TEST_F(AsyncQueries, CancelledDataToCompareAreNotOpenedAgain) {
     ComparePictures answers;
-    std::vector<CompareVariant> variants{{"as it is", {}}, {"other", {{"/data/model", "\"marschner-lobb\""}}}};
+    std::vector<CompareVariant> variants{{"unchanged", {}}, {"other", {{"/data/model", "\"marschner-lobb\""}}}};
     session.data.model = "fuel-cell";
     const auto get = [&](ViewContext& now) { answers.draw(now, "pane", variants, 0, {32, 24}, false); };
     EXPECT_EQ(cancelAll(get, ":data"), 1);
@@ -371,7 +371,7 @@ TEST_F(AsyncQueries, RenderersOfVariantsShareTheLimitsAndSpeak) {
     session.data.model = "fuel-cell";
     const Json files = Json::array({{{"path", path}, {"absolutePath", path}}});
     const std::vector<CompareVariant> variants{
-        {"as it is", {}}, {"damaged", {{"/data/files", files.dump()}, {"/layers/0/technique/channel", "rho"}}}};
+        {"unchanged", {}}, {"damaged", {{"/data/files", files.dump()}, {"/layers/0/technique/channel", "rho"}}}};
     std::vector<std::string> said;
     const auto get = [&](ViewContext& now) {
         now.renderers = 1 + answers.renderers();

@@ -51,7 +51,7 @@ TEST_F(SessionDataTest, EveryFileOfASeriesIsCovered) {
     writeList("two/run.pvd", 4); // another list, of one more
     write("two/t3.vti", "samples");
     EXPECT_THAT(resolve("two").warnings,
-                ElementsAre(HasSubstr("run.pvd has changed"), in("two/t3.vti") + " was not read with " +
+                ElementsAre(HasSubstr("run.pvd has changed"), in("two/t3.vti") + " was not opened together with " +
                                                                   in("two/run.pvd") + " when the session was saved"));
     EXPECT_TRUE(resolve("two").missing.empty());
 }
@@ -108,7 +108,7 @@ TEST_F(SessionDataTest, AFolderIsFoundAgainAndItsFilesCompared) {
     EXPECT_THAT(resolve("one").warnings,
                 ElementsAre(in("one/series/t2.vti") + " has changed since the session was saved"));
     fs::remove(folder_ / "one/series/t2.vti");
-    EXPECT_THAT(resolve("one").warnings, ElementsAre(HasSubstr("t2.vti is no longer read with")));
+    EXPECT_THAT(resolve("one").warnings, ElementsAre(HasSubstr("t2.vti is no longer opened together with")));
     fs::remove_all(folder_ / "one/series");
     EXPECT_EQ(resolve("one").missing.size(), 1u);
 }

@@ -102,8 +102,8 @@ TEST_F(ViewTables, RegionsAreCountedEachByItself) {
                 summed(name, of.time, [&](Place at) { return region == "all" || (region == "west") == (at.x < 4); });
             EXPECT_EQ(table.number(row, "samples"), sum.samples);
             EXPECT_NEAR(*table.number(row, "mean"), sum.mean, 2e-4);
-            EXPECT_NEAR(*table.number(row, "least"), sum.least, 2e-4);
-            EXPECT_NEAR(*table.number(row, "most"), sum.most, 2e-4);
+            EXPECT_NEAR(*table.number(row, "min"), sum.least, 2e-4);
+            EXPECT_NEAR(*table.number(row, "max"), sum.most, 2e-4);
             EXPECT_NEAR(*table.number(row, "share of all samples"), sum.samples / (8 * 7 * 9), 1e-9);
         }
     }
@@ -241,8 +241,8 @@ TEST_F(ViewTables, SectionsAreOfTheirPlaneAndRegion) {
             SCOPED_TRACE(name + " " + region + " " + std::to_string(place));
             EXPECT_NEAR(*table.number(row, "samples"), sum.samples, 1e-6);
             if (sum.samples == 0) continue;
-            EXPECT_NEAR(*table.number(row, "least"), sum.least, 2e-4);
-            EXPECT_NEAR(*table.number(row, "most"), sum.most, 2e-4);
+            EXPECT_NEAR(*table.number(row, "min"), sum.least, 2e-4);
+            EXPECT_NEAR(*table.number(row, "max"), sum.most, 2e-4);
             ++checked;
         }
         EXPECT_GE(checked, of.brush ? 9u : 27u);

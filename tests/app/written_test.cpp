@@ -172,7 +172,9 @@ TEST(HistoryWords, SayWhatAStepChanged) {
     EXPECT_EQ(said({"/layers/1/technique/opacity"}), "layers 2: opacity");
     EXPECT_EQ(said({"/layers/2"}, "add"), "layers 3 added");
     EXPECT_EQ(said({"/layers/2"}, "remove"), "layers 3 removed");
-    EXPECT_EQ(said({"/transfer/O2/colormap"}), "transfer O2: colormap");
+    EXPECT_EQ(said({"/transfer/O2/colormap"}), "transfer O2: colour map");
+    EXPECT_EQ(said({"/layers/0/technique/channel"}), "layers 1: parameter");
+    EXPECT_EQ(said({"/transfer/channel/range"}), "transfer channel: range") << "names of parameters stay";
 }
 
 TEST(JsonText, ShortListsStandOnOneLine) {

@@ -205,7 +205,7 @@ TEST(PackSlabs, AreTakenWhereFramesDoNotFit) {
         pack(made, options, folder / "parts.tsr");
         FAIL() << "packed with 1 MB";
     } catch (const Error& error) {
-        std::sscanf(error.what(), "packing frames of this size takes about %lf", &least);
+        std::sscanf(error.what(), "packing data of this size needs about %lf", &least);
     }
     options.memoryMb = least + 1;
     pack(made, options, folder / "parts.tsr");

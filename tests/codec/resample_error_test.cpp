@@ -101,7 +101,7 @@ TEST(ResampleErrors, NothingIsSaidOfWhatWasNotResampled) {
     options.lattice = StoredLattice::D4;
     pack(series, options, folder / "a.tsr");
     EXPECT_EQ(exactnessText(Archive(folder / "a.tsr").metadata()),
-              "every sample of the D4* grid is exact; the source was resampled (at a cost that is not known)");
+              "every sample of the D4* grid is exact; the source was resampled (with an unknown error)");
 }
 
 TEST(ResampleErrors, GoWithSamplesThatArePackedAgain) {

@@ -77,7 +77,7 @@ TEST_F(TecplotDamage, HostileCounts) {
     EXPECT_THAT(of(file), testing::HasSubstr("cells of another kind"));
     file = good;
     file.zones[0].variables[0].values[3] = std::nan("");
-    EXPECT_THAT(of(file), testing::HasSubstr("no number"));
+    EXPECT_THAT(of(file), testing::HasSubstr("not a number"));
     file = good;
     file.zones[0].strand = 0;
     file.zones[0].time = std::nan("");

@@ -156,7 +156,7 @@ TEST_F(TextFormats, BadTablesSayWhere) {
     EXPECT_THAT(failure(write("a.csv", "x,y,z,T\n0,0,0\n")), testing::HasSubstr("line 2 has 3 fields"));
     EXPECT_THAT(failure(write("a.csv", "1,2,3\n4,5,6\n")), testing::HasSubstr("no heading"));
     EXPECT_THAT(failure(write("a.csv", "time,voltage\n0,1\n")), testing::HasSubstr("--over-time"));
-    EXPECT_THAT(failure(write("a.csv", "x,y,z,T\n0,0,0,1\n1,0,0,1\n0,0,0,2\n")), testing::HasSubstr("same place"));
+    EXPECT_THAT(failure(write("a.csv", "x,y,z,T\n0,0,0,1\n1,0,0,1\n0,0,0,2\n")), testing::HasSubstr("same position"));
 }
 
 TEST_F(TextFormats, TecplotStructured) {

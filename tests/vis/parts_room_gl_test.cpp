@@ -54,7 +54,8 @@ TEST(PartsRoom, TooManyChannelsShowTheNearestSamplesAndSaySo) {
     for (const glm::vec4& pixel : renderer.readLinear(*target)) EXPECT_EQ(pixel.a, 0);
     const std::vector<std::string> messages = renderer.takeMessages();
     ASSERT_EQ(messages.size(), 1u);
-    EXPECT_NE(messages[0].find("too many channels at once for the parts of c"), std::string::npos) << messages[0];
+    EXPECT_NE(messages[0].find("too many parameters are drawn at once to separate the parts of c"), std::string::npos)
+        << messages[0];
     scene.transfer["c"] = fog();
     EXPECT_TRUE(renderer.render(*target, scene, request).complete);
     EXPECT_TRUE(std::ranges::any_of(renderer.readLinear(*target), [](glm::vec4 p) { return p.a > 0.05f; }))

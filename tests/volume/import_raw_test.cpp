@@ -166,15 +166,15 @@ TEST_F(ImportRaw, BadInputGivesOneLine) {
     EXPECT_THAT(with(R"({"dims":[2,2,2],"dtype":"complex"})"), testing::HasSubstr("unknown type \"complex\""));
     EXPECT_THAT(with(R"({"dims":[2,2,2]})"), testing::HasSubstr("dtype"));
     EXPECT_THAT(with(R"({"dims":[2,2,3],"dtype":"uint8"})"),
-                testing::HasSubstr("has 8 bytes, its form asks for 12 (2 x 2 x 3 samples, 1 component, 1 time)"));
-    EXPECT_THAT(with(R"({"dims":[2,2,1],"dtype":"uint8"})"), testing::HasSubstr("has 8 bytes, its form asks for 4"));
+                testing::HasSubstr("has 8 bytes, but its layout needs 12 (2 x 2 x 3 samples, 1 component, 1 time)"));
+    EXPECT_THAT(with(R"({"dims":[2,2,1],"dtype":"uint8"})"), testing::HasSubstr("has 8 bytes, but its layout needs 4"));
     EXPECT_THAT(with(R"({"dims":[2,2,-2],"dtype":"uint8"})"), testing::HasSubstr("dims[2]"));
     EXPECT_THAT(with(R"({"dims":[1000000,1000000,1000000],"dtype":"uint8"})"), testing::HasSubstr("10^15"));
     EXPECT_THAT(with(R"({"dims":[1e300,2,2],"dtype":"uint8"})"), testing::HasSubstr("dims"));
     EXPECT_THAT(with(R"({"dims":[2,2,2],"dtype":"uint8","spacing":[0,1,1]})"), testing::HasSubstr("spacing[0]"));
     EXPECT_THAT(with(R"({"dims":[2,2,1],"dtype":"uint8","times":[1,1]})"), testing::HasSubstr("times[1]"));
     EXPECT_THAT(with(R"({"dims":[2,2,1],"dtype":"uint8","components":[{"name":"a"},{"name":"a"}]})"),
-                testing::HasSubstr("there twice"));
+                testing::HasSubstr("present twice"));
     EXPECT_THAT(with(R"({"dims":[2,2,2],"dtype":"uint8","components":[]})"), testing::HasSubstr("no component"));
     EXPECT_THAT(with(R"({"dims":[2,2,2],"dtype":"uint8","byte_order":"pdp"})"), testing::HasSubstr("byte_order"));
 }

@@ -162,7 +162,7 @@ TEST_F(FakeImporter, FailuresCostOneLine) {
     use("echo broken pipe of gas >&2; kill -SEGV $$");
     EXPECT_THAT(failure(), testing::EndsWith("a.vti: tessera-import crashed (signal 11): broken pipe of gas"));
     use("head -c 4000 /dev/urandom");
-    EXPECT_THAT(failure(), testing::HasSubstr("no message"));
+    EXPECT_THAT(failure(), testing::HasSubstr("invalid message"));
     use("printf 'TSI1'");
     EXPECT_THAT(failure(), testing::HasSubstr("ended early"));
     use(message(3, "is damaged"));
@@ -176,7 +176,7 @@ TEST_F(FakeImporter, FailuresCostOneLine) {
     use(message(1, kHeader) + "read line; " + message(3, "no such array"));
     EXPECT_THAT(failure(), testing::EndsWith("no such array"));
     use(message(1, kHeader) + "read line; " + message(2, std::string(44, 'x')));
-    EXPECT_THAT(failure(), testing::HasSubstr("another form"));
+    EXPECT_THAT(failure(), testing::HasSubstr("another layout"));
     setenv("TESSERA_IMPORT", "/no/such/program", 1);
     EXPECT_THAT(failure(), testing::HasSubstr("cannot be started"));
 }

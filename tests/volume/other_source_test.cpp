@@ -207,10 +207,10 @@ TEST(OtherSource, WhatCannotBeComparedIsSaid) {
     EXPECT_EQ(derivedProblem({"d", "K", DifferenceRecipe{"T", OtherTime::Other}}, celsius->info()), "");
     EXPECT_EQ(derivedProblem({"d", "K", DifferenceRecipe{"T", OtherTime::Other}},
                              withOther(a, make({.unit = "bar", .form = other}, "b"))->info()),
-              "T is in K, in the other data in bar: they have no difference");
+              "T is in K, in the other data in bar: they cannot be subtracted");
     EXPECT_EQ(derivedProblem({"d", "K", ExpressionRecipe{"T - at(T, other) - 273.15"}}, celsius->info()), "");
     EXPECT_EQ(derivedProblem({"d", "K", ExpressionRecipe{"at(t, other)"}}, celsius->info()),
-              "position 7: only parameters have values in other data");
+              "position 7: only parameters can be taken from the other data set");
     const auto more = derive(celsius, {"e", "", ExpressionRecipe{"2 * T"}});
     EXPECT_EQ(derivedProblem({"d", "K", ExpressionRecipe{"at(e, other)"}}, more->info()),
               "position 7: the other data have no parameter \"e\"");

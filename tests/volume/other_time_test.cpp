@@ -205,7 +205,7 @@ TEST(OtherTime, SaysWhereAFormulaIsWrong) {
     EXPECT_EQ(problem("at(f, 1 h)"), "position 9: a closing parenthesis is expected here");
     EXPECT_EQ(problem("1 + at(f, 3.5)"), "position 11: time 3.5 h lies outside those of the data, 0 to 3 h");
     EXPECT_EQ(problem("at(f, -1)"), "position 7: time -1 h lies outside those of the data, 0 to 3 h");
-    EXPECT_EQ(problem("at(f, other)"), "position 7: no other data are shown beside these");
+    EXPECT_EQ(problem("at(f, other)"), "position 7: no other data set is open");
     EXPECT_EQ(problem("at + 1"), "position 1: no parameter is named \"at\"");
     DatasetInfo one = info;
     one.times = {0};

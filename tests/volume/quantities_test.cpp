@@ -69,7 +69,7 @@ DatasetInfo withTimes(std::vector<double> times) {
 
 const Quantity& named(const DatasetInfo& info, const std::string& name) {
     const auto found = findQuantity(info, name);
-    if (!found) throw Error("there is no quantity " + name);
+    if (!found) throw Error("no quantity over time " + name);
     return info.quantities[std::size_t(*found)];
 }
 
@@ -97,14 +97,14 @@ TEST_F(Quantities, ATableIsReadWithItsUnits) {
 
 TEST_F(Quantities, ABadTableIsAnErrorWithFileAndLine) {
     EXPECT_THAT(failure("time,U\n1,2\n2,x7\n"),
-                testing::AllOf(HasSubstr("h.csv"), HasSubstr("line 3"), HasSubstr("x7"), HasSubstr("is no number")));
+                testing::AllOf(HasSubstr("h.csv"), HasSubstr("line 3"), HasSubstr("x7"), HasSubstr("is not a number")));
     EXPECT_THAT(failure("time,U\n\n1,2,3\n"), testing::AllOf(HasSubstr("line 3"), HasSubstr("3 values")));
     EXPECT_THAT(failure("time,U\n1,2\n3,4\n1,5\n"), testing::AllOf(HasSubstr("line 4"), HasSubstr("line 2")));
     EXPECT_THAT(failure("time,U\n,2\n"), testing::AllOf(HasSubstr("line 2"), HasSubstr("has no time")));
     EXPECT_THAT(failure("1,2\n3,4\n"), testing::AllOf(HasSubstr("line 1"), HasSubstr("name the columns")));
     EXPECT_THAT(failure("time,U,U [V]\n"), HasSubstr("two columns are named U"));
     EXPECT_THAT(failure("time\n1\n"), HasSubstr("names one column"));
-    EXPECT_THAT(failure("time,U\n1,inf\n"), HasSubstr("is no number"));
+    EXPECT_THAT(failure("time,U\n1,inf\n"), HasSubstr("is not a number"));
     EXPECT_THAT(failure("time,U\n"), HasSubstr("no row"));
     EXPECT_THAT(failure(""), HasSubstr("empty"));
     EXPECT_THROW(readTimeTable((folder_ / "none.csv").string()), Error);

@@ -59,7 +59,7 @@ std::unique_ptr<BrickAtlas> AtlasPool::make(int components, std::size_t slots) {
             return std::make_unique<BrickAtlas>(brickSize_, components, exact_, slots, driver_.texture3DEdge);
         } catch (const MachineError&) {
             if (slots <= kFewSlots) throw;
-            say_("the driver has no memory for the texture budget; less is used");
+            say_("the graphics driver has less memory than the limit for textures; less is used");
         }
     }
 }

@@ -111,7 +111,7 @@ void load(LoadExchange& exchange, const LoadRequest& request, LoadedTexels& out,
             return share == OnePart::Share::All ? samples
                                                 : part->only(samples, *exchange.bricks->get(part->label(brick)));
         } catch (const Error& error) {
-            exchange.say(channel.name + ": a brick cannot be read and is left out: " + error.what());
+            exchange.say(channel.name + ": a brick cannot be read and is not drawn: " + error.what());
             damaged = true;
             return absentBrick(grid, brick);
         }

@@ -72,7 +72,8 @@ void Residency::takeBrick(LoadedTexels& brick, ResidentChannel& channel) {
     if (!slot) {
         shown.bricks->forget(id);
         if (waiting_ || shown.room == ChannelTexture::Room::Left)
-            exchange_->say("the texture budget holds only part of the data at full resolution; the rest is coarser");
+            exchange_->say(
+                "the texture memory holds only part of the data at full resolution; the rest is drawn coarser");
         shown.room = waiting_ ? ChannelTexture::Room::Never : ChannelTexture::Room::None;
         return;
     }

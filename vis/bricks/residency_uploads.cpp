@@ -129,8 +129,8 @@ bool Residency::refused(const LoadedTexels& item) {
     if (!idle.empty()) return true; // once more
     ResidentChannel& channel = channels_.at(item.key);
     if (item.level + 1 >= exchange_->source->grid().levels) return false;
-    exchange_->say("the graphics driver has no memory for full resolution; " +
-                   exchange_->source->info().channel(item.key.channel).name + " is shown coarser");
+    exchange_->say("the graphics driver has not enough memory for full resolution; " +
+                   exchange_->source->info().channel(item.key.channel).name + " is drawn coarser");
     channel.finest = item.level + 1;
     channel.summary = item.summary;
     channel.ended(false);

@@ -17,8 +17,9 @@ constexpr double kC1 = (0.01 * 255) * (0.01 * 255), kC2 = (0.03 * 255) * (0.03 *
 
 void check(const Image& a, const Image& b) {
     if (a.size != b.size || a.size.x < 1 || a.size.y < 1 || a.rgba.size() != b.rgba.size())
-        throw Error("pictures to compare need one size; they have " + std::to_string(a.size.x) + "x" +
-                    std::to_string(a.size.y) + " and " + std::to_string(b.size.x) + "x" + std::to_string(b.size.y));
+        throw Error("pictures can be compared only if they have the same size; they have " + std::to_string(a.size.x) +
+                    "x" + std::to_string(a.size.y) + " and " + std::to_string(b.size.x) + "x" +
+                    std::to_string(b.size.y));
 }
 
 std::vector<double> luma(const Image& image) {

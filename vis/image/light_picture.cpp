@@ -72,7 +72,7 @@ void readRuns(Bytes& in, std::vector<Rgbe>& row) {
     for (std::size_t part = 0; part < 4; ++part)
         for (std::size_t x = 0; x < row.size();) {
             const std::size_t code = in.next(), count = code > 128 ? code - 128 : code;
-            if (count == 0 || count > row.size() - x) in.fail("a run goes beyond its row");
+            if (count == 0 || count > row.size() - x) in.fail("a run is longer than its row");
             std::uint8_t value = code > 128 ? in.next() : std::uint8_t(0);
             for (std::size_t end = x + count; x < end; ++x) {
                 if (code <= 128) value = in.next();
@@ -93,7 +93,7 @@ void readPixels(Bytes& in, std::vector<Rgbe>& row) {
             continue;
         }
         const std::size_t count = shift < 24 ? std::size_t(pixel[3]) << shift : row.size() + 1;
-        if (x == 0 || count > row.size() - x) in.fail("a run goes beyond its row");
+        if (x == 0 || count > row.size() - x) in.fail("a run is longer than its row");
         std::fill_n(row.begin() + std::ptrdiff_t(x), count, row[x - 1]);
         x += count;
         shift += 8;
@@ -194,7 +194,7 @@ CubeMap surroundingsOf(const LightPicture& picture, const std::string& name) {
         return size.x > 0 && std::int64_t(size.x) * y == std::int64_t(size.y) * x;
     };
     if (!shaped(2, 1) && !shaped(4, 3) && !shaped(3, 4))
-        throw Error("surroundings are pictures of 2:1 (all around) or crosses of 4:3 or 3:4, not " +
+        throw Error("a picture of the surroundings must be a panorama of 2:1 or a cube map cross of 4:3 or 3:4, not " +
                         std::to_string(size.x) + " x " + std::to_string(size.y),
                     name);
     CubeMap map;

@@ -68,7 +68,7 @@ void Renderer::Impl::sayLimits(const RenderCall& call) {
     };
     std::string now;
     if (!scene.lighting.inMaps && enabled(scene.lighting.lights) > kMaxLights)
-        now = "the first " + std::to_string(kMaxLights) + " lights are used; light through maps takes any number";
+        now = "the first " + std::to_string(kMaxLights) + " lights are used; with lights in maps any number can be";
     if (enabled(scene.clips) > kMaxClips)
         now += (now.empty() ? "" : "; ") + ("the first " + std::to_string(kMaxClips)) + " clips are used";
     if (enabled(scene.lenses) > kMaxLenses)

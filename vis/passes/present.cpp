@@ -72,7 +72,7 @@ BoxLines Renderer::Impl::box(const ViewTarget& target, const Scene& scene) const
 void Renderer::Impl::present(ViewTarget& target, const Scene& scene, bool reduced, const Tile& tile) {
     const BoxLines lines = box(target, scene);
     const Program* resolve = tools.programs.find(resolveRecipe(scene, !lines.edges.empty()));
-    if (!resolve) throw Error("the program that presents pictures does not compile");
+    if (!resolve) throw Error("the shader that presents pictures does not compile");
     setPresented(*resolve, target, scene, lines, reduced);
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, target.buffers.outputFramebuffer.name());
     glViewport(0, 0, target.buffers.size.x, target.buffers.size.y);

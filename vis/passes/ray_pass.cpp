@@ -125,7 +125,7 @@ void Renderer::Impl::accumulate(ViewTarget& target, const RenderCall& call, cons
     const Tile& tile = what.tile;
     RayBuffer& beside = target.buffers.reduced;
     const Program* average = tools.programs.find({"screen.vert.glsl", "accumulate.frag.glsl", {}, {}});
-    if (!average) throw Error("the program that averages passes does not compile");
+    if (!average) throw Error("the shader that averages passes does not compile");
     target.state.dropReduced();
     beside.first = {0, 0};
     rays(programs, call, beside, what);

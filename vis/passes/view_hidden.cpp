@@ -16,7 +16,7 @@ void ViewHidden::start(RenderTools& tools, const RenderCall& call, const Picture
     if (reach_.pending() || !(quick || last)) return;
     const Program* program =
         tools.programs.find({"screen.vert.glsl", "reach.frag.glsl", {}, {{"TILE", std::to_string(kReachTile)}}});
-    if (!program) throw Error("the program that reads back ray ends does not compile");
+    if (!program) throw Error("the shader that reads back ray ends does not compile");
     const RayBuffer& from = last ? buffers.full : buffers.reduced;
     glDisable(GL_SCISSOR_TEST);
     reach_.start(*program, tools.vertices.name(), from.reach.name(), from.first,

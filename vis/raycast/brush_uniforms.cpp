@@ -102,8 +102,9 @@ void setBrushUniforms(const Program& program, const RayPlan& plan, const Selecti
 
 GLuint BrushTables::update(const BrushTests& brushes) {
     if (brushes.dropped > dropped_)
-        messages_.push_back("the last " + std::to_string(brushes.dropped) +
-                            " brushes are more than the 3D views can test; plots and tables count them");
+        messages_.push_back(
+            "the last " + std::to_string(brushes.dropped) +
+            " brushes are ignored in 3D views, which have reached their limit; plots and tables use them");
     dropped_ = brushes.dropped;
     if (brushes.lassos == shown_) return texture_.name();
     if (brushes.lassos.size() != shown_.size())

@@ -73,14 +73,14 @@ void addParts(RayPlan& plan, const volume::DatasetInfo& info, int mostFields) {
         }
     }
     if (!plan.limit.empty())
-        plan.limit = "too many channels at once for the parts of " + plan.limit +
-                     ": its nearest samples are shown, without surfaces and gradients; show fewer layers";
+        plan.limit = "too many parameters are drawn at once to separate the parts of " + plan.limit +
+                     ": its nearest samples are drawn, without surfaces and gradients; show fewer layers";
 }
 
 std::string tooMany(const std::vector<std::string>& left) {
     std::string names;
     for (const std::string& name : left) names += (names.empty() ? "" : ", ") + name;
-    return "too many channels at once for the graphics driver: " + names + " left out; show fewer layers";
+    return "too many parameters at once for the graphics driver: " + names + " left out; show fewer layers";
 }
 
 /// The channel a layer shows.

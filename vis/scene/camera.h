@@ -34,7 +34,7 @@ struct Camera {
                                          .names = kProjectionNames});
         visit(self.orientation, FieldInfo{.key = "orientation",
                                           .unit = "",
-                                          .doc = "Rotation from world to eye axes (w, x, y, z)",
+                                          .doc = "Rotation from world to eye axes, as a quaternion (w, x, y, z)",
                                           .hidden = true});
         visit(
             self.target,

@@ -27,15 +27,16 @@ struct Clip {
 
     bool operator==(const Clip&) const = default;
     static void describe(auto& self, auto&& visit) {
-        visit(self.enabled, FieldInfo{.key = "enabled", .unit = "", .doc = "Cuts"});
+        visit(self.enabled, FieldInfo{.key = "enabled", .unit = "", .doc = "Apply this clip"});
         visit(self.kind, FieldInfo{.key = "kind", .unit = "", .doc = "Shape that cuts", .names = kClipKindNames});
-        visit(self.keep, FieldInfo{.key = "keep",
-                                   .unit = "",
-                                   .doc = "What stays; inside of a plane is where its axis points away from",
-                                   .names = kClipKeepNames});
+        visit(self.keep,
+              FieldInfo{.key = "keep",
+                        .unit = "",
+                        .doc = "Side that is kept; the inside of a plane is the side that its normal points away from",
+                        .names = kClipKeepNames});
         visit(self.center, FieldInfo{.key = "center",
                                      .unit = "",
-                                     .doc = "Place in the box of the data, 0 to 1 on each axis",
+                                     .doc = "Centre, 0 to 1 along each axis of the data",
                                      .range = Range{-0.5, 1.5}});
         visit(self.axis, FieldInfo{.key = "axis",
                                    .unit = "",
@@ -44,17 +45,17 @@ struct Clip {
                                    .applies = self.kind == ClipKind::Plane || self.kind == ClipKind::Cylinder});
         visit(self.size, FieldInfo{.key = "size",
                                    .unit = "",
-                                   .doc = "Edges of a box, longest edge of the data = 1",
+                                   .doc = "Edge lengths of a box; longest edge of the data = 1",
                                    .range = Range{0, 2},
                                    .applies = self.kind == ClipKind::Box});
         visit(self.radius, FieldInfo{.key = "radius",
                                      .unit = "",
-                                     .doc = "Of a sphere or cylinder, longest edge of the data = 1",
+                                     .doc = "Radius of a sphere or cylinder; longest edge of the data = 1",
                                      .range = Range{0, 2},
                                      .applies = self.kind == ClipKind::Sphere || self.kind == ClipKind::Cylinder});
         visit(self.length, FieldInfo{.key = "length",
                                      .unit = "",
-                                     .doc = "Of a cylinder, longest edge of the data = 1",
+                                     .doc = "Length of a cylinder; longest edge of the data = 1",
                                      .range = Range{0, 4},
                                      .applies = self.kind == ClipKind::Cylinder});
     }

@@ -44,55 +44,57 @@ struct FlowLayer {
         visit(self.vector, FieldInfo{.key = "vector", .unit = "", .doc = "Vector shown", .refersTo = "vector"});
         visit(
             self.channel,
-            FieldInfo{.key = "channel", .unit = "", .doc = "Parameter whose colours are shown", .refersTo = "channel"});
+            FieldInfo{.key = "channel", .unit = "", .doc = "Parameter that gives the colours", .refersTo = "channel"});
         visit(self.kind,
               FieldInfo{.key = "kind",
                         .unit = "",
-                        .doc =
-                            "Lines or tubes along the flow of this moment, lines, arrows or cones where they begin, or "
-                            "the ways of particles that are there now, through all times",
+                        .doc = "Streamlines or tubes along the flow at the time shown, lines, arrows or cones at the "
+                               "seed points, or paths through all times of particles that are at the seed points now",
                         .names = kFlowKindNames});
-        visit(self.seeds, FieldInfo{.key = "seeds",
-                                    .unit = "",
-                                    .doc = "How beginnings are spread from corner to corner: along the diagonal, on "
-                                           "the middle plane of the thinnest side, at random in the ball or the box",
-                                    .names = volume::kSeedShapeNames});
+        visit(self.seeds,
+              FieldInfo{.key = "seeds",
+                        .unit = "",
+                        .doc = "Arrangement of the seed points between the two corners: along the diagonal, on the "
+                               "middle plane across the thinnest side, at random in the ball or the box",
+                        .names = volume::kSeedShapeNames});
         visit(self.from, FieldInfo{.key = "from",
                                    .unit = "",
-                                   .doc = "First corner of the beginnings, 0 to 1 through the data",
+                                   .doc = "First corner of the seed points, 0 to 1 along each axis of the data",
                                    .range = Range{0, 1}});
         visit(self.to, FieldInfo{.key = "to",
                                  .unit = "",
-                                 .doc = "Last corner of the beginnings, 0 to 1 through the data",
+                                 .doc = "Last corner of the seed points, 0 to 1 along each axis of the data",
                                  .range = Range{0, 1}});
-        visit(
-            self.count,
-            FieldInfo{
-                .key = "count", .unit = "", .doc = "Number of beginnings", .range = Range{1, 20000}, .logScale = true});
+        visit(self.count, FieldInfo{.key = "count",
+                                    .unit = "",
+                                    .doc = "Number of seed points",
+                                    .range = Range{1, 20000},
+                                    .logScale = true});
         visit(self.random,
               FieldInfo{.key = "random",
                         .unit = "",
-                        .doc = "Another number spreads random beginnings otherwise",
+                        .doc = "Seed of the random number generator for random seed points",
                         .range = Range{0, 1000},
                         .applies = self.seeds == volume::SeedShape::Sphere || self.seeds == volume::SeedShape::Random});
-        visit(self.weight, FieldInfo{.key = "weight",
-                                     .unit = "",
-                                     .doc = "Random beginnings are as dense as this parameter is high; none = evenly",
-                                     .refersTo = "optionalChannel"});
-        visit(self.seedBrushed,
-              FieldInfo{.key = "seedBrushed",
+        visit(self.weight,
+              FieldInfo{.key = "weight",
                         .unit = "",
-                        .doc = "Beginnings lie where is brushed; random ones are as dense as the interest is high"});
+                        .doc = "Parameter to which the density of random seed points is proportional; empty: uniform",
+                        .refersTo = "optionalChannel"});
+        visit(self.seedBrushed, FieldInfo{.key = "seedBrushed",
+                                          .unit = "",
+                                          .doc = "Place seed points in the selection; the density of random ones is "
+                                                 "proportional to the degree of interest"});
         visit(self.length, FieldInfo{.key = "length",
                                      .unit = "",
-                                     .doc = "Greatest length of a line each way, in longest edges of the data",
+                                     .doc = "Greatest length of a line in each direction; longest edge of the data = 1",
                                      .range = Range{0.001, 100},
                                      .logScale = true,
                                      .applies = followsFlow(self.kind)});
         visit(self.speed, FieldInfo{.key = "speed",
                                     .unit = "",
-                                    .doc = "Pathlines: lengths of the data's unit that a vector of 1 goes in its unit "
-                                           "of time; 1 = m, s and m/s",
+                                    .doc = "Paths: distance, in the length unit of the data, that a vector of 1 covers "
+                                           "in one unit of time; 1 for m, s and m/s",
                                     .range = Range{1e-9, 1e9},
                                     .logScale = true,
                                     .applies = self.kind == FlowKind::Pathlines});
@@ -102,24 +104,25 @@ struct FlowLayer {
                                            .range = Range{0, 1}});
         visit(self.radius, FieldInfo{.key = "radius",
                                      .unit = "",
-                                     .doc = "Radius of tubes, in longest edges as drawn",
+                                     .doc = "Radius of tubes; longest edge as drawn = 1",
                                      .range = Range{1e-4, 0.1},
                                      .logScale = true,
                                      .applies = self.kind == FlowKind::Tubes || self.kind == FlowKind::Pathlines});
         visit(self.size, FieldInfo{.key = "size",
                                    .unit = "",
-                                   .doc = "Length of the longest glyph, in longest edges as drawn",
+                                   .doc = "Length of the longest glyph; longest edge as drawn = 1",
                                    .range = Range{1e-3, 1},
                                    .logScale = true,
                                    .applies = !followsFlow(self.kind)});
-        visit(self.scaled, FieldInfo{.key = "scaled",
-                                     .unit = "",
-                                     .doc = "Glyphs as long as the vector; else all of one length",
-                                     .applies = !followsFlow(self.kind)});
+        visit(self.scaled,
+              FieldInfo{.key = "scaled",
+                        .unit = "",
+                        .doc = "Make the length of glyphs proportional to the vector; else all have the same length",
+                        .applies = !followsFlow(self.kind)});
         visit(self.lineWidth,
               FieldInfo{.key = "lineWidth",
                         .unit = "pixel",
-                        .doc = "Width of streamlines and hedgehogs",
+                        .doc = "Width of lines and hedgehogs",
                         .range = Range{0.5, 20},
                         .applies = self.kind == FlowKind::Streamlines || self.kind == FlowKind::Hedgehogs});
         visit(self.color, FieldInfo{.key = "color",

@@ -46,8 +46,8 @@ struct VolumeLayer {
         visit(self.channel, FieldInfo{.key = "channel", .unit = "", .doc = "Parameter shown", .refersTo = "channel"});
         visit(self.colorBy, FieldInfo{.key = "colorBy",
                                       .unit = "",
-                                      .doc = "Parameter whose transfer function gives the colours; the opacity stays "
-                                             "that of the parameter shown; gray where it has no value",
+                                      .doc = "Parameter whose transfer function gives the colours; the opacity still "
+                                             "comes from the parameter shown. Gray where it has no value",
                                       .refersTo = "colorChannel"});
         visit(self.style, FieldInfo{.key = "style",
                                     .unit = "",
@@ -55,18 +55,18 @@ struct VolumeLayer {
                                     .names = kVolumeStyleNames});
         visit(self.quantity, FieldInfo{.key = "quantity",
                                        .unit = "",
-                                       .doc = "What is shown: the value, or how steeply it changes",
+                                       .doc = "Show the value or the magnitude of its gradient",
                                        .names = kQuantityNames});
         visit(self.classification,
               FieldInfo{.key = "classification",
                         .unit = "",
-                        .doc = "Composite: colour of interpolated values (post), interpolated colours of samples "
-                               "(pre), or the mean colour of all values between two samples (preintegrated)",
+                        .doc = "Composite: colour of the interpolated value (post), interpolated colours of the "
+                               "samples (pre), or mean colour of all values between two samples (preintegrated)",
                         .names = kClassificationNames,
                         .applies = self.style == RayStyle::Composite && self.quantity == Quantity::Value});
         visit(self.threshold, FieldInfo{.key = "threshold",
                                         .unit = "",
-                                        .doc = "Local maximum: value that the first maximum must reach",
+                                        .doc = "Local maximum: smallest value that counts as a maximum",
                                         .applies = self.style == RayStyle::LocalMaximum});
         visit(self.shaded, FieldInfo{.key = "shaded",
                                      .unit = "",
@@ -104,10 +104,11 @@ struct IsoLayer {
               FieldInfo{.key = "color", .unit = "", .doc = "Colour of the surface (sRGB)", .range = Range{0, 1}});
         visit(self.opacity,
               FieldInfo{.key = "opacity", .unit = "", .doc = "Opacity of the surface", .range = Range{0, 1}});
-        visit(self.method, FieldInfo{.key = "method",
-                                     .unit = "",
-                                     .doc = "Found along each ray, or extracted once as polygons",
-                                     .names = kSurfaceMethodNames});
+        visit(self.method,
+              FieldInfo{.key = "method",
+                        .unit = "",
+                        .doc = "Intersect each ray with the surface, or extract the surface once as polygons",
+                        .names = kSurfaceMethodNames});
         visit(self.colorBy, FieldInfo{.key = "colorBy",
                                       .unit = "",
                                       .doc = "Parameter whose transfer function colours the surface; where it has no "
@@ -135,12 +136,12 @@ struct SliceLayer {
         visit(self.channel, FieldInfo{.key = "channel", .unit = "", .doc = "Parameter shown", .refersTo = "channel"});
         visit(self.orientation, FieldInfo{.key = "orientation",
                                           .unit = "",
-                                          .doc = "Axis the slice is perpendicular to",
+                                          .doc = "Axis perpendicular to the slice",
                                           .names = kSliceOrientationNames});
-        visit(self.atCursor, FieldInfo{.key = "atCursor", .unit = "", .doc = "Pass through the linked cursor"});
+        visit(self.atCursor, FieldInfo{.key = "atCursor", .unit = "", .doc = "Pass through the linked cross-hair"});
         visit(self.position, FieldInfo{.key = "position",
                                        .unit = "",
-                                       .doc = "Place along the normal, 0 to 1 through the box",
+                                       .doc = "Position along the normal, 0 to 1 through the box of the data",
                                        .range = Range{0, 1},
                                        .applies = !self.atCursor});
         visit(self.normal, FieldInfo{.key = "normal",
@@ -199,18 +200,21 @@ struct Layer {
         visit(self.name, FieldInfo{.key = "name", .unit = "", .doc = "Name of the layer"});
         visit(self.visible, FieldInfo{.key = "visible", .unit = "", .doc = "Show the layer"});
         visit(self.technique, FieldInfo{.key = "technique", .unit = "", .doc = "What the layer draws"});
-        visit(self.lens,
-              FieldInfo{.key = "lens", .unit = "", .doc = "Lens inside which alone it is drawn", .refersTo = "lens"});
-        visit(self.transfer, FieldInfo{.key = "transfer",
-                                       .unit = "",
-                                       .doc = "Name of its own transfer function; none: that of its parameter"});
-        visit(self.timeShift,
-              FieldInfo{.key = "timeShift", .unit = "s", .doc = "How much later than the others the layer is shown"});
-        visit(self.brushes, FieldInfo{.key = "brushes",
-                                      .unit = "",
-                                      .doc = "What brushes do to it: what is not brushed fades, nothing, only what is "
-                                             "not brushed (context) or only what is brushed (focus) stays",
-                                      .names = kBrushEffectNames});
+        visit(self.lens, FieldInfo{.key = "lens",
+                                   .unit = "",
+                                   .doc = "Lens to which the layer belongs: it is drawn only inside; empty: everywhere",
+                                   .refersTo = "lens"});
+        visit(self.transfer,
+              FieldInfo{.key = "transfer",
+                        .unit = "",
+                        .doc = "Name of the transfer function of this layer alone; empty: that of its parameter"});
+        visit(self.timeShift, FieldInfo{.key = "timeShift", .unit = "s", .doc = "Time offset from the time shown"});
+        visit(self.brushes,
+              FieldInfo{.key = "brushes",
+                        .unit = "",
+                        .doc = "Effect of the brushes: fade what is not brushed (fade), no effect (none), draw only "
+                               "what is not brushed (context) or only what is brushed (focus)",
+                        .names = kBrushEffectNames});
     }
 };
 

@@ -40,54 +40,57 @@ struct Lens {
 
     bool operator==(const Lens&) const = default;
     static void describe(auto& self, auto&& visit) {
-        visit(self.name, FieldInfo{.key = "name", .unit = "", .doc = "Name, by which layers belong to it"});
-        visit(self.enabled, FieldInfo{.key = "enabled", .unit = "", .doc = "Acts and is seen"});
+        visit(self.name, FieldInfo{.key = "name", .unit = "", .doc = "Name by which layers refer to the lens"});
+        visit(self.enabled, FieldInfo{.key = "enabled", .unit = "", .doc = "Apply and show this lens"});
         visit(self.shape, FieldInfo{.key = "shape",
                                     .unit = "",
-                                    .doc = "Shape; a disc faces the viewer and reaches through everything",
+                                    .doc = "Shape; a disc faces the viewer and extends through the whole depth",
                                     .names = kLensShapeNames});
         visit(self.effect,
               FieldInfo{.key = "effect",
                         .unit = "",
-                        .doc = "Inside, the layers below give way to its own (or are cut away), alone stay, are "
-                               "enhanced, suppressed, magnified, or are the only ones that brushes act on",
+                        .doc =
+                            "Effect inside the lens: its own layers replace the others, or cut them away if it has "
+                            "none (replace); only what is inside is drawn (only); opacity is raised (enhance) or "
+                            "lowered (suppress); the picture is magnified (magnify); brushes act inside only (focus)",
                         .names = kLensEffectNames});
         visit(self.center,
-              FieldInfo{.key = "center", .unit = "m", .doc = "Middle of the lens", .applies = !self.followsCursor});
-        visit(self.followsCursor, FieldInfo{.key = "followsCursor", .unit = "", .doc = "Lies at the linked cursor"});
+              FieldInfo{.key = "center", .unit = "m", .doc = "Centre of the lens", .applies = !self.followsCursor});
+        visit(self.followsCursor, FieldInfo{.key = "followsCursor", .unit = "", .doc = "Follow the linked cross-hair"});
         visit(self.followsPointer,
               FieldInfo{.key = "followsPointer",
                         .unit = "",
-                        .doc = "Moves with the mouse over 3D views and slices (F pins it and lets it go)"});
+                        .doc = "Follow the mouse over 3D views and slices (F pins and releases it)"});
         visit(self.size, FieldInfo{.key = "size",
                                    .unit = "",
-                                   .doc = "Radii or half edges along its axes, longest edge of the data = 1",
+                                   .doc = "Radii or half edge lengths along its axes; longest edge of the data = 1",
                                    .range = Range{0.005, 2},
                                    .logScale = true});
         visit(self.rotation, FieldInfo{.key = "rotation",
                                        .unit = "deg",
-                                       .doc = "Turn around x, then y, then z",
+                                       .doc = "Rotation around x, then y, then z",
                                        .range = Range{-180, 180},
                                        .applies = self.shape != LensShape::Disc});
         visit(self.rim, FieldInfo{.key = "rim",
                                   .unit = "",
-                                  .doc = "Soft rim, share of the radius; 0 = a sharp edge",
+                                  .doc = "Width of the soft edge, as a share of the radius; 0 = a sharp edge",
                                   .range = Range{0, 1}});
-        visit(self.inverted, FieldInfo{.key = "inverted", .unit = "", .doc = "Acts outside instead of inside"});
+        visit(self.inverted, FieldInfo{.key = "inverted", .unit = "", .doc = "Act outside instead of inside"});
         visit(self.strength,
-              FieldInfo{.key = "strength", .unit = "", .doc = "How much of it happens", .range = Range{0, 1}});
+              FieldInfo{.key = "strength", .unit = "", .doc = "Strength of the effect", .range = Range{0, 1}});
         visit(self.magnification, FieldInfo{.key = "magnification",
                                             .unit = "",
-                                            .doc = "Magnify: how much larger the middle becomes",
+                                            .doc = "Magnify: magnification in the centre",
                                             .range = Range{1, 8},
                                             .logScale = true,
                                             .applies = self.effect == LensEffect::Magnify});
         visit(self.detail, FieldInfo{.key = "detail",
                                      .unit = "",
-                                     .doc = "Factor on the picture's detail for bricks that it meets, in data too "
-                                            "large for one texture; 0 = full resolution",
+                                     .doc = "Factor on the setting `render.detail` for bricks that touch the lens, in "
+                                            "data too large for one texture; 0 = full resolution",
                                      .range = Range{0, 8}});
-        visit(self.marks, FieldInfo{.key = "marks", .unit = "", .doc = "Plots and tables mark what lies inside"});
+        visit(self.marks,
+              FieldInfo{.key = "marks", .unit = "", .doc = "Mark the samples inside the lens in plots and tables"});
         visit(self.color,
               FieldInfo{.key = "color", .unit = "", .doc = "Colour of its outline (sRGB)", .range = Range{0, 1}});
     }

@@ -33,24 +33,27 @@ struct Light {
         visit(self.enabled, FieldInfo{.key = "enabled", .unit = "", .doc = "The light is on"});
         visit(self.kind, FieldInfo{.key = "kind",
                                    .unit = "",
-                                   .doc = "Far away, turning with the viewer or fixed to the data; or a point",
+                                   .doc = "Kind of light: a distant light that turns with the viewer or is fixed to "
+                                          "the data, or a point light",
                                    .names = kLightKindNames});
         visit(self.color, FieldInfo{.key = "color", .unit = "", .doc = "Colour (sRGB)", .range = Range{0, 1}});
-        visit(self.intensity,
-              FieldInfo{.key = "intensity", .unit = "", .doc = "1 makes white white", .range = Range{0, 20}});
+        visit(self.intensity, FieldInfo{.key = "intensity",
+                                        .unit = "",
+                                        .doc = "Brightness; 1 shows white surfaces as white",
+                                        .range = Range{0, 20}});
         visit(self.azimuth, FieldInfo{.key = "azimuth",
                                       .unit = "deg",
-                                      .doc = "To the right of the viewer, or of the z axis",
+                                      .doc = "Angle to the right of the viewer, or of the z axis",
                                       .range = Range{-180, 180},
                                       .applies = self.kind != LightKind::Point});
         visit(self.elevation, FieldInfo{.key = "elevation",
                                         .unit = "deg",
-                                        .doc = "Above the viewer, or towards the y axis",
+                                        .doc = "Angle above the viewer, or towards the y axis",
                                         .range = Range{-90, 90},
                                         .applies = self.kind != LightKind::Point});
         visit(self.position, FieldInfo{.key = "position",
                                        .unit = "",
-                                       .doc = "Of a point light, from the centre, longest edge = 1",
+                                       .doc = "Distance of a point light from the centre; longest edge of the data = 1",
                                        .range = Range{-10, 10},
                                        .applies = self.kind == LightKind::Point});
     }
@@ -70,13 +73,13 @@ struct EnvironmentLight {
     static void describe(auto& self, auto&& visit) {
         visit(self.kind, FieldInfo{.key = "kind",
                                    .unit = "",
-                                   .doc = "Surroundings that light and are mirrored",
+                                   .doc = "Surroundings that light the scene and are reflected in it",
                                    .names = kEnvironmentNames});
         visit(self.picture,
               FieldInfo{.key = "picture",
                         .unit = "",
-                        .doc = "Picture of the surroundings for kind \"picture\", Radiance (.hdr) or PNG: "
-                               "2:1 all around, its middle behind the data, or a cross of 4:3 or 3:4",
+                        .doc = "Picture of the surroundings for kind \"picture\", Radiance (.hdr) or PNG: a panorama "
+                               "of 2:1 with its middle behind the data, or a cube map cross of 4:3 or 3:4",
                         .refersTo = "path",
                         .applies = self.kind == Environment::Picture});
         visit(self.strength, FieldInfo{.key = "strength",
@@ -86,17 +89,17 @@ struct EnvironmentLight {
                                        .applies = self.kind != Environment::None});
         visit(self.reflection, FieldInfo{.key = "reflection",
                                          .unit = "",
-                                         .doc = "How much of them is mirrored",
+                                         .doc = "Strength of reflections of the surroundings",
                                          .range = Range{0, 4},
                                          .applies = self.kind != Environment::None});
         visit(self.turn, FieldInfo{.key = "turn",
                                    .unit = "deg",
-                                   .doc = "Turns them around the vertical axis",
+                                   .doc = "Rotation of the surroundings around the vertical axis",
                                    .range = Range{-180, 180},
                                    .applies = self.kind != Environment::None});
         visit(self.follows, FieldInfo{.key = "follows",
                                       .unit = "",
-                                      .doc = "They turn with the viewer",
+                                      .doc = "The surroundings turn with the viewer",
                                       .applies = self.kind != Environment::None});
     }
 };
@@ -115,30 +118,31 @@ struct Shadows {
     static void describe(auto& self, auto&& visit) {
         visit(self.strength, FieldInfo{.key = "strength",
                                        .unit = "",
-                                       .doc = "Darkness of shadows of the first three lights, 0 = none",
+                                       .doc = "Darkness of the shadows of the first three lights; 0 = none",
                                        .range = Range{0, 1}});
         visit(self.occlusion, FieldInfo{.key = "occlusion",
                                         .unit = "",
-                                        .doc = "Darkening of hollows (ambient occlusion), 0 = none",
+                                        .doc = "Ambient occlusion, the darkening of hollows; 0 = none",
                                         .range = Range{0, 1}});
         visit(self.reach, FieldInfo{.key = "reach",
                                     .unit = "",
-                                    .doc = "How far ambient occlusion looks, longest edge = 1",
+                                    .doc = "Radius of ambient occlusion; longest edge of the data = 1",
                                     .range = Range{0.01, 1},
                                     .logScale = true,
                                     .applies = self.occlusion > 0});
-        visit(self.translucency, FieldInfo{.key = "translucency",
-                                           .unit = "",
-                                           .doc = "Light that matter passes on in its colour, 0 = none",
-                                           .range = Range{0, 1}});
+        visit(self.translucency,
+              FieldInfo{.key = "translucency",
+                        .unit = "",
+                        .doc = "Translucency: light that passes through the volume and takes its colour; 0 = none",
+                        .range = Range{0, 1}});
         visit(self.scatter, FieldInfo{.key = "scatter",
                                       .unit = "",
-                                      .doc = "How far that light spreads on its way",
+                                      .doc = "How far translucent light spreads sideways",
                                       .range = Range{0, 1},
                                       .applies = self.translucency > 0});
         visit(self.meshes, FieldInfo{.key = "meshes",
                                      .unit = "",
-                                     .doc = "Surfaces of polygons cast shadows on volumes and on each other",
+                                     .doc = "Polygon surfaces cast shadows on volumes and on each other",
                                      .applies = self.any()});
         visit(self.resolution, FieldInfo{.key = "resolution",
                                          .unit = "",
@@ -165,18 +169,18 @@ struct Lighting {
     static void describe(auto& self, auto&& visit) {
         visit(self.model, FieldInfo{.key = "model",
                                     .unit = "",
-                                    .doc = "Phong, or microfacets (GGX) over Lambert that keep the energy",
+                                    .doc = "Reflection model: Phong, or a physical one (GGX microfacets over a Lambert "
+                                           "base, energy conserving)",
                                     .names = kLightModelNames});
-        visit(self.lights, FieldInfo{.key = "lights",
-                                     .unit = "",
-                                     .doc = "The lights; up to 16 take part one by one, any number in maps"});
-        visit(self.inMaps, FieldInfo{.key = "inMaps",
-                                     .unit = "",
-                                     .doc = "Any number of lights through cube maps, at the cost of one; no shadows"});
-        visit(self.environment, FieldInfo{.key = "environment", .unit = "", .doc = "Light from all around"});
+        visit(self.lights,
+              FieldInfo{.key = "lights", .unit = "", .doc = "Lights; up to 16, or any number with `inMaps`"});
+        visit(self.inMaps,
+              FieldInfo{.key = "inMaps",
+                        .unit = "",
+                        .doc = "Combine all lights in cube maps: any number at the cost of one, without shadows"});
+        visit(self.environment, FieldInfo{.key = "environment", .unit = "", .doc = "Light from the surroundings"});
         visit(self.shadows, FieldInfo{.key = "shadows", .unit = "", .doc = "Shadows, ambient occlusion, translucency"});
-        visit(self.ambient,
-              FieldInfo{.key = "ambient", .unit = "", .doc = "Light from everywhere", .range = Range{0, 1}});
+        visit(self.ambient, FieldInfo{.key = "ambient", .unit = "", .doc = "Ambient light", .range = Range{0, 1}});
         visit(self.diffuse, FieldInfo{.key = "diffuse",
                                       .unit = "",
                                       .doc = "Diffuse reflection (Phong)",
@@ -195,19 +199,20 @@ struct Lighting {
                                         .applies = self.model == LightModel::Phong});
         visit(self.roughness, FieldInfo{.key = "roughness",
                                         .unit = "",
-                                        .doc = "Of the surface: 0.05 polished, 1 dull (physical)",
+                                        .doc = "Roughness of the surface: 0.05 polished, 1 dull (physical)",
                                         .range = Range{0.05, 1},
                                         .applies = self.model == LightModel::Physical});
         visit(self.metalness, FieldInfo{.key = "metalness",
                                         .unit = "",
-                                        .doc = "1: reflects in its colour (physical)",
+                                        .doc = "Metalness: 1 reflects in the colour of the surface (physical)",
                                         .range = Range{0, 1},
                                         .applies = self.model == LightModel::Physical});
-        visit(self.reflectance, FieldInfo{.key = "reflectance",
-                                          .unit = "",
-                                          .doc = "Share mirrored straight on: 0.04 plastic, 0.17 gem (physical)",
-                                          .range = Range{0, 1},
-                                          .applies = self.model == LightModel::Physical});
+        visit(self.reflectance,
+              FieldInfo{.key = "reflectance",
+                        .unit = "",
+                        .doc = "Share of light reflected at normal incidence: 0.04 plastic, 0.17 gem (physical)",
+                        .range = Range{0, 1},
+                        .applies = self.model == LightModel::Physical});
     }
 };
 

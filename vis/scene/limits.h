@@ -23,17 +23,18 @@ struct RenderLimits {
                                           .doc = "Memory for decoded bricks",
                                           .range = Range{64, 1048576},
                                           .logScale = true});
-        visit(self.keptChange, FieldInfo{.key = "keptChange",
-                                         .unit = "",
-                                         .doc = "Bricks whose values move less than this share of their range between "
-                                                "two times keep their textures; 0 = only bricks that do not move",
-                                         .range = Range{0, 0.1}});
-        visit(self.frameTime, FieldInfo{.key = "frameTime",
-                                        .unit = "ms",
-                                        .doc = "Time one frame may take while something moves; resolution and step "
-                                               "follow it",
-                                        .range = Range{5, 1000},
-                                        .logScale = true});
+        visit(self.keptChange,
+              FieldInfo{.key = "keptChange",
+                        .unit = "",
+                        .doc = "Bricks whose values change by less than this share of their range between two times "
+                               "keep their textures; 0 = only bricks that do not change",
+                        .range = Range{0, 0.1}});
+        visit(self.frameTime,
+              FieldInfo{.key = "frameTime",
+                        .unit = "ms",
+                        .doc = "Time to draw one picture while something moves; resolution and step are adapted to it",
+                        .range = Range{5, 1000},
+                        .logScale = true});
     }
 };
 

@@ -16,7 +16,8 @@ struct WarmCool {
     float ownColor = 0.35f;
     bool operator==(const WarmCool&) const = default;
     static void describe(auto& self, auto&& visit) {
-        visit(self.amount, FieldInfo{.key = "amount", .unit = "", .doc = "From plain to toned", .range = Range{0, 1}});
+        visit(self.amount,
+              FieldInfo{.key = "amount", .unit = "", .doc = "Share of tone shading: 0 = plain", .range = Range{0, 1}});
         visit(self.warmColor, FieldInfo{.key = "warmColor",
                                         .unit = "",
                                         .doc = "Colour towards the first light (sRGB)",
@@ -27,7 +28,7 @@ struct WarmCool {
                                         .range = Range{0, 1}});
         visit(self.ownColor, FieldInfo{.key = "ownColor",
                                        .unit = "",
-                                       .doc = "How much of the own colour is added where light falls",
+                                       .doc = "Share of the colour of the surface added where light falls",
                                        .range = Range{0, 2}});
     }
 };
@@ -47,7 +48,7 @@ struct BoundaryEnhancement {
                                        .range = Range{0, 20}});
         visit(self.exponent, FieldInfo{.key = "exponent",
                                        .unit = "",
-                                       .doc = "Of the steepness: larger = the steepest places alone",
+                                       .doc = "Exponent on the gradient magnitude; larger = only the steepest places",
                                        .range = Range{0.1, 8},
                                        .logScale = true});
     }
@@ -60,7 +61,7 @@ struct SilhouetteEnhancement {
     static void describe(auto& self, auto&& visit) {
         visit(self.retained, FieldInfo{.key = "retained",
                                        .unit = "",
-                                       .doc = "Share of opacity that stays where the viewer looks straight on",
+                                       .doc = "Share of opacity that stays where the surface faces the viewer",
                                        .range = Range{0, 2}});
         visit(self.strength, FieldInfo{.key = "strength",
                                        .unit = "",
@@ -68,7 +69,7 @@ struct SilhouetteEnhancement {
                                        .range = Range{0, 20}});
         visit(self.exponent, FieldInfo{.key = "exponent",
                                        .unit = "",
-                                       .doc = "Larger = narrower silhouettes",
+                                       .doc = "Exponent; larger = narrower silhouettes",
                                        .range = Range{0.25, 16},
                                        .logScale = true});
     }
@@ -81,17 +82,18 @@ struct DistanceColor {
     glm::vec3 color{0.55f, 0.65f, 0.8f}; ///< sRGB
     bool operator==(const DistanceColor&) const = default;
     static void describe(auto& self, auto&& visit) {
-        visit(self.amount,
-              FieldInfo{.key = "amount", .unit = "", .doc = "At the far end of the box", .range = Range{0, 1}});
+        visit(
+            self.amount,
+            FieldInfo{.key = "amount", .unit = "", .doc = "Strength at the far end of the box", .range = Range{0, 1}});
         visit(self.exponent, FieldInfo{.key = "exponent",
                                        .unit = "",
-                                       .doc = "Larger = the foreground keeps its colours longer",
+                                       .doc = "Exponent; larger = the foreground keeps its colours further",
                                        .range = Range{0.1, 8},
                                        .logScale = true});
-        visit(self.toBackground, FieldInfo{.key = "toBackground", .unit = "", .doc = "Blend to the background"});
+        visit(self.toBackground, FieldInfo{.key = "toBackground", .unit = "", .doc = "Blend to the background colour"});
         visit(self.color, FieldInfo{.key = "color",
                                     .unit = "",
-                                    .doc = "Blend to this otherwise (sRGB)",
+                                    .doc = "Colour to blend to instead of the background (sRGB)",
                                     .range = Range{0, 1},
                                     .applies = !self.toBackground});
     }
@@ -106,9 +108,12 @@ struct Cartoon {
     glm::vec3 outlineColor{0.05f, 0.05f, 0.08f};
     bool operator==(const Cartoon&) const = default;
     static void describe(auto& self, auto&& visit) {
-        visit(self.amount, FieldInfo{.key = "amount", .unit = "", .doc = "From plain to flat", .range = Range{0, 1}});
-        visit(self.steps, FieldInfo{.key = "steps", .unit = "", .doc = "Bands of light", .range = Range{2, 12}});
-        visit(self.shadow, FieldInfo{.key = "shadow", .unit = "", .doc = "Light in the shade", .range = Range{0, 1}});
+        visit(self.amount,
+              FieldInfo{.key = "amount", .unit = "", .doc = "Share of flat shading: 0 = plain", .range = Range{0, 1}});
+        visit(self.steps,
+              FieldInfo{.key = "steps", .unit = "", .doc = "Number of bands of light", .range = Range{2, 12}});
+        visit(self.shadow,
+              FieldInfo{.key = "shadow", .unit = "", .doc = "Brightness of the darkest band", .range = Range{0, 1}});
         visit(self.outline,
               FieldInfo{.key = "outline", .unit = "pixel", .doc = "Width of outlines", .range = Range{0, 12}});
         visit(self.outlineColor, FieldInfo{.key = "outlineColor",
@@ -142,20 +147,21 @@ struct CharcoalDrawing {
               FieldInfo{.key = "color", .unit = "", .doc = "Colour of the stick (sRGB)", .range = Range{0, 1}});
         visit(self.pressure, FieldInfo{.key = "pressure",
                                        .unit = "",
-                                       .doc = "How much of the paper a stroke covers at most",
+                                       .doc = "Largest share of the paper that a stroke covers",
                                        .range = Range{0, 1}});
         visit(self.contrast, FieldInfo{.key = "contrast",
                                        .unit = "",
                                        .doc = "Exponent on darkness: larger = more bare paper",
                                        .range = Range{0.25, 6},
                                        .logScale = true});
-        visit(self.localTone, FieldInfo{.key = "localTone",
-                                        .unit = "",
-                                        .doc = "How much the own colour darkens, beside light and shade",
-                                        .range = Range{0, 1}});
+        visit(self.localTone,
+              FieldInfo{.key = "localTone",
+                        .unit = "",
+                        .doc = "Influence of the colour of the surface on darkness, beside light and shade",
+                        .range = Range{0, 1}});
         visit(self.steepness, FieldInfo{.key = "steepness",
                                         .unit = "",
-                                        .doc = "How much tone is drawn only where values change steeply",
+                                        .doc = "Share of the tone that is drawn only where values change steeply",
                                         .range = Range{0, 1}});
         visit(self.outline,
               FieldInfo{.key = "outline", .unit = "pixel", .doc = "Width of outlines", .range = Range{0, 12}});
@@ -163,7 +169,7 @@ struct CharcoalDrawing {
               FieldInfo{.key = "outlineStrength", .unit = "", .doc = "Darkness of outlines", .range = Range{0, 1}});
         visit(self.closure, FieldInfo{.key = "closure",
                                       .unit = "",
-                                      .doc = "How much outlines are left open where light falls",
+                                      .doc = "Share by which outlines are left open where light falls",
                                       .range = Range{0, 1}});
         visit(self.grain, FieldInfo{.key = "grain",
                                     .unit = "pixel",
@@ -172,16 +178,15 @@ struct CharcoalDrawing {
                                     .logScale = true});
         visit(self.hardness, FieldInfo{.key = "hardness",
                                        .unit = "",
-                                       .doc = "Of the grain: hard is ink or paper, soft is tone",
+                                       .doc = "Hardness of the grain: 1 is only ink or paper, 0 is continuous tone",
                                        .range = Range{0, 1}});
         visit(self.strokes,
-              FieldInfo{.key = "strokes", .unit = "", .doc = "How much single strokes show", .range = Range{0, 1}});
-        visit(
-            self.angle,
-            FieldInfo{.key = "angle", .unit = "deg", .doc = "Turns the direction of strokes", .range = Range{-90, 90}});
+              FieldInfo{.key = "strokes", .unit = "", .doc = "Visibility of single strokes", .range = Range{0, 1}});
+        visit(self.angle,
+              FieldInfo{.key = "angle", .unit = "deg", .doc = "Direction of the strokes", .range = Range{-90, 90}});
         visit(self.smudge, FieldInfo{.key = "smudge",
                                      .unit = "",
-                                     .doc = "From grain and strokes to rubbed, even tone",
+                                     .doc = "Smudging: 0 = grain and strokes, 1 = even tone",
                                      .range = Range{0, 1}});
     }
 };
@@ -198,7 +203,7 @@ struct WireFrame {
     static void describe(auto& self, auto&& visit) {
         visit(self.spacing, FieldInfo{.key = "spacing",
                                       .unit = "",
-                                      .doc = "Distance between lines, longest edge of the data = 1",
+                                      .doc = "Distance between lines; longest edge of the data = 1",
                                       .range = Range{0.002, 1},
                                       .logScale = true});
         visit(self.width,
@@ -211,7 +216,7 @@ struct WireFrame {
               FieldInfo{.key = "color", .unit = "", .doc = "Colour of the lines (sRGB)", .range = Range{0, 1}});
         visit(self.ownColor, FieldInfo{.key = "ownColor",
                                        .unit = "",
-                                       .doc = "From that to the colour that lies there",
+                                       .doc = "Blend from the line colour (0) to the colour of the surface (1)",
                                        .range = Range{0, 1}});
     }
 };
@@ -241,15 +246,15 @@ struct Look {
     static void describe(auto& self, auto&& visit) {
         visit(self.part, FieldInfo{.key = "part",
                                    .unit = "",
-                                   .doc = "What is drawn so while brushes are active: everything, what is not brushed, "
-                                          "or what is",
+                                   .doc = "What is drawn in this style while brushes are active: everything, what is "
+                                          "not brushed (context), or what is brushed (focus)",
                                    .names = kLookPartNames});
-        visit(self.tone, FieldInfo{.key = "tone", .unit = "", .doc = "Warm light, cool shade (Gooch)"});
+        visit(self.tone, FieldInfo{.key = "tone", .unit = "", .doc = "Tone shading: warm light, cool shade (Gooch)"});
         visit(self.boundary,
               FieldInfo{.key = "boundary", .unit = "", .doc = "More opacity where values change steeply"});
         visit(self.silhouette,
               FieldInfo{.key = "silhouette", .unit = "", .doc = "More opacity where surfaces turn away"});
-        visit(self.distance, FieldInfo{.key = "distance", .unit = "", .doc = "Colours pale with distance"});
+        visit(self.distance, FieldInfo{.key = "distance", .unit = "", .doc = "Colours fade with distance"});
         visit(self.cartoon, FieldInfo{.key = "cartoon", .unit = "", .doc = "Light in steps, with outlines"});
         visit(self.charcoal, FieldInfo{.key = "charcoal", .unit = "", .doc = "Strokes on paper grain"});
         visit(self.wire, FieldInfo{.key = "wire", .unit = "", .doc = "Lines across the surface, little between them"});
@@ -266,17 +271,15 @@ struct Paper {
     float tooth = 0.5f, grain = 2;
     bool operator==(const Paper&) const = default;
     static void describe(auto& self, auto&& visit) {
-        visit(self.color, FieldInfo{.key = "color",
-                                    .unit = "",
-                                    .doc = "Colour, in place of the theme's background (sRGB)",
-                                    .range = Range{0, 1}});
+        visit(self.color,
+              FieldInfo{.key = "color", .unit = "", .doc = "Colour of the paper (sRGB)", .range = Range{0, 1}});
         visit(self.tooth, FieldInfo{.key = "tooth",
                                     .unit = "",
-                                    .doc = "How much its texture shows, 0 = a plain background",
+                                    .doc = "Visibility of the paper texture; 0 = a plain background",
                                     .range = Range{0, 1}});
         visit(self.grain, FieldInfo{.key = "grain",
                                     .unit = "pixel",
-                                    .doc = "Size of its texture",
+                                    .doc = "Size of the paper texture",
                                     .range = Range{0.5, 16},
                                     .logScale = true});
     }

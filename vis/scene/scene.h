@@ -51,7 +51,7 @@ struct RenderParams {
         visit(self.stepVoxels,
               FieldInfo{.key = "step",
                         .unit = "voxel",
-                        .doc = "Distance between samples along a ray, in voxels of the finest level wanted",
+                        .doc = "Distance between samples along a ray, in voxels of the finest level drawn",
                         .range = Range{0.05, 4},
                         .logScale = true});
         visit(self.detail, FieldInfo{.key = "detail",
@@ -59,46 +59,48 @@ struct RenderParams {
                                      .doc = "Voxels smaller than this are shown at a coarser level, in data too large "
                                             "for one texture; 0 = full resolution",
                                      .range = Range{0, 8}});
-        visit(self.importance, FieldInfo{.key = "importance",
-                                         .unit = "level",
-                                         .doc = "Levels by which bricks with nothing to show may be coarser than the "
-                                                "most important one, those between by their share; 0 = levels "
-                                                "by size on screen alone",
-                                         .range = Range{0, 4}});
-        visit(self.limits, FieldInfo{.key = "limits", .unit = "", .doc = "Memory and time to use"});
-        visit(self.gradient, FieldInfo{.key = "gradient",
-                                       .unit = "",
-                                       .doc = "Differences that gradients are made of: between the nearest neighbours "
-                                              "of the lattice, on BCC along its diagonals (sharp), or over twice as "
-                                              "far along the axes (smooth)",
-                                       .names = volume::kGradientSpanNames});
+        visit(self.importance,
+              FieldInfo{.key = "importance",
+                        .unit = "level",
+                        .doc = "Number of levels by which the least important bricks may be coarser than the most "
+                               "important one; 0 = the level depends on the size on screen only",
+                        .range = Range{0, 4}});
+        visit(self.limits, FieldInfo{.key = "limits", .unit = "", .doc = "Limits of memory and time"});
+        visit(self.gradient,
+              FieldInfo{.key = "gradient",
+                        .unit = "",
+                        .doc = "How gradients are computed: by differences of the nearest neighbours in the lattice "
+                               "(sharp; along the diagonals on BCC), or over two cells along the axes (smooth)",
+                        .names = volume::kGradientSpanNames});
         visit(self.normalBits,
               FieldInfo{.key = "normalBits",
                         .unit = "bit",
-                        .doc = "Bits of either coordinate of a gradient's direction when shading, 0 = exact",
+                        .doc = "Bits for each of the two coordinates of the gradient direction in shading; 0 = exact",
                         .range = Range{0, 16}});
-        visit(self.proxy, FieldInfo{.key = "proxy",
-                                    .unit = "",
-                                    .doc = "What samples composite volumes: rays, or for comparison planes across the "
-                                           "view, spheres around the eye, the lattice's own planes; other layers "
-                                           "always use rays",
-                                    .names = kProxyNames});
-        visit(self.jitter, FieldInfo{.key = "jitter",
-                                     .unit = "",
-                                     .doc = "Shift each ray's samples: fine noise in place of wood-grain bands"});
+        visit(self.proxy,
+              FieldInfo{
+                  .key = "proxy",
+                  .unit = "",
+                  .doc =
+                      "Proxy geometry of composite volumes: rays, or for comparison planes facing the viewer (slices), "
+                      "spheres around the eye (shells) or lattice planes (stacks). Other layers always use rays",
+                  .names = kProxyNames});
+        visit(self.jitter,
+              FieldInfo{.key = "jitter",
+                        .unit = "",
+                        .doc = "Shift the samples of each ray at random: fine noise instead of wood-grain artefacts"});
         visit(self.samples, FieldInfo{.key = "samples",
                                       .unit = "",
-                                      .doc = "Rays per pixel once the picture is at rest",
+                                      .doc = "Rays per pixel when the picture is at rest",
                                       .range = Range{1, 64}});
-        visit(self.cullHidden,
-              FieldInfo{.key = "cullHidden",
-                        .unit = "",
-                        .doc = "Leave bricks that lie behind opaque ones coarse, until they are seen"});
+        visit(self.cullHidden, FieldInfo{.key = "cullHidden",
+                                         .unit = "",
+                                         .doc = "Keep bricks behind opaque ones coarse until they become visible"});
         visit(self.adaptiveStep,
               FieldInfo{.key = "adaptiveStep",
                         .unit = "",
-                        .doc = "Greatest change of light and opacity over a longer step where volumes are smooth under "
-                               "their transfer functions; 0 = all steps alike",
+                        .doc = "Largest change of light and opacity over one step; where volumes are smooth under "
+                               "their transfer functions steps become longer. 0 = all steps have the same length",
                         .range = Range{0, 0.1}});
     }
 };

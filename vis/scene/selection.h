@@ -22,7 +22,7 @@ struct BrushInterval {
     bool operator==(const BrushInterval&) const = default;
     static void describe(auto& self, auto&& visit) {
         visit(self.channel,
-              FieldInfo{.key = "channel", .unit = "", .doc = "Parameter that is brushed", .refersTo = "channel"});
+              FieldInfo{.key = "channel", .unit = "", .doc = "Parameter of the range", .refersTo = "channel"});
         visit(self.lo, FieldInfo{.key = "lo", .unit = "", .doc = "Lower end"});
         visit(self.hi, FieldInfo{.key = "hi", .unit = "", .doc = "Upper end"});
         visit(self.soft, FieldInfo{.key = "soft", .unit = "", .doc = "Width of the soft edge"});
@@ -42,7 +42,7 @@ struct RangeRegion {
     std::vector<BrushInterval> intervals;
     bool operator==(const RangeRegion&) const = default;
     static void describe(auto& self, auto&& visit) {
-        visit(self.intervals, FieldInfo{.key = "intervals", .unit = "", .doc = "Parameter ranges that must all hold"});
+        visit(self.intervals, FieldInfo{.key = "intervals", .unit = "", .doc = "Ranges of parameters; all must hold"});
     }
 };
 
@@ -58,11 +58,11 @@ struct EllipseRegion {
     static void describe(auto& self, auto&& visit) {
         visit(self.x, kBrushX);
         visit(self.y, kBrushY);
-        visit(self.center, FieldInfo{.key = "center", .unit = "", .doc = "Values in the middle"});
-        visit(self.radius, FieldInfo{.key = "radius", .unit = "", .doc = "Half widths along both axes"});
+        visit(self.center, FieldInfo{.key = "center", .unit = "", .doc = "Values at the centre"});
+        visit(self.radius, FieldInfo{.key = "radius", .unit = "", .doc = "Half widths along the two axes"});
         visit(self.correlation, FieldInfo{.key = "correlation",
                                           .unit = "",
-                                          .doc = "Tilt: 0 upright, towards 1 along the rising diagonal",
+                                          .doc = "Tilt: 0 = along the axes, towards 1 = along the rising diagonal",
                                           .range = Range{-0.99, 0.99}});
         visit(self.soft, kSoftShare);
     }
@@ -90,7 +90,7 @@ struct SphereRegion {
     double soft = 0;
     bool operator==(const SphereRegion&) const = default;
     static void describe(auto& self, auto&& visit) {
-        visit(self.center, FieldInfo{.key = "center", .unit = "m", .doc = "Middle of the ball"});
+        visit(self.center, FieldInfo{.key = "center", .unit = "m", .doc = "Centre of the ball"});
         visit(self.radius, FieldInfo{.key = "radius", .unit = "m", .doc = "Radii along x, y, z"});
         visit(self.soft, kSoftShare);
     }
@@ -102,8 +102,8 @@ struct BoxRegion {
     double soft = 0;
     bool operator==(const BoxRegion&) const = default;
     static void describe(auto& self, auto&& visit) {
-        visit(self.center, FieldInfo{.key = "center", .unit = "m", .doc = "Middle of the box"});
-        visit(self.radius, FieldInfo{.key = "radius", .unit = "m", .doc = "Half of its edges along x, y, z"});
+        visit(self.center, FieldInfo{.key = "center", .unit = "m", .doc = "Centre of the box"});
+        visit(self.radius, FieldInfo{.key = "radius", .unit = "m", .doc = "Half edge lengths along x, y, z"});
         visit(self.soft, kSoftShare);
     }
 };
@@ -116,7 +116,7 @@ struct LensRegion {
     static void describe(auto& self, auto&& visit) {
         visit(self.lens, FieldInfo{.key = "lens",
                                    .unit = "",
-                                   .doc = "Lens whose inside is brushed; none: all that mark",
+                                   .doc = "Lens whose inside is selected; empty: every lens with `marks`",
                                    .refersTo = "lens"});
     }
 };
@@ -138,13 +138,13 @@ struct Brush {
     static void describe(auto& self, auto&& visit) {
         visit(self.name, FieldInfo{.key = "name", .unit = "", .doc = "Name of the brush"});
         visit(self.color, FieldInfo{.key = "color", .unit = "", .doc = "Colour in the plots", .range = Range{0, 1}});
-        visit(self.enabled, FieldInfo{.key = "enabled", .unit = "", .doc = "Takes part in the selection"});
-        visit(self.inverted, FieldInfo{.key = "inverted", .unit = "", .doc = "Selects what lies outside"});
+        visit(self.enabled, FieldInfo{.key = "enabled", .unit = "", .doc = "Use this brush in the selection"});
+        visit(self.inverted, FieldInfo{.key = "inverted", .unit = "", .doc = "Select what lies outside"});
         visit(self.combine, FieldInfo{.key = "combine",
                                       .unit = "",
-                                      .doc = "How it meets the brushes before it: and, or, minus",
+                                      .doc = "How it combines with the brushes before it: and, or, minus",
                                       .names = kBrushCombineNames});
-        visit(self.region, FieldInfo{.key = "region", .unit = "", .doc = "What it holds"});
+        visit(self.region, FieldInfo{.key = "region", .unit = "", .doc = "What the brush selects"});
     }
 };
 
@@ -161,8 +161,10 @@ struct Selection {
 
     bool operator==(const Selection&) const = default;
     static void describe(auto& self, auto&& visit) {
-        visit(self.brushes,
-              FieldInfo{.key = "brushes", .unit = "", .doc = "Brushes, in the order they meet", .hidden = true});
+        visit(self.brushes, FieldInfo{.key = "brushes",
+                                      .unit = "",
+                                      .doc = "Brushes, in the order in which they are combined",
+                                      .hidden = true});
         visit(self.contextOpacity,
               FieldInfo{
                   .key = "contextOpacity", .unit = "", .doc = "Opacity of what is not brushed", .range = Range{0, 1}});
@@ -172,16 +174,17 @@ struct Selection {
                                                 .range = Range{0, 1}});
         visit(self.contextLightness, FieldInfo{.key = "contextLightness",
                                                .unit = "",
-                                               .doc = "Lightness of what is not brushed: 0 black, 1 as it is, 2 white",
+                                               .doc = "Lightness of what is not brushed: 0 black, 1 unchanged, 2 white",
                                                .range = Range{0, 2}});
         visit(self.brushColor, FieldInfo{.key = "brushColor",
                                          .unit = "",
-                                         .doc = "How much what is brushed takes the colour of its brush",
+                                         .doc = "How strongly brushed samples take the colour of their brush",
                                          .range = Range{0, 1}});
-        visit(self.contextBlur, FieldInfo{.key = "contextBlur",
-                                          .unit = "",
-                                          .doc = "How far out of focus what is not brushed is, share of the height",
-                                          .range = Range{0, 0.05}});
+        visit(self.contextBlur,
+              FieldInfo{.key = "contextBlur",
+                        .unit = "",
+                        .doc = "Blur radius of what is not brushed, as a share of the picture's height",
+                        .range = Range{0, 0.05}});
     }
     /// True when at least one brush is enabled.
     bool active() const;

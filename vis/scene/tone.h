@@ -19,16 +19,16 @@ struct Tone {
     static void describe(auto& self, auto&& visit) {
         visit(self.curve, FieldInfo{.key = "curve",
                                     .unit = "",
-                                    .doc = "How bright light is brought into range; none cuts it off",
+                                    .doc = "How bright light is mapped to the range of the screen; none clips it",
                                     .names = kToneCurveNames});
         visit(self.exposure, FieldInfo{.key = "exposure",
                                        .unit = "stops",
-                                       .doc = "Brightens (each stop doubles) or darkens, with a curve only",
+                                       .doc = "Exposure; each stop doubles the brightness. Needs a curve",
                                        .range = Range{-6, 6},
                                        .applies = self.curve != ToneCurve::None});
         visit(self.white, FieldInfo{.key = "white",
                                     .unit = "",
-                                    .doc = "Light that becomes white (Reinhard)",
+                                    .doc = "Brightness that becomes white (Reinhard)",
                                     .range = Range{1, 20},
                                     .logScale = true,
                                     .applies = self.curve == ToneCurve::Reinhard});

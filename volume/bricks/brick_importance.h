@@ -17,14 +17,18 @@ struct ImportanceOptions {
 
     bool operator==(const ImportanceOptions&) const = default;
     static void describe(auto& self, auto&& visit) {
-        visit(self.borderWeight, FieldInfo{.key = "borderWeight",
-                                           .unit = "",
-                                           .doc = "Weight of the samples at the faces of a brick, those inside have 1",
-                                           .range = Range{1, 16}});
-        visit(self.neighbours, FieldInfo{.key = "neighbours",
-                                         .unit = "",
-                                         .doc = "Share of what the most important neighbour has more that a brick gets",
-                                         .range = Range{0, 1}});
+        visit(self.borderWeight,
+              FieldInfo{.key = "borderWeight",
+                        .unit = "",
+                        .doc = "Weight of the samples at the faces of a brick; those inside have weight 1",
+                        .range = Range{1, 16}});
+        visit(
+            self.neighbours,
+            FieldInfo{
+                .key = "neighbours",
+                .unit = "",
+                .doc = "Share of the difference to its most important neighbour that is added to a brick's importance",
+                .range = Range{0, 1}});
     }
 };
 

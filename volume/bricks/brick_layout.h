@@ -29,11 +29,11 @@ struct MergeOptions {
     static void describe(auto& self, auto&& visit) {
         visit(self.discardBelow, FieldInfo{.key = "discardBelow",
                                            .unit = "importance",
-                                           .doc = "Bricks less important than this are left out; 0 = none",
+                                           .doc = "Omit bricks less important than this; 0 = none",
                                            .range = Range{0, 1}});
         visit(self.alike, FieldInfo{.key = "alike",
                                     .unit = "importance",
-                                    .doc = "Most by which the importance of bricks that are merged differs",
+                                    .doc = "Largest difference in importance between bricks that are merged",
                                     .range = Range{0, 1}});
         visit(self.mostBricks, FieldInfo{.key = "mostBricks",
                                          .unit = "bricks",
@@ -41,8 +41,8 @@ struct MergeOptions {
                                          .range = Range{1, 64}});
         visit(self.shape, FieldInfo{.key = "shape",
                                     .unit = "",
-                                    .doc = "Which merged bricks are listed: cubes (uniform), boxes along x, then y, "
-                                           "then z (mixed), boxes grown in all directions (best)",
+                                    .doc = "Shape of merged bricks: cubes (uniform), boxes grown along x, then y, then "
+                                           "z (mixed), boxes grown in any direction (best)",
                                     .names = kMergeShapeNames});
     }
 };

@@ -87,7 +87,7 @@ struct Problem {
         const Channel &own = channels[std::size_t(of)], &other = channels[std::size_t(*otherChannel(info, of))];
         if (unitConversion(other.unit, own.unit)) return {};
         return own.name + " is in " + (own.unit.empty() ? "no unit" : own.unit) + ", in the other data in " +
-               (other.unit.empty() ? "no unit" : other.unit) + ": they have no difference";
+               (other.unit.empty() ? "no unit" : other.unit) + ": they cannot be subtracted";
     }
     std::string operator()(const PositionRecipe&) const { return {}; }
     std::string operator()(const TimeRecipe&) const { return {}; }
@@ -159,11 +159,11 @@ Parts partsOf(const DerivedRecipe& recipe, const DatasetInfo& info) {
 
 std::string derivedProblem(const DerivedParameter& parameter, const DatasetInfo& info) {
     if (parameter.name.empty()) return "it needs a name";
-    if (parameter.name.find('`') != std::string::npos) return "the name must not hold a back quote";
+    if (parameter.name.find('`') != std::string::npos) return "the name must not contain a back quote";
     if (std::any_of(info.parameters.begin(), info.parameters.end(),
                     [&](const Parameter& own) { return own.name == parameter.name; }) ||
         info.findChannel(parameter.name))
-        return "the name \"" + parameter.name + "\" is taken";
+        return "the name \"" + parameter.name + "\" is already used";
     return std::visit(Problem{info}, parameter.recipe);
 }
 

@@ -16,10 +16,12 @@ struct ExpressionRecipe {
     std::string formula;
     bool operator==(const ExpressionRecipe&) const = default;
     static void describe(auto& self, auto&& visit) {
-        visit(self.formula, FieldInfo{.key = "formula",
-                                      .unit = "",
-                                      .doc = "Formula of parameters, position x y z and time t, e.g. O2/(O2+H2O), "
-                                             "T - at(T, first)"});
+        visit(
+            self.formula,
+            FieldInfo{
+                .key = "formula",
+                .unit = "",
+                .doc = "Formula of parameters, the position x y z and the time t, e.g. O2/(O2+H2O), T - at(T, first)"});
     }
 };
 
@@ -36,7 +38,7 @@ struct MagnitudeRecipe {
 };
 
 inline constexpr FieldInfo kDerivedFrom{
-    .key = "channel", .unit = "", .doc = "Parameter it is made of", .refersTo = "channel"};
+    .key = "channel", .unit = "", .doc = "Parameter to compute from", .refersTo = "channel"};
 
 /// A vector, with magnitude: central differences within each sublattice, one-sided beside absent samples and borders.
 struct GradientRecipe {
@@ -47,7 +49,7 @@ struct GradientRecipe {
 };
 
 inline constexpr FieldInfo kDerivedVector{
-    .key = "vector", .unit = "", .doc = "Vector it is made of", .refersTo = "vector"};
+    .key = "vector", .unit = "", .doc = "Vector to compute from", .refersTo = "vector"};
 
 struct DivergenceRecipe {
     static constexpr std::string_view kType = "divergence";
@@ -124,14 +126,14 @@ struct DifferenceRecipe {
         visit(self.channel, kDerivedFrom);
         visit(self.from, FieldInfo{.key = "from",
                                    .unit = "",
-                                   .doc = "What is taken away: the values at the first, last, previous, next or a "
-                                          "stated time, or of the other data",
+                                   .doc = "What to subtract: the values at the first, last, previous, next or a stated "
+                                          "time, or those of the other data set",
                                    .names = kOtherTimeNames});
-        visit(self.time, FieldInfo{.key = "time",
-                                   .unit = "",
-                                   .doc = "Stated time, in the unit of the data's times; between stored ones "
-                                          "interpolated",
-                                   .applies = self.from == OtherTime::Time});
+        visit(self.time,
+              FieldInfo{.key = "time",
+                        .unit = "",
+                        .doc = "Stated time, in the unit of the times of the data; interpolated between stored times",
+                        .applies = self.from == OtherTime::Time});
     }
     TimeReference reference() const { return {from, time}; }
 };
@@ -146,7 +148,7 @@ struct DerivedParameter {
     static void describe(auto& self, auto&& visit) {
         visit(self.name, FieldInfo{.key = "name", .unit = "", .doc = "Name of the derived parameter"});
         visit(self.unit, FieldInfo{.key = "unit", .unit = "", .doc = "Unit of its values"});
-        visit(self.recipe, FieldInfo{.key = "recipe", .unit = "", .doc = "How it is computed"});
+        visit(self.recipe, FieldInfo{.key = "recipe", .unit = "", .doc = "How the parameter is computed"});
     }
 };
 

@@ -226,7 +226,7 @@ Expression::Expression(const std::string& text, std::span<const std::string> nam
         for (const std::string& name : variables_) parser.DefineVar(name, &zero);
         parser.SetExpr(translated_);
         parser.Eval();
-        if (parser.GetNumResults() != 1) fail("one value is wanted, not several", 0);
+        if (parser.GetNumResults() != 1) fail("one value is expected, not several", 0);
     } catch (const mu::Parser::exception_type& error) {
         const int position = error.GetPos();
         const bool inside = position >= 0 && std::size_t(position) < translator.places.size();

@@ -208,7 +208,7 @@ public:
         const auto toUnit = unitConversion(b.unit, a.unit);
         if (!toUnit)
             throw Error(a.name + " in " + (a.unit.empty() ? "no unit" : a.unit) + " and " + b.name + " in " +
-                        (b.unit.empty() ? "no unit" : b.unit) + " have no difference");
+                        (b.unit.empty() ? "no unit" : b.unit) + " cannot be subtracted");
         toUnit_ = *toUnit;
         info_.name = left.name;
         info_.lattice = right.lattice;

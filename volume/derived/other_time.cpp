@@ -49,12 +49,12 @@ std::optional<TimePair> timesOf(const TimeReference& reference, const std::vecto
 namespace {
 
 std::string otherProblem(const DatasetInfo& info, int channel) {
-    if (channel < 0) return "only parameters have values in other data";
+    if (channel < 0) return "only parameters can be taken from the other data set";
     if (otherChannel(info, channel)) return {};
     const bool any = std::any_of(info.parameters.begin(), info.parameters.end(),
                                  [](const Parameter& own) { return own.name.ends_with(kOtherSuffix); });
     const std::string name = info.channel(channel).name;
-    return any ? "the other data have no parameter \"" + name + "\"" : "no other data are shown beside these";
+    return any ? "the other data have no parameter \"" + name + "\"" : "no other data set is open";
 }
 
 } // namespace

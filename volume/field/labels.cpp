@@ -37,7 +37,7 @@ LabelRule parseLabelRule(std::string_view text) {
     const std::string place = "--label " + std::string(text);
     const std::size_t colon = text.find(':');
     if (colon == std::string_view::npos || colon == 0)
-        throw Error("wants PARAMETER:VALUE=NAME#COLOUR,..., e.g. region:0=cathode,1=anode#e07b39", {}, place);
+        throw Error("needs PARAMETER:VALUE=NAME#COLOUR,..., e.g. region:0=cathode,1=anode#e07b39", {}, place);
     LabelRule rule{std::string(trimmed(text.substr(0, colon))), {}};
     std::string_view rest = text.substr(colon + 1);
     while (true) {
@@ -49,15 +49,16 @@ LabelRule parseLabelRule(std::string_view text) {
         const auto parsed = std::from_chars(number.data(), number.data() + number.size(), value);
         if (equals == std::string_view::npos || parsed.ec != std::errc() ||
             parsed.ptr != number.data() + number.size() || number.empty())
-            throw Error("\"" + std::string(item) + "\" is no VALUE=NAME with a whole number", {}, place);
+            throw Error("\"" + std::string(item) + "\" is not VALUE=NAME with a whole number", {}, place);
         Label label = labelOf(value, item.substr(equals + 1));
         const std::size_t mark = label.name.find('#');
         if (label.color.empty() && mark != std::string::npos)
-            throw Error("\"" + label.name.substr(mark) + "\" is no colour: six digits 0-9, a-f after the #", {}, place);
+            throw Error("\"" + label.name.substr(mark) + "\" is not a colour: six digits 0-9, a-f after the #", {},
+                        place);
         if (label.name.empty() && label.color.empty())
-            throw Error("value " + std::to_string(value) + " gets neither a name nor a colour", {}, place);
+            throw Error("value " + std::to_string(value) + " has neither a name nor a colour", {}, place);
         if (std::ranges::any_of(rule.labels, [&](const Label& other) { return other.value == value; }))
-            throw Error("value " + std::to_string(value) + " is there twice", {}, place);
+            throw Error("value " + std::to_string(value) + " is present twice", {}, place);
         rule.labels.push_back(std::move(label));
         if (comma == std::string_view::npos) break;
         rest = rest.substr(comma + 1);
@@ -85,8 +86,8 @@ void applyLabels(DatasetInfo& info, const std::vector<LabelRule>& rules, bool sa
         if (found == info.parameters.end())
             throw Error("there is no parameter \"" + rule.parameter + "\"", {}, "--label " + toText(rule));
         if (!found->categorical && samplesKnown)
-            throw Error("\"" + rule.parameter + "\" is no label: a label has at most 64 values, all whole numbers", {},
-                        "--label " + toText(rule));
+            throw Error("\"" + rule.parameter + "\" is not a label: a label has at most 64 values, all whole numbers",
+                        {}, "--label " + toText(rule));
         for (const Label& stated : rule.labels) {
             auto known = std::ranges::find(found->labels, stated.value, &Label::value);
             if (known == found->labels.end())

@@ -18,7 +18,7 @@ inline std::string meshProvenance(double cells, glm::ivec3 samples) {
 }
 
 /// Data of several different grids, or of points that do not fill a grid, sampled on one grid.
-inline constexpr std::string_view kFromGrids = "resampled from grids that differ",
+inline constexpr std::string_view kFromGrids = "resampled from several different grids",
                                   kFromPoints = "resampled from scattered points";
 
 inline bool isResampled(const DatasetInfo& info) {

@@ -83,7 +83,7 @@ public:
 private:
     void onLine(glm::dvec3 from, glm::dvec3 to, int planes) {
         const double length = glm::length(to - from);
-        if (!(length > 0) || planes < 1) throw Error("planes lie across a line that has a length");
+        if (!(length > 0) || planes < 1) throw Error("planes across a line need a line that has a length");
         line_ = true;
         start_ = from;
         direction_ = (to - from) / length;

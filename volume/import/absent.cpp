@@ -115,7 +115,7 @@ AbsentRule parseAbsentRule(std::string_view text) {
     const std::string whole(text);
     const std::size_t equals = text.find('=');
     if (equals == std::string_view::npos || equals == 0 || equals + 1 == text.size())
-        throw Error("wants NAME=LABEL:VALUES, NAME=VALUE, NAME=nan or NAME=none", {}, "--absent " + whole);
+        throw Error("needs NAME=LABEL:VALUES, NAME=VALUE, NAME=nan or NAME=none", {}, "--absent " + whole);
     AbsentRule rule;
     rule.parameter = std::string(text.substr(0, equals));
     std::string_view right = text.substr(equals + 1);
@@ -133,7 +133,7 @@ AbsentRule parseAbsentRule(std::string_view text) {
         const std::string_view item = right.substr(0, right.find(','));
         if (item.empty()) throw Error("an empty value", {}, "--absent " + whole);
         if (rule.label.empty() && !parseNumber(item))
-            throw Error("\"" + std::string(item) + "\" is no number", {}, "--absent " + whole);
+            throw Error("\"" + std::string(item) + "\" is not a number", {}, "--absent " + whole);
         rule.values.emplace_back(item);
         if (item.size() == right.size()) break;
         right.remove_prefix(item.size() + 1);
@@ -234,7 +234,7 @@ std::vector<std::vector<Resolved>> resolvedRules(const DatasetInfo& info, const 
             if (!number && resolved.label >= 0)
                 for (const Label& label : info.parameters[std::size_t(resolved.label)].labels)
                     if (label.name == value) number = label.value;
-            if (!number) throw Error("\"" + value + "\" is no value of " + rule.label, {}, "--absent " + text);
+            if (!number) throw Error("\"" + value + "\" is not a value of " + rule.label, {}, "--absent " + text);
             resolved.values.push_back(*number);
         }
         if (rule.parameter != "*") {

@@ -187,7 +187,7 @@ struct Assembly {
                 continue;
             }
             if (values.size() == 255)
-                throw Error("more than 255 ways in which blocks overlap", files.front().entry.path);
+                throw Error("more than 255 combinations of overlapping blocks", files.front().entry.path);
             const auto value = static_cast<std::uint8_t>(values.size() + 1);
             values.emplace(covers, value);
             label[i] = value;
@@ -264,7 +264,7 @@ public:
             all_.feeds.push_back({from});
             return;
         }
-        if (!joins) throw Error("array \"" + about.name + "\" is there twice", piece.file);
+        if (!joins) throw Error("array \"" + about.name + "\" is present twice", piece.file);
         Parameter& parameter = info_.parameters[known->second];
         if (parameter.components != about.components)
             throw Error("array has " + std::to_string(about.components) + " components here and " +
@@ -359,7 +359,7 @@ Assembled assemble(std::vector<OpenedFile> files, glm::ivec3 gridSize, bool read
         if (readSamples) all->makeLabel(region, progress);
         info.parameters.push_back(std::move(region));
         all->feeds.emplace_back();
-        result.notes.push_back("label region made from the names of the blocks");
+        result.notes.push_back("label region created from the names of the blocks");
         result.madeLabel = true;
     }
     all->parameters = info.parameters;

@@ -73,7 +73,7 @@ Lattice chooseLattice(const std::vector<OpenedFile>& files, glm::ivec3 gridSize,
         }
     if (equalGrids) {
         if (gridSize != glm::ivec3(0) && gridSize != first.lattice.size)
-            notes.push_back("already on a grid of " + words(first.lattice.size) + ": the grid asked for is not used");
+            notes.push_back("already on a grid of " + words(first.lattice.size) + ": the requested grid is not used");
         bounds = {first.lattice.origin, first.lattice.position(first.lattice.size - 1)};
         return first.lattice;
     }
@@ -109,7 +109,7 @@ Lattice chooseLattice(const std::vector<OpenedFile>& files, glm::ivec3 gridSize,
     for (int axis = 0; axis < 3; ++axis) // without extent there is one layer of samples, or as many as were asked for
         if (!(box.size()[axis] > 0)) bounds.hi[axis] = grid.position(grid.size - 1)[axis];
     std::string note =
-        anyMesh ? "mesh of " + std::to_string(static_cast<long long>(cells)) + " cells" : "grids that differ";
+        anyMesh ? "mesh of " + std::to_string(static_cast<long long>(cells)) + " cells" : "several different grids";
     if (blocks > 1) note += " in " + std::to_string(int(blocks)) + " blocks";
     notes.push_back(note + ", sampled on " + words(grid.size));
     return grid;

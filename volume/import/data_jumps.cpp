@@ -171,7 +171,7 @@ void joinSmallSets(glm::ivec3 size, const std::vector<bool>& present, const Cuts
 
 std::vector<std::uint8_t> regionsOfJumps(std::span<const Field> components) {
     const Lattice& lattice = components.front().lattice;
-    if (lattice.kind != LatticeKind::CC) throw Error("jumps are looked for on regular grids only");
+    if (lattice.kind != LatticeKind::CC) throw Error("jumps can be found on regular grids only");
     std::vector<bool> present(lattice.count(), true);
     std::vector<std::vector<double>> values;
     for (const Field& field : components) {
@@ -206,7 +206,7 @@ std::vector<std::uint8_t> regionsOfJumps(std::span<const Field> components) {
             if (const auto known = numbers.find(other); known != numbers.end()) taken.insert(known->second);
         std::uint8_t number = 1;
         while (taken.contains(number)) ++number;
-        if (number > kMostParts) throw Error("its jumps make more than " + std::to_string(kMostParts) + " parts");
+        if (number > kMostParts) throw Error("its jumps separate more than " + std::to_string(kMostParts) + " parts");
         numbers[set] = number;
     }
     std::vector<std::uint8_t> out(present.size());
@@ -300,7 +300,7 @@ Dataset withJumps(Dataset data, const std::vector<PartsRule>& rules, std::vector
             }
         }
         if (count < 2) {
-            notes.push_back(name + ": its samples show no jumps that enclose a region, so it is one part");
+            notes.push_back(name + ": no jumps enclose a region, so it has one part");
             continue;
         }
         parameter.parts = {label, {}};

@@ -93,7 +93,7 @@ private:
             throw Error(
                 std::string(reinterpret_cast<const char*>(bytes.data()), std::min<std::size_t>(bytes.size(), 500)),
                 paths_[file]);
-        if (head.kind != wanted) throw Error("tessera-import sent an answer to another question", paths_[file]);
+        if (head.kind != wanted) throw Error("tessera-import answered another request", paths_[file]);
         return bytes;
     }
 
@@ -148,7 +148,7 @@ std::vector<std::vector<Piece>> openForeign(const std::vector<SeriesFile>& entri
     for (const SeriesFile& entry : entries) paths.push_back(entry.path);
     const std::string program = findImporter();
     if (program.empty())
-        throw Error("reading this format needs the program tessera-import, which was not built (it wants VTK)",
+        throw Error("reading this format needs the program tessera-import, which was not built (it needs VTK)",
                     paths.front());
     const auto importer = std::make_shared<Importer>(program, entries);
     std::vector<std::vector<Piece>> files;

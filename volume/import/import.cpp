@@ -245,7 +245,8 @@ std::vector<AbsentRule> withSuggested(const std::vector<AbsentRule>& stated, con
             return own.parameter == rule.parameter || (own.parameter == "*" && own.nothing);
         });
         if (ruled) continue;
-        notes.push_back("absent: " + toText(rule) + " (it is 0 there; " + rule.parameter + "=none keeps it)");
+        notes.push_back("absent: " + toText(rule) + " (its value is 0 there; " + rule.parameter +
+                        "=none keeps these samples)");
         rules.push_back(std::move(rule));
     }
     return rules;

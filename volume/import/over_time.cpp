@@ -137,7 +137,7 @@ TimeTable parseTimeTable(std::string_view text, const std::string& file) {
                 if (line.find(separator) == std::string_view::npos && line.find(candidate) != std::string_view::npos)
                     separator = candidate;
             headings = cellsOf(line, separator);
-            if (headings.size() < 2) throw Error("names one column: wants time and at least one more", file, place);
+            if (headings.size() < 2) throw Error("names one column: needs time and at least one more", file, place);
             if (headings.size() > kMostColumns) throw Error("names too many columns", file, place);
             std::set<std::string> seen;
             for (std::size_t c = 0; c < headings.size(); ++c) {
@@ -165,13 +165,13 @@ TimeTable parseTimeTable(std::string_view text, const std::string& file) {
             const bool unknown = word.empty() || word == "-" || word == "nan";
             const std::optional<double> value = unknown ? std::optional(kUnknown) : numberOf(cells[c]);
             if (!value || std::isinf(*value))
-                throw Error("\"" + cells[c].substr(0, 40) + "\" in column " + headings[c] + " is no number", file,
+                throw Error("\"" + cells[c].substr(0, 40) + "\" in column " + headings[c] + " is not a number", file,
                             place);
             if (unknown && c == timeColumn) throw Error("has no " + headings[c], file, place);
             row.values.push_back(*value);
         }
     }
-    if (headings.empty()) throw Error("is empty: wants a line that names the columns", file);
+    if (headings.empty()) throw Error("is empty: the first line must name the columns", file);
     if (rows.empty()) throw Error("has no row of numbers", file);
     return tableOf(std::move(rows), headings, timeColumn, file);
 }
@@ -191,8 +191,8 @@ void addTable(DatasetInfo& info, const TimeTable& table) {
     if (!table.timeUnit.empty() && !info.timeUnit.empty() && table.timeUnit != info.timeUnit) {
         const auto from = secondsIn(table.timeUnit), to = secondsIn(info.timeUnit);
         if (!from || !to)
-            throw Error("counts " + table.timeName + " in " + table.timeUnit + ", the data count " + info.timeName +
-                            " in " + info.timeUnit,
+            throw Error("counts " + table.timeName + " in " + table.timeUnit + ", but the times of the data are " +
+                            info.timeName + " in " + info.timeUnit,
                         table.file);
         perTable = *from / *to;
     }

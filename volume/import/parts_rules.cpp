@@ -40,7 +40,7 @@ std::string placeOf(const PartsRule& rule) {
 Parts partsOfRule(const DatasetInfo& info, const PartsRule& rule) {
     if (rule.groups.size() < 2 && rule.label.empty()) return {};
     const Parameter& label = info.parameters[std::size_t(parameterNamed(info, rule.label, placeOf(rule)))];
-    if (!label.categorical) throw Error("\"" + rule.label + "\" is no label", {}, placeOf(rule));
+    if (!label.categorical) throw Error("\"" + rule.label + "\" is not a label", {}, placeOf(rule));
     Parts parts{rule.label, {}};
     std::set<int> seen;
     for (const auto& group : rule.groups) {
@@ -53,7 +53,7 @@ Parts partsOfRule(const DatasetInfo& info, const PartsRule& rule) {
                     value = entry.value;
                     known = true;
                 }
-            if (!value || !known) throw Error("\"" + text + "\" is no value of " + rule.label, {}, placeOf(rule));
+            if (!value || !known) throw Error("\"" + text + "\" is not a value of " + rule.label, {}, placeOf(rule));
             if (!seen.insert(*value).second) throw Error("\"" + text + "\" is stated twice", {}, placeOf(rule));
             parts.regions.back().push_back(*value);
         }
@@ -67,7 +67,7 @@ PartsRule parsePartsRule(std::string_view text) {
     const std::string place = "--parts " + std::string(text);
     const std::size_t equals = text.find('=');
     if (equals == std::string_view::npos || equals == 0 || equals + 1 == text.size())
-        throw Error("wants NAME=LABEL:VALUES|VALUES, NAME=joined or NAME=jumps", {}, place);
+        throw Error("needs NAME=LABEL:VALUES|VALUES, NAME=joined or NAME=jumps", {}, place);
     PartsRule rule;
     rule.parameter = std::string(text.substr(0, equals));
     const std::string_view right = text.substr(equals + 1);
@@ -78,7 +78,7 @@ PartsRule parsePartsRule(std::string_view text) {
     }
     const std::size_t colon = right.find(':');
     if (colon == std::string_view::npos || colon == 0)
-        throw Error("wants NAME=LABEL:VALUES|VALUES, NAME=joined or NAME=jumps", {}, place);
+        throw Error("needs NAME=LABEL:VALUES|VALUES, NAME=joined or NAME=jumps", {}, place);
     rule.label = std::string(right.substr(0, colon));
     for (const std::string& group : split(right.substr(colon + 1), '|')) {
         rule.groups.push_back(split(group, ','));

@@ -105,7 +105,7 @@ public:
             to[i] = sum_[i] / coverage_[i];
         }
         const auto present = std::count(mask->begin(), mask->end(), std::uint8_t(1));
-        if (present == 0) throw Error("the hyperplane meets no sample of the data");
+        if (present == 0) throw Error("the hyperplane does not intersect the data");
         if (std::size_t(present) < mask->size()) out_.field.mask = std::move(mask);
         return std::move(out_);
     }

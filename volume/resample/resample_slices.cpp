@@ -137,7 +137,7 @@ SlicedFrame resampled(const SlicedFrame& source, const Lattice& target, const Re
         return sharpened(out, options.sharpen, memory.step, progress.part(0.5, 1));
     }
     if (source.lattice == target) return source;
-    if (source.lattice.kind != LatticeKind::CC) throw Error("only regular grids can be resampled in parts");
+    if (source.lattice.kind != LatticeKind::CC) throw Error("only regular grids can be resampled slice by slice");
     const auto taps = std::make_shared<const CcTaps>(source.lattice, target, options);
     std::shared_ptr<const SlicedCoefficients> coefficients;
     if (const int degree = splineDegree(options.filter); degree > 0)

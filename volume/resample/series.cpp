@@ -148,7 +148,7 @@ Field atTime(const Series& series, double time, TimeFilter filter) {
     const ResampleOptions options{.filter =
                                       filter == TimeFilter::Cubic ? ResampleFilter::Cubic : ResampleFilter::Linear};
     if (lattice.kind == LatticeKind4::CC) return blendAt(series, cells, 0, 1, lattice.size.w, options);
-    if (lattice.size.w < 2) throw Error("a D4* lattice of one frame has no other half");
+    if (lattice.size.w < 2) throw Error("a D4* lattice needs two times or more");
     const Field even = blendAt(series, cells, 0, 2, lattice.framesOf(0), options);
     const Field odd = blendAt(series, cells - 0.5, 1, 2, lattice.framesOf(1), options);
     return interleaved(even, odd, lattice.atOneTime());

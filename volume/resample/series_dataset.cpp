@@ -93,8 +93,8 @@ D4Frames framesFrom(const Dataset& source, const Lattice4& lattice, int first, c
 
 D4Frames framesOfD4(const Dataset& source, const ResampleOptions& options, const SliceMemory& memory) {
     if (source.info.lattice.kind != LatticeKind::CC)
-        throw Error("D4* is made from a regular grid, and this is none", source.info.name);
-    if (source.info.times.size() < 2) throw Error("D4* is a lattice in space and time: it needs two times or more");
+        throw Error("D4* can be computed from a regular grid only", source.info.name);
+    if (source.info.times.size() < 2) throw Error("D4* is a lattice in space and time and needs two times or more");
     return framesFrom(source, d4For(frameLattice(source.info, LatticeKind4::CC)), 0, options, memory);
 }
 
@@ -104,7 +104,7 @@ D4Frames continueD4(Dataset source, const std::vector<double>& known, const std:
     std::vector<double> times = known;
     for (const double time : given)
         if (time > known.back()) times.push_back(time);
-    if (times.size() == known.size()) throw Error("the data has no times behind the last one", source.info.name);
+    if (times.size() == known.size()) throw Error("the data have no times after the last one", source.info.name);
     // Where each time of the whole series is in the source; -1: it is not.
     std::vector<int> place;
     for (const double time : times) {
@@ -132,8 +132,7 @@ D4Frames continueD4(Dataset source, const std::vector<double>& known, const std:
     for (int at = firstFrameSpanned(lattice.time(first), int(times.size()), options); at < int(known.size()); ++at)
         if (place[std::size_t(at)] < 0) missing += (missing.empty() ? "" : ", ") + textOf(known[std::size_t(at)]);
     if (!missing.empty())
-        throw Error("frames of D4* to come are also made of earlier times: the data must have those again at " +
-                        missing,
+        throw Error("D4* also needs earlier times to continue: the data must contain again the times " + missing,
                     source.info.name);
     return framesFrom(source, lattice, first, options, memory);
 }

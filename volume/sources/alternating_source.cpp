@@ -89,7 +89,7 @@ public:
         : frames_(std::make_shared<const BrickCache>(std::move(frames), kFrameBudget)), info_(frames_->info()),
           grid_(frames_->grid()), channels_(info_.channels()) {
         if (info_.lattice.kind != LatticeKind::CC || info_.times.size() < 2)
-            throw Error("frames of a D4* lattice are regular grids at two times or more", info_.name);
+            throw Error("a D4* lattice needs regular grids at two times or more", info_.name);
         info_.lattice.kind = LatticeKind::BCC;
         info_.lattice.size.z *= 2;
         grid_.lattice = info_.lattice;

@@ -181,11 +181,11 @@ private:
         }
         if (field.lattice.size != dataset_.info.lattice.size || field.lattice.kind != dataset_.info.lattice.kind ||
             field.samples.size() != field.count() * byteSize(field.type))
-            throw Error("a frame has another number of samples than the data set", info_.name,
+            throw Error("a time has another number of samples than the data set", info_.name,
                         parameter(key.parameter).name);
         // Comparing two frames requires numbers of the same type.
         if (field.type != parameter(key.parameter).type)
-            throw Error("a frame holds " + std::string(name(field.type)) + ", the parameter is " +
+            throw Error("a time holds " + std::string(name(field.type)) + ", the parameter is " +
                             std::string(name(parameter(key.parameter).type)),
                         info_.name, parameter(key.parameter).name);
         if (field.lattice.kind != grid_.lattice.kind) field = toBcc(field, parameter(key.parameter).categorical);
@@ -260,10 +260,10 @@ std::shared_ptr<const BrickSource> makeMemorySource(Dataset dataset, const Memor
 std::shared_ptr<const BrickSource> onLattice(const std::shared_ptr<const BrickSource>& source,
                                              const MemorySourceOptions& options) {
     const auto of = std::dynamic_pointer_cast<const MemorySource>(source);
-    if (!of) throw Error("only data that are no archive can be shown on another lattice", source->info().name);
+    if (!of) throw Error("archives cannot be shown on another lattice", source->info().name);
     if (of->grid().lattice.kind == options.lattice && of->grid().brickSize == options.brickSize) return source;
     if (of->grid().lattice.kind != of->dataset().info.lattice.kind)
-        throw Error("its frames are resampled already", source->info().name);
+        throw Error("it is already resampled", source->info().name);
     return std::make_shared<const MemorySource>(of->dataset(), options, of);
 }
 

@@ -77,7 +77,8 @@ std::shared_ptr<const BrickSource> withOriginals(std::shared_ptr<const BrickSour
                                                  std::shared_ptr<const BrickSource> original) {
     if (source->info().lattice != original->info().lattice || source->info().times != original->info().times ||
         source->grid().brickSize != original->grid().brickSize)
-        throw Error("data lie beside their originals only on the same lattice, at the same times and in bricks alike");
+        throw Error(
+            "data can be shown with their originals only on the same lattice, at the same times and with equal bricks");
     return std::make_shared<WithOriginals>(std::move(source), std::move(original));
 }
 

@@ -67,9 +67,9 @@ Field planeOverTime(const BrickSource& source, int channel, const Lattice& grid,
 Dataset withTimeAlong(std::shared_ptr<const BrickSource> source, const TimeAxis& time) {
     const DatasetInfo& from = source->info();
     const int axis = int(time.axis);
-    if (from.times.size() < 2) throw Error("data of one time have none to put along an axis", {}, "/data/timeAxis");
+    if (from.times.size() < 2) throw Error("time along an axis needs data of several times", {}, "/data/timeAxis");
     if (!(from.bounds.size()[axis] > 0))
-        throw Error("the data have no extent along the axis that time is to take", {}, "/data/timeAxis/axis");
+        throw Error("the data have no extent along the axis that time would replace", {}, "/data/timeAxis/axis");
     const Lattice grid = gridWithTime(from, axis);
     const double place = from.bounds.lo[axis] + time.place * from.bounds.size()[axis];
 

@@ -32,7 +32,7 @@ struct CastingSettings {
         visit(self.nz, FieldInfo{.key = "nz", .unit = "", .doc = "Samples along z", .range = edge});
         visit(self.noise, FieldInfo{.key = "noise",
                                     .unit = "",
-                                    .doc = "Largest error of a sample, of 255; the same in each run",
+                                    .doc = "Largest noise in a sample, of 255; the same in each run",
                                     .range = Range{0, 50}});
     }
 };

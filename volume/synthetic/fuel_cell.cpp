@@ -222,9 +222,9 @@ void checkRanges(const std::vector<Parameter>& parameters) {
     bool good = within(kTemperature, 250, 600) && within(kPressure, 0, 1e7);
     for (std::size_t gas : {kO2, kH2, kH2O}) good = good && within(gas, -1e-6, 1e3);
     if (!good)
-        throw Error("no state found at these settings; feed more gas (stoichiometries, ratedCurrent) or raise the "
-                    "voltages",
-                    "fuel-cell");
+        throw Error(
+            "no solution for these settings; feed more gas (stoichiometries, ratedCurrent) or raise the voltages",
+            "fuel-cell");
 }
 
 /// Ranges over all frames of the solved grid, present cells only.

@@ -32,13 +32,12 @@ struct FuelCellSettings {
         visit(self.nx, {.key = "nx", .unit = "", .doc = "Samples across the channel", .range = Range{3, 250}});
         visit(self.ny, {.key = "ny", .unit = "", .doc = "Samples through the layers", .range = Range{5, 250}});
         visit(self.nz, {.key = "nz", .unit = "", .doc = "Samples along the flow", .range = Range{4, 1000}});
-        visit(self.times, {.key = "times", .unit = "", .doc = "Time steps kept", .range = Range{1, 10000}});
-        visit(
-            self.interval,
-            {.key = "interval", .unit = "s", .doc = "Time from one kept step to the next", .range = Range{1e-5, 1e4}});
+        visit(self.times, {.key = "times", .unit = "", .doc = "Number of times stored", .range = Range{1, 10000}});
+        visit(self.interval,
+              {.key = "interval", .unit = "s", .doc = "Time between two stored times", .range = Range{1e-5, 1e4}});
         visit(self.stepTime, {.key = "stepTime",
                               .unit = "s",
-                              .doc = "When the cell voltage falls; the cell is steady before",
+                              .doc = "Time at which the cell voltage falls; the cell is steady before",
                               .range = Range{0, 1e8}});
         visit(self.voltageBefore, {.key = "voltageBefore",
                                    .unit = "V",
@@ -49,15 +48,15 @@ struct FuelCellSettings {
             {.key = "voltageAfter", .unit = "V", .doc = "Cell voltage after the load step", .range = Range{0.4, 1.0}});
         visit(self.airStoichiometry, {.key = "airStoichiometry",
                                       .unit = "",
-                                      .doc = "Oxygen fed over oxygen used at the rated current",
+                                      .doc = "Oxygen fed / oxygen consumed at the rated current",
                                       .range = Range{1.5, 20}});
         visit(self.hydrogenStoichiometry, {.key = "hydrogenStoichiometry",
                                            .unit = "",
-                                           .doc = "Hydrogen fed over hydrogen used at the rated current",
+                                           .doc = "Hydrogen fed / hydrogen consumed at the rated current",
                                            .range = Range{1.2, 20}});
         visit(self.ratedCurrent, {.key = "ratedCurrent",
                                   .unit = "A/m2",
-                                  .doc = "Current density the gas feeds are sized for",
+                                  .doc = "Current density for which the gas flows are chosen",
                                   .range = Range{1e3, 3e4}});
         visit(self.airHumidity, {.key = "airHumidity",
                                  .unit = "",
@@ -79,11 +78,11 @@ struct FuelCellSettings {
               {.key = "outletPressure", .unit = "Pa", .doc = "Pressure at both outlets", .range = Range{9e4, 3e5}});
         visit(self.dragFactor, {.key = "dragFactor",
                                 .unit = "",
-                                .doc = "Scales the electro-osmotic drag of water (0: none)",
+                                .doc = "Factor on the electro-osmotic drag of water; 0 = none",
                                 .range = Range{0, 2}});
         visit(self.backDiffusionFactor, {.key = "backDiffusionFactor",
                                          .unit = "",
-                                         .doc = "Scales the diffusion of water through the membrane (0: none)",
+                                         .doc = "Factor on the diffusion of water through the membrane; 0 = none",
                                          .range = Range{0, 4}});
     }
 };

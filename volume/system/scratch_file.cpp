@@ -12,7 +12,8 @@ namespace tessera::volume {
 ScratchFile::ScratchFile(const std::string& folder) {
     std::string name = (folder.empty() ? std::string(".") : folder) + "/.tessera-scratch-XXXXXX";
     file_ = ::mkstemp(name.data());
-    if (file_ < 0) throw MachineError(std::string("no scratch file can be made: ") + std::strerror(errno), folder);
+    if (file_ < 0)
+        throw MachineError(std::string("a temporary file cannot be created: ") + std::strerror(errno), folder);
     ::unlink(name.c_str());
 }
 
@@ -24,7 +25,7 @@ void ScratchFile::write(std::uint64_t at, std::span<const std::byte> bytes) {
     while (!bytes.empty()) {
         const ssize_t done = ::pwrite(file_, bytes.data(), bytes.size(), off_t(at));
         if (done < 0 && errno == EINTR) continue;
-        if (done <= 0) throw MachineError(std::string("a scratch file cannot be written: ") + std::strerror(errno));
+        if (done <= 0) throw MachineError(std::string("a temporary file cannot be written: ") + std::strerror(errno));
         bytes = bytes.subspan(std::size_t(done));
         at += std::uint64_t(done);
     }
@@ -34,7 +35,7 @@ void ScratchFile::read(std::uint64_t at, std::span<std::byte> bytes) const {
     while (!bytes.empty()) {
         const ssize_t done = ::pread(file_, bytes.data(), bytes.size(), off_t(at));
         if (done < 0 && errno == EINTR) continue;
-        if (done <= 0) throw MachineError(std::string("a scratch file cannot be read: ") + std::strerror(errno));
+        if (done <= 0) throw MachineError(std::string("a temporary file cannot be read: ") + std::strerror(errno));
         bytes = bytes.subspan(std::size_t(done));
         at += std::uint64_t(done);
     }

@@ -30,8 +30,7 @@ std::vector<std::pair<std::string, volume::Dataset>> volumeFiles() {
     if (data)
         for (const auto& entry : fs::directory_iterator(fs::path(data) / "volumes", missing))
             if (entry.path().extension() == ".json") sidecars.push_back(entry.path());
-    if (sidecars.empty())
-        std::fprintf(stderr, "bench: volumes are looked for in $TESSERA_DATA/volumes; there are none\n");
+    if (sidecars.empty()) std::fprintf(stderr, "bench: no volumes found in $TESSERA_DATA/volumes\n");
     std::sort(sidecars.begin(), sidecars.end());
     for (const fs::path& sidecar : sidecars)
         found.emplace_back(sidecar.stem().string(), volume::openFiles({sidecar.string()}, {}));

@@ -64,8 +64,8 @@ volume::Dataset firstParameterOf(const volume::Dataset& dataset) {
 BenchTable benchBccTransforms() {
     BenchTable table;
     table.name = "lattice: archives on BCC, lossless, by transform";
-    table.columns = {"data",           "each grid kB",  "one array kB", "one grid from the other kB",
-                     "over each grid", "over one array"};
+    table.columns = {"data",         "each sublattice kB", "one array kB",
+                     "predicted kB", "each / predicted",   "one array / predicted"};
     for (auto& [name, whole] : volumeFiles()) {
         volume::Dataset dataset = firstParameterOf(whole);
         const auto bytes = [&](volume::Dataset data, codec::BccTransform transform, codec::StoredLattice lattice) {

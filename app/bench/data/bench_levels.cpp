@@ -49,7 +49,7 @@ void readAll(const codec::Archive& archive, int level) {
 
 BenchTable benchLevels() {
     BenchTable table;
-    table.name = "codec: coarse levels and single bricks beside the whole frame";
+    table.name = "codec: coarse levels and single bricks compared with the whole time";
     table.columns = {"data",       "half: % of time",       "% of bytes",       "quarter: % of time",
                      "% of bytes", "random bricks / share", "two threads / one"};
     const char* data = std::getenv("TESSERA_DATA");

@@ -79,8 +79,9 @@ double medianMilliseconds(const std::function<std::shared_ptr<const volume::Bric
 
 BenchTable benchThesisFrames() {
     BenchTable table;
-    table.name = "thesis: table 6.5, changing the frame of a series of 90x90x80 until its bricks can become textures";
-    table.columns = {"samples", "from", "kB a frame", "ms (median)", "raw / this", "ms (thesis)"};
+    table.name = "thesis: table 6.5, going to another time of a series of 90x90x80, until its bricks are ready to "
+                 "become textures";
+    table.columns = {"samples", "from", "kB a time", "ms (median)", "raw / this", "ms (thesis)"};
     struct Row {
         codec::StoredLattice lattice;
         const char *name, *thesis;

@@ -66,7 +66,7 @@ ThesisResult thesisCode(const volume::Field& field, const ThesisCoding& coding) 
     using volume::ScalarType;
     const bool fits = field.type == ScalarType::U8 || field.type == ScalarType::U16 || field.type == ScalarType::I16;
     if (!fits || field.mask || field.lattice.kind != volume::LatticeKind::CC)
-        throw Error("run lengths are for 8-bit and 16-bit samples on CC, all of them present");
+        throw Error("run lengths need 8-bit or 16-bit samples on CC without absent ones");
     const glm::ivec3 size = field.lattice.size;
     std::vector<std::uint32_t> values(field.count());
     volume::dispatch(field.type, [&]<class T>(T) {

@@ -153,7 +153,8 @@ BenchTable benchScatter() {
     }
     table.rows.push_back({"brush dragged", decimals(median(moved), 0)});
     context.interacting = false;
-    table.rows.push_back({"brush let go, complete", decimals(answered(answers, context, query(), true).second, 0)});
+    table.rows.push_back(
+        {"complete after release of the brush", decimals(answered(answers, context, query(), true).second, 0)});
     return table;
 }
 

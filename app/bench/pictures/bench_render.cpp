@@ -151,7 +151,7 @@ BenchTable benchRender(const std::string& only) {
                                    "VTK CPU / ours", "VTK GPU new data ms", "VTK GPU / ours"})
             table.columns.emplace_back(column);
     else
-        std::fprintf(stderr, "VTK not at hand: its columns are left out\n");
+        std::fprintf(stderr, "VTK is not available: its columns are omitted\n");
 
     const vis::HeadlessContext context;
     std::map<std::string, Means> means;

@@ -8,7 +8,7 @@
 namespace tessera::app {
 
 BenchTable benchStyles() {
-    BenchTable table{"styles", {"look", "ms of processor", "plain", "ratio"}, {}};
+    BenchTable table{"styles", {"look", "ms CPU", "plain", "ratio"}, {}};
     const vis::HeadlessContext context;
     vis::Renderer renderer{vis::RendererOptions{}};
     renderer.setSource(

@@ -97,7 +97,7 @@ std::vector<BenchVolume> realVolumes() {
         });
         volumes.push_back(std::move(out));
     }
-    if (volumes.empty()) std::fprintf(stderr, "bench: real volumes are looked for in $TESSERA_DATA/volumes; none\n");
+    if (volumes.empty()) std::fprintf(stderr, "bench: no real volumes found in $TESSERA_DATA/volumes\n");
     return volumes;
 }
 

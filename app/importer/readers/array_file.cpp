@@ -175,7 +175,7 @@ Dims commonGrid(const std::vector<StoredArray>& arrays) {
         }
     if (best.empty()) throw std::runtime_error("holds no array of [z, y, x] or [t, z, y, x]");
     for (const std::size_t n : best)
-        if (n == 0 || n > 1000000) throw std::runtime_error("has an array of impossible size");
+        if (n == 0 || n > 1000000) throw std::runtime_error("has an array of invalid size");
     return best;
 }
 
@@ -227,7 +227,7 @@ void openArrays(std::vector<StoredArray> arrays, Source& source) {
     }
     if (left > 0)
         source.note =
-            std::to_string(left) + (left == 1 ? " array" : " arrays") + " of another size than the grid left out";
+            std::to_string(left) + (left == 1 ? " array" : " arrays") + " with another size than the grid are ignored";
     source.read = [chosen, grid](std::size_t time) -> vtkSmartPointer<vtkDataObject> {
         vtkSmartPointer<vtkDataSet> data = makeGrid(grid);
         for (const Chosen& one : *chosen) {

@@ -59,7 +59,7 @@ void checkFluent(const std::string& path) {
 void openCgns(Source& source) {
     vtkNew<vtkCGNSReader> reader;
     if (reader->CanReadFile(source.path.c_str()) == 0)
-        throw std::runtime_error("is truncated, damaged or no CGNS file");
+        throw std::runtime_error("is truncated, damaged or not a CGNS file");
     reader->SetFileName(source.path.c_str());
     reader->UpdateInformation();
     reader->GetBaseSelection()->EnableAllArrays();
@@ -72,7 +72,7 @@ void openExodus(Source& source) {
     checkNetCdf(source.path);
     vtkNew<vtkExodusIIReader> reader;
     if (reader->CanReadFile(source.path.c_str()) == 0)
-        throw std::runtime_error("is truncated, damaged or no Exodus file");
+        throw std::runtime_error("is truncated, damaged or not an Exodus file");
     reader->SetFileName(source.path.c_str());
     reader->UpdateInformation();
     reader->SetAllArrayStatus(vtkExodusIIReader::NODAL, 1);
@@ -114,7 +114,8 @@ void openPlot3d(Source& source) {
         any = true;
     }
     if (!any)
-        throw std::runtime_error("holds a grid without values: a file of the same name with .q or .f belongs to it");
+        throw std::runtime_error(
+            "holds a grid without values: these are expected in a file of the same name with the ending .q or .f");
     source.reader = reader;
 }
 

@@ -254,11 +254,11 @@ vtkSmartPointer<vtkDataSet> gridOfPoints(const PointTable& table, Source& source
             places[std::size_t(axis)] = table.columns[c];
             if (!table.headings[c].unit.empty()) source.lengthUnit = table.headings[c].unit;
         }
-    if (places[0].empty() || places[1].empty()) throw std::runtime_error("has no columns x and y with places");
+    if (places[0].empty() || places[1].empty()) throw std::runtime_error("has no columns x and y with positions");
     if (places[2].empty()) places[2].assign(table.rows(), 0);
     for (const std::vector<double>& column : places)
         for (const double value : column)
-            if (!std::isfinite(value)) throw std::runtime_error("has a place that is no number");
+            if (!std::isfinite(value)) throw std::runtime_error("has a position that is not a number");
     const std::array<Axis, 3> axes{Axis(places[0]), Axis(places[1]), Axis(places[2])};
     std::array<std::size_t, 3> sizes{};
     double product = 1;
@@ -276,7 +276,7 @@ vtkSmartPointer<vtkDataSet> gridOfPoints(const PointTable& table, Source& source
         nodes.push_back({axes[0].index(places[0][row]), axes[1].index(places[1][row]), axes[2].index(places[2][row])});
         const std::size_t at = (nodes[row][2] * sizes[1] + nodes[row][1]) * sizes[0] + nodes[row][0];
         if (rowOf[at] >= 0)
-            throw std::runtime_error("has the same place in rows " + std::to_string(rowOf[at] + 1) + " and " +
+            throw std::runtime_error("has the same position in rows " + std::to_string(rowOf[at] + 1) + " and " +
                                      std::to_string(row + 1));
         rowOf[at] = static_cast<std::ptrdiff_t>(row);
     }

@@ -114,7 +114,7 @@ PointTable parseTable(std::string_view text) {
             const std::optional<double> value = number(fields[c], decimalComma);
             if (!value)
                 throw std::runtime_error(place + ", column " + table.headings[c].name + ": \"" +
-                                         fields[c].substr(0, 40) + "\" is no number");
+                                         fields[c].substr(0, 40) + "\" is not a number");
             table.columns[c].push_back(*value);
         }
     }
@@ -128,7 +128,7 @@ std::map<double, PointTable> byTime(const PointTable& table, std::size_t column)
     std::map<double, PointTable> out;
     for (std::size_t row = 0; row < table.rows(); ++row) {
         const double time = table.columns[column][row];
-        if (!std::isfinite(time)) throw std::runtime_error("has a time that is no number");
+        if (!std::isfinite(time)) throw std::runtime_error("has a time that is not a number");
         PointTable& part = out[time];
         if (part.headings.empty()) {
             part.headings = table.headings;
@@ -155,7 +155,8 @@ void openCsv(Source& source) {
         places = places || axisOf(word) == 0;
         if (word == "time" || (table.headings[c].name == "t" && !timeColumn)) timeColumn = c;
     }
-    if (!places) throw std::runtime_error("has no columns x, y and z with places (quantities over time: --over-time)");
+    if (!places)
+        throw std::runtime_error("has no columns x, y and z with positions (for quantities over time use --over-time)");
     if (!timeColumn) {
         auto grid = gridOfPoints(table, source);
         source.read = [grid](std::size_t) { return grid; };

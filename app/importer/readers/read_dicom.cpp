@@ -29,7 +29,7 @@ class Elements {
 public:
     explicit Elements(const std::string& path) : bytes_(readWhole(path)) {
         if (bytes_.size() < 132 || bytes_.compare(128, 4, "DICM") != 0)
-            throw std::runtime_error("is truncated or no DICOM file");
+            throw std::runtime_error("is truncated or not a DICOM file");
         at_ = 132;
         read(2, true); // the group that says how the rest is written
         std::string syntax = text(0x00020010);
@@ -38,7 +38,7 @@ public:
             throw std::runtime_error("is compressed DICOM (" + syntax +
                                      "), which is not read: write it uncompressed (gdcmconv --raw, or dcmdjpeg)");
         read(0xffff, syntax == "1.2.840.10008.1.2.1");
-        if (!found_.contains(kPixels)) throw std::runtime_error("ends before its samples: truncated, or no image");
+        if (!found_.contains(kPixels)) throw std::runtime_error("ends before its samples: truncated, or not an image");
     }
     std::string text(std::uint32_t tag) const {
         const auto at = found_.find(tag);
@@ -74,7 +74,7 @@ private:
     }
     /// Elements up to a group; `depth` > 0: of an item, up to its end mark.
     void read(std::uint32_t lastGroup, bool typed, int depth = 0) {
-        if (depth > 16) throw std::runtime_error("has sequences in sequences without end");
+        if (depth > 16) throw std::runtime_error("has sequences nested too deep");
         while (at_ < bytes_.size()) {
             const std::size_t begin = at_;
             const std::uint32_t group = take(2), tag = group << 16 | take(2);
@@ -104,10 +104,10 @@ private:
                 continue;
             }
             if (bytes_.size() - at_ < length)
-                throw std::runtime_error(tag == kPixels
-                                             ? "has " + std::to_string(bytes_.size() - at_) +
-                                                   " bytes of samples, its header asks for " + std::to_string(length)
-                                             : "ends early: truncated");
+                throw std::runtime_error(tag == kPixels ? "has " + std::to_string(bytes_.size() - at_) +
+                                                              " bytes of samples, but its header announces " +
+                                                              std::to_string(length)
+                                                        : "ends early: truncated");
             if (depth == 0) found_[tag] = {at_, length};
             at_ += length;
         }
@@ -134,7 +134,8 @@ Slice describe(const Elements& file, const std::string& path) {
     slice.columns = file.number(0x00280011, 0);
     slice.bits = file.number(0x00280100, 16);
     slice.isSigned = file.number(0x00280103, 0) == 1;
-    if (file.number(0x00280002, 1) != 1) throw std::runtime_error("has colours, which are not read: write it as greys");
+    if (file.number(0x00280002, 1) != 1)
+        throw std::runtime_error("has colours, which are not supported: write it in grey");
     if (slice.rows < 1 || slice.columns < 1 || (slice.bits != 8 && slice.bits != 16))
         throw std::runtime_error("has no rows and columns of 8 or 16 bits");
     const auto first = [&](std::uint32_t tag, double otherwise) {
@@ -161,7 +162,7 @@ Slice describe(const Elements& file, const std::string& path) {
     const double wanted = double(slice.rows) * slice.columns * slice.frames * slice.bits / 8;
     if (double(file.text(kPixels).size()) < wanted)
         throw std::runtime_error("has " + std::to_string(file.text(kPixels).size()) +
-                                 " bytes of samples, its header asks for " +
+                                 " bytes of samples, but its header announces " +
                                  std::to_string(static_cast<long long>(wanted)));
     return slice;
 }
@@ -232,8 +233,7 @@ void openDicom(Source& source) {
         for (std::size_t i = 1; i < slices->size(); ++i) {
             const double gap = (*slices)[i].place - (*slices)[i - 1].place;
             if (!(std::abs(gap - step) <= 0.05 * step) || !(gap > 0))
-                throw std::runtime_error(
-                    "has slices that do not follow each other evenly: one is missing or there twice");
+                throw std::runtime_error("has slices at uneven distances: one is missing or present twice");
         }
     }
     if (!(step > 0)) step = 1;

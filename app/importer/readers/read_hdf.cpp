@@ -101,8 +101,7 @@ vtkSmartPointer<vtkDataArray> readSlab(hid_t file, const std::string& name, int 
     if (H5Sselect_hyperslab(space.id(), H5S_SELECT_SET, begin.data(), nullptr, dims.data(), nullptr) < 0 ||
         H5Dread(dataset.id(), memoryType(vtkType), memory.id(), space.id(), H5P_DEFAULT, out->GetVoidPointer(0)) < 0)
         throw std::runtime_error("dataset \"" + name +
-                                 "\" cannot be read: damaged, or packed by a filter that is not "
-                                 "installed");
+                                 "\" cannot be read: damaged, or compressed by a filter that is not installed");
     return out;
 }
 
@@ -138,7 +137,8 @@ void openHdf(Source& source) {
     const auto file =
         std::make_shared<const Handle>(H5Fopen(source.path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
     if (file->id() < 0)
-        throw std::runtime_error(H5Fis_hdf5(source.path.c_str()) > 0 ? "is truncated or damaged" : "is no HDF5 file");
+        throw std::runtime_error(H5Fis_hdf5(source.path.c_str()) > 0 ? "is truncated or damaged"
+                                                                     : "is not an HDF5 file");
     if (H5Lexists(file->id(), "VTKHDF", H5P_DEFAULT) > 0) {
         vtkNew<vtkHDFReader> reader;
         reader->SetFileName(source.path.c_str());

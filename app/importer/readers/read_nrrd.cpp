@@ -40,7 +40,7 @@ double takeNumber(std::string_view& text) {
 
 void openNrrd(Source& source) {
     vtkNew<vtkNrrdReader> reader;
-    if (reader->CanReadFile(source.path.c_str()) == 0) throw std::runtime_error("is damaged or not of this format");
+    if (reader->CanReadFile(source.path.c_str()) == 0) throw std::runtime_error("is damaged or has another format");
     checkNrrd(source.path);
     reader->SetFileName(source.path.c_str());
     if (!textOfNrrd(source.path)) {

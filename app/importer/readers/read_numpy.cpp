@@ -40,7 +40,7 @@ std::string entry(const std::string& header, const std::string& key) {
 }
 
 NpyForm parseNpy(const std::string& bytes) {
-    if (!bytes.starts_with("\x93NUMPY")) throw std::runtime_error("is no NumPy array");
+    if (!bytes.starts_with("\x93NUMPY")) throw std::runtime_error("is not a NumPy array");
     NpyForm form;
     const bool old = little(bytes, 6, 1) == 1;
     const std::size_t length = little(bytes, 8, old ? 2 : 4);
@@ -84,7 +84,7 @@ NpyForm parseNpy(const std::string& bytes) {
     }
     if (double(bytes.size() - form.begin) < all)
         throw std::runtime_error("has " + std::to_string(bytes.size() - form.begin) +
-                                 " bytes of samples, its header asks for " +
+                                 " bytes of samples, but its header announces " +
                                  std::to_string(static_cast<long long>(all)));
     return form;
 }
@@ -156,7 +156,7 @@ std::vector<StoredArray> readZip(const std::string& bytes) {
         if (method == 0) {
             *member = bytes.substr(begin, packed);
         } else {
-            if (size > 1000 * packed + 65536) throw std::runtime_error("has a member of impossible size");
+            if (size > 1000 * packed + 65536) throw std::runtime_error("has a member of invalid size");
             member->resize(size);
             z_stream stream{};
             stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data() + begin));

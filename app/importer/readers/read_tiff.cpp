@@ -38,7 +38,7 @@ using File = std::unique_ptr<TIFF, decltype(&TIFFClose)>;
 File openFile(const std::string& path) {
     libraryError.clear();
     File file(TIFFOpen(path.c_str(), "r"), TIFFClose);
-    if (file == nullptr) throw std::runtime_error(libraryError.empty() ? "is no TIFF file" : libraryError);
+    if (file == nullptr) throw std::runtime_error(libraryError.empty() ? "is not a TIFF file" : libraryError);
     return file;
 }
 
@@ -136,7 +136,9 @@ void readDescription(TIFF* file, Stack& stack, Source& source) {
     if (images != double(stack.pages.size()))
         throw std::runtime_error("announces " + std::to_string(int(images)) + " images, holds " +
                                  std::to_string(stack.pages.size()));
-    if (channels > 1) throw std::runtime_error("has channels, which are not read: write each as a file of its own");
+    if (channels > 1)
+        throw std::runtime_error(
+            "has several channels per pixel, which is not supported: write each as a file of its own");
     if (frames > 1 && std::size_t(images) % std::size_t(frames) == 0) {
         stack.slices = std::size_t(images / frames);
         for (int t = 0; t < int(frames); ++t) source.times.push_back(t * number("finterval", 1));
@@ -169,7 +171,7 @@ vtkSmartPointer<vtkDataObject> readStack(const Stack& stack, std::size_t time) {
         opened = index;
         if (TIFFCurrentDirectory(file.get()) != directory && TIFFSetDirectory(file.get(), directory) == 0)
             throw std::runtime_error("page " + std::to_string(directory + 1) + " cannot be read");
-        if (pageOf(file.get()) != form) throw std::runtime_error("has pages of several forms");
+        if (pageOf(file.get()) != form) throw std::runtime_error("has pages of different size or type");
         try {
             readPage(file.get(), form, static_cast<char*>(all->GetVoidPointer(0)) + slice * bytes);
         } catch (const std::runtime_error& error) {
@@ -201,7 +203,7 @@ void openTiff(Source& source) {
             if (stack->pages.empty()) stack->form = page;
             if (page != stack->form)
                 throw std::runtime_error("page " + std::to_string(stack->pages.size() + 1) +
-                                         " has another form than the first");
+                                         " differs in size or type from the first");
             stack->pages.emplace_back(f, TIFFCurrentDirectory(file.get()));
             if (TIFFLastDirectory(file.get()) != 0) break;
             if (TIFFReadDirectory(file.get()) == 0)
@@ -217,9 +219,10 @@ void openTiff(Source& source) {
     const Page& form = stack->form;
     vtkTypeOf(form);
     if (form.planar != PLANARCONFIG_CONTIG && form.samples > 1)
-        throw std::runtime_error("has its colours in planes, which is not read: write them pixel by pixel");
+        throw std::runtime_error(
+            "has its colours in separate planes, which is not supported: write them pixel by pixel");
     if (form.photometric == PHOTOMETRIC_PALETTE)
-        throw std::runtime_error("has a palette of colours and no values: write it as greys");
+        throw std::runtime_error("has a colour palette instead of values: write it in grey");
     source.read = [stack](std::size_t time) { return readStack(*stack, time); };
 }
 

@@ -258,7 +258,7 @@ void checkVariable(GoldFile& file, const std::map<int, GoldPart>& parts, std::si
         }
         const auto part = parts.find(file.integers(1)[0]);
         file.endLine();
-        if (part == parts.end()) throw std::runtime_error("has a part that the geometry lacks");
+        if (part == parts.end()) throw std::runtime_error("has a part that is not in the geometry");
         std::size_t cellsLeft = part->second.cells.size();
         for (bool any = false; any || !file.atEnd(); any = false) {
             const std::string kind = file.line();

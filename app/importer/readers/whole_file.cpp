@@ -22,7 +22,8 @@ void checkXml(const std::string& path, std::set<std::string>& seen) {
     if (!seen.insert(path).second) return;
     constexpr std::size_t kTail = 4096;
     const std::size_t size = bytesIn(path);
-    if (readPart(path, 0, kTail).find("<VTKFile") == std::string::npos) throw std::runtime_error("is no VTK XML file");
+    if (readPart(path, 0, kTail).find("<VTKFile") == std::string::npos)
+        throw std::runtime_error("is not a VTK XML file");
     if (readPart(path, size - std::min(size, kTail), kTail).find("</VTKFile>") == std::string::npos)
         throw std::runtime_error("ends before its last tag: truncated");
     const std::string ending = fs::path(path).extension().string();
@@ -111,7 +112,7 @@ void checkDeflated(const std::string& path, std::size_t begin, double wanted) {
     if (!ended) throw std::runtime_error("its compressed samples end early: truncated or damaged");
     if (got < wanted)
         throw std::runtime_error("holds " + std::to_string(static_cast<long long>(got)) +
-                                 " bytes of samples, its header asks for " +
+                                 " bytes of samples, but its header announces " +
                                  std::to_string(static_cast<long long>(wanted)));
 }
 

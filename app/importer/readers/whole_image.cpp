@@ -25,7 +25,7 @@ void wantBytes(double has, double wanted, const std::string& where = {}) {
     if (has < wanted)
         throw std::runtime_error((where.empty() ? "" : "its file " + where + " ") + "has " +
                                  std::to_string(static_cast<long long>(std::max(has, 0.0))) +
-                                 " bytes of samples, its header asks for " +
+                                 " bytes of samples, but its header announces " +
                                  std::to_string(static_cast<long long>(wanted)));
 }
 
@@ -93,7 +93,7 @@ struct NrrdPlace {
 
 NrrdPlace placeOfNrrd(const std::string& path) {
     const std::string head = readPart(path, 0, kHead);
-    if (!head.starts_with("NRRD")) throw std::runtime_error("is damaged or not of this format");
+    if (!head.starts_with("NRRD")) throw std::runtime_error("is damaged or has another format");
     NrrdPlace place;
     std::map<std::string, std::string> fields = readFields(head, ": ", "", place.begin);
     place.type = fields["type"];
@@ -181,7 +181,7 @@ void checkNifti(const std::string& path) {
         wantBytes(double(bytesIn(path)) - begin, wanted);
         return;
     }
-    throw std::runtime_error("is damaged or not of this format");
+    throw std::runtime_error("is damaged or has another format");
 }
 
 void checkNrrd(const std::string& path) {

@@ -123,8 +123,9 @@ void checkNetCdf(const std::string& path) {
     if (!header.isClassic()) return;
     const double wanted = header.bytesNeeded(), has = double(bytesIn(path));
     if (has < wanted)
-        throw std::runtime_error("has " + std::to_string(static_cast<long long>(has)) + " bytes, its header asks for " +
-                                 std::to_string(static_cast<long long>(wanted)) + ": truncated");
+        throw std::runtime_error("has " + std::to_string(static_cast<long long>(has)) +
+                                 " bytes, but its header announces " + std::to_string(static_cast<long long>(wanted)) +
+                                 ": truncated");
 }
 
 } // namespace tessera::importer

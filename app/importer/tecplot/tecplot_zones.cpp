@@ -55,7 +55,7 @@ struct Part {
         bool found[3] = {};
         for (const std::size_t v : variables(false))
             if (const int axis = axisOf(headings[v].name); axis >= 0 && zone.types[v] != VTK_VOID) found[axis] = true;
-        if (!found[0] || !found[1]) throw std::runtime_error("has no variables X and Y with places");
+        if (!found[0] || !found[1]) throw std::runtime_error("has no variables X and Y with positions");
     }
     bool isRow() const { return zone.cellType == VTK_EMPTY_CELL && zone.size[1] == 1 && zone.size[2] == 1; }
 };
@@ -80,7 +80,7 @@ vtkSmartPointer<vtkPoints> pointsOf(const Part& part) {
             axis >= 0 && places[axis].empty() && part.zone.types[v] != VTK_VOID) {
             places[axis] = part.values(v);
             if (std::any_of(places[axis].begin(), places[axis].end(), [](double x) { return !std::isfinite(x); }))
-                throw std::runtime_error("has a place that is no number");
+                throw std::runtime_error("has a position that is not a number");
         }
     vtkNew<vtkPoints> points;
     points->SetDataTypeToDouble();

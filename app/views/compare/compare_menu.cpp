@@ -20,10 +20,9 @@ namespace {
 
 constexpr std::size_t kMostVariants = 16;
 constexpr const char* kRowHelp =
-    "Click: swiped over the reference. Ctrl+click: the reference. Errors are of the 8-bit colours on screen; samples "
-    "and bytes those of the parameters shown; \"Differ\" counts stored samples of the first layer's parameter that are "
-    "not "
-    "equal to the reference's, where both have the same ones.";
+    "Click: swipe this variant over the reference. Ctrl+click: make it the reference. Errors are of the 8-bit colours "
+    "on screen; samples and bytes are of the parameters shown. \"Differ\" counts stored samples of the first layer's "
+    "parameter that are not equal to those of the reference, where both are on the same lattice.";
 
 /// The list to edit: what is shown becomes the view's own.
 std::vector<CompareVariant>& own(CompareView& view) {
@@ -53,7 +52,7 @@ std::string otherLattice(const DataRef& data) {
 }
 
 void drawAddMenu(ViewContext& context, CompareView& view) {
-    if (ImGui::MenuItem("As it is")) add(view, {});
+    if (ImGui::MenuItem("Unchanged")) add(view, {});
     ImGui::Separator();
     if (ImGui::MenuItem("Every filter")) addNames(view, "/render/filter", vis::kFilterNames);
     if (ImGui::MenuItem("Every proxy geometry")) addNames(view, "/render/proxy", vis::kProxyNames);
@@ -83,9 +82,10 @@ void drawAddMenu(ViewContext& context, CompareView& view) {
 void drawCompareToolbar(ViewContext& context, CompareView& view) {
     static constexpr const char* kNames[] = {"Grid", "Swipe", "Blink", "Difference"};
     static constexpr const char* kHelp[] = {
-        "Beside each other", "Two on either side of a line: drag it; a click in the table chooses the other one",
-        "In turns in one place; B shows the next",
-        "Difference from the reference: of the colours of each place, or of the values, in their unit"};
+        "Side by side",
+        "Two variants on either side of a line that you drag; a click in the table chooses the second one",
+        "One after the other in the same place; B shows the next",
+        "Difference from the reference: of the colours of each pixel, or of the values, in their unit"};
     for (int i = 0; i < 4; ++i) {
         const bool lit = static_cast<int>(view.mode) == i;
         if (lit) ImGui::PushStyleColor(ImGuiCol_Button, ImGui::GetStyleColorVec4(ImGuiCol_ButtonActive));
@@ -105,12 +105,12 @@ void drawCompareToolbar(ViewContext& context, CompareView& view) {
     ImGui::SameLine(0, em() * 0.5f);
     if (ImGui::Button("Ask")) view.questions.emplace_back();
     if (ImGui::IsItemHovered())
-        tooltip("Adds a question to whoever compares; the session keeps the answer and how long it took");
+        tooltip("Add a question about the comparison; the session keeps the answer and the time it took");
     if (view.mode == CompareMode::Blink) {
         ImGui::SameLine(0, em() * 0.8f);
         ImGui::SetNextItemWidth(em() * 6);
         ImGui::SliderFloat("##blink", &view.blinkSeconds, 0.1f, 10, "%.2g s", ImGuiSliderFlags_Logarithmic);
-        if (ImGui::IsItemHovered()) tooltip("How long each is shown in turn");
+        if (ImGui::IsItemHovered()) tooltip("How long each variant is shown");
     }
     if (view.mode == CompareMode::Difference) {
         ImGui::SameLine(0, em() * 0.8f);
@@ -118,14 +118,14 @@ void drawCompareToolbar(ViewContext& context, CompareView& view) {
         if (ImGui::Checkbox("Values", &values))
             view.differenceOf = values ? DifferenceOf::Values : DifferenceOf::Colors;
         if (ImGui::IsItemHovered())
-            tooltip("Values of the first layer's parameter minus those of the reference, in their unit, on the planes "
-                    "through the cross-hair; off: colours of the pictures");
+            tooltip("On: values of the first layer's parameter minus those of the reference, in their unit, on the "
+                    "planes through the cross-hair. Off: colours of the pictures");
     }
     if (view.mode == CompareMode::Difference && view.differenceOf == DifferenceOf::Colors) {
         ImGui::SameLine(0, em() * 0.8f);
         ImGui::SetNextItemWidth(em() * 6);
-        ImGui::SliderFloat("##top", &view.differenceTop, 0, 255, view.differenceTop > 0 ? "up to %.0f" : "own scale");
-        if (ImGui::IsItemHovered()) tooltip("Difference shown brightest, of 255; 0: the largest there is");
+        ImGui::SliderFloat("##top", &view.differenceTop, 0, 255, view.differenceTop > 0 ? "up to %.0f" : "automatic");
+        if (ImGui::IsItemHovered()) tooltip("Difference that is drawn brightest, of 255; 0 = the largest that occurs");
     }
     ImGui::SameLine(0, em() * 0.8f);
 }
@@ -171,13 +171,13 @@ void drawVariantMenu(ViewContext& context, const char* id, CompareView& view, st
     }
     ImGui::Separator();
     if (!(edited == variants[index])) own(view)[index] = edited;
-    if (ImGui::MenuItem("Measure the others against this", nullptr, view.reference == static_cast<int>(index)))
+    if (ImGui::MenuItem("Make this the reference", nullptr, view.reference == static_cast<int>(index)))
         view.reference = static_cast<int>(index);
     if (ImGui::MenuItem("Swipe this over the reference", nullptr, view.other == static_cast<int>(index))) {
         view.other = static_cast<int>(index);
         view.mode = CompareMode::Swipe;
     }
-    if (ImGui::MenuItem("Take over into the session", nullptr, false,
+    if (ImGui::MenuItem("Apply to the session", nullptr, false,
                         !edited.changes.empty() && cell && cell->failure.empty())) {
         Session taken = cell->session;
         taken.views = context.session.views;
@@ -205,7 +205,7 @@ void drawCompareTable(CompareView& view, const std::vector<CompareRow>& rows) {
         std::any_of(rows.begin(), rows.end(), [](const CompareRow& row) { return row.storedBytes > 0; });
     const bool compared =
         std::any_of(rows.begin(), rows.end(), [](const CompareRow& row) { return row.data.has_value(); });
-    std::vector<const char*> names{"Variant", "What differs", "ms", "Samples", "Texture"};
+    std::vector<const char*> names{"Variant", "Changes", "ms", "Samples", "Texture"};
     if (stored) names.push_back("File");
     if (compared) names.push_back("Differ");
     const auto [room, below] = ImGui::GetContentRegionAvail();

@@ -30,10 +30,12 @@ DataRef located(DataRef data, const DataRef& session) {
 /// they were packed.
 std::string whyNot(const DataRef& wanted, const DataRef& session) {
     if (wanted.files.empty() || wanted.files != session.files) return {};
-    if (wanted.settings != session.settings) return "only built-in models come in other sizes";
+    if (wanted.settings != session.settings) return "only built-in models can have another size";
     if (wanted.files.size() != 1 || !wanted.files[0].absolutePath.ends_with(".tsr")) return {};
-    if (wanted.lattice != session.lattice) return "an archive keeps its lattice; compare with what it was packed from";
-    if (wanted.packed != session.packed) return "an archive stays as packed; compare with what it was packed from";
+    if (wanted.lattice != session.lattice)
+        return "the lattice of an archive cannot be changed; open the data that it was packed from";
+    if (wanted.packed != session.packed)
+        return "an archive cannot be packed again here; open the data that it was packed from";
     return {};
 }
 

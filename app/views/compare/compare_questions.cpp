@@ -51,7 +51,7 @@ void drawQuestions(CompareView& view, QuestionClock& clock, const std::vector<st
         view.questions.erase(view.questions.begin() + static_cast<std::ptrdiff_t>(removed));
     if (ImGui::SmallButton("Copy answers as CSV")) ImGui::SetClipboardText(questionsCsv(view.questions).c_str());
     ImGui::SameLine(0, em() * 0.5f);
-    if (ImGui::SmallButton("Ask anew")) {
+    if (ImGui::SmallButton("Clear answers")) {
         for (CompareQuestion& question : view.questions) question.answer.clear(), question.seconds = 0;
         clock = {};
     }

@@ -51,9 +51,9 @@ void CompareValues::find(ViewContext& context, const std::string& jobKey, const 
         [](const auto&, const CompareQuery& query, int, const Progress& progress) -> Found {
             const auto a = query.own->info().findChannel(query.channel),
                        b = query.reference->info().findChannel(query.referenceChannel);
-            if (!a || !b) return {nullptr, "One of them has no such parameter"};
+            if (!a || !b) return {nullptr, "One of the variants does not have this parameter"};
             if (query.own == query.reference && *a == *b && query.time == query.referenceTime)
-                return {nullptr, "The same values: the pictures differ only in how they are drawn"};
+                return {nullptr, "The values are the same; only the pictures differ"};
             Found found;
             found.difference = attempt(found.failure, [&] {
                 return volume::differenceSource(

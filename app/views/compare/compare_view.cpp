@@ -82,7 +82,7 @@ void drawCell(const Frame& frame, std::size_t index, const PictureBox& box) {
     const CompareCell& cell = *frame.cache.pictures.cells()[index];
     ImDrawList& draw = *ImGui::GetWindowDrawList();
     if (cell.drawn) return addPicture(draw, cell.status.texture, box.min, box.max());
-    const std::string text = cell.failure.empty() ? "The data are being opened" : cell.failure;
+    const std::string text = cell.failure.empty() ? "Opening the data" : cell.failure;
     addTextWithBackdrop(draw, {box.min.x + box.size.x / 2, box.min.y + box.size.y / 2}, {0.5f, 0.5f},
                         plotColors().faint, fitText(text, box.size.x - em()).c_str());
 }
@@ -123,7 +123,7 @@ std::vector<std::string> valuesText(const CompareCell& cell) {
     std::vector<std::string> lines{"minus reference, on the planes through the cross-hair"};
     if (cell.samples && cell.samples->samples > 0)
         lines.push_back("all samples drawn: RMS " + formatQuantity(cell.samples->rms, cell.values.unit()) +
-                        ", at most " + formatQuantity(cell.samples->largest, cell.values.unit()));
+                        ", maximum " + formatQuantity(cell.samples->largest, cell.values.unit()));
     return lines;
 }
 
@@ -153,7 +153,7 @@ void drawValues(const Frame& frame, const std::string& pane, const std::vector<P
         if (shown)
             for (int line = 0; const std::string& text : valuesText(cell)) note(text, line++);
         else if (i != frame.reference && cell.failure.empty())
-            note(cell.values.failure().empty() ? "The difference is being computed" : cell.values.failure(), 0);
+            note(cell.values.failure().empty() ? "Computing the difference" : cell.values.failure(), 0);
         if (shown && !legend) {
             legend = true;
             LegendEntry entry;
@@ -235,7 +235,7 @@ std::vector<CompareRow> drawnComparison(const ViewCache* cache) {
 
 void drawCompareView(ViewContext& context, const std::string& pane, CompareView& view) {
     if (!context.source) {
-        drawHint("No data", "The 3D scene with other settings is put beside itself here.");
+        drawHint("No data", "Shows the 3D scene side by side with different settings.");
         return;
     }
     CompareCache& cache = cacheOf<CompareCache>(context, pane);

@@ -79,7 +79,7 @@ LabelRegion findRegion(const volume::DatasetInfo& info, const std::string& text)
     }
     if (byValue.size() == 1) return byValue.front();
     throw Error(known.empty() ? "the data have no label that names regions"
-                              : "no region of this name; there are " + known,
+                              : "no region of this name; known are " + known,
                 {}, text);
 }
 

@@ -34,8 +34,8 @@ void toggle(std::vector<std::string>& names, const std::string& name) {
 /// A menu of statistics of every parameter.
 void chooseStatistic(const volume::DatasetInfo& info, std::vector<std::string>& y) {
     static constexpr std::array<std::array<const char*, 2>, 6> kKinds{{{"mean", "Mean"},
-                                                                       {"min", "Least"},
-                                                                       {"max", "Most"},
+                                                                       {"min", "Minimum"},
+                                                                       {"max", "Maximum"},
                                                                        {"deviation", "Standard deviation"},
                                                                        {"share", "Share of samples"},
                                                                        {"volume", "Volume"}}};
@@ -72,7 +72,7 @@ void chooseAcross(const volume::DatasetInfo& info, const CurvesView& resolved, C
         }
         ImGui::EndCombo();
     } else if (ImGui::IsItemHovered()) {
-        tooltip("What runs to the right: time, a quantity over time or a statistic");
+        tooltip("Horizontal axis: time, a quantity over time or a statistic");
     }
 }
 
@@ -128,7 +128,7 @@ void chooseRegion(const volume::DatasetInfo& info, CurvesView& view) {
         }
         ImGui::EndCombo();
     } else if (ImGui::IsItemHovered()) {
-        tooltip("Region that statistics are of");
+        tooltip("Region in which statistics are computed");
     }
 }
 
@@ -143,7 +143,7 @@ void drawToolbar(ViewContext& context, CurvesCache& cache, const std::shared_ptr
     if (context.session.selection.active()) {
         continueLine(em() * 6);
         ImGui::Checkbox("selected", &view.brushed);
-        if (ImGui::IsItemHovered()) tooltip("Statistics are of what the brushes select");
+        if (ImGui::IsItemHovered()) tooltip("Compute statistics of the selection");
     }
     const volume::CellQuantities cell = volume::cellQuantities(info);
     if (!cell.voltage.empty() && !cell.current.empty()) {
@@ -271,7 +271,7 @@ void drawPlots(ViewContext& context, const volume::Curves& curves) {
 
 void drawCurvesView(ViewContext& context, const std::string& pane, CurvesView& view) {
     if (!context.numbers) {
-        drawHint("No data", "Quantities and statistics over time appear here.");
+        drawHint("No data", "Shows quantities and statistics over time.");
         return;
     }
     const volume::DatasetInfo& info = context.numbers->info();
@@ -292,7 +292,7 @@ void drawCurvesView(ViewContext& context, const std::string& pane, CurvesView& v
             },
             [](const PlotCurvesQuery& a, const PlotCurvesQuery& b) { return a.x == b.x && a.y == b.y; });
     if (!context.figure && info.times.size() > 1) drawToolbar(context, cache, curves, view);
-    if (info.times.size() < 2) return drawHint("One time", "Curves run over several times: open a series.");
+    if (info.times.size() < 2) return drawHint("One time", "Curves need several times: open a series.");
     if (failure.empty()) failure = cache.answers.failure();
     if (!curves && !failure.empty()) return drawHint("No values", failure.c_str());
     if (!curves) return ImGui::TextDisabled("Reading...");

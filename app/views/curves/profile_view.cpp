@@ -33,14 +33,14 @@ void drawToolbar(ViewContext& context, const std::shared_ptr<const Profile>& pro
     chooseChannels(info, view.channels, shown);
     chooseOver(view.over, info.times.size() > 1);
     if (view.over != ProfileOver::Time) {
-        continueLine(buttonWidth("Corner at cursor"));
-        if (ImGui::Button("Corner at cursor")) view.points.push_back(session.cursor);
+        continueLine(buttonWidth("Corner at cross-hair"));
+        if (ImGui::Button("Corner at cross-hair")) view.points.push_back(session.cursor);
         if (ImGui::IsItemHovered())
-            tooltip("Adds a corner of the line at the linked cursor; double-click in the volume or drag in a slice "
-                    "moves it");
+            tooltip("Add a corner of the line at the cross-hair, which you move by a double-click in the volume or by "
+                    "dragging in a slice");
         continueLine(buttonWidth("Axis"));
         if (ImGui::Button("Axis")) ImGui::OpenPopup("axis");
-        if (ImGui::IsItemHovered()) tooltip("A straight line along an axis through the cursor");
+        if (ImGui::IsItemHovered()) tooltip("Use a straight line along an axis through the cross-hair");
         if (ImGui::BeginPopup("axis")) {
             for (int axis = 0; axis < 3; ++axis) {
                 const char name[] = {"xyz"[axis], 0};
@@ -52,7 +52,8 @@ void drawToolbar(ViewContext& context, const std::shared_ptr<const Profile>& pro
             ImGui::EndPopup();
         }
         continueLine(ImGui::GetFrameHeight());
-        if (iconButton(context, "clear", icons::kTrash, "Follow the cursor along the longest axis again",
+        if (iconButton(context, "clear", icons::kTrash,
+                       "Remove the corners: the line runs through the cross-hair along the longest axis",
                        !view.points.empty()))
             view.points.clear();
     }
@@ -65,8 +66,8 @@ void drawToolbar(ViewContext& context, const std::shared_ptr<const Profile>& pro
     }
     drawOrigin(context, shown);
     if (view.points.size() == 1 && view.over != ProfileOver::Time) {
-        continueLine(ImGui::CalcTextSize("one corner more").x);
-        ImGui::TextDisabled("one corner more");
+        continueLine(ImGui::CalcTextSize("one more corner needed").x);
+        ImGui::TextDisabled("one more corner needed");
     }
 }
 
@@ -164,7 +165,7 @@ std::optional<std::size_t> placeAtCursor(const Profile& profile, glm::dvec3 curs
 
 void drawProfileView(ViewContext& context, const std::string& pane, ProfileView& view) {
     if (!context.source) {
-        drawHint("No data", "Parameters along a line in space appear here.");
+        drawHint("No data", "Shows parameters along a line in space.");
         return;
     }
     if (view.over == ProfileOver::Sections) return drawSections(context, pane, view);
@@ -172,7 +173,7 @@ void drawProfileView(ViewContext& context, const std::string& pane, ProfileView&
     const volume::DatasetInfo& info = context.numbers->info();
     ProfileCache& cache = cacheOf<ProfileCache>(context, pane);
     const std::vector<int> shown = chosenChannels(info, view.channels, kMostProfiles);
-    if (shown.empty()) return drawHint("No parameters", "This data set holds only labels.");
+    if (shown.empty()) return drawHint("No parameters", "This data set has only labels.");
     ProfileQuery query{.over = info.times.size() > 1 ? view.over : ProfileOver::Line,
                        .channels = shown,
                        .corners = profileCorners(view, session, info.bounds),
@@ -193,7 +194,7 @@ void drawProfileView(ViewContext& context, const std::string& pane, ProfileView&
         if (const std::string failure = cache.answers.failure(); !failure.empty())
             return drawHint("No values", failure.c_str());
         if (!profile) return ImGui::TextDisabled("Reading...");
-        return drawHint("The line has no length", "Place a corner, move the cursor, and place another.");
+        return drawHint("The line has no length", "Place a corner, move the cross-hair, and place another.");
     }
     const LineAxis along = lineAxis(session, info, *profile);
     const auto [least, most] = std::ranges::minmax(along.values);

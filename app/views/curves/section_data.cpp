@@ -70,7 +70,7 @@ SectionCurves readSections(const std::shared_ptr<const volume::BrickSource>& sou
     } else if (!asked.velocity.empty()) {
         throw Error("there is no vector \"" + asked.velocity + "\"");
     } else if (asked.weight == volume::SectionWeight::MassFlow) {
-        throw Error("a mean by mass flow wants a velocity, and no vector is named or measured as one");
+        throw Error("a mean by mass flow needs a velocity, and no vector has the name or unit of one");
     }
     if (asked.weight == volume::SectionWeight::MassFlow) query.density = volume::densityChannel(info).value_or(-1);
     setInterest(query, asked, info);
@@ -152,7 +152,7 @@ std::string sectionCsv(const volume::DatasetInfo& info, const SectionCurves& cur
                 csvField(titleWithUnit(info.timeName, "") + (info.timeUnit.empty() ? "" : " [" + info.timeUnit + "]")) +
                 ",";
         csv += csvField(placeTitle(asked) + (info.lengthUnit.empty() ? "" : " [" + info.lengthUnit + "]"));
-        csv += ",region,parameter,unit,weight,samples,mean,least,most,integral,integral unit,flux,flux unit,flow,flow "
+        csv += ",region,parameter,unit,weight,samples,mean,min,max,integral,integral unit,flux,flux unit,flow,flow "
                "unit,area,area unit\n";
     }
     const double weight = asked.time.weight;
@@ -190,7 +190,7 @@ std::vector<FigurePanel> sectionPanels(const volume::DatasetInfo& info, const Se
                                        SectionMeasure measure) {
     const auto& [asked, sections, velocity] = curves;
     if (velocity.empty() && (measure == SectionMeasure::Flux || measure == SectionMeasure::Flow))
-        throw Error("a flux wants a velocity, and no vector is named or measured as one");
+        throw Error("a flux needs a velocity, and no vector has the name or unit of one");
     const LengthUnit length = suitableLength(
         info.lengthUnit, sections.place.empty() ? 0 : std::abs(sections.place.back() - sections.place.front()));
     const std::vector<CurveLook> looks = curveLooks(info, asked);
@@ -233,17 +233,17 @@ std::vector<std::string> sectionNotes(const volume::DatasetInfo& info, const Sec
     const SectionCurvesQuery& asked = curves.query;
     std::vector<std::string> notes;
     notes.push_back(asked.line.size() == 2
-                        ? "planes across the line: every sample stands for its own cell, which the planes cut exactly"
-                        : "planes are those that samples lie in; every sample counts with the area of its cell there");
+                        ? "planes across the line: every sample has the value of its cell, which the planes cut exactly"
+                        : "planes through the samples; every sample counts with the area of its cell in the plane");
     if (asked.weight == volume::SectionWeight::MassFlow) {
         const auto density = volume::densityChannel(info);
         notes.push_back("mean by mass flow: weighted by |" +
                         (density ? channelOf(info, *density).name + " " : std::string()) + curves.velocity +
-                        "| through the plane" + (density ? "" : " (there is no density: by volume flow)"));
+                        "| through the plane" + (density ? "" : " (no density: by volume flow)"));
     }
     if (!curves.velocity.empty()) {
         notes.push_back("flux and flow: carried by " + curves.velocity +
-                        " (convection alone), counted along the direction of the axis or line");
+                        " (convection only), positive along the direction of the axis or line");
         for (const volume::Parameter& parameter : info.parameters)
             if (parameter.name == curves.velocity && parameter.unit.empty())
                 notes.push_back(curves.velocity + " has no unit: taken as " + velocityUnit(info, curves.velocity));

@@ -39,10 +39,10 @@ struct SectionCurves {
 
 inline constexpr const char* kSectionMeasureDocs[] = {
     "Mean over the plane, weighted by area, volume or mass flow",
-    "Least value in the plane",
+    "Smallest value in the plane",
     "Largest value in the plane",
     "Integral over the plane: sum of value x area",
-    "What is carried through the plane: sum of value x velocity x area",
+    "Flow of the parameter through the plane: sum of value x velocity x area",
     "Volume flow through the plane: sum of velocity x area",
     "Area of the plane where the parameter exists"};
 

@@ -43,14 +43,14 @@ void choose(const char* id, Enum& value, const char* const (&names)[N], const ch
 
 void chooseRegions(const volume::DatasetInfo& info, int label, SectionSettings& settings) {
     const volume::Parameter& parameter = volume::parameterOf(info, label);
-    const std::string shown = !settings.byRegion             ? "all as one"
+    const std::string shown = !settings.byRegion             ? "all together"
                               : settings.regions.empty()     ? "every " + parameter.name
                               : settings.regions.size() == 1 ? volume::labelName(parameter, settings.regions[0])
                                                              : std::to_string(settings.regions.size()) + " regions";
     continueLine(em() * 8);
     ImGui::SetNextItemWidth(em() * 8);
     if (ImGui::BeginCombo("##regions", shown.c_str(), ImGuiComboFlags_HeightLarge)) {
-        if (ImGui::Selectable("All as one", !settings.byRegion)) settings.byRegion = false;
+        if (ImGui::Selectable("All together", !settings.byRegion)) settings.byRegion = false;
         if (ImGui::Selectable(("Every " + parameter.name).c_str(), settings.byRegion && settings.regions.empty())) {
             settings.byRegion = true;
             settings.regions.clear();
@@ -99,16 +99,18 @@ void drawToolbar(ViewContext& context, ProfileView& view, const std::vector<int>
                  const std::shared_ptr<const SectionCurves>& curves) {
     static constexpr const char* kAcross[] = {"across x", "across y", "across z", "across the line"};
     static constexpr const char* kAcrossHelp[] = {
-        "Planes that stand on the x axis, those that samples lie in", "Planes that stand on the y axis",
-        "Planes that stand on the z axis",
-        "Planes across the straight line from the first to the last corner of the line"};
+        "Planes perpendicular to the x axis, through the samples",
+        "Planes perpendicular to the y axis, through the samples",
+        "Planes perpendicular to the z axis, through the samples",
+        "Planes perpendicular to the straight line from the first to the last corner"};
     static constexpr const char* kWeights[] = {"by area", "by volume", "by mass flow"};
     static constexpr const char* kWeightHelp[] = {
-        "The mean over a plane weighs samples by the area of their cells in it",
-        "The mean weighs samples by the volume of their cells around the plane",
-        "The mean weighs samples by the flow through the plane, in either direction: density x velocity where the data "
-        "have a density, else velocity"};
-    static constexpr const char* kMeasureNames[] = {"mean", "least", "most", "integral", "flux", "volume flow", "area"};
+        "Weight of a sample: the area of its cell in the plane",
+        "Weight of a sample: the volume of its cell around the plane",
+        "Weight of a sample: the flow through the plane, in either direction; density x velocity if the data have a "
+        "density, else velocity"};
+    static constexpr const char* kMeasureNames[] = {"mean", "minimum",     "maximum", "integral",
+                                                    "flux", "volume flow", "area"};
     const volume::DatasetInfo& info = context.numbers->info();
     chooseChannels(info, view.channels, shown);
     chooseOver(view.over, info.times.size() > 1);
@@ -186,9 +188,9 @@ void drawPanel(const FigurePanel& panel, const PlotFrame& frame, std::optional<d
 void chooseOver(ProfileOver& over, bool severalTimes) {
     static constexpr const char* kNames[] = {"along the line", "over time", "line and time", "over planes"};
     static constexpr const char* kHelp[] = {"Values along the line at the time shown",
-                                            "Values at the linked cursor at every stored time",
+                                            "Values at the cross-hair at every stored time",
                                             "Values along the line at every stored time, as colours",
-                                            "Averages over planes across an axis or the line, of every region"};
+                                            "Averages over planes across an axis or the line, for every region"};
     const auto now = static_cast<std::size_t>(over);
     continueLine(em() * 8);
     ImGui::SetNextItemWidth(em() * 8);
@@ -209,7 +211,7 @@ void drawSections(ViewContext& context, const std::string& pane, ProfileView& vi
     Session& session = context.session;
     const volume::DatasetInfo& info = context.numbers->info();
     const std::vector<int> shown = chosenChannels(info, view.channels, kMostSections);
-    if (shown.empty()) return drawHint("No parameters", "This data set holds only labels.");
+    if (shown.empty()) return drawHint("No parameters", "This data set has only labels.");
     SectionCache& cache = cacheOf<SectionCache>(context, pane);
     const SectionCurvesQuery query = queryOf(context, view, shown);
     const auto curves = cache.answers.get(
@@ -228,7 +230,7 @@ void drawSections(ViewContext& context, const std::string& pane, ProfileView& vi
     }
     const SectionMeasure measure = view.sections.measure;
     if (curves->velocity.empty() && (measure == SectionMeasure::Flux || measure == SectionMeasure::Flow))
-        return drawHint("No flux", "The data have no vector that is named or measured as a velocity.");
+        return drawHint("No flux", "The data have no vector with the name or unit of a velocity.");
     const std::vector<FigurePanel> panels = sectionPanels(info, *curves, measure);
     const ImVec2 origin = ImGui::GetCursorScreenPos(), room = ImGui::GetContentRegionAvail();
     float left = 0;

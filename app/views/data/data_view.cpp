@@ -74,7 +74,7 @@ void chooseLattice(DataRef& data) {
             if (ImGui::Selectable(kShown[i], i == now)) data.lattice = static_cast<PictureLattice>(i);
         ImGui::EndCombo();
     } else if (ImGui::IsItemHovered()) {
-        tooltip("Lattice that pictures are drawn from; numbers come from the samples of the file on either");
+        tooltip("Lattice that pictures are drawn from; numbers always come from the samples of the file");
     }
 }
 
@@ -110,7 +110,7 @@ void drawSummary(const ViewContext& context) {
 void editLabels(Session& session, const volume::Parameter& parameter) {
     constexpr int kColors = 8;
     if (!ImGui::BeginPopup("labels")) return;
-    ImGui::TextDisabled("Names of %s; remembered for these data", parameter.name.c_str());
+    ImGui::TextDisabled("Names for the values of %s; remembered for these data", parameter.name.c_str());
     volume::Parameter named = parameter;
     named.labels = statedLabels(session, parameter);
     for (const volume::Label& label : named.labels) {
@@ -118,7 +118,7 @@ void editLabels(Session& session, const volume::Parameter& parameter) {
         const glm::vec3 color = labelColor(named, label.value);
         if (ImGui::ColorButton("##color", {color.r, color.g, color.b, 1}, ImGuiColorEditFlags_NoTooltip))
             ImGui::OpenPopup("colors");
-        if (ImGui::IsItemHovered()) tooltip("Click: another colour");
+        if (ImGui::IsItemHovered()) tooltip("Click to change the colour");
         if (ImGui::BeginPopup("colors")) {
             for (int i = 0; i < kColors; ++i) {
                 const glm::vec3 other(vis::colormapColor("labels", (i + 0.5) / kColors));
@@ -143,7 +143,7 @@ void editLabels(Session& session, const volume::Parameter& parameter) {
             else
                 stateLabel(session, parameter, {label.value, text, ""});
         }
-        if (ImGui::IsItemHovered()) tooltip("An empty field: the name that the data themselves have");
+        if (ImGui::IsItemHovered()) tooltip("Leave empty to use the name from the data");
         ImGui::PopID();
     }
     ImGui::EndPopup();
@@ -154,10 +154,10 @@ void drawParameters(Session& session, const volume::DatasetInfo& info) {
         ImGuiTableFlags_RowBg | ImGuiTableFlags_SizingStretchProp | ImGuiTableFlags_PadOuterX;
     if (!ImGui::BeginTable("parameters", 4, kFlags)) return;
     ImGui::TableSetupColumn("Parameter", 0, 1.6f);
-    ImGui::TableSetupColumn("Least", 0, 1);
-    ImGui::TableSetupColumn("Most", 0, 1);
+    ImGui::TableSetupColumn("Minimum", 0, 1);
+    ImGui::TableSetupColumn("Maximum", 0, 1);
     ImGui::TableSetupColumn("Stored as", 0, 1.1f);
-    tableHeader({"Parameter", "Least", "Most", "Stored as"});
+    tableHeader({"Parameter", "Minimum", "Maximum", "Stored as"});
     for (const volume::Channel& channel : info.channels()) {
         const volume::Parameter& parameter = info.parameters[static_cast<std::size_t>(channel.parameter)];
         const Range range = info.channelRange(channel);
@@ -174,11 +174,11 @@ void drawParameters(Session& session, const volume::DatasetInfo& info) {
             ImGui::TextUnformatted(
                 titleWithUnit(channel.name, channel.unit + (parameter.unitGuessed ? " (guessed)" : "")).c_str());
             if (parameter.unitGuessed && ImGui::IsItemHovered())
-                tooltip("No file states this unit: it is the usual one of the name. --unit states another.");
+                tooltip("The file states no unit; this is the usual one for the name. Use --unit to state another.");
         }
         ImGui::PopID();
         if (over) {
-            std::string labels = "Click: name its values";
+            std::string labels = "Click to name its values";
             for (const volume::Label& label : parameter.labels)
                 labels += "\n" + std::to_string(label.value) + "  " + label.name;
             tooltip(labels.c_str());
@@ -256,7 +256,7 @@ void drawSelection(ViewContext& context, const StatisticsResult* result) {
 
 void drawDataView(ViewContext& context, const std::string& pane, DataView&) {
     if (!context.source) {
-        drawHint("No data", "What is in the data, and what is selected, is listed here.");
+        drawHint("No data", "Lists the contents of the data and of the selection.");
         return;
     }
     DataCache& cache = cacheOf<DataCache>(context, pane);

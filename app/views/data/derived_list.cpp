@@ -84,9 +84,8 @@ void drawOne(ViewContext& context, DerivedDraft& draft, std::size_t index, int& 
     // Not while typing: it would lie over what is wrong with the formula.
     if (std::holds_alternative<volume::ExpressionRecipe>(own.recipe) && ImGui::IsItemHovered() &&
         !ImGui::IsItemActive())
-        tooltip(
-            "Parameters by name (others in `back quotes`), x y z t, + - * / ^, comparisons, a ? b : c, abs sqrt exp "
-            "ln log10 sin cos min max; at another time: at(T, first), last, previous, next, at(T, 0.3)");
+        tooltip("Parameters by name (special names in `back quotes`), x y z t, + - * / ^, comparisons, a ? b : c, abs "
+                "sqrt exp ln log10 sin cos min max; at another time: at(T, first), last, previous, next, at(T, 0.3)");
     if (wrong) {
         ImGui::PushStyleColor(ImGuiCol_Text, palette().failure);
         ImGui::TextWrapped("%s", draft.problems[index].c_str());
@@ -152,7 +151,7 @@ bool hasOther(const volume::DatasetInfo& info, const std::string& channel) {
 void drawDifferences(ViewContext& context, DerivedDraft& draft, const std::string& channel) {
     if (ImGui::SmallButton("Minus another time...")) ImGui::OpenPopup("minus another time");
     if (ImGui::IsItemHovered())
-        tooltip("How a parameter differs from what it is at another time, as a parameter of its own");
+        tooltip("Add the difference between a parameter and its values at another time, as a new parameter");
     if (!ImGui::BeginPopup("minus another time")) return;
     const volume::DatasetInfo& info = context.source->info();
     const auto item = [&](const char* label, const volume::TimeReference& from) {
@@ -166,7 +165,7 @@ void drawDifferences(ViewContext& context, DerivedDraft& draft, const std::strin
         item("last", {volume::OtherTime::Last});
         item("next", {volume::OtherTime::Next});
         const volume::TimeReference now{volume::OtherTime::Time, context.session.time};
-        item((volume::timeText(now, info) + ", shown now").c_str(), now);
+        item((volume::timeText(now, info) + " (the time shown)").c_str(), now);
     }
     if (hasOther(info, channel)) item("other data", {volume::OtherTime::Other});
     ImGui::EndPopup();
@@ -200,7 +199,7 @@ void drawDerivedList(ViewContext& context, DerivedDraft& draft) {
         draft.edited = true;
     }
     if (ImGui::SmallButton("Add...")) ImGui::OpenPopup("add derived");
-    if (ImGui::IsItemHovered()) tooltip("A parameter computed from the others; it is used like any other");
+    if (ImGui::IsItemHovered()) tooltip("Add a parameter computed from others; it is used like any other");
     const volume::DatasetInfo& info = context.source->info();
     const auto channel = resolveChannel(info, context.session, "");
     const std::string name = channel ? info.channel(*channel).name : "";

@@ -117,14 +117,16 @@ void drawList(ViewContext& context, int& selected) {
 /// The lens, transfer function and time that a layer has of its own.
 void drawPlace(const WidgetContext& widgets, Session& session, vis::Layer& layer) {
     if (!session.lenses.empty()) {
-        drawLabel(widgets, "Drawn", "Everywhere, or inside a lens alone");
+        drawLabel(widgets, "Drawn", "Draw everywhere, or inside one lens only");
         chooseLens("##lens", session, layer.lens, "everywhere");
     }
     const auto* surface = std::get_if<vis::IsoLayer>(&layer.technique);
     if (!surface || !surface->colorBy.empty()) {
         bool own = !layer.transfer.empty();
-        const FieldInfo field{
-            .key = "ownTransfer", .unit = "", .doc = "Colours and opacity of its own, beside those of its parameter"};
+        const FieldInfo field{.key = "ownTransfer",
+                              .unit = "",
+                              .doc =
+                                  "Use a separate transfer function for this layer, instead of that of its parameter"};
         if (drawBool(widgets, field, own)) {
             const std::string channel = surface ? surface->colorBy : channelOf(layer.technique);
             const vis::TransferFunction now = transferOf(session, layer.transfer.empty() ? channel : layer.transfer);
@@ -211,7 +213,7 @@ void followChannel(std::string& name, const std::string& before, const std::stri
 
 void drawLayersView(ViewContext& context, const std::string& pane, LayersView& view) {
     if (!context.source) {
-        drawHint("No data", "What the 3D views draw is put together here.");
+        drawHint("No data", "Lists the layers that the 3D views draw.");
         return;
     }
     const volume::DatasetInfo& info = context.source->info();
@@ -258,7 +260,7 @@ void drawLayersView(ViewContext& context, const std::string& pane, LayersView& v
     }
     if (ImGui::CollapsingHeader("Paper")) {
         bool paper = session.paper.has_value();
-        if (drawBool(widgets, {.key = "paper", .unit = "", .doc = "Draw on paper of your own choice"}, paper)) {
+        if (drawBool(widgets, {.key = "paper", .unit = "", .doc = "Draw on paper with the settings below"}, paper)) {
             const std::optional<vis::Paper> shown = vis::paperOf(sceneOf(session));
             session.paper = paper ? std::optional(shown.value_or(vis::Paper{})) : std::nullopt;
         }
@@ -266,14 +268,15 @@ void drawLayersView(ViewContext& context, const std::string& pane, LayersView& v
     }
     if (ImGui::CollapsingHeader("Clipping"))
         drawDescribedList(widgets.at("/clips"),
-                          {.key = "clips", .unit = "", .doc = "Planes and bodies that cut the picture"}, session.clips);
+                          {.key = "clips", .unit = "", .doc = "Planes and bodies that cut the data open"},
+                          session.clips);
     if (ImGui::CollapsingHeader("Tone curve")) drawDescribed(session.tone, widgets.at("/tone"));
     if (ImGui::CollapsingHeader("Quality")) drawDescribed(session.render, widgets.at("/render"));
     if (ImGui::CollapsingHeader("Proportions")) {
         double stretch[] = {session.stretch.x, session.stretch.y, session.stretch.z};
         const FieldInfo field{.key = "stretch",
                               .unit = "",
-                              .doc = "Factor on each axis; 1 = true proportions",
+                              .doc = "Factor by which each axis is stretched; 1 = true proportions",
                               .range = Range{0.01, 1000},
                               .logScale = true};
         if (drawNumber(widgets, field, {}, stretch, 3, false)) session.stretch = {stretch[0], stretch[1], stretch[2]};

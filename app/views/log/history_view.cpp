@@ -8,7 +8,7 @@
 namespace tessera::app {
 
 void drawHistoryView(ViewContext& context, const std::string&, HistoryView&) {
-    ImGui::TextDisabled("Every edit; click to go back to it.");
+    ImGui::TextDisabled("All edits; click one to go back to it.");
     ImGui::Separator();
     ImGui::BeginChild("##steps");
     std::optional<std::size_t> wanted;

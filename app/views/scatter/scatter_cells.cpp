@@ -92,7 +92,7 @@ void drawCorrelation(ImDrawList& draw, const PlotFrame& frame, const volume::Joi
 }
 
 void drawNothingCommon(ImDrawList& draw, const PlotFrame& frame) {
-    const char* text = "nowhere both";
+    const char* text = "no common samples";
     const ImVec2 size = ImGui::CalcTextSize(text);
     if (size.x > frame.width() || size.y > frame.height()) return;
     draw.AddText(
@@ -107,7 +107,7 @@ std::string thirdText(const volume::DatasetInfo& info, const std::string& colorB
         return "mean " + colorBy + " " + formatNumber(mean);
     const volume::Parameter& label = volume::parameterOf(info, *channel);
     return std::abs(mean - std::round(mean)) > 0.01
-               ? "of several " + label.name + "s"
+               ? "in several " + label.name + "s"
                : label.name + " " + volume::labelName(label, static_cast<int>(std::lround(mean)));
 }
 
@@ -152,7 +152,7 @@ void hoverText(const ScatterLayout& matrix, std::size_t column, std::size_t row,
             }
         }
     }
-    if (result.statistics.level > 0) text += "\n(from a coarser level so far)";
+    if (result.statistics.level > 0) text += "\n(estimated from a coarser level)";
     if (!text.empty()) ImGui::SetTooltip("%s", text.c_str());
 }
 

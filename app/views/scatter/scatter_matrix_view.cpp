@@ -252,14 +252,14 @@ void drawLarge(ViewContext& context, ScatterCache& cache, ScatterMatrixView& vie
 
 void drawScatterMatrixView(ViewContext& context, const std::string& pane, ScatterMatrixView& view) {
     if (!context.source) {
-        drawHint("No data", "Plots of every pair of parameters appear here; drag in one to select.");
+        drawHint("No data", "Plots every pair of parameters; drag in a plot to select.");
         return;
     }
     const volume::DatasetInfo& info = context.numbers->info();
     ScatterLayout matrix;
     matrix.channels = chosenChannels(info, view.channels, kMostPlots);
     if (matrix.channels.empty()) {
-        drawHint("No parameters to compare", "This data set holds only labels.");
+        drawHint("No parameters to compare", "This data set has only labels.");
         return;
     }
     ScatterCache& cache = cacheOf<ScatterCache>(context, pane);
@@ -296,7 +296,7 @@ void drawScatterMatrixView(ViewContext& context, const std::string& pane, Scatte
     matrix.cellX = (room.x - left - em() * 0.2f) / n;
     matrix.cellY = (room.y - bottom - em() * 0.2f) / n;
     if (matrix.cellX < em() * 1.6f || matrix.cellY < em() * 1.3f) {
-        drawHint("Not enough room", "Enlarge the pane or compare fewer parameters.");
+        drawHint("Not enough room", "Enlarge the pane or choose fewer parameters.");
         return;
     }
     cache.layout = matrix;

@@ -26,7 +26,7 @@ void chooseTool(BrushTool& tool) {
         ImGui::EndCombo();
     }
     if (ImGui::IsItemHovered())
-        tooltip("What a drag in a plot draws; Shift adds to the selection, Ctrl takes away from it");
+        tooltip("Shape of a brush drawn in a plot; hold Shift to add to the selection, Ctrl to remove from it");
 }
 
 /// Adds a derived parameter to the session, if it has none like it, and to the plots.
@@ -183,7 +183,7 @@ void drawScatterToolbar(ViewContext& context, ScatterMatrixView& view, const std
     chooseChannels(info, view.channels, shown);
     ImGui::SameLine(0, gap);
     ImGui::Checkbox("log", &view.logDensity);
-    if (ImGui::IsItemHovered()) tooltip("Show the logarithm of the number of samples");
+    if (ImGui::IsItemHovered()) tooltip("Logarithmic number of samples");
     ImGui::SameLine(0, gap);
     drawMore(context, view, shown, shared);
     continueLine(em() * 6.6f);

@@ -193,7 +193,7 @@ void drawToolbar(ViewContext& context, const volume::DatasetInfo& info, ShadowCu
     static constexpr Icon kBrushIcon{icon::kBrush, "brush"}, kLockIcon{icon::kLock, "lock"},
         kGearIcon{icon::kGear, "set"};
     if (iconButton(context, "brushing", kBrushIcon,
-                   "Drag on a face to select the prism behind it (Shift adds, Ctrl takes away)", true, view.brushing))
+                   "Drag on a face to select the prism behind it (Shift adds, Ctrl removes)", true, view.brushing))
         view.brushing = !view.brushing;
     ImGui::SameLine(0, em() * 0.2f);
     if (iconButton(context, "together", kLockIcon, "Turn cube and object together", true, view.together)) {
@@ -201,7 +201,7 @@ void drawToolbar(ViewContext& context, const volume::DatasetInfo& info, ShadowCu
         view.orientation = context.session.camera.orientation;
     }
     ImGui::SameLine(0, em() * 0.2f);
-    if (iconButton(context, "settings", kGearIcon, "What the faces show")) ImGui::OpenPopup("faces");
+    if (iconButton(context, "settings", kGearIcon, "Choose what each face shows")) ImGui::OpenPopup("faces");
     if (ImGui::BeginPopup("faces")) {
         ImGui::PushItemWidth(em() * 12);
         ImGui::Dummy({em() * 22, 0});
@@ -249,7 +249,7 @@ std::set<int> drawWalls(ViewContext& context, const CubeFrame& frame, ShadowCube
 
 void drawShadowCubeView(ViewContext& context, const std::string& pane, ShadowCubeView& view) {
     if (!context.source) {
-        drawHint("No data", "The scene in a cube, with parameters projected on its faces.");
+        drawHint("No data", "Shows the scene in a cube, with parameters projected onto its faces.");
         return;
     }
     ShadowCubeCache& cache = cacheOf<ShadowCubeCache>(context, pane);

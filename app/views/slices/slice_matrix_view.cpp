@@ -134,7 +134,7 @@ void drawToolbar(ViewContext& context, SliceMatrixView& view, const std::vector<
                 view.axis = static_cast<volume::SpaceAxis>(i);
         ImGui::EndCombo();
     }
-    if (ImGui::IsItemHovered()) tooltip(("Axis the planes stand on; " + directions).c_str());
+    if (ImGui::IsItemHovered()) tooltip(("Axis perpendicular to the planes; " + directions).c_str());
     continueLine(em() * 6);
     ImGui::SetNextItemWidth(em() * 6);
     ImGui::SliderInt("##planes", &view.planes, 1, 12, view.planes == 1 ? "%d plane" : "%d planes");
@@ -156,7 +156,7 @@ void drawToolbar(ViewContext& context, SliceMatrixView& view, const std::vector<
 
 void drawSliceMatrixView(ViewContext& context, const std::string& pane, SliceMatrixView& view) {
     if (!context.source) {
-        drawHint("No data", "Every parameter on several planes appears here.");
+        drawHint("No data", "Shows every parameter on several planes.");
         return;
     }
     const volume::DatasetInfo& info = context.source->info();
@@ -166,9 +166,9 @@ void drawSliceMatrixView(ViewContext& context, const std::string& pane, SliceMat
     const SliceAxes axes = axesOf(view.axis, world);
     view.planes = std::clamp(view.planes, 1, 12);
     if (!context.figure) drawToolbar(context, view, shown, axes);
-    if (shown.empty()) return drawHint("No parameters", "This data set holds only labels.");
+    if (shown.empty()) return drawHint("No parameters", "This data set has only labels.");
     const double worldX = world.halfSize[axes.right], worldY = world.halfSize[axes.up];
-    if (!(worldX > 0) || !(worldY > 0)) return drawHint("No extent", "The data are flat along this axis' planes.");
+    if (!(worldX > 0) || !(worldY > 0)) return drawHint("No extent", "The data have no extent within these planes.");
 
     const ImVec2 origin = ImGui::GetCursorScreenPos(), room = ImGui::GetContentRegionAvail();
     const std::vector<volume::Channel> channels = info.channels();

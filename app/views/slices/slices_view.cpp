@@ -206,36 +206,37 @@ void chooseContours(const volume::DatasetInfo& info, SlicesView& view) {
     ImGui::SetNextItemWidth(em() * 8);
     ImGui::SliderInt("##contours", &view.contours, 0, 50, view.contours == 0 ? "no contours" : "%d contours");
     if (ImGui::IsItemHovered())
-        tooltip("Contour lines over the colour range; of another parameter or with values at most so many, at round "
-                "values");
+        tooltip("Number of contour lines over the colour range; of another parameter, or with values, at most this "
+                "many at round values");
     if (view.contours == 0) return;
     continueLine(em() * 8);
     ImGui::SetNextItemWidth(em() * 8);
-    chooseChannel("##contourOf", &info, view.contourOf, "of the same");
-    if (ImGui::IsItemHovered()) tooltip("Parameter that the contour lines are of");
+    chooseChannel("##contourOf", &info, view.contourOf, "same parameter");
+    if (ImGui::IsItemHovered()) tooltip("Parameter of the contour lines");
     continueLine(buttonWidth("values") + em());
     ImGui::Checkbox("values", &view.contourValues);
-    if (ImGui::IsItemHovered()) tooltip("Lines at round values, which are written on them");
+    if (ImGui::IsItemHovered()) tooltip("Draw the lines at round values, labelled with them");
 }
 
 /// The line below the legend that says what the contour lines are.
 std::string contourNote(const volume::DatasetInfo& info, const SlicesView& view, const DrawnContours& lines) {
     if (view.contours == 0 || (view.contourOf.empty() && !view.contourValues)) return {};
     if (lines.channel) return contourTitle(info.channel(*lines.channel), lines.levels);
-    return "no lines: " + (info.findChannel(view.contourOf) ? "a label has none" : "there is no " + view.contourOf);
+    return "no contour lines: " +
+           (info.findChannel(view.contourOf) ? "labels have none" : "there is no " + view.contourOf);
 }
 
 } // namespace
 
 void drawSlicesView(ViewContext& context, const std::string& pane, SlicesView& view) {
     if (!context.source) {
-        drawHint("No data", "Three slices through the linked cursor appear here.");
+        drawHint("No data", "Shows three slices through the cross-hair.");
         return;
     }
     const volume::DatasetInfo& info = context.source->info();
     const auto channel = resolveChannel(info, context.session, view.channel);
     if (!channel) {
-        drawHint("No parameters", "This data set has nothing to colour a slice by.");
+        drawHint("No parameters", "This data set has no parameter to show.");
         return;
     }
     SlicesCache& cache = cacheOf<SlicesCache>(context, pane);

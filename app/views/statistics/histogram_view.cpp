@@ -63,7 +63,7 @@ void hover(const volume::Channel& channel, const StatisticsResult& result, const
                        formatCount(count) + " samples";
     if (result.brushed && count > 0)
         text += "\n" + formatShare(std::min(1.0, histogram.focus[bin] / count)) + " of them in focus";
-    if (result.statistics.level > 0) text += "\n(from a coarser level so far)";
+    if (result.statistics.level > 0) text += "\n(estimated from a coarser level)";
     ImGui::SetTooltip("%s", text.c_str());
 }
 
@@ -124,7 +124,7 @@ void drawToolbar(ViewContext& context, HistogramView& view, const volume::Channe
     if (ImGui::IsItemHovered()) tooltip("Parameter whose values are counted");
     continueLine(em() * 3.5f);
     ImGui::Checkbox("log", &view.logCounts);
-    if (ImGui::IsItemHovered()) tooltip("Show the logarithm of the number of samples");
+    if (ImGui::IsItemHovered()) tooltip("Logarithmic number of samples");
     if (result) {
         continueLine(buttonWidth("Export"));
         exportMenu(
@@ -148,13 +148,13 @@ void drawToolbar(ViewContext& context, HistogramView& view, const volume::Channe
 
 void drawHistogramView(ViewContext& context, const std::string& pane, HistogramView& view) {
     if (!context.source) {
-        drawHint("No data", "How often each value of a parameter occurs is shown here.");
+        drawHint("No data", "Shows how often each value of a parameter occurs.");
         return;
     }
     const volume::DatasetInfo& info = context.numbers->info();
     const auto index = resolveChannel(info, context.session, view.channel);
     if (!index) {
-        drawHint("No parameters", "This data set has nothing to count.");
+        drawHint("No parameters", "This data set has no parameter to count.");
         return;
     }
     HistogramCache& cache = cacheOf<HistogramCache>(context, pane);

@@ -67,7 +67,8 @@ std::vector<RegionRow> regionRows(const volume::DatasetInfo& info, const RegionQ
 }
 
 std::vector<std::string> regionHeads() {
-    return {"Parameter", "Region", "Samples", "Of all", "Of its own", "Volume", "Mean", "Spread", "Least", "Most"};
+    return {"Parameter", "Region", "Samples",        "Of all",  "Of its own",
+            "Volume",    "Mean",   "Std. deviation", "Minimum", "Maximum"};
 }
 
 std::vector<std::string> regionCells(const RegionRow& row, const std::string& lengthUnit) {
@@ -92,7 +93,7 @@ std::string regionCsv(const std::vector<RegionRow>& rows, const std::string& len
     if (head)
         csv += (time.empty() ? "" : csvField(timeTitle) + ",") +
                "parameter,unit,region,samples,share of all samples,share of the samples where it exists,volume [" +
-               lengthUnit + "3],mean,deviation,least,most\n";
+               lengthUnit + "3],mean,deviation,min,max\n";
     for (const RegionRow& row : rows) {
         if (!time.empty()) csv += time + ",";
         csv += csvField(row.parameter) + "," + csvField(row.unit) + "," + csvField(row.region);
@@ -109,7 +110,7 @@ Balance readBalance(const std::shared_ptr<const volume::BrickSource>& source, co
                     const Progress& progress) {
     const auto velocity = volume::velocityChannels(source->info(), asked.velocity);
     if (!velocity && !asked.velocity.empty()) throw Error("there is no vector \"" + asked.velocity + "\"");
-    if (!velocity) throw Error("a balance wants a velocity, and no vector is named or measured as one");
+    if (!velocity) throw Error("a balance needs a velocity, and no vector has the name or unit of one");
     const volume::SourceAtTime shown = volume::sourceAt(source, asked.time);
     volume::BalanceQuery query;
     query.channel = asked.channel;
@@ -130,14 +131,12 @@ BalanceTable balanceTable(const volume::DatasetInfo& info, const Balance& balanc
     for (const volume::Parameter& parameter : info.parameters)
         if (parameter.name == balance.velocity) speed = parameter.unit;
     BalanceTable table;
-    table.notes = {
-        "carried by " + balance.velocity + " (convection alone): what diffuses is not in it",
-        "midpoint rule at the samples: through a face of the box the first or last samples, through a border "
-        "between regions the mean of both sides where the parameter and " +
-            balance.velocity + " exist on both",
-        "what reacts is out - in, in the row of totals: it holds reactions, diffusion through the surfaces, and what "
-        "is stored from "
-        "time to time"};
+    table.notes = {"carried by " + balance.velocity + " (convection only, without diffusion)",
+                   "midpoint rule at the samples: faces of the box use the first or last samples, borders between "
+                   "regions the mean of both sides where the parameter and " +
+                       balance.velocity + " exist on both sides",
+                   "reacts = out - in, in the row of totals; it includes reactions, diffusion through the surfaces, "
+                   "and the change of what is stored over time"};
     if (speed.empty() && !info.lengthUnit.empty() && !info.timeUnit.empty()) {
         speed = info.lengthUnit + "/" + info.timeUnit;
         table.notes.push_back(balance.velocity + " has no unit: taken as " + speed);

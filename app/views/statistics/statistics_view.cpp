@@ -137,11 +137,11 @@ void drawTable(const volume::DatasetInfo& info, const StatisticsResult& result, 
     const std::string other = "r with " + info.channel(result.query.channels[with]).name;
     const std::vector<std::vector<std::string>> rows = statisticsRows(info, result, shown, with);
     if (!beginTable("statistics",
-                    {"Parameter", "Part", "Samples", "Volume", "Mean", "Std. deviation", "Least", "Most", other}, rows,
-                    2, {}))
+                    {"Parameter", "Part", "Samples", "Volume", "Mean", "Std. deviation", "Minimum", "Maximum", other},
+                    rows, 2, {}))
         return;
-    tableHeader({"Parameter", "Part", "Samples", "Volume", "Mean", "Std. deviation", "Least", "Most", other.c_str()},
-                2);
+    tableHeader(
+        {"Parameter", "Part", "Samples", "Volume", "Mean", "Std. deviation", "Minimum", "Maximum", other.c_str()}, 2);
     std::string last;
     for (const std::vector<std::string>& row : rows) {
         ImGui::TableNextRow();
@@ -165,7 +165,8 @@ void drawRegionTable(Session& session, const volume::DatasetInfo& info, const vo
     std::vector<std::vector<std::string>> texts;
     for (const RegionRow& row : rows) texts.push_back(regionCells(row, info.lengthUnit));
     if (!beginTable("regions", heads, texts, 2, {})) return;
-    tableHeader({"Parameter", "Region", "Samples", "Of all", "Of its own", "Volume", "Mean", "Spread", "Least", "Most"},
+    tableHeader({"Parameter", "Region", "Samples", "Of all", "Of its own", "Volume", "Mean", "Std. deviation",
+                 "Minimum", "Maximum"},
                 2);
     std::string last;
     for (const RegionRow& row : rows) {
@@ -188,7 +189,7 @@ void drawRegionTable(Session& session, const volume::DatasetInfo& info, const vo
                 else if (ImGui::Selectable((cells[1] + "##" + std::to_string(&row - rows.data())).c_str(),
                                            regionBrushed(session, label, row.value)))
                     toggleRegionBrush(session, label, row.value);
-                if (!row.all && ImGui::IsItemHovered()) tooltip("Click: brush this region, or take the brush away");
+                if (!row.all && ImGui::IsItemHovered()) tooltip("Click to brush this region, or to remove the brush");
             } else {
                 textRight(cells[c], row.all);
             }
@@ -223,7 +224,7 @@ void drawBalanceTable(const BalanceTable& table) {
     }
     std::string text;
     for (const std::string& note : table.notes) text += (text.empty() ? "" : "\n") + note;
-    ImGui::TextDisabled("convection alone, midpoint rule (hover)");
+    ImGui::TextDisabled("convection only, midpoint rule (hover)");
     if (ImGui::IsItemHovered()) tooltip(text.c_str());
 }
 
@@ -241,8 +242,8 @@ void chooseBalance(const volume::DatasetInfo& info, StatisticsView& view) {
         ImGui::EndCombo();
     }
     if (ImGui::IsItemHovered())
-        tooltip("Count, mean, spread and volume; or what of a parameter flows in and out of every region, and what "
-                "reacts");
+        tooltip("Count, mean, standard deviation and volume; or inflow, outflow and reaction of a parameter in every "
+                "region");
 }
 
 void drawBalance(ViewContext& context, const std::string& pane, int channel, int label, StatisticsCache& cache) {
@@ -256,7 +257,7 @@ void drawBalance(ViewContext& context, const std::string& pane, int channel, int
         [](const RegionBalanceQuery& a, const RegionBalanceQuery& b) { return a.channel == b.channel; });
     if (!balance) {
         const std::string failure = cache.balance.failure();
-        return failure.empty() ? ImGui::TextDisabled("Adding up...") : drawHint("No balance", failure.c_str());
+        return failure.empty() ? ImGui::TextDisabled("Computing...") : drawHint("No balance", failure.c_str());
     }
     const auto table = std::make_shared<BalanceTable>(balanceTable(info, *balance));
     continueLine(buttonWidth("Export"));
@@ -273,7 +274,7 @@ bool drawRegions(ViewContext& context, const std::string& pane, StatisticsView& 
     if (!label) return false;
     const std::string& name = volume::parameterOf(info, *label).name;
     ImGui::Checkbox(("by " + name).c_str(), &view.byRegion);
-    if (ImGui::IsItemHovered()) tooltip(("Numbers of every " + name + ", whatever is brushed").c_str());
+    if (ImGui::IsItemHovered()) tooltip(("Numbers of every " + name + ", independent of the brushes").c_str());
     if (!view.byRegion) return false;
     chooseBalance(info, view);
     if (const auto channel = view.balance.empty() ? std::nullopt : info.findChannel(view.balance)) {
@@ -306,13 +307,13 @@ bool drawRegions(ViewContext& context, const std::string& pane, StatisticsView& 
 
 void drawStatisticsView(ViewContext& context, const std::string& pane, StatisticsView& view) {
     if (!context.source) {
-        drawHint("No data", "Numbers of every parameter inside and outside of the selection appear here.");
+        drawHint("No data", "Shows statistics of every parameter inside and outside the selection.");
         return;
     }
     const volume::DatasetInfo& info = context.numbers->info();
     StatisticsCache& cache = cacheOf<StatisticsCache>(context, pane);
     const std::vector<int> shown = chosenChannels(info, view.channels, 64);
-    if (shown.empty()) return drawHint("No parameters", "This data set holds only labels.");
+    if (shown.empty()) return drawHint("No parameters", "This data set has only labels.");
     if (drawRegions(context, pane, view, shown, cache)) return;
     const std::vector<volume::Channel> channels = info.channels();
     std::vector<Range> ranges;
@@ -339,7 +340,7 @@ void drawStatisticsView(ViewContext& context, const std::string& pane, Statistic
         }
         ImGui::EndCombo();
     }
-    if (ImGui::IsItemHovered()) tooltip("Parameter that every other one is correlated with (Pearson's r)");
+    if (ImGui::IsItemHovered()) tooltip("Parameter with which the correlation of the others is shown (Pearson's r)");
     continueLine(buttonWidth("Export"));
     exportMenu(context, "statistics", {},
                [source = context.numbers, query, count = shown.size()](const Progress& progress) {

@@ -105,9 +105,10 @@ void drawToolbar(ViewContext& context, TesseractCache& cache, TesseractView& vie
                    "Tour: keep turning in two planes at once", true, view.tour))
         view.tour = !view.tour;
     ImGui::SameLine();
-    if (iconButton(context, "reset", {icon::kHome, "reset"}, "Turn back to the start (R)")) reset(view, cache);
+    if (iconButton(context, "reset", {icon::kHome, "reset"}, "Reset the rotation (R)")) reset(view, cache);
     ImGui::SameLine();
-    if (iconButton(context, "options", {icon::kGear, "..."}, "Eye, splats, lattice")) ImGui::OpenPopup("options");
+    if (iconButton(context, "options", {icon::kGear, "..."}, "Settings: eye distance, splats, lattice"))
+        ImGui::OpenPopup("options");
     if (ImGui::BeginPopup("options")) {
         ImGui::Dummy({em() * 20, 0});
         drawDescribed(view, WidgetContext{.info = &info});
@@ -317,12 +318,12 @@ void drawTexts(ViewContext& context, const TesseractView& view, const TesseractF
 
 void drawTesseractView(ViewContext& context, const std::string& pane, TesseractView& view) {
     if (!context.source) {
-        drawHint("No data", "The field in space and time appears here.");
+        drawHint("No data", "Shows all times at once, in four dimensions.");
         return;
     }
     const volume::DatasetInfo& info = context.source->info();
     const std::optional<int> channel = resolveChannel(info, context.session, view.channel);
-    if (!channel) return drawHint("No parameters", "This data set holds nothing to show.");
+    if (!channel) return drawHint("No parameters", "This data set has no parameter to show.");
     TesseractCache& cache = cacheOf<TesseractCache>(context, pane);
     if (!context.figure) drawToolbar(context, cache, view, info.channel(*channel).name);
     const ImVec2 room = ImGui::GetContentRegionAvail();

@@ -42,13 +42,13 @@ struct Row {
 
 void drawKeyMenu(Session& session, std::size_t track, std::size_t key, bool& removed) {
     Keyframe& frame = session.animation.tracks[track].keys[key];
-    static constexpr const char* kNames[] = {"Jump at the next key", "Straight", "Slow start", "Slow end",
+    static constexpr const char* kNames[] = {"Constant until the next key", "Straight", "Slow start", "Slow end",
                                              "Slow start and end"};
     for (std::size_t i = 0; i < std::size(kNames); ++i)
         if (ImGui::MenuItem(kNames[i], nullptr, frame.easing == static_cast<Easing>(i)))
             frame.easing = static_cast<Easing>(i);
     ImGui::Separator();
-    if (ImGui::MenuItem("Set to the present value"))
+    if (ImGui::MenuItem("Set to the current value"))
         frame.value = numbersAt(session, session.animation.tracks[track].path);
     if (ImGui::MenuItem("Go there")) moveTo(session, frame.at);
     removed = ImGui::MenuItem("Remove");
@@ -125,12 +125,12 @@ void addVariant(ViewContext& context, const std::string& path) {
 void drawKeyframeButtons(ViewContext& context) {
     Session& session = context.session;
     Animation& animation = session.animation;
-    if (ImGui::Button("Key the camera"))
+    if (ImGui::Button("Set camera key"))
         for (const char* path : kCameraPaths) setKey(session, path);
-    if (ImGui::IsItemHovered()) tooltip("Sets keys of the camera at this place of the animation");
+    if (ImGui::IsItemHovered()) tooltip("Set keyframes for the camera at the current time of the animation");
     ImGui::SameLine(0, em() * 0.2f);
-    if (ImGui::Button("Key the time")) setKey(session, "/time");
-    if (ImGui::IsItemHovered()) tooltip("Sets a key of the time shown; other parameters: right-click their name");
+    if (ImGui::Button("Set time key")) setKey(session, "/time");
+    if (ImGui::IsItemHovered()) tooltip("Set a keyframe for the time shown; for other settings right-click their name");
     if (animation.tracks.empty()) return;
     ImGui::SameLine(0, em() * 0.8f);
     ImGui::SetNextItemWidth(em() * 5);
@@ -202,7 +202,7 @@ std::function<void(const std::string&)> parameterMenu(ViewContext& context) {
         const auto own =
             std::find_if(tracks.begin(), tracks.end(), [&](const Track& each) { return each.path == path; });
         if (ImGui::MenuItem("Remove its keys", nullptr, false, own != tracks.end())) tracks.erase(own);
-        if (ImGui::MenuItem("Side by side with another value")) addVariant(context, path);
+        if (ImGui::MenuItem("Compare with another value")) addVariant(context, path);
     };
 }
 

@@ -43,9 +43,9 @@ void drawButtons(ViewContext& context, const std::vector<double>& times, int ind
     ImGui::SameLine(0, em() * 0.8f);
 
     static constexpr Icon kLoopIcons[] = {icons::kOnce, icons::kRepeat, icons::kPingPong};
-    static constexpr const char* kLoopHelp[] = {"Stops at the last time. Click: repeat.",
-                                                "Repeats from the first time. Click: back and forth.",
-                                                "Runs back and forth. Click: stop at the end."};
+    static constexpr const char* kLoopHelp[] = {"Stops at the last time. Click to repeat.",
+                                                "Repeats from the first time. Click to play back and forth.",
+                                                "Plays back and forth. Click to stop at the last time."};
     const auto loop = static_cast<std::size_t>(session.animation.loop);
     if (iconButton(context, "loop", kLoopIcons[loop], kLoopHelp[loop], many))
         session.animation.loop = static_cast<Loop>((loop + 1) % 3);
@@ -54,7 +54,7 @@ void drawButtons(ViewContext& context, const std::vector<double>& times, int ind
     ImGui::SetNextItemWidth(em() * 7);
     ImGui::SliderFloat("##speed", &session.animation.speed, 0.1f, 60, "%.3g steps/s", ImGuiSliderFlags_Logarithmic);
     ImGui::EndDisabled();
-    if (ImGui::IsItemHovered()) tooltip("Time steps shown per second while playing");
+    if (ImGui::IsItemHovered()) tooltip("Stored times shown per second while playing");
 }
 
 /// The time under the mouse: any between the first and the last, but near a mark that stored time.
@@ -85,9 +85,7 @@ void chooseAxis(ViewContext& context, const volume::DatasetInfo& info) {
             if (ImGui::Selectable(("by " + quantity.name).c_str(), quantity.name == axis)) axis = quantity.name;
         ImGui::EndCombo();
     } else if (ImGui::IsItemHovered()) {
-        tooltip(
-            "What the times are counted by: a quantity that rises or falls all the time takes their place, any other "
-            "is shown first");
+        tooltip("Time axis: a quantity that rises or falls throughout replaces the times; any other is listed first");
     }
 }
 
@@ -97,10 +95,11 @@ void drawPlace(Session& session) {
     const char* const axis = volume::kSpaceAxisNames[std::size_t(along.axis)].data();
     auto place = static_cast<float>(along.place * 100);
     char format[48];
-    std::snprintf(format, sizeof format, "cut at %%.1f %%%% of %s", axis);
+    std::snprintf(format, sizeof format, "plane at %%.1f %%%% of %s", axis);
     ImGui::SetNextItemWidth(em() * 11);
     if (ImGui::SliderFloat("##place", &place, 0, 100, format)) along.place = static_cast<double>(place) / 100;
-    if (ImGui::IsItemHovered()) tooltip("Where along the axis the data are cut; read again when the mouse is let go");
+    if (ImGui::IsItemHovered())
+        tooltip("Position of the plane along the axis; the data are read again when you release the mouse");
 }
 
 /// The track: one mark per stored time, the knob at the time shown, physical time below.
@@ -156,7 +155,7 @@ void drawTrack(ViewContext& context, TimelineCache& cache, const volume::Dataset
 
 void drawTimelineView(ViewContext& context, const std::string& pane, TimelineView&) {
     if (!context.source) {
-        drawHint("No data", "Data with several times can be played here.");
+        drawHint("No data", "Plays data with several times.");
         return;
     }
     TimelineCache& cache = cacheOf<TimelineCache>(context, pane);
@@ -187,7 +186,7 @@ void drawTimelineView(ViewContext& context, const std::string& pane, TimelineVie
         ImGui::SameLine(0, em());
         drawPlace(session);
     } else {
-        ImGui::TextDisabled("This data has one time.");
+        ImGui::TextDisabled("These data have only one time.");
     }
     ImGui::SameLine(0, em() * 1.5f);
     drawKeyframeButtons(context);

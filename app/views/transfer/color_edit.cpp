@@ -66,7 +66,7 @@ bool editColors(ColorDrag& drag, std::vector<vis::ColorStop>& stops, ImVec2 min,
     const bool hovered = ImGui::IsItemHovered();
     const int under = hovered ? hitStop(stops, min, max, mouse.x) : -1;
     if (hovered && drag.stop < 0)
-        ImGui::SetTooltip("%s", under >= 0 ? "Drag to move, double-click for its colour, right-click to remove"
+        ImGui::SetTooltip("%s", under >= 0 ? "Drag to move, double-click to choose the colour, right-click to remove"
                                            : "Click to add a colour here");
     if (under >= 0) ImGui::SetMouseCursor(ImGuiMouseCursor_Hand);
     if (under >= 0 && ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left)) {

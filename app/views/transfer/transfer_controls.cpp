@@ -39,7 +39,7 @@ void drawRange(vis::TransferFunction& function, Range data, float width) {
         function.autoRange = !fixed;
         function.range = range;
     }
-    if (ImGui::IsItemHovered()) tooltip("Set the values at the ends of the colour map; off: the data's own range");
+    if (ImGui::IsItemHovered()) tooltip("Set the values at the ends of the colour map; off: the range of the data");
     ImGui::SameLine();
     ImGui::BeginDisabled(function.autoRange);
     double ends[2] = {range.lo, range.hi};
@@ -64,18 +64,18 @@ void drawPages(BoundaryPage& boundaries, TransferView& view, vis::TransferFuncti
         return pressed && !chosen;
     };
     const bool curve = function.kind == vis::TransferKind::Curve;
-    if (page("curve", curve && !view.boundaries, "Opacity from the value, by a curve drawn by hand")) {
+    if (page("curve", curve && !view.boundaries, "Opacity from the value, by a curve that you draw")) {
         function.kind = vis::TransferKind::Curve;
         view.boundaries = false;
     }
     ImGui::SameLine(0, em() * 0.2f);
-    if (page("regions", !curve, "Opacity from value and gradient magnitude, by regions of their plane")) {
+    if (page("regions", !curve, "Opacity from value and gradient magnitude, by areas of their plane")) {
         function.kind = vis::TransferKind::Regions;
         view.boundaries = false;
     }
     ImGui::SameLine(0, em() * 0.2f);
     if (page("boundary", curve && view.boundaries,
-             "Opacity from the distance to a boundary between materials; makes a new curve")) {
+             "Opacity from the distance to a boundary between materials; computes a new curve")) {
         function.kind = vis::TransferKind::Curve;
         view.boundaries = boundaries.apply = true;
         boundaries.from.reset();
@@ -87,7 +87,8 @@ void drawGradientTop(vis::TransferFunction& function) {
     ImGui::SetNextItemWidth(em() * 9);
     ImGui::SliderFloat("top", &function.gradientTop, 1e-3f, 2, "%.3g ranges/cell",
                        ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp);
-    if (ImGui::IsItemHovered()) tooltip("Gradient magnitude at the top of the plane, in ranges of the values per cell");
+    if (ImGui::IsItemHovered())
+        tooltip("Gradient magnitude at the top of the plane: change per cell, as a multiple of the value range");
 }
 
 /// A choice among a parameter's own function and those of layers.
@@ -104,9 +105,9 @@ void chooseFunction(const Session& session, TransferView& view, const std::strin
 /// Colours of one's own: from the map in use, from a file, into one.
 void drawOwnColors(ViewContext& context, vis::TransferFunction& function, const std::string& channel) {
     const bool own = !function.colors.empty();
-    if (iconButton(context, "own colours", icons::kColors, "Colours of one's own", true, own))
-        ImGui::OpenPopup("own colours");
-    if (!ImGui::BeginPopup("own colours")) return;
+    if (iconButton(context, "custom colours", icons::kColors, "Custom colours", true, own))
+        ImGui::OpenPopup("custom colours");
+    if (!ImGui::BeginPopup("custom colours")) return;
     if (ImGui::MenuItem("0 in the middle", nullptr, function.autoRange && function.aboutZero, function.autoRange))
         function.aboutZero = !function.aboutZero;
     if (ImGui::MenuItem("Edit", nullptr, own)) {
@@ -156,16 +157,16 @@ void drawTransferControls(ViewContext& context, TransferView& view, BoundaryPage
         ImGui::SameLine();
         ImGui::SetNextItemWidth(combo);
         chooseFunction(context.session, view, channel);
-        if (ImGui::IsItemHovered()) tooltip("Whose: all layers', or that of a layer with one of its own");
+        if (ImGui::IsItemHovered()) tooltip("Transfer function of all layers, or of one layer that has its own");
     }
     vis::TransferFunction& function = transferOf(context.session, functionName(context.session, view, channel));
     if (choice && room < em() * 34) ImGui::NewLine();
     ImGui::SameLine();
     ImGui::SetNextItemWidth(combo);
     if (chooseColormap("##colormap", function.colormap, function.reversed)) function.colors.clear();
-    if (ImGui::IsItemHovered()) tooltip("Colour map; perceptually uniform ones come first");
+    if (ImGui::IsItemHovered()) tooltip("Colour map; perceptually uniform ones are listed first");
     ImGui::SameLine();
-    if (iconButton(context, "reverse", icons::kReverse, "Run the colour map backwards", true, function.reversed)) {
+    if (iconButton(context, "reverse", icons::kReverse, "Reverse the colour map", true, function.reversed)) {
         if (function.colors.empty())
             function.reversed = !function.reversed;
         else
@@ -194,10 +195,10 @@ void drawTransferControls(ViewContext& context, TransferView& view, BoundaryPage
     }
     ImGui::SameLine(0, em() * 0.8f);
     ImGui::Checkbox("log", &view.logHistogram);
-    if (ImGui::IsItemHovered()) tooltip("Show the logarithm of the number of samples");
+    if (ImGui::IsItemHovered()) tooltip("Logarithmic number of samples");
     ImGui::SameLine();
     ImGui::Checkbox("visible", &view.visibility);
-    if (ImGui::IsItemHovered()) tooltip("Show how much of what one sees in 3D comes from which values");
+    if (ImGui::IsItemHovered()) tooltip("Show which values contribute how much to the visible 3D picture");
 }
 
 } // namespace tessera::app

@@ -42,14 +42,14 @@ void drawWaiting(ImDrawList& draw, const PlotFrame& frame, const char* text) {
 /// The settings of the selected region, and how one comes and goes.
 void drawRegionSettings(ViewContext& context, RegionDrag& drag, vis::TransferFunction& function,
                         const volume::DatasetInfo& info) {
-    if (iconButton(context, "add", icons::kPlus, "Add a region; or drag on an empty place of the plane")) {
+    if (iconButton(context, "add", icons::kPlus, "Add a region; or drag on an empty area of the plane")) {
         drag = {};
         drag.selected = static_cast<int>(function.regions.size());
         function.regions.emplace_back();
     }
     const bool any = drag.selected >= 0 && drag.selected < static_cast<int>(function.regions.size());
     ImGui::SameLine();
-    if (iconButton(context, "remove", icons::kTrash, "Remove this region; or right click on it", any) && any) {
+    if (iconButton(context, "remove", icons::kTrash, "Remove this region; or right-click it", any) && any) {
         function.regions.erase(function.regions.begin() + drag.selected);
         drag = {};
         return;
@@ -61,9 +61,10 @@ void drawRegionSettings(ViewContext& context, RegionDrag& drag, vis::TransferFun
         drawDescribed(function.regions[static_cast<std::size_t>(drag.selected)], widgets);
     } else {
         ImGui::TextDisabled(function.regions.empty() ? "no region" : "none selected");
-        ImGui::TextWrapped("%s", function.regions.empty() ? "Nothing has opacity yet: drag over the arcs that "
-                                                            "boundaries between materials make."
-                                                          : "Click on a region to edit it.");
+        ImGui::TextWrapped("%s",
+                           function.regions.empty()
+                               ? "Nothing has opacity yet: drag over the arcs, which are boundaries between materials."
+                               : "Click on a region to edit it.");
     }
 }
 
@@ -102,7 +103,7 @@ void drawRegionPage(ViewContext& context, RegionPage& page, vis::TransferFunctio
     editRegions(page.drag, function.regions, plane);
     if (page.drag.active) context.interacting = true;
     drawRegions(draw, function, plane, page.drag.selected);
-    if (!result) drawWaiting(draw, frame, "counting gradients");
+    if (!result) drawWaiting(draw, frame, "computing gradients");
     draw.PopClipRect();
     draw.AddRect(frame.min, frame.max, plotColors().frame);
     if (side > 0) {
@@ -148,7 +149,7 @@ void drawBoundaryPage(ViewContext& context, BoundaryPage& page, vis::TransferFun
     draw.AddRect(right.min, right.max, colors.frame);
 
     if (!result) {
-        drawWaiting(draw, left, "counting gradients");
+        drawWaiting(draw, left, "computing gradients");
         draw.AddRect(left.min, left.max, colors.frame);
         return;
     }

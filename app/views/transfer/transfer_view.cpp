@@ -97,7 +97,7 @@ void drawVisibility(ViewContext& context, TransferCache& cache, int channel, Ran
         top = std::max(top, share);
         all += share;
     }
-    char text[64] = "no composite layer shows it";
+    char text[64] = "no composite layer shows this parameter";
     if (seen) std::snprintf(text, sizeof text, "visible: %.0f %% covered", 100 * all);
     draw.AddText({frame.max.x - ImGui::CalcTextSize(text).x - em() * 0.4f, frame.min.y + em() * 0.3f}, colors.cursor,
                  text);
@@ -199,7 +199,7 @@ void drawPlot(ViewContext& context, TransferCache& cache, const TransferView& vi
 
 void drawTransferView(ViewContext& context, const std::string& pane, TransferView& view) {
     if (!context.source) {
-        drawHint("No data", "Colour and opacity of each parameter are set here.");
+        drawHint("No data", "Sets the colour and opacity of each parameter.");
         return;
     }
     const volume::DatasetInfo& info = context.source->info();
@@ -210,7 +210,7 @@ void drawTransferView(ViewContext& context, const std::string& pane, TransferVie
     };
     const auto channel = channelNow();
     if (!channel) {
-        drawHint("No parameters", "This data set has nothing to colour.");
+        drawHint("No parameters", "This data set has no parameter to colour.");
         return;
     }
     TransferCache& cache = cacheOf<TransferCache>(context, pane);
@@ -236,7 +236,7 @@ void drawTransferView(ViewContext& context, const std::string& pane, TransferVie
     }
     const Range range = vis::effectiveRange(function, info.channelRange(shown));
     if (!(range.hi > range.lo)) { // NaN where all samples are absent
-        drawHint("One value only", "There are no gradients to tell apart.");
+        drawHint("One value only", "All gradients are zero.");
         return;
     }
     volume::DerivativeQuery query{.channel = now};

@@ -64,7 +64,7 @@ void drawMenu(ViewContext& context, const char* id, VolumeView& view, const vis:
     ImGui::MenuItem("Box", "", &view.showBox);
     ImGui::MenuItem("Axes", "", &view.showAxes);
     ImGui::MenuItem("Legends", "", &view.showLegend);
-    ImGui::MenuItem("Linked cursor", "", &view.showCursor);
+    ImGui::MenuItem("Cross-hair", "", &view.showCursor);
     ImGui::MenuItem("Direction gizmo", "", &view.showGizmo);
     ImGui::MenuItem("Scale bar", "", &view.showScaleBar);
     ImGui::MenuItem("Outlines and handles", "", &view.showLenses);
@@ -209,7 +209,7 @@ private:
 
     void drawProgress(const vis::FrameStatus& status) {
         std::string text = status.compiling ? "compiling shaders" : "refining";
-        if (status.bricksMissing > 0) text += ", " + formatCount(status.bricksMissing) + " bricks to come";
+        if (status.bricksMissing > 0) text += ", " + formatCount(status.bricksMissing) + " bricks still loading";
         drawUpperLeft(text, plotColors().faint);
     }
 

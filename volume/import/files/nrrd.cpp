@@ -17,7 +17,7 @@ std::vector<double> numbers(std::string text, const std::string& file, const std
     std::istringstream in(text);
     std::vector<double> out;
     for (double value = 0; in >> value;) out.push_back(value);
-    if (!in.eof()) throw Error("\"" + text.substr(0, 60) + "\" is no list of numbers", file, field);
+    if (!in.eof()) throw Error("\"" + text.substr(0, 60) + "\" is not a list of numbers", file, field);
     return out;
 }
 
@@ -47,7 +47,7 @@ std::vector<double> lengths(const std::string& text, const std::string& file, co
             out.push_back(1);
             continue;
         }
-        if (word.size() < 2 || word.front() != '(' || word.back() != ')') throw Error("wants vectors", file, field);
+        if (word.size() < 2 || word.front() != '(' || word.back() != ')') throw Error("needs vectors", file, field);
         double sum = 0;
         for (const double x : numbers(word.substr(1, word.size() - 2), file, field)) sum += x * x;
         out.push_back(std::sqrt(sum));
@@ -116,7 +116,7 @@ Header readHeader(std::string_view head, const std::string& file, RawForm& form,
             continue;
         }
         const std::size_t colon = line.find(": ");
-        if (colon == std::string::npos) throw Error("\"" + line.substr(0, 60) + "\" is no field", file, "header");
+        if (colon == std::string::npos) throw Error("\"" + line.substr(0, 60) + "\" is not a field", file, "header");
         std::string value = line.substr(colon + 2);
         value.erase(value.find_last_not_of(" \t") + 1);
         takeField(line.substr(0, colon), value, file, form, header);
@@ -127,7 +127,7 @@ Header readHeader(std::string_view head, const std::string& file, RawForm& form,
 } // namespace
 
 std::optional<RawForm> parseNrrd(std::string_view head, const std::string& file, NrrdEncoding wanted) {
-    if (!head.starts_with("NRRD")) throw Error("is no NRRD file", file);
+    if (!head.starts_with("NRRD")) throw Error("is not an NRRD file", file);
     RawForm form;
     RawForm::Component component;
     component.name = "value";

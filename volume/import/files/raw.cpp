@@ -132,8 +132,8 @@ Piece openRaw(const std::string& path, const std::string& rawOption) {
             std::error_code unknown;
             if (fs::file_size(path, unknown) == 0) throw Error("is empty", path);
             throw Error("has no sidecar " + sidecar.filename().string() +
-                            "; state its form, such as dims=64x64x64,type=u8, with --raw or in the field Raw layout of "
-                            "File > Open",
+                            "; state its layout, such as dims=64x64x64,type=u8, with --raw or in the field Raw layout "
+                            "of File > Open",
                         path);
         }
         constexpr std::uintmax_t kMostSidecar = 16 << 20;
@@ -159,9 +159,9 @@ Piece openForm(const RawForm& form, const std::string& path, const std::string& 
         return std::to_string(n) + " " + one + (n == 1 ? "" : "s");
     };
     if (size != form.bytes())
-        throw Error("has " + std::to_string(size) + " bytes, its form asks for " + std::to_string(form.bytes()) + " (" +
-                        std::to_string(form.lattice.size.x) + " x " + std::to_string(form.lattice.size.y) + " x " +
-                        std::to_string(form.lattice.size.z) + " samples, " +
+        throw Error("has " + std::to_string(size) + " bytes, but its layout needs " + std::to_string(form.bytes()) +
+                        " (" + std::to_string(form.lattice.size.x) + " x " + std::to_string(form.lattice.size.y) +
+                        " x " + std::to_string(form.lattice.size.z) + " samples, " +
                         counted(form.components.size(), "component") + ", " + counted(form.frames(), "time") + ")",
                     data);
 

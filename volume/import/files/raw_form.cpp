@@ -59,7 +59,7 @@ void check(const RawForm& form, const std::string& file) {
             throw Error("must increase", file, "times[" + std::to_string(i) + "]");
     const double bytes = 8.0 * form.lattice.size.x * form.lattice.size.y * form.lattice.size.z *
                          double(form.components.size()) * double(form.frames());
-    if (!(bytes <= kMostRawBytes)) throw Error("asks for more than 10^15 bytes", file, "dims");
+    if (!(bytes <= kMostRawBytes)) throw Error("needs more than 10^15 bytes", file, "dims");
 }
 
 /// Typed access to a JSON object that reports the place of a mistake.
@@ -202,7 +202,7 @@ RawForm parseSidecar(std::string_view text, const std::string& file) {
     form.timeName = reader.text("time_name");
     form.timeUnit = reader.text("time_unit");
     form.dataFile = reader.text("file");
-    if (form.dataFile.find('\0') != std::string::npos) reader.fail("file", "is no file name");
+    if (form.dataFile.find('\0') != std::string::npos) reader.fail("file", "is not a file name");
     if (const std::string order = reader.text("byte_order"); order == "big")
         form.bigEndian = true;
     else if (!order.empty() && order != "little")
@@ -223,7 +223,7 @@ RawForm parseSidecar(std::string_view text, const std::string& file) {
     for (std::size_t i = 0; i < form.components.size(); ++i)
         for (std::size_t other = 0; other < i; ++other)
             if (form.components[i].name == form.components[other].name)
-                throw Error("\"" + form.components[i].name + "\" is there twice", file,
+                throw Error("\"" + form.components[i].name + "\" is present twice", file,
                             "components[" + std::to_string(i) + "]");
     if (const json* times = reader.find("times")) {
         if (!times->is_array() || times->empty() || times->size() > kMostTimes) reader.fail("times", "must be a list");
@@ -251,7 +251,7 @@ template <class T> T parseNumber(std::string_view text, std::string_view key) {
     T value{};
     const auto parsed = std::from_chars(text.data(), text.data() + text.size(), value);
     if (parsed.ec != std::errc() || parsed.ptr != text.data() + text.size())
-        throw Error("\"" + std::string(text) + "\" is no number", {}, kRawPlace + " " + std::string(key));
+        throw Error("\"" + std::string(text) + "\" is not a number", {}, kRawPlace + " " + std::string(key));
     return value;
 }
 
@@ -261,7 +261,7 @@ template <class T> glm::vec<3, T> parseTriple(std::string_view text, std::string
     for (int axis = 0; axis < 3; ++axis) {
         const std::size_t end = axis < 2 ? text.find_first_of("x:") : text.size();
         if (end == std::string_view::npos)
-            throw Error("wants three numbers like 64x64x32", {}, kRawPlace + " " + std::string(key));
+            throw Error("needs three numbers like 64x64x32", {}, kRawPlace + " " + std::string(key));
         values[axis] = parseNumber<T>(text.substr(0, end), key);
         text.remove_prefix(std::min(end + 1, text.size()));
     }
@@ -302,8 +302,8 @@ RawForm parseRawOption(std::string_view text) {
             throw Error("unknown word \"" + std::string(key) + "\"", {}, kRawPlace);
         }
     }
-    if (form.lattice.size == glm::ivec3(0)) throw Error("wants dims=XxYxZ", {}, kRawPlace);
-    if (!type) throw Error("wants type=u8, i16, u16, i32, f32 or f64", {}, kRawPlace);
+    if (form.lattice.size == glm::ivec3(0)) throw Error("needs dims=XxYxZ", {}, kRawPlace);
+    if (!type) throw Error("needs type=u8, i16, u16, i32, f32 or f64", {}, kRawPlace);
     if (components < 1 || components > kMostComponents) throw Error("is out of range", {}, kRawPlace + " components");
     if (times < 1 || times > kMostTimes) throw Error("is out of range", {}, kRawPlace + " times");
     if (form.skip > std::size_t(kMostRawBytes)) throw Error("is out of range", {}, kRawPlace + " skip");

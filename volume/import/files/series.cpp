@@ -206,7 +206,7 @@ std::vector<SeriesFile> parsePvd(const std::string& xml, const std::string& file
         if (time) {
             entry.time = parseTime(*time);
             if (!entry.time)
-                throw Error("timestep \"" + time->substr(0, 40) + "\" is no number", file,
+                throw Error("timestep \"" + time->substr(0, 40) + "\" is not a number", file,
                             "byte " + std::to_string(at));
         }
         const std::string part = attribute(tag, "part").value_or("0");
@@ -232,11 +232,11 @@ std::vector<SeriesFile> parseSeries(const std::string& text, const std::string& 
         const nlohmann::json& item = (*list)[i];
         const std::string place = "files[" + std::to_string(i) + "]";
         if (!item.is_object() || !item.contains("name") || !item["name"].is_string())
-            throw Error("wants a name", file, place);
+            throw Error("needs a name", file, place);
         SeriesFile entry;
         entry.path = besides(file, item["name"].get<std::string>());
         if (item.contains("time")) {
-            if (!item["time"].is_number()) throw Error("time is no number", file, place);
+            if (!item["time"].is_number()) throw Error("time is not a number", file, place);
             entry.time = item["time"].get<double>();
         }
         for (const auto& [key, value] : item.items())

@@ -168,7 +168,7 @@ std::uint64_t frameBytes(const Lattice& lattice, ScalarType type, bool mask) {
 
 MessageHead parseMessageHead(std::span<const std::byte> bytes, const Lattice& lattice, ScalarType type) {
     if (bytes.size() < kMessageHeadBytes || take<std::uint32_t>(bytes, 0) != kStreamMagic)
-        throw Error("tessera-import sent something that is no message");
+        throw Error("tessera-import sent an invalid message");
     const auto kind = take<std::uint32_t>(bytes, 4);
     const auto length = take<std::uint64_t>(bytes, 8);
     if (kind < 1 || kind > 3) throw Error("tessera-import sent a message of unknown kind " + std::to_string(kind));
@@ -176,14 +176,14 @@ MessageHead parseMessageHead(std::span<const std::byte> bytes, const Lattice& la
     const bool fits = head.kind == MessageKind::Frame
                           ? length == frameBytes(lattice, type, false) || length == frameBytes(lattice, type, true)
                           : length <= kMostTextBytes;
-    if (!fits) throw Error("tessera-import sent a message of impossible length " + std::to_string(length));
+    if (!fits) throw Error("tessera-import sent a message of invalid length " + std::to_string(length));
     return head;
 }
 
 std::vector<Piece> parseStreamHeader(std::string_view text, const std::string& file) {
     const json document = json::parse(text, nullptr, false);
     if (document.is_discarded() || !document.is_object())
-        throw Error("tessera-import sent a header that is no JSON", file);
+        throw Error("tessera-import sent a header that is not JSON", file);
     const HeaderReader reader{document, file, ""};
     const json& list = reader.get("pieces");
     if (!list.is_array() || list.size() > kMostPieces) reader.fail("pieces");
@@ -199,25 +199,25 @@ std::vector<Range> parseRanges(std::string_view text, const std::string& file) {
     const json document = json::parse(text, nullptr, false);
     const bool fits = document.is_object() && document.contains("ranges") && document["ranges"].is_array() &&
                       document["ranges"].size() <= 4;
-    if (!fits) throw Error("tessera-import sent ranges out of form", file);
+    if (!fits) throw Error("tessera-import sent malformed ranges", file);
     std::vector<Range> ranges;
     for (const json& pair : document["ranges"]) {
         ranges.push_back({std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()});
         if (pair.is_null()) continue;
         if (!pair.is_array() || pair.size() != 2 || !pair[0].is_number() || !pair[1].is_number())
-            throw Error("tessera-import sent ranges out of form", file);
+            throw Error("tessera-import sent malformed ranges", file);
         ranges.back() = {pair[0].get<double>(), pair[1].get<double>()};
     }
     return ranges;
 }
 
 Field parseFrame(std::span<const std::byte> bytes, const Lattice& lattice, ScalarType type) {
-    if (bytes.size() < kFrameHeadBytes) throw Error("tessera-import sent a frame that is too short");
+    if (bytes.size() < kFrameHeadBytes) throw Error("tessera-import sent too few samples");
     const auto mask = take<std::uint32_t>(bytes, 4);
     const glm::ivec3 size(take<std::int32_t>(bytes, 8), take<std::int32_t>(bytes, 12), take<std::int32_t>(bytes, 16));
     if (take<std::uint32_t>(bytes, 0) != static_cast<std::uint32_t>(type) || mask > 1 || size != lattice.size ||
         bytes.size() != frameBytes(lattice, type, mask == 1))
-        throw Error("tessera-import sent a frame of another form than asked for");
+        throw Error("tessera-import sent samples of another layout than requested");
     Field field = makeField(lattice, type);
     std::memcpy(field.samples.data(), bytes.data() + kFrameHeadBytes, field.samples.size());
     if (mask == 1) {

@@ -1,0 +1,12 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace tessera::app {
+
+/// What users read for a key or enumerator of the session: camel case as separate lower-case words, with those replaced
+/// that texts do not use. "contextOpacity" -> "context opacity", "channel" -> "parameter".
+std::string keyWords(std::string_view key);
+
+} // namespace tessera::app
