@@ -7,6 +7,7 @@
 #include <set>
 #include <span>
 #include <stdexcept>
+#include <string_view>
 #include <vtkCellData.h>
 #include <vtkCompositeDataSet.h>
 #include <vtkInformation.h>
@@ -177,6 +178,21 @@ struct Frames {
     Part part(const Block& block) const { return {zones[block.zone], block.types, headings}; }
 };
 
+/// What two names begin with, up to the word that differs: "air" of "air t=0.5" and "air t=4".
+std::string common(const std::string& a, const std::string& b) {
+    static constexpr std::string_view kBetween = " _-,;:(";
+    const std::size_t same =
+        static_cast<std::size_t>(std::mismatch(a.begin(), a.end(), b.begin(), b.end()).first - a.begin());
+    const auto ends = [same](const std::string& name) {
+        return same == name.size() || kBetween.find(name[same]) != std::string_view::npos;
+    };
+    std::string out = a.substr(0, same);
+    if (!ends(a) || !ends(b))
+        if (const std::size_t word = out.find_last_of(kBetween); word != std::string::npos) out.resize(word);
+    while (!out.empty() && kBetween.find(out.back()) != std::string_view::npos) out.pop_back();
+    return out;
+}
+
 /// A name that changes over time, or a variable without values at some time, is that of one block all the same.
 void sameOverTime(Frames& frames) {
     std::vector<Frames::Block>& first = frames.blocks.front();
@@ -186,11 +202,17 @@ void sameOverTime(Frames& frames) {
     for (const Frames::Block& block : first)
         known = known && (strandOf(block) ? strands.insert(*strandOf(block)).second
                                           : !frames.zones[block.zone].time.has_value());
-    for (std::vector<Frames::Block>& blocks : frames.blocks) {
+    std::vector<std::string> names;
+    for (const Frames::Block& block : first) names.push_back(block.name);
+    for (const std::vector<Frames::Block>& blocks : frames.blocks) {
         if (blocks.size() != first.size()) return; // said where that time is read
-        if (known && std::ranges::equal(blocks, first, {}, strandOf, strandOf))
-            for (std::size_t b = 0; b < first.size(); ++b) blocks[b].name = first[b].name;
+        known = known && std::ranges::equal(blocks, first, {}, strandOf, strandOf);
+        for (std::size_t b = 0; b < first.size(); ++b) names[b] = common(names[b], blocks[b].name);
     }
+    if (std::set(names.begin(), names.end()).size() < first.size() || std::ranges::count(names, "") > 0)
+        for (std::size_t b = 0; b < first.size(); ++b) names[b] = first[b].name;
+    for (std::vector<Frames::Block>& blocks : frames.blocks)
+        for (std::size_t b = 0; known && b < first.size(); ++b) blocks[b].name = names[b];
     for (std::size_t b = 0; b < first.size(); ++b)
         for (std::size_t v = 0; v < frames.headings.size(); ++v) {
             std::set<int> types;
