@@ -12,7 +12,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 constexpr glm::ivec2 kWindow{1500, 950};
-constexpr int kTimedSteps = 9;         // of a drag, of which the median counts
+constexpr int kTimedSteps = 9;    // of a drag, of which the median counts
 constexpr int kMostFrames = 60;   // until every view has followed
 constexpr int kMostAtRest = 5000; // until every view is refined
 

@@ -2,9 +2,9 @@
 
 #include "app/pane/view_context.h"
 #include "app/queries/derivative_query.h"
-#include "vis/gl/plot_texture.h"
 #include "app/views/transfer/opacity_edit.h"
 #include "app/views/transfer/region_edit.h"
+#include "vis/gl/plot_texture.h"
 
 #include <memory>
 #include <vector>
