@@ -9,12 +9,12 @@ namespace tessera::vis {
 
 namespace {
 
-std::string text(GLenum name) {
+std::string glText(GLenum name) {
     const GLubyte* found = glGetString(name);
     return found ? reinterpret_cast<const char*>(found) : "";
 }
 
-int number(GLenum name) {
+int glNumber(GLenum name) {
     GLint value = 0;
     glGetIntegerv(name, &value);
     return value;
@@ -26,11 +26,11 @@ Driver currentDriver() {
     static constexpr std::array<std::string_view, 5> kSoftware{"llvmpipe", "softpipe", "swrast", "SwiftShader",
                                                                "lavapipe"};
     Driver driver;
-    driver.renderer = text(GL_RENDERER);
+    driver.renderer = glText(GL_RENDERER);
     driver.software = std::ranges::any_of(
         kSoftware, [&](std::string_view name) { return driver.renderer.find(name) != std::string::npos; });
-    driver.fragmentSamplers = number(GL_MAX_TEXTURE_IMAGE_UNITS);
-    driver.texture3DEdge = number(GL_MAX_3D_TEXTURE_SIZE);
+    driver.fragmentSamplers = glNumber(GL_MAX_TEXTURE_IMAGE_UNITS);
+    driver.texture3DEdge = glNumber(GL_MAX_3D_TEXTURE_SIZE);
     if (driver.software) {
         constexpr int kTile = 64; // of llvmpipe
         driver.compilesAtFirstDraw = true;
