@@ -1,10 +1,9 @@
 #pragma once
 
 #include "vis/demand/hidden_bricks.h"
-#include "vis/gl/handles.h"
+#include "vis/gl/pixel_reader.h"
 #include "vis/gl/program.h"
 
-#include <memory>
 #include <optional>
 
 namespace tessera::vis {
@@ -18,19 +17,15 @@ public:
     /// framebuffer and viewport; the scissor must be off.
     void start(const Program& program, GLuint vertices, GLuint reach, glm::ivec2 first, glm::ivec2 size,
                const Camera& camera, const WorldFrame& frame);
-    bool pending() const { return fence_ != nullptr; }
+    bool pending() const { return reader_.pending(); }
     /// The result of start(), once it is available; `wait`: block until then.
     std::optional<ReachMap> take(bool wait);
 
 private:
-    struct DeleteFence {
-        void operator()(GLsync fence) const { glDeleteSync(fence); }
-    };
     Texture tiles_;
     Framebuffer framebuffer_;
-    Buffer read_;
+    PixelReader reader_;
     ReachMap map_; ///< under way
-    std::unique_ptr<std::remove_pointer_t<GLsync>, DeleteFence> fence_;
 };
 
 } // namespace tessera::vis

@@ -47,7 +47,7 @@ ViewLight::Progress ViewLight::bindVolume(RenderTools& tools, const RenderCall& 
                                               : tools.programs.request(recipe, request.budgetMs / 4);
     bindTextures(tools, firstUnit);
     if (!answer.program) return {request.wait || answer.stage == ProgramStage::Failed, false};
-    const auto setUniforms = [&](const Program& program) {
+    const std::function<void(const Program&)> setUniforms = [&](const Program& program) {
         setRayUniforms(program, plan, call.scene, call.info(), call.grid(), request.size, 1);
     };
     if (answer.stage == ProgramStage::Linked) {
@@ -56,8 +56,8 @@ ViewLight::Progress ViewLight::bindVolume(RenderTools& tools, const RenderCall& 
         tools.programs.warmUp(recipe, makeFramebuffer({like.name()}, "like the light volume's matter"));
         return {false, false};
     }
-    baker_.update(call.scene, call.info(), matter, *answer.program, setUniforms, tools.vertices.name(),
-                  request.budgetMs / 3, request.wait);
+    const LightBaker::Pass pass{*answer.program, setUniforms, tools.vertices.name(), !tools.driver.timerQueries};
+    baker_.update(call.scene, call.info(), matter, pass, request.budgetMs / 3, request.wait);
     const bool changed = version_ != baker_.version();
     version_ = baker_.version();
     bindTextures(tools, firstUnit);

@@ -42,8 +42,7 @@ bool LightBaker::ready() const {
     return version_ > 0 && same(wanted_, shown_);
 }
 
-void LightBaker::update(const Scene& scene, const volume::DatasetInfo& info, const Matter& matter,
-                        const Program& program, const std::function<void(const Program&)>& setUniforms, GLuint vertices,
+void LightBaker::update(const Scene& scene, const volume::DatasetInfo& info, const Matter& matter, const Pass& pass,
                         double budgetMs, bool wait) {
     const LightGrid grid = lightGrid(worldFrame(info.bounds, scene.stretch), scene.lighting.shadows);
     if (MatterKey key = keyOf(scene, grid, matter); matterOf_ != key) {
@@ -52,6 +51,7 @@ void LightBaker::update(const Scene& scene, const volume::DatasetInfo& info, con
         ++wanted_.matter;
         matterReady_ = false;
         rows_ = 0;
+        reader_.forget();
         casters_ = meshCasters(scene, info);
         casting_ = !casters_.casters.empty();
         worker_.request_stop();
@@ -59,7 +59,8 @@ void LightBaker::update(const Scene& scene, const volume::DatasetInfo& info, con
     }
     wanted_.lights = placeLights(scene.lighting, scene.camera);
     wanted_.shadows = scene.lighting.shadows;
-    if (!matterReady_ && !drawMatter(program, setUniforms, vertices, budgetMs, wait)) return;
+    if (!matterReady_) drawMatter(pass, budgetMs, wait);
+    if (!matterReady_ && !readMatter(wait)) return;
     // A spreading that is under way is shown even if a light has moved since: light follows while the camera turns.
     while (true) {
         if (job_ && wait) worker_.join();
@@ -70,37 +71,43 @@ void LightBaker::update(const Scene& scene, const volume::DatasetInfo& info, con
     }
 }
 
-/// Draws some rows of the matter; true when all of it is here.
-bool LightBaker::drawMatter(const Program& program, const std::function<void(const Program&)>& setUniforms,
-                            GLuint vertices, double budgetMs, bool wait) {
+/// Draws some rows of the extinction, and begins to read it back with the last ones.
+void LightBaker::drawMatter(const Pass& pass, double budgetMs, bool wait) {
     using Clock = std::chrono::steady_clock;
     const Clock::time_point begin = Clock::now();
     const glm::ivec2 size(grid_.size.x, grid_.size.y * grid_.size.z);
     if (atlasSize_ != size) {
         atlas_ = makeTexture2D(size, kMatterFormat, GL_NEAREST, "matter of the light volume");
         framebuffer_ = makeFramebuffer({atlas_.name()}, "matter of the light volume");
+        reader_.resize(grid_.count() * 4);
         atlasSize_ = size;
     }
-    setUniforms(program);
-    program.set("gridSize", grid_.size);
-    program.set("matterSamples", kMatterSamples * kMatterSamples * kMatterSamples);
+    if (rows_ == size.y) return;
+    pass.setUniforms(pass.program);
+    pass.program.set("gridSize", grid_.size);
+    pass.program.set("matterSamples", kMatterSamples * kMatterSamples * kMatterSamples);
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer_.name());
     glViewport(0, 0, size.x, size.y);
     glEnable(GL_SCISSOR_TEST);
-    glUseProgram(program.name());
-    glBindVertexArray(vertices);
+    glUseProgram(pass.program.name());
+    glBindVertexArray(pass.vertices);
     while (rows_ < size.y) {
-        const int count = std::min(wait ? size.y : 2 * grid_.size.y, size.y - rows_);
+        const int count = std::min(wait || !pass.waits ? size.y : 2 * grid_.size.y, size.y - rows_);
         glScissor(0, rows_, size.x, count);
         glDrawArrays(GL_TRIANGLES, 0, 3);
         rows_ += count;
-        glFinish();
+        if (pass.waits) glFinish();
         if (!wait && std::chrono::duration<double, std::milli>(Clock::now() - begin).count() > budgetMs) break;
     }
-    if (rows_ < size.y) return false;
-    auto read = std::make_shared<vis::Matter<float>>(grid_.count());
-    glGetTextureImage(atlas_.name(), 0, GL_RGBA, GL_FLOAT, GLsizei(read->size() * sizeof(glm::vec4)), read->data());
-    matter_ = std::move(read);
+    if (rows_ < size.y) return;
+    reader_.start(atlas_.name(), size, GL_RGBA);
+    read_ = std::make_shared<vis::Matter<float>>(grid_.count());
+}
+
+/// Takes the extinction that was read back; false while it is on its way.
+bool LightBaker::readMatter(bool wait) {
+    if (!reader_.pending() || !reader_.take({&read_->data()->x, read_->size() * 4}, wait)) return false;
+    matter_ = std::move(read_);
     matterReady_ = true;
     return true;
 }

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "vis/gl/handles.h"
+#include "vis/gl/pixel_reader.h"
 #include "vis/gl/program.h"
 #include "vis/optics/mesh_matter.h"
 #include "vis/optics/surface_light.h"
@@ -27,10 +27,17 @@ public:
         bool operator==(const Matter&) const = default;
     };
 
-    /// Continues the work. `setUniforms` sets the uniforms of the bound picture on the extinction program. Changes the
-    /// framebuffer, viewport and scissor. Works for about `budgetMs`, or until ready if `wait`.
-    void update(const Scene& scene, const volume::DatasetInfo& info, const Matter& matter, const Program& program,
-                const std::function<void(const Program&)>& setUniforms, GLuint vertices, double budgetMs, bool wait);
+    /// How the extinction is drawn.
+    struct Pass {
+        const Program& program;
+        const std::function<void(const Program&)>& setUniforms; ///< of the bound picture
+        GLuint vertices = 0;
+        bool waits = true; ///< for the driver after some rows, so that they fit into the budget
+    };
+    /// Continues the work. Changes the framebuffer, viewport and scissor. Works for about `budgetMs`, or until ready if
+    /// `wait`.
+    void update(const Scene& scene, const volume::DatasetInfo& info, const Matter& matter, const Pass& pass,
+                double budgetMs, bool wait);
     /// Whether the textures are up to date.
     bool ready() const;
     /// Number of finished volumes; 0: there is none yet.
@@ -53,8 +60,8 @@ private:
         std::atomic<bool> done = false;
     };
     static bool same(const Spread& a, const Spread& b);
-    bool drawMatter(const Program& program, const std::function<void(const Program&)>& setUniforms, GLuint vertices,
-                    double budgetMs, bool wait);
+    void drawMatter(const Pass& pass, double budgetMs, bool wait);
+    bool readMatter(bool wait);
     void start();
     void take();
 
@@ -75,10 +82,12 @@ private:
     bool matterReady_ = false;
     Texture atlas_;
     Framebuffer framebuffer_;
+    PixelReader reader_;
     glm::ivec2 atlasSize_{0};
     MeshCasters casters_;
     bool casting_ = false; ///< `casters_` are not in the matter yet
     std::shared_ptr<const vis::Matter<float>> matter_;
+    std::shared_ptr<vis::Matter<float>> read_; ///< being read back
     std::shared_ptr<Job> job_;
     Texture visible_, scattered_;
     LightGrid shownGrid_;
