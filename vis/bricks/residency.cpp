@@ -20,9 +20,8 @@ std::size_t texelCount(glm::ivec3 size) {
 } // namespace
 
 Residency::Residency(const RendererOptions& options, const Driver& driver)
-    : options_(options), driver_(driver), atlases_(
-                                              options, driver, [this](std::size_t bytes) { reserve(bytes); },
-                                              [this](const std::string& message) { exchange_->say(message); }),
+    : options_(options), driver_(driver),
+      channels_(options, driver, [this](const std::string& message) { exchange_->say(message); }),
       jobs_(options.decodeThreads, JobThreads::Background) {}
 
 Residency::~Residency() = default;
@@ -42,33 +41,15 @@ void Residency::setSource(std::shared_ptr<const volume::BrickSource> source, Sam
         keepSame(*former, same);
         return;
     }
-    channels_.clear();
-    clearAtlases();
+    channels_.clear(source ? source->grid() : volume::BrickGrid());
     uploaded_ = kept_ = 0;
     if (source) makeNothing();
-}
-
-/// Drops all atlases, none of which may be in use.
-void Residency::clearAtlases() {
-    candidates_ = {};
-    const volume::BrickGrid grid = exchange_ ? exchange_->source->grid() : volume::BrickGrid();
-    atlases_.clear(grid.brickSize, exchange_ ? grid.count() : glm::ivec3(0));
 }
 
 void Residency::setBudgets(std::size_t texture, std::size_t memory) {
     if (exchange_ && memory != options_.memoryBudget) exchange_->bricks->setBudget(memory);
     options_.memoryBudget = memory;
-    if (texture == options_.textureBudget) return;
-    const bool larger = texture > options_.textureBudget;
-    options_.textureBudget = texture;
-    atlases_.setBudget(texture);
-    const bool outOfRoom = std::ranges::any_of(channels_, [](const auto& each) {
-        return each.second.shown && each.second.shown->room != ChannelTexture::Room::Left;
-    });
-    if (!exchange_ || (larger ? !outOfRoom : atlases_.bytes() <= texture)) return;
-    std::erase_if(channels_, [](const auto& each) { return each.second.hasBricks(); });
-    clearAtlases();
-    ++revision_;
+    channels_.setBudget(texture);
 }
 
 /// The finest level that fits into one texture.
@@ -99,7 +80,7 @@ int Residency::bricksOfChannel() const {
 void Residency::want(const ChannelKey& key, double priority, bool coarseFirst,
                      std::shared_ptr<const BrickDemand> demand) {
     if (!exchange_) return;
-    ResidentChannel& channel = channels_[key];
+    ResidentChannel& channel = channels_.all()[key];
     channel.used = frame_;
     if (channel.work != ResidentChannel::Work::None) return;
     if (textureLevel() > 0)
@@ -123,47 +104,35 @@ void Residency::wantBricks(const ChannelKey& key, ResidentChannel& channel, doub
                             .level = exchange_->source->grid().levels - 1,
                             .brick = glm::ivec3(0),
                             .summary = channel.summary,
-                            .encoding = encodingOfParts(key),
+                            .encoding = channels_.encodingOfParts(key),
                             .coverage = channel.coverage});
 }
 
 void Residency::wantWhole(const ChannelKey& key, ResidentChannel& channel, double priority, bool coarseFirst) {
     const int finest = std::max(textureLevel(), channel.finest);
-    if (channel.shown ? channel.shown->level <= finest : reuseWhole(key, channel)) return;
+    if (channel.shown && channel.shown->level <= finest) return;
+    if (!channel.shown && channels_.reuseWhole(key, channel, unchanged(), textureLevel())) {
+        kept_ += bricksOfChannel();
+        ++revision_;
+        return;
+    }
     const bool coarse = !channel.shown && coarseFirst;
     channel.work = ResidentChannel::Work::Loading;
     add(coarse ? priority - kFirst : priority, {.key = key,
                                                 .level = coarse ? exchange_->source->grid().levels - 1 : finest,
                                                 .brick = std::nullopt,
                                                 .summary = channel.summary,
-                                                .encoding = encodingOfParts(key),
+                                                .encoding = channels_.encodingOfParts(key),
                                                 .coverage = channel.coverage});
 }
 
-/// Shows a whole channel with the texture of another time, none of whose bricks changes.
-bool Residency::reuseWhole(const ChannelKey& key, ResidentChannel& channel) {
-    const glm::ivec3 count = exchange_->source->grid().count();
-    for (const auto& [other, from] : channels_) {
-        if (!otherTime(other, key) || !from.shown || from.shown->bricks || from.shown->level > textureLevel()) continue;
-        if (!unchanged().bricks(key, from.shown->madeOf, glm::ivec3(0), count, false)) continue;
-        if (encodingOfParts(key).value_or(from.shown->encoding) != from.shown->encoding) continue;
-        channel.shown = from.shown->sharedWhole();
-        channel.coverage = from.coverage;
-        kept_ += bricksOfChannel();
-        ++revision_;
-        return true;
-    }
-    return false;
-}
-
 void Residency::keep(const ChannelKey& key) {
-    const auto found = channels_.find(key);
-    if (found != channels_.end()) found->second.used = frame_;
+    if (ResidentChannel* channel = channels_.find(key)) channel->used = frame_;
 }
 
 const ChannelTexture* Residency::known(const ChannelKey& key) const {
-    const auto found = channels_.find(key);
-    return found != channels_.end() && found->second.shown ? &*found->second.shown : nullptr;
+    const ResidentChannel* channel = channels_.find(key);
+    return channel && channel->shown ? &*channel->shown : nullptr;
 }
 
 const ChannelTexture* Residency::find(const ChannelKey& key) const {
@@ -184,13 +153,13 @@ void Residency::makeNothing() {
 }
 
 bool Residency::settled(const ChannelKey& key) const {
-    const auto found = channels_.find(key);
-    return found != channels_.end() && found->second.settled(textureLevel(), waiting_);
+    const ResidentChannel* channel = channels_.find(key);
+    return channel && channel->settled(textureLevel(), waiting_);
 }
 
 int Residency::missing(const ChannelKey& key) const {
-    const auto found = channels_.find(key);
-    return exchange_ && found != channels_.end() ? found->second.missing(bricksOfChannel()) : 0;
+    const ResidentChannel* channel = channels_.find(key);
+    return exchange_ && channel ? channel->missing(bricksOfChannel()) : 0;
 }
 
 void Residency::finish() {
@@ -198,65 +167,27 @@ void Residency::finish() {
     for (;;) {
         update(~std::size_t(0));
         std::vector<ChannelKey> pending;
-        for (const auto& [key, channel] : channels_)
+        for (const auto& [key, channel] : channels_.all())
             if (channel.used == frame_ && !settled(key)) pending.push_back(key);
         if (pending.empty()) break;
-        for (const ChannelKey& key : pending) want(key, 0, false, channels_[key].demand);
+        for (const ChannelKey& key : pending) want(key, 0, false, channels_.all()[key].demand);
         jobs_.waitForOne();
     }
     waiting_ = false;
 }
 
-void Residency::drop(Channels::iterator channel) {
-    if (channel->second.hasBricks()) {
-        ChannelTexture& shown = *channel->second.shown;
-        shown.bricks->eachSlot([&](glm::ivec3& slot) { shown.atlas->release(slot); });
-    }
-    channels_.erase(channel);
-    ++revision_;
-}
-
-/// Drops whole channels that no view wanted lately, the oldest first, while there are too many.
-void Residency::evict() {
-    std::vector<std::pair<std::uint64_t, ChannelKey>> idle;
-    for (const auto& [key, channel] : channels_)
-        if (channel.shown && !channel.hasBricks() && channel.used + kFramesInUse < frame_ &&
-            channel.work != ResidentChannel::Work::Loading)
-            idle.emplace_back(channel.used, key);
-    std::sort(idle.begin(), idle.end());
-    for (const auto& [used, key] : idle) {
-        if (textureBytes() <= options_.textureBudget) return;
-        drop(channels_.find(key));
-    }
-}
-
-std::size_t Residency::textureBytes() const {
-    std::size_t total = atlases_.bytes();
-    for (const auto& [key, channel] : channels_) // of a shared texture each counts its part
-        if (channel.shown && channel.shown->texture)
-            total += channel.shown->bytes / std::size_t(std::max(1L, channel.shown->texture.use_count()));
-    return total;
-}
-
-/// Refuses, as a driver does, what RendererOptions::driverMemory has no room for.
-void Residency::reserve(std::size_t bytes) const {
-    if (options_.driverMemory < bytes || textureBytes() > options_.driverMemory - bytes)
-        throw MachineError("the graphics driver has no memory for a texture of " + std::to_string(bytes >> 20) +
-                           " MiB");
-}
-
 ResidencyInfo Residency::info() const {
     ResidencyInfo info;
-    info.textureBudget = options_.textureBudget;
+    info.textureBudget = channels_.budget();
     info.memoryBudget = options_.memoryBudget;
     if (!exchange_) return info;
     info.memoryBytes = exchange_->bricks->bytes();
     info.bricksQueued = jobs_.unfinished();
-    info.textureBytes = textureBytes();
+    info.textureBytes = channels_.bytes();
     info.bricksUploaded = uploaded_;
     info.bricksKept = kept_;
     const std::uint64_t lately = frame_ > kFramesInUse ? frame_ - kFramesInUse : 1;
-    for (const auto& [key, channel] : channels_) {
+    for (const auto& [key, channel] : channels_.all()) {
         if (!channel.shown) continue;
         const int missing = channel.missing(bricksOfChannel());
         if (channel.used + kFramesInUse >= frame_) info.bricksWanted += missing;

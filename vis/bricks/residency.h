@@ -1,12 +1,9 @@
 #pragma once
 
-#include "vis/bricks/atlas_pool.h"
-#include "vis/bricks/resident_channel.h"
-#include "vis/bricks/unchanged_bricks.h"
+#include "vis/bricks/resident_channels.h"
 #include "vis/gl/job_queue.h"
 
 #include <deque>
-#include <map>
 
 /// Which channels are on the GPU, and how they get there: decoded and packed on threads, coarse first, uploaded a part
 /// per frame, within a budget.
@@ -54,7 +51,7 @@ public:
     /// Blocks until everything wanted in this frame is here, over the budget if need be.
     void finish();
     /// Changes whenever what find() gives changed.
-    std::uint64_t revision() const { return revision_; }
+    std::uint64_t revision() const { return revision_ + channels_.drops(); }
 
     ResidencyInfo info() const;
     std::vector<std::string> takeMessages();
@@ -66,65 +63,38 @@ private:
         Texture texture;
         int slices = 0;
     };
-    using Channels = std::map<ChannelKey, ResidentChannel>;
-
     int textureLevel() const;
     int bricksOfChannel() const;
     Unchanged unchanged() const { return {*exchange_->source, keptChange_}; }
-    void clearAtlases();
     void add(double priority, LoadRequest request);
     void wantBricks(const ChannelKey& key, ResidentChannel& channel, double priority,
                     std::shared_ptr<const BrickDemand> demand);
     void wantWhole(const ChannelKey& key, ResidentChannel& channel, double priority, bool coarseFirst);
-    bool reuseWhole(const ChannelKey& key, ResidentChannel& channel);
-    std::size_t textureBytes() const;
-    void reserve(std::size_t bytes) const;
     void makeNothing();
-    void drop(Channels::iterator channel);
-    void evict();
 
     // residency_uploads.cpp
-    bool upload(Upload& upload, Channels::iterator found, std::size_t& bytes);
+    bool upload(Upload& upload, ResidentChannel& channel, std::size_t& bytes);
     bool uploadWhole(Upload& upload, ResidentChannel& channel, std::size_t& bytes);
     void uploadBrick(LoadedTexels& brick, ResidentChannel& channel);
-    void beginAnew(Channels::iterator found);
+    void beginAnew(const ChannelKey& key, const ResidentChannel& former);
     bool refused(const LoadedTexels& item);
 
     // residency_parts.cpp
     bool samePart(const LoadExchange& former, const ChannelKey& key, SameSamples same) const;
     void keepSame(const LoadExchange& former, SameSamples same);
-    std::optional<TexelEncoding> encodingOfParts(const ChannelKey& key) const;
 
     // residency_bricks.cpp
     void queueBricks(const ChannelKey& key, ResidentChannel& channel, double priority);
-    bool reuseBrick(const ChannelKey& key, ResidentChannel& channel, const BrickId& id);
     void beginBricks(const LoadedTexels& first, ResidentChannel& channel);
     void takeBrick(LoadedTexels& brick, ResidentChannel& channel);
-    std::optional<glm::ivec3> slotFor(ChannelTexture& channel, float priority);
-    bool makeRoom(const ChannelTexture& channel, float priority);
-    bool dropOldest(const ChannelTexture& channel, std::uint64_t since);
-    void findCandidates(const BrickAtlas* atlas, std::uint64_t since);
-    bool grow(const BrickAtlas* atlas, bool beyond);
 
     RendererOptions options_;
     Driver driver_;
     std::shared_ptr<LoadExchange> exchange_; ///< null while there is no source
-    AtlasPool atlases_;                      ///< outlives the channels
-    Channels channels_;
+    ResidentChannels channels_;
     std::deque<Upload> uploads_;
     ChannelTexture nothing_;
     std::unique_ptr<PageTable> nothingPages_;
-    /// Bricks that could make room in an atlas, the first to go last, as they are in a frame.
-    struct Candidate {
-        ChannelKey key;
-        BrickLevels::Guest brick;
-    };
-    struct Candidates {
-        const BrickAtlas* of = nullptr;
-        std::uint64_t frame = 0;
-        std::vector<Candidate> bricks;
-    };
-    Candidates candidates_;
     std::uint64_t frame_ = 1, revision_ = 0;
     bool waiting_ = false; ///< finish() runs: the budget may be exceeded
     double keptChange_ = 0;

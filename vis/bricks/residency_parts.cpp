@@ -2,7 +2,7 @@
 
 #include "volume/bricks/parts_bricks.h"
 
-/// What of a former source stays, and how the parts of a channel keep together.
+/// What of a former source stays.
 namespace tessera::vis {
 
 /// Whether the samples of a key's part are those that they were in the former source.
@@ -23,28 +23,18 @@ void Residency::keepSame(const LoadExchange& former, SameSamples same) {
     exchange_->bricks->adopt(*former.bricks, [&](const volume::BrickKey& key) {
         return key.channel < same.channels && key.time < same.times;
     });
-    for (auto it = channels_.begin(); it != channels_.end();) {
-        const auto at = it++;
-        ResidentChannel& channel = at->second;
-        const ChannelKey& key = at->first;
+    std::vector<ChannelKey> others;
+    for (auto& [key, channel] : channels_.all()) {
         if (key.channel >= same.channels || key.time >= same.times || channel.work == ResidentChannel::Work::Failed ||
             !samePart(former, key, same)) {
-            drop(at);
+            others.push_back(key);
             continue;
         }
         channel.work = ResidentChannel::Work::None;
         channel.bricksInFlight = 0;
         if (channel.hasBricks()) channel.shown->bricks->forgetAsked();
     }
-}
-
-/// How another part of the channel is encoded, if one is here: all are alike.
-std::optional<TexelEncoding> Residency::encodingOfParts(const ChannelKey& key) const {
-    for (const auto& [other, channel] : channels_)
-        if (key.part >= 0 && other.part >= 0 && other.part != key.part && other.channel == key.channel &&
-            other.time == key.time && other.prefiltered == key.prefiltered && channel.shown)
-            return channel.shown->encoding;
-    return std::nullopt;
+    for (const ChannelKey& key : others) channels_.drop(key);
 }
 
 } // namespace tessera::vis

@@ -16,14 +16,14 @@ void Residency::update(std::size_t bytes) {
     }
     bool changed = false;
     while (!uploads_.empty() && bytes > 0) {
-        const auto found = channels_.find(uploads_.front().item.key);
-        if (found == channels_.end()) { // dropped since
+        ResidentChannel* const found = channels_.find(uploads_.front().item.key);
+        if (!found) { // dropped since
             uploads_.pop_front();
             continue;
         }
-        ResidentChannel& channel = found->second;
+        ResidentChannel& channel = *found;
         try {
-            if (!upload(uploads_.front(), found, bytes)) break;
+            if (!upload(uploads_.front(), channel, bytes)) break;
         } catch (const MachineError& error) {
             if (refused(uploads_.front().item)) continue;
             exchange_->say(error.what());
@@ -38,15 +38,14 @@ void Residency::update(std::size_t bytes) {
     }
     if (!changed) return;
     ++revision_;
-    evict();
+    channels_.evict(frame_);
 }
 
 /// Takes in one item, at most about so many bytes of it; false when there is more of it.
-bool Residency::upload(Upload& upload, Channels::iterator found, std::size_t& bytes) {
+bool Residency::upload(Upload& upload, ResidentChannel& channel, std::size_t& bytes) {
     LoadedTexels& item = upload.item;
-    ResidentChannel& channel = found->second;
     if (item.brick && item.damaged) {
-        beginAnew(found);
+        beginAnew(item.key, channel);
     } else if (item.brick) {
         const std::size_t size = item.block.bytes();
         uploadBrick(item, channel);
@@ -60,14 +59,13 @@ bool Residency::upload(Upload& upload, Channels::iterator found, std::size_t& by
 }
 
 /// A damaged brick is drawn as absent, and the channel has no coverage in its texels: it begins anew, with it.
-void Residency::beginAnew(Channels::iterator found) {
-    const ChannelKey key = found->first;
+void Residency::beginAnew(const ChannelKey& key, const ResidentChannel& former) {
     ResidentChannel fresh;
-    fresh.used = found->second.used;
-    fresh.summary = found->second.summary;
+    fresh.used = former.used;
+    fresh.summary = former.summary;
     fresh.coverage = true;
-    drop(found);
-    channels_[key] = std::move(fresh);
+    channels_.drop(key);
+    channels_.all()[key] = std::move(fresh);
 }
 
 void Residency::uploadBrick(LoadedTexels& brick, ResidentChannel& channel) {
@@ -86,7 +84,7 @@ bool Residency::uploadWhole(Upload& upload, ResidentChannel& channel, std::size_
     LoadedTexels& item = upload.item;
     const TexelBlock& block = item.block;
     if (!upload.texture) {
-        reserve(block.bytes());
+        channels_.reserve(block.bytes());
         upload.texture = makeTexture3D(block.size, texelFormat(block.components, item.encoding.exact), GL_LINEAR,
                                        "channel " + std::to_string(item.key.channel) + " time " +
                                            std::to_string(item.key.time) + " level " + std::to_string(item.level));
@@ -121,13 +119,8 @@ bool Residency::uploadWhole(Upload& upload, ResidentChannel& channel, std::size_
 /// True where that leaves something to try.
 bool Residency::refused(const LoadedTexels& item) {
     if (item.brick) return false;
-    std::vector<ChannelKey> idle;
-    for (const auto& [key, channel] : channels_)
-        if (channel.shown && !channel.hasBricks() && channel.used + 1 < frame_ && !(key == item.key))
-            idle.push_back(key);
-    for (const ChannelKey& key : idle) drop(channels_.find(key));
-    if (!idle.empty()) return true; // once more
-    ResidentChannel& channel = channels_.at(item.key);
+    if (channels_.dropUnused(frame_, item.key)) return true; // once more
+    ResidentChannel& channel = *channels_.find(item.key);
     if (item.level + 1 >= exchange_->source->grid().levels) return false;
     exchange_->say("the graphics driver has not enough memory for full resolution; " +
                    exchange_->source->info().channel(item.key.channel).name + " is drawn coarser");
