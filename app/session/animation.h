@@ -2,15 +2,12 @@
 
 #include "volume/base/describe.h"
 
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 /// Animation: the times of the data, or keyframes of any setting of a session.
 namespace tessera::app {
-
-struct Session;
 
 enum class Loop { Once, Repeat, PingPong };
 inline constexpr std::string_view kLoopNames[] = {"once", "repeat", "pingPong"};
@@ -93,19 +90,6 @@ enum class Between { Nothing, Line, Arc };
 /// `Arc`: the four numbers (w, x, y, z) of a rotation turn along the shortest great circle.
 std::vector<double> valueAt(const Track& track, double at, Between between);
 
-/// The numbers of the parameter at a path: one per component, 0 or 1 for a switch, the place of a choice. Empty for
-/// what has none (texts, lists) and where there is no such parameter.
-std::vector<double> numbersAt(const Session& session, const std::string& path);
-/// Sets them, rounded for whole numbers and kept within the parameter's range; false where that is not possible.
-bool setNumbersAt(Session& session, const std::string& path, std::span<const double> numbers);
-Between betweenAt(const Session& session, const std::string& path);
-
-/// Puts the session where its tracks are at `at` seconds. Tracks of parameters that it does not have are left alone.
-void applyTracks(Session& session, double at);
-
-/// Sets the key of a parameter at the animation's position to its present value; adds the track on first use. An
-/// existing key keeps its easing. False where the parameter cannot be keyed.
-bool setKey(Session& session, const std::string& path);
 /// Takes a key away, and its track with the last one.
 void removeKey(Animation& animation, std::size_t track, std::size_t key);
 /// Moves a key in time, within [0, duration] and kept in order; returns its new index.

@@ -64,7 +64,4 @@ private:
     bool pending_ = false;
 };
 
-/// A readable name for a patch: "Layers 1: density".
-std::string describePatch(const Json& patch);
-
 } // namespace tessera::app

@@ -1,6 +1,5 @@
 #include "app/session/parameter_path.h"
 
-#include "app/session/history.h"
 #include "app/session/session.h"
 #include "volume/base/error.h"
 
@@ -74,20 +73,6 @@ std::vector<std::string> parameterPaths(const Session& session) {
     }
     if (session.data.files.empty() || !session.data.files[0].path.ends_with(".tsr")) out.emplace_back("/data/lattice");
     return out;
-}
-
-std::string pathTitle(const Session& session, const std::string& path) {
-    std::string_view rest;
-    const std::string first = detail::firstKey(path, rest);
-    if (first == "layers") {
-        const std::size_t index = detail::indexOf(detail::firstKey(rest, rest), session.layers.size());
-        if (index < session.layers.size() && !session.layers[index].name.empty()) {
-            if (rest.starts_with("/technique")) rest.remove_prefix(10);
-            const Json patch = Json::array({{{"op", "replace"}, {"path", std::string(rest)}}});
-            return session.layers[index].name + ": " + describePatch(patch);
-        }
-    }
-    return describePatch(Json::array({{{"op", "replace"}, {"path", path}}}));
 }
 
 void setInDocument(Json& document, const std::string& path, const std::string& text) {

@@ -73,9 +73,6 @@ struct Session;
 /// those of the window (views, dock, appearance) and of playing.
 std::vector<std::string> parameterPaths(const Session& session);
 
-/// "/layers/0/technique/density" -> "Layers 1: technique: density", with the name of the layer where it has one.
-std::string pathTitle(const Session& session, const std::string& path);
-
 /// Sets "/json/pointer" of a document to a value given as JSON, or as text where it is none. Throws Error where the
 /// parent does not exist.
 void setInDocument(Json& document, const std::string& path, const std::string& text);

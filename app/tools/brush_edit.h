@@ -1,20 +1,13 @@
 #pragma once
 
-#include "app/pane/plot.h"
 #include "app/session/session.h"
-#include "vis/scene/selection.h"
+#include "app/tools/brush_shape.h"
 
 #include <imgui.h>
 #include <string>
 
 /// Creating and editing brushes with the mouse, in scatterplots (two channels) and histograms (one).
 namespace tessera::app {
-
-/// What a plot shows on its axes; `y` is empty for a histogram.
-struct PlotChannels {
-    std::string x, y;
-    bool operator==(const PlotChannels&) const = default;
-};
 
 /// The brush that a drag on an empty area of a plot creates.
 struct BrushPen {
@@ -32,8 +25,6 @@ struct BrushDrag {
     glm::dvec2 start{0};     ///< values where the button went down
     vis::Selection original; ///< before the drag: Esc goes back to it
 };
-
-enum BrushEdge { kLeftEdge = 1, kRightEdge = 2, kBottomEdge = 4, kTopEdge = 8 };
 
 /// True if the brush uses only axes of the plot: then it is drawn and edited there.
 bool brushFits(const vis::Brush& brush, const PlotChannels& plot);

@@ -1,11 +1,22 @@
 #pragma once
 
-#include "app/tools/brush_edit.h"
+#include "app/pane/plot.h"
+#include "vis/scene/selection.h"
 
+#include <imgui.h>
+#include <string>
 #include <vector>
 
 /// Brushes as shapes on the pixels of a plot.
 namespace tessera::app {
+
+/// What a plot shows on its axes; `y` is empty for a histogram.
+struct PlotChannels {
+    std::string x, y;
+    bool operator==(const PlotChannels&) const = default;
+};
+
+enum BrushEdge { kLeftEdge = 1, kRightEdge = 2, kBottomEdge = 4, kTopEdge = 8 };
 
 /// The box around a brush in pixels.
 struct BrushRect {

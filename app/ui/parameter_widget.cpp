@@ -1,5 +1,6 @@
 #include "app/ui/parameter_widget.h"
 
+#include "app/session/edit_titles.h"
 #include "app/session/parameter_path.h"
 
 #include <algorithm>

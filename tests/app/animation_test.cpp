@@ -1,4 +1,5 @@
-#include "app/session/animation.h"
+#include "app/session/animated_session.h"
+#include "app/session/edit_titles.h"
 
 #include "app/session/history.h"
 #include "app/session/parameter_path.h"

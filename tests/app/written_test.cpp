@@ -1,6 +1,7 @@
 #include "app/command/command.h"
 #include "app/described/describe_json.h"
 #include "app/pane/plot.h"
+#include "app/session/edit_titles.h"
 #include "app/session/history.h"
 #include "app/views/data/layers_view.h"
 #include "app/views/scatter/scatter_cells.h"

@@ -5,7 +5,7 @@
 #include "vis/optics/preintegration.h"
 #include "vis/optics/ray_setup.h"
 #include "vis/optics/shade.h"
-#include "vis/reference/raycast.h"
+#include "vis/reference/options.h"
 
 #include <map>
 #include <memory>

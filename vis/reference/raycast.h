@@ -1,8 +1,7 @@
 #pragma once
 
-#include "vis/optics/light_maps.h"
 #include "vis/reference/image.h"
-#include "vis/reference/samples.h"
+#include "vis/reference/options.h"
 #include "vis/scene/scene.h"
 #include "volume/bricks/brick_source.h"
 
@@ -10,11 +9,6 @@
 /// volume/reconstruct/reconstruct.h, one sample at a time, on the CPU, without any shortcut (no skipping, no levels, no
 /// textures).
 namespace tessera::vis::reference {
-
-struct Options {
-    Flaws flaws;                                      ///< none, except in tests
-    std::shared_ptr<const CubeMap> surroundings = {}; ///< of Environment::Picture
-};
 
 /// Renders the layers of a scene at full resolution. Lines (box, contours) are not drawn; layers of unknown channels
 /// show nothing. Same input, same output on any number of threads. Throws Error when the source does.

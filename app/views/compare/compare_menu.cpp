@@ -3,6 +3,7 @@
 #include "app/pane/figure.h"
 #include "app/pane/plot.h"
 #include "app/pane/view_parts.h"
+#include "app/session/edit_titles.h"
 #include "app/session/parameter_path.h"
 #include "app/session/session_json.h"
 #include "app/ui/keys.h"

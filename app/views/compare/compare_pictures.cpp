@@ -313,4 +313,18 @@ std::vector<CompareRow> ComparePictures::rows(const ViewContext& context, std::s
     return out;
 }
 
+double ComparePictures::findValues(ViewContext& context, const std::string& pane, std::size_t reference) {
+    double top = 0;
+    const CompareCell& against = *cells_[reference];
+    for (std::size_t i = 0; i < cells_.size(); ++i) {
+        CompareCell& cell = *cells_[i];
+        const auto &source = cell.source(context), &wanted = against.source(context);
+        if (i == reference || !cell.failure.empty() || !against.failure.empty() || !source || !wanted) continue;
+        cell.values.find(context, pane + ":values" + std::to_string(i), {cell.session, source},
+                         {against.session, wanted});
+        top = std::max(top, cell.values.largest());
+    }
+    return top > 0 ? top : 1;
+}
+
 } // namespace tessera::app

@@ -1,6 +1,5 @@
 #include "app/views/compare/compare_values.h"
 
-#include "app/views/compare/compare_pictures.h"
 #include "vis/transfer/transfer_function.h"
 #include "volume/derived/other_source.h"
 
@@ -99,20 +98,6 @@ double CompareValues::largest() const {
     if (!difference()) return 0;
     const Range range = difference()->info().parameters.front().ranges.front();
     return std::max(std::abs(range.lo), std::abs(range.hi));
-}
-
-double ComparePictures::findValues(ViewContext& context, const std::string& pane, std::size_t reference) {
-    double top = 0;
-    const CompareCell& against = *cells_[reference];
-    for (std::size_t i = 0; i < cells_.size(); ++i) {
-        CompareCell& cell = *cells_[i];
-        const auto &source = cell.source(context), &wanted = against.source(context);
-        if (i == reference || !cell.failure.empty() || !against.failure.empty() || !source || !wanted) continue;
-        cell.values.find(context, pane + ":values" + std::to_string(i), {cell.session, source},
-                         {against.session, wanted});
-        top = std::max(top, cell.values.largest());
-    }
-    return top > 0 ? top : 1;
 }
 
 } // namespace tessera::app

@@ -2,6 +2,8 @@
 
 #include "app/pane/plot.h"
 #include "app/pane/view_parts.h"
+#include "app/session/animated_session.h"
+#include "app/session/edit_titles.h"
 #include "app/session/parameter_path.h"
 #include "app/session/session_json.h"
 #include "app/ui/ticks.h"

@@ -1,5 +1,7 @@
 #include "app/views/timeline/playback.h"
 
+#include "app/session/animated_session.h"
+
 #include <algorithm>
 #include <cmath>
 

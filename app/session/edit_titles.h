@@ -1,0 +1,18 @@
+#pragma once
+
+#include "app/described/describe_json.h"
+
+#include <string>
+
+/// Names of settings and edits as users read them.
+namespace tessera::app {
+
+struct Session;
+
+/// A readable name for an edit, an RFC 6902 patch: "Layers 1: density".
+std::string describePatch(const Json& patch);
+
+/// "/layers/0/technique/density" -> "Layers 1: technique: density", with the name of the layer where it has one.
+std::string pathTitle(const Session& session, const std::string& path);
+
+} // namespace tessera::app
