@@ -1,5 +1,6 @@
 #include "app/data/first_view.h"
 
+#include "vis/transfer/tail_opacity.h"
 #include "volume/base/error.h"
 #include "volume/reconstruct/probe.h"
 
@@ -100,16 +101,68 @@ std::optional<double> backgroundShare(const volume::BrickSource& source, int cha
 
 namespace {
 
+constexpr int kBins = 256;
+/// Of all places, how much should be seen at first: less is lost in the box, more hides what lies behind.
+constexpr double kLeastSeen = 0.02, kMostSeen = 0.2;
+
+/// How often values occur at a coarse level, over `range`, and how many places there are.
+struct Occurrence {
+    std::vector<std::uint64_t> count = std::vector<std::uint64_t>(kBins, 0);
+    std::uint64_t places = 0;
+};
+
+Occurrence occurrenceOf(const volume::BrickSource& source, int channel, int time, Range range) {
+    Occurrence out;
+    const int level = source.grid().levelWithin(kQuickSamples);
+    const auto all = [](glm::ivec3, glm::ivec3) { return true; };
+    forSamples(source, channel, time, level, all, [&](glm::ivec3, float value) {
+        const double share = (value - range.lo) / (range.hi - range.lo);
+        ++out.count[static_cast<std::size_t>(std::clamp(share * kBins, 0.0, kBins - 1.0))];
+    });
+    const glm::i64vec3 size(source.grid().levelSamples(level));
+    out.places = static_cast<std::uint64_t>(size.x * size.y * size.z);
+    return out;
+}
+
+/// What values reach on both sides of 0, neither by a small remainder alone, and no temperature: its 0 has no meaning.
+bool signMatters(Range range, const std::string& unit) {
+    const double least = std::min(-range.lo, range.hi);
+    return least > 0.1 * std::max(-range.lo, range.hi) && unit != "degC" && unit != "\u00b0C" && unit != "C";
+}
+
+/// The opacity with which a computed field is first shown; without a value to go by what it was.
+void showTails(vis::TransferFunction& function, const volume::BrickSource& source, int channel, int time) {
+    const volume::DatasetInfo& info = source.info();
+    const volume::Channel what = info.channels()[static_cast<std::size_t>(channel)];
+    const bool sign = signMatters(info.channelRange(what), what.unit);
+    if (sign && function.autoRange) {
+        function.colormap = vis::divergingFunction().colormap;
+        function.aboutZero = true;
+    }
+    const Range range = vis::effectiveRange(function, info.channelRange(what));
+    if (!(range.hi > range.lo)) return;
+    const Occurrence occurrence = occurrenceOf(source, channel, time, range);
+    if (sign) {
+        function.opacity = vis::signedTailOpacity(occurrence.count, kMostSeen);
+        return;
+    }
+    const double seen = vis::seenShare(occurrence.count, occurrence.places, function.opacity);
+    if (seen < kLeastSeen || seen > kMostSeen) function.opacity = vis::tailOpacity(occurrence.count, kMostSeen);
+}
+
 void aimAtSamples(Session& session, const volume::BrickSource& source, int channel, const std::string& name, int time) {
     const volume::DatasetInfo& info = source.info();
     const volume::ProbeValue here = volume::probeChannel(source, channel, session.cursor, time);
     if (!here.interpolated || !here.nearest)
         session.cursor = middleOfSamples(source, channel, time).value_or(session.cursor);
     const auto transfer = session.transfer.find(name);
-    if (transfer == session.transfer.end() ||
-        transfer->second.opacity != defaultSession(info, {}).transfer[name].opacity)
-        return;
-    if (const auto share = backgroundShare(source, channel, time)) {
+    if (transfer == session.transfer.end() || transfer->second != defaultSession(info, {}).transfer[name]) return;
+    const volume::Channel what = info.channels()[static_cast<std::size_t>(channel)];
+    const volume::Parameter& parameter = info.parameters[static_cast<std::size_t>(what.parameter)];
+    if (parameter.categorical) return;
+    if (parameter.type == volume::ScalarType::F32) {
+        showTails(transfer->second, source, channel, time);
+    } else if (const auto share = backgroundShare(source, channel, time)) {
         const float x = static_cast<float>(*share);
         transfer->second.opacity = {{0.0f, 0.0f}, {x, 0.0f}, {1.0f, 0.8f}};
     }

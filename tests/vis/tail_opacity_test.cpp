@@ -1,0 +1,79 @@
+#include "vis/transfer/tail_opacity.h"
+
+#include "vis/transfer/transfer_function.h"
+
+#include <gtest/gtest.h>
+
+/// Opacity curves made of histograms.
+namespace tessera::vis {
+namespace {
+
+/// 100 bins; `per` says how many values a bin holds.
+std::vector<std::uint64_t> histogram(auto per) {
+    std::vector<std::uint64_t> count;
+    for (int bin = 0; bin < 100; ++bin) count.push_back(std::uint64_t(per(bin)));
+    return count;
+}
+
+double at(const std::vector<glm::vec2>& curve, double x) {
+    return curveAt(curve, x);
+}
+
+TEST(TailOpacity, SharesCountAbsentPlacesToo) {
+    const auto count = histogram([](int bin) { return bin < 80 ? 1 : 2; }); // 120 values
+    const std::vector<glm::vec2> step{{0.0f, 0.0f}, {0.8f, 0.0f}, {0.8f, 0.5f}, {1.0f, 0.5f}};
+    EXPECT_DOUBLE_EQ(seenShare(count, 120, step), 40.0 / 120);
+    EXPECT_DOUBLE_EQ(seenShare(count, 400, step), 40.0 / 400);
+    const std::vector<glm::vec2> faint{{0.0f, 0.09f}, {1.0f, 0.09f}};
+    EXPECT_EQ(seenShare(count, 120, faint), 0);
+}
+
+TEST(TailOpacity, ALongTailIsShownAndTheBulkIsClear) {
+    // Nearly all values at 10..19 of 100; few up to the end.
+    const auto count = histogram([](int bin) { return bin >= 10 && bin < 20 ? 1000 : bin >= 20 ? 20 : 1; });
+    const auto curve = tailOpacity(count, 0.1);
+    for (const double x : {0.0, 0.05, 0.12, 0.19}) EXPECT_EQ(at(curve, x), 0) << x;
+    EXPECT_GT(at(curve, 0.9), 0.4);
+    EXPECT_FLOAT_EQ(float(at(curve, 1.0)), 0.8f);
+    const double seen = seenShare(count, 11610, curve);
+    EXPECT_GT(seen, 0.02);
+    EXPECT_LE(seen, 0.1);
+    // Mirrored, it is the other end.
+    auto mirrored = count;
+    std::reverse(mirrored.begin(), mirrored.end());
+    const auto other = tailOpacity(mirrored, 0.1);
+    for (const double x : {0.0, 0.1, 0.3, 0.5, 0.85, 1.0}) EXPECT_NEAR(at(other, 1 - x), at(curve, x), 0.02) << x;
+}
+
+TEST(TailOpacity, TwoTailsAlikeAreBothShown) {
+    const auto count = histogram([](int bin) { return bin >= 45 && bin < 55 ? 1000 : 10; });
+    const auto curve = tailOpacity(count, 0.06); // 3 % of 10900 values: 32 bins at either end
+    EXPECT_NEAR(at(curve, 0.0), 0.8, 1e-6);
+    EXPECT_NEAR(at(curve, 1.0), 0.8, 1e-6);
+    EXPECT_NEAR(at(curve, 0.16), 0.4, 0.01);
+    EXPECT_NEAR(at(curve, 0.84), 0.4, 0.01);
+    EXPECT_EQ(at(curve, 0.33), 0);
+    EXPECT_EQ(at(curve, 0.5), 0);
+}
+
+TEST(TailOpacity, WithoutATailTheLineStays) {
+    const std::vector<glm::vec2> line{{0.0f, 0.0f}, {1.0f, 0.8f}};
+    EXPECT_EQ(tailOpacity(histogram([](int) { return 0; }), 0.1), line);
+    EXPECT_EQ(tailOpacity(histogram([](int bin) { return bin == 40 ? 500 : 0; }), 0.1), line);
+}
+
+TEST(TailOpacity, SignsAreAlikeAndSmallMagnitudesClear) {
+    // 90 % within 0.45..0.55 of the range, the rest evenly on either side.
+    const auto count = histogram([](int bin) { return bin >= 45 && bin < 55 ? 900 : 11; });
+    const auto curve = signedTailOpacity(count, 0.05);
+    for (const double x : {0.0, 0.1, 0.2, 0.3, 0.5}) EXPECT_NEAR(at(curve, x), at(curve, 1 - x), 1e-6) << x;
+    EXPECT_NEAR(at(curve, 0.0), 0.8, 1e-6);
+    EXPECT_EQ(at(curve, 0.5), 0);
+    EXPECT_EQ(at(curve, 0.45), 0);
+    const double seen = seenShare(count, 9990, curve);
+    EXPECT_GT(seen, 0.02);
+    EXPECT_LE(seen, 0.05);
+}
+
+} // namespace
+} // namespace tessera::vis
