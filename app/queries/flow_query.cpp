@@ -10,14 +10,10 @@ namespace {
 
 /// Of a layer of the session at its time.
 FlowQuery flowQuery(const Session& session, const vis::FlowLayer& layer, const volume::DatasetInfo& info) {
-    const vis::FlowLayer drawn;
     FlowQuery query{layer, volume::timesAround(info.times, session.time), session.stretch};
     // Pathlines go through all times; which one is shown decides where their particles are born.
     if (layer.kind == vis::FlowKind::Pathlines) query.time = {query.time.nearest(), query.time.nearest(), 0};
-    query.layer.lineWidth = drawn.lineWidth;
-    query.layer.color = drawn.color;
-    query.layer.opacity = drawn.opacity;
-    query.layer.look = drawn.look;
+    query.layer.style = {}; // does not change the geometry
     if (layer.seedBrushed && session.selection.active()) {
         query.brushes.brushes = session.selection.brushes;
         if (vis::selectsLens(session.selection)) query.lenses = lensSpace(session, info);
@@ -60,14 +56,11 @@ std::vector<vis::GeometryLayer> AsyncFlow::get(ViewContext& context, const std::
             [](const FlowQuery&, const FlowQuery&) { return true; });
         if (!made || !made->result || !query_.failure().empty()) continue;
         out.push_back({.geometry = made->result,
-                       .color = flow->color,
+                       .style = flow->style,
                        .channel = made->query.layer.channel,
-                       .opacity = flow->opacity,
-                       .lineWidth = flow->lineWidth,
                        .lens = layer.lens,
                        .transfer = layer.transfer,
-                       .brushes = layer.brushes,
-                       .look = flow->look});
+                       .brushes = layer.brushes});
     }
     return out;
 }

@@ -78,13 +78,11 @@ std::vector<vis::GeometryLayer> AsyncSurfaces::get(ViewContext& context, const s
         if (moving && made->result.mesh.triangles.size() > kMovingTriangles)
             if (const auto coarse = query_.coarsest(made->query)) made = coarse;
         out.push_back({.geometry = {made, &made->result},
-                       .color = iso->color,
+                       .style = {.color = iso->color, .opacity = iso->opacity, .look = iso->look},
                        .channel = made->query.colorBy >= 0 ? iso->colorBy : std::string(),
-                       .opacity = iso->opacity,
                        .lens = layer.lens,
                        .transfer = layer.transfer,
-                       .brushes = layer.brushes,
-                       .look = iso->look});
+                       .brushes = layer.brushes});
     }
     return out;
 }

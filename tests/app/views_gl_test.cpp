@@ -110,7 +110,7 @@ TEST_F(Views, FlowComesAtOnceOrFromTheBackground) {
     EXPECT_FALSE(whole[0].geometry->mesh.triangles.empty());
     EXPECT_EQ(whole[0].channel, "O2");
     EXPECT_EQ(atOnce.get(context, "a"), whole) << "kept";
-    std::get<vis::FlowLayer>(session.layers[0].technique).opacity = 0.5f;
+    std::get<vis::FlowLayer>(session.layers[0].technique).style.opacity = 0.5f;
     EXPECT_EQ(atOnce.get(context, "a")[0].geometry, whole[0].geometry) << "only drawn otherwise";
 
     context.headless = false;

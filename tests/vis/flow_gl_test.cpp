@@ -46,11 +46,8 @@ protected:
         scene.lighting.ambient = 1;
         scene.lighting.diffuse = scene.lighting.specular = 0;
         scene.layers.push_back({"", true, layer}); // draws nothing by itself
-        scene.geometry.push_back({.geometry = makeFlow(*source, layer, 0, scene.stretch),
-                                  .color = layer.color,
-                                  .channel = layer.channel,
-                                  .opacity = layer.opacity,
-                                  .lineWidth = layer.lineWidth});
+        scene.geometry.push_back(
+            {.geometry = makeFlow(*source, layer, 0, scene.stretch), .style = layer.style, .channel = layer.channel});
         const ViewTargetPtr target = renderer.makeTarget();
         test::renderAll(renderer, *target, scene, kSize);
         return renderer.readLinear(*target);
@@ -67,7 +64,7 @@ protected:
         layer.from = layer.to = glm::vec3(0.5f);
         layer.count = 1;
         layer.radius = 0.05f;
-        layer.lineWidth = 9;
+        layer.style.lineWidth = 9;
         layer.size = 0.4f;
         return layer;
     }

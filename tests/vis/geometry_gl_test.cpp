@@ -77,7 +77,8 @@ TEST_F(GeometryPassTest, LooksLikeASliceInItsPlace) {
                 Scene withSlice = scene, withMesh = scene;
                 withSlice.layers.push_back(
                     {"", true, SliceLayer{.channel = "f", .atCursor = false, .position = 0.4, .opacity = opacity}});
-                withMesh.geometry.push_back({.geometry = atDepth(0.4f * 16), .channel = "f", .opacity = opacity});
+                withMesh.geometry.push_back(
+                    {.geometry = atDepth(0.4f * 16), .style = {.opacity = opacity}, .channel = "f"});
                 const std::vector<glm::vec4> slice = picture(withSlice), mesh = picture(withMesh);
                 std::size_t differ = 0, seen = 0;
                 for (std::size_t i = 0; i < slice.size(); ++i) {
@@ -97,11 +98,9 @@ TEST_F(GeometryPassTest, OrdersTranslucentSurfacesByDepth) {
     Scene scene = unlit();
     const glm::vec3 red(1, 0, 0), blue(0, 0, 1);
     scene.geometry = {{.geometry = rectangle({glm::vec3(0, 0, 2), {16, 0, 14}, {16, 16, 14}, {0, 16, 2}}),
-                       .color = red,
-                       .opacity = 0.5f},
+                       .style = {.color = red, .opacity = 0.5f}},
                       {.geometry = rectangle({glm::vec3(0, 0, 14), {16, 0, 2}, {16, 16, 2}, {0, 16, 14}}),
-                       .color = blue,
-                       .opacity = 0.5f}};
+                       .style = {.color = blue, .opacity = 0.5f}}};
     const std::vector<glm::vec4> pixels = picture(scene);
     const glm::vec4 left = at(pixels, 25, 48), right = at(pixels, 70, 48); // the camera looks against z
     EXPECT_LT(glm::length(left - glm::vec4(0.25, 0, 0.5, 0.75)), 1e-4f);
@@ -120,12 +119,12 @@ TEST_F(GeometryPassTest, HidesTheVolumeBehindIt) {
     scene.transfer["f"] = function;
     scene.layers.push_back({"", true, VolumeLayer{.channel = "f", .shaded = false, .density = 1}});
     const float volumeAlpha = at(picture(scene), 48, 48).a;
-    scene.geometry.push_back({.geometry = atDepth(8), .color = {0, 0, 0}}); // black, in the middle
+    scene.geometry.push_back({.geometry = atDepth(8), .style = {.color = {0, 0, 0}}}); // black, in the middle
     const glm::vec4 both = at(picture(scene), 48, 48);
     EXPECT_NEAR(both.a, 1, 1e-5);
     // Light that reaches the eye comes from the front half alone.
     Scene bright = scene;
-    bright.geometry[0].color = {1, 1, 1};
+    bright.geometry[0].style.color = {1, 1, 1};
     const glm::vec4 white = at(picture(bright), 48, 48);
     EXPECT_NEAR(white.r - both.r, std::sqrt(1 - volumeAlpha), 0.01);
 }
@@ -144,7 +143,7 @@ TEST_F(GeometryPassTest, PolygonsShowTheSurfaceTheRaysMeet) {
         scene.layers.push_back({"", true, iso});
         auto geometry = std::make_shared<Geometry>();
         geometry->mesh = volume::extractIsosurface(*source, 0, 0, iso.value, 0);
-        scene.geometry.push_back({.geometry = geometry, .color = iso.color});
+        scene.geometry.push_back({.geometry = geometry, .style = {.color = iso.color}});
         const std::vector<glm::vec4> a = picture(rays), b = picture(scene);
         std::size_t differ = 0, seen = 0;
         double squares = 0;
@@ -168,7 +167,7 @@ TEST_F(GeometryPassTest, DrawsLinesAsWideAsWanted) {
     auto geometry = std::make_shared<Geometry>();
     geometry->lines.positions = {{2, 4, 8}, {8, 4, 8}, {14, 4, 8}, {2, 12, 8}, {14, 12, 8}};
     geometry->lines.ends = {3, 5}; // no segment from the first line to the second
-    scene.geometry.push_back({.geometry = geometry, .color = {1, 1, 1}, .lineWidth = 4});
+    scene.geometry.push_back({.geometry = geometry, .style = {.color = {1, 1, 1}, .lineWidth = 4}});
     const auto covered = [&](const Scene& shown) {
         std::size_t count = 0;
         for (const glm::vec4& pixel : picture(shown)) count += pixel.a > 0.5f;
@@ -177,7 +176,7 @@ TEST_F(GeometryPassTest, DrawsLinesAsWideAsWanted) {
     const double length = 12.0 / 16 * 96 / 1.2; // pixels
     EXPECT_NEAR(covered(scene), 2 * length * 4, 0.06 * 2 * length * 4);
     // A surface before them hides them.
-    scene.geometry.push_back({.geometry = atDepth(12), .color = {0, 0, 0}});
+    scene.geometry.push_back({.geometry = atDepth(12), .style = {.color = {0, 0, 0}}});
     for (const glm::vec4& pixel : picture(scene)) EXPECT_LT(pixel.r, 0.01f);
 }
 

@@ -10,7 +10,7 @@ GeometryLayer sheet(const Drawing& drawing, double half, double height) {
     for (const auto& [x, z] : {std::pair{-half, -half}, {half, -half}, {half, half}, {-half, half}})
         geometry->mesh.positions.emplace_back(frame.toPhysical({x, height, z}));
     geometry->mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
-    return {.geometry = geometry, .color = {0.9f, 0.3f, 0.2f}, .opacity = 0.8f};
+    return {.geometry = geometry, .style = {.color = {0.9f, 0.3f, 0.2f}, .opacity = 0.8f}};
 }
 
 class MeshShadows : public testing::TestWithParam<LatticeKind> {

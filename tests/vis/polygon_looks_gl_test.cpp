@@ -52,7 +52,7 @@ struct MeshBall {
         scene.showBox = false;
         scene.render.samples = 1;
         scene.lighting.lights = {{.azimuth = 40, .elevation = 30}};
-        scene.geometry = {{.geometry = ballMesh(), .color = {0.9f, 0.6f, 0.3f}}};
+        scene.geometry = {{.geometry = ballMesh(), .style = {.color = {0.9f, 0.6f, 0.3f}}}};
     }
     std::vector<glm::vec4> draw() {
         const ViewTargetPtr target = renderer.makeTarget();
@@ -67,7 +67,7 @@ struct MeshBall {
     glm::dvec4 expected(glm::dvec2 at) const {
         const GeometryLayer& layer = scene.geometry[0];
         const glm::dvec3 normal(at, std::sqrt(1 - glm::dot(at, at))), place = normal * kBallRadius;
-        const glm::dvec3 toViewer(0, 0, 1), albedo = linearFromSrgb(glm::dvec3(layer.color));
+        const glm::dvec3 toViewer(0, 0, 1), albedo = linearFromSrgb(glm::dvec3(layer.style.color));
         const LookView view = lookView(scene, glm::dvec3(0.5), glm::dvec3(1.0 / 40), kBallPicture);
         LookSample sample;
         sample.at = facing(normal, toViewer);
@@ -78,17 +78,17 @@ struct MeshBall {
             (glm::dot(place - middle.origin, middle.direction) - view.nearest) / (view.farthest - view.nearest);
         sample.pixel = view.pixel.x;
         sample.toLight = view.light.place;
-        if (layer.look.charcoal)
-            sample.grain =
-                grainAt(*grainTile(), place, normal, sample.pixel * double(layer.look.charcoal->grain) / kGrainTexels,
-                        double(layer.look.charcoal->angle));
-        if (layer.look.wire)
-            sample.wire = wireCoverage(place, normal, toViewer, double(layer.look.wire->spacing),
-                                       double(layer.look.wire->width), sample.pixel);
+        if (layer.style.look.charcoal)
+            sample.grain = grainAt(*grainTile(), place, normal,
+                                   sample.pixel * double(layer.style.look.charcoal->grain) / kGrainTexels,
+                                   double(layer.style.look.charcoal->angle));
+        if (layer.style.look.wire)
+            sample.wire = wireCoverage(place, normal, toViewer, double(layer.style.look.wire->spacing),
+                                       double(layer.style.look.wire->width), sample.pixel);
         const Illumination light = illuminate(scene.lighting, scene.camera);
-        const glm::dvec3 lit = shade(light, lookAlbedo(layer.look, albedo, 1), normal, 1, place, toViewer);
-        const double alpha = lookOpacity(layer.look, double(layer.opacity), sample);
-        return {lookColor(layer.look, albedo, lit, sample, view.ground) * alpha, alpha};
+        const glm::dvec3 lit = shade(light, lookAlbedo(layer.style.look, albedo, 1), normal, 1, place, toViewer);
+        const double alpha = lookOpacity(layer.style.look, double(layer.style.opacity), sample);
+        return {lookColor(layer.style.look, albedo, lit, sample, view.ground) * alpha, alpha};
     }
     glm::dvec2 place(int x, int y) const {
         const glm::dvec2 ndc = (glm::dvec2(x, kBallPicture.y - 1 - y) + 0.5) / glm::dvec2(kBallPicture) * 2.0 - 1.0;
@@ -99,9 +99,9 @@ struct MeshBall {
 TEST(PolygonLooks, PresetsFollowTheFormulas) {
     MeshBall ball;
     for (const std::string_view name : Look::kPresetNames) {
-        ball.scene.geometry[0].look = *Look::preset(name);
+        ball.scene.geometry[0].style.look = *Look::preset(name);
         // Silhouettes and wires let the back of the ball shine through: another formula, tested below.
-        if (ball.scene.geometry[0].look.silhouette || ball.scene.geometry[0].look.wire) continue;
+        if (ball.scene.geometry[0].style.look.silhouette || ball.scene.geometry[0].style.look.wire) continue;
         const std::vector<glm::vec4> picture = ball.draw();
         int seen = 0, beyond = 0;
         double squares = 0;
@@ -124,8 +124,8 @@ TEST(PolygonLooks, PresetsFollowTheFormulas) {
 
 TEST(PolygonLooks, SilhouettesAreTheRim) {
     MeshBall ball;
-    ball.scene.geometry[0].opacity = kSilhouetteOpacity;
-    ball.scene.geometry[0].look.silhouette = kSilhouette;
+    ball.scene.geometry[0].style.opacity = kSilhouetteOpacity;
+    ball.scene.geometry[0].style.look.silhouette = kSilhouette;
     expectSilhouette(ball.draw(), kBallPicture, [&](int x, int y) { return ball.place(x, y); });
 }
 
@@ -187,7 +187,8 @@ TEST(PolygonBrushes, ActAsOnASliceInTheSamePlace) {
         ball.scene.layers[0].brushes = effect;
         const std::vector<glm::vec4> slice = ball.draw();
         ball.scene.layers.clear();
-        ball.scene.geometry = {{.geometry = middlePlane(), .channel = "f", .opacity = 0.8f, .brushes = effect}};
+        ball.scene.geometry = {
+            {.geometry = middlePlane(), .style = {.opacity = 0.8f}, .channel = "f", .brushes = effect}};
         const std::vector<glm::vec4> mesh = ball.draw();
         std::size_t differ = 0, seen = 0;
         for (std::size_t i = 0; i < slice.size(); ++i) {

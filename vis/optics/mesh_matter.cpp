@@ -39,8 +39,8 @@ MeshCasters meshCasters(const Scene& scene, const volume::DatasetInfo& info) {
             continue;
         MeshCasters::Caster caster;
         caster.geometry = layer.geometry;
-        caster.color = linearFromSrgb(glm::dvec3(layer.color));
-        caster.opacity = double(layer.opacity);
+        caster.color = linearFromSrgb(glm::dvec3(layer.style.color));
+        caster.opacity = double(layer.style.opacity);
         caster.lens = lens;
         const std::optional<int> channel = info.findChannel(layer.channel);
         caster.scalars = channel && !layer.geometry->mesh.scalars.empty();

@@ -116,7 +116,7 @@ void GeometryPass::table(const Scene& scene, const volume::DatasetInfo& info) {
     std::vector<glm::vec4> colors;
     maps_.clear();
     for (const GeometryLayer& layer : scene.geometry) {
-        const glm::dvec3 own = linearFromSrgb(glm::dvec3(layer.color));
+        const glm::dvec3 own = linearFromSrgb(glm::dvec3(layer.style.color));
         const std::optional<int> channel = layer.channel.empty() ? std::nullopt : info.findChannel(layer.channel);
         if (!channel) {
             maps_.emplace_back(0);
@@ -223,10 +223,10 @@ std::vector<GeometryPass::Draw> GeometryPass::collect(const GeometryJob& job, Gr
         const std::optional<int> lens = lensOf(job.lenses, layer.lens);
         if (!drawn(job.scene, layer) || !lens) continue;
         const Uploaded& up = upload(layer.geometry);
-        if (layer.look.charcoal) glBindTextureUnit(kGrainUnit, grain.get());
+        if (layer.style.look.charcoal) glBindTextureUnit(kGrainUnit, grain.get());
         for (const bool lines : {false, true}) {
             if ((lines ? up.segmentCount : up.indexCount) == 0) continue;
-            const Program& own = program(job, lines, lookBits(layer.look));
+            const Program& own = program(job, lines, lookBits(layer.style.look));
             setCommon(own, job);
             draws.push_back({i, *lens, lines, &up, &own});
         }
@@ -241,13 +241,13 @@ void GeometryPass::drawOne(const Draw& each, const GeometryJob& job, int peel) c
     own.set("peel", peel);
     own.set("row", (float(each.layer) + 0.5f) / float(tableRows_));
     own.set("map", maps_[each.layer]);
-    own.set("plain", glm::vec3(linearFromSrgb(glm::dvec3(layer.color))));
-    own.set("opacity", layer.opacity);
+    own.set("plain", glm::vec3(linearFromSrgb(glm::dvec3(layer.style.color))));
+    own.set("opacity", layer.style.opacity);
     own.set("lens", each.lens);
-    own.set("lineWidth", layer.lineWidth);
+    own.set("lineWidth", layer.style.lineWidth);
     own.set("brushEffect", float(int(layer.brushes)));
     // Layers share variants: what looks say is set anew for each.
-    setLookUniforms(own, {layer.look.any() ? &layer.look : nullptr}, job.scene, frame,
+    setLookUniforms(own, {layer.style.look.any() ? &layer.style.look : nullptr}, job.scene, frame,
                     worldCell(job.info.lattice, frame), job.pictureSize, kGrainUnit);
     glUseProgram(own.name());
     glBindVertexArray(each.lines ? each.up->lines.name() : each.up->mesh.name());

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "vis/scene/look.h"
+#include "vis/scene/geometry_style.h"
 #include "volume/base/describe.h"
 #include "volume/flow/seeds.h"
 
@@ -27,18 +27,15 @@ struct FlowLayer {
     glm::vec3 from{0}, to{1}; ///< corners of the seeds' box, parts of the data's
     int count = 60;
     int random = 1;
-    std::string weight = {};    ///< "" = none
-    bool seedBrushed = false;   ///< as dense as the degree of interest is high
-    float length = 2;           ///< of a line each way, parts of the data's longest edge
-    float speed = 1;            ///< of particles: lengths of the data over its times
-    float minimumSpeed = 1e-4f; ///< parts of the greatest
-    float radius = 0.004f;      ///< of a tube, parts of the longest edge as drawn
-    float size = 0.05f;         ///< of the longest glyph, parts of the longest edge as drawn
-    bool scaled = true;         ///< glyphs as long as the vector, else all alike
-    float lineWidth = 2;        ///< pixels
-    glm::vec3 color{0.75f};     ///< sRGB
-    float opacity = 1;
-    Look look = {};
+    std::string weight = {};                        ///< "" = none
+    bool seedBrushed = false;                       ///< as dense as the degree of interest is high
+    float length = 2;                               ///< of a line each way, parts of the data's longest edge
+    float speed = 1;                                ///< of particles: lengths of the data over its times
+    float minimumSpeed = 1e-4f;                     ///< parts of the greatest
+    float radius = 0.004f;                          ///< of a tube, parts of the longest edge as drawn
+    float size = 0.05f;                             ///< of the longest glyph, parts of the longest edge as drawn
+    bool scaled = true;                             ///< glyphs as long as the vector, else all alike
+    GeometryStyle style{.color = glm::vec3(0.75f)}; ///< does not change the geometry
     bool operator==(const FlowLayer&) const = default;
     static void describe(auto& self, auto&& visit) {
         visit(self.vector, FieldInfo{.key = "vector", .unit = "", .doc = "Vector shown", .refersTo = "vector"});
@@ -119,18 +116,18 @@ struct FlowLayer {
                         .unit = "",
                         .doc = "Make the length of glyphs proportional to the vector; else all have the same length",
                         .applies = !followsFlow(self.kind)});
-        visit(self.lineWidth,
+        visit(self.style.lineWidth,
               FieldInfo{.key = "lineWidth",
                         .unit = "pixel",
                         .doc = "Width of lines and hedgehogs",
                         .range = Range{0.5, 20},
                         .applies = self.kind == FlowKind::Streamlines || self.kind == FlowKind::Hedgehogs});
-        visit(self.color, FieldInfo{.key = "color",
-                                    .unit = "",
-                                    .doc = "Colour where the parameter has no value (sRGB)",
-                                    .range = Range{0, 1}});
-        visit(self.opacity, FieldInfo{.key = "opacity", .unit = "", .doc = "Opacity", .range = Range{0, 1}});
-        visit(self.look, lookField());
+        visit(self.style.color, FieldInfo{.key = "color",
+                                          .unit = "",
+                                          .doc = "Colour where the parameter has no value (sRGB)",
+                                          .range = Range{0, 1}});
+        visit(self.style.opacity, FieldInfo{.key = "opacity", .unit = "", .doc = "Opacity", .range = Range{0, 1}});
+        visit(self.style.look, lookField());
     }
 };
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "vis/scene/brush_effect.h"
-#include "vis/scene/look.h"
+#include "vis/scene/geometry_style.h"
 #include "volume/mesh/surface_mesh.h"
 
 #include <algorithm>
@@ -17,7 +17,7 @@
 ///     streamlines->lines.positions = {...};     // physical
 ///     streamlines->lines.scalars = {...};       // e.g. the speed at each vertex
 ///     streamlines->lines.ends = {120, 260};     // two lines: vertices 0..119 and 120..259
-///     scene.geometry.push_back({.geometry = streamlines, .channel = "|U|", .lineWidth = 3});
+///     scene.geometry.push_back({.geometry = streamlines, .style = {.lineWidth = 3}, .channel = "|U|"});
 ///
 /// They are rasterised before the rays, nearest first, and composited where the rays meet them (ray_setup.h), so that
 /// volumes, slices, surfaces and lines cover each other as they lie in space.
@@ -39,14 +39,11 @@ struct Geometry {
 
 struct GeometryLayer {
     std::shared_ptr<const Geometry> geometry;
-    glm::vec3 color{0.8f};    ///< sRGB; of everything, or where a scalar is NaN
-    std::string channel = {}; ///< its transfer function colours the scalars; "" = `color`
-    float opacity = 1;
-    float lineWidth = 2;       ///< pixels
+    GeometryStyle style = {};
+    std::string channel = {};  ///< its transfer function colours the scalars; "" = the style's colour
     std::string lens = {};     ///< name of the lens that it is drawn in alone; "" = everywhere
     std::string transfer = {}; ///< name of a transfer function other than that of `channel`
     BrushEffect brushes = BrushEffect::Fade;
-    Look look = {}; ///< nothing changes along a surface: places are as steep as can be
     bool operator==(const GeometryLayer&) const = default;
 };
 

@@ -181,6 +181,8 @@ inline const Look* lookOf(const Technique& technique) {
         [](const auto& own) -> const Look* {
             if constexpr (requires { own.look; })
                 return &own.look;
+            else if constexpr (requires { own.style; })
+                return &own.style.look;
             else
                 return nullptr;
         },

@@ -17,7 +17,8 @@ int peelsOf(const Scene& scene) {
         if (!drawn(scene, layer)) continue;
         const bool fades = brushed && layer.brushes != BrushEffect::None &&
                            !(layer.brushes == BrushEffect::Fade && scene.selection.contextOpacity >= 1);
-        const bool translucent = layer.opacity < 1 || layer.look.silhouette || layer.look.boundary || layer.look.wire;
+        const bool translucent = layer.style.opacity < 1 || layer.style.look.silhouette || layer.style.look.boundary ||
+                                 layer.style.look.wire;
         peels = std::max(peels, translucent || fades || !layer.lens.empty() ? kPeels : 1);
     }
     return peels;
@@ -25,7 +26,7 @@ int peelsOf(const Scene& scene) {
 
 bool drawn(const Scene& scene, const GeometryLayer& layer) {
     // Nothing is context where nothing is brushed.
-    return layer.geometry && layer.opacity > 0 &&
+    return layer.geometry && layer.style.opacity > 0 &&
            (layer.brushes != BrushEffect::ContextOnly || scene.selection.active());
 }
 
