@@ -161,6 +161,115 @@ std::optional<std::size_t> placeAtCursor(const Profile& profile, glm::dvec3 curs
     return place;
 }
 
+ProfileQuery profileQuery(const ProfileView& view, const Session& session, const volume::DatasetInfo& info,
+                          const std::vector<int>& channels) {
+    ProfileQuery query{.over = info.times.size() > 1 ? view.over : ProfileOver::Line,
+                       .channels = channels,
+                       .corners = profileCorners(view, session, info.bounds),
+                       .samples = std::clamp(view.samples, 2, 4096),
+                       .time = {}};
+    if (query.over == ProfileOver::Line) query.time = volume::timesAround(info.times, session.time);
+    if (query.over == ProfileOver::Time) query.corners = {session.cursor}, query.samples = 1;
+    return query;
+}
+
+/// The plots of a profile, one under the other: a curve of each parameter, or a picture over distance and time.
+class ProfilePlots {
+public:
+    ProfilePlots(ViewContext& context, ProfileCache& cache, const std::shared_ptr<const Profile>& profile,
+                 ProfileOver over)
+        : context_(context), cache_(cache), session_(context.session), info_(context.numbers->info()),
+          profile_(profile), over_(over), times_{info_.times.front(), info_.times.back()} {
+        const LineAxis along = lineAxis(session_, info_, *profile);
+        const auto [least, most] = std::ranges::minmax(along.values);
+        if (overTime())
+            across_ = {
+                .title = timeWord(info_), .unit = info_.timeUnit, .values = info_.times, .range = times_, .marked = {}};
+        else
+            across_ = {
+                .title = along.title, .unit = along.unit, .values = along.values, .range = {least, most}, .marked = {}};
+    }
+
+    void draw() {
+        const ImVec2 origin = ImGui::GetCursorScreenPos(), room = ImGui::GetContentRegionAvail();
+        float left = pictures() ? axisRoom(AxisSide::Left, times_, false) : 0;
+        for (std::size_t c = 0; c < profile_->values.size() && !pictures(); ++c)
+            left = std::max(left, axisRoom(AxisSide::Left, paddedRange(rangeOf(c), 0.06), false));
+        const float bottom = axisRoom(AxisSide::Bottom, across_.range, true);
+        const auto plots = static_cast<float>(profile_->values.size());
+        const float height = (room.y - bottom - em() * 0.4f) / std::max(1.0f, plots);
+        if (height < em() * 1.6f || room.x - left < em() * 4)
+            return drawHint("Not enough room", "Enlarge the pane or choose fewer parameters.");
+        const float x0 = origin.x + left, x1 = origin.x + room.x - em() * 0.6f;
+        ImGui::SetCursorScreenPos({x0, origin.y});
+        ImGui::InvisibleButton("plots", {x1 - x0, room.y - bottom});
+        const bool taken = ImGui::IsItemActive();
+        const double share = std::clamp(double((ImGui::GetIO().MousePos.x - x0) / (x1 - x0)), 0.0, 1.0);
+        across_.marked = marked(ImGui::IsItemHovered() || taken, share);
+        if (taken && across_.marked) takePlace(*across_.marked);
+        if (pictures()) updatePictures(cache_, session_, info_, profile_);
+        for (std::size_t c = 0; c < profile_->values.size(); ++c) {
+            const float top = origin.y + em() * 0.2f + height * static_cast<float>(c);
+            const PlotFrame frame{{x0, std::round(top)},
+                                  {x1, std::round(top + height - em() * 0.4f)},
+                                  across_.range,
+                                  pictures() ? times_ : paddedRange(rangeOf(c), 0.06)};
+            drawOne(c, frame, taken);
+            if (c + 1 == profile_->values.size())
+                drawAxis(*ImGui::GetWindowDrawList(), frame, AxisSide::Bottom, across_.title, across_.unit, origin.x,
+                         origin.x + room.x);
+        }
+    }
+
+private:
+    bool overTime() const { return over_ == ProfileOver::Time; }
+    bool pictures() const { return over_ == ProfileOver::LineAndTime; }
+    const volume::Channel& channel(std::size_t c) const {
+        return channels_[static_cast<std::size_t>(profile_->query.channels[c])];
+    }
+    Range rangeOf(std::size_t c) const { return info_.channelRange(channel(c)); }
+
+    /// What is under the mouse, else what the linked time or cursor is at; `share`: of the width.
+    std::optional<std::size_t> marked(bool underMouse, double share) const {
+        if (overTime())
+            return static_cast<std::size_t>(
+                info_.nearestTime(underMouse ? times_.lo + (times_.hi - times_.lo) * share : session_.time));
+        if (!underMouse) return placeAtCursor(*profile_, session_.cursor);
+        const auto last = static_cast<double>(profile_->across().size() - 1);
+        const bool backwards = across_.values.front() > across_.values.back(); // from a later time to an earlier one
+        return static_cast<std::size_t>(std::lround((backwards ? 1 - share : share) * last));
+    }
+
+    /// A click or drag takes the cursor or the time there.
+    void takePlace(std::size_t place) {
+        if (over_ != ProfileOver::Line) session_.animation.playing = false;
+        if (overTime())
+            session_.time = profile_->times[place];
+        else
+            session_.cursor = profile_->positions[place];
+        context_.interacting = true;
+    }
+
+    void drawOne(std::size_t c, const PlotFrame& frame, bool taken) {
+        const std::string title = titleWithUnit(channel(c).name, channel(c).unit);
+        if (!pictures()) return drawCurve(title, rangeOf(c), *profile_, c, frame, across_);
+        const ImVec2 mouse = ImGui::GetIO().MousePos;
+        if (taken && frame.contains(mouse))
+            session_.time = info_.times[static_cast<std::size_t>(info_.nearestTime(frame.data(mouse).y))];
+        drawPicture(session_, title + ", up: " + timeTitle(info_), cache_.pictures[c], *profile_, frame, across_);
+    }
+
+    ViewContext& context_;
+    ProfileCache& cache_;
+    Session& session_;
+    const volume::DatasetInfo& info_;
+    std::shared_ptr<const Profile> profile_;
+    ProfileOver over_;
+    Range times_;
+    Across across_;
+    std::vector<volume::Channel> channels_ = info_.channels();
+};
+
 } // namespace
 
 void drawProfileView(ViewContext& context, const std::string& pane, ProfileView& view) {
@@ -169,100 +278,25 @@ void drawProfileView(ViewContext& context, const std::string& pane, ProfileView&
         return;
     }
     if (view.over == ProfileOver::Sections) return drawSections(context, pane, view);
-    Session& session = context.session;
     const volume::DatasetInfo& info = context.numbers->info();
     ProfileCache& cache = cacheOf<ProfileCache>(context, pane);
     const std::vector<int> shown = chosenChannels(info, view.channels, kMostProfiles);
     if (shown.empty()) return drawHint("No parameters", "This data set has only labels.");
-    ProfileQuery query{.over = info.times.size() > 1 ? view.over : ProfileOver::Line,
-                       .channels = shown,
-                       .corners = profileCorners(view, session, info.bounds),
-                       .samples = std::clamp(view.samples, 2, 4096),
-                       .time = {}};
-    const bool overTime = query.over == ProfileOver::Time, pictures = query.over == ProfileOver::LineAndTime;
-    if (query.over == ProfileOver::Line) query.time = volume::timesAround(info.times, session.time);
-    if (overTime) query.corners = {session.cursor}, query.samples = 1;
+    const ProfileQuery query = profileQuery(view, context.session, info, shown);
     const auto profile = cache.answers.get(
         context, context.numbers, {.key = "profile " + pane, .title = "Line profile", .quiet = true}, query,
         [](const auto& source, const ProfileQuery& asked, int, const Progress& progress) {
             return readProfile(*source, asked, progress);
         },
         [](const ProfileQuery& a, const ProfileQuery& b) { return a.over == b.over && a.channels == b.channels; });
-    const bool usable = profile && (overTime || (profile->distance.size() > 1 && profile->distance.back() > 0));
+    const bool usable =
+        profile && (query.over == ProfileOver::Time || (profile->distance.size() > 1 && profile->distance.back() > 0));
     if (!context.figure) drawToolbar(context, usable ? profile : nullptr, view, shown);
-    if (!usable) {
-        if (const std::string failure = cache.answers.failure(); !failure.empty())
-            return drawHint("No values", failure.c_str());
-        if (!profile) return ImGui::TextDisabled("Reading...");
-        return drawHint("The line has no length", "Place a corner, move the cross-hair, and place another.");
-    }
-    const LineAxis along = lineAxis(session, info, *profile);
-    const auto [least, most] = std::ranges::minmax(along.values);
-    const Range times{info.times.front(), info.times.back()};
-    Across across{
-        .title = along.title, .unit = along.unit, .values = along.values, .range = {least, most}, .marked = {}};
-    if (overTime)
-        across = {.title = timeWord(info), .unit = info.timeUnit, .values = info.times, .range = times, .marked = {}};
-    const ImVec2 origin = ImGui::GetCursorScreenPos(), room = ImGui::GetContentRegionAvail();
-    const std::vector<volume::Channel> channels = info.channels();
-    const auto rangeOf = [&](std::size_t c) {
-        return info.channelRange(channels[static_cast<std::size_t>(profile->query.channels[c])]);
-    };
-    float left = pictures ? axisRoom(AxisSide::Left, times, false) : 0;
-    for (std::size_t c = 0; c < profile->values.size() && !pictures; ++c)
-        left = std::max(left, axisRoom(AxisSide::Left, paddedRange(rangeOf(c), 0.06), false));
-    const float bottom = axisRoom(AxisSide::Bottom, across.range, true);
-    const auto plots = static_cast<float>(profile->values.size());
-    const float height = (room.y - bottom - em() * 0.4f) / std::max(1.0f, plots);
-    if (height < em() * 1.6f || room.x - left < em() * 4)
-        return drawHint("Not enough room", "Enlarge the pane or choose fewer parameters.");
-
-    // What is under the mouse is read; a click or drag takes the cursor or the time there.
-    const ImVec2 mouse = ImGui::GetIO().MousePos;
-    const float x0 = origin.x + left, x1 = origin.x + room.x - em() * 0.6f;
-    ImGui::SetCursorScreenPos({x0, origin.y});
-    ImGui::InvisibleButton("plots", {x1 - x0, room.y - bottom});
-    const bool taken = ImGui::IsItemActive(), over = ImGui::IsItemHovered() || taken;
-    const double share = std::clamp(double((mouse.x - x0) / (x1 - x0)), 0.0, 1.0);
-    const auto last = static_cast<double>(profile->across().size() - 1);
-    const bool backwards = across.values.front() > across.values.back(); // from a later time to an earlier one
-    if (over && overTime) {
-        const double at = times.lo + (times.hi - times.lo) * share;
-        across.marked = static_cast<std::size_t>(info.nearestTime(at));
-    } else if (over) {
-        across.marked = static_cast<std::size_t>(std::lround((backwards ? 1 - share : share) * last));
-    } else if (overTime) {
-        across.marked = static_cast<std::size_t>(info.nearestTime(session.time));
-    } else {
-        across.marked = placeAtCursor(*profile, session.cursor);
-    }
-    if (taken && across.marked) {
-        if (query.over != ProfileOver::Line) session.animation.playing = false;
-        if (overTime)
-            session.time = profile->times[*across.marked];
-        else
-            session.cursor = profile->positions[*across.marked];
-        context.interacting = true;
-    }
-    if (pictures) updatePictures(cache, session, info, profile);
-    for (std::size_t c = 0; c < profile->values.size(); ++c) {
-        const volume::Channel& channel = channels[static_cast<std::size_t>(profile->query.channels[c])];
-        const float top = origin.y + em() * 0.2f + height * static_cast<float>(c);
-        const PlotFrame frame{{x0, std::round(top)},
-                              {x1, std::round(top + height - em() * 0.4f)},
-                              across.range,
-                              pictures ? times : paddedRange(rangeOf(c), 0.06)};
-        const std::string title = titleWithUnit(channel.name, channel.unit);
-        if (pictures && taken && frame.contains(mouse))
-            session.time = info.times[static_cast<std::size_t>(info.nearestTime(frame.data(mouse).y))];
-        if (pictures)
-            drawPicture(session, title + ", up: " + timeTitle(info), cache.pictures[c], *profile, frame, across);
-        else
-            drawCurve(title, rangeOf(c), *profile, c, frame, across);
-        if (c + 1 == profile->values.size())
-            drawAxis(*ImGui::GetWindowDrawList(), frame, AxisSide::Bottom, across.title, across.unit, origin.x,
-                     origin.x + room.x);
-    }
+    if (usable) return ProfilePlots(context, cache, profile, query.over).draw();
+    if (const std::string failure = cache.answers.failure(); !failure.empty())
+        return drawHint("No values", failure.c_str());
+    if (!profile) return ImGui::TextDisabled("Reading...");
+    drawHint("The line has no length", "Place a corner, move the cross-hair, and place another.");
 }
 
 } // namespace tessera::app

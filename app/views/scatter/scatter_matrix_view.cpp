@@ -248,6 +248,46 @@ void drawLarge(ViewContext& context, ScatterCache& cache, ScatterMatrixView& vie
     draw.AddRect(frame.min, frame.max, plotColors().focus);
 }
 
+/// The plots below the diagonal and what stands above; a click on one enlarges it, or takes it back.
+void drawCells(ViewContext& context, ScatterCache& cache, ScatterMatrixView& view, const ScatterLayout& matrix,
+               const Enlarged& large, const StatisticsResult* result) {
+    for (std::size_t row = 0; row < matrix.size(); ++row)
+        for (std::size_t column = 0; column < matrix.size(); ++column) {
+            if (large.covers(matrix, column, row)) continue;
+            if (column > row) {
+                drawUpperCell(cache, matrix, column, row, result, cache.shownFocus);
+                continue;
+            }
+            const int joint = result ? jointIndex(result->statistics, column, row) : -1;
+            const PlotFrame frame = matrix.cell(column, row);
+            ImGui::PushID(static_cast<int>(row * matrix.size() + column));
+            const bool clicked =
+                drawPlot(context, cache, view, matrix, column, row, frame,
+                         joint >= 0 ? &cache.textures[static_cast<std::size_t>(joint)] : nullptr, result);
+            ImGui::PopID();
+            const bool shown = large.cells > 0 && large.column == column && large.row == row;
+            if (shown) ImGui::GetWindowDrawList()->AddRect(frame.min, frame.max, plotColors().focus);
+            if (clicked && shown)
+                view.enlarged.clear();
+            else if (clicked)
+                view.enlarged = {matrix.infos[column].name, matrix.infos[row].name};
+        }
+}
+
+/// The parameters compared, and the ranges they are shown over; not yet where.
+ScatterLayout matrixOf(const volume::DatasetInfo& info, const ScatterMatrixView& view) {
+    ScatterLayout matrix;
+    matrix.channels = chosenChannels(info, view.channels, kMostPlots);
+    for (const int channel : matrix.channels) {
+        matrix.infos.push_back(info.channel(channel));
+        matrix.whole.push_back(paddedRange(info.channelRange(matrix.infos.back()), 0.02));
+        const auto zoomed = view.zoom.find(matrix.infos.back().name);
+        const bool usable = zoomed != view.zoom.end() && zoomed->second.hi > zoomed->second.lo;
+        matrix.ranges.push_back(usable ? zoomed->second : matrix.whole.back());
+    }
+    return matrix;
+}
+
 } // namespace
 
 void drawScatterMatrixView(ViewContext& context, const std::string& pane, ScatterMatrixView& view) {
@@ -256,21 +296,12 @@ void drawScatterMatrixView(ViewContext& context, const std::string& pane, Scatte
         return;
     }
     const volume::DatasetInfo& info = context.numbers->info();
-    ScatterLayout matrix;
-    matrix.channels = chosenChannels(info, view.channels, kMostPlots);
+    ScatterLayout matrix = matrixOf(info, view);
     if (matrix.channels.empty()) {
         drawHint("No parameters to compare", "This data set has only labels.");
         return;
     }
     ScatterCache& cache = cacheOf<ScatterCache>(context, pane);
-    const std::vector<volume::Channel> all = info.channels();
-    for (int channel : matrix.channels) {
-        matrix.infos.push_back(all[static_cast<std::size_t>(channel)]);
-        matrix.whole.push_back(paddedRange(info.channelRange(matrix.infos.back()), 0.02));
-        const auto zoomed = view.zoom.find(matrix.infos.back().name);
-        const bool usable = zoomed != view.zoom.end() && zoomed->second.hi > zoomed->second.lo;
-        matrix.ranges.push_back(usable ? zoomed->second : matrix.whole.back());
-    }
     int bins = view.bins;
     if (matrix.size() == 1 && matrix.ranges == matrix.whole) { // pairs share their number of bins
         const HistogramBins own = histogramBins(info, matrix.channels.front(), matrix.ranges.front(), bins);
@@ -305,27 +336,7 @@ void drawScatterMatrixView(ViewContext& context, const std::string& pane, Scatte
         updateTextures(cache, result, view.logDensity, std::min(matrix.cellX, matrix.cellY),
                        large.cells > 0 ? jointIndex(result->statistics, large.column, large.row) : -1,
                        focusColor(context.session), meanColors(context.session, info, view.colorBy));
-    for (std::size_t row = 0; row < matrix.size(); ++row)
-        for (std::size_t column = 0; column < matrix.size(); ++column) {
-            if (large.covers(matrix, column, row)) continue;
-            if (column > row) {
-                drawUpperCell(cache, matrix, column, row, result.get(), cache.shownFocus);
-                continue;
-            }
-            const int joint = result ? jointIndex(result->statistics, column, row) : -1;
-            const PlotFrame frame = matrix.cell(column, row);
-            ImGui::PushID(static_cast<int>(row * matrix.size() + column));
-            const bool clicked =
-                drawPlot(context, cache, view, matrix, column, row, frame,
-                         joint >= 0 ? &cache.textures[static_cast<std::size_t>(joint)] : nullptr, result.get());
-            ImGui::PopID();
-            const bool shown = large.cells > 0 && large.column == column && large.row == row;
-            if (shown) ImGui::GetWindowDrawList()->AddRect(frame.min, frame.max, plotColors().focus);
-            if (clicked && shown)
-                view.enlarged.clear();
-            else if (clicked)
-                view.enlarged = {matrix.infos[column].name, matrix.infos[row].name};
-        }
+    drawCells(context, cache, view, matrix, large, result.get());
     if (large.cells > 0) drawLarge(context, cache, view, matrix, large, result.get());
     if (cache.drag.active) context.interacting = true;
 
