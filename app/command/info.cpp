@@ -3,7 +3,7 @@
 #include "app/data/import_options.h"
 #include "app/data/merge_layouts.h"
 #include "app/described/describe_cli.h"
-#include "app/session/session_file.h"
+#include "app/history/session_file.h"
 #include "app/user_files/import_memory.h"
 #include "codec/archive/archive.h"
 #include "codec/container/exactness.h"

@@ -1,7 +1,7 @@
 #include "app/command/picture_options.h"
 
 #include "app/data/import_options.h"
-#include "app/session/parameter_path.h"
+#include "app/history/parameter_path.h"
 #include "volume/base/error.h"
 
 #include <cstdio>

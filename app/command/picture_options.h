@@ -1,8 +1,8 @@
 #pragma once
 
 #include "app/data/open.h"
+#include "app/history/session_file.h"
 #include "app/platform/headless.h"
-#include "app/session/session_file.h"
 
 #include <CLI/CLI.hpp>
 #include <string>

@@ -1,7 +1,7 @@
 #include "app/command/command.h"
 #include "app/command/picture_options.h"
 #include "app/command/video.h"
-#include "app/session/animated_session.h"
+#include "app/history/animated_session.h"
 #include "volume/base/error.h"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "app/data/sources.h"
-#include "app/session/session_file.h"
+#include "app/history/session_file.h"
 #include "volume/base/progress.h"
 
 #include <memory>

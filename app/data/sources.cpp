@@ -1,6 +1,6 @@
 #include "app/data/sources.h"
 
-#include "app/session/session_file.h"
+#include "app/history/session_file.h"
 
 #include "codec/archive/archive.h"
 #include "codec/pack/unpack.h"

@@ -1,7 +1,7 @@
 #include "app/edits/compare.h"
 
-#include "app/session/edit_titles.h"
-#include "app/session/parameter_path.h"
+#include "app/history/edit_titles.h"
+#include "app/history/parameter_path.h"
 #include "app/session/session_json.h"
 #include "volume/base/error.h"
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "app/data/number_origin.h"
-#include "app/session/history.h"
+#include "app/history/history.h"
 #include "app/session/session.h"
 #include "app/ui/jobs.h"
 #include "app/ui/messages.h"

@@ -1,6 +1,6 @@
 #include "app/user_files/state_dir.h"
 
-#include "app/session/session_file.h"
+#include "app/history/session_file.h"
 #include "volume/base/error.h"
 
 #include <algorithm>

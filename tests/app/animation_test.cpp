@@ -1,8 +1,8 @@
-#include "app/session/animated_session.h"
-#include "app/session/edit_titles.h"
+#include "app/history/animated_session.h"
+#include "app/history/edit_titles.h"
 
-#include "app/session/history.h"
-#include "app/session/parameter_path.h"
+#include "app/history/history.h"
+#include "app/history/parameter_path.h"
 #include "app/session/session.h"
 
 #include <cmath>

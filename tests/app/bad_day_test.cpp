@@ -1,6 +1,6 @@
 #include "app/data/open.h"
 #include "app/edits/compare.h"
-#include "app/session/animated_session.h"
+#include "app/history/animated_session.h"
 #include "volume/base/error.h"
 
 #include <gtest/gtest.h>

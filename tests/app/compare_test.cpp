@@ -1,6 +1,6 @@
 #include "app/edits/compare.h"
 
-#include "app/session/history.h"
+#include "app/history/history.h"
 #include "volume/base/error.h"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
+#include "app/history/session_file.h"
 #include "app/platform/headless.h"
-#include "app/session/session_file.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 #include "app/data/open.h"
-#include "app/session/session_file.h"
+#include "app/history/session_file.h"
 #include "codec/pack/pack.h"
 #include "tests/app/beacon.h"
 

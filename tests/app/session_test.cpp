@@ -1,5 +1,5 @@
-#include "app/session/history.h"
-#include "app/session/session_file.h"
+#include "app/history/history.h"
+#include "app/history/session_file.h"
 #include "randomise.h"
 #include "volume/base/error.h"
 

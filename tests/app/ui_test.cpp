@@ -1,5 +1,5 @@
+#include "app/history/history.h"
 #include "app/platform/input_queue.h"
-#include "app/session/history.h"
 #include "app/ui/commands.h"
 #include "app/ui/dock.h"
 #include "app/ui/parameter_widget.h"

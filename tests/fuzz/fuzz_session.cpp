@@ -1,5 +1,5 @@
 // Any bytes as a session file: an Error or a session whose history can be walked and which saves and loads again.
-#include "app/session/session_file.h"
+#include "app/history/session_file.h"
 #include "volume/base/error.h"
 
 #include <cstdint>

@@ -1,10 +1,10 @@
 #include "app/views/compare/compare_menu.h"
 
+#include "app/history/edit_titles.h"
+#include "app/history/parameter_path.h"
 #include "app/pane/figure.h"
 #include "app/pane/plot.h"
 #include "app/pane/view_parts.h"
-#include "app/session/edit_titles.h"
-#include "app/session/parameter_path.h"
 #include "app/session/session_json.h"
 #include "app/ui/keys.h"
 #include "app/ui/parameter_widget.h"

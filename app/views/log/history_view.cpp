@@ -1,5 +1,5 @@
+#include "app/history/history.h"
 #include "app/pane/view_context.h"
-#include "app/session/history.h"
 #include "app/ui/theme.h"
 
 #include <imgui.h>

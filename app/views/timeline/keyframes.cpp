@@ -1,10 +1,10 @@
 #include "app/views/timeline/keyframes.h"
 
+#include "app/history/animated_session.h"
+#include "app/history/edit_titles.h"
+#include "app/history/parameter_path.h"
 #include "app/pane/plot.h"
 #include "app/pane/view_parts.h"
-#include "app/session/animated_session.h"
-#include "app/session/edit_titles.h"
-#include "app/session/parameter_path.h"
 #include "app/session/session_json.h"
 #include "app/ui/ticks.h"
 

@@ -1,6 +1,6 @@
 #include "app/views/timeline/playback.h"
 
-#include "app/session/animated_session.h"
+#include "app/history/animated_session.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "app/session/session_file.h"
+#include "app/history/session_file.h"
 
 #include "volume/base/error.h"
 

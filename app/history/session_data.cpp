@@ -1,4 +1,4 @@
-#include "app/session/session_file.h"
+#include "app/history/session_file.h"
 #include "volume/import/files/named_files.h"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
-#include "app/session/animated_session.h"
+#include "app/history/animated_session.h"
 
-#include "app/session/parameter_path.h"
+#include "app/history/parameter_path.h"
 #include "app/session/session.h"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
-#include "app/session/edit_titles.h"
+#include "app/history/edit_titles.h"
 
 #include "app/described/key_words.h"
-#include "app/session/parameter_path.h"
+#include "app/history/parameter_path.h"
 #include "app/session/session.h"
 
 #include <algorithm>

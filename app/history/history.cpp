@@ -1,7 +1,7 @@
-#include "app/session/history.h"
+#include "app/history/history.h"
 
-#include "app/session/animated_session.h"
-#include "app/session/edit_titles.h"
+#include "app/history/animated_session.h"
+#include "app/history/edit_titles.h"
 #include "volume/base/error.h"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "app/session/history.h"
+#include "app/history/history.h"
 #include "app/session/session.h"
 
 #include <filesystem>

@@ -1,4 +1,4 @@
-#include "app/session/parameter_path.h"
+#include "app/history/parameter_path.h"
 
 #include "app/session/session.h"
 #include "volume/base/error.h"
