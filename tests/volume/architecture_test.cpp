@@ -136,6 +136,56 @@ TEST(Architecture, FilesThatTheRoomsPageNamesExist) {
     EXPECT_GE(named, 10);
 }
 
+/// A file without its ending: X.h, X.cpp and X_impl.h (the inside of the class of X.h) are one unit.
+std::string unitOf(const std::string& file) {
+    const std::string stem = file.substr(0, file.rfind('.'));
+    return stem.ends_with("_impl") ? stem.substr(0, stem.size() - 5) : stem;
+}
+
+/// Finds a way from a unit back to itself, by depth-first search; "" if there is none.
+std::string cycleFrom(const std::string& unit, const std::map<std::string, std::set<std::string>>& uses,
+                      std::map<std::string, int>& seen, std::vector<std::string>& path) {
+    enum { Open = 1, Done = 2 };
+    seen[unit] = Open;
+    path.push_back(unit);
+    if (const auto found = uses.find(unit); found != uses.end())
+        for (const std::string& next : found->second) {
+            if (seen[next] == Done) continue;
+            if (seen[next] == Open) {
+                std::string way;
+                for (auto at = std::ranges::find(path, next); at != path.end(); ++at) way += *at + " -> ";
+                return way + next;
+            }
+            if (std::string way = cycleFrom(next, uses, seen, path); !way.empty()) return way;
+        }
+    path.pop_back();
+    seen[unit] = Done;
+    return {};
+}
+
+std::string anyCycle(const std::map<std::string, std::set<std::string>>& uses) {
+    std::map<std::string, int> seen;
+    for (const auto& [unit, used] : uses) {
+        std::vector<std::string> path;
+        if (seen[unit] != 0) continue;
+        if (std::string way = cycleFrom(unit, uses, seen, path); !way.empty()) return way;
+    }
+    return {};
+}
+
+TEST(Architecture, NoFilesIncludeEachOther) {
+    std::map<std::string, std::set<std::string>> uses;
+    for (const std::string part : {"volume", "codec", "vis", "app"})
+        for (const std::string& file : filesOf(part, {".h", ".cpp", ".inc"}))
+            for (const std::string& named : includesOf(textOf(kRoot / file)))
+                if (named[0] == '"' && unitOf(named.substr(1)) != unitOf(file))
+                    uses[unitOf(file)].insert(unitOf(named.substr(1)));
+    EXPECT_GT(uses.size(), 300u);
+    EXPECT_EQ(anyCycle(uses), "");
+    EXPECT_EQ(anyCycle({{"a", {"b", "c"}}, {"b", {"c"}}, {"c", {}}}), "");
+    EXPECT_EQ(anyCycle({{"a", {"b"}}, {"b", {"c"}}, {"c", {"b"}}}), "b -> c -> b");
+}
+
 TEST(Architecture, AWrongIncludeIsNoticed) {
     const std::vector<std::string> rooms = roomsInOrder();
     EXPECT_TRUE(mayInclude(rooms, "volume/field", "volume/base"));

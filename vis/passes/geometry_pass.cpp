@@ -4,6 +4,7 @@
 #include "vis/raycast/clip_uniforms.h"
 #include "vis/raycast/lens_uniforms.h"
 #include "vis/raycast/light_uniforms.h"
+#include "vis/raycast/look_bits.h"
 
 #include <algorithm>
 #include <glm/gtc/matrix_transform.hpp>

@@ -2,8 +2,8 @@
 
 #include "vis/gl/driver.h"
 #include "vis/gl/program_cache.h"
+#include "vis/passes/frame_request.h"
 #include "vis/passes/geometry_pass.h"
-#include "vis/passes/renderer.h"
 #include "vis/raycast/brush_uniforms.h"
 #include "vis/raycast/look_uniforms.h"
 #include "vis/raycast/ray_plan.h"

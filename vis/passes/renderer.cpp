@@ -43,6 +43,10 @@ bool liesAtCursor(const Scene& scene) {
 
 } // namespace
 
+void ViewTargetDeleter::operator()(ViewTarget* target) const {
+    delete target;
+}
+
 Renderer::Renderer(const RendererOptions& options)
     : impl_(std::make_unique<Impl>(options, options.driver ? *options.driver : currentDriver())) {}
 Renderer::~Renderer() = default;

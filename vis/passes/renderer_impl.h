@@ -3,6 +3,7 @@
 #include "vis/bricks/residency.h"
 #include "vis/demand/box_lines.h"
 #include "vis/passes/render_tools.h"
+#include "vis/passes/renderer.h"
 #include "vis/passes/view_target.h"
 
 /// Inside the renderer: renderer.cpp has what is public, frame.cpp draws as much as there is time for, ray_pass.cpp

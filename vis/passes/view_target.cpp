@@ -21,8 +21,4 @@ void ViewTarget::redraw(const Tile& part) {
     geometry.forget();
 }
 
-void ViewTargetDeleter::operator()(ViewTarget* target) const {
-    delete target;
-}
-
 } // namespace tessera::vis

@@ -9,14 +9,6 @@
 
 namespace tessera::vis {
 
-int lookBits(const Look& look) {
-    const auto bit = [](const auto& part, LookFeature name) { return part ? bitOf(name) : 0; };
-    return bit(look.tone, LookFeature::Tone) | bit(look.boundary, LookFeature::Boundary) |
-           bit(look.silhouette, LookFeature::Silhouette) | bit(look.distance, LookFeature::Distance) |
-           bit(look.cartoon, LookFeature::Cartoon) | bit(look.charcoal, LookFeature::Charcoal) |
-           bit(look.wire, LookFeature::Wire);
-}
-
 std::vector<const Look*> looksOf(const RayPlan& plan, const Scene& scene) {
     std::vector<const Look*> looks;
     for (const RayLayer& layer : plan.layers)

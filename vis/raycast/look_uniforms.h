@@ -6,9 +6,6 @@
 /// Looks of a plan's layers as input of lib/draw_look.glsl.
 namespace tessera::vis {
 
-/// What a look does, as bits of LookFeature.
-int lookBits(const Look& look);
-
 /// Sets everything but the texture, which goes to `unit`. `looks`: of each layer, null where it has none. `size`:
 /// pixels of the picture at rest.
 void setLookUniforms(const Program& program, const std::vector<const Look*>& looks, const Scene& scene,

@@ -1,7 +1,8 @@
 #include "vis/raycast/ray_plan.h"
 
+#include "vis/optics/surface_light.h"
 #include "vis/raycast/lens_uniforms.h"
-#include "vis/raycast/look_uniforms.h"
+#include "vis/raycast/look_bits.h"
 #include "volume/bricks/parts_bricks.h"
 #include "volume/reconstruct/part_choice.h"
 

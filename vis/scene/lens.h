@@ -1,6 +1,7 @@
 #pragma once
 
 #include "vis/scene/camera.h"
+#include "vis/scene/lens_shape.h"
 
 #include <glm/mat3x3.hpp>
 #include <string>
@@ -10,10 +11,6 @@
 /// lenses for visualization, 2017). A lens acts on the layers that belong to no lens and on those of the lenses before
 /// it in the list; layers that belong to it are drawn inside it alone. Twins: vis/shaders/lib/lens.glsl, lenses.glsl.
 namespace tessera::vis {
-
-/// A disc faces the viewer and reaches through everything that it covers in the picture.
-enum class LensShape { Sphere, Box, Cylinder, Disc };
-inline constexpr std::string_view kLensShapeNames[] = {"sphere", "box", "cylinder", "disc"};
 
 /// What happens inside to the layers below: they give way (to the lens's own layers, or to nothing), stay while all
 /// else goes, become denser, fainter and greyer, larger, or show the brushes (outside all counts as focus then).

@@ -1,11 +1,15 @@
 #pragma once
 
-#include "vis/scene/lens.h"
-
 #include <functional>
+#include <glm/vec3.hpp>
+#include <string_view>
 
 /// What there is to know of each shape of lens. Places are those in the lens (PlacedLens::toUnit).
 namespace tessera::vis {
+
+/// A disc faces the viewer and reaches through everything that it covers in the picture.
+enum class LensShape { Sphere, Box, Cylinder, Disc };
+inline constexpr std::string_view kLensShapeNames[] = {"sphere", "box", "cylinder", "disc"};
 
 /// 0 in the middle, 1 on the outline; twin: lensRadius in vis/shaders/lib/lens.glsl.
 double lensRadius(LensShape shape, glm::dvec3 place);

@@ -1,0 +1,10 @@
+#pragma once
+
+#include "vis/scene/look.h"
+
+namespace tessera::vis {
+
+/// What a look does, as bits of LookFeature (vis/gl/shader_constants.h).
+int lookBits(const Look& look);
+
+} // namespace tessera::vis
