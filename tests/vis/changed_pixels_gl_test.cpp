@@ -16,7 +16,7 @@ Scene draggedScene(bool perspective) {
     auto line = std::make_shared<Geometry>();
     line->lines.positions = {{0, 0, 0}, {18, 16, 24}};
     line->lines.ends = {2};
-    scene.geometry = {{.geometry = line, .lineWidth = 6}};
+    scene.geometry = {{.geometry = line, .style = {.lineWidth = 6}}};
     return scene;
 }
 
