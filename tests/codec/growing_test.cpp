@@ -284,7 +284,7 @@ TEST(Growing, WhatDoesNotContinueAnArchiveIsRefused) {
     refused("the type", [](auto& d) { d.info.parameters[0].type = ScalarType::I32; });
     refused("the unit", [](auto& d) { d.info.parameters[2].unit = "Pa"; });
     refused("components", [](auto& d) { d.info.parameters[1].components = 3; });
-    refused("labels", [](auto& d) { d.info.parameters[3].categorical = false; });
+    refused("is a label in one", [](auto& d) { d.info.parameters[3].categorical = false; });
     refused("no parameter", [](auto& d) { d.info.parameters[0].name = "N2"; });
     refused("no parameter n", [](auto& d) { d.info.parameters.erase(d.info.parameters.begin() + 2); });
     refused("at all times", [](auto& d) {

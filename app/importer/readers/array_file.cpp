@@ -227,7 +227,7 @@ void openArrays(std::vector<StoredArray> arrays, Source& source) {
     }
     if (left > 0)
         source.note =
-            std::to_string(left) + (left == 1 ? " array" : " arrays") + " with another size than the grid are ignored";
+            std::to_string(left) + (left == 1 ? " array" : " arrays") + " of another size than the grid ignored";
     source.read = [chosen, grid](std::size_t time) -> vtkSmartPointer<vtkDataObject> {
         vtkSmartPointer<vtkDataSet> data = makeGrid(grid);
         for (const Chosen& one : *chosen) {
