@@ -29,13 +29,13 @@ TEST(TailOpacity, SharesCountAbsentPlacesToo) {
 }
 
 TEST(TailOpacity, ALongTailIsShownAndTheBulkIsClear) {
-    // Nearly all values at 10..19 of 100; few up to the end.
-    const auto count = histogram([](int bin) { return bin >= 10 && bin < 20 ? 1000 : bin >= 20 ? 20 : 1; });
+    // Nearly all values at 10..19 of 100; few below, where the tail is short, and up to the end.
+    const auto count = histogram([](int bin) { return bin >= 10 && bin < 20 ? 1000 : 20; });
     const auto curve = tailOpacity(count, 0.1);
     for (const double x : {0.0, 0.05, 0.12, 0.19}) EXPECT_EQ(at(curve, x), 0) << x;
     EXPECT_GT(at(curve, 0.9), 0.4);
     EXPECT_FLOAT_EQ(float(at(curve, 1.0)), 0.8f);
-    const double seen = seenShare(count, 11610, curve);
+    const double seen = seenShare(count, 11800, curve);
     EXPECT_GT(seen, 0.02);
     EXPECT_LE(seen, 0.1);
     // Mirrored, it is the other end.
@@ -43,6 +43,13 @@ TEST(TailOpacity, ALongTailIsShownAndTheBulkIsClear) {
     std::reverse(mirrored.begin(), mirrored.end());
     const auto other = tailOpacity(mirrored, 0.1);
     for (const double x : {0.0, 0.1, 0.3, 0.5, 0.85, 1.0}) EXPECT_NEAR(at(other, 1 - x), at(curve, x), 0.02) << x;
+}
+
+// Half of the values are the bulk, whatever share is asked for.
+TEST(TailOpacity, TheBulkStaysClear) {
+    const auto curve = tailOpacity(histogram([](int) { return 10; }), 0.9);
+    for (const double x : {0.0, 0.2, 0.45, 0.5}) EXPECT_EQ(at(curve, x), 0) << x;
+    EXPECT_NEAR(at(curve, 0.75), 0.4, 0.01);
 }
 
 TEST(TailOpacity, TwoTailsAlikeAreBothShown) {
