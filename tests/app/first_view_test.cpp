@@ -64,6 +64,52 @@ TEST(FirstView, TheFirstLayersSurroundingsAreClear) {
     EXPECT_EQ(shown(*source, {"rest", "air"}).transfer, untouched.transfer);
 }
 
+/// One computed parameter "f" with a unit on the same cube, values by formula.
+std::shared_ptr<const volume::BrickSource> computed(const std::string& unit, Range range, auto value) {
+    volume::Dataset data;
+    volume::DatasetInfo& info = data.info;
+    info.lattice.size = glm::ivec3(kSide);
+    info.lattice.spacing = glm::dvec3(1);
+    info.bounds = {glm::dvec3(0), glm::dvec3(kSide - 1)};
+    volume::Parameter& parameter = info.parameters.emplace_back();
+    parameter.name = "f";
+    parameter.unit = unit;
+    parameter.ranges = {range};
+    data.read = volume::FrameReader([lattice = info.lattice, value](int, int, int) {
+        volume::Field field = volume::makeField(lattice, volume::ScalarType::F32);
+        std::size_t i = 0;
+        for (int z = 0; z < kSide; ++z)
+            for (int y = 0; y < kSide; ++y)
+                for (int x = 0; x < kSide; ++x, ++i) field.as<float>()[i] = float(value(x, y, z));
+        return field;
+    });
+    return volume::makeMemorySource(std::move(data), {});
+}
+
+TEST(FirstView, AComputedFieldShowsWhatIsRare) {
+    // 40 nearly everywhere, up to 94 on one side: seen as a block by a straight curve.
+    const auto source = computed("", {1, 94}, [](int x, int, int z) { return z == 0 ? 50 + 4 * x : z == 1 ? 1 : 40; });
+    const Session session = shown(*source, {"f"});
+    const auto& function = session.transfer.at("f");
+    EXPECT_EQ(vis::curveAt(function.opacity, (40.0 - 1) / 93), 0);
+    EXPECT_NEAR(vis::curveAt(function.opacity, 1), 0.8, 1e-6);
+    EXPECT_EQ(function.colormap, defaultSession(source->info(), {}).transfer.at("f").colormap);
+    // Where little is seen anyway the curve stays.
+    const auto rare = computed("", {1, 94}, [](int x, int, int z) { return z == 0 ? 50 + 4 * x : 1; });
+    EXPECT_EQ(shown(*rare, {"f"}).transfer, defaultSession(rare->info(), {}).transfer);
+}
+
+TEST(FirstView, ValuesOfBothSignsHaveDivergingColoursAboutZero) {
+    const auto value = [](int x, int, int) { return x - 4; }; // -4 to 7
+    const auto function = shown(*computed("m", {-4, 7}, value), {"f"}).transfer.at("f");
+    EXPECT_EQ(function.colormap, vis::divergingFunction().colormap);
+    EXPECT_TRUE(function.aboutZero);
+    EXPECT_EQ(vis::curveAt(function.opacity, 0.5), 0);
+    EXPECT_NEAR(vis::curveAt(function.opacity, 0), vis::curveAt(function.opacity, 1), 1e-6);
+    // The sign of a temperature in degrees has no meaning.
+    EXPECT_FALSE(shown(*computed("degC", {-4, 7}, value), {"f"}).transfer.at("f").aboutZero);
+}
+
 TEST(FirstView, AnOpacityThatSomebodyMadeStays) {
     const auto source = bodies();
     Session session = defaultSession(source->info(), {});
