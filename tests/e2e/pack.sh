@@ -215,7 +215,8 @@ for what in "noise --lattice cc" "noise --lattice bcc" "noise --lattice bcc --re
     data=${what%% *} how=${what#* }
     # shellcheck disable=SC2086
     check "too little memory, $what" 2 "$tessera" pack "$data.json" -o noise.tsr $how --memory 12
-    least=$(sed 's/.*takes about \([0-9]*\) MB.*/\1/' err.txt)
+    least=$(sed -n 's/.*needs about \([0-9]*\) MB.*/\1/p' err.txt)
+    [ -n "$least" ] || die "no least memory is said, $what"
     [ "$data" = tall ] && more=8 || more=20
     for memory in $((least + 1)) $((least + more)); do
         # shellcheck disable=SC2086
