@@ -1,6 +1,7 @@
 #include "volume/derived/derived.h"
 
 #include "volume/base/error.h"
+#include "volume/bricks/sample_stats.h"
 #include "volume/derived/derived_bricks.h"
 #include "volume/derived/derived_names.h"
 #include "volume/sources/memory_source.h"
@@ -45,16 +46,7 @@ public:
             const std::lock_guard lock(statsMutex_);
             if (const auto found = stats_.find(fine); found != stats_.end()) return found->second;
         }
-        const BrickSamples samples = read(fine);
-        BrickStats stats{std::numeric_limits<float>::infinity(), -std::numeric_limits<float>::infinity(), 0};
-        std::size_t present = 0;
-        for (std::size_t i = 0; i < samples.values.size(); ++i) {
-            if (!samples.isPresent(i)) continue;
-            ++present;
-            stats.min = std::min(stats.min, samples.values[i]);
-            stats.max = std::max(stats.max, samples.values[i]);
-        }
-        if (!samples.values.empty()) stats.presentFraction = float(double(present) / double(samples.values.size()));
+        const BrickStats stats = statsOfSamples(read(fine));
         const std::lock_guard lock(statsMutex_);
         return stats_.try_emplace(fine, stats).first->second;
     }

@@ -3,6 +3,7 @@
 #include "volume/base/error.h"
 #include "volume/bricks/brick_cache.h"
 #include "volume/bricks/sample_position.h"
+#include "volume/bricks/sample_stats.h"
 #include "volume/reconstruct/probe.h"
 
 #include <algorithm>
@@ -55,19 +56,6 @@ bool samePlaces(const BrickSource& source, const BrickSource& other) {
     BrickGrid a = other.grid();
     a.brickSize = source.grid().brickSize, a.levels = source.grid().levels, a.phase = source.grid().phase;
     return sameSamples(a, source.grid(), lengthScale(source.info().lengthUnit, other.info().lengthUnit));
-}
-
-BrickStats statsOfSamples(const BrickSamples& samples) {
-    BrickStats stats{std::numeric_limits<float>::infinity(), -std::numeric_limits<float>::infinity(), 0};
-    std::size_t present = 0;
-    for (std::size_t i = 0; i < samples.values.size(); ++i) {
-        if (!samples.isPresent(i)) continue;
-        ++present;
-        stats.min = std::min(stats.min, samples.values[i]);
-        stats.max = std::max(stats.max, samples.values[i]);
-    }
-    if (!samples.values.empty()) stats.presentFraction = float(double(present) / double(samples.values.size()));
-    return stats;
 }
 
 BrickSamples absentBrick(const BrickGrid& grid, const BrickKey& key) {
