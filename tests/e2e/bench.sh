@@ -15,4 +15,4 @@ cp "$tessera" alone/tessera
 check "no tessera-bench" 2 alone/tessera bench lattice
 say "tessera-bench" err.txt
 check "the rest works" 0 alone/tessera --version
-[ "$failures" -eq 0 ]
+finish

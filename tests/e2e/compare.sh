@@ -71,4 +71,4 @@ PATH=$work/bin:$PATH replay --video out.mp4 --fps 2 --out more || die "replay to
 [ "$(cat out.mp4)" = video ] || die "no video"
 grep -q -- '-framerate 2 -i more/frame-%04d.png' arguments || die "ffmpeg got: $(cat arguments)"
 [ "$(ls more | wc -l)" = 5 ] || die "frames of the video: $(ls more)"
-exit 0
+finish

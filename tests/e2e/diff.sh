@@ -51,4 +51,4 @@ check "a wrong one there" 2 "$tessera" stats coarse.tsr --derive "dT = T - at(T,
 say "dT: position 11: a time is expected here" err.txt
 check "no formula" 1 "$tessera" unpack coarse.tsr --derive "d" -o d.raw
 
-exit $((failures > 0))
+finish

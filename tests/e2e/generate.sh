@@ -54,4 +54,4 @@ if code != 130 or left:
     sys.exit("FAILED: interrupted generate ended with %d and left %s" % (code, left))
 EOF
 
-[ $failures = 0 ]
+finish

@@ -51,3 +51,4 @@ data=${TESSERA_DATA:-$TESSERA_TEST_DATA}/fuel-cell
 "$tessera" pack "$data/unstructured/air_260.vtu" "$data/unstructured/fuel_260.vtu" -o mesh.tsr --grid 20x20x40 > /dev/null ||
     die "pack meshes"
 "$tessera" info mesh.tsr | grep -q 'air' || die "regions are named"
+finish

@@ -36,4 +36,4 @@ done
 "$tessera" --help | sed -n '/^Subcommands:/,$ s/^  \([a-z]\+\) .*/\1/p' > commands
 [ "$(wc -l < commands)" -gt 10 ] || fail "tessera --help names few commands"
 while read -r command; do say "^\.B $command\$" "$moved/share/man/man1/tessera.1"; done < commands
-exit "$failures"
+finish

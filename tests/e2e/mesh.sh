@@ -26,8 +26,10 @@ if python3 -c "import vtk" 2>/dev/null; then
     python3 - <<'PYTHON' || fail "VTK reads the files otherwise"
 import vtk
 counts = set()
+stl = vtk.vtkSTLReader()
+stl.MergingOff()  # merged corners make some of the smallest triangles none, which VTK 9.3 leaves out
 for reader, name in ((vtk.vtkPLYReader(), "surface.ply"), (vtk.vtkXMLPolyDataReader(), "surface.vtp"),
-                     (vtk.vtkOBJReader(), "surface.obj"), (vtk.vtkSTLReader(), "surface.stl")):
+                     (vtk.vtkOBJReader(), "surface.obj"), (stl, "surface.stl")):
     reader.SetFileName(name)
     reader.Update()
     counts.add(reader.GetOutput().GetNumberOfPolys())
@@ -35,4 +37,4 @@ assert len(counts) == 1 and min(counts) > 1000, counts
 PYTHON
 fi
 
-exit $((failures > 0))
+finish

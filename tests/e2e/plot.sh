@@ -55,3 +55,4 @@ grep -v '^#' cell.csv | tail -1 | grep -q '^0.26,5432.*,0.4$' || die "the last s
 "$tessera" plot "$data/grid/small.pvd" --x time --y 'mean(T)' --y 'max(T)' --region region=1 --over-time \
     "$data/history.csv" -o T.csv || die "mean T over time"
 head -3 T.csv | grep -q '^time \[s\],mean(T) \[K\],max(T) \[K\]$' || die "names and units: $(head -2 T.csv)"
+finish

@@ -98,3 +98,4 @@ printf '#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 4 +X 8\nxx' >torn.hdr
 "$tessera" render evening -o torn.png --view volume --size 160x120 --set "/lighting/environment/picture=\"$PWD/torn.hdr\"" 2>err || die "a torn light picture ends the program"
 [ "$(grep -c 'torn.hdr' err)" = 1 ] || die "a torn light picture is not said once"
 echo "render: all good"
+finish

@@ -38,4 +38,4 @@ for words in "--of nothing" "--by T" "--along w" "--line 1,2,3" "--balance nothi
     [ "$(wc -l < err.txt)" -eq 1 ] || fail "not one line: $words: $(cat err.txt)"
 done
 check "a weight that is none" 1 "$tessera" stats cell.raw --along z --weight heavy
-[ "$failures" -eq 0 ]
+finish
