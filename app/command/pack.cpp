@@ -116,7 +116,7 @@ std::string exactnessOf(const std::string& path) {
     return codec::exactnessText(codec::Archive(path).metadata());
 }
 
-nlohmann::json toJson(const codec::PackSummary& summary, const std::string& path) {
+nlohmann::json reportOf(const codec::PackSummary& summary, const std::string& path) {
     const auto stage = [](const char* name, double seconds, std::uint64_t bytes) {
         return nlohmann::json{{"name", name}, {"seconds", seconds}, {"bytes", bytes}};
     };
@@ -157,7 +157,7 @@ void run(PackRequest request) {
                                            ? codec::append(data, request.output, request.options.memoryMb, rest, before)
                                            : codec::pack(data, request.options, request.output, rest, before);
     if (request.json || request.progressJson) {
-        std::printf("%s\n", toJson(summary, request.output).dump(request.progressJson ? -1 : 1).c_str());
+        std::printf("%s\n", reportOf(summary, request.output).dump(request.progressJson ? -1 : 1).c_str());
         return;
     }
     for (const std::string& note : summary.notes) std::fprintf(stderr, "tessera: %s\n", note.c_str());

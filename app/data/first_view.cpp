@@ -101,13 +101,13 @@ std::optional<double> backgroundShare(const volume::BrickSource& source, int cha
 
 namespace {
 
-constexpr int kBins = 256;
+constexpr int kViewBins = 256;
 /// Of all places, how much should be seen at first: less is lost in the box, more hides what lies behind.
 constexpr double kLeastSeen = 0.02, kMostSeen = 0.2;
 
 /// How often values occur at a coarse level, over `range`, and how many places there are.
 struct Occurrence {
-    std::vector<std::uint64_t> count = std::vector<std::uint64_t>(kBins, 0);
+    std::vector<std::uint64_t> count = std::vector<std::uint64_t>(kViewBins, 0);
     std::uint64_t places = 0;
 };
 
@@ -117,7 +117,7 @@ Occurrence occurrenceOf(const volume::BrickSource& source, int channel, int time
     const auto all = [](glm::ivec3, glm::ivec3) { return true; };
     forSamples(source, channel, time, level, all, [&](glm::ivec3, float value) {
         const double share = (value - range.lo) / (range.hi - range.lo);
-        ++out.count[static_cast<std::size_t>(std::clamp(share * kBins, 0.0, kBins - 1.0))];
+        ++out.count[static_cast<std::size_t>(std::clamp(share * kViewBins, 0.0, kViewBins - 1.0))];
     });
     const glm::i64vec3 size(source.grid().levelSamples(level));
     out.places = static_cast<std::uint64_t>(size.x * size.y * size.z);

@@ -16,7 +16,7 @@ namespace {
 constexpr double kLeft = 62, kBottom = 42, kTop = 22, kRight = 12;
 constexpr double kWidth = kLeft + kFigurePlot.x + kRight, kHeight = kTop + kFigurePlot.y + kBottom;
 
-std::string number(double value) {
+std::string twoDecimals(double value) {
     char text[32];
     std::snprintf(text, sizeof text, "%.2f", value);
     return text;
@@ -84,17 +84,19 @@ private:
     double py(double value) const { return place(panel_.y.range, value, y0_, y1_); }
 
     void text(double x, double y, const std::string& what, const char* anchor, double turn = 0) {
-        out_ += "<text x=\"" + number(x) + "\" y=\"" + number(y) + "\" text-anchor=\"" + anchor + "\"";
-        if (turn != 0) out_ += " transform=\"rotate(" + number(turn) + " " + number(x) + " " + number(y) + ")\"";
+        out_ += "<text x=\"" + twoDecimals(x) + "\" y=\"" + twoDecimals(y) + "\" text-anchor=\"" + anchor + "\"";
+        if (turn != 0)
+            out_ += " transform=\"rotate(" + twoDecimals(turn) + " " + twoDecimals(x) + " " + twoDecimals(y) + ")\"";
         out_ += ">" + escaped(what) + "</text>\n";
     }
     void stroke(double ax, double ay, double bx, double by, const char* color) {
-        out_ += "<line x1=\"" + number(ax) + "\" y1=\"" + number(ay) + "\" x2=\"" + number(bx) + "\" y2=\"" +
-                number(by) + "\" stroke=\"" + color + "\" stroke-width=\"0.7\"/>\n";
+        out_ += "<line x1=\"" + twoDecimals(ax) + "\" y1=\"" + twoDecimals(ay) + "\" x2=\"" + twoDecimals(bx) +
+                "\" y2=\"" + twoDecimals(by) + "\" stroke=\"" + color + "\" stroke-width=\"0.7\"/>\n";
     }
     void axes() {
-        out_ += "<rect x=\"" + number(x0_) + "\" y=\"" + number(y1_) + "\" width=\"" + number(x1_ - x0_) +
-                "\" height=\"" + number(y0_ - y1_) + "\" fill=\"none\" stroke=\"#444\" stroke-width=\"0.7\"/>\n";
+        out_ += "<rect x=\"" + twoDecimals(x0_) + "\" y=\"" + twoDecimals(y1_) + "\" width=\"" +
+                twoDecimals(x1_ - x0_) + "\" height=\"" + twoDecimals(y0_ - y1_) +
+                "\" fill=\"none\" stroke=\"#444\" stroke-width=\"0.7\"/>\n";
         const TickLabels across = tickLabels(panel_.x.range, 5), up = tickLabels(panel_.y.range, 5);
         for (std::size_t i = 0; i < across.values.size(); ++i) {
             stroke(px(across.values[i]), y0_, px(across.values[i]), y0_ + 4, "#444");
@@ -116,15 +118,15 @@ private:
     void haloed(const std::vector<glm::dvec2>& points) {
         std::string path;
         for (const glm::dvec2& point : points)
-            path += (path.empty() ? "M" : "L") + number(px(point.x)) + " " + number(py(point.y));
+            path += (path.empty() ? "M" : "L") + twoDecimals(px(point.x)) + " " + twoDecimals(py(point.y));
         for (const char* stroke : {"stroke=\"white\" stroke-opacity=\"0.5\" stroke-width=\"1.8\"",
                                    "class=\"contour\" stroke=\"#111\" stroke-width=\"0.7\""})
             out_ += "<path d=\"" + path + "\" fill=\"none\" " + stroke + "/>\n";
     }
     void label(const FigureLabel& label) {
-        const std::string x = number(px(label.at.x)), y = number(py(label.at.y));
+        const std::string x = twoDecimals(px(label.at.x)), y = twoDecimals(py(label.at.y));
         out_ += "<text class=\"contour\" x=\"" + x + "\" y=\"" + y + "\" dy=\"0.35em\" text-anchor=\"middle\"" +
-                " transform=\"rotate(" + number(label.angle) + " " + x + " " + y +
+                " transform=\"rotate(" + twoDecimals(label.angle) + " " + x + " " + y +
                 ")\" stroke=\"white\" stroke-opacity=\"0.5\" stroke-width=\"1.8\" paint-order=\"stroke\">" +
                 escaped(label.text) + "</text>\n";
     }
@@ -134,9 +136,9 @@ private:
         for (const glm::dvec2& bar : series.points) {
             if (!(bar.y > 0)) continue;
             const double top = std::max(py(bar.y), y1_);
-            out_ += "<rect x=\"" + number(px(bar.x) - half) + "\" y=\"" + number(top) + "\" width=\"" +
-                    number(2 * half) + "\" height=\"" + number(y0_ - top) + "\" fill=\"" + colorOf(series.color) +
-                    "\"/>\n";
+            out_ += "<rect x=\"" + twoDecimals(px(bar.x) - half) + "\" y=\"" + twoDecimals(top) + "\" width=\"" +
+                    twoDecimals(2 * half) + "\" height=\"" + twoDecimals(y0_ - top) + "\" fill=\"" +
+                    colorOf(series.color) + "\"/>\n";
         }
     }
     void line(const FigureSeries& series) {
@@ -144,7 +146,7 @@ private:
         bool down = false;
         for (const glm::dvec2& point : series.points) {
             const bool is = std::isfinite(point.x) && std::isfinite(point.y);
-            if (is) path += (down ? "L" : "M") + number(px(point.x)) + " " + number(py(point.y));
+            if (is) path += (down ? "L" : "M") + twoDecimals(px(point.x)) + " " + twoDecimals(py(point.y));
             down = is;
         }
         out_ +=
@@ -154,15 +156,15 @@ private:
     }
     void ring(const glm::dvec2& at, double radius, const std::string& fill, const std::string& stroke) {
         if (!std::isfinite(at.x) || !std::isfinite(at.y)) return;
-        out_ += "<circle cx=\"" + number(px(at.x)) + "\" cy=\"" + number(py(at.y)) + "\" r=\"" + number(radius) +
-                "\" fill=\"" + fill + "\" stroke=\"" + stroke + "\" stroke-width=\"1.2\"/>\n";
+        out_ += "<circle cx=\"" + twoDecimals(px(at.x)) + "\" cy=\"" + twoDecimals(py(at.y)) + "\" r=\"" +
+                twoDecimals(radius) + "\" fill=\"" + fill + "\" stroke=\"" + stroke + "\" stroke-width=\"1.2\"/>\n";
     }
     /// As one picture of a pixel per cell, stretched without blur.
     void image() {
         const FigureImage& image = panel_.image;
         if (image.width <= 0 || image.height <= 0) return;
-        out_ += "<image x=\"" + number(x0_) + "\" y=\"" + number(y1_) + "\" width=\"" + number(x1_ - x0_) +
-                "\" height=\"" + number(y0_ - y1_) +
+        out_ += "<image x=\"" + twoDecimals(x0_) + "\" y=\"" + twoDecimals(y1_) + "\" width=\"" +
+                twoDecimals(x1_ - x0_) + "\" height=\"" + twoDecimals(y0_ - y1_) +
                 "\" preserveAspectRatio=\"none\" image-rendering=\"pixelated\" xlink:href=\"data:image/png;base64," +
                 base64(vis::encodePng({{image.width, image.height}, image.rgba})) + "\"/>\n";
     }
@@ -170,7 +172,7 @@ private:
         if (panel_.series.size() < 2) return;
         double y = y1_ + 12;
         for (const FigureSeries& series : panel_.series) {
-            out_ += "<rect x=\"" + number(x1_ - 12) + "\" y=\"" + number(y - 6) +
+            out_ += "<rect x=\"" + twoDecimals(x1_ - 12) + "\" y=\"" + twoDecimals(y - 6) +
                     "\" width=\"8\" height=\"4\" fill=\"" + colorOf(series.color) + "\"/>\n";
             text(x1_ - 15, y, series.name, "end");
             y += 11;
@@ -193,11 +195,11 @@ double figureTextWidth(const std::string& text) {
 std::string figureSvg(const std::vector<FigurePanel>& panels, int columns) {
     const int across = std::max(1, std::min(columns, static_cast<int>(panels.size())));
     const int rows = (static_cast<int>(panels.size()) + across - 1) / across;
-    const std::string width = number(across * kWidth), height = number(std::max(1, rows) * kHeight);
+    const std::string width = twoDecimals(across * kWidth), height = twoDecimals(std::max(1, rows) * kHeight);
     std::string out =
         "<svg xmlns=\"http://www.w3.org/2000/svg\" xmlns:xlink=\"http://www.w3.org/1999/xlink\" width=\"" + width +
         "pt\" height=\"" + height + "pt\" viewBox=\"0 0 " + width + " " + height +
-        "\" font-family=\"Helvetica, Arial, sans-serif\" font-size=\"" + number(kFigureText) +
+        "\" font-family=\"Helvetica, Arial, sans-serif\" font-size=\"" + twoDecimals(kFigureText) +
         "\" fill=\"#222\">\n"
         "<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n";
     for (std::size_t i = 0; i < panels.size(); ++i)

@@ -11,9 +11,9 @@ namespace tessera::app {
 namespace {
 
 /// Told apart by hue and lightness; the first is the colour of a lone brush.
-constexpr glm::vec3 kColors[] = {{1.0f, 0.69f, 0.25f},  {0.36f, 0.8f, 0.98f}, {0.96f, 0.48f, 0.78f},
-                                 {0.55f, 0.87f, 0.42f}, {0.74f, 0.62f, 1.0f}, {0.95f, 0.42f, 0.36f},
-                                 {0.93f, 0.88f, 0.42f}, {0.35f, 0.86f, 0.74f}};
+constexpr glm::vec3 kBrushColors[] = {{1.0f, 0.69f, 0.25f},  {0.36f, 0.8f, 0.98f}, {0.96f, 0.48f, 0.78f},
+                                      {0.55f, 0.87f, 0.42f}, {0.74f, 0.62f, 1.0f}, {0.95f, 0.42f, 0.36f},
+                                      {0.93f, 0.88f, 0.42f}, {0.35f, 0.86f, 0.74f}};
 
 /// A colour of the session on the theme's background: light ones vanish on white.
 ImU32 onTheme(glm::vec3 color, float alpha = 1) {
@@ -240,11 +240,11 @@ std::string newBrushName(const vis::Selection& selection, const std::string& bas
 }
 
 glm::vec3 newBrushColor(const vis::Selection& selection) {
-    for (const glm::vec3& color : kColors)
+    for (const glm::vec3& color : kBrushColors)
         if (std::none_of(selection.brushes.begin(), selection.brushes.end(),
                          [&](const vis::Brush& brush) { return brush.color == color; }))
             return color;
-    return kColors[selection.brushes.size() % std::size(kColors)];
+    return kBrushColors[selection.brushes.size() % std::size(kBrushColors)];
 }
 
 ImU32 brushColor(const vis::Brush& brush, float alpha) {

@@ -11,7 +11,7 @@ namespace tessera::app {
 
 namespace {
 
-constexpr int kParts = 64; ///< of an outline in a plane
+constexpr int kOutlineParts = 64; ///< of an outline in a plane
 constexpr double kPi = 3.14159265358979, kReach = 4;
 
 ImU32 colorOf(const vis::Lens& lens, float alpha) {
@@ -68,10 +68,10 @@ std::vector<glm::dvec3> lensSection(const vis::PlacedLens& lens, int right, int 
                 }
     std::vector<glm::dvec3> points;
     if (lens.radius(inside) >= 1) return points;
-    for (int i = 0; i < kParts; ++i) {
+    for (int i = 0; i < kOutlineParts; ++i) {
         glm::dvec3 way(0);
-        way[right] = std::cos(2 * kPi * i / kParts);
-        way[up] = std::sin(2 * kPi * i / kParts);
+        way[right] = std::cos(2 * kPi * i / kOutlineParts);
+        way[up] = std::sin(2 * kPi * i / kOutlineParts);
         double near = 0, far = kReach;
         for (int k = 0; k < 30; ++k) {
             const double half = 0.5 * (near + far);

@@ -100,7 +100,7 @@ Axis mapAxis(int begin, int end, int halo, int whole, int edge, int perTexel) {
     return axis;
 }
 
-std::size_t linear(glm::ivec3 at, glm::ivec3 size) {
+std::size_t indexOfTexel(glm::ivec3 at, glm::ivec3 size) {
     return (std::size_t(at.z) * std::size_t(size.y) + std::size_t(at.y)) * std::size_t(size.x) + std::size_t(at.x);
 }
 
@@ -129,9 +129,9 @@ BrickSamples gatherBox(const BrickGrid& grid, const BrickKey& which, const Texel
         if (!from->present.empty()) std::call_once(masked, [&] { out.present.assign(total, 1); });
         for (int z = rz.begin; z < rz.end; ++z)
             for (int y = ry.begin; y < ry.end; ++y) {
-                const std::size_t to = linear({0, y, z}, out.size);
+                const std::size_t to = indexOfTexel({0, y, z}, out.size);
                 const std::size_t source =
-                    linear({0, axes[1].sample[std::size_t(y)], axes[2].sample[std::size_t(z)]}, from->size);
+                    indexOfTexel({0, axes[1].sample[std::size_t(y)], axes[2].sample[std::size_t(z)]}, from->size);
                 for (int x = rx.begin, count = 0; x < rx.end; x += count) { // beyond the lattice one by one
                     count = axes[0].adjacent(x, rx.end);
                     const std::size_t sample = source + std::size_t(axes[0].sample[std::size_t(x)]);
@@ -266,7 +266,7 @@ TexelBlock makeTexels(const BrickGrid& grid, const BrickKey& which, const TexelB
             for (std::size_t row = begin + rows * std::size_t(first); row < end + rows * std::size_t(first); ++row) {
                 const glm::ivec3 from(0, int(row % rows), (int(row / rows) - below) * perTexel);
                 for (int s = 0; s < perTexel; ++s)
-                    packRow(samples, linear(from + glm::ivec3(0, 0, s), samples.size), encoding, perTexel, s, row,
+                    packRow(samples, indexOfTexel(from + glm::ivec3(0, 0, s), samples.size), encoding, perTexel, s, row,
                             plain, out);
                 ranges.take(row, plain.data(), perTexel);
             }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/ext/scalar_constants.hpp>
 #include <glm/geometric.hpp>
 #include <tuple>
 
@@ -11,14 +12,13 @@ namespace {
 
 constexpr int kParts = 64;    ///< of a circle
 constexpr int kEdgeParts = 8; ///< of an edge, so that its farther half is faint
-constexpr double kPi = 3.14159265358979;
 
 using Line = std::function<void(glm::dvec3 from, glm::dvec3 to, float strength)>;
 
 /// A circle around `middle` through middle + a and middle + b.
 void circle(const Line& line, glm::dvec3 middle, glm::dvec3 a, glm::dvec3 b, float strength) {
     const auto at = [&](int i) {
-        const double angle = 2 * kPi * i / kParts;
+        const double angle = 2 * glm::pi<double>() * i / kParts;
         return middle + std::cos(angle) * a + std::sin(angle) * b;
     };
     for (int i = 0; i < kParts; ++i) line(at(i), at(i + 1), strength);

@@ -9,7 +9,7 @@ namespace tessera::vis {
 
 namespace {
 
-constexpr float kMostOpaque = 0.8f;
+constexpr float kTailOpacity = 0.8f;
 constexpr double kLeftOut = 0.002; ///< share of the values at either end that says nothing of how long a tail is
 
 double sumOf(std::span<const std::uint64_t> count) {
@@ -50,7 +50,7 @@ double seenShare(std::span<const std::uint64_t> count, std::uint64_t places, std
 }
 
 std::vector<glm::vec2> tailOpacity(std::span<const std::uint64_t> count, double share) {
-    const std::vector<glm::vec2> line{{0.0f, 0.0f}, {1.0f, kMostOpaque}};
+    const std::vector<glm::vec2> line{{0.0f, 0.0f}, {1.0f, kTailOpacity}};
     const double all = sumOf(count), bins = double(count.size());
     if (all == 0) return line;
     const Bins bulk = bulkOf(count, all / 2);
@@ -64,14 +64,14 @@ std::vector<glm::vec2> tailOpacity(std::span<const std::uint64_t> count, double 
     std::vector<glm::vec2> curve;
     if (low) {
         const std::size_t edge = std::clamp<std::size_t>(binsHolding(count.begin(), count.end(), each), 1, bulk.begin);
-        curve = {{0.0f, kMostOpaque}, {float(double(edge) / bins), 0.0f}};
+        curve = {{0.0f, kTailOpacity}, {float(double(edge) / bins), 0.0f}};
     } else {
         curve = {{0.0f, 0.0f}};
     }
     if (high) {
         const std::size_t held = binsHolding(count.rbegin(), count.rend(), each);
         const std::size_t edge = std::clamp(count.size() - held, bulk.end, count.size() - 1);
-        curve.insert(curve.end(), {{float(double(edge) / bins), 0.0f}, {1.0f, kMostOpaque}});
+        curve.insert(curve.end(), {{float(double(edge) / bins), 0.0f}, {1.0f, kTailOpacity}});
     } else {
         curve.push_back({1.0f, 0.0f});
     }
@@ -87,8 +87,8 @@ std::vector<glm::vec2> signedTailOpacity(std::span<const std::uint64_t> count, d
            (beyond += double(count[half - clear]) + double(count[count.size() - 1 - (half - clear)])) <= most)
         --clear;
     const float away = 0.5f * float(clear) / float(std::max<std::size_t>(half, 1));
-    if (clear == half || clear == 0) return {{0.0f, kMostOpaque}, {0.5f, 0.0f}, {1.0f, kMostOpaque}};
-    return {{0.0f, kMostOpaque}, {0.5f - away, 0.0f}, {0.5f + away, 0.0f}, {1.0f, kMostOpaque}};
+    if (clear == half || clear == 0) return {{0.0f, kTailOpacity}, {0.5f, 0.0f}, {1.0f, kTailOpacity}};
+    return {{0.0f, kTailOpacity}, {0.5f - away, 0.0f}, {0.5f + away, 0.0f}, {1.0f, kTailOpacity}};
 }
 
 } // namespace tessera::vis

@@ -18,7 +18,7 @@ namespace tessera::volume {
 
 namespace {
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNoMean = std::numeric_limits<double>::quiet_NaN();
 
 /// An empty histogram of a query.
 DerivativeHistogram emptyHistogram(const BrickSource& source, const DerivativeQuery& query) {
@@ -147,8 +147,8 @@ BoundaryCurves boundaryCurves(const DerivativeHistogram& histogram, double thres
             count += double(histogram.count[bin]);
             second += histogram.second[bin];
         }
-        out.first.push_back(count > 0 ? histogram.first[v] / count : kNone);
-        out.second.push_back(count > 0 ? second / count : kNone);
+        out.first.push_back(count > 0 ? histogram.first[v] / count : kNoMean);
+        out.second.push_back(count > 0 ? second / count : kNoMean);
         if (count > 0) {
             mostFirst = std::max(mostFirst, out.first[v]);
             mostSecond = std::max(mostSecond, out.second[v]);
@@ -158,7 +158,7 @@ BoundaryCurves boundaryCurves(const DerivativeHistogram& histogram, double thres
     const double least = threshold * mostFirst, squared = out.thickness * out.thickness;
     for (std::size_t v = 0; v < values; ++v) {
         const double above = out.first[v] - least;
-        out.distance.push_back(above > 0 ? -squared * out.second[v] / above : kNone);
+        out.distance.push_back(above > 0 ? -squared * out.second[v] / above : kNoMean);
     }
     return out;
 }

@@ -10,9 +10,9 @@ namespace tessera::volume {
 
 namespace {
 
-class Between final : public BrickSource {
+class SourceBetweenTimes final : public BrickSource {
 public:
-    Between(std::shared_ptr<const BrickSource> source, const TimePair& time)
+    SourceBetweenTimes(std::shared_ptr<const BrickSource> source, const TimePair& time)
         : source_(std::move(source)), time_(time), info_(source_->info()) {
         const auto at = [&](int i) { return info_.times[std::size_t(i)]; };
         info_.times = {(1 - time_.weight) * at(time_.earlier) + time_.weight * at(time_.later)};
@@ -72,7 +72,7 @@ private:
 
 SourceAtTime sourceAt(std::shared_ptr<const BrickSource> source, const TimePair& time) {
     if (!time.between()) return {std::move(source), time.earlier};
-    return {std::make_shared<Between>(std::move(source), time), 0};
+    return {std::make_shared<SourceBetweenTimes>(std::move(source), time), 0};
 }
 
 } // namespace tessera::volume

@@ -70,13 +70,13 @@ Form formOf(const Dataset& dataset, int parameter, const std::vector<int>& times
     return form;
 }
 
-using json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
 /// The sidecar's list of components.
-json componentsOf(const DatasetInfo& info, const std::vector<int>& parameters, const std::vector<Form>& forms) {
-    json components = json::array();
-    const auto add = [&](const std::string& componentName, const std::string& unit, ScalarType type) -> json& {
-        json entry;
+OrderedJson componentsOf(const DatasetInfo& info, const std::vector<int>& parameters, const std::vector<Form>& forms) {
+    OrderedJson components = OrderedJson::array();
+    const auto add = [&](const std::string& componentName, const std::string& unit, ScalarType type) -> OrderedJson& {
+        OrderedJson entry;
         entry["name"] = componentName;
         entry["unit"] = unit;
         if (type != forms.front().storage.type) entry["dtype"] = name(type);
@@ -89,7 +89,7 @@ json componentsOf(const DatasetInfo& info, const std::vector<int>& parameters, c
             const std::string suffix = what.components == 1 ? ""
                                        : c < 3              ? std::string(".") + "xyz"[c]
                                                             : "." + std::to_string(c);
-            json& entry = add(what.name + suffix, what.unitGuessed ? "" : what.unit, forms[i].storage.type);
+            OrderedJson& entry = add(what.name + suffix, what.unitGuessed ? "" : what.unit, forms[i].storage.type);
             const Scaling& scaling = forms[i].storage.scaling[std::size_t(c)];
             if (scaling.scale != 1) entry["scale"] = scaling.scale;
             if (scaling.offset != 0) entry["offset"] = scaling.offset;
@@ -128,13 +128,13 @@ std::uint64_t writeFrames(const Dataset& dataset, const std::vector<int>& parame
 }
 
 /// The sidecar's list of quantities.
-json quantitiesOf(const DatasetInfo& info, const std::vector<int>& times) {
-    json quantities;
+OrderedJson quantitiesOf(const DatasetInfo& info, const std::vector<int>& times) {
+    OrderedJson quantities;
     for (const Quantity& quantity : info.quantities) {
-        json values = json::array();
+        OrderedJson values = OrderedJson::array();
         for (const int t : times) {
             const double value = quantity.values[std::size_t(t)];
-            values.push_back(std::isfinite(value) ? json(value) : json());
+            values.push_back(std::isfinite(value) ? OrderedJson(value) : OrderedJson());
         }
         quantities.push_back({{"name", quantity.name}, {"unit", quantity.unit}, {"values", values}});
     }
@@ -156,7 +156,7 @@ std::vector<std::string> writeRaw(const Dataset& dataset, const std::vector<int>
     }
     AtomicFile file(raw.string());
     const std::uint64_t bytes = writeFrames(dataset, parameters, forms, times, file, progress.part(0.3, 1));
-    json out;
+    OrderedJson out;
     out["name"] = info.name;
     out["file"] = raw.filename().string();
     const Lattice& lattice = info.lattice;
@@ -168,7 +168,7 @@ std::vector<std::string> writeRaw(const Dataset& dataset, const std::vector<int>
     out["origin"] = {lattice.origin.x, lattice.origin.y, lattice.origin.z};
     out["length_unit"] = info.lengthUnit;
     out["components"] = componentsOf(info, parameters, forms);
-    out["times"] = json::array();
+    out["times"] = OrderedJson::array();
     for (const int t : times) out["times"].push_back(info.times[std::size_t(t)]);
     out["time_name"] = info.timeName;
     out["time_unit"] = info.timeUnit;

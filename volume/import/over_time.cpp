@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNotGiven = std::numeric_limits<double>::quiet_NaN();
 constexpr std::uintmax_t kMostTableBytes = 256u << 20;
 constexpr std::size_t kMostColumns = 4096;
 
@@ -163,7 +163,7 @@ TimeTable parseTimeTable(std::string_view text, const std::string& file) {
         for (std::size_t c = 0; c < cells.size(); ++c) {
             const std::string word = lower(cells[c]);
             const bool unknown = word.empty() || word == "-" || word == "nan";
-            const std::optional<double> value = unknown ? std::optional(kUnknown) : numberOf(cells[c]);
+            const std::optional<double> value = unknown ? std::optional(kNotGiven) : numberOf(cells[c]);
             if (!value || std::isinf(*value))
                 throw Error("\"" + cells[c].substr(0, 40) + "\" in column " + headings[c] + " is not a number", file,
                             place);

@@ -8,7 +8,7 @@ namespace tessera::app {
 
 namespace {
 
-constexpr float kThinnest = 0.01f;
+constexpr float kThinnestRegion = 0.01f;
 
 int edgesAt(const vis::TransferRegion& region, glm::vec2 place, glm::vec2 reach) {
     const glm::vec2 lo = region.centre - 0.5f * region.size, hi = region.centre + 0.5f * region.size;
@@ -44,10 +44,10 @@ vis::TransferRegion draggedRegion(const vis::TransferRegion& original, int edges
         return region;
     }
     glm::vec2 lo = original.centre - 0.5f * original.size, hi = original.centre + 0.5f * original.size;
-    if (edges & kRegionLeft) lo.x = std::min(lo.x + by.x, hi.x - kThinnest);
-    if (edges & kRegionRight) hi.x = std::max(hi.x + by.x, lo.x + kThinnest);
-    if (edges & kRegionLow) lo.y = std::min(lo.y + by.y, hi.y - kThinnest);
-    if (edges & kRegionHigh) hi.y = std::max(hi.y + by.y, lo.y + kThinnest);
+    if (edges & kRegionLeft) lo.x = std::min(lo.x + by.x, hi.x - kThinnestRegion);
+    if (edges & kRegionRight) hi.x = std::max(hi.x + by.x, lo.x + kThinnestRegion);
+    if (edges & kRegionLow) lo.y = std::min(lo.y + by.y, hi.y - kThinnestRegion);
+    if (edges & kRegionHigh) hi.y = std::max(hi.y + by.y, lo.y + kThinnestRegion);
     region.centre = 0.5f * (lo + hi);
     region.size = hi - lo;
     return region;
@@ -84,7 +84,7 @@ bool editRegions(RegionDrag& drag, std::vector<vis::TransferRegion>& regions, co
     if (!drag.active || !ImGui::IsMouseDragging(ImGuiMouseButton_Left, 3)) return false;
     if (drag.selected < 0) { // a new one from here, held by the corner that the mouse drags
         drag.original = {};
-        drag.original.size = glm::vec2(kThinnest);
+        drag.original.size = glm::vec2(kThinnestRegion);
         const glm::vec2 way = place - drag.start;
         drag.edges = (way.x < 0 ? kRegionLeft : kRegionRight) | (way.y < 0 ? kRegionLow : kRegionHigh);
         drag.original.centre = drag.start;

@@ -35,7 +35,7 @@ struct TransferCache : ViewCache {
 };
 
 /// The parameter that a layer's own function is of: of a surface, the one that colours it.
-std::string channelOf(const vis::Technique& technique) {
+std::string colouringParameter(const vis::Technique& technique) {
     const auto* surface = std::get_if<vis::IsoLayer>(&technique);
     if (surface && !surface->colorBy.empty()) return surface->colorBy;
     return std::visit([](const auto& own) { return own.channel; }, technique);
@@ -205,7 +205,7 @@ void drawTransferView(ViewContext& context, const std::string& pane, TransferVie
     const volume::DatasetInfo& info = context.source->info();
     const auto channelNow = [&] {
         const vis::Layer* own = layerOfFunction(context.session, view.channel);
-        const std::string name = own ? channelOf(own->technique) : view.channel;
+        const std::string name = own ? colouringParameter(own->technique) : view.channel;
         return resolveChannel(info, context.session, name);
     };
     const auto channel = channelNow();

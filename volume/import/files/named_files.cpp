@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::size_t kMostFiles = 100'000;
+constexpr std::size_t kMostNamed = 100'000;
 
 std::string ending(const fs::path& path) {
     std::string text = path.extension().string();
@@ -91,7 +91,7 @@ std::vector<fs::path> namedDirectly(const fs::path& path) {
     std::error_code problem;
     const auto addFolder = [&](const fs::path& folder) {
         for (fs::recursive_directory_iterator at(folder, problem), end;
-             !problem && at != end && named.size() < kMostFiles; at.increment(problem))
+             !problem && at != end && named.size() < kMostNamed; at.increment(problem))
             named.push_back(at->path());
     };
     const std::string kind = ending(path);
@@ -127,7 +127,7 @@ std::vector<std::string> filesNamedBy(const std::string& path) {
     const fs::path first = normal(path);
     std::set<fs::path> found;
     std::vector<fs::path> pending{first};
-    while (!pending.empty() && found.size() < kMostFiles) {
+    while (!pending.empty() && found.size() < kMostNamed) {
         const fs::path next = std::move(pending.back());
         pending.pop_back();
         std::vector<fs::path> named;
