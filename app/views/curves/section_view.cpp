@@ -107,8 +107,8 @@ void drawToolbar(ViewContext& context, ProfileView& view, const std::vector<int>
     static constexpr const char* kWeightHelp[] = {
         "Weight of a sample: the area of its cell in the plane",
         "Weight of a sample: the volume of its cell around the plane",
-        "Weight of a sample: the flow through the plane, in either direction; density x velocity if the data have a "
-        "density, else velocity"};
+        ("Weight of a sample: the flow through the plane, in either direction; density x velocity if the data have a "
+         "density, else velocity")};
     static constexpr const char* kMeasureNames[] = {"mean", "minimum",     "maximum", "integral",
                                                     "flux", "volume flow", "area"};
     const volume::DatasetInfo& info = context.numbers->info();
