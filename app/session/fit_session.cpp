@@ -38,20 +38,10 @@ public:
             });
         };
         for (auto& [key, view] : session_.views) {
-            if (auto* slices = std::get_if<SlicesView>(&view)) replace(slices->channel);
-            if (auto* transfer = std::get_if<TransferView>(&view); transfer && !owned(transfer->channel))
-                replace(transfer->channel);
-            if (auto* histogram = std::get_if<HistogramView>(&view)) replace(histogram->channel);
-            if (auto* tesseract = std::get_if<TesseractView>(&view)) {
-                replace(tesseract->channel);
-                if (!known(tesseract->fourth)) tesseract->fourth.clear();
-            }
-            std::visit(
-                [&](auto& each) {
-                    if constexpr (requires { each.channels; })
-                        std::erase_if(each.channels, [&](const std::string& name) { return !known(name); });
-                },
-                view);
+            if (const auto* transfer = std::get_if<TransferView>(&view); transfer && owned(transfer->channel)) continue;
+            std::visit([&](auto& each) { fitNames(each); }, view);
+            if (auto* plots = std::get_if<ScatterMatrixView>(&view); plots && plots->enlarged.size() != 2)
+                plots->enlarged.clear();
         }
     }
 
@@ -117,6 +107,25 @@ private:
                 const Range range = info_.channelRange(channels_[static_cast<std::size_t>(*index)]);
                 technique.value = 0.5 * (range.lo + range.hi);
             }
+    }
+
+    /// Every member of a view that names a parameter, and those of its members.
+    template <class Owner> void fitNames(Owner& owner) {
+        Owner::describe(owner, [&]<class Member>(Member& member, const FieldInfo& field) {
+            if constexpr (Described<Member>) {
+                fitNames(member);
+            } else if constexpr (std::is_same_v<Member, std::string>) {
+                if (field.refersTo == "channel")
+                    replace(member);
+                else if (field.refersTo == "vector" && !member.empty())
+                    fitVector(member);
+                else if (field.refersTo == "optionalChannel" && !known(member))
+                    member.clear();
+            } else if constexpr (std::is_same_v<Member, std::vector<std::string>>) {
+                if (field.refersTo == "channel")
+                    std::erase_if(member, [&](const std::string& name) { return !known(name); });
+            }
+        });
     }
 
     void fitVector(std::string& name) const {

@@ -78,7 +78,7 @@ struct StatisticsView {
         visit(self.balance, FieldInfo{.key = "balance",
                                       .unit = "",
                                       .doc = "By region: inflow and outflow of this parameter instead of statistics",
-                                      .refersTo = "channel"});
+                                      .refersTo = "optionalChannel"});
     }
 };
 DrawView<StatisticsView> drawStatisticsView;

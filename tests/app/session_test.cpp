@@ -6,8 +6,10 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <type_traits>
 #include <unistd.h>
 
 namespace tessera::app {
@@ -429,6 +431,62 @@ TEST(SessionTest, FitGivesFlowAVectorOfTheData) {
     EXPECT_NE(flow.vector, "");
     EXPECT_EQ(flow.channel, "T");
     EXPECT_EQ(flow.weight, "");
+}
+
+/// Calls `visit(name)` for every member of a view that names parameters, in the order of their descriptions.
+template <class Owner> void eachName(Owner& owner, const std::function<void(std::string&)>& visit) {
+    Owner::describe(owner, [&]<class Member>(Member& member, const FieldInfo& field) {
+        const bool names = field.refersTo == "channel" || field.refersTo == "optionalChannel";
+        if constexpr (Described<Member>) {
+            eachName(member, visit);
+        } else if constexpr (std::is_same_v<Member, std::string>) {
+            if (names) visit(member);
+        } else if constexpr (std::is_same_v<Member, std::vector<std::string>>) {
+            if (!names) return;
+            if (member.empty()) member.assign(2, "");
+            for (std::string& name : member) visit(name);
+        }
+    });
+}
+
+TEST(SessionTest, FitLeavesNoViewANameThatIsNotThere) {
+    int kinds = 0, members = 0;
+    const auto tryKind = [&]<class View>(std::type_identity<View>) {
+        Session session = defaultSession(cellInfo(), {});
+        View view;
+        eachName(view, [&](std::string& name) { name = "salt", ++members; });
+        session.views = {{"view", view}};
+        std::vector<std::string> messages;
+        fitSession(session, cellInfo(), messages);
+        eachName(std::get<View>(session.views.at("view")), [&](std::string& name) {
+            EXPECT_TRUE(name.empty() || cellInfo().findChannel(name)) << View::kType << " keeps " << name;
+        });
+        ++kinds;
+    };
+    [&]<class... View>(std::type_identity<std::variant<View...>>) {
+        (tryKind(std::type_identity<View>{}), ...);
+    }(std::type_identity<ViewState>{});
+    EXPECT_GT(kinds, 10);
+    EXPECT_GT(members, 15);
+}
+
+TEST(SessionTest, FitGivesTheFacesOfTheCubeOneStandInForOneName) {
+    Session session = defaultSession(cellInfo(), {});
+    ShadowCubeView cube;
+    cube.left.channel = cube.back.channel = "salt";
+    cube.top.channel = "T";
+    StatisticsView statistics;
+    statistics.balance = "salt";
+    session.views = {{"cube", cube}, {"statistics", statistics}};
+    std::vector<std::string> messages;
+    fitSession(session, cellInfo(), messages);
+    const auto& now = std::get<ShadowCubeView>(session.views.at("cube"));
+    EXPECT_EQ(now.left.channel, "O2");
+    EXPECT_EQ(now.back.channel, "O2");
+    EXPECT_EQ(now.top.channel, "T");
+    EXPECT_EQ(std::get<StatisticsView>(session.views.at("statistics")).balance, "") << "another balance is no stand-in";
+    ASSERT_EQ(messages.size(), 1u);
+    EXPECT_EQ(messages[0], "parameter salt is not in the data; showing O2 instead");
 }
 
 TEST(SessionTest, DefaultStretchesThinCells) {
